@@ -1,0 +1,59 @@
+#pragma once
+// Assets in and out. The document that came in is the document that goes out, patched: only
+// texture coordinates are added and, where a vertex lies on a seam, its copies.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd::asset {
+
+enum class Format { glb, gltf, obj };
+
+/// The bytes of a request. Nothing else is ever opened or fetched.
+/// buffers: a .gltf's external buffers by the URI that the document uses for them.
+struct Input {
+  std::string_view document;
+  std::map<std::string, std::string_view> buffers;
+};
+
+/// Checked against counts in the document before anything of their size is allocated.
+struct ReadLimits {
+  std::int64_t max_vertices = 10'000'000;
+  std::int64_t max_faces = 20'000'000;
+};
+
+struct Document;  // the original JSON and buffers, or the OBJ's text; private to asset
+
+/// An asset as read: its surfaces to unwrap, and the document that write() patches.
+class Asset {
+ public:
+  explicit Asset(std::unique_ptr<Document> document);
+  Asset(Asset&&) noexcept;
+  Asset& operator=(Asset&&) noexcept;
+  ~Asset();
+
+  [[nodiscard]] Format format() const;  ///< as it came in
+  [[nodiscard]] std::span<const Surface> surfaces() const;
+  [[nodiscard]] const Document& document() const { return *document_; }
+
+ private:
+  std::unique_ptr<Document> document_;
+};
+
+/// Recognises the format by content. Throws Error with a JSON pointer or a file position:
+/// unknown_format, malformed_*, missing_buffer, external_uri, unsupported_extension,
+/// too_many_vertices, too_many_faces, no_triangles, non_finite_position.
+Asset read(const Input& input, const ReadLimits& limits);
+
+/// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data
+/// URIs). unwrapped has one entry for each of asset.surfaces().
+std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrapped, Format output);
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,75 @@
+#pragma once
+// The one error type of the project. It is thrown where the cause is known and caught at three
+// edges only: the HTTP handler wrapper, the worker loop and the command line's main.
+// api/error_table.cpp gives every code its wire name, HTTP status and title.
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace unwrapd {
+
+enum class ErrorCode {
+  // the request
+  malformed_request,
+  invalid_option,
+  not_found,
+  method_not_allowed,
+  not_acceptable,
+  request_timeout,
+  job_unfinished,
+  result_expired,
+  length_required,
+  body_too_large,
+  unsupported_media_type,
+  headers_too_large,
+  queue_full,
+  draining,
+  too_many_streams,
+  // the asset's bytes
+  unknown_format,
+  malformed_glb,
+  malformed_json,
+  malformed_gltf,
+  malformed_obj,
+  malformed_draco,
+  malformed_meshopt,
+  missing_buffer,
+  external_uri,
+  unsupported_extension,
+  // the mesh
+  too_many_vertices,
+  too_many_faces,
+  no_triangles,
+  zero_area,
+  non_finite_position,
+  not_orientable,
+  // the work
+  solver_failed,
+  time_limit,
+  cancelled,
+  poison,
+  storage_failed,
+  internal,
+};
+
+inline constexpr int kErrorCodeCount = static_cast<int>(ErrorCode::internal) + 1;
+
+/// What went wrong, for the person who sent the request.
+/// message: one sentence that says what is wrong and what to do about it.
+/// where: a JSON pointer into the document or the options, or a place in the file ("line 12",
+/// "byte 20"); empty when the whole input is meant.
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorCode code, const std::string& message, std::string where = {})
+      : std::runtime_error(message), code_(code), where_(std::move(where)) {}
+
+  [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+  [[nodiscard]] const std::string& where() const noexcept { return where_; }
+
+ private:
+  ErrorCode code_;
+  std::string where_;
+};
+
+}  // namespace unwrapd

@@ -1,0 +1,28 @@
+#pragma once
+// Core has no threads of its own: it splits its loops into blocks and hands them to an Executor.
+
+#include <functional>
+
+namespace unwrapd {
+
+class Executor {
+ public:
+  Executor() = default;
+  Executor(const Executor&) = delete;
+  Executor& operator=(const Executor&) = delete;
+  virtual ~Executor() = default;
+
+  /// Calls body(block) once for every block in [0, block_count), in any order and on any thread;
+  /// returns when all are done. body must not throw.
+  virtual void for_each_block(int block_count, const std::function<void(int)>& body) = 0;
+};
+
+/// Runs the blocks one after another on the calling thread.
+class SerialExecutor final : public Executor {
+ public:
+  void for_each_block(int block_count, const std::function<void(int)>& body) override {
+    for (int block = 0; block < block_count; ++block) body(block);
+  }
+};
+
+}  // namespace unwrapd

@@ -1,0 +1,36 @@
+#pragma once
+// Connectivity as one array. Half-edge h = 3t + i is the directed side of face t from its corner i
+// to corner i+1; twin[h] is the half-edge on the other side, or kNoTwin on a boundary or seam.
+// Everything that changes topology (splitting a non-manifold edge, keeping a seam, cutting to a
+// disk) only removes twins; vertices then are the classes of corners that twins hold together.
+
+#include <span>
+#include <vector>
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+inline constexpr Index kNoTwin = -1;
+
+inline Index next_halfedge(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
+inline Index previous_halfedge(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+inline Index face_of(Index h) { return h / 3; }
+
+struct Halfedges {
+  std::vector<Index> twin;  ///< 3 * face_count entries
+};
+
+/// Pairs the half-edges (i,j) and (j,i) of the faces. An edge where more than two half-edges meet,
+/// or two of the same direction, stays without twins. Linear time (radix or counting sort).
+Halfedges build_halfedges(std::span<const Triangle> faces, Index vertex_count);
+
+/// A closed chain of twinless half-edges, in the order in which the surface's boundary is walked
+/// (the surface to the left). Each half-edge of the chain starts where the one before ends.
+using BoundaryLoop = std::vector<Index>;
+
+/// All boundary loops, the one of greatest 3D length first (ties: the lowest half-edge).
+/// Needs manifold vertices, as Chart's are: each vertex has one fan.
+std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges);
+
+}  // namespace unwrapd

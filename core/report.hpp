@@ -1,0 +1,69 @@
+#pragma once
+// What was done and how good it is: plain figures, measured on the UVs that are handed out.
+// Lengths are in mesh units, D has its ideal at 2, energies are divided by the surface area.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// Distortion of one chart or of all (Sec. 6), after one global scale that makes UV area = 3D area.
+struct Distortion {
+  double angle = 2;    ///< D_angle
+  double area = 2;     ///< D_area
+  double stretch = 1;  ///< root mean square of the Jacobians' Frobenius norm / sqrt 2, ideal 1
+  Index flipped = 0;   ///< triangles of negative orientation; D is computed on |sigma|
+};
+
+enum class StopReason { iterations, direct, collapse_guard };
+
+struct ChartReport {
+  Index surface = 0;  ///< which of the surfaces the chart belongs to
+  Index faces = 0;
+  Index vertices = 0;
+  Index boundaries = 0;  ///< boundary loops of the chart as solved
+  double area = 0;       ///< 3D area
+  Distortion distortion;
+  int iterations = 0;
+  StopReason stop_reason = StopReason::iterations;
+  std::vector<double> energy;  ///< energy[0] of the initial map, energy[k] after iteration k
+};
+
+/// What the mesh was as it came in, over all surfaces, after the seams were decided.
+struct InputReport {
+  Index faces = 0;
+  Index vertices = 0;
+  Index components = 0;
+  Index boundaries = 0;
+  Index genus = 0;
+  bool welded = false;  ///< vertices at equal positions were taken for one (SeamMode)
+};
+
+enum class RepairKind {
+  degenerate_faces_set_aside,  ///< zero area or a repeated vertex: UVs given at the end
+  duplicate_faces_set_aside,   ///< the same three vertices as an earlier face
+  non_manifold_edges_split,    ///< more than two faces at an edge, or two of the same direction
+  cut_to_disk,                 ///< closed or high-genus components opened along a cut graph
+};
+
+struct Repair {
+  RepairKind kind = RepairKind::degenerate_faces_set_aside;
+  Index surface = 0;
+  Index count = 0;  ///< faces, edges or components, as the kind says
+};
+
+struct Report {
+  InputReport input;
+  std::vector<Repair> repairs;
+  std::vector<std::string> notes;  ///< sentences for the user, e.g. an option without effect
+  std::vector<ChartReport> charts;
+  Distortion distortion;     ///< over all charts, area-weighted
+  double seam_length = 0;    ///< 3D length of edges whose UVs differ on both sides
+  double fill = 0;           ///< UV area of the islands ÷ area of the page
+  double texel_density = 0;  ///< texels per mesh unit
+};
+
+}  // namespace unwrapd

@@ -1,0 +1,26 @@
+#pragma once
+// The front door of core: surfaces in, texture coordinates and a report out.
+
+#include <span>
+#include <vector>
+
+#include "core/executor.hpp"
+#include "core/mesh/tri_mesh.hpp"
+#include "core/options.hpp"
+#include "core/progress.hpp"
+#include "core/report.hpp"
+
+namespace unwrapd {
+
+struct Unwrapped {
+  std::vector<UnwrappedSurface> surfaces;  ///< one for each input surface, in order
+  Report report;
+};
+
+/// Unwraps all surfaces into one atlas in [0,1]^2 at one texel density. The same input gives the
+/// same bytes whatever the executor.
+/// Throws Error: invalid_option, no_triangles, zero_area, not_orientable, solver_failed, cancelled.
+Unwrapped unwrap(std::span<const Surface> surfaces, const UnwrapOptions& options,
+                 const Progress& progress, Executor& executor);
+
+}  // namespace unwrapd
