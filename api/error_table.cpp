@@ -1,0 +1,100 @@
+#include "api/error_table.hpp"
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace unwrapd::api {
+namespace {
+
+using enum ErrorCode;
+
+constexpr std::array kRows = {
+    ErrorRow{malformed_request, "malformed_request", 400, "The request cannot be understood"},
+    ErrorRow{invalid_option, "invalid_option", 422, "An option cannot be used"},
+    ErrorRow{not_found, "not_found", 404, "There is nothing here"},
+    ErrorRow{method_not_allowed, "method_not_allowed", 405, "The method is not allowed here"},
+    ErrorRow{not_acceptable, "not_acceptable", 406, "No acceptable representation"},
+    ErrorRow{request_timeout, "request_timeout", 408, "The request took too long to arrive"},
+    ErrorRow{job_unfinished, "job_unfinished", 409, "The job is not finished"},
+    ErrorRow{result_expired, "result_expired", 410, "The result is no longer kept"},
+    ErrorRow{length_required, "length_required", 411, "A content length is required"},
+    ErrorRow{body_too_large, "body_too_large", 413, "The body is too large"},
+    ErrorRow{unsupported_media_type, "unsupported_media_type", 415, "Unsupported media type"},
+    ErrorRow{headers_too_large, "headers_too_large", 431, "The header fields are too large"},
+    ErrorRow{queue_full, "queue_full", 429, "The queue is full"},
+    ErrorRow{draining, "draining", 503, "The server is shutting down"},
+    ErrorRow{too_many_streams, "too_many_streams", 503, "Too many event streams are open"},
+    ErrorRow{unknown_format, "unknown_format", 415, "The format is not recognised"},
+    ErrorRow{malformed_glb, "malformed_glb", 400, "The GLB container is broken"},
+    ErrorRow{malformed_json, "malformed_json", 400, "The asset's JSON is broken"},
+    ErrorRow{malformed_gltf, "malformed_gltf", 400, "The glTF document is broken"},
+    ErrorRow{malformed_obj, "malformed_obj", 400, "The OBJ file is broken"},
+    ErrorRow{malformed_draco, "malformed_draco", 400, "The Draco data is broken"},
+    ErrorRow{malformed_meshopt, "malformed_meshopt", 400, "The meshopt data is broken"},
+    ErrorRow{missing_buffer, "missing_buffer", 422, "A buffer of the asset is missing"},
+    ErrorRow{external_uri, "external_uri", 422, "The asset refers to data elsewhere"},
+    ErrorRow{unsupported_extension, "unsupported_extension", 422, "Unsupported extension"},
+    ErrorRow{too_many_vertices, "too_many_vertices", 413, "The mesh has too many vertices"},
+    ErrorRow{too_many_faces, "too_many_faces", 413, "The mesh has too many faces"},
+    ErrorRow{no_triangles, "no_triangles", 422, "The asset has no triangles"},
+    ErrorRow{zero_area, "zero_area", 422, "The mesh has no area"},
+    ErrorRow{non_finite_position, "non_finite_position", 422, "A position is not finite"},
+    ErrorRow{not_orientable, "not_orientable", 422, "The surface is not orientable"},
+    ErrorRow{solver_failed, "solver_failed", 500, "The solver failed"},
+    ErrorRow{time_limit, "time_limit", 422, "The job took longer than allowed"},
+    ErrorRow{cancelled, "cancelled", 409, "The job was cancelled"},
+    ErrorRow{poison, "poison", 500, "The job ended its worker too often"},
+    ErrorRow{storage_failed, "storage_failed", 500, "The storage failed"},
+    ErrorRow{internal, "internal", 500, "Internal error"},
+};
+
+constexpr bool in_order() {
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    if (kRows[i].code != static_cast<ErrorCode>(i)) return false;
+  }
+  return true;
+}
+
+static_assert(kRows.size() == kErrorCodeCount, "every ErrorCode has one row");
+static_assert(in_order(), "rows stand in the order of ErrorCode");
+
+std::string text_of(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+}  // namespace
+
+std::span<const ErrorRow> error_table() { return kRows; }
+
+const ErrorRow& error_row(ErrorCode code) { return kRows[static_cast<std::size_t>(code)]; }
+
+std::optional<ErrorCode> code_named(std::string_view name) {
+  for (const ErrorRow& row : kRows) {
+    if (row.name == name) return row.code;
+  }
+  return std::nullopt;
+}
+
+Json problem(const Error& error, std::string_view job_id) {
+  const ErrorRow& row = error_row(error.code());
+  Json json = {{"type", "urn:unwrapd:problem:" + std::string(row.name)},
+               {"title", row.title},
+               {"status", row.status},
+               {"detail", error.what()},
+               {"code", row.name}};
+  if (!error.where().empty()) json["pointer"] = error.where();
+  if (!job_id.empty()) json["job"] = job_id;
+  return json;
+}
+
+Error error_from_problem(const Json& problem) {
+  if (!problem.is_object()) return {ErrorCode::internal, "The answer is not a problem document."};
+  const ErrorCode code = code_named(text_of(problem, "code")).value_or(ErrorCode::internal);
+  std::string detail = text_of(problem, "detail");
+  if (detail.empty()) detail = text_of(problem, "title");
+  return {code, detail, text_of(problem, "pointer")};
+}
+
+}  // namespace unwrapd::api

@@ -1,0 +1,54 @@
+#include "api/events.hpp"
+
+namespace unwrapd::api {
+
+Event queued_event(std::int64_t seq, std::int64_t position) {
+  return {seq, "queued", {{"position", position}}};
+}
+
+Event started_event(std::int64_t seq, int attempt) {
+  return {seq, "started", {{"attempt", attempt}}};
+}
+
+Event stage_event(std::int64_t seq, const StageEvent& stage) {
+  return {seq,
+          "stage",
+          {{"name", stage_name(stage.stage)},
+           {"chart", stage.chart},
+           {"of", stage.chart_count},
+           {"fraction", finite(stage.fraction)}}};
+}
+
+Event iteration_event(std::int64_t seq, const IterationEvent& iteration, double ms) {
+  return {seq,
+          "iteration",
+          {{"chart", iteration.chart},
+           {"i", iteration.iteration},
+           {"energy", finite(iteration.energy)},
+           {"rel_change", finite(iteration.rel_change)},
+           {"angle", finite(iteration.angle)},
+           {"area", finite(iteration.area)},
+           {"flipped", iteration.flipped},
+           {"fraction", finite(iteration.fraction)},
+           {"ms", finite(ms)}}};
+}
+
+Event final_event(std::int64_t seq, const Job& job) {
+  return {seq, std::string(state_name(job.state)), to_json(job)};
+}
+
+Event gap_event(std::int64_t first, std::int64_t last) {
+  return {last, "gap", {{"first", first}, {"last", last}}};
+}
+
+bool is_last(const Event& event) {
+  const auto state = state_named(event.name);
+  return state && is_final(*state);
+}
+
+std::string sse_frame(const Event& event) {
+  const std::string data = event.data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return "id: " + std::to_string(event.seq) + "\nevent: " + event.name + "\ndata: " + data + "\n\n";
+}
+
+}  // namespace unwrapd::api

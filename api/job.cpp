@@ -1,0 +1,106 @@
+#include "api/job.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/error.hpp"
+
+namespace unwrapd::api {
+namespace {
+
+// Each in the order of its enumerators.
+constexpr std::array<std::string_view, 5> kStates = {"queued", "running", "succeeded", "failed",
+                                                     "cancelled"};
+constexpr std::array<std::string_view, 7> kStages = {"read",    "setup", "factor", "solve",
+                                                     "measure", "pack",  "write"};
+
+template <class Enum>
+std::optional<Enum> named(std::span<const std::string_view> names, std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Enum>(found - names.begin());
+}
+
+Json links(std::string_view id) {
+  const std::string self = job_path(id);
+  return {{"self", self},
+          {"events", self + "/events"},
+          {"result", self + "/result"},
+          {"report", self + "/report"},
+          {"layout", self + "/layout.svg"}};
+}
+
+Json to_json(const JobProgress& progress) {
+  return {{"stage", stage_name(progress.stage)},
+          {"fraction", finite(progress.fraction)},
+          {"chart", progress.chart},
+          {"iteration", progress.iteration},
+          {"energy", finite(progress.energy)}};
+}
+
+template <class T>
+T known(const std::optional<T>& value) {
+  if (!value)
+    throw Error(ErrorCode::malformed_request, "The job is in a state of another version.");
+  return *value;
+}
+
+JobProgress progress_from_json(const Json& json) {
+  return {.stage = known(stage_named(json.at("stage").get<std::string>())),
+          .fraction = json.at("fraction").get<double>(),
+          .chart = json.at("chart").get<Index>(),
+          .iteration = json.at("iteration").get<int>(),
+          .energy = json.at("energy").get<double>()};
+}
+
+Job read_job(const Json& json) {
+  Job job{.id = json.at("id").get<std::string>(),
+          .state = known(state_named(json.at("state").get<std::string>())),
+          .created = json.at("created").get<std::string>(),
+          .attempt = json.at("attempt").get<int>(),
+          .options = json.at("options"),
+          .progress = {},
+          .problem = {}};
+  if (json.contains("progress")) job.progress = progress_from_json(json.at("progress"));
+  if (json.contains("problem")) job.problem = json.at("problem");
+  return job;
+}
+
+}  // namespace
+
+std::string_view state_name(JobState state) { return kStates[static_cast<std::size_t>(state)]; }
+
+std::optional<JobState> state_named(std::string_view name) {
+  return named<JobState>(kStates, name);
+}
+
+bool is_final(JobState state) { return state != JobState::queued && state != JobState::running; }
+
+std::string_view stage_name(Stage stage) { return kStages[static_cast<std::size_t>(stage)]; }
+
+std::optional<Stage> stage_named(std::string_view name) { return named<Stage>(kStages, name); }
+
+std::string job_path(std::string_view id) { return "/v1/jobs/" + std::string(id); }
+
+Json to_json(const Job& job) {
+  Json json = {{"id", job.id},
+               {"state", state_name(job.state)},
+               {"created", job.created},
+               {"attempt", job.attempt},
+               {"options", job.options}};
+  if (job.progress) json["progress"] = to_json(*job.progress);
+  if (!job.problem.is_null()) json["problem"] = job.problem;
+  json["links"] = links(job.id);
+  return json;
+}
+
+Job job_from_json(const Json& json) {
+  try {
+    return read_job(json);
+  } catch (const Json::exception&) {
+    throw Error(ErrorCode::malformed_request,
+                "The answer is not a job: is there an unwrapd of this version at this address?");
+  }
+}
+
+}  // namespace unwrapd::api

@@ -1,0 +1,24 @@
+#pragma once
+// What one server accepts. Every limit is a flag of unwrapd and is told by GET /v1/limits.
+
+#include <cstdint>
+
+#include "api/json.hpp"
+
+namespace unwrapd::api {
+
+struct Limits {
+  std::int64_t max_body_bytes = std::int64_t{256} * 1024 * 1024;  ///< of one request
+  std::int64_t max_vertices = 10'000'000;
+  std::int64_t max_faces = 20'000'000;
+  std::int64_t max_sync_faces = 50'000;  ///< POST /v1/unwrap; larger meshes go to /v1/jobs
+  int max_iterations = 10'000;           ///< the highest value of the option iterations
+  int max_job_seconds = 600;             ///< of work, the queue not counted
+  int max_wait_seconds = 60;             ///< the longest Prefer: wait that is honoured
+  int max_queue = 256;                   ///< jobs waiting for a worker
+  int max_streams = 256;                 ///< event streams open at once
+};
+
+Json to_json(const Limits& limits);
+
+}  // namespace unwrapd::api
