@@ -1,0 +1,98 @@
+#include "api/report.hpp"
+
+#include <array>
+#include <string_view>
+
+namespace unwrapd::api {
+namespace {
+
+// Each in the order of its enumerators.
+constexpr std::array<std::string_view, 3> kStopReasons = {"iterations", "direct", "collapse_guard"};
+constexpr std::array<std::string_view, 4> kRepairKinds = {
+    "degenerate_faces_set_aside", "duplicate_faces_set_aside", "non_manifold_edges_split",
+    "cut_to_disk"};
+
+/// The stages of timings_ms, in the order in which a job goes through them.
+constexpr std::array kTimings = {"queue",   "read", "setup", "factor", "solve",
+                                 "measure", "pack", "write", "total"};
+
+Json to_json(const Distortion& distortion) {
+  return {{"angle", finite(distortion.angle)},
+          {"area", finite(distortion.area)},
+          {"stretch", finite(distortion.stretch)},
+          {"flipped", distortion.flipped}};
+}
+
+Json to_json(const InputReport& input, const ReportContext& context) {
+  return {{"sha256", context.sha256},       {"bytes", context.bytes},
+          {"faces", input.faces},           {"vertices", input.vertices},
+          {"components", input.components}, {"boundaries", input.boundaries},
+          {"genus", input.genus},           {"welded", input.welded}};
+}
+
+Json to_json(const Repair& repair) {
+  return {{"kind", kRepairKinds[static_cast<std::size_t>(repair.kind)]},
+          {"surface", repair.surface},
+          {"count", repair.count}};
+}
+
+Json to_json(const ChartReport& chart) {
+  Json energy = Json::array();
+  for (const double value : chart.energy) energy.push_back(finite(value));
+  return {{"surface", chart.surface},
+          {"faces", chart.faces},
+          {"vertices", chart.vertices},
+          {"boundaries", chart.boundaries},
+          {"area", finite(chart.area)},
+          {"distortion", to_json(chart.distortion)},
+          {"iterations", chart.iterations},
+          {"stop_reason", kStopReasons[static_cast<std::size_t>(chart.stop_reason)]},
+          {"energy", std::move(energy)}};
+}
+
+Json notes_json(const Report& report, const ReportContext& context) {
+  Json notes = report.notes;
+  for (const std::string& note : context.notes) notes.push_back(note);
+  return notes;
+}
+
+Json timings_json(const ReportContext& context) {
+  Json timings = Json::object();
+  for (const char* stage : kTimings) {
+    const auto found = context.timings_ms.find(stage);
+    timings[stage] = found == context.timings_ms.end() ? 0.0 : finite(found->second);
+  }
+  return timings;
+}
+
+template <class Item>
+Json array_of(const std::vector<Item>& items) {
+  Json array = Json::array();
+  for (const Item& item : items) array.push_back(to_json(item));
+  return array;
+}
+
+}  // namespace
+
+Json totals_json(const Report& report) {
+  return {{"charts", report.charts.size()},
+          {"distortion", to_json(report.distortion)},
+          {"seam_length", finite(report.seam_length)},
+          {"fill", finite(report.fill)},
+          {"texel_density", finite(report.texel_density)}};
+}
+
+Json to_json(const Report& report, const ReportContext& context) {
+  return {{"input", to_json(report.input, context)},
+          {"repairs", array_of(report.repairs)},
+          {"notes", notes_json(report, context)},
+          {"charts", array_of(report.charts)},
+          {"distortion", to_json(report.distortion)},
+          {"seam_length", finite(report.seam_length)},
+          {"fill", finite(report.fill)},
+          {"texel_density", finite(report.texel_density)},
+          {"timings_ms", timings_json(context)},
+          {"solver", {{"name", "unwrapd"}, {"version", context.version}}}};
+}
+
+}  // namespace unwrapd::api

@@ -1,0 +1,30 @@
+#pragma once
+// The report of a job as JSON: what came in, what was repaired, how good every chart is.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "api/json.hpp"
+#include "core/report.hpp"
+
+namespace unwrapd::api {
+
+/// What core does not know of a job.
+struct ReportContext {
+  std::string sha256;      ///< of the request's mesh document, lowercase hex
+  std::int64_t bytes = 0;  ///< of the mesh document and its buffers
+  std::string version;     ///< of the solver: "0.1.0"
+  /// Milliseconds by stage: queue, read, setup, factor, solve, measure, pack, write, total.
+  std::map<std::string, double> timings_ms;
+  std::vector<std::string> notes;  ///< beside core's own (see JobOptions::notes)
+};
+
+/// The report, every figure finite: an infinite one is given as the largest double.
+Json to_json(const Report& report, const ReportContext& context);
+
+/// The totals alone, for a header: charts, distortion, seam_length, fill, texel_density.
+Json totals_json(const Report& report);
+
+}  // namespace unwrapd::api
