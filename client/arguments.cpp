@@ -1,0 +1,178 @@
+#include "client/arguments.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "api/error_table.hpp"
+#include "api/options.hpp"
+
+namespace unwrapd::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kAbout =
+    "Gives a triangle mesh its UVs: sends FILE (glTF, GLB or OBJ) to an unwrapd server, shows the "
+    "progress and writes the same asset back with texture coordinates.";
+
+constexpr const char* kFooter = R"(Examples:
+  unwrap chair.glb                                 writes chair.uv.glb
+  unwrap chair.gltf -o chair.glb --method asap     buffers beside chair.gltf are sent with it
+  unwrap bust.obj -o bust.uv.obj --method hybrid --lambda 0.1 --layout bust.svg
+  unwrap chair.glb --json --quiet | jq .distortion
+  unwrap --sample shell.glb                        a mesh to try all this with
+
+Exit codes:
+    0  done
+    1  the server refused or failed the job: its problem is printed on stderr
+    2  the command line makes no sense
+    3  no server at the address, no answer in time, or not unwrapd's
+    4  a file cannot be read or written
+  130  interrupted (Ctrl-C): the job is cancelled)";
+
+std::string flag_name(std::string_view option) {
+  std::string flag(option);
+  std::ranges::replace(flag, '_', '-');
+  return "--" + flag;
+}
+
+std::string value_text(const api::Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// "asap|arap|hybrid", "INT >= 1", "NUMBER >= 0", "INT in [16, 16384]".
+std::string range_text(const api::OptionRow& row) {
+  if (row.type == api::OptionType::choice) {
+    std::string text;
+    for (const std::string_view choice : row.choices)
+      text += (text.empty() ? "" : "|") + std::string(choice);
+    return text;
+  }
+  const std::string kind = row.type == api::OptionType::integer ? "INT" : "NUMBER";
+  const auto figure = [](double value) { return std::to_string(std::lround(value)); };
+  if (!row.maximum) return kind + " >= " + figure(row.minimum);
+  return kind + " in [" + figure(row.minimum) + ", " + figure(*row.maximum) + "]";
+}
+
+/// One flag for every row of the API's table; what is given lands in options.
+void add_option_flags(CLI::App& app, OptionTexts& options) {
+  for (const api::OptionRow& row : api::option_table()) {
+    const std::string name(row.name);
+    const std::string text =
+        std::string(row.description) + " Default: " + value_text(api::option_default(row)) + ".";
+    app.add_option_function<std::string>(
+           flag_name(row.name),
+           [&options, name](const std::string& value) { options[name] = value; }, text)
+        ->type_name(range_text(row))
+        ->group("Options of the unwrapping");
+  }
+}
+
+/// The values that the command line's flags are read into, before they are checked.
+struct Raw {
+  Arguments arguments;
+  std::string server = "http://127.0.0.1:8080";
+  double timeout_seconds = 0;
+};
+
+void add_flags(CLI::App& app, Raw& raw) {
+  Arguments& arguments = raw.arguments;
+  app.add_option("FILE", arguments.file, "The mesh: .glb, .gltf or .obj")->type_name("");
+  app.add_option("-o,--out", arguments.out,
+                 "Where the result goes; its extension is the format unless --output says "
+                 "otherwise. Without it FILE's name with \".uv\" before the extension")
+      ->type_name("OUT");
+  app.add_option("--report", arguments.report, "Write the report (JSON) here")->type_name("PATH");
+  app.add_option("--layout", arguments.layout, "Write a picture of the UV layout (SVG) here")
+      ->type_name("PATH");
+  app.add_flag("--json", arguments.json,
+               "Print the report (JSON) on stdout and nothing else there");
+  app.add_flag("-q,--quiet", arguments.quiet, "Show no progress and no summary");
+  app.add_option("--server", raw.server, "Address of the server")
+      ->type_name("URL")
+      ->envname("UNWRAPD_SERVER")
+      ->capture_default_str();
+  app.add_option("--timeout", raw.timeout_seconds,
+                 "Give up after so many seconds and cancel the job; 0: never")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app.add_option("--sample", arguments.sample, "Write a sample mesh (GLB, 20,164 faces) and stop")
+      ->type_name("OUT.glb");
+  app.set_version_flag("--version", "unwrap " UNWRAPD_VERSION);
+}
+
+/// The format that a file name asks for: "glb", "gltf", "obj", or "auto" for any other.
+std::string format_of(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".glb" || extension == ".gltf" || extension == ".obj")
+    return extension.substr(1);
+  return "auto";
+}
+
+/// The options must make sense by themselves; what this server allows beyond is its own affair.
+void check_options(const OptionTexts& options) {
+  api::Limits limits;
+  limits.max_iterations = std::numeric_limits<int>::max();
+  try {
+    api::parse_options(std::multimap<std::string, std::string>(options.begin(), options.end()),
+                       limits);
+  } catch (const Error& error) {
+    const std::string flag = error.where().empty() ? "" : flag_name(error.where().substr(1)) + ": ";
+    throw Failure(ExitCode::usage, flag + error.what());
+  }
+}
+
+/// Checks what the parser cannot, and fills in what follows from the rest.
+Arguments complete(Raw raw) {
+  Arguments& arguments = raw.arguments;
+  if (!arguments.sample.empty()) return std::move(arguments);
+  if (arguments.file.empty()) throw Failure(ExitCode::usage, "FILE is missing: name a mesh.");
+  arguments.server = parse_server_url(raw.server);
+  arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));
+  check_options(arguments.options);
+  const auto output = arguments.options.find("output");
+  const bool output_given = output != arguments.options.end();
+  if (arguments.out.empty()) {
+    arguments.out = default_out(arguments.file, output_given ? output->second : "auto");
+  } else if (!output_given && format_of(arguments.out) != "auto") {
+    arguments.options["output"] = format_of(arguments.out);
+  }
+  return std::move(arguments);
+}
+
+}  // namespace
+
+fs::path default_out(const fs::path& file, const std::string& output) {
+  fs::path out = file;
+  const bool keep = output.empty() || output == "auto";
+  const std::string extension = keep ? file.extension().string() : "." + output;
+  out.replace_filename(file.stem().string() + ".uv" + extension);
+  return out;
+}
+
+std::variant<Arguments, Message> parse_arguments(int argc, const char* const* argv) {
+  CLI::App app(kAbout, "unwrap");
+  app.footer(kFooter);
+  Raw raw;
+  add_flags(app, raw);
+  add_option_flags(app, raw.arguments.options);
+  try {
+    app.parse(argc, argv);
+    return complete(std::move(raw));
+  } catch (const CLI::CallForHelp&) {
+    return Message{ExitCode::ok, app.help()};
+  } catch (const CLI::CallForVersion& version) {
+    return Message{ExitCode::ok, std::string(version.what()) + "\n"};
+  } catch (const CLI::ParseError& error) {
+    return Message{ExitCode::usage,
+                   std::string("unwrap: ") + error.what() + "\nSee unwrap --help.\n"};
+  } catch (const Failure& failure) {
+    return Message{failure.code(),
+                   std::string("unwrap: ") + failure.what() + "\nSee unwrap --help.\n"};
+  }
+}
+
+}  // namespace unwrapd::client

@@ -1,0 +1,42 @@
+// A signal handler could only set a global flag that a blocked read never sees. Instead the signals
+// are blocked and read from a descriptor by a thread of their own, which may do anything.
+#include "client/interrupt.hpp"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+
+namespace unwrapd::client {
+
+Interrupt::Interrupt(std::chrono::milliseconds time_limit) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  signals_ = signalfd(-1, &signals, SFD_CLOEXEC);
+  finish_ = eventfd(0, EFD_CLOEXEC);
+  watcher_ = std::jthread([this, time_limit] { watch(time_limit); });
+}
+
+Interrupt::~Interrupt() {
+  eventfd_write(finish_, 1);
+  watcher_.join();
+  close(signals_);
+  close(finish_);
+}
+
+void Interrupt::watch(std::chrono::milliseconds time_limit) {
+  std::array<pollfd, 2> sources{{{signals_, POLLIN, 0}, {finish_, POLLIN, 0}}};
+  const int timeout_ms = time_limit.count() > 0 ? static_cast<int>(time_limit.count()) : -1;
+  const int ready = poll(sources.data(), sources.size(), timeout_ms);
+  if (sources[1].revents != 0) return;
+  timed_out_ = ready == 0;
+  source_.request_stop();
+}
+
+}  // namespace unwrapd::client

@@ -1,0 +1,113 @@
+#include "client/progress.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <ostream>
+
+namespace unwrapd::client {
+namespace {
+
+constexpr std::size_t kWidestBar = 24;
+constexpr std::size_t kNarrowestBar = 6;
+constexpr auto kBarInterval = std::chrono::milliseconds(50);
+constexpr auto kLineInterval = std::chrono::seconds(1);
+constexpr const char* kEraseLine = "\r\x1b[K";
+
+template <class T>
+void take(const api::Json& data, const char* name, T& value) {
+  const auto member = data.find(name);
+  if (member != data.end() && member->is_number()) value = member->get<T>();
+}
+
+std::string formatted(const char* format, double value) {
+  std::array<char, 32> text;
+  const int length = std::snprintf(text.data(), text.size(), format, value);
+  return {text.data(), static_cast<std::size_t>(std::clamp(length, 0, 31))};
+}
+
+std::string heading(const ProgressState& state) {
+  std::string text = state.stage;
+  if (state.charts > 0)
+    text += " chart " + std::to_string(state.chart + 1) + "/" + std::to_string(state.charts);
+  return text;
+}
+
+std::string figures(const ProgressState& state) {
+  std::string text = formatted("%3.0f%%", 100 * state.fraction);
+  if (state.iteration == 0) return text;
+  text += " iteration " + std::to_string(state.iteration);
+  text += "  E " + formatted("%.4g", state.energy);
+  text += "  D_angle " + formatted("%.3f", state.angle);
+  text += "  D_area " + formatted("%.3f", state.area);
+  return text + "  flips " + std::to_string(state.flipped);
+}
+
+/// " [====>   ]", width characters with the space and the brackets; nothing when too narrow.
+std::string bar(double fraction, std::size_t width) {
+  if (width < kNarrowestBar + 3) return {};
+  const std::size_t cells = std::min(width - 3, kWidestBar);
+  const auto filled = static_cast<std::size_t>(fraction * static_cast<double>(cells));
+  std::string text(cells, ' ');
+  std::fill_n(text.begin(), filled, '=');
+  if (filled < cells) text[filled] = '>';
+  return " [" + text + "]";
+}
+
+}  // namespace
+
+ProgressState advance(ProgressState state, const std::string& event, const api::Json& data) {
+  if (!data.is_object()) return state;
+  if (event == "stage" || event == "iteration") {
+    take(data, "chart", state.chart);
+    take(data, "fraction", state.fraction);
+    state.fraction = std::clamp(state.fraction, 0.0, 1.0);
+  }
+  if (event == "stage") {
+    state.stage = data.value("name", state.stage);
+    take(data, "of", state.charts);
+    state.iteration = 0;
+  } else if (event == "iteration") {
+    take(data, "i", state.iteration);
+    take(data, "energy", state.energy);
+    take(data, "angle", state.angle);
+    take(data, "area", state.area);
+    take(data, "flipped", state.flipped);
+  } else if (event == "queued" || event == "started") {
+    state.stage = event;
+  }
+  return state;
+}
+
+std::string progress_line(const ProgressState& state, std::size_t width) {
+  const std::string left = heading(state);
+  const std::string right = figures(state);
+  const std::size_t taken = left.size() + 1 + right.size();
+  std::string line = left + bar(state.fraction, width > taken ? width - taken : 0) + " " + right;
+  line.resize(std::min(line.size(), width));
+  return line;
+}
+
+ProgressView::ProgressView(std::ostream& out, ProgressStyle style, std::size_t width)
+    : out_(out), style_(style), width_(width) {}
+
+void ProgressView::show(const ProgressState& state, Clock::time_point now) {
+  if (style_ == ProgressStyle::none) return;
+  const bool is_bar = style_ == ProgressStyle::bar;
+  const bool new_line = !is_bar && stage_ != state.stage;
+  const Clock::duration interval = is_bar ? Clock::duration(kBarInterval) : kLineInterval;
+  if (drawn_ && now - *drawn_ < interval && !new_line) return;
+  drawn_ = now;
+  stage_ = state.stage;
+  if (is_bar) {
+    out_ << kEraseLine << progress_line(state, width_) << std::flush;
+  } else {
+    out_ << heading(state) << " " << figures(state) << std::endl;
+  }
+}
+
+void ProgressView::finish() {
+  if (style_ == ProgressStyle::bar && drawn_) out_ << kEraseLine << std::flush;
+}
+
+}  // namespace unwrapd::client

@@ -1,0 +1,58 @@
+#pragma once
+// What a job is doing, on one line of the terminal.
+
+#include <chrono>
+#include <iosfwd>
+#include <optional>
+#include <string>
+
+#include "api/json.hpp"
+
+namespace unwrapd::client {
+
+/// The latest known figures. chart counts from 0; charts is 0 while their number is not known.
+struct ProgressState {
+  std::string stage = "upload";
+  double fraction = 0;  ///< of the whole job, [0, 1]
+  int chart = 0;
+  int charts = 0;
+  int iteration = 0;  ///< 0 before the first
+  double energy = 0;
+  double angle = 2;  ///< D_angle
+  double area = 2;   ///< D_area
+  int flipped = 0;
+};
+
+/// The state after an event of the job's stream (api/events.hpp). What an event does not tell, or
+/// tells in another type, stays as it was.
+ProgressState advance(ProgressState state, const std::string& event, const api::Json& data);
+
+/// "solve chart 2/3 [====>     ]  52% iteration 7  E 0.0469  D_angle 2.061  D_area 2.057  flips 1",
+/// in ASCII and at most width characters: the bar shrinks first, then goes, then the line is cut.
+std::string progress_line(const ProgressState& state, std::size_t width);
+
+/// How the progress is shown: a bar that is redrawn in place, plain lines, or not at all.
+enum class ProgressStyle { none, lines, bar };
+
+/// Draws on out, at most 20 times a second as a bar, and as lines once for each stage and once a
+/// second between.
+class ProgressView {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  ProgressView(std::ostream& out, ProgressStyle style, std::size_t width);
+
+  void show(const ProgressState& state, Clock::time_point now);
+
+  /// Takes the bar away; lines stay.
+  void finish();
+
+ private:
+  std::ostream& out_;
+  ProgressStyle style_;
+  std::size_t width_;
+  std::optional<Clock::time_point> drawn_;
+  std::string stage_;
+};
+
+}  // namespace unwrapd::client

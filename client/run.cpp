@@ -1,0 +1,114 @@
+#include "client/run.hpp"
+
+#include <cstdio>
+#include <ostream>
+
+#include "api/options.hpp"
+#include "client/files.hpp"
+#include "client/gltf_buffers.hpp"
+#include "client/sample.hpp"
+
+namespace unwrapd::client {
+namespace {
+
+/// The options in their wire types, as a multipart request carries them.
+std::string options_json(const OptionTexts& options) {
+  api::Json json = api::Json::object();
+  for (const auto& [name, text] : options) {
+    const api::OptionRow* row = api::find_option(name);
+    const bool is_text = row == nullptr || row->type == api::OptionType::choice;
+    json[name] = is_text ? api::Json(text) : api::Json::parse(text);
+  }
+  return json.dump();
+}
+
+api::Job submit(JobClient& client, const Arguments& arguments) {
+  const auto buffers = external_buffers(arguments.file);
+  if (buffers.empty()) return client.submit(raw_upload(arguments.file), arguments.options);
+  const std::string options = options_json(arguments.options);
+  return client.submit(multipart_upload(options, arguments.file, buffers), {});
+}
+
+api::Job follow(JobClient& client, const std::string& job_id, const Console& console) {
+  ProgressView view(console.err, console.style, console.width);
+  ProgressState state;
+  api::Job job = client.follow(job_id, [&](const SseEvent& event) {
+    state = advance(state, event.name, api::Json::parse(event.data, nullptr, false));
+    view.show(state, ProgressView::Clock::now());
+  });
+  view.finish();
+  return job;
+}
+
+/// Follows the job to its end. Whatever ends the waiting before, the job is not left behind.
+void finish_job(JobClient& client, const Arguments& arguments, const std::string& job_id,
+                const Console& console) {
+  try {
+    const api::Job job = follow(client, job_id, console);
+    if (job.state != api::JobState::succeeded)
+      throw Failure(ExitCode::job_failed, job.problem.is_object()
+                                              ? problem_text(job.problem)
+                                              : "The job was cancelled by someone else.");
+  } catch (const Failure& failure) {
+    if (failure.code() == ExitCode::interrupted) JobClient(arguments.server, {}).cancel(job_id);
+    throw;
+  }
+}
+
+/// "chair.uv.glb: 20164 faces, 1 chart, D_angle 2.061, D_area 2.057, 0 flipped, fill 0.71".
+std::string summary(const std::string& name, const api::Json& report) {
+  const api::Json& distortion = report.at("distortion");
+  const std::size_t charts = report.at("charts").size();
+  std::array<char, 256> text;
+  std::snprintf(text.data(), text.size(),
+                ": %ld faces, %zu chart%s, D_angle %.3f, D_area %.3f, %ld flipped, fill %.2f\n",
+                report.at("input").at("faces").get<long>(), charts, charts == 1 ? "" : "s",
+                distortion.at("angle").get<double>(), distortion.at("area").get<double>(),
+                distortion.at("flipped").get<long>(), report.at("fill").get<double>());
+  return name + text.data();
+}
+
+void tell(const Arguments& arguments, const std::string& report_text, const Console& console) {
+  if (arguments.json) {
+    console.out << report_text << std::endl;
+    return;
+  }
+  if (arguments.quiet) return;
+  try {
+    const api::Json report = api::Json::parse(report_text);
+    console.out << summary(arguments.out.string(), report);
+    for (const api::Json& note : report.at("notes"))
+      console.out << "note: " << note.get<std::string>() << "\n";
+    console.out << std::flush;
+  } catch (const api::Json::exception&) {
+    throw Failure(ExitCode::unreachable,
+                  "The report is not of this version: is the server's version that of unwrap?");
+  }
+}
+
+void write_results(JobClient& client, const Arguments& arguments, const std::string& job_id,
+                   const Console& console) {
+  NewFile result(arguments.out);
+  client.fetch(job_id, "/result", [&](std::string_view bytes) { result.append(bytes); });
+  const std::string report = client.fetch(job_id, "/report");
+  if (!arguments.report.empty()) write_file(arguments.report, report);
+  if (!arguments.layout.empty()) write_file(arguments.layout, client.fetch(job_id, "/layout.svg"));
+  result.commit();
+  tell(arguments, report, console);
+}
+
+}  // namespace
+
+void run(const Arguments& arguments, const Console& console, const std::stop_token& stop) {
+  if (!arguments.sample.empty()) {
+    write_file(arguments.sample, sample_glb());
+    return;
+  }
+  file_bytes(arguments.file);
+  JobClient client(arguments.server, stop);
+  const api::Job job = submit(client, arguments);
+  finish_job(client, arguments, job.id, console);
+  write_results(client, arguments, job.id, console);
+}
+
+}  // namespace unwrapd::client

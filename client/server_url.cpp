@@ -1,0 +1,65 @@
+#include "client/server_url.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "client/failure.hpp"
+
+namespace unwrapd::client {
+namespace {
+
+[[noreturn]] void refuse(std::string_view text, const std::string& why) {
+  throw Failure(ExitCode::usage, "The server address \"" + std::string(text) + "\" " + why +
+                                     "; write it as http://host:port.");
+}
+
+bool is_port(std::string_view digits) {
+  int port = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
+  return error == std::errc() && end == digits.data() + digits.size() && port > 0 && port < 65536;
+}
+
+bool is_host_character(char c) {
+  const bool alphanumeric =
+      (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  return alphanumeric || c == '-' || c == '.' || c == '_';
+}
+
+/// "host" or "[v6]", with ":port" or without.
+void check_authority(std::string_view authority, std::string_view text) {
+  std::size_t host_end = authority.find(':');
+  if (authority.starts_with('[')) {
+    const std::size_t bracket = authority.find(']');
+    if (bracket == std::string_view::npos) refuse(text, "has no closing bracket");
+    host_end = bracket + 1 == authority.size() ? std::string_view::npos : bracket + 1;
+  } else {
+    const std::string_view host = authority.substr(0, host_end);
+    if (host.empty()) refuse(text, "names no host");
+    if (!std::ranges::all_of(host, is_host_character)) refuse(text, "has a host that is no name");
+  }
+  if (host_end == std::string_view::npos) return;
+  if (authority[host_end] != ':' || !is_port(authority.substr(host_end + 1)))
+    refuse(text, "has no valid port");
+}
+
+}  // namespace
+
+ServerUrl parse_server_url(std::string_view text) {
+  std::string_view scheme = "http";
+  std::string_view rest = text;
+  if (const std::size_t colon = text.find("://"); colon != std::string_view::npos) {
+    scheme = text.substr(0, colon);
+    rest = text.substr(colon + 3);
+  }
+  if (scheme != "http" && scheme != "https") refuse(text, "has a scheme that is not http or https");
+  if (rest.find_first_of("?#@ ") != std::string_view::npos)
+    refuse(text, "must not hold a user, a query or a fragment");
+  const std::size_t slash = rest.find('/');
+  const std::string_view authority = rest.substr(0, slash);
+  check_authority(authority, text);
+  std::string prefix(slash == std::string_view::npos ? std::string_view() : rest.substr(slash));
+  while (prefix.ends_with('/')) prefix.pop_back();
+  return {std::string(scheme) + "://" + std::string(authority), std::move(prefix)};
+}
+
+}  // namespace unwrapd::client
