@@ -1,0 +1,133 @@
+// The rules of the source tree that no compiler checks: who may include whom, which library is seen
+// by which files, how long a file may grow. Run on a checkout: node check_layers.mjs [ROOT]. Each
+// breach is one line "path:line: rule"; the exit status is 1 when there is one.
+import { readFileSync, readdirSync } from "node:fs";
+import { dirname, join, relative, sep } from "node:path";
+import { fileURLToPath } from "node:url";
+
+/** Folder -> the folders whose headers it may include, itself always. The longest prefix counts. */
+const MAY_INCLUDE = {
+  "core/mesh": [],
+  "core/measure": ["core/mesh"],
+  "core/linear": ["core/mesh"],
+  "core/solve": ["core/linear", "core/measure", "core/mesh"],
+  "core/atlas": ["core/solve", "core/linear", "core/measure", "core/mesh"],
+  "core/asset": ["core/mesh"],
+  core: ["core/atlas", "core/solve", "core/linear", "core/measure", "core/mesh"],
+  api: [],
+  server: ["api", "core", "core/asset", "core/atlas", "core/measure", "core/mesh", "core/solve", "core/linear"],
+  client: ["api"],
+};
+
+/** Plain structs that may be included from any folder listed. */
+const PLAIN = ["core/error.hpp", "core/options.hpp", "core/report.hpp", "core/progress.hpp", "core/executor.hpp"];
+const PLAIN_FOR = {
+  "core/mesh": ["core/error.hpp"],
+  "core/asset": ["core/error.hpp"],
+  "core/measure": PLAIN,
+  "core/linear": PLAIN,
+  "core/solve": PLAIN,
+  "core/atlas": PLAIN,
+  api: ["core/error.hpp", "core/options.hpp", "core/report.hpp", "core/progress.hpp", "core/mesh/tri_mesh.hpp"],
+  client: [],
+};
+
+/** A header (or the start of its name) -> where alone it may be included. */
+const ONLY_IN = [
+  { header: /^httplib\.h$/, files: /^(server|client)\/[a-z_]*http[a-z_]*\.(cpp|hpp)$|^tests\// },
+  { header: /^nlohmann\//, files: /^(core\/asset|api|server|client|tests)\// },
+  { header: /^(thread|chrono|iostream|mutex|atomic|future)$/, files: /^(?!core\/)/ },
+  { header: /^spdlog\//, files: /^server\// },
+  { header: /^CLI\//, files: /^(server|client)\// },
+  { header: /^sqlite3\.h$/, files: /^(server|tests\/server)\// },
+  { header: /^(draco\/|meshoptimizer\.h|tiny_gltf\.h)/, files: /^(core\/asset|tests\/asset|tests\/fuzz)\// },
+  { header: /^Eigen\//, files: /^(core|server|api|tests)\// },
+  { header: /^CGAL\//, files: /^tests\/bench\// },
+];
+
+const MAX_LINES = [
+  { files: /\.(cpp|hpp)$/, lines: 300 },
+  { files: /^CMakeLists\.txt$/, lines: 60 },
+  { files: /^README\.md$/, lines: 100 },
+  { files: /^docs\/adr\/.*\.md$/, lines: 40 },
+];
+
+/** Words that have no place in the project: left-overs, and paths of a developer's machine. */
+const FORBIDDEN = [/\bTODO\b/, /\bFIXME\b/, /\bXXX\b/, /\/work\//, /"resolved":/];
+
+const SOURCE = /\.(cpp|hpp|mjs|js|ts|py|md|txt|json|yaml|yml|sh|cmake)$|(^|\/)(dev|run)$/;
+const SKIPPED = new Set([".git", "build", "out", "data", "node_modules"]);
+
+function* files(root, folder = root) {
+  for (const entry of readdirSync(folder, { withFileTypes: true })) {
+    const path = join(folder, entry.name);
+    if (entry.isDirectory() && !SKIPPED.has(entry.name)) yield* files(root, path);
+    else if (entry.isFile()) yield relative(root, path).split(sep).join("/");
+  }
+}
+
+/** The layer of a file, or undefined: tests may include everything. */
+function layerOf(path) {
+  const layers = Object.keys(MAY_INCLUDE).filter((layer) => path.startsWith(layer + "/"));
+  return layers.sort((a, b) => b.length - a.length)[0];
+}
+
+function mayInclude(layer, header) {
+  const target = layerOf(header);
+  if (target === layer) return true;
+  if (layer === "core" || layer === "server") return MAY_INCLUDE[layer].includes(target);
+  return MAY_INCLUDE[layer].includes(target) || (PLAIN_FOR[layer] ?? []).includes(header);
+}
+
+function includeBreaches(path, header, quoted) {
+  const breaches = [];
+  const layer = layerOf(path);
+  if (quoted && layer && layerOf(header) && !mayInclude(layer, header))
+    breaches.push(`${layer} may not include ${header}`);
+  if (quoted && header.startsWith("server/") && !/^(server|tests\/(server|fault|fuzz|bench))\//.test(path))
+    breaches.push("nothing includes server");
+  for (const rule of ONLY_IN)
+    if (rule.header.test(header) && !rule.files.test(path))
+      breaches.push(`<${header}> may not be included here`);
+  return breaches;
+}
+
+/** All breaches of one file. */
+export function check(path, text) {
+  const breaches = [];
+  const lines = text.split("\n");
+  const isCode = /\.(cpp|hpp)$/.test(path);
+  lines.forEach((line, number) => {
+    const include = isCode && line.match(/^\s*#\s*include\s+(["<])([^">]+)[">]/);
+    const found = include ? includeBreaches(path, include[2], include[1] === '"') : [];
+    const words = path.startsWith("tests/layers/") ? [] : FORBIDDEN.filter((word) => word.test(line));
+    for (const breach of [...found, ...words.map((word) => `forbidden: ${word.source}`)])
+      breaches.push(`${path}:${number + 1}: ${breach}`);
+  });
+  const length = text.endsWith("\n") ? lines.length - 1 : lines.length;
+  for (const rule of MAX_LINES)
+    if (rule.files.test(path) && length > rule.lines)
+      breaches.push(`${path}:${length}: longer than ${rule.lines} lines`);
+  return breaches;
+}
+
+/** All breaches of a checkout. */
+export function checkTree(root) {
+  const breaches = [];
+  let count = 0;
+  for (const path of files(root)) {
+    if (!SOURCE.test(path)) continue;
+    count += 1;
+    breaches.push(...check(path, readFileSync(join(root, path), "utf8")));
+  }
+  return { breaches, count };
+}
+
+const self = fileURLToPath(import.meta.url);
+if (process.argv[1] === self) {
+  const root = process.argv[2] ?? join(dirname(self), "..", "..");
+  const { breaches, count } = checkTree(root);
+  for (const breach of breaches) console.error(breach);
+  console.log(`layers: ${count} files, ${breaches.length} breaches`);
+  process.exit(breaches.length > 0 || count === 0 ? 1 : 0);
+}
