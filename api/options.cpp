@@ -153,8 +153,7 @@ struct Gathering {
 
 }  // namespace
 
-JobOptions parse_options(const std::multimap<std::string, std::string>& query,
-                         const Limits& limits) {
+JobOptions parse_options(const Query& query, const Limits& limits) {
   Gathering gathering{limits, {}, {}};
   for (const auto& [name, text] : query) gathering.add(name, text);
   return gathering.finish();
@@ -166,7 +165,7 @@ JobOptions parse_options(const Json& object, const Limits& limits) {
   }
   Gathering gathering{limits, {}, {}};
   for (const auto& [name, value] : object.items()) {
-    if (value.is_null() && find_option(name) != nullptr) continue;
+    if (value.is_null() && name == "lambda") continue;  // as in resolved options
     gathering.add(name, value);
   }
   return gathering.finish();

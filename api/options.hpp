@@ -58,13 +58,14 @@ bool has_effect(const OptionRow& row, Method method);
 
 std::string_view method_name(Method method);
 
+using Query = std::multimap<std::string, std::string>;  ///< a decoded query string
+
 /// Options of a query string; those not named keep their default. Throws Error{invalid_option}
 /// with the pointer "/name" of the first option that is unknown, given twice, of the wrong type or
 /// out of range.
-JobOptions parse_options(const std::multimap<std::string, std::string>& query,
-                         const Limits& limits);
+JobOptions parse_options(const Query& query, const Limits& limits);
 
-/// The same from a JSON object; a null counts as not given, so that a job's resolved options can be
+/// The same from a JSON object; a null lambda counts as not given, so that resolved options can be
 /// sent again.
 JobOptions parse_options(const Json& object, const Limits& limits);
 
