@@ -1,0 +1,17 @@
+#pragma once
+// A U for matrices that need no pivoting: diagonally dominant ones of symmetric pattern, as those
+// of convex combination maps are.
+
+#include <span>
+#include <vector>
+
+#include "core/linear/sparse.hpp"
+
+namespace unwrapd {
+
+/// Solves A x = b for both coordinates of b at once; b becomes x.
+/// matrix: square, row i diagonally dominant, pattern symmetric (values need not be).
+/// Throws Error{solver_failed} when a pivot vanishes.
+void solve_dominant(const SparseMatrix& matrix, std::span<Vec2> b);
+
+}  // namespace unwrapd

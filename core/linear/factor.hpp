@@ -1,0 +1,37 @@
+#pragma once
+// A symmetric positive definite (or Hermitian) matrix, factored once and solved many times.
+
+#include <complex>
+#include <memory>
+#include <span>
+
+#include "core/linear/sparse.hpp"
+
+namespace unwrapd {
+
+using Complex = std::complex<double>;
+using ComplexMatrix = Eigen::SparseMatrix<Complex, Eigen::ColMajor, Index>;
+
+/// The small interface behind which engines differ.
+template <typename Rhs>
+class PrefactoredSystem {
+ public:
+  PrefactoredSystem() = default;
+  PrefactoredSystem(const PrefactoredSystem&) = delete;
+  PrefactoredSystem& operator=(const PrefactoredSystem&) = delete;
+  virtual ~PrefactoredSystem() = default;
+
+  /// Replaces b by the solution of A x = b. Thread-safe.
+  virtual void solve(std::span<Rhs> b) const = 0;
+};
+
+/// Two right-hand sides at once: the n-by-2 block of Eq. (4).
+using RealSystem = PrefactoredSystem<Vec2>;
+using HermitianSystem = PrefactoredSystem<Complex>;
+
+/// Factors the matrix whose lower triangle is given.
+/// Throws Error{solver_failed} when it is not positive definite in double precision.
+std::unique_ptr<RealSystem> factor(const SparseMatrix& lower);
+std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower);
+
+}  // namespace unwrapd

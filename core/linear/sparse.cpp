@@ -1,0 +1,98 @@
+// Assembly by counting: the columns' lengths are bounded from the faces, entries are dropped into
+// their column, and each column, a handful of entries, is sorted and merged in place. No triplets,
+// no hash maps.
+#include "core/linear/sparse.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace unwrapd {
+namespace {
+
+struct Entry {
+  Index row;
+  double value;
+};
+
+/// Off-diagonal entries of each column of the lower triangle, unmerged, and the diagonal.
+struct Columns {
+  std::vector<Index> begin;
+  std::vector<Entry> entries;
+  std::vector<double> diagonal;
+};
+
+Columns scatter(std::span<const Triangle> faces, Index vertex_count,
+                std::span<const double> weight) {
+  const auto n = static_cast<std::size_t>(vertex_count);
+  Columns c{std::vector<Index>(n + 1, 0), std::vector<Entry>(3 * faces.size()),
+            std::vector<double>(n, 0.0)};
+  const auto ends = [&](std::size_t h) {
+    const Triangle& f = faces[h / 3];
+    return std::minmax(f[h % 3], f[(h + 1) % 3]);
+  };
+  for (std::size_t h = 0; h < 3 * faces.size(); ++h)
+    ++c.begin[static_cast<std::size_t>(ends(h).first) + 1];
+  for (std::size_t j = 0; j < n; ++j) c.begin[j + 1] += c.begin[j];
+  std::vector<Index> next(c.begin.begin(), c.begin.end() - 1);
+  for (std::size_t h = 0; h < 3 * faces.size(); ++h) {
+    const auto [low, high] = ends(h);
+    const auto column = static_cast<std::size_t>(low);
+    c.entries[static_cast<std::size_t>(next[column]++)] = {high, -weight[h]};
+    c.diagonal[column] += weight[h];
+    c.diagonal[static_cast<std::size_t>(high)] += weight[h];
+  }
+  return c;
+}
+
+/// Sorts a column by row and adds up entries of the same row; returns how many are left.
+std::size_t merge(std::span<Entry> column) {
+  std::stable_sort(column.begin(), column.end(),
+                   [](const Entry& a, const Entry& b) { return a.row < b.row; });
+  std::size_t kept = 0;
+  for (const Entry& entry : column) {
+    if (kept > 0 && column[kept - 1].row == entry.row)
+      column[kept - 1].value += entry.value;
+    else
+      column[kept++] = entry;
+  }
+  return kept;
+}
+
+}  // namespace
+
+SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count,
+                             std::span<const double> weight) {
+  assert(weight.size() == 3 * faces.size());
+  Columns columns = scatter(faces, vertex_count, weight);
+  SparseMatrix lower(vertex_count, vertex_count);
+  lower.reserve(static_cast<Index>(columns.entries.size()) + vertex_count);
+  for (Index j = 0; j < vertex_count; ++j) {
+    const auto begin = static_cast<std::size_t>(columns.begin[static_cast<std::size_t>(j)]);
+    const auto end = static_cast<std::size_t>(columns.begin[static_cast<std::size_t>(j) + 1]);
+    const std::span<Entry> column = std::span(columns.entries).subspan(begin, end - begin);
+    const std::size_t kept = merge(column);
+    lower.startVec(j);
+    lower.insertBack(j, j) = columns.diagonal[static_cast<std::size_t>(j)];
+    for (const Entry& entry : column.first(kept)) lower.insertBack(entry.row, j) = entry.value;
+  }
+  lower.finalize();
+  return lower;
+}
+
+VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count) {
+  VertexCorners list;
+  list.begin.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
+  list.corner.resize(3 * faces.size());
+  for (const Triangle& face : faces)
+    for (Index v : face) ++list.begin[static_cast<std::size_t>(v) + 1];
+  for (std::size_t v = 1; v < list.begin.size(); ++v) list.begin[v] += list.begin[v - 1];
+  std::vector<Index> next(list.begin.begin(), list.begin.end() - 1);
+  for (std::size_t c = 0; c < 3 * faces.size(); ++c) {
+    const auto v = static_cast<std::size_t>(faces[c / 3][c % 3]);
+    list.corner[static_cast<std::size_t>(next[v]++)] = static_cast<Index>(c);
+  }
+  return list;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,39 @@
+#pragma once
+// Distortion metrics of Sec. 6, on |sigma|, with flips beside them.
+
+#include <span>
+
+#include "core/measure/jacobian.hpp"
+#include "core/report.hpp"
+
+namespace unwrapd {
+
+/// Sums over triangles that Distortion is made from; those of several charts add up.
+struct DistortionSums {
+  double area = 0;     ///< sum of A_t
+  double uv_area = 0;  ///< sum of A_t |sigma_max sigma_min|
+  double angle = 0;    ///< sum of A_t (sigma_max / |sigma_min| + |sigma_min| / sigma_max)
+  double inverse = 0;  ///< sum of A_t / |sigma_max sigma_min|
+  double stretch = 0;  ///< sum of A_t (1 / sigma_max^2 + 1 / sigma_min^2) / 2
+  Index flipped = 0;   ///< triangles with sigma_min <= 0
+
+  DistortionSums& operator+=(const DistortionSums& other);
+};
+
+/// A collapsed image has no finite D: |sigma_min| counts as at least this share of the mean
+/// stretch, and so does sigma_max. A chart that reaches the floor shows D in the thousands.
+inline constexpr double kMinSingularValue = 1e-6;
+
+/// faces index uv; rest has one entry a face.
+DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+                               std::span<const Vec2> uv);
+
+/// D_angle, D_area and stretch after the one global scale that makes UV area = 3D area (Sec. 6).
+/// Stretch is the L2 norm of Sander et al. 2001.
+Distortion distortion(const DistortionSums& sums);
+
+/// Sum of A_t |det J|: the area that the images cover, counted with multiplicity, mesh units^2.
+double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+               std::span<const Vec2> uv);
+
+}  // namespace unwrapd

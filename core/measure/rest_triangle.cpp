@@ -1,0 +1,76 @@
+// A triangle is laid on its longest edge: that edge becomes the x axis and the third corner keeps
+// its foot and height. The base never vanishes, so needles and caps lose no digits.
+#include "core/measure/rest_triangle.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace unwrapd {
+namespace {
+
+struct Corners {
+  std::array<Vec3, 3> p;
+};
+
+Corners corners_of(const TriMesh& mesh, const Triangle& face) {
+  const auto at = [&](int i) { return mesh.positions[static_cast<std::size_t>(face[i])]; };
+  return {{at(0), at(1), at(2)}};
+}
+
+std::size_t longest_edge(const Corners& c) {
+  std::size_t longest = 0;
+  double best = -1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double length = (c.p[(i + 1) % 3] - c.p[i]).squaredNorm();
+    if (length > best) best = length, longest = i;
+  }
+  return longest;
+}
+
+RestTriangle lay_flat(const Corners& c) {
+  const std::size_t k = longest_edge(c);
+  const std::size_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+  const Vec3 base = c.p[k1] - c.p[k];
+  const Vec3 side = c.p[k2] - c.p[k];
+  const double length = base.norm();
+  assert(length > 0);
+  const double foot = side.dot(base) / length;
+  const double height = std::max(side.cross(base).norm() / length, kMinHeight * length);
+
+  std::array<Vec2, 3> x;
+  x[k] = Vec2(0, 0);
+  x[k1] = Vec2(length, 0);
+  x[k2] = Vec2(foot, height);
+
+  RestTriangle rest;
+  rest.area = 0.5 * length * height;
+  for (std::size_t i = 0; i < 3; ++i) rest.edge[i] = x[i] - x[(i + 1) % 3];
+  for (std::size_t i = 0; i < 3; ++i)
+    rest.cot[i] = -rest.edge[(i + 1) % 3].dot(rest.edge[(i + 2) % 3]) / (2 * rest.area);
+  return rest;
+}
+
+}  // namespace
+
+std::vector<RestTriangle> flatten(const TriMesh& mesh) {
+  std::vector<RestTriangle> rest;
+  rest.reserve(mesh.faces.size());
+  for (const Triangle& face : mesh.faces) rest.push_back(lay_flat(corners_of(mesh, face)));
+  return rest;
+}
+
+double face_area(const TriMesh& mesh, const Triangle& face) {
+  const Corners c = corners_of(mesh, face);
+  return 0.5 * (c.p[1] - c.p[0]).cross(c.p[2] - c.p[0]).norm();
+}
+
+double surface_area(const TriMesh& mesh) {
+  double area = 0;
+  for (const Triangle& face : mesh.faces) area += face_area(mesh, face);
+  return area;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,31 @@
+#pragma once
+// The reference of every measure: each 3D triangle laid flat, isometrically (Sec. 4, Fig. 2).
+
+#include <array>
+#include <vector>
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// x_t, laid flat counter-clockwise. Corners are numbered as in the face.
+struct RestTriangle {
+  std::array<Vec2, 3> edge;   ///< edge[i] = x^i - x^{i+1}
+  std::array<double, 3> cot;  ///< cotangent of the angle that faces edge[i], at corner i+2
+  double area = 0;            ///< A_t > 0
+};
+
+/// Heights below this share of the longest edge are raised to it, so that exactly and nearly
+/// degenerate triangles keep the matrix of Eq. (4) positive definite and well scaled.
+inline constexpr double kMinHeight = 1e-6;
+
+/// One rest triangle a face. Faces must not have all three corners at one point.
+std::vector<RestTriangle> flatten(const TriMesh& mesh);
+
+/// 3D area of one face, unfloored.
+double face_area(const TriMesh& mesh, const Triangle& face);
+
+/// Sum of face_area() over all faces.
+double surface_area(const TriMesh& mesh);
+
+}  // namespace unwrapd

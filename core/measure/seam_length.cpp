@@ -1,0 +1,38 @@
+#include "core/measure/seam_length.hpp"
+
+#include "core/mesh/halfedges.hpp"
+#include "core/mesh/weld.hpp"
+
+namespace unwrapd {
+namespace {
+
+const Vec2& uv_at_start(const UnwrappedSurface& unwrapped, Index h) {
+  const Triangle& face = unwrapped.faces[static_cast<std::size_t>(face_of(h))];
+  return unwrapped.uv[static_cast<std::size_t>(face[static_cast<std::size_t>(h % 3)])];
+}
+
+/// Whether the two sides of an edge lie apart on the page.
+bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
+  return uv_at_start(unwrapped, h) != uv_at_start(unwrapped, next_halfedge(twin)) ||
+         uv_at_start(unwrapped, next_halfedge(h)) != uv_at_start(unwrapped, twin);
+}
+
+}  // namespace
+
+double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped) {
+  const TriMesh& mesh = surface.mesh;
+  const std::vector<Triangle> welded = renumbered(mesh.faces, weld(mesh.positions));
+  const Halfedges halfedges = build_halfedges(welded, mesh.vertex_count());
+  const auto start = [&](Index h) -> const Vec3& {
+    const Triangle& face = welded[static_cast<std::size_t>(face_of(h))];
+    return mesh.positions[static_cast<std::size_t>(face[static_cast<std::size_t>(h % 3)])];
+  };
+  double length = 0;
+  for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
+    const Index twin = halfedges.twin[static_cast<std::size_t>(h)];
+    if (h < twin && is_seam(unwrapped, h, twin)) length += (start(h) - start(twin)).norm();
+  }
+  return length;
+}
+
+}  // namespace unwrapd

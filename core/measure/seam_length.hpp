@@ -1,0 +1,13 @@
+#pragma once
+// How much seam an unwrapped surface has.
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// 3D length of the edges between two faces whose UVs differ on both sides, mesh units. Edges are
+/// found by position, so cuts that the input came with count as well; boundaries and non-manifold
+/// edges do not.
+double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped);
+
+}  // namespace unwrapd

@@ -1,0 +1,23 @@
+#pragma once
+// ASAP solved directly (Sec. 4.2): the least-squares conformal map.
+
+#include <array>
+#include <span>
+
+#include "core/options.hpp"
+#include "core/solve/disk.hpp"
+
+namespace unwrapd {
+
+/// The map of least conformal energy, scaled so that UV area = 3D area.
+/// Pins::diameter fixes the two boundary vertices that lie farthest apart in space (Sec. 4.2; Levy
+/// et al. 2002). Pins::spectral fixes none: the smallest eigenvector that is not constant, under
+/// unit norm on the boundary (Mullen, Tong, Alliez, Desbrun 2008). Throws Error{solver_failed}.
+UvMap conformal_map(const Disk& disk, Pins pins);
+
+/// The two points of greatest distance, {a, b} with a < b. Exact, unless more than some twenty
+/// million pairs are left after pruning (nearly spherical clouds of many thousand points): then the
+/// best pair found by then.
+std::array<Index, 2> diameter(std::span<const Vec3> positions);
+
+}  // namespace unwrapd

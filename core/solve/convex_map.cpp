@@ -1,0 +1,116 @@
+// Equal weights give a symmetric system. Mean-value weights do not: theirs is an M-matrix with
+// dominant diagonal and symmetric pattern, solved by an L U without pivoting.
+#include "core/solve/convex_map.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "core/linear/dominant_lu.hpp"
+#include "core/linear/eliminate.hpp"
+#include "core/linear/factor.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// The boundary where it shall lie, and the numbers of the inner vertices, which are unknown.
+struct ConvexMap {
+  FreeVertices inner;
+  UvMap uv;  ///< of all vertices; inner ones at the origin
+};
+
+Index start_vertex(const Disk& disk, Index h) {
+  return disk.faces[static_cast<std::size_t>(h / 3)][static_cast<std::size_t>(h % 3)];
+}
+
+double edge_length(const Disk& disk, Index h) {
+  return disk.rest[static_cast<std::size_t>(h / 3)].edge[static_cast<std::size_t>(h % 3)].norm();
+}
+
+/// The longest loop on the circle of area 1, by arc length.
+ConvexMap boundary_on_circle(const Disk& disk) {
+  ConvexMap map{{}, UvMap(disk.positions.size(), Vec2::Zero())};
+  std::vector<char> on_circle(disk.positions.size(), 0);
+  double perimeter = 0;
+  for (Index h : disk.loops.front()) perimeter += edge_length(disk, h);
+  const double radius = std::sqrt(1 / std::numbers::pi);
+  double arc = 0;
+  for (Index h : disk.loops.front()) {
+    const auto v = static_cast<std::size_t>(start_vertex(disk, h));
+    const double angle = 2 * std::numbers::pi * arc / perimeter;
+    on_circle[v] = 1;
+    map.uv[v] = radius * Vec2(std::cos(angle), std::sin(angle));
+    arc += edge_length(disk, h);
+  }
+  map.inner = number_free(on_circle);
+  return map;
+}
+
+void place_inner(std::span<const Vec2> solution, ConvexMap& map) {
+  for (std::size_t v = 0; v < map.uv.size(); ++v)
+    if (map.inner.slot[v] != kFixed)
+      map.uv[v] = solution[static_cast<std::size_t>(map.inner.slot[v])];
+}
+
+/// tan(angle / 2) at corner i of a rest triangle, from the cotangent, without cancellation.
+double half_angle_tangent(const RestTriangle& rest, std::size_t corner) {
+  const double cot = rest.cot[(corner + 1) % 3];
+  const double root = std::sqrt(1 + cot * cot);
+  return cot > 0 ? 1 / (root + cot) : root - cot;
+}
+
+struct LinearSystem {
+  SparseMatrix matrix;
+  std::vector<Vec2> rhs;
+};
+
+/// Rows of the inner vertices: sum_j w_ij (u_i - u_j) = 0, with
+/// w_ij = (tan(alpha / 2) + tan(beta / 2)) / |x_i - x_j|, alpha and beta the angles at i.
+LinearSystem mean_value_system(const Disk& disk, const ConvexMap& map) {
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  entries.reserve(12 * disk.faces.size());
+  std::vector<Vec2> rhs(static_cast<std::size_t>(map.inner.count), Vec2::Zero());
+  const auto couple = [&](Index i, Index j, double w) {
+    const Index row = map.inner.slot[static_cast<std::size_t>(i)];
+    const Index column = map.inner.slot[static_cast<std::size_t>(j)];
+    if (row == kFixed) return;
+    entries.emplace_back(row, row, w);
+    if (column == kFixed)
+      rhs[static_cast<std::size_t>(row)] += w * map.uv[static_cast<std::size_t>(j)];
+    else
+      entries.emplace_back(row, column, -w);
+  };
+  for (std::size_t t = 0; t < disk.faces.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const RestTriangle& rest = disk.rest[t];
+      const Triangle& face = disk.faces[t];
+      const double tangent = half_angle_tangent(rest, i);
+      couple(face[i], face[(i + 1) % 3], tangent / rest.edge[i].norm());
+      couple(face[i], face[(i + 2) % 3], tangent / rest.edge[(i + 2) % 3].norm());
+    }
+  LinearSystem system{SparseMatrix(map.inner.count, map.inner.count), std::move(rhs)};
+  system.matrix.setFromTriplets(entries.begin(), entries.end());
+  return system;
+}
+
+}  // namespace
+
+UvMap tutte_map(const Disk& disk) {
+  ConvexMap map = boundary_on_circle(disk);
+  const std::vector<double> equal(3 * disk.faces.size(), 1.0);
+  const SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), equal);
+  auto reduced = eliminate<SparseMatrix, Vec2>(lower, map.inner, map.uv);
+  if (map.inner.count > 0) factor(reduced.lower)->solve(reduced.rhs);
+  place_inner(reduced.rhs, map);
+  return std::move(map.uv);
+}
+
+UvMap mean_value_map(const Disk& disk) {
+  ConvexMap map = boundary_on_circle(disk);
+  LinearSystem system = mean_value_system(disk, map);
+  if (map.inner.count > 0) solve_dominant(system.matrix, system.rhs);
+  place_inner(system.rhs, map);
+  return std::move(map.uv);
+}
+
+}  // namespace unwrapd

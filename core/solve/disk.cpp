@@ -1,0 +1,33 @@
+#include "core/solve/disk.hpp"
+
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace unwrapd {
+
+Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops) {
+  const double area = surface_area(mesh);
+  if (!(area > 0) || !std::isfinite(area))
+    throw Error(ErrorCode::zero_area,
+                "a part of the mesh has no area that double precision can hold; scale the mesh to "
+                "ordinary units and try again");
+  Vec3 centroid = Vec3::Zero();
+  for (const Vec3& p : mesh.positions) centroid += p / static_cast<double>(mesh.vertex_count());
+
+  Disk disk{.faces = mesh.faces,
+            .loops = loops,
+            .positions = {},
+            .rest = {},
+            .corners = {},
+            .unit = std::sqrt(area)};
+  TriMesh scaled{{}, mesh.faces};
+  scaled.positions.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) scaled.positions.push_back((p - centroid) / disk.unit);
+  disk.rest = flatten(scaled);
+  disk.positions = std::move(scaled.positions);
+  disk.corners = vertex_corners(mesh.faces, mesh.vertex_count());
+  return disk;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,29 @@
+#pragma once
+// What the solver reads of a chart: a disk, holes allowed, recentred and scaled to unit area.
+
+#include <span>
+#include <vector>
+
+#include "core/linear/sparse.hpp"
+#include "core/measure/rest_triangle.hpp"
+#include "core/mesh/halfedges.hpp"
+
+namespace unwrapd {
+
+/// Views into a chart, plus its geometry in units in which the surface area is 1: results do not
+/// depend on the scale or the place of the input.
+struct Disk {
+  std::span<const Triangle> faces;
+  std::span<const BoundaryLoop> loops;  ///< the longest first
+  std::vector<Vec3> positions;          ///< one a vertex, centroid at the origin
+  std::vector<RestTriangle> rest;       ///< one a face, areas add up to 1 (up to the height floor)
+  VertexCorners corners;
+  double unit = 1;  ///< mesh units in one disk unit of length
+
+  [[nodiscard]] Index vertex_count() const { return static_cast<Index>(positions.size()); }
+};
+
+/// mesh and loops must outlive the disk. Throws Error{zero_area}.
+Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops);
+
+}  // namespace unwrapd

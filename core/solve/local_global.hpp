@@ -1,0 +1,43 @@
+#pragma once
+// The local/global iteration of Secs. 4.4 and 5: fit every triangle, stitch, repeat.
+
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "core/report.hpp"
+#include "core/solve/global_step.hpp"
+#include "core/solve/local_step.hpp"
+
+namespace unwrapd {
+
+/// A chart's map. uv is in disk units (the surface has area 1); energies are divided by the surface
+/// area and hence without unit.
+struct Solution {
+  UvMap uv;
+  std::vector<double> energy;  ///< energy[0] of the start, energy[k] after iteration k
+  int iterations = 0;
+  StopReason stop_reason = StopReason::iterations;
+};
+
+struct LoopWatch {
+  std::function<void(const Solution&)>
+      on_iteration;  ///< after every iteration: the solution so far
+  std::stop_token stop;
+};
+
+struct LocalGlobalOptions {
+  Rigidity rigidity;
+  int iterations = 10;
+};
+
+/// Runs the iterations from the map start. The energy never rises. A step that would leave less
+/// than kMinAreaShare of the start's UV area is rejected and ends the run (collapse_guard).
+/// Throws Error{cancelled} within one iteration of a stop request.
+Solution local_global(const Disk& disk, const GlobalStep& global, UvMap start,
+                      const LocalGlobalOptions& options, const LoopWatch& watch,
+                      Executor& executor);
+
+inline constexpr double kMinAreaShare = 0.01;
+
+}  // namespace unwrapd
