@@ -22,7 +22,8 @@ struct Chart {
 /// A surface taken apart. Faces in set_aside are in no chart.
 struct Charts {
   std::vector<Chart> charts;     ///< ordered by their lowest face
-  std::vector<Index> set_aside;  ///< faces of the surface: degenerate or duplicate
+  std::vector<Index> set_aside;  ///< faces of the surface: degenerate or duplicate, ascending
+  std::vector<Index> repeats;    ///< one for each set aside: the face it duplicates, else -1
   InputReport input;             ///< of this surface
   std::vector<Repair> repairs;   ///< Repair::surface is left 0 for the caller to fill in
 };

@@ -1,0 +1,59 @@
+#pragma once
+// Half-edges brought together by the edge they lie on, and the one rule by which two of them
+// become twins. build_halfedges() and the seam modes are made of these two.
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "core/mesh/halfedges.hpp"
+
+namespace unwrapd {
+
+/// A half-edge and its edge's ends, low < high.
+struct EdgeSide {
+  Index low = 0;
+  Index high = 0;
+  Index halfedge = 0;
+};
+
+/// The corners of a half-edge's face: where it starts, where it ends, the one that it faces.
+inline Index start_of(std::span<const Triangle> faces, Index h) { return faces[h / 3][h % 3]; }
+inline Index end_of(std::span<const Triangle> faces, Index h) {
+  return start_of(faces, next_halfedge(h));
+}
+inline Index apex_of(std::span<const Triangle> faces, Index h) {
+  return start_of(faces, previous_halfedge(h));
+}
+
+inline bool repeats_vertex(const Triangle& face) {
+  return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+}
+
+/// The half-edges for which wanted(h) holds, sorted by edge. Their ends must differ.
+template <class Wanted>
+std::vector<EdgeSide> edge_sides(std::span<const Triangle> faces, Wanted wanted) {
+  std::vector<EdgeSide> sides;
+  sides.reserve(3 * faces.size());
+  for (Index h = 0; h < static_cast<Index>(3 * faces.size()); ++h) {
+    if (!wanted(h)) continue;
+    const Index a = start_of(faces, h), b = end_of(faces, h);
+    sides.push_back({std::min(a, b), std::max(a, b), h});
+  }
+  return sides;
+}
+
+/// Sorts by edge, in linear time; sides on one edge keep the order of their half-edges.
+void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count);
+
+/// The twins that all sides of one edge make, as [first, last) of a sorted list.
+/// Two half-edges can be twins when they run in opposite directions and their faces are not one
+/// triangle seen from both sides (double-sided geometry: each side is a sheet of its own). They
+/// become twins when neither could be the twin of any other. Returns how many pairs were made.
+int pair_edge(std::span<const Triangle> faces, std::span<const EdgeSide> sides, Halfedges& out);
+
+inline bool on_one_edge(const EdgeSide& a, const EdgeSide& b) {
+  return a.low == b.low && a.high == b.high;
+}
+
+}  // namespace unwrapd

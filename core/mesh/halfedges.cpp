@@ -1,0 +1,100 @@
+// Twins by sorting half-edges, and the walk along boundaries.
+//
+// All half-edges are sorted by (lower end, higher end) with two counting sorts; those on one edge
+// are then neighbours. A hash map of edges is the usual way: slower, and its time depends on input.
+#include "core/mesh/halfedges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <utility>
+
+#include "core/mesh/counting_sort.hpp"
+#include "core/mesh/edges.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr std::size_t kMaxSidesThatPair = 4;  // a double-sided sheet's inner edge
+
+bool can_be_twins(std::span<const Triangle> faces, Index g, Index h) {
+  return start_of(faces, g) == end_of(faces, h) && apex_of(faces, g) != apex_of(faces, h);
+}
+
+/// The only half-edge among sides that h can be twinned with, kNoTwin when none or several.
+Index only_partner(std::span<const Triangle> faces, std::span<const EdgeSide> sides, Index h) {
+  Index partner = kNoTwin;
+  for (const EdgeSide& side : sides) {
+    if (!can_be_twins(faces, side.halfedge, h)) continue;
+    if (partner != kNoTwin) return kNoTwin;
+    partner = side.halfedge;
+  }
+  return partner;
+}
+
+/// The boundary half-edge that follows h: turn about h's end until the fan is over.
+Index next_on_boundary(const Halfedges& halfedges, Index h) {
+  Index g = next_halfedge(h);
+  while (halfedges.twin[g] != kNoTwin) g = next_halfedge(halfedges.twin[g]);
+  return g;
+}
+
+double length(const TriMesh& mesh, const BoundaryLoop& loop) {
+  double sum = 0;
+  for (Index h : loop)
+    sum += (mesh.positions[end_of(mesh.faces, h)] - mesh.positions[start_of(mesh.faces, h)]).norm();
+  return sum;
+}
+
+}  // namespace
+
+void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count) {
+  counting_sort(sides, vertex_count, [](const EdgeSide& side) { return side.high; });
+  counting_sort(sides, vertex_count, [](const EdgeSide& side) { return side.low; });
+}
+
+int pair_edge(std::span<const Triangle> faces, std::span<const EdgeSide> sides, Halfedges& out) {
+  if (sides.size() > kMaxSidesThatPair) return 0;
+  int pairs = 0;
+  for (const EdgeSide& side : sides) {
+    const Index h = side.halfedge;
+    const Index g = only_partner(faces, sides, h);
+    if (g == kNoTwin || only_partner(faces, sides, g) != h) continue;
+    out.twin[h] = g;
+    pairs += h < g;
+  }
+  return pairs;
+}
+
+Halfedges build_halfedges(std::span<const Triangle> faces, Index vertex_count) {
+  Halfedges halfedges{std::vector<Index>(3 * faces.size(), kNoTwin)};
+  auto sides = edge_sides(faces, [&](Index h) { return !repeats_vertex(faces[face_of(h)]); });
+  sort_by_edge(sides, vertex_count);
+  for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
+    pair_edge(faces, {first, last}, halfedges);
+  });
+  return halfedges;
+}
+
+std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges) {
+  assert(halfedges.twin.size() == 3 * mesh.faces.size());
+  std::vector<std::pair<double, BoundaryLoop>> loops;
+  std::vector<bool> seen(halfedges.twin.size(), false);
+  for (Index start = 0; start < static_cast<Index>(seen.size()); ++start) {
+    if (seen[start] || halfedges.twin[start] != kNoTwin) continue;
+    BoundaryLoop loop;
+    for (Index h = start; !seen[h]; h = next_on_boundary(halfedges, h)) {
+      seen[h] = true;
+      loop.push_back(h);
+    }
+    loops.emplace_back(length(mesh, loop), std::move(loop));
+  }
+  std::stable_sort(loops.begin(), loops.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<BoundaryLoop> sorted;
+  sorted.reserve(loops.size());
+  for (auto& [unused, loop] : loops) sorted.push_back(std::move(loop));
+  return sorted;
+}
+
+}  // namespace unwrapd

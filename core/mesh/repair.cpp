@@ -1,0 +1,76 @@
+// Degenerate and duplicate faces.
+//
+// A face is flat when its height over its longest edge is below what its coordinates can hold.
+// Coordinates are rounded to half a unit in the last place, 2^-53 of their size; three points that
+// were on one line end up a few such units off it, and no more. So the bound is 2^-50 of the
+// largest coordinate (and of the longest edge): it follows the mesh when that is scaled or moved,
+// and a sliver of any real height, say 1e-12 of its length, stays in.
+#include "core/mesh/repair.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+
+#include "core/mesh/counting_sort.hpp"
+#include "core/mesh/edges.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr double kRounding = 0x1p-50;
+
+bool is_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto size = [](const Vec3& v) { return v.lpNorm<Eigen::Infinity>(); };
+  const Vec3 ab = b - a, ac = c - a;
+  const double length = std::max({size(ab), size(ac), size(c - b)});
+  const double reach = std::max({size(a), size(b), size(c)}) + length;
+  const double relative_height = (ab / length).cross(ac / length).norm();
+  return !(relative_height * length > kRounding * reach);
+}
+
+struct Corners {
+  Triangle vertex;  ///< the lowest first
+  Index face = 0;
+};
+
+std::vector<Corners> sorted_corners(std::span<const Triangle> faces, const FaceStates& states,
+                                    Index vertex_count) {
+  std::vector<Corners> list;
+  list.reserve(faces.size());
+  for (std::size_t t = 0; t < faces.size(); ++t) {
+    if (states.of[t] != FaceState::sound) continue;
+    Triangle face = faces[t];
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    list.push_back({face, static_cast<Index>(t)});
+  }
+  for (int corner : {2, 1, 0})
+    counting_sort(list, vertex_count, [corner](const Corners& c) { return c.vertex[corner]; });
+  return list;
+}
+
+}  // namespace
+
+FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded) {
+  FaceStates states{std::vector<FaceState>(welded.size(), FaceState::sound),
+                    std::vector<Index>(welded.size(), kNoFace)};
+  for (std::size_t t = 0; t < welded.size(); ++t) {
+    const auto& [a, b, c] = welded[t];
+    if (repeats_vertex(welded[t]))
+      states.of[t] = FaceState::collapsed;
+    else if (is_flat(mesh.positions[a], mesh.positions[b], mesh.positions[c]))
+      states.of[t] = FaceState::flat;
+  }
+  for_each_run(
+      sorted_corners(welded, states, mesh.vertex_count()),
+      [](const Corners& a, const Corners& b) { return a.vertex == b.vertex; },
+      [&](const Corners* first, const Corners* last) {
+        for (const Corners* c = first + 1; c < last; ++c) {
+          states.of[c->face] = FaceState::duplicate;
+          states.same_as[c->face] = first->face;
+        }
+      });
+  return states;
+}
+
+}  // namespace unwrapd

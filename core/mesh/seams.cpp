@@ -1,0 +1,161 @@
+// Pairing by position and pairing that keeps seams, and the test for one-sided surfaces.
+//
+// A collapsed face (two corners at one position) is an edge seen twice: when it goes, the two
+// faces beside it meet. By position this needs no code, their half-edges lie on one edge. By
+// vertex number they do not, so there the collapsed face is paired first and then taken out.
+#include "core/mesh/seams.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/mesh/counting_sort.hpp"
+#include "core/mesh/edges.hpp"
+
+namespace unwrapd {
+namespace {
+
+bool is_open(const Halfedges& halfedges, Index h) { return halfedges.twin[h] == kNoTwin; }
+
+void set_twins(Halfedges& halfedges, Index g, Index h) {
+  if (g != kNoTwin) halfedges.twin[g] = h;
+  if (h != kNoTwin) halfedges.twin[h] = g;
+}
+
+/// Pairs the sides of every edge; counts what cannot be paired.
+void pair_all(std::span<const Triangle> faces, const std::vector<EdgeSide>& sides, Pairing& out) {
+  for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
+    const auto count = last - first;
+    if (count == 1 || pair_edge(faces, {first, last}, out.halfedges) > 0) return;
+    const Index g = first[0].halfedge, h = first[1].halfedge;
+    const bool clash = count == 2 && start_of(faces, g) == start_of(faces, h);
+    if (clash) out.clashes.push_back({g, h});
+    out.split_edges += clash || count > 2;
+  });
+}
+
+/// Takes a collapsed face out: the neighbours across its two long sides become twins.
+void take_out(std::span<const Triangle> welded, Index face, Halfedges& halfedges) {
+  std::array<Index, 3> outside{};
+  for (Index i = 0; i < 3; ++i) outside[i] = std::exchange(halfedges.twin[3 * face + i], kNoTwin);
+  for (Index g : outside)
+    if (g != kNoTwin) halfedges.twin[g] = kNoTwin;
+  for (Index i = 0; i < 3; ++i) {
+    const Index h = 3 * face + i;
+    if (start_of(welded, h) != end_of(welded, h)) continue;  // h is the short side
+    const Index left = outside[(i + 1) % 3], right = outside[(i + 2) % 3];
+    if (left == kNoTwin || right == kNoTwin || face_of(left) == face_of(right)) continue;
+    set_twins(halfedges, left, right);
+    return;
+  }
+}
+
+/// Pairs by position what is still open between exactly two half-edges of different primitives.
+void glue_parts(const Surface& surface, std::span<const Triangle> welded, const FaceStates& states,
+                Pairing& out) {
+  auto sides = edge_sides(welded, [&](Index h) {
+    return states.of[face_of(h)] == FaceState::sound && is_open(out.halfedges, h);
+  });
+  sort_by_edge(sides, surface.mesh.vertex_count());
+  for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
+    if (last - first != 2) return;
+    const Index g = first[0].halfedge, h = first[1].halfedge;
+    if (surface.part[face_of(g)] == surface.part[face_of(h)]) return;
+    if (pair_edge(welded, {first, last}, out.halfedges) > 0) return;
+    if (start_of(welded, g) == start_of(welded, h)) out.clashes.push_back({g, h});
+  });
+}
+
+bool spans_parts(const Surface& surface) {
+  for (Index part : surface.part)
+    if (part != surface.part.front()) return true;
+  return false;
+}
+
+/// Components joined into groups, each with the side it lies on relative to the group's root.
+class Sides {
+ public:
+  explicit Sides(std::size_t count) : parent_(count), turned_(count, false) {
+    for (std::size_t k = 0; k < count; ++k) parent_[k] = static_cast<Index>(k);
+  }
+
+  /// Puts a and b on opposite sides; false when they are bound to lie on the same one.
+  bool set_opposite(Index a, Index b) {
+    const auto [root_a, turned_a] = find(a);
+    const auto [root_b, turned_b] = find(b);
+    if (root_a == root_b) return turned_a != turned_b;
+    parent_[root_a] = root_b;
+    turned_[root_a] = turned_a == turned_b;
+    return true;
+  }
+
+ private:
+  std::pair<Index, bool> find(Index k) {
+    bool turned = false;
+    while (parent_[k] != k) {
+      const Index up = parent_[k];  // halve the path: point at the grandparent
+      turned_[k] = bool(turned_[k]) != bool(turned_[up]);  // a root is not turned
+      parent_[k] = parent_[up];
+      turned = turned != turned_[k];
+      k = parent_[k];
+    }
+    return {k, turned};
+  }
+
+  std::vector<Index> parent_;
+  std::vector<bool> turned_;
+};
+
+}  // namespace
+
+Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states) {
+  Pairing out{{std::vector<Index>(3 * welded.size(), kNoTwin)}, 0, {}};
+  auto sides =
+      edge_sides(welded, [&](Index h) { return states.of[face_of(h)] == FaceState::sound; });
+  Index vertex_count = 0;
+  for (const EdgeSide& side : sides) vertex_count = std::max(vertex_count, side.high + 1);
+  sort_by_edge(sides, vertex_count);
+  pair_all(welded, sides, out);
+  return out;
+}
+
+Pairing pair_keeping_seams(const Surface& surface, std::span<const Triangle> welded,
+                           const FaceStates& states) {
+  const std::vector<Triangle>& faces = surface.mesh.faces;
+  Pairing out{{std::vector<Index>(3 * faces.size(), kNoTwin)}, 0, {}};
+  auto sides = edge_sides(faces, [&](Index h) {
+    const FaceState state = states.of[face_of(h)];
+    return state == FaceState::sound ||
+           (state == FaceState::collapsed && !repeats_vertex(faces[face_of(h)]));
+  });
+  sort_by_edge(sides, surface.mesh.vertex_count());
+  pair_all(faces, sides, out);
+  for (Index t = 0; t < surface.mesh.face_count(); ++t)
+    if (states.of[t] == FaceState::collapsed) take_out(welded, t, out.halfedges);
+  if (spans_parts(surface)) glue_parts(surface, welded, states, out);
+  return out;
+}
+
+void close_slits(Halfedges& halfedges) {
+  const auto next_open = [&](Index h) {
+    Index g = next_halfedge(h);
+    while (!is_open(halfedges, g)) g = next_halfedge(halfedges.twin[g]);
+    return g;
+  };
+  for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
+    if (!is_open(halfedges, h)) continue;
+    const Index g = next_open(h);
+    if (g != h && next_open(g) == h) set_twins(halfedges, g, h);
+  }
+}
+
+std::optional<Index> one_sided_component(std::span<const std::array<Index, 2>> clashes,
+                                         const Topology& topology) {
+  Sides sides(topology.components.size());
+  for (const auto& [g, h] : clashes) {
+    const Index a = topology.component_of[face_of(g)], b = topology.component_of[face_of(h)];
+    if (!sides.set_opposite(a, b)) return a;
+  }
+  return std::nullopt;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,151 @@
+#include "core/atlas/charts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/error.hpp"
+#include "core/mesh/edges.hpp"
+#include "tests/core/obj_reader.hpp"
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+using namespace shapes;
+
+/// Counts by brute force, from the faces alone: what a chart has to be.
+void expect_disk(const Chart& chart, const std::string& name) {
+  std::map<std::pair<Index, Index>, int> sides;
+  std::set<Index> vertices;
+  for (const Triangle& face : chart.mesh.faces) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      vertices.insert(face[i]);
+      ++sides[{face[i], face[(i + 1) % 3]}];
+    }
+  }
+  Index edges = 0, open = 0;
+  for (const auto& [side, count] : sides) {
+    EXPECT_EQ(count, 1) << name;
+    const bool twin = sides.contains({side.second, side.first});
+    open += !twin;
+    edges += !twin || side.first < side.second;
+  }
+  const auto loop_count = static_cast<Index>(chart.loops.size());
+  EXPECT_GE(loop_count, 1) << name;
+  EXPECT_EQ(Index(vertices.size()), chart.mesh.vertex_count()) << name;
+  EXPECT_EQ(Index(vertices.size()) - edges + chart.mesh.face_count(), 2 - loop_count) << name;
+  Index in_loops = 0;
+  for (const BoundaryLoop& loop : chart.loops) {
+    EXPECT_GE(loop.size(), 3U) << name;
+    in_loops += static_cast<Index>(loop.size());
+  }
+  EXPECT_EQ(in_loops, open) << name;
+  const Halfedges again = build_halfedges(chart.mesh.faces, chart.mesh.vertex_count());
+  EXPECT_EQ(again.twin, chart.halfedges.twin) << name;
+  EXPECT_EQ(topology(chart.mesh.faces, chart.halfedges).components.size(), 1U) << name;
+}
+
+/// Every chart is a disk and shows the surface's faces where they are; every face is somewhere
+/// once.
+void expect_valid(const Surface& surface, const Charts& charts, const std::string& name) {
+  std::vector<int> seen(surface.mesh.faces.size(), 0);
+  for (Index t : charts.set_aside) ++seen[t];
+  EXPECT_EQ(charts.set_aside.size(), charts.repeats.size());
+  for (const Chart& chart : charts.charts) {
+    expect_disk(chart, name);
+    ASSERT_EQ(chart.face_source.size(), chart.mesh.faces.size()) << name;
+    for (std::size_t t = 0; t < chart.face_source.size(); ++t) {
+      ++seen[chart.face_source[t]];
+      for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(chart.mesh.positions[chart.mesh.faces[t][i]],
+                  surface.mesh.positions[surface.mesh.faces[chart.face_source[t]][i]])
+            << name;
+    }
+  }
+  EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; })) << name;
+}
+
+Charts checked_charts(const TriMesh& mesh, SeamMode seams = SeamMode::automatic) {
+  const Surface surface = surface_of(mesh);
+  Charts charts = make_charts(surface, seams);
+  expect_valid(surface, charts, "");
+  return charts;
+}
+
+Index repair_count(const Charts& charts, RepairKind kind) {
+  for (const Repair& repair : charts.repairs)
+    if (repair.kind == kind) return repair.count;
+  return 0;
+}
+
+TEST(Charts, EveryShapeBecomesDisksInEverySeamMode) {
+  const std::vector<TriMesh> meshes{grid(4, 3),
+                                    annulus(9, 2),
+                                    cylinder(8, 3),
+                                    half_cylinder(6, 4),
+                                    torus(9, 7),
+                                    cube(0),
+                                    cube(2),
+                                    sphere(0),
+                                    sphere(3),
+                                    pierced_bar(1),
+                                    cone(7, 3),
+                                    pierced_bar(6),
+                                    sphere_cap(9, 4),
+                                    bow_tie(),
+                                    three_faces_at_an_edge(),
+                                    soup(cube(1)),
+                                    random_disk(9, 5),
+                                    shuffled(pierced_bar(3), 2),
+                                    soup(pierced_bar(2))};
+  for (const TriMesh& mesh : meshes)
+    for (SeamMode seams : {SeamMode::automatic, SeamMode::keep, SeamMode::none})
+      checked_charts(mesh, seams);
+}
+
+TEST(Charts, WhatIsADiskStaysAsItIs) {
+  const TriMesh mesh = random_disk(8, 1);
+  const Charts charts = checked_charts(mesh);
+  ASSERT_EQ(charts.charts.size(), 1U);
+  EXPECT_EQ(charts.charts[0].mesh.vertex_count(), mesh.vertex_count());
+  EXPECT_TRUE(charts.repairs.empty());
+  EXPECT_FALSE(charts.input.welded);
+}
+
+TEST(Charts, HolesAreNotCut) {
+  const Charts charts = checked_charts(annulus(12, 2));
+  EXPECT_EQ(charts.charts.at(0).loops.size(), 2U);
+  EXPECT_EQ(repair_count(charts, RepairKind::cut_to_disk), 0);
+}
+
+TEST(Charts, AMoebiusStripIsRefused) {
+  for (SeamMode seams : {SeamMode::automatic, SeamMode::keep, SeamMode::none}) {
+    try {
+      make_charts(surface_of(mobius_strip(12)), seams);
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::not_orientable);
+    }
+  }
+}
+
+TEST(Charts, EveryRealMeshBecomesDisks) {
+  if (test_data().empty()) GTEST_SKIP() << "there is no folder of real meshes here";
+  for (const char* folder : {"paper", "disk", "closed"}) {
+    for (const auto& file : std::filesystem::directory_iterator(test_data() / folder)) {
+      if (file.path().extension() != ".obj") continue;
+      const Surface surface = surface_of(read_obj(file.path()));
+      const auto finite = [](const Vec3& p) { return p.allFinite(); };
+      if (!std::all_of(surface.mesh.positions.begin(), surface.mesh.positions.end(), finite))
+        continue;
+      for (SeamMode seams : {SeamMode::automatic, SeamMode::keep, SeamMode::none})
+        expect_valid(surface, make_charts(surface, seams), file.path().filename());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd
