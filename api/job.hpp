@@ -31,13 +31,13 @@ struct JobProgress {
 };
 
 struct Job {
-  std::string id;
+  std::string id = {};
   JobState state = JobState::queued;
-  std::string created;  ///< RFC 3339, UTC
-  int attempt = 0;      ///< how often a worker has begun it
+  std::string created = {};  ///< RFC 3339, UTC
+  int attempt = 0;           ///< how often a worker has begun it
   Json options = Json::object();
-  std::optional<JobProgress> progress;  ///< once it runs
-  Json problem;                         ///< null unless failed or cancelled
+  std::optional<JobProgress> progress = {};  ///< once it runs
+  Json problem = nullptr;                    ///< null unless failed or cancelled
 };
 
 /// The path of a job: "/v1/jobs/" + id.
