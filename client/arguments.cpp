@@ -13,6 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kMaxTimeoutSeconds = 1e6;
+
 constexpr const char* kAbout =
     "Gives a triangle mesh its UVs: sends FILE (glTF, GLB or OBJ) to an unwrapd server, shows the "
     "progress and writes the same asset back with texture coordinates.";
@@ -97,7 +99,6 @@ void add_flags(CLI::App& app, Raw& raw) {
   app.add_option("--timeout", raw.timeout_seconds,
                  "Give up after so many seconds and cancel the job; 0: never")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   app.add_option("--sample", arguments.sample, "Write a sample mesh (GLB, 20,164 faces) and stop")
       ->type_name("OUT.glb");
@@ -129,6 +130,8 @@ void check_options(const OptionTexts& options) {
 Arguments complete(Raw raw) {
   Arguments& arguments = raw.arguments;
   if (!arguments.sample.empty()) return std::move(arguments);
+  if (!(raw.timeout_seconds >= 0 && raw.timeout_seconds <= kMaxTimeoutSeconds))
+    throw Failure(ExitCode::usage, "--timeout: it must be a number of seconds, at most a million.");
   if (arguments.file.empty()) throw Failure(ExitCode::usage, "FILE is missing: name a mesh.");
   arguments.server = parse_server_url(raw.server);
   arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));

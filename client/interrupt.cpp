@@ -9,6 +9,7 @@
 
 #include <array>
 #include <csignal>
+#include <tuple>
 
 namespace unwrapd::client {
 
@@ -35,6 +36,8 @@ void Interrupt::watch(std::chrono::milliseconds time_limit) {
   const int timeout_ms = time_limit.count() > 0 ? static_cast<int>(time_limit.count()) : -1;
   const int ready = poll(sources.data(), sources.size(), timeout_ms);
   if (sources[1].revents != 0) return;
+  signalfd_siginfo taken{};  // read, or the signal would stay pending for the next reader
+  if (sources[0].revents != 0) std::ignore = read(signals_, &taken, sizeof taken);
   timed_out_ = ready == 0;
   source_.request_stop();
 }

@@ -37,10 +37,10 @@ std::string figures(const ProgressState& state) {
   std::string text = formatted("%3.0f%%", 100 * state.fraction);
   if (state.iteration == 0) return text;
   text += " iteration " + std::to_string(state.iteration);
-  text += "  E " + formatted("%.4g", state.energy);
-  text += "  D_angle " + formatted("%.3f", state.angle);
-  text += "  D_area " + formatted("%.3f", state.area);
-  return text + "  flips " + std::to_string(state.flipped);
+  text += " E " + formatted("%.4g", state.energy);
+  text += " D_angle " + formatted("%.3f", state.angle);
+  text += " D_area " + formatted("%.3f", state.area);
+  return text + " flips " + std::to_string(state.flipped);
 }
 
 /// " [====>   ]", width characters with the space and the brackets; nothing when too narrow.
@@ -64,7 +64,8 @@ ProgressState advance(ProgressState state, const std::string& event, const api::
     state.fraction = std::clamp(state.fraction, 0.0, 1.0);
   }
   if (event == "stage") {
-    state.stage = data.value("name", state.stage);
+    const auto name = data.find("name");
+    if (name != data.end() && name->is_string()) state.stage = name->get<std::string>();
     take(data, "of", state.charts);
     state.iteration = 0;
   } else if (event == "iteration") {

@@ -27,8 +27,8 @@ struct ProgressState {
 /// tells in another type, stays as it was.
 ProgressState advance(ProgressState state, const std::string& event, const api::Json& data);
 
-/// "solve chart 2/3 [====>     ]  52% iteration 7  E 0.0469  D_angle 2.061  D_area 2.057  flips 1",
-/// in ASCII and at most width characters: the bar shrinks first, then goes, then the line is cut.
+/// "solve chart 2/3 [====>     ]  52% iteration 7 E 0.0469 D_angle 2.061 D_area 2.057 flips 1", in
+/// ASCII and at most width characters: the bar shrinks first, then goes, then the line is cut.
 std::string progress_line(const ProgressState& state, std::size_t width);
 
 /// How the progress is shown: a bar that is redrawn in place, plain lines, or not at all.

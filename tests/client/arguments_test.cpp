@@ -1,0 +1,108 @@
+#include "client/arguments.hpp"
+
+#include <gmock/gmock.h>
+
+#include <vector>
+
+#include "api/options.hpp"
+
+namespace unwrapd::client {
+namespace {
+
+using testing::HasSubstr;
+
+std::variant<Arguments, Message> parse(std::vector<const char*> words) {
+  words.insert(words.begin(), "unwrap");
+  return parse_arguments(static_cast<int>(words.size()), words.data());
+}
+
+Arguments accepted(const std::vector<const char*>& words) {
+  const auto parsed = parse(words);
+  if (const auto* message = std::get_if<Message>(&parsed)) {
+    ADD_FAILURE() << message->text;
+    return {};
+  }
+  return std::get<Arguments>(parsed);
+}
+
+Message refused(const std::vector<const char*>& words) {
+  const auto parsed = parse(words);
+  if (std::holds_alternative<Arguments>(parsed)) {
+    ADD_FAILURE() << "accepted";
+    return {};
+  }
+  return std::get<Message>(parsed);
+}
+
+TEST(Arguments, AResultIsWrittenBesideTheFileWhenNoNameIsGiven) {
+  EXPECT_EQ(accepted({"a/chair.glb"}).out, "a/chair.uv.glb");
+  EXPECT_EQ(accepted({"a/chair.gltf", "--output", "obj"}).out, "a/chair.uv.obj");
+  EXPECT_EQ(accepted({"chair.obj", "--output", "auto"}).out, "chair.uv.obj");
+}
+
+TEST(Arguments, TheFormatFollowsTheResultsName) {
+  EXPECT_EQ(accepted({"a.obj", "-o", "b.glb"}).options.at("output"), "glb");
+  EXPECT_EQ(accepted({"a.obj", "-o", "b.bin"}).options.count("output"), 0);
+  EXPECT_EQ(accepted({"a.obj", "-o", "b.glb", "--output", "gltf"}).options.at("output"), "gltf");
+}
+
+TEST(Arguments, EveryOptionOfTheApiIsAFlag) {
+  const std::string help = refused({"--help"}).text;
+  for (const api::OptionRow& row : api::option_table()) {
+    std::string flag = "--" + std::string(row.name);
+    std::ranges::replace(flag, '_', '-');
+    EXPECT_THAT(help, HasSubstr(flag + " "));
+    const api::Json value = api::option_default(row);
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    EXPECT_EQ(accepted({"a.glb", flag.c_str(), text.c_str()}).options.at(std::string(row.name)),
+              text);
+  }
+}
+
+TEST(Arguments, AreCheckedBeforeAnythingIsSent) {
+  for (const std::vector<const char*>& words :
+       {std::vector<const char*>{"a.glb", "--method", "magic"},
+        {"a.glb", "--lambda", "-1"},
+        {"a.glb", "--lambda", "nan"},
+        {"a.glb", "--iterations", "0"},
+        {"a.glb", "--iterations", "2.5"},
+        {"a.glb", "--resolution", "1e9"},
+        {"a.glb", "--timeout", "-1"},
+        {"a.glb", "--timeout", "nan"},
+        {"a.glb", "--server", "ftp://x"},
+        {"a.glb", "b.glb"},
+        {"--methd", "arap"},
+        {"a.glb", "--lambda"},
+        {}}) {
+    const Message message = refused(words);
+    EXPECT_EQ(message.code, ExitCode::usage) << message.text;
+    EXPECT_THAT(message.text, HasSubstr("--help"));
+  }
+  EXPECT_THAT(refused({"a.glb", "--lambda-units", "si"}).text, HasSubstr("--lambda-units"));
+}
+
+TEST(Arguments, LeaveTheServersOwnLimitsToTheServer) {
+  EXPECT_EQ(accepted({"a.glb", "--iterations", "1000000"}).options.at("iterations"), "1000000");
+}
+
+TEST(Arguments, HelpTellsTheExitCodes) {
+  const Message help = refused({"--help"});
+  EXPECT_EQ(help.code, ExitCode::ok);
+  for (const char* code : {"    0  ", "    1  ", "    2  ", "    3  ", "    4  ", "  130  "})
+    EXPECT_THAT(help.text, HasSubstr(code));
+}
+
+TEST(Arguments, TheServerComesFromTheEnvironmentUnlessGiven) {
+  setenv("UNWRAPD_SERVER", "http://farm:99", 1);
+  EXPECT_EQ(accepted({"a.glb"}).server.origin, "http://farm:99");
+  EXPECT_EQ(accepted({"a.glb", "--server", "here:1"}).server.origin, "http://here:1");
+  unsetenv("UNWRAPD_SERVER");
+  EXPECT_EQ(accepted({"a.glb"}).server.origin, "http://127.0.0.1:8080");
+}
+
+TEST(Arguments, ASampleNeedsNoFile) {
+  EXPECT_EQ(accepted({"--sample", "shell.glb"}).sample, "shell.glb");
+}
+
+}  // namespace
+}  // namespace unwrapd::client

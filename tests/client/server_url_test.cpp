@@ -1,0 +1,34 @@
+#include "client/server_url.hpp"
+
+#include "tests/client/expect_failure.hpp"
+
+namespace unwrapd::client {
+namespace {
+
+TEST(ServerUrl, KeepsSchemeHostAndPort) {
+  EXPECT_EQ(parse_server_url("http://127.0.0.1:8080").origin, "http://127.0.0.1:8080");
+  EXPECT_EQ(parse_server_url("https://uv.example").origin, "https://uv.example");
+  EXPECT_EQ(parse_server_url("http://[::1]:80").origin, "http://[::1]:80");
+  EXPECT_EQ(parse_server_url("http://[::1]").origin, "http://[::1]");
+}
+
+TEST(ServerUrl, TakesHttpWhereNoSchemeIsGiven) {
+  EXPECT_EQ(parse_server_url("localhost:8080").origin, "http://localhost:8080");
+}
+
+TEST(ServerUrl, KeepsAPrefixWithoutItsLastSlash) {
+  EXPECT_EQ(parse_server_url("http://host/").prefix, "");
+  EXPECT_EQ(parse_server_url("http://host/tools/uv/").prefix, "/tools/uv");
+}
+
+TEST(ServerUrl, RefusesWhatIsNoAddressAndShowsHowToWriteOne) {
+  for (const char* text : {"", "http://", "ftp://host", "http://host:", "http://host:0",
+                           "http://host:65536", "http://host:80x", "http://[::1", "http://[::1]80",
+                           "http://user@host", "http://host?query", "ho st", "http://ho%st"}) {
+    const std::string message = expect_failure(ExitCode::usage, [&] { parse_server_url(text); });
+    EXPECT_NE(message.find("http://host:port"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd::client
