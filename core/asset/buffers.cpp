@@ -1,0 +1,130 @@
+// A document's buffers. Nothing is ever opened or fetched: bytes come from the GLB's chunk, from
+// data URIs and from the parts of the request, and every other URI is refused.
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include "core/asset/base64.hpp"
+#include "core/asset/gltf_steps.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+constexpr std::string_view kDataScheme = "data:";
+
+int hex_value(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  const int lower = std::tolower(static_cast<unsigned char>(c));
+  return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+}
+
+std::string percent_decoded(std::string_view uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const bool escape = uri[i] == '%' && i + 2 < uri.size() && hex_value(uri[i + 1]) >= 0 &&
+                        hex_value(uri[i + 2]) >= 0;
+    text += escape ? static_cast<char>(hex_value(uri[i + 1]) * 16 + hex_value(uri[i + 2])) : uri[i];
+    if (escape) i += 2;
+  }
+  return text;
+}
+
+bool has_scheme(std::string_view uri) {
+  const std::size_t end = uri.find_first_of(":/?#");
+  return end != std::string_view::npos && uri[end] == ':';
+}
+
+bool has_parent_segment(std::string_view path) {
+  while (true) {
+    const std::size_t slash = path.find('/');
+    if (path.substr(0, slash) == "..") return true;
+    if (slash == std::string_view::npos) return false;
+    path.remove_prefix(slash + 1);
+  }
+}
+
+bool is_plain_relative(std::string_view path) {
+  const bool odd = std::any_of(path.begin(), path.end(), [](char c) {
+    return c == '\\' || static_cast<unsigned char>(c) < 0x20;
+  });
+  return !path.empty() && !odd && path.front() != '/' && !has_scheme(path) &&
+         !has_parent_segment(path);
+}
+
+std::string data_uri_bytes(const Node& uri) {
+  const std::string& text = uri.text();
+  const std::size_t comma = text.find(',');
+  const bool base64 =
+      comma != std::string::npos && std::string_view(text).substr(0, comma).ends_with(";base64");
+  std::optional<std::string> bytes;
+  if (base64) bytes = base64_decoded(std::string_view(text).substr(comma + 1));
+  if (!bytes)
+    fail(ErrorCode::malformed_gltf, uri.place(),
+         "the data URI is not valid base64; export the asset again");
+  return std::move(*bytes);
+}
+
+std::string external_bytes(const Node& uri, const Input& input) {
+  const std::string decoded = percent_decoded(uri.text());
+  if (!is_plain_relative(uri.text()) || !is_plain_relative(decoded))
+    fail(ErrorCode::external_uri, uri.place(),
+         "no file or address is ever opened; embed the buffer, or send it as a part of the "
+         "request under a plain relative name");
+  auto part = input.buffers.find(uri.text());
+  if (part == input.buffers.end()) part = input.buffers.find(decoded);
+  if (part == input.buffers.end())
+    fail(ErrorCode::missing_buffer, uri.place(),
+         "the buffer \"" + uri.text() +
+             "\" was not sent; add it as a part of the request with this file name, or send a GLB");
+  return std::string(part->second);
+}
+
+bool is_meshopt_fallback(const Node& buffer) {
+  const auto extensions = buffer.find("extensions");
+  if (!extensions) return false;
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+    if (const auto meshopt = extensions->find(name)) return meshopt->flag("fallback");
+  return false;
+}
+
+void cut_to_length(std::string& bytes, const Node& buffer) {
+  const Node length = buffer.at("byteLength");
+  if (length.number() > bytes.size())
+    fail(ErrorCode::malformed_gltf, length.place(),
+         "the buffer has only " + std::to_string(bytes.size()) +
+             " bytes, fewer than it states; send all of it");
+  bytes.resize(length.number());
+}
+
+std::string buffer_bytes(const Node& buffer, std::string_view bin, const Input& input) {
+  std::string bytes;
+  const auto uri = buffer.find("uri");
+  if (uri) {
+    bytes =
+        uri->text().starts_with(kDataScheme) ? data_uri_bytes(*uri) : external_bytes(*uri, input);
+  } else if (bin.data() != nullptr) {
+    bytes = bin;
+  } else {
+    fail(ErrorCode::missing_buffer, buffer.place(),
+         "the buffer has no uri and the file has no binary chunk for it; export the asset again");
+  }
+  cut_to_length(bytes, buffer);
+  return bytes;
+}
+
+}  // namespace
+
+void resolve_buffers(Gltf& gltf, std::string_view bin, const Input& input) {
+  const auto list = Node(gltf.json).find("buffers");
+  const std::size_t count = list ? list->array_size() : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Node buffer = list->at(i);
+    buffer.expect_object();
+    // A fallback's bytes are never used: what would be in it is decoded from its compressed form.
+    const bool fallback = is_meshopt_fallback(buffer);
+    gltf.buffers.push_back(
+        fallback ? std::string() : buffer_bytes(buffer, i == 0 ? bin : std::string_view(), input));
+  }
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,97 @@
+#include "core/asset/container.hpp"
+
+#include <cstdint>
+#include <limits>
+
+#include "core/asset/bytes.hpp"
+#include "core/error.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x46546c67;      // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4e4f534a;  // "JSON"
+constexpr std::uint32_t kBinChunk = 0x004e4942;   // "BIN\0"
+constexpr std::size_t kHeaderBytes = 12;
+constexpr std::size_t kChunkHeaderBytes = 8;
+
+struct Chunk {
+  std::uint32_t type = 0;
+  std::string_view bytes;
+  std::size_t end = 0;  ///< where the next chunk starts
+};
+
+[[noreturn]] void refuse(const std::string& message, std::size_t byte) {
+  throw Error(ErrorCode::malformed_glb, message + "; send the whole file or export it again",
+              "byte " + std::to_string(byte));
+}
+
+std::uint32_t word(std::string_view file, std::size_t offset) {
+  if (file.size() < 4 || offset > file.size() - 4) refuse("the GLB ends too early", file.size());
+  return load<std::uint32_t>(file.data() + offset);
+}
+
+Chunk chunk_at(std::string_view file, std::size_t offset) {
+  const std::size_t length = word(file, offset);
+  const std::uint32_t type = word(file, offset + 4);
+  const std::size_t begin = offset + kChunkHeaderBytes;
+  if (length > file.size() - begin) refuse("a chunk of the GLB is longer than the file", offset);
+  if (length % 4 != 0) refuse("the length of a chunk of the GLB is no multiple of 4", offset);
+  return {type, file.substr(begin, length), begin + length};
+}
+
+void check_header(std::string_view file) {
+  if (word(file, 0) != kMagic) refuse("the GLB does not begin with \"glTF\"", 0);
+  if (word(file, 4) != 2) refuse("only version 2 of the GLB container can be read", 4);
+  if (word(file, 8) != file.size())
+    refuse("the GLB states another length than the " + std::to_string(file.size()) +
+               " bytes that were sent",
+           8);
+}
+
+void append_chunk(std::string& file, std::uint32_t type, std::string_view bytes, char padding) {
+  append(file, static_cast<std::uint32_t>((bytes.size() + 3) / 4 * 4));
+  append(file, type);
+  file += bytes;
+  pad(file, 4, padding);
+}
+
+}  // namespace
+
+GlbChunks split_glb(std::string_view file) {
+  check_header(file);
+  const Chunk json = chunk_at(file, kHeaderBytes);
+  if (json.type != kJsonChunk) refuse("the first chunk of the GLB is not JSON", kHeaderBytes);
+  GlbChunks chunks{json.bytes, {}, {}};
+  std::size_t offset = json.end;
+  if (offset < file.size()) {
+    const Chunk second = chunk_at(file, offset);
+    if (second.type == kBinChunk) {
+      chunks.bin = second.bytes;
+      offset = second.end;
+    }
+  }
+  chunks.others = file.substr(offset);
+  while (offset < file.size()) offset = chunk_at(file, offset).end;
+  return chunks;
+}
+
+std::string join_glb(const GlbChunks& chunks) {
+  const std::size_t length = kHeaderBytes + 2 * kChunkHeaderBytes +
+                             (chunks.json.size() + 3) / 4 * 4 + (chunks.bin.size() + 3) / 4 * 4 +
+                             chunks.others.size();
+  if (length > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ErrorCode::body_too_large,
+                "the result does not fit into a GLB of 4 GiB; split the asset or ask for glTF");
+  std::string file;
+  file.reserve(length);
+  append(file, kMagic);
+  append(file, std::uint32_t{2});
+  append(file, static_cast<std::uint32_t>(length));
+  append_chunk(file, kJsonChunk, chunks.json, ' ');
+  append_chunk(file, kBinChunk, chunks.bin, '\0');
+  file += chunks.others;
+  return file;
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,20 @@
+#pragma once
+// From one format into the other: geometry, normals and UVs; OBJ has no place for the rest.
+
+#include <span>
+#include <string>
+
+#include "core/asset/gltf.hpp"
+#include "core/asset/obj.hpp"
+
+namespace unwrapd::asset {
+
+/// A minimal glTF: one node, one mesh, one primitive for each material that has faces.
+std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
+                        Format output);
+
+/// One object ("o") for each mesh, in the mesh's own space.
+std::string gltf_as_obj(const Gltf& gltf, std::span<const Surface> surfaces,
+                        std::span<const UnwrappedSurface> unwrapped);
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,19 @@
+#pragma once
+// What an Asset holds: the surfaces that it hands out, and the document that write() patches.
+
+#include <variant>
+#include <vector>
+
+#include "core/asset/asset.hpp"
+#include "core/asset/gltf.hpp"
+#include "core/asset/obj.hpp"
+
+namespace unwrapd::asset {
+
+struct Document {
+  Format format = Format::glb;
+  std::vector<Surface> surfaces;
+  std::variant<Gltf, Obj> source;
+};
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,66 @@
+#include "core/asset/elements.hpp"
+
+#include <algorithm>
+
+#include "core/asset/bytes.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+/// Float, or a small integer that may stand for a fraction (glTF 2.0, section 3.11).
+double component(const char* bytes, ComponentType type, bool normalized) {
+  switch (type) {
+    case ComponentType::i8: {
+      const double value = load<std::int8_t>(bytes);
+      return normalized ? std::max(value / 127, -1.0) : value;
+    }
+    case ComponentType::u8: {
+      const double value = load<std::uint8_t>(bytes);
+      return normalized ? value / 255 : value;
+    }
+    case ComponentType::i16: {
+      const double value = load<std::int16_t>(bytes);
+      return normalized ? std::max(value / 32767, -1.0) : value;
+    }
+    case ComponentType::u16: {
+      const double value = load<std::uint16_t>(bytes);
+      return normalized ? value / 65535 : value;
+    }
+    case ComponentType::u32:
+    case ComponentType::f32:
+      break;
+  }
+  return static_cast<double>(load<float>(bytes));
+}
+
+}  // namespace
+
+Elements::Elements(const Gltf& gltf, std::size_t accessor)
+    : gltf_(&gltf), accessor_(&gltf.accessors[accessor]) {
+  if (!accessor_->sparse) return;
+  for (std::size_t k = 0; k < accessor_->sparse->count; ++k)
+    replaced_.emplace(sparse_index(gltf, *accessor_->sparse, k), sparse_value(gltf, *accessor_, k));
+}
+
+const char* Elements::at(std::size_t element) const {
+  if (!replaced_.empty())
+    if (const auto found = replaced_.find(element); found != replaced_.end()) return found->second;
+  return accessor_->view ? dense_element(*gltf_, *accessor_, element) : nullptr;
+}
+
+std::size_t Elements::unsigned_at(std::size_t element) const {
+  const char* bytes = at(element);
+  return bytes == nullptr ? 0 : load_unsigned(bytes, component_bytes(accessor_->type));
+}
+
+Vec3 Elements::vec3_at(std::size_t element) const {
+  const char* bytes = at(element);
+  if (bytes == nullptr) return Vec3::Zero();
+  const std::size_t step = component_bytes(accessor_->type);
+  const auto at_axis = [&](std::size_t k) {
+    return component(bytes + k * step, accessor_->type, accessor_->normalized);
+  };
+  return {at_axis(0), at_axis(1), at_axis(2)};
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,26 @@
+#pragma once
+// Elements of one accessor, whatever its encoding: dense, sparse, quantised, or all zero.
+
+#include <unordered_map>
+
+#include "core/asset/gltf.hpp"
+
+namespace unwrapd::asset {
+
+class Elements {
+ public:
+  Elements(const Gltf& gltf, std::size_t accessor);  ///< both must outlive this
+
+  /// The bytes of an element; null stands for zeros.
+  [[nodiscard]] const char* at(std::size_t element) const;
+
+  [[nodiscard]] std::size_t unsigned_at(std::size_t element) const;  ///< of an unsigned scalar
+  [[nodiscard]] Vec3 vec3_at(std::size_t element) const;  ///< normalised if the accessor says so
+
+ private:
+  const Gltf* gltf_;
+  const Accessor* accessor_;
+  std::unordered_map<std::size_t, const char*> replaced_;
+};
+
+}  // namespace unwrapd::asset

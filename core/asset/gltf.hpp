@@ -1,0 +1,99 @@
+#pragma once
+// A glTF document in the form that the rest of asset works on: the author's JSON beside a checked
+// model of what lies in it. Whoever holds a Gltf may index without looking: views lie in their
+// buffers, accessors in their views, and every reference names something that exists.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/asset/asset.hpp"
+#include "core/asset/json.hpp"
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd::asset {
+
+enum class ComponentType { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
+
+inline constexpr int kArrayBufferTarget = 34962;
+inline constexpr int kElementArrayBufferTarget = 34963;
+
+struct View {
+  std::size_t buffer = 0;
+  std::size_t offset = 0;  ///< bytes
+  std::size_t length = 0;  ///< bytes
+  std::size_t stride = 0;  ///< bytes, 0: elements are tight
+};
+
+/// A few elements that replace those of the dense part. Indices are ascending and in range.
+struct Sparse {
+  std::size_t count = 0;
+  std::size_t index_view = 0;
+  std::size_t index_offset = 0;
+  ComponentType index_type = ComponentType::u32;
+  std::size_t value_view = 0;
+  std::size_t value_offset = 0;
+};
+
+struct Accessor {
+  std::optional<std::size_t> view;  ///< without one all elements are zero
+  std::size_t offset = 0;           ///< bytes into the view
+  std::size_t count = 0;            ///< elements
+  std::size_t components = 1;       ///< of an element
+  std::size_t element_bytes = 4;    ///< with the padding between a matrix's columns
+  ComponentType type = ComponentType::f32;
+  bool normalized = false;
+  std::optional<Sparse> sparse;
+};
+
+enum class Mode { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
+
+struct Primitive {
+  std::size_t mesh = 0;
+  std::size_t number = 0;                                       ///< in its mesh
+  std::vector<std::pair<std::string, std::size_t>> attributes;  ///< semantic, accessor
+  std::vector<std::size_t> targets;                             ///< accessors of all morph targets
+  std::optional<std::size_t> indices;
+  std::size_t position = 0;  ///< accessor of POSITION, when has_triangles
+  Mode mode = Mode::triangles;
+  bool has_triangles = false;  ///< a triangle mode, and POSITION is there
+  std::size_t piece = 0;       ///< when has_triangles: where its faces are
+  std::size_t pool = 0;        ///< when has_triangles: the vertices that it shares with others
+};
+
+/// The faces of one or more primitives of the same geometry: a run of one surface's faces.
+struct Piece {
+  std::size_t surface = 0;
+  std::size_t first_face = 0;
+  std::size_t face_count = 0;
+};
+
+struct Gltf {
+  Json json;
+  std::vector<std::string> buffers;  ///< one for each of the document's, cut to its byteLength
+  std::string other_chunks;          ///< of a GLB, as they came, after JSON and BIN
+  std::vector<View> views;
+  std::vector<Accessor> accessors;
+  std::vector<Primitive> primitives;  ///< of all meshes, in order
+  std::vector<Piece> pieces;
+  std::vector<std::vector<Index>> vertices;  ///< [surface][vertex]: its number in the accessor
+  std::size_t pool_count = 0;
+  bool has_foreign_references = false;  ///< an extension may point to views or accessors unseen
+};
+
+std::size_t component_bytes(ComponentType type);
+Place accessor_place(std::size_t accessor);
+Place primitive_place(const Primitive& primitive);
+
+/// The bytes of an element of the dense part; requires accessor.view and element < count.
+const char* dense_element(const Gltf& gltf, const Accessor& accessor, std::size_t element);
+
+/// Entry k of a sparse accessor: which element it replaces, and with what bytes.
+std::size_t sparse_index(const Gltf& gltf, const Sparse& sparse, std::size_t k);
+const char* sparse_value(const Gltf& gltf, const Accessor& accessor, std::size_t k);
+
+}  // namespace unwrapd::asset

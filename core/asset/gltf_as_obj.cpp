@@ -1,0 +1,110 @@
+#include <optional>
+#include <string_view>
+
+#include "core/asset/convert.hpp"
+#include "core/asset/elements.hpp"
+#include "core/asset/obj_text.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+std::size_t as_size(Index index) { return static_cast<std::size_t>(index); }
+
+/// The accessor of the normals that go with a piece: those of the first primitive that shows it.
+std::vector<std::optional<std::size_t>> normals_of_pieces(const Gltf& gltf) {
+  std::vector<std::optional<std::size_t>> normals(gltf.pieces.size());
+  for (const Primitive& primitive : gltf.primitives)
+    for (const auto& [semantic, accessor] : primitive.attributes)
+      if (semantic == "NORMAL" && primitive.has_triangles && !normals[primitive.piece] &&
+          gltf.accessors[accessor].components == 3 &&
+          gltf.accessors[accessor].type != ComponentType::u32)
+        normals[primitive.piece] = accessor;
+  return normals;
+}
+
+class ObjFromGltf {
+ public:
+  ObjFromGltf(const Gltf& gltf, std::span<const Surface> surfaces,
+              std::span<const UnwrappedSurface> unwrapped)
+      : gltf_(gltf),
+        surfaces_(surfaces),
+        unwrapped_(unwrapped),
+        normal_accessors_(normals_of_pieces(gltf)) {}
+
+  std::string write() {
+    std::size_t piece = 0;
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+      out_ += "o " + object_name(s) + '\n';
+      for (const Vec3& position : surfaces_[s].mesh.positions) append_vec3(out_, "v", position);
+      for (const Vec2& uv : unwrapped_[s].uv) append_vt(out_, uv);
+      for (; piece < gltf_.pieces.size() && belongs(gltf_.pieces[piece], s); ++piece)
+        write_piece(piece);
+      vertex_base_ += surfaces_[s].mesh.vertex_count();
+      texcoord_base_ += static_cast<Index>(unwrapped_[s].uv.size());
+    }
+    return std::move(out_);
+  }
+
+ private:
+  /// Pieces are in the order of their surfaces; those without faces belong to none.
+  static bool belongs(const Piece& piece, std::size_t surface) {
+    return piece.face_count == 0 || piece.surface == surface;
+  }
+
+  /// The mesh's name, on one line, or its number.
+  [[nodiscard]] std::string object_name(std::size_t surface) const {
+    const Json& mesh = gltf_.json.at(Json::json_pointer(surfaces_[surface].name));
+    const auto name = mesh.find("name");
+    std::string text = name != mesh.end() && name->is_string() ? name->get<std::string>() : "";
+    for (char& c : text)
+      if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    return text.empty() ? "mesh_" + std::to_string(surface) : text;
+  }
+
+  void write_piece(std::size_t number) {
+    const Piece& piece = gltf_.pieces[number];
+    const bool has_normals = normal_accessors_[number].has_value() && piece.face_count > 0;
+    if (has_normals) write_normals(piece, *normal_accessors_[number]);
+    const UnwrappedSurface& unwrapped = unwrapped_[number_of_surface(piece)];
+    for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
+      out_ += 'f';
+      for (std::size_t k = 0; k < 3; ++k)
+        append_corner(unwrapped, unwrapped.faces[t][k], has_normals ? normal_base_++ : -1);
+      out_ += '\n';
+    }
+  }
+
+  static std::size_t number_of_surface(const Piece& piece) { return piece.surface; }
+
+  void append_corner(const UnwrappedSurface& unwrapped, Index corner, Index normal) {
+    append_obj_corner(out_, vertex_base_ + unwrapped.source[as_size(corner)],
+                      texcoord_base_ + corner, normal);
+  }
+
+  void write_normals(const Piece& piece, std::size_t accessor) {
+    const Elements normals(gltf_, accessor);
+    const Surface& surface = surfaces_[piece.surface];
+    for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t)
+      for (const Index corner : surface.mesh.faces[t])
+        append_vec3(out_, "vn",
+                    normals.vec3_at(as_size(gltf_.vertices[piece.surface][as_size(corner)])));
+  }
+
+  const Gltf& gltf_;
+  std::span<const Surface> surfaces_;
+  std::span<const UnwrappedSurface> unwrapped_;
+  std::vector<std::optional<std::size_t>> normal_accessors_;
+  std::string out_;
+  Index vertex_base_ = 0;
+  Index texcoord_base_ = 0;
+  Index normal_base_ = 0;
+};
+
+}  // namespace
+
+std::string gltf_as_obj(const Gltf& gltf, std::span<const Surface> surfaces,
+                        std::span<const UnwrappedSurface> unwrapped) {
+  return ObjFromGltf(gltf, surfaces, unwrapped).write();
+}
+
+}  // namespace unwrapd::asset

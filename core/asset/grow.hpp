@@ -1,0 +1,39 @@
+#pragma once
+// New accessors over new bytes. Each function gives the accessor's JSON: that of the accessor it
+// takes the place of, with its name and extras, where there is one.
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/asset/gltf.hpp"
+#include "core/asset/patch.hpp"
+
+namespace unwrapd::asset {
+
+/// Adds buffer views to a patched document, over its buffer `added`.
+class NewViews {
+ public:
+  NewViews(PatchedDocument& document, std::size_t buffer) : document_(&document), buffer_(buffer) {}
+
+  /// stride 0: tight. target 0: neither vertices nor indices. Gives the number of the view.
+  std::size_t add(std::string_view bytes, std::size_t stride, int target);
+
+ private:
+  PatchedDocument* document_;
+  std::size_t buffer_;
+};
+
+/// The accessor's elements, followed by copies of some of them; sparse stays sparse.
+Json grown_accessor(const Gltf& gltf, std::size_t accessor, const std::vector<Index>& copies,
+                    NewViews& views);
+
+/// Triangle corners in the smallest type that holds them, but 8 bits only where `old` had them.
+Json index_accessor(const Gltf& gltf, std::optional<std::size_t> old,
+                    const std::vector<Index>& corners, NewViews& views);
+
+Json texcoord_accessor(const Gltf& gltf, std::optional<std::size_t> old,
+                       const std::vector<std::array<float, 2>>& uv, NewViews& views);
+
+}  // namespace unwrapd::asset

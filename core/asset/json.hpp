@@ -1,0 +1,69 @@
+#pragma once
+// The JSON of a glTF document: parsed without recursion, kept in the order of its author, and read
+// through Node, which knows the JSON pointer of every value so that each error can name its place.
+// Integers keep all 64 bits and floats their value; only an integer beyond 64 bits turns into the
+// nearest double.
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/error.hpp"
+
+namespace unwrapd::asset {
+
+using Json = nlohmann::ordered_json;
+
+/// Throws Error{malformed_json} with the byte of the fault: bad syntax or UTF-8, a number that no
+/// double holds, a name that occurs twice in one object, more than 128 levels.
+Json parse_json(std::string_view text);
+
+/// A JSON pointer (RFC 6901) as it grows; a value, cheap to copy, turned into text only on error.
+class Place {
+ public:
+  [[nodiscard]] Place at(std::string_view key) const;  ///< key must outlive the Place
+  [[nodiscard]] Place at(std::size_t index) const;
+  [[nodiscard]] std::string pointer() const;
+
+ private:
+  struct Step {
+    std::string_view key;
+    std::size_t index = 0;
+  };
+  static constexpr std::size_t kMaxSteps = 8;
+  std::array<Step, kMaxSteps> steps_;
+  std::size_t size_ = 0;
+};
+
+[[noreturn]] void fail(ErrorCode code, const Place& place, const std::string& message);
+
+/// A value of the document and its place. Every reader throws Error{malformed_gltf} when the value
+/// is not what was asked for.
+class Node {
+ public:
+  explicit Node(const Json& json, const Place& place = {}) : json_(&json), place_(place) {}
+
+  [[nodiscard]] const Json& json() const { return *json_; }
+  [[nodiscard]] const Place& place() const { return place_; }
+
+  [[nodiscard]] std::optional<Node> find(std::string_view key) const;  ///< of an object
+  [[nodiscard]] Node at(std::string_view key) const;                   ///< of an object, required
+  [[nodiscard]] Node at(std::size_t index) const;                      ///< of an array
+  [[nodiscard]] std::size_t array_size() const;  ///< throws when it is no array
+  void expect_object() const;
+
+  [[nodiscard]] std::size_t number() const;  ///< a whole number in [0, 2^53]
+  [[nodiscard]] std::size_t number(std::string_view key, std::size_t otherwise) const;
+  [[nodiscard]] std::size_t index(std::size_t size, std::string_view list) const;
+  [[nodiscard]] const std::string& text() const;
+  [[nodiscard]] bool flag(std::string_view key) const;  ///< false when absent
+
+ private:
+  const Json* json_;
+  Place place_;
+};
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,56 @@
+#pragma once
+// Wavefront OBJ: a text that stays as its author wrote it, but for texture coordinates and faces.
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/asset/asset.hpp"
+
+namespace unwrapd::asset {
+
+/// A statement whose corners are written anew: a face (keyword 'f') or a polyline ('l').
+struct ObjElement {
+  char keyword = 'f';
+  std::size_t begin = 0;  ///< bytes of the statement in the text, without comment and line end
+  std::size_t end = 0;
+  std::size_t first_corner = 0;  ///< in Obj::corners
+  std::size_t corner_count = 0;
+  std::size_t first_face = 0;  ///< of the surface's faces; there are face_count()
+
+  [[nodiscard]] std::size_t face_count() const {
+    return keyword == 'f' && corner_count > 2 ? corner_count - 2 : 0;
+  }
+};
+
+inline constexpr Index kNoNormal = -1;
+
+struct ObjCorner {
+  Index vertex = 0;
+  Index normal = kNoNormal;
+};
+
+struct Obj {
+  std::string text;
+  std::vector<ObjElement> elements;  ///< in the order of the text
+  std::vector<ObjCorner> corners;
+  std::vector<std::array<Index, 3>> face_corners;  ///< [face]: which corners of its element
+  std::vector<std::pair<std::size_t, std::size_t>> texcoord_lines;  ///< their bytes, in order
+  std::vector<Vec3> normals;
+};
+
+/// Throws Error{malformed_obj, non_finite_position, too_many_*, no_triangles} with the line.
+Obj read_obj(std::string_view text, const ReadLimits& limits, Surface& surface);
+
+/// The text with its vt statements replaced, its faces given as v/vt[/vn]. A polygon stays one
+/// unless a seam runs through it.
+std::string write_obj(const Obj& obj, const UnwrappedSurface& unwrapped);
+
+/// Cuts a polygon of at least 3 corners into corner_count - 2 triangles: ears where it is not
+/// convex. Appends corner numbers.
+void triangulate(std::span<const Vec3> polygon, std::vector<std::array<Index, 3>>& triangles);
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,242 @@
+// One pass over the text: vertices, normals and faces are taken, everything else is only kept.
+// Indices are checked at the end, since a face may stand before its vertices.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+
+#include "core/asset/obj.hpp"
+#include "core/error.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+constexpr double kLargest = std::numeric_limits<float>::max();
+
+std::string line_of(std::string_view text, std::size_t byte) {
+  const auto lines = std::count(text.begin(), text.begin() + std::ptrdiff_t(byte), '\n');
+  return "line " + std::to_string(lines + 1);
+}
+
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+/// Bytes of a statement. Comment and line end are not part of it.
+struct Statement {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::size_t next = 0;  ///< where the next line begins
+};
+
+/// A backslash before the line's end joins it with the next.
+bool is_continued(std::string_view text, std::size_t line_end) {
+  std::size_t end = line_end;
+  if (end > 0 && text[end - 1] == '\r') --end;
+  return end > 0 && text[end - 1] == '\\';
+}
+
+Statement statement_at(std::string_view text, std::size_t begin) {
+  std::size_t line_end = text.find('\n', begin);
+  while (line_end != std::string_view::npos && is_continued(text, line_end))
+    line_end = text.find('\n', line_end + 1);
+  if (line_end == std::string_view::npos) line_end = text.size();
+  const std::size_t comment = text.substr(begin, line_end - begin).find('#');
+  std::size_t end = comment == std::string_view::npos ? line_end : begin + comment;
+  while (end > begin && is_space(text[end - 1])) --end;
+  return {begin, end, std::min(line_end + 1, text.size())};
+}
+
+/// The words of a statement; the backslash and the line end of a continuation are spaces.
+class Words {
+ public:
+  explicit Words(std::string_view statement) : rest_(statement) {}
+
+  /// Empty at the end.
+  std::string_view next() {
+    while (!rest_.empty() && is_gap(rest_.front())) rest_.remove_prefix(1);
+    std::size_t size = 0;
+    while (size < rest_.size() && !is_gap(rest_[size])) ++size;
+    const std::string_view word = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return word;
+  }
+
+ private:
+  static bool is_gap(char c) { return is_space(c) || c == '\n' || c == '\\'; }
+  std::string_view rest_;
+};
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view text, const ReadLimits& limits, Surface& surface)
+      : limits_(limits), surface_(surface) {
+    obj_.text = text;
+  }
+
+  Obj read() {
+    for (at_ = {}; at_.next < obj_.text.size();) {
+      at_ = statement_at(obj_.text, at_.next);
+      read_statement(Words(std::string_view(obj_.text).substr(at_.begin, at_.end - at_.begin)));
+    }
+    check_indices();
+    triangulate_faces();
+    return std::move(obj_);
+  }
+
+ private:
+  [[noreturn]] void refuse(ErrorCode code, const std::string& message) const {
+    throw Error(code, message, line_of(obj_.text, at_.begin));
+  }
+
+  [[noreturn]] void refuse(const std::string& message) const {
+    refuse(ErrorCode::malformed_obj, message + "; correct the line or export the mesh again");
+  }
+
+  void read_statement(Words words) {
+    const std::string_view keyword = words.next();
+    if (keyword == "v") {
+      read_vertex(words);
+    } else if (keyword == "f" || keyword == "l") {
+      read_element(keyword.front(), words);
+    } else if (keyword == "vn") {
+      obj_.normals.push_back(read_vec3(words));
+    } else if (keyword == "vt") {
+      ++texcoord_count_;
+      obj_.texcoord_lines.emplace_back(at_.begin, at_.next);
+    } else if (keyword == "usemtl") {
+      part_ = part_of_.try_emplace(std::string(words.next()), Index(part_of_.size())).first->second;
+    }
+  }
+
+  void read_vertex(Words& words) {
+    if (static_cast<std::int64_t>(surface_.mesh.positions.size()) >= limits_.max_vertices)
+      refuse(ErrorCode::too_many_vertices, "the mesh has more than " +
+                                               std::to_string(limits_.max_vertices) +
+                                               " vertices; simplify it or split it");
+    surface_.mesh.positions.push_back(read_vec3(words));
+  }
+
+  Vec3 read_vec3(Words& words) const {
+    const double x = read_number(words.next());
+    const double y = read_number(words.next());
+    return {x, y, read_number(words.next())};
+  }
+
+  [[nodiscard]] double read_number(std::string_view word) const {
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error == std::errc::result_out_of_range)  // too large, or too small to matter
+      value = std::strtod(std::string(word).c_str(), nullptr);
+    else if (error != std::errc() || end != word.data() + word.size())
+      refuse("a number is expected where \"" + std::string(word.substr(0, 40)) + "\" stands");
+    if (!(std::abs(value) <= kLargest))
+      refuse(ErrorCode::non_finite_position,
+             "a coordinate is infinite, undefined or beyond what a float holds; repair the mesh");
+    return value;
+  }
+
+  void read_element(char keyword, Words& words) {
+    ObjElement element{keyword, at_.begin, at_.end, obj_.corners.size(), 0, 0};
+    for (std::string_view word = words.next(); !word.empty(); word = words.next())
+      obj_.corners.push_back(read_corner(word));
+    element.corner_count = obj_.corners.size() - element.first_corner;
+    element.first_face = face_total_;
+    face_total_ += element.face_count();
+    if (face_total_ > static_cast<std::size_t>(limits_.max_faces))
+      refuse(ErrorCode::too_many_faces, "the mesh has more than " +
+                                            std::to_string(limits_.max_faces) +
+                                            " triangles; simplify it or split it");
+    surface_.part.resize(face_total_, part_);
+    obj_.elements.push_back(element);
+  }
+
+  /// v, v/vt, v//vn or v/vt/vn. The vt is read for its syntax only: it will be another one.
+  [[nodiscard]] ObjCorner read_corner(std::string_view word) const {
+    ObjCorner corner;
+    std::string_view rest = word;
+    corner.vertex = read_index(rest, surface_.mesh.positions.size());
+    if (rest.starts_with("//")) {
+      rest.remove_prefix(2);
+      corner.normal = read_index(rest, obj_.normals.size());
+    } else if (rest.starts_with('/')) {
+      rest.remove_prefix(1);
+      if (!rest.empty()) read_index(rest, texcoord_count_);
+      if (rest.size() > 1 && rest.front() == '/') {
+        rest.remove_prefix(1);
+        corner.normal = read_index(rest, obj_.normals.size());
+      }
+    }
+    if (!rest.empty() && rest != "/")
+      refuse("\"" + std::string(word.substr(0, 40)) + "\" is no corner of a face");
+    return corner;
+  }
+
+  /// From 1 upwards, or backwards from the latest with -1.
+  Index read_index(std::string_view& rest, std::size_t count) const {
+    Index number = 0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+    const auto latest = static_cast<std::int64_t>(count);
+    if (error != std::errc() || number == 0 || number + latest < 0)
+      refuse("\"" + std::string(rest.substr(0, 40)) + "\" is no index of a corner");
+    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    return number > 0 ? number - 1 : static_cast<Index>(number + latest);
+  }
+
+  void check_indices() {
+    const auto vertex_count = surface_.mesh.vertex_count();
+    const auto normal_count = static_cast<Index>(obj_.normals.size());
+    for (const ObjElement& element : obj_.elements) {
+      at_.begin = element.begin;
+      for (std::size_t i = 0; i < element.corner_count; ++i) {
+        const ObjCorner& corner = obj_.corners[element.first_corner + i];
+        if (corner.vertex >= vertex_count)
+          refuse("vertex " + std::to_string(corner.vertex + 1) + " does not exist: there are " +
+                 std::to_string(vertex_count));
+        if (corner.normal >= normal_count)
+          refuse("normal " + std::to_string(corner.normal + 1) + " does not exist: there are " +
+                 std::to_string(normal_count));
+      }
+    }
+  }
+
+  void triangulate_faces() {
+    if (face_total_ == 0)
+      throw Error(ErrorCode::no_triangles, "the mesh has no faces; send one with at least one");
+    obj_.face_corners.reserve(face_total_);
+    surface_.mesh.faces.reserve(face_total_);
+    std::vector<Vec3> polygon;
+    for (const ObjElement& element : obj_.elements) {
+      if (element.face_count() == 0) continue;
+      const ObjCorner* corners = &obj_.corners[element.first_corner];
+      polygon.clear();
+      for (std::size_t i = 0; i < element.corner_count; ++i)
+        polygon.push_back(surface_.mesh.positions[static_cast<std::size_t>(corners[i].vertex)]);
+      triangulate(polygon, obj_.face_corners);
+      for (std::size_t t = element.first_face; t < obj_.face_corners.size(); ++t) {
+        const std::array<Index, 3>& face = obj_.face_corners[t];
+        surface_.mesh.faces.push_back(
+            {corners[face[0]].vertex, corners[face[1]].vertex, corners[face[2]].vertex});
+      }
+    }
+  }
+
+  const ReadLimits& limits_;
+  Surface& surface_;
+  Obj obj_;
+  Statement at_;
+  std::size_t texcoord_count_ = 0;
+  std::size_t face_total_ = 0;
+  Index part_ = 0;
+  std::map<std::string, Index> part_of_ = {{"", 0}};
+};
+
+}  // namespace
+
+Obj read_obj(std::string_view text, const ReadLimits& limits, Surface& surface) {
+  surface.name = "obj";
+  return ObjReader(text, limits, surface).read();
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,104 @@
+#include <charconv>
+#include <optional>
+
+#include "core/asset/obj.hpp"
+#include "core/asset/obj_text.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+std::size_t as_size(Index index) { return static_cast<std::size_t>(index); }
+
+class ObjWriter {
+ public:
+  ObjWriter(const Obj& obj, const UnwrappedSurface& unwrapped) : obj_(obj), unwrapped_(unwrapped) {}
+
+  std::string write() {
+    out_.reserve(obj_.text.size() + unwrapped_.uv.size() * 26 + obj_.corners.size() * 8);
+    for (const ObjElement& element : obj_.elements) {
+      keep_until(element.begin);
+      if (element.face_count() > 0 && !has_texcoords_) append_all_texcoords();
+      write_element(element);
+      at_ = element.end;
+    }
+    keep_until(obj_.text.size());
+    return std::move(out_);
+  }
+
+ private:
+  /// Copies the text up to `end`, without its vt statements.
+  void keep_until(std::size_t end) {
+    const std::string_view text = obj_.text;
+    for (; vt_ < obj_.texcoord_lines.size() && obj_.texcoord_lines[vt_].first < end; ++vt_) {
+      out_ += text.substr(at_, obj_.texcoord_lines[vt_].first - at_);
+      at_ = obj_.texcoord_lines[vt_].second;
+    }
+    out_ += text.substr(at_, end - at_);
+    at_ = end;
+  }
+
+  /// Before the first face, so that every reader has seen them by then.
+  void append_all_texcoords() {
+    for (const Vec2& uv : unwrapped_.uv) append_vt(out_, uv);
+    has_texcoords_ = true;
+  }
+
+  void write_element(const ObjElement& element) {
+    if (element.face_count() == 0) return write_without_texcoords(element);
+    texcoords_.assign(element.corner_count, kUnset);
+    if (assign_texcoords(element)) {
+      out_ += 'f';
+      for (std::size_t i = 0; i < element.corner_count; ++i)
+        append_corner(element, i, texcoords_[i]);
+    } else {
+      write_triangles(element);
+    }
+  }
+
+  void write_without_texcoords(const ObjElement& element) {
+    out_ += element.keyword;
+    for (std::size_t i = 0; i < element.corner_count; ++i) append_corner(element, i, kUnset);
+  }
+
+  /// The UV of each corner of a polygon; false when a seam gives a corner two of them.
+  bool assign_texcoords(const ObjElement& element) {
+    for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        Index& slot = texcoords_[as_size(obj_.face_corners[t][k])];
+        const Index texcoord = unwrapped_.faces[t][k];
+        if (slot != kUnset && slot != texcoord) return false;
+        slot = texcoord;
+      }
+    return true;
+  }
+
+  void write_triangles(const ObjElement& element) {
+    for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
+      out_ += t == element.first_face ? "f" : "\nf";
+      for (std::size_t k = 0; k < 3; ++k)
+        append_corner(element, as_size(obj_.face_corners[t][k]), unwrapped_.faces[t][k]);
+    }
+  }
+
+  void append_corner(const ObjElement& element, std::size_t corner, Index texcoord) {
+    const ObjCorner& c = obj_.corners[element.first_corner + corner];
+    append_obj_corner(out_, c.vertex, texcoord, c.normal);
+  }
+
+  static constexpr Index kUnset = -1;
+  const Obj& obj_;
+  const UnwrappedSurface& unwrapped_;
+  std::string out_;
+  std::size_t at_ = 0;
+  std::size_t vt_ = 0;
+  bool has_texcoords_ = false;
+  std::vector<Index> texcoords_;
+};
+
+}  // namespace
+
+std::string write_obj(const Obj& obj, const UnwrappedSurface& unwrapped) {
+  return ObjWriter(obj, unwrapped).write();
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,173 @@
+// The pools of a document, one by one: where the cut asks for it their vertices grow by copies,
+// their faces are indexed anew, and all of them get their texture coordinates. An accessor that
+// nothing else uses is changed in place, so that the numbers in the document stay what they were.
+#include "core/asset/patch.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/asset/grow.hpp"
+#include "core/asset/references.hpp"
+#include "core/asset/split.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+constexpr std::string_view kTexcoord = "TEXCOORD_0";
+
+/// The primitives that share a pool's vertices, and which pieces are theirs, in order of first use.
+struct Pool {
+  std::vector<std::size_t> primitives;
+  std::vector<std::size_t> pieces;
+};
+
+std::vector<Pool> pools_of(const Gltf& gltf) {
+  std::vector<Pool> pools(gltf.pool_count);
+  std::set<std::pair<std::size_t, std::size_t>> seen;
+  for (std::size_t i = 0; i < gltf.primitives.size(); ++i) {
+    const Primitive& primitive = gltf.primitives[i];
+    if (!primitive.has_triangles) continue;
+    Pool& pool = pools[primitive.pool];
+    pool.primitives.push_back(i);
+    if (seen.emplace(primitive.pool, primitive.piece).second)
+      pool.pieces.push_back(primitive.piece);
+  }
+  return pools;
+}
+
+class Patcher {
+ public:
+  explicit Patcher(const Gltf& gltf)
+      : gltf_(gltf),
+        patched_{gltf.json, {}},
+        views_(patched_, gltf.buffers.size()),
+        references_(count_accessor_references(gltf.json, gltf.accessors.size())) {}
+
+  void patch_pool(const Pool& pool, const Split& split) {
+    if (!split.copies.empty()) grow_attributes(pool, split);
+    for (const auto& [piece, users] : users_of(pool, split))
+      set_indices(users, split.corners.at(piece));
+    set_texcoords(pool, split);
+  }
+
+  PatchedDocument finish() { return std::move(patched_); }
+
+ private:
+  using Uses = std::map<std::size_t, std::size_t>;  // accessor, how often
+
+  Json& json_of(std::size_t primitive) {
+    const Primitive& p = gltf_.primitives[primitive];
+    return patched_.json["meshes"][p.mesh]["primitives"][p.number];
+  }
+
+  /// Puts the accessor in the old one's place if `uses` are all that refer to it, else at the end.
+  std::size_t put_accessor(std::size_t old, std::size_t uses, Json accessor) {
+    Json& accessors = patched_.json["accessors"];
+    if (references_[old] == uses && !gltf_.has_foreign_references) {
+      accessors[old] = std::move(accessor);
+      return old;
+    }
+    accessors.push_back(std::move(accessor));
+    return accessors.size() - 1;
+  }
+
+  std::size_t add_accessor(Json accessor) {
+    Json& accessors = patched_.json["accessors"];
+    accessors.push_back(std::move(accessor));
+    return accessors.size() - 1;
+  }
+
+  Uses vertex_uses(const Pool& pool) const {
+    Uses uses;
+    for (const std::size_t i : pool.primitives) {
+      const Primitive& primitive = gltf_.primitives[i];
+      for (const auto& [semantic, accessor] : primitive.attributes)
+        if (semantic != kTexcoord) ++uses[accessor];
+      for (const std::size_t accessor : primitive.targets) ++uses[accessor];
+    }
+    return uses;
+  }
+
+  void grow_attributes(const Pool& pool, const Split& split) {
+    std::map<std::size_t, std::size_t> moved;
+    for (const auto& [accessor, uses] : vertex_uses(pool)) {
+      const std::size_t now =
+          put_accessor(accessor, uses, grown_accessor(gltf_, accessor, split.copies, views_));
+      if (now != accessor) moved[accessor] = now;
+    }
+    if (moved.empty()) return;
+    for (const std::size_t i : pool.primitives) follow(json_of(i), moved);
+  }
+
+  static void follow(Json& primitive, const std::map<std::size_t, std::size_t>& moved) {
+    const auto update = [&](Json& named) {
+      for (auto& [semantic, accessor] : named.items())
+        if (const auto found = moved.find(accessor.get<std::size_t>()); found != moved.end())
+          accessor = found->second;
+    };
+    update(primitive["attributes"]);
+    if (primitive.contains("targets"))
+      std::for_each(primitive["targets"].begin(), primitive["targets"].end(), update);
+  }
+
+  /// The pool's primitives by the piece that they show, as far as its faces have changed.
+  std::map<std::size_t, std::vector<std::size_t>> users_of(const Pool& pool,
+                                                           const Split& split) const {
+    std::map<std::size_t, std::vector<std::size_t>> users;
+    for (const std::size_t i : pool.primitives)
+      if (split.corners.contains(gltf_.primitives[i].piece))
+        users[gltf_.primitives[i].piece].push_back(i);
+    return users;
+  }
+
+  void set_indices(const std::vector<std::size_t>& users, const std::vector<Index>& corners) {
+    const std::optional<std::size_t> old = gltf_.primitives[users.front()].indices;
+    Json accessor = index_accessor(gltf_, old, corners, views_);
+    const std::size_t now = old ? put_accessor(*old, users.size(), std::move(accessor))
+                                : add_accessor(std::move(accessor));
+    for (const std::size_t i : users) {
+      json_of(i)["indices"] = now;
+      if (gltf_.primitives[i].mode != Mode::triangles) json_of(i)["mode"] = Mode::triangles;
+    }
+  }
+
+  /// How often the pool uses each accessor as the texture coordinates that are replaced.
+  Uses texcoord_uses(const Pool& pool) const {
+    Uses uses;
+    for (const std::size_t i : pool.primitives)
+      for (const auto& [semantic, accessor] : gltf_.primitives[i].attributes)
+        if (semantic == kTexcoord) ++uses[accessor];
+    return uses;
+  }
+
+  void set_texcoords(const Pool& pool, const Split& split) {
+    const Uses uses = texcoord_uses(pool);
+    const std::optional<std::size_t> old =
+        uses.empty() ? std::nullopt : std::optional(uses.begin()->first);
+    Json accessor = texcoord_accessor(gltf_, old, split.uv, views_);
+    const std::size_t now = old ? put_accessor(*old, uses.begin()->second, std::move(accessor))
+                                : add_accessor(std::move(accessor));
+    for (const std::size_t i : pool.primitives)
+      json_of(i)["attributes"][std::string(kTexcoord)] = now;
+  }
+
+  const Gltf& gltf_;
+  PatchedDocument patched_;
+  NewViews views_;
+  std::vector<std::size_t> references_;
+};
+
+}  // namespace
+
+PatchedDocument patch(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped) {
+  Patcher patcher(gltf);
+  Splitter splitter(gltf, unwrapped);
+  for (const Pool& pool : pools_of(gltf)) {
+    const Primitive& first = gltf.primitives[pool.primitives.front()];
+    patcher.patch_pool(pool, splitter.split(pool.pieces, gltf.accessors[first.position].count));
+  }
+  return patcher.finish();
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,28 @@
+#include "core/asset/read_gltf.hpp"
+
+#include "core/asset/container.hpp"
+#include "core/asset/gltf_steps.hpp"
+
+namespace unwrapd::asset {
+
+Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
+               std::vector<Surface>& surfaces) {
+  Gltf gltf;
+  const GlbChunks chunks =
+      format == Format::glb ? split_glb(input.document) : GlbChunks{input.document, {}, {}};
+  gltf.json = parse_json(chunks.json);
+  gltf.other_chunks = chunks.others;
+  check_asset_and_extensions(gltf);
+  resolve_buffers(gltf, chunks.bin, input);
+  read_views(gltf);
+  decode_meshopt(gltf);
+  read_accessors(gltf);
+  const std::vector<DracoSource> draco = read_meshes(gltf);
+  check_nodes(gltf);
+  decode_draco(gltf, draco, limits);
+  check_geometry(gltf, limits);
+  surfaces = build_surfaces(gltf, limits);
+  return gltf;
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "core/asset/gltf.hpp"
+
+namespace unwrapd::asset {
+
+/// Reads a GLB or .gltf and its geometry. The document comes out uncompressed.
+Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
+               std::vector<Surface>& surfaces);
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,73 @@
+#include "core/asset/references.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+/// A member of an object; null for what is no object or has no such member.
+template <class Value>
+Value* member(Value& object, std::string_view name) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(name);
+  return found == object.end() ? nullptr : &*found;
+}
+
+template <class Value, class Visit>
+void for_each(Value* list, const Visit& visit) {
+  if (list == nullptr || !list->is_structured()) return;
+  for (auto& value : *list) visit(value);
+}
+
+template <class Value, class Visit>
+void visit_index(Value* index, const Visit& visit) {
+  if (index != nullptr && index->is_number()) visit(*index);
+}
+
+template <class Visit>
+void visit_primitive(const Json& primitive, const Visit& visit) {
+  const auto visit_value = [&](const Json& value) { visit_index(&value, visit); };
+  for_each(member(primitive, "attributes"), visit_value);
+  visit_index(member(primitive, "indices"), visit);
+  for_each(member(primitive, "targets"),
+           [&](const Json& target) { for_each(&target, visit_value); });
+}
+
+template <class Visit>
+void for_each_accessor_reference(const Json& document, const Visit& visit) {
+  for_each(member(document, "meshes"), [&](const Json& mesh) {
+    for_each(member(mesh, "primitives"),
+             [&](const Json& primitive) { visit_primitive(primitive, visit); });
+  });
+  for_each(member(document, "animations"), [&](const Json& animation) {
+    for_each(member(animation, "samplers"), [&](const Json& sampler) {
+      visit_index(member(sampler, "input"), visit);
+      visit_index(member(sampler, "output"), visit);
+    });
+  });
+  for_each(member(document, "skins"),
+           [&](const Json& skin) { visit_index(member(skin, "inverseBindMatrices"), visit); });
+}
+
+}  // namespace
+
+std::vector<std::size_t> count_accessor_references(const Json& document, std::size_t count) {
+  std::vector<std::size_t> references(count);
+  for_each_accessor_reference(document, [&](const Json& index) {
+    const double value = index.get<double>();
+    if (value >= 0 && value < static_cast<double>(count)) ++references[index.get<std::size_t>()];
+  });
+  return references;
+}
+
+void for_each_view_reference(Json& document, const std::function<void(Json&)>& visit) {
+  for_each(member(document, "accessors"), [&](Json& accessor) {
+    visit_index(member(accessor, "bufferView"), visit);
+    Json* sparse = member(accessor, "sparse");
+    if (sparse == nullptr) return;
+    for (const char* part : {"indices", "values"})
+      if (Json* node = member(*sparse, part)) visit_index(member(*node, "bufferView"), visit);
+  });
+  for_each(member(document, "images"),
+           [&](Json& image) { visit_index(member(image, "bufferView"), visit); });
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,19 @@
+#pragma once
+// Where a document refers to accessors and to buffer views, in the core of glTF 2.0. By the time
+// this is used the compressions that hold references of their own have been undone.
+
+#include <functional>
+#include <vector>
+
+#include "core/asset/json.hpp"
+
+namespace unwrapd::asset {
+
+/// How often each of `count` accessors is referred to: attributes, morph targets, indices,
+/// animations, skins. References out of range are passed over.
+std::vector<std::size_t> count_accessor_references(const Json& document, std::size_t count);
+
+/// Calls visit with every number that names a buffer view: of accessors, sparse parts, images.
+void for_each_view_reference(Json& document, const std::function<void(Json&)>& visit);
+
+}  // namespace unwrapd::asset
