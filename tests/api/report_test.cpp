@@ -1,0 +1,145 @@
+#include "api/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "api/result.hpp"
+#include "contract_text.hpp"
+
+namespace unwrapd::api {
+namespace {
+
+using testing::ElementsAreArray;
+
+std::vector<std::string> member_names(const Json& object) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : object.items()) names.push_back(name);
+  return names;
+}
+
+/// One chart and one repair of every kind, so that every member is there.
+Report sample() {
+  Report report;
+  report.charts.resize(1);
+  report.charts[0].energy = {3, 2, 1};
+  report.repairs = {Repair{RepairKind::cut_to_disk, 0, 2}};
+  report.notes = {"core's own"};
+  return report;
+}
+
+void expect_members(const Json& object, const char* schema) {
+  EXPECT_THAT(list({"components", "schemas", schema}, "required"),
+              ElementsAreArray(member_names(object)));
+  EXPECT_THAT(keys({"components", "schemas", schema, "properties"}),
+              ElementsAreArray(member_names(object)));
+}
+
+TEST(Report, HasExactlyTheMembersOfTheContract) {
+  const Json json = to_json(sample(), {});
+  expect_members(json, "Report");
+  expect_members(json.at("input"), "InputReport");
+  expect_members(json.at("repairs").at(0), "Repair");
+  expect_members(json.at("charts").at(0), "ChartReport");
+  expect_members(json.at("distortion"), "Distortion");
+  expect_members(json.at("timings_ms"), "Timings");
+  expect_members(totals_json(sample()), "Totals");
+}
+
+TEST(Report, NamesItsKindsAsTheContractDoes) {
+  std::vector<std::string> kinds;
+  std::vector<std::string> reasons;
+  Report report = sample();
+  for (int i = 0; i < 4; ++i) {
+    report.repairs[0].kind = static_cast<RepairKind>(i);
+    kinds.push_back(to_json(report, {}).at("repairs").at(0).at("kind"));
+  }
+  for (int i = 0; i < 3; ++i) {
+    report.charts[0].stop_reason = static_cast<StopReason>(i);
+    reasons.push_back(to_json(report, {}).at("charts").at(0).at("stop_reason"));
+  }
+  EXPECT_EQ(list({"components", "schemas", "Repair", "properties", "kind"}, "enum"), kinds);
+  EXPECT_EQ(list({"components", "schemas", "ChartReport", "properties", "stop_reason"}, "enum"),
+            reasons);
+}
+
+TEST(Report, JoinsTheNotesOfCoreAndOfTheOptions) {
+  const Json json = to_json(sample(), {.notes = {"the options'"}});
+  EXPECT_EQ(json.at("notes"), (Json::array({"core's own", "the options'"})));
+  EXPECT_TRUE(to_json(Report{}, {}).at("notes").is_array());
+}
+
+TEST(Report, WritesNoFigureThatJsonCannotHold) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  Report report = sample();
+  report.charts[0].energy = {infinity, std::nan(""), -infinity};
+  report.distortion = {infinity, infinity, std::nan(""), 1};
+  report.fill = report.seam_length = report.texel_density = infinity;
+  const Json json = to_json(report, {.timings_ms = {{"solve", infinity}}});
+  const std::string text = json.dump();
+  EXPECT_EQ(text.find("null"), std::string::npos);
+  EXPECT_EQ(Json::parse(text), json);
+}
+
+TEST(Report, FiguresReadBackAsTheSameDoubles) {
+  std::mt19937_64 rng(21);
+  Report report = sample();
+  report.charts[0].energy.clear();
+  while (report.charts[0].energy.size() < 2000) {
+    const double value = std::bit_cast<double>(rng());
+    if (std::isfinite(value)) report.charts[0].energy.push_back(value);
+  }
+  const Json json = Json::parse(to_json(report, {}).dump());
+  const std::vector<double> energy = json.at("charts").at(0).at("energy");
+  EXPECT_EQ(energy, report.charts[0].energy);
+}
+
+TEST(Result, GivesTheMeshesInlineToTheLastBit) {
+  std::mt19937 rng(22);
+  std::normal_distribution<double> any(0, 1e3);
+  std::vector<Surface> surfaces(2);
+  std::vector<UnwrappedSurface> unwrapped(2);
+  surfaces[0].name = "/meshes/0";
+  surfaces[1].name = "quoted \" and \n broken";
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (int k = 0; k < 50; ++k) surfaces[i].mesh.positions.emplace_back(any(rng), any(rng), k);
+    unwrapped[i].source = {3, 1, 2, 3};
+    unwrapped[i].faces = {{0, 1, 2}, {1, 2, 3}};
+    for (int k = 0; k < 4; ++k) unwrapped[i].uv.emplace_back(any(rng), any(rng));
+  }
+  const Json json = Json::parse(result_json({{"fill", 0.5}}, surfaces, unwrapped));
+  EXPECT_EQ(json.at("report"), (Json{{"fill", 0.5}}));
+  ASSERT_EQ(json.at("meshes").size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json& mesh = json.at("meshes").at(i);
+    EXPECT_EQ(mesh.at("name"), surfaces[i].name);
+    EXPECT_EQ(mesh.at("faces"), (Json{0, 1, 2, 1, 2, 3}));
+    EXPECT_EQ(mesh.at("vertex_map"), (Json{3, 1, 2, 3}));
+    for (std::size_t v = 0; v < 4; ++v) {
+      const auto source = static_cast<std::size_t>(unwrapped[i].source[v]);
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        EXPECT_EQ(mesh.at("positions").at(3 * v + static_cast<std::size_t>(c)),
+                  surfaces[i].mesh.positions[source](c));
+      }
+      EXPECT_EQ(mesh.at("uv").at(2 * v), unwrapped[i].uv[v].x());
+      EXPECT_EQ(mesh.at("uv").at(2 * v + 1), unwrapped[i].uv[v].y());
+    }
+  }
+}
+
+TEST(Result, OfNothingIsStillADocument) {
+  const Json json = Json::parse(result_json(Json::object(), {}, {}));
+  EXPECT_EQ(json, (Json{{"report", Json::object()}, {"meshes", Json::array()}}));
+  const std::vector<Surface> surfaces(1);
+  const std::vector<UnwrappedSurface> unwrapped(1);
+  EXPECT_EQ(Json::parse(result_json({}, surfaces, unwrapped)).at("meshes").at(0).at("uv"),
+            Json::array());
+}
+
+}  // namespace
+}  // namespace unwrapd::api
