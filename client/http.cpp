@@ -66,10 +66,10 @@ httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, Se
   httplib::Client client = connection(server);
   Guard guard;
   const std::stop_callback on_stop(stop, [&] { client.stop(); });
-  if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Interrupted.");
+  if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
   httplib::Result result = send(client, guard);
   guard.rethrow();
-  if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Interrupted.");
+  if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
   if (!result)
     throw Failure(ExitCode::unreachable, "The server at " + server.origin + " gave no answer (" +
                                              httplib::to_string(result.error()) +

@@ -151,7 +151,7 @@ void JobClient::pause(milliseconds duration) {
   std::unique_lock lock(mutex);
   std::condition_variable_any never_notified;  // but by the stop token
   never_notified.wait_for(lock, stop_, duration, [] { return false; });
-  if (stop_.stop_requested()) throw Failure(ExitCode::interrupted, "Interrupted.");
+  if (stop_.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
 }
 
 std::string problem_text(const api::Json& problem) {

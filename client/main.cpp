@@ -32,9 +32,8 @@ ExitCode perform(const Arguments& arguments) {
     return ExitCode::ok;
   } catch (const Failure& failure) {
     const bool timed_out = failure.code() == ExitCode::interrupted && interrupt.timed_out();
-    const char* text =
-        timed_out ? "No result within --timeout; the job is cancelled." : failure.what();
-    std::cerr << "unwrap: " << text << std::endl;
+    std::cerr << "unwrap: " << (timed_out ? "No result within --timeout. " : "") << failure.what()
+              << std::endl;
     return timed_out ? ExitCode::unreachable : failure.code();
   }
 }

@@ -92,6 +92,10 @@ std::string progress_line(const ProgressState& state, std::size_t width) {
 ProgressView::ProgressView(std::ostream& out, ProgressStyle style, std::size_t width)
     : out_(out), style_(style), width_(width) {}
 
+ProgressView::~ProgressView() {
+  if (style_ == ProgressStyle::bar && drawn_) out_ << kEraseLine << std::flush;
+}
+
 void ProgressView::show(const ProgressState& state, Clock::time_point now) {
   if (style_ == ProgressStyle::none) return;
   const bool is_bar = style_ == ProgressStyle::bar;
@@ -105,10 +109,6 @@ void ProgressView::show(const ProgressState& state, Clock::time_point now) {
   } else {
     out_ << heading(state) << " " << figures(state) << std::endl;
   }
-}
-
-void ProgressView::finish() {
-  if (style_ == ProgressStyle::bar && drawn_) out_ << kEraseLine << std::flush;
 }
 
 }  // namespace unwrapd::client

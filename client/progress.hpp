@@ -42,10 +42,11 @@ class ProgressView {
 
   ProgressView(std::ostream& out, ProgressStyle style, std::size_t width);
 
-  void show(const ProgressState& state, Clock::time_point now);
+  ProgressView(const ProgressView&) = delete;
+  ProgressView& operator=(const ProgressView&) = delete;
+  ~ProgressView();  ///< takes the bar away; lines stay
 
-  /// Takes the bar away; lines stay.
-  void finish();
+  void show(const ProgressState& state, Clock::time_point now);
 
  private:
   std::ostream& out_;

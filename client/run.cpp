@@ -1,5 +1,6 @@
 #include "client/run.hpp"
 
+#include <array>
 #include <cstdio>
 #include <ostream>
 
@@ -32,12 +33,20 @@ api::Job submit(JobClient& client, const Arguments& arguments) {
 api::Job follow(JobClient& client, const std::string& job_id, const Console& console) {
   ProgressView view(console.err, console.style, console.width);
   ProgressState state;
-  api::Job job = client.follow(job_id, [&](const SseEvent& event) {
+  return client.follow(job_id, [&](const SseEvent& event) {
     state = advance(state, event.name, api::Json::parse(event.data, nullptr, false));
     view.show(state, ProgressView::Clock::now());
   });
-  view.finish();
-  return job;
+}
+
+/// What became of a job whose client is stopped. The stopped client can send nothing any more.
+std::string cancel(const Arguments& arguments, const std::string& job_id) {
+  try {
+    JobClient(arguments.server, {}).cancel(job_id);
+    return "Stopped; the job " + job_id + " is cancelled.";
+  } catch (const Failure& failure) {
+    return "Stopped; the job " + job_id + " could not be cancelled: " + failure.what();
+  }
 }
 
 /// Follows the job to its end. Whatever ends the waiting before, the job is not left behind.
@@ -45,13 +54,13 @@ void finish_job(JobClient& client, const Arguments& arguments, const std::string
                 const Console& console) {
   try {
     const api::Job job = follow(client, job_id, console);
-    if (job.state != api::JobState::succeeded)
-      throw Failure(ExitCode::job_failed, job.problem.is_object()
-                                              ? problem_text(job.problem)
-                                              : "The job was cancelled by someone else.");
+    if (job.state == api::JobState::succeeded) return;
+    throw Failure(ExitCode::job_failed, job.problem.is_object()
+                                            ? problem_text(job.problem)
+                                            : "The job was cancelled by someone else.");
   } catch (const Failure& failure) {
-    if (failure.code() == ExitCode::interrupted) JobClient(arguments.server, {}).cancel(job_id);
-    throw;
+    if (failure.code() != ExitCode::interrupted) throw;
+    throw Failure(ExitCode::interrupted, cancel(arguments, job_id));
   }
 }
 

@@ -80,11 +80,11 @@ TEST(Progress, PassesOverWhatItDoesNotKnow) {
 /// What is drawn when the state changes every millisecond for so long.
 std::string drawn(ProgressStyle style, milliseconds duration) {
   std::ostringstream out;
-  ProgressView view(out, style, 79);
-  ProgressState state = busy();
-  for (milliseconds now{0}; now < duration; ++now)
-    view.show(state, ProgressView::Clock::time_point(now));
-  view.finish();
+  {
+    ProgressView view(out, style, 79);
+    for (milliseconds now{0}; now < duration; ++now)
+      view.show(busy(), ProgressView::Clock::time_point(now));
+  }
   return out.str();
 }
 
