@@ -1,0 +1,181 @@
+// The two programs together, as a user runs them: unwrapd on a free port, unwrap beside it.
+// UNWRAPD_BIN is the folder of both.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { after, before, test } from "node:test";
+
+const bin = process.env.UNWRAPD_BIN;
+const folder = mkdtempSync(join(tmpdir(), "unwrap_e2e_"));
+const at = (name) => join(folder, name);
+let server;
+let address;
+
+before(async () => {
+  const flags = ["--listen", "127.0.0.1:0", "--data", at("data"), "--workers", "1"];
+  server = spawn(join(bin, "unwrapd"), flags, { stdio: ["ignore", "pipe", "ignore"] });
+  const lines = createInterface({ input: server.stdout });
+  const [line] = await new Promise((resolve) => lines.once("line", (text) => resolve([text])));
+  address = line.match(/^unwrapd listening on (http:\/\/127\.0\.0\.1:\d+)$/)[1];
+  assert.equal((await unwrap("--sample", at("shell.glb"))).code, 0);
+});
+
+after(async () => {
+  const gone = new Promise((resolve) => server.once("exit", resolve));
+  server.kill("SIGTERM");
+  await gone;
+  rmSync(folder, { recursive: true });
+});
+
+/** Runs unwrap to its end. watch(child, text) sees what it writes on stderr. */
+function unwrapWith(environment, words, watch = () => {}) {
+  const env = { ...process.env, UNWRAPD_SERVER: address, ...environment };
+  const child = spawn(join(bin, "unwrap"), words, { env, stdio: ["ignore", "pipe", "pipe"] });
+  const result = { out: "", err: "" };
+  child.stdout.on("data", (bytes) => (result.out += bytes));
+  child.stderr.on("data", (bytes) => {
+    result.err += bytes;
+    watch(child, result.err);
+  });
+  return new Promise((resolve) => child.once("close", (code) => resolve({ ...result, code })));
+}
+
+const unwrap = (...words) => unwrapWith({}, words);
+
+function readGlb(path) {
+  const bytes = readFileSync(path);
+  assert.equal(bytes.toString("latin1", 0, 4), "glTF");
+  const length = bytes.readUInt32LE(12);
+  return { json: JSON.parse(bytes.toString("utf8", 20, 20 + length)), bin: bytes.subarray(28 + length) };
+}
+
+/** The texture coordinates of the first primitive, checked to lie in the unit square. */
+function uvsOf(json, bin) {
+  const accessor = json.accessors[json.meshes[0].primitives[0].attributes.TEXCOORD_0];
+  const view = json.bufferViews[accessor.bufferView];
+  const start = (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
+  const stride = view.byteStride ?? 8;
+  const uvs = [];
+  for (let k = 0; k < accessor.count; k += 1)
+    for (const half of [0, 4]) uvs.push(bin.readFloatLE(start + k * stride + half));
+  for (const value of uvs) assert.ok(value >= 0 && value <= 1, `${value} is outside the page`);
+  assert.ok(new Set(uvs).size > 100, "the UVs differ");
+  return uvs;
+}
+
+/** The sample as .gltf with its buffer in a file of its own. */
+function splitSample() {
+  const { json, bin } = readGlb(at("shell.glb"));
+  json.buffers[0].uri = "shell%20data.bin";
+  writeFileSync(at("shell data.bin"), bin.subarray(0, json.buffers[0].byteLength));
+  writeFileSync(at("shell.gltf"), JSON.stringify(json));
+}
+
+test("the sample comes back with UVs, a report and a picture", async () => {
+  const run = await unwrap(at("shell.glb"), "--report", at("report.json"), "--layout", at("layout.svg"));
+  assert.equal(run.code, 0, run.err);
+  const { json, bin } = readGlb(at("shell.uv.glb"));
+  uvsOf(json, bin);
+  assert.equal(json.materials[0].name, "shell");
+  const report = JSON.parse(readFileSync(at("report.json"), "utf8"));
+  assert.equal(report.input.faces, 20164);
+  assert.equal(report.input.boundaries, 2);
+  assert.ok(report.distortion.angle > 2 && report.distortion.angle < 3);
+  assert.match(readFileSync(at("layout.svg"), "utf8"), /<svg[\s\S]*<\/svg>/);
+  assert.match(run.out, /shell\.uv\.glb: 20164 faces, 1 chart, D_angle 2\.\d+/);
+  assert.match(run.err, /solve chart 1\/1 .*iteration \d+ E /);
+  assert.ok(!/[\r\x1b]/.test(run.err), "plain lines where there is no terminal");
+});
+
+test("an OBJ comes back as an OBJ with vt", async () => {
+  const grid = [];
+  for (let y = 0; y < 3; y += 1) for (let x = 0; x < 3; x += 1) grid.push(`v ${x} ${y} ${(x * y) / 4}`);
+  const quads = [1, 2, 4, 5].map((i) => `f ${i} ${i + 1} ${i + 4} ${i + 3}`);
+  writeFileSync(at("grid.obj"), `# kept\n${grid.join("\n")}\n${quads.join("\n")}\n`);
+  const run = await unwrap(at("grid.obj"), "-o", at("grid.uv.obj"), "--method", "asap", "--quiet");
+  assert.equal(run.code, 0, run.err);
+  assert.equal(run.out + run.err, "");
+  const text = readFileSync(at("grid.uv.obj"), "utf8");
+  assert.equal(text.match(/^vt /gm).length, 9);
+  assert.match(text, /^f (\d+)\/\d+ /m);
+  assert.match(text, /# kept/);
+});
+
+test("a .gltf takes its buffers along, and any format goes into any other", async () => {
+  splitSample();
+  const run = await unwrap(at("shell.gltf"), "-o", at("joined.glb"), "--iterations", "3");
+  assert.equal(run.code, 0, run.err);
+  const { json, bin } = readGlb(at("joined.glb"));
+  assert.equal(uvsOf(json, bin).length, 2 * 10224);
+  const again = await unwrap(at("shell.gltf"), "-o", at("shell.uv.obj"), "--lambda-units", "paper");
+  assert.equal(again.code, 0, again.err);
+  assert.match(readFileSync(at("shell.uv.obj"), "utf8"), /^vt /m);
+});
+
+test("--json prints the report and nothing else", async () => {
+  const run = await unwrap(at("shell.glb"), "-o", at("json.glb"), "--json", "--method", "hybrid");
+  assert.equal(run.code, 0, run.err);
+  const report = JSON.parse(run.out);
+  assert.equal(report.charts.length, 1);
+  assert.equal(report.solver.name, "unwrapd");
+});
+
+test("a mistake on the command line is 2 and names the flag", async () => {
+  for (const words of [["--method", "magic"], ["--lambda", "-1"], ["--iterations", "0"], ["--no-such"]]) {
+    const run = await unwrap(at("shell.glb"), ...words);
+    assert.equal(run.code, 2, words.join(" "));
+    assert.match(run.err, new RegExp(words[0].slice(2)));
+  }
+});
+
+test("what the server refuses is 1 and its problem is told", async () => {
+  const limit = await unwrap(at("shell.glb"), "--iterations", "1000000000");
+  assert.equal(limit.code, 1);
+  assert.match(limit.err, /invalid_option.*\/iterations/);
+  writeFileSync(at("no_mesh.glb"), "this is no mesh");
+  const file = await unwrap(at("no_mesh.glb"));
+  assert.equal(file.code, 1);
+  assert.match(file.err, /code [a-z_]+/);
+  assert.ok(!existsSync(at("no_mesh.uv.glb")));
+});
+
+test("no server, or another one, is 3", async () => {
+  const none = await unwrapWith({ UNWRAPD_SERVER: "http://127.0.0.1:1" }, [at("shell.glb")]);
+  assert.equal(none.code, 3);
+  assert.match(none.err, /--server/);
+  const other = createServer((request, response) => response.end("hello")).listen(0, "127.0.0.1");
+  await new Promise((resolve) => other.once("listening", resolve));
+  const run = await unwrap(at("shell.glb"), "--server", `127.0.0.1:${other.address().port}`);
+  other.close();
+  assert.equal(run.code, 3);
+});
+
+test("a file that is not there, or cannot be written, is 4", async () => {
+  assert.equal((await unwrap(at("nothing.glb"))).code, 4);
+  assert.equal((await unwrap(at("shell.glb"), "-o", at("no/such/folder.glb"))).code, 4);
+});
+
+async function cancelled(run, code) {
+  assert.equal(run.code, code, run.err);
+  const id = run.err.match(/the job (\w+) is cancelled/)[1];
+  for (;;) {  // the worker notices within one iteration
+    const job = await (await fetch(`${address}/v1/jobs/${id}`)).json();
+    if (job.state === "running" || job.state === "queued") continue;
+    return assert.equal(job.state, "cancelled");
+  }
+}
+
+test("Ctrl-C cancels the job and is 130", async () => {
+  const long = [at("shell.glb"), "-o", at("long.glb"), "--iterations", "10000"];
+  const stop = (child, text) => /iteration/.test(text) && child.kill("SIGINT");
+  await cancelled(await unwrapWith({}, long, stop), 130);
+  assert.deepEqual(readdirSync(folder).filter((name) => name.startsWith("long")), []);
+});
+
+test("--timeout cancels the job and is 3", async () => {
+  await cancelled(await unwrap(at("shell.glb"), "--iterations", "10000", "--timeout", "0.5"), 3);
+});
