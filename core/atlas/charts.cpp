@@ -65,21 +65,16 @@ bool is_a_few_disks(const Pieces& kept, const Pieces& welded) {
          std::all_of(components.begin(), components.end(), is_disk);
 }
 
-bool is_welded(std::span<const Index> first_at) {
-  for (std::size_t v = 0; v < first_at.size(); ++v)
-    if (first_at[v] != static_cast<Index>(v)) return true;
-  return false;
-}
-
-/// The pieces that the mode asks for, and whether vertices were welded.
+/// The pieces that the mode asks for, and whether vertices were welded for them.
 std::pair<Pieces, bool> choose(const Surface& surface, SeamMode seams,
                                std::span<const Triangle> welded_faces, const FaceStates& states) {
   const auto welded = [&] { return pieces_of(pair_welded(welded_faces, states), states); };
   const auto kept = [&] {
     return pieces_of(pair_keeping_seams(surface, welded_faces, states), states);
   };
+  const bool nothing_to_weld = std::ranges::equal(welded_faces, surface.mesh.faces);
+  if (seams == SeamMode::keep || nothing_to_weld) return {kept(), false};
   if (seams == SeamMode::none) return {welded(), true};
-  if (seams == SeamMode::keep) return {kept(), false};
   Pieces with_cuts = kept();
   Pieces without = welded();
   const bool same = with_cuts.halfedges.twin == without.halfedges.twin;
@@ -204,7 +199,7 @@ Charts make_charts(const Surface& surface, SeamMode seams) {
     charts.set_aside.push_back(static_cast<Index>(t));
     charts.repeats.push_back(states.same_as[t]);
   }
-  charts.input = input_report(surface.mesh, pieces.topology, was_welded && is_welded(first_at));
+  charts.input = input_report(surface.mesh, pieces.topology, was_welded);
   charts.repairs = repairs_of(states, pieces);
   return charts;
 }

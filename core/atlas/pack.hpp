@@ -28,11 +28,16 @@ struct PageOptions {
 };
 
 /// Places the islands (each a UV map at the density it shall keep relative to the others: UV area =
-/// 3D area) on the page. Deterministic; near-linear in the number of islands.
+/// 3D area; at least one point each) on the page, in true smallest rectangles, at least the padding
+/// apart and from the border. Deterministic; near-linear in the number of islands. Where so many
+/// islands come that padding would take more than half of the page's side, it is shrunk to that.
 std::vector<Placement> pack(std::span<const UvMap> islands, const PageOptions& page);
 
-/// Charts' page UVs back onto the surface's vertices: splits those that lie on a seam. Faces that
-/// were set aside get UVs of their vertices where these have some, else (0,0).
+/// Charts' page UVs back onto the surface's vertices: splits those that lie on a seam. A vertex's
+/// first corner keeps its number, copies are appended in the order of faces and corners. Of the
+/// faces that were set aside, a duplicate gets the UVs of the face that it repeats; a degenerate
+/// one those of its vertices (or of others at their positions), of one of them when they lie in
+/// several charts, and (0,0) when there are none.
 UnwrappedSurface assemble(const Surface& surface, const Charts& charts,
                           std::span<const UvMap> chart_uv);
 

@@ -1,0 +1,159 @@
+// Charts' UVs back onto the surface: a vertex is split where the corners that share it ended in
+// different places of the atlas.
+//
+// A corner is a pair (vertex of the surface, vertex of a chart). Equal pairs are found by sorting,
+// so a vertex with a million copies costs no more than a million vertices.
+#include <algorithm>
+#include <cassert>
+
+#include "core/atlas/pack.hpp"
+#include "core/mesh/counting_sort.hpp"
+#include "core/mesh/repair.hpp"
+#include "core/mesh/weld.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr Index kUncharted = -1;
+
+/// The vertices of all charts in one numbering: chart k's begin at first[k].
+struct Numbering {
+  std::vector<Index> first;
+
+  [[nodiscard]] Index total() const { return first.back(); }
+  [[nodiscard]] std::ptrdiff_t chart_of(Index vertex) const {
+    return std::upper_bound(first.begin(), first.end(), vertex) - first.begin();
+  }
+};
+
+Numbering number_vertices(const Charts& charts) {
+  Numbering numbering{{0}};
+  for (const Chart& chart : charts.charts)
+    numbering.first.push_back(numbering.first.back() + chart.mesh.vertex_count());
+  return numbering;
+}
+
+/// at[corner]: the chart vertex that it shows; kUncharted for faces that are set aside.
+std::vector<Triangle> charted_corners(const Surface& surface, const Charts& charts,
+                                      const Numbering& numbering) {
+  std::vector<Triangle> at(surface.mesh.faces.size(), {kUncharted, kUncharted, kUncharted});
+  for (std::size_t k = 0; k < charts.charts.size(); ++k) {
+    const Chart& chart = charts.charts[k];
+    for (std::size_t t = 0; t < chart.face_source.size(); ++t)
+      for (std::size_t i = 0; i < 3; ++i)
+        at[chart.face_source[t]][i] = numbering.first[k] + chart.mesh.faces[t][i];
+  }
+  return at;
+}
+
+/// A duplicate shows what the face that it repeats shows, corner by corner.
+Triangle corners_like(const Surface& surface, Index face, Index original, const Triangle& shown) {
+  const auto position = [&](Index t, int i) -> const Vec3& {
+    return surface.mesh.positions[surface.mesh.faces[t][i]];
+  };
+  int turn = 0;
+  while (turn < 2 && position(original, turn) != position(face, 0)) ++turn;
+  return {shown[turn], shown[(turn + 1) % 3], shown[(turn + 2) % 3]};
+}
+
+/// Where a degenerate face goes: each corner to a place that its vertex, or another at its
+/// position, has already; all to one of them when these lie in different charts.
+Triangle degenerate_corners(const Triangle& known, const Numbering& numbering) {
+  Triangle corners = known;
+  for (Index& corner : corners)
+    if (corner == kUncharted) corner = *std::max_element(known.begin(), known.end());
+  if (corners[0] == kUncharted) return corners;
+  const auto chart = numbering.chart_of(corners[0]);
+  if (numbering.chart_of(corners[1]) != chart || numbering.chart_of(corners[2]) != chart)
+    return {corners[0], corners[0], corners[0]};
+  return corners;
+}
+
+void give_corners_to_set_aside(const Surface& surface, const Charts& charts,
+                               const Numbering& numbering, std::vector<Triangle>& at) {
+  if (charts.set_aside.empty()) return;
+  const std::vector<Triangle>& faces = surface.mesh.faces;
+  const std::vector<Index> first_at = weld(surface.mesh.positions);
+  std::vector<Index> of_vertex(surface.mesh.positions.size(), kUncharted);
+  std::vector<Index> of_position = of_vertex;
+  for (std::size_t t = 0; t < faces.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index v = faces[t][i];
+      if (of_vertex[v] == kUncharted) of_vertex[v] = at[t][i];
+      if (of_position[first_at[v]] == kUncharted) of_position[first_at[v]] = at[t][i];
+    }
+  }
+  const auto known = [&](Index v) {
+    return of_vertex[v] != kUncharted ? of_vertex[v] : of_position[first_at[v]];
+  };
+  for (std::size_t k = 0; k < charts.set_aside.size(); ++k) {
+    const Index t = charts.set_aside[k], original = charts.repeats[k];
+    const auto& [a, b, c] = faces[t];
+    at[t] = original != kNoFace ? corners_like(surface, t, original, at[original])
+                                : degenerate_corners({known(a), known(b), known(c)}, numbering);
+  }
+}
+
+/// For each corner 3t + i, the first corner with the same vertex and the same chart vertex.
+std::vector<Index> first_equal_corners(const std::vector<Triangle>& faces, Index vertex_count,
+                                       const std::vector<Triangle>& at, Index chart_vertex_count) {
+  struct Corner {
+    Index vertex, shown, corner;
+  };
+  std::vector<Corner> corners;
+  corners.reserve(3 * faces.size());
+  for (Index c = 0; c < static_cast<Index>(3 * faces.size()); ++c)
+    corners.push_back({faces[c / 3][c % 3], at[c / 3][c % 3] + 1, c});
+  counting_sort(corners, chart_vertex_count + 1, [](const Corner& c) { return c.shown; });
+  counting_sort(corners, vertex_count, [](const Corner& c) { return c.vertex; });
+  std::vector<Index> first_equal(corners.size());
+  for_each_run(
+      corners,
+      [](const Corner& a, const Corner& b) { return a.vertex == b.vertex && a.shown == b.shown; },
+      [&](const Corner* first, const Corner* last) {
+        for (const Corner* c = first; c < last; ++c) first_equal[c->corner] = first->corner;
+      });
+  return first_equal;
+}
+
+UvMap joined(std::span<const UvMap> chart_uv) {
+  UvMap all;
+  for (const UvMap& uv : chart_uv) all.insert(all.end(), uv.begin(), uv.end());
+  return all;
+}
+
+}  // namespace
+
+UnwrappedSurface assemble(const Surface& surface, const Charts& charts,
+                          std::span<const UvMap> chart_uv) {
+  assert(chart_uv.size() == charts.charts.size());
+  const Numbering numbering = number_vertices(charts);
+  std::vector<Triangle> at = charted_corners(surface, charts, numbering);
+  give_corners_to_set_aside(surface, charts, numbering, at);
+  const std::vector<Triangle>& faces = surface.mesh.faces;
+  const Index vertex_count = surface.mesh.vertex_count();
+  const std::vector<Index> first_equal =
+      first_equal_corners(faces, vertex_count, at, numbering.total());
+  const UvMap uv = joined(chart_uv);
+  UnwrappedSurface out{faces, std::vector<Index>(vertex_count), UvMap(vertex_count, Vec2::Zero())};
+  for (Index v = 0; v < vertex_count; ++v) out.source[v] = v;
+  std::vector<bool> taken(vertex_count, false);
+  for (Index c = 0; c < static_cast<Index>(first_equal.size()); ++c) {
+    const Index first = first_equal[c], v = faces[c / 3][c % 3], shown = at[c / 3][c % 3];
+    Index& number = out.faces[c / 3][c % 3];
+    if (first != c) {
+      number = out.faces[first / 3][first % 3];
+      continue;
+    }
+    if (taken[v]) {
+      number = static_cast<Index>(out.source.size());
+      out.source.push_back(v);
+      out.uv.push_back(Vec2::Zero());
+    }
+    taken[v] = true;
+    if (shown != kUncharted) out.uv[number] = uv[shown];
+  }
+  return out;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,29 @@
+#pragma once
+// The smallest rectangle around an island, at whatever angle.
+
+#include <span>
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// Turned by the angle whose cosine and sine these are, the points fill [low, low + size].
+struct Box {
+  double cosine = 1;
+  double sine = 0;
+  Vec2 low = Vec2::Zero();
+  Vec2 size = Vec2::Zero();
+
+  [[nodiscard]] Box turned_by_quarter() const {
+    return {-sine, cosine, {-low.y() - size.y(), low.x()}, {size.y(), size.x()}};
+  }
+};
+
+/// The corners of the convex hull, counter-clockwise from the leftmost; points on a side are left
+/// out. One or two points when that is all there is.
+UvMap convex_hull(UvMap points);
+
+/// The bounding rectangle of least area; one side of it lies on a side of the hull.
+Box smallest_box(std::span<const Vec2> points);
+
+}  // namespace unwrapd
