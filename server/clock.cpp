@@ -1,0 +1,28 @@
+#include "server/clock.hpp"
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+
+namespace unwrapd::server {
+
+std::int64_t now_ms() {
+  using std::chrono::system_clock;
+  const auto since_epoch = system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(since_epoch).count();
+}
+
+std::string rfc3339(std::int64_t epoch_ms) {
+  const std::time_t seconds = epoch_ms / 1000;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 64> text{};
+  const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
+  const int milliseconds = static_cast<int>(epoch_ms % 1000);
+  const int rest =
+      std::snprintf(text.data() + length, text.size() - length, ".%03dZ", milliseconds);
+  return {text.data(), length + static_cast<std::size_t>(rest)};
+}
+
+}  // namespace unwrapd::server

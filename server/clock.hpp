@@ -1,0 +1,15 @@
+#pragma once
+// The only place that asks for the time of day; everything else is handed milliseconds.
+
+#include <cstdint>
+#include <string>
+
+namespace unwrapd::server {
+
+/// Milliseconds since 1970-01-01 UTC.
+std::int64_t now_ms();
+
+/// RFC 3339 in UTC with milliseconds: "2026-01-31T23:59:58.123Z".
+std::string rfc3339(std::int64_t epoch_ms);
+
+}  // namespace unwrapd::server

@@ -1,0 +1,215 @@
+#include "server/connection.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+
+namespace unwrapd::server {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kReadBytes = 64 * 1024;
+constexpr std::size_t kMaxChunkLine = 256;  // a chunk's size with its extensions
+constexpr int kMaxTrailers = 32;
+constexpr std::chrono::seconds kLingerTime{10};
+constexpr milliseconds kLingerSilence{2'000};
+constexpr std::chrono::seconds kRateGrace{20};
+
+/// The ready events of descriptor, 0 when none came in time or stop (>= 0) became readable.
+short wait_for(int descriptor, short events, int stop, milliseconds patience) {
+  std::array<pollfd, 2> polled = {pollfd{descriptor, events, 0}, pollfd{stop, POLLIN, 0}};
+  const Clock::time_point until = Clock::now() + patience;
+  while (true) {
+    const auto left = std::chrono::ceil<milliseconds>(until - Clock::now()).count();
+    const int timeout = static_cast<int>(std::max<std::int64_t>(left, 0));
+    const int ready = ::poll(polled.data(), stop >= 0 ? 2 : 1, timeout);
+    if (ready < 0 && errno == EINTR) continue;
+    return ready > 0 ? polled[0].revents : short{0};
+  }
+}
+
+}  // namespace
+
+Connection::Connection(int socket, int stop, const ConnectionLimits& limits)
+    : socket_(socket), stop_(stop), limits_(limits) {}
+
+Connection::~Connection() {
+  linger();
+  ::close(socket_);
+}
+
+void Connection::linger() const {
+  ::shutdown(socket_, SHUT_WR);
+  const Clock::time_point until = Clock::now() + kLingerTime;
+  std::array<char, kReadBytes> waste;
+  while (!body_done_ && Clock::now() < until) {
+    if (wait_for(socket_, POLLIN, stop_, kLingerSilence) == 0) return;
+    if (::recv(socket_, waste.data(), waste.size(), 0) <= 0) return;
+  }
+}
+
+/// Appends what the client sends next to buffer_. False when nothing comes.
+bool Connection::fill(milliseconds patience) {
+  if (wait_for(socket_, POLLIN, -1, patience) == 0) return false;
+  const std::size_t size = buffer_.size();
+  buffer_.resize(size + kReadBytes);
+  const ssize_t got = ::recv(socket_, buffer_.data() + size, kReadBytes, 0);
+  buffer_.resize(size + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  return got > 0;
+}
+
+bool Connection::next_request() {
+  buffer_.erase(0, used_);
+  used_ = 0;
+  head_end_ = 0;
+  if (buffer_.empty() && wait_for(socket_, POLLIN, stop_, limits_.idle) == 0) return false;
+  const Clock::time_point until = Clock::now() + limits_.head;
+  std::size_t end = buffer_.find("\r\n\r\n");
+  while (end == std::string::npos) {
+    if (buffer_.size() > kMaxHeadBytes)
+      throw Error(ErrorCode::headers_too_large, "The header is longer than 32 KiB; shorten it.");
+    const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
+    if (left.count() <= 0)
+      throw Error(ErrorCode::request_timeout, "The header did not arrive in time; send it faster.");
+    if (!fill(left)) return false;
+    end = buffer_.find("\r\n\r\n");
+  }
+  head_end_ = end + 4;
+  if (head_end_ > kMaxHeadBytes)
+    throw Error(ErrorCode::headers_too_large, "The header is longer than 32 KiB; shorten it.");
+  framing_ = vet_head(std::string_view(buffer_).substr(0, head_end_));
+  left_ = framing_.content_length;
+  body_done_ = !framing_.has_body();
+  chunk_open_ = false;
+  body_bytes_ = 0;
+  body_began_ = Clock::now();
+  failure_.reset();
+  return true;
+}
+
+std::int64_t Connection::read(char* data, std::size_t size) {
+  return used_ < head_end_ ? read_head(data, size) : read_body(data, size);
+}
+
+std::int64_t Connection::read_head(char* data, std::size_t size) {
+  const std::size_t count = std::min(size, head_end_ - used_);
+  buffer_.copy(data, count, used_);
+  used_ += count;
+  return static_cast<std::int64_t>(count);
+}
+
+std::int64_t Connection::read_body(char* data, std::size_t size) {
+  if (failure_) return -1;
+  if (body_done_) return 0;
+  if (framing_.chunked && left_ == 0 && !begin_chunk()) return failure_ ? -1 : 0;
+  if (left_ > limits_.max_body_bytes - body_bytes_) {
+    return fail(ErrorCode::body_too_large, "The body is larger than the " +
+                                               std::to_string(limits_.max_body_bytes) +
+                                               " bytes that this server takes; send less.");
+  }
+  if (used_ == buffer_.size() && !fill_body()) return -1;
+  const std::size_t here = std::min(size, buffer_.size() - used_);
+  const std::int64_t count = std::min(static_cast<std::int64_t>(here), left_);
+  buffer_.copy(data, static_cast<std::size_t>(count), used_);
+  used_ += static_cast<std::size_t>(count);
+  count_body(count);
+  return count;
+}
+
+void Connection::count_body(std::int64_t bytes) {
+  left_ -= bytes;
+  body_bytes_ += bytes;
+  if (!framing_.chunked && left_ == 0) body_done_ = true;
+}
+
+/// Reads up to the first byte of the next chunk. False at the end of the body, or on failure.
+bool Connection::begin_chunk() {
+  if (chunk_open_ && read_line() != "") {
+    fail(ErrorCode::malformed_request, "A chunk is longer than it says; check the client.");
+    return false;
+  }
+  const std::optional<std::string> line = read_line();
+  if (!line) return false;
+  std::uint32_t size = 0;
+  const auto parsed = std::from_chars(line->data(), line->data() + line->size(), size, 16);
+  const std::string_view rest(parsed.ptr, line->data() + line->size());
+  if (parsed.ec != std::errc() || !(rest.empty() || rest.front() == ';' || rest.front() == ' ')) {
+    fail(ErrorCode::malformed_request,
+         "The size of a chunk is not a hex number; check the client.");
+    return false;
+  }
+  left_ = size;
+  chunk_open_ = true;
+  return size > 0 || end_trailers();
+}
+
+/// Passes over the trailers; always false, for the body ends here.
+bool Connection::end_trailers() {
+  for (int i = 0; i <= kMaxTrailers; ++i) {
+    const std::optional<std::string> line = read_line();
+    if (!line) return false;
+    if (line->empty()) {
+      body_done_ = true;
+      return false;
+    }
+  }
+  fail(ErrorCode::headers_too_large, "The body has too many trailer fields; send none.");
+  return false;
+}
+
+/// A line of the body's framing, without its end.
+std::optional<std::string> Connection::read_line() {
+  std::size_t end = buffer_.find("\r\n", used_);
+  while (end == std::string::npos) {
+    if (buffer_.size() - used_ > kMaxChunkLine) {
+      fail(ErrorCode::malformed_request, "A chunk does not begin with its size; check the client.");
+      return std::nullopt;
+    }
+    if (!fill_body()) return std::nullopt;
+    end = buffer_.find("\r\n", used_);
+  }
+  std::string line = buffer_.substr(used_, end - used_);
+  used_ = end + 2;
+  return line;
+}
+
+/// Receives more of the body.
+bool Connection::fill_body() {
+  buffer_.erase(0, used_);
+  used_ = 0;
+  head_end_ = 0;
+  const std::chrono::duration<double> elapsed = Clock::now() - body_began_;
+  const double expected = elapsed.count() * static_cast<double>(limits_.min_bytes_per_second);
+  const bool slow = elapsed > kRateGrace && static_cast<double>(body_bytes_) < expected;
+  if (!slow && fill(limits_.read)) return true;
+  fail(ErrorCode::request_timeout, "The body did not arrive in time; send it faster.");
+  return false;
+}
+
+std::int64_t Connection::fail(ErrorCode code, const std::string& message) {
+  failure_.emplace(code, message);
+  return -1;
+}
+
+bool Connection::is_writable() const {
+  const short events = wait_for(socket_, POLLOUT | POLLRDHUP, -1, limits_.write);
+  return (events & POLLOUT) != 0 && (events & (POLLERR | POLLHUP | POLLRDHUP)) == 0;
+}
+
+std::int64_t Connection::write(std::string_view bytes) {
+  if ((wait_for(socket_, POLLOUT, -1, limits_.write) & POLLOUT) == 0) return -1;
+  ssize_t sent = 0;
+  do {
+    sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  } while (sent < 0 && errno == EINTR);
+  return sent < 0 && errno == EAGAIN ? 0 : sent;
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,83 @@
+#include "server/database.hpp"
+
+#include <sqlite3.h>
+
+#include "core/error.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr int kBusyTimeoutMs = 10'000;
+
+[[noreturn]] void fail(sqlite3* handle) {
+  const std::string reason = handle != nullptr ? sqlite3_errmsg(handle) : "out of memory";
+  throw Error(ErrorCode::storage_failed,
+              "The server's job store failed (" + reason + "); try again later.");
+}
+
+}  // namespace
+
+void Database::Close::operator()(sqlite3* handle) const { sqlite3_close_v2(handle); }
+
+Database::Database(const std::filesystem::path& path) {
+  sqlite3* handle = nullptr;
+  const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
+  const int result = sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
+  handle_.reset(handle);
+  if (result != SQLITE_OK) fail(handle);
+  sqlite3_busy_timeout(handle, kBusyTimeoutMs);
+  run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
+}
+
+void Database::run(const char* sql) {
+  if (sqlite3_exec(handle(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail(handle());
+}
+
+int Database::changes() const { return sqlite3_changes(handle()); }
+
+void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+
+Statement::Statement(const Database& database, std::string_view sql) {
+  sqlite3_stmt* statement = nullptr;
+  const int size = static_cast<int>(sql.size());
+  if (sqlite3_prepare_v2(database.handle(), sql.data(), size, &statement, nullptr) != SQLITE_OK)
+    fail(database.handle());
+  statement_.reset(statement);
+}
+
+void Statement::bind(int position, std::string_view text) {
+  const auto size = static_cast<sqlite3_uint64>(text.size());
+  const char* bytes = text.empty() ? "" : text.data();
+  if (sqlite3_bind_text64(statement_.get(), position, bytes, size, SQLITE_TRANSIENT, SQLITE_UTF8) !=
+      SQLITE_OK)
+    fail(sqlite3_db_handle(statement_.get()));
+}
+
+void Statement::bind(int position, std::int64_t number) {
+  if (sqlite3_bind_int64(statement_.get(), position, number) != SQLITE_OK)
+    fail(sqlite3_db_handle(statement_.get()));
+}
+
+bool Statement::step() {
+  const int result = sqlite3_step(statement_.get());
+  if (result != SQLITE_ROW && result != SQLITE_DONE) fail(sqlite3_db_handle(statement_.get()));
+  return result == SQLITE_ROW;
+}
+
+void Statement::run() {
+  while (step()) {
+  }
+}
+
+std::int64_t Statement::number(int column) const {
+  return sqlite3_column_int64(statement_.get(), column);
+}
+
+std::string Statement::text(int column) const {
+  const unsigned char* bytes = sqlite3_column_text(statement_.get(), column);
+  const int size = sqlite3_column_bytes(statement_.get(), column);
+  if (bytes == nullptr) return {};
+  return {bytes, bytes + size};
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,76 @@
+#include "server/event_streams.hpp"
+
+#include <charconv>
+#include <chrono>
+
+#include "server/job_queue.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::chrono::seconds kHeartbeat{15};
+constexpr int kRetrySeconds = 5;
+
+std::optional<std::int64_t> parse_event_id(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::int64_t id = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, id);
+  if (parsed.ec != std::errc() || parsed.ptr != end || id < 0) {
+    throw Error(ErrorCode::malformed_request,
+                "Last-Event-ID is not the id of an event; leave it out to read from the first.");
+  }
+  return id;
+}
+
+/// Where a reader is, and its place among the streams.
+struct Reader {
+  std::shared_ptr<const JobFeed> feed;
+  std::int64_t after = 0;
+  std::shared_ptr<void> place;
+};
+
+/// One reading a call. False when the stream is over or the reader has left; the job goes on.
+bool write_next(Reader& reader, const WriteBytes& write) {
+  const Reading reading = reader.feed->read(reader.after, kHeartbeat);
+  reader.after = reading.last_seq;
+  const bool idle = reading.frames.empty() && !reading.end;
+  if (idle) return write(api::kPing);
+  return (reading.frames.empty() || write(reading.frames)) && !reading.end;
+}
+
+std::string last_frame(const JobRecord& job) {
+  return api::sse_frame(api::final_event(job.last_event, to_job(job)));
+}
+
+}  // namespace
+
+std::shared_ptr<void> EventStreams::take_place() {
+  if (open_->fetch_add(1) >= max_streams_) {
+    open_->fetch_sub(1);
+    throw RetryLater(ErrorCode::too_many_streams,
+                     "All " + std::to_string(max_streams_) +
+                         " event streams are taken; come back after Retry-After.",
+                     kRetrySeconds);
+  }
+  return {nullptr, [open = open_](void*) { open->fetch_sub(1); }};
+}
+
+Response EventStreams::open(const JobRecord& job, const std::string& last_event_id) {
+  const std::optional<std::int64_t> seen = parse_event_id(last_event_id);
+  Response response;
+  response.content_type = "text/event-stream";
+  response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
+  const std::shared_ptr<JobFeed> feed = events_.find(job.id);
+  if (!feed) {
+    response.body = last_frame(job);
+    return response;
+  }
+  auto reader = std::make_shared<Reader>(
+      Reader{.feed = feed, .after = feed->resume_after(seen), .place = take_place()});
+  response.body =
+      StreamBody([reader](const WriteBytes& write) { return write_next(*reader, write); });
+  return response;
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,122 @@
+#include "server/files.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "core/error.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr mode_t kFileMode = 0640;
+constexpr std::string_view kPartSuffix = ".part";
+
+/// Throws with the text of errno; the path stays out of it, since users read it.
+[[noreturn]] void fail(std::string_view doing) {
+  const std::string reason = std::generic_category().message(errno);
+  throw Error(ErrorCode::storage_failed,
+              "The server failed to " + std::string(doing) + " (" + reason + "); try again later.");
+}
+
+}  // namespace
+
+File::File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+File::~File() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+File File::create(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode);
+  if (descriptor < 0) fail("create a file");
+  return File(descriptor);
+}
+
+File File::open(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail("open a file");
+  return File(descriptor);
+}
+
+void File::append(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write a file");
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void File::sync() {
+  if (::fsync(descriptor_) != 0) fail("write a file");
+}
+
+std::int64_t File::size() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0) fail("read a file");
+  return status.st_size;
+}
+
+std::string File::read(std::int64_t offset, std::size_t length) const {
+  std::string bytes(length, '\0');
+  std::size_t done = 0;
+  while (done < length) {
+    const off_t at = offset + static_cast<off_t>(done);
+    const ssize_t got = ::pread(descriptor_, bytes.data() + done, length - done, at);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("read a file");
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  bytes.resize(done);
+  return bytes;
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  const File file = File::open(path);
+  return file.read(0, static_cast<std::size_t>(file.size()));
+}
+
+void write_file(const std::filesystem::path& path, std::string_view bytes) {
+  std::filesystem::path part = path;
+  part += kPartSuffix;
+  remove_tree(part);
+  File file = File::create(part);
+  file.append(bytes);
+  file.sync();
+  rename_durably(part, path);
+}
+
+bool is_unfinished(const std::filesystem::path& path) { return path.extension() == kPartSuffix; }
+
+void sync_directory(const std::filesystem::path& directory) {
+  const File handle = File::open(directory);
+  if (::fsync(handle.descriptor()) != 0) fail("write a directory");
+}
+
+void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) fail("name a file");
+  sync_directory(to.parent_path());
+  if (from.parent_path() != to.parent_path()) sync_directory(from.parent_path());
+}
+
+void make_directories(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (!error) return;
+  errno = error.value();
+  fail("create a directory");
+}
+
+void remove_tree(const std::filesystem::path& path) noexcept {
+  std::error_code ignored;
+  std::filesystem::remove_all(path, ignored);
+}
+
+}  // namespace unwrapd::server

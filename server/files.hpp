@@ -1,0 +1,57 @@
+#pragma once
+// Files as the store needs them: whole or absent. What is written here is on the disk (fsync)
+// before it has its name (rename), so that a crash at any point leaves no partial file under it.
+// Every failure is Error{storage_failed}.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace unwrapd::server {
+
+/// An open file descriptor.
+class File {
+ public:
+  explicit File(int descriptor) : descriptor_(descriptor) {}
+  File(File&& other) noexcept;
+  File& operator=(File&&) = delete;
+  ~File();
+
+  /// Creates a file that must not exist yet, for writing.
+  static File create(const std::filesystem::path& path);
+  static File open(const std::filesystem::path& path);
+
+  void append(std::string_view bytes);
+  /// On return the content survives a loss of power.
+  void sync();
+  [[nodiscard]] std::int64_t size() const;
+  /// Reads at most length bytes from offset; fewer only at the end of the file.
+  [[nodiscard]] std::string read(std::int64_t offset, std::size_t length) const;
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+std::string read_file(const std::filesystem::path& path);
+
+/// Replaces path by a file with these bytes; readers see the old one or the new one.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// Whether path is what write_file() leaves behind when the machine stops in the middle of it.
+bool is_unfinished(const std::filesystem::path& path);
+
+/// Makes the names in a directory survive a loss of power.
+void sync_directory(const std::filesystem::path& directory);
+
+/// Renames, and syncs the directories of both names.
+void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
+
+void make_directories(const std::filesystem::path& directory);
+
+/// Removes a file or a whole directory; silent when it is not there.
+void remove_tree(const std::filesystem::path& path) noexcept;
+
+}  // namespace unwrapd::server

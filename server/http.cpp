@@ -1,0 +1,46 @@
+#include "server/http.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "api/error_table.hpp"
+#include "server/job_queue.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+char lower(char letter) {
+  return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+}
+
+}  // namespace
+
+bool IgnoreCase::operator()(std::string_view left, std::string_view right) const {
+  return std::ranges::lexicographical_compare(left, right, {}, lower, lower);
+}
+
+std::string Request::header(std::string_view name) const {
+  const auto found = headers.find(name);
+  return found == headers.end() ? std::string() : found->second;
+}
+
+Response json_response(int status, std::string_view json) {
+  Response response;
+  response.status = status;
+  response.content_type = "application/json";
+  response.body = std::string(json);
+  return response;
+}
+
+Response error_response(const Error& error, std::string_view job) {
+  const api::Json problem = api::problem(error, job);
+  Response response =
+      json_response(api::error_row(error.code()).status,
+                    problem.dump(-1, ' ', false, api::Json::error_handler_t::replace));
+  response.content_type = "application/problem+json";
+  if (const auto* later = dynamic_cast<const RetryLater*>(&error))
+    response.headers.emplace_back("Retry-After", std::to_string(later->seconds()));
+  return response;
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,87 @@
+#pragma once
+// Requests and answers as plain values. Handlers see no socket and no HTTP library, so that they
+// can be read, and tested, without either.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/error.hpp"
+#include "server/files.hpp"
+
+namespace unwrapd::server {
+
+/// A part of a multipart/form-data body.
+struct Part {
+  std::string name;
+  std::string filename;
+};
+
+/// The body of a request, handed over in pieces as it arrives. Read it once, or not at all.
+/// Throws Error: body_too_large, request_timeout, malformed_request.
+class BodyReader {
+ public:
+  using Sink = std::function<void(std::string_view bytes)>;
+  using PartStart = std::function<void(const Part& part)>;
+
+  BodyReader() = default;
+  BodyReader(const BodyReader&) = delete;
+  BodyReader& operator=(const BodyReader&) = delete;
+  virtual ~BodyReader() = default;
+
+  virtual void read(const Sink& sink) = 0;
+  /// Calls start before the bytes of each part.
+  virtual void read_parts(const PartStart& start, const Sink& sink) = 0;
+};
+
+struct IgnoreCase {
+  using is_transparent = void;
+  bool operator()(std::string_view left, std::string_view right) const;
+};
+
+struct Request {
+  std::string method;
+  std::string path;  ///< percent-decoded
+  std::multimap<std::string, std::string> query;
+  std::multimap<std::string, std::string, IgnoreCase> headers;
+  std::string id;              ///< the {id} of the path, once a route has matched
+  BodyReader* body = nullptr;  ///< of POST, PUT and PATCH
+
+  /// The first header of this name, empty when there is none.
+  [[nodiscard]] std::string header(std::string_view name) const;
+};
+
+/// Bytes of a file, sent as they are read.
+struct FileBody {
+  std::shared_ptr<const File> file;
+  std::int64_t offset = 0;
+  std::int64_t length = 0;
+};
+
+/// A body without an end known beforehand: called until it returns false. write returns false when
+/// the reader has left.
+using WriteBytes = std::function<bool(std::string_view bytes)>;
+using StreamBody = std::function<bool(const WriteBytes& write)>;
+
+struct Response {
+  int status = 200;
+  std::string content_type;
+  std::vector<std::pair<std::string, std::string>> headers;
+  std::variant<std::string, FileBody, StreamBody> body;
+};
+
+using Handler = std::function<Response(const Request&)>;
+
+/// An answer with a JSON body.
+Response json_response(int status, std::string_view json);
+
+/// The problem document of an error, with Retry-After where it is one that passes.
+Response error_response(const Error& error, std::string_view job = {});
+
+}  // namespace unwrapd::server

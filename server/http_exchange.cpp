@@ -1,0 +1,199 @@
+#include "server/http_exchange.hpp"
+
+#include <httplib.h>
+
+#include <algorithm>
+#include <exception>
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::int64_t kFilePiece = 256 * 1024;
+constexpr std::size_t kLongestRoute = 256;  // httplib's routing recurses over longer paths
+
+/// A connection as httplib sees it: bytes without chunks.
+class ConnectionStream final : public httplib::Stream {
+ public:
+  explicit ConnectionStream(Connection& connection) : connection_(connection) {}
+
+  using httplib::Stream::write;
+  bool is_readable() const override { return connection_.is_readable(); }
+  bool is_writable() const override { return connection_.is_writable(); }
+  ssize_t read(char* data, size_t size) override {
+    const std::int64_t count = connection_.read(data, size);
+    if (connection_.failure()) throw Error(*connection_.failure());  // caught at the router's door
+    return count;
+  }
+  ssize_t write(const char* data, size_t size) override { return connection_.write({data, size}); }
+  void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
+  void get_local_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
+  socket_t socket() const override { return connection_.socket(); }
+
+ private:
+  Connection& connection_;
+};
+
+class HttplibBody final : public BodyReader {
+ public:
+  explicit HttplibBody(const httplib::ContentReader& reader) : reader_(reader) {}
+
+  void read(const Sink& sink) override {
+    check(reader_([&](const char* data, size_t size) {
+      sink({data, size});
+      return true;
+    }));
+  }
+
+  void read_parts(const PartStart& start, const Sink& sink) override {
+    check(reader_(
+        [&](const httplib::MultipartFormData& part) {
+          start({part.name, part.filename});
+          return true;
+        },
+        [&](const char* data, size_t size) {
+          sink({data, size});
+          return true;
+        }));
+  }
+
+ private:
+  static void check(bool complete) {
+    if (!complete)
+      throw Error(ErrorCode::malformed_request, "The body is not complete; check the client.");
+  }
+
+  const httplib::ContentReader& reader_;
+};
+
+Request to_request(const httplib::Request& from, BodyReader* body) {
+  Request request;
+  request.method = from.method;
+  request.path = from.path;
+  request.query.insert(from.params.begin(), from.params.end());
+  request.headers.insert(from.headers.begin(), from.headers.end());
+  request.body = body;
+  return request;
+}
+
+void set_file(const FileBody& file, const std::string& type, httplib::Response& out) {
+  if (file.length == 0) return out.set_content(std::string(), type);
+  out.set_content_provider(
+      static_cast<size_t>(file.length), type,
+      [file](size_t offset, size_t length, httplib::DataSink& sink) {
+        const auto piece = std::min(static_cast<std::int64_t>(length), kFilePiece);
+        const std::string bytes = file.file->read(file.offset + static_cast<std::int64_t>(offset),
+                                                  static_cast<std::size_t>(piece));
+        return !bytes.empty() && sink.write(bytes.data(), bytes.size());
+      });
+}
+
+void set_stream(const StreamBody& stream, const std::string& type, httplib::Response& out) {
+  out.set_chunked_content_provider(type, [stream](size_t, httplib::DataSink& sink) {
+    bool taken = true;
+    const bool more = stream([&](std::string_view bytes) {
+      taken = sink.write(bytes.data(), bytes.size());
+      return taken;
+    });
+    if (!more) sink.done();
+    return taken;
+  });
+}
+
+void send(const Response& response, httplib::Response& out) {
+  out.status = response.status;
+  for (const auto& [name, value] : response.headers) out.set_header(name.c_str(), value);
+  if (const auto* text = std::get_if<std::string>(&response.body)) {
+    if (!text->empty()) out.set_content(*text, response.content_type);
+  } else if (const auto* file = std::get_if<FileBody>(&response.body)) {
+    set_file(*file, response.content_type, out);
+  } else {
+    set_stream(std::get<StreamBody>(response.body), response.content_type, out);
+  }
+}
+
+bool takes_body(const httplib::Request& request) {
+  const bool method =
+      request.method == "POST" || request.method == "PUT" || request.method == "PATCH";
+  return method && request.path.size() <= kLongestRoute;
+}
+
+}  // namespace
+
+class Exchange::Http final : public httplib::Server {
+ public:
+  Http(Connection& connection, const server::Handler& answer, const Log& log)
+      : connection_(connection), answer_(answer), log_(log) {
+    svr_sock_ = connection.socket();  // httplib writes only while it has one
+    const auto with_body = [this](const httplib::Request& request, httplib::Response& response,
+                                  const httplib::ContentReader& reader) {
+      HttplibBody body(reader);
+      send(answer_(to_request(request, &body)), response);
+    };
+    Post(".*", with_body);
+    Put(".*", with_body);
+    Patch(".*", with_body);
+    set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      if (takes_body(request)) return HandlerResponse::Unhandled;
+      send(answer_(to_request(request, nullptr)), response);
+      return HandlerResponse::Handled;
+    });
+    set_error_handler(HandlerWithResponse(fill_error));
+    set_exception_handler([this](const auto&, httplib::Response& response, const auto&) {
+      log_.error("exception at the HTTP edge");
+      send(error_response(Error(ErrorCode::internal, "The server made a mistake.")), response);
+    });
+    set_post_routing_handler(
+        [this](const auto&, httplib::Response& response) { finish(response); });
+  }
+
+  bool answer_request(bool last) {
+    last_ = last;
+    bool closed = false;
+    ConnectionStream stream(connection_);
+    const bool written = process_request(stream, false, closed, unframe);
+    return written && !closed && !last_;
+  }
+
+ private:
+  /// The stream has no framing any more, and ranges and encodings are not httplib's business.
+  static void unframe(httplib::Request& request) {
+    for (const char* name : {"Content-Length", "Transfer-Encoding", "Accept-Encoding"})
+      request.headers.erase(name);
+    request.ranges.clear();
+  }
+
+  /// Gives a body to the errors that httplib itself answers with.
+  static HandlerResponse fill_error(const httplib::Request& /*request*/,
+                                    httplib::Response& response) {
+    if (!response.body.empty()) return HandlerResponse::Unhandled;
+    send(error_response(Error(ErrorCode::malformed_request,
+                              "The request cannot be read as HTTP; check the client.")),
+         response);
+    return HandlerResponse::Handled;
+  }
+
+  /// Corrects what httplib has added to the header fields.
+  void finish(httplib::Response& response) {
+    if (!connection_.body_done()) last_ = true;
+    if (last_) {
+      response.headers.erase("Keep-Alive");
+      response.headers.erase("Connection");
+      response.set_header("Connection", "close");
+    }
+    if (response.status == 204 || response.status == 304) response.headers.erase("Content-Length");
+  }
+
+  Connection& connection_;
+  const server::Handler& answer_;
+  const Log& log_;
+  bool last_ = false;
+};
+
+Exchange::Exchange(Connection& connection, const Handler& answer, const Log& log)
+    : http_(std::make_unique<Http>(connection, answer, log)) {}
+
+Exchange::~Exchange() = default;
+
+bool Exchange::answer_request(bool last) { return http_->answer_request(last); }
+
+}  // namespace unwrapd::server

@@ -1,0 +1,131 @@
+#include "server/http_head.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string>
+
+#include "core/error.hpp"
+#include "server/http.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::string_view kLineEnd = "\r\n";
+constexpr std::string_view kTokenSymbols = "!#$%&'*+-.^_`|~";
+constexpr std::size_t kMaxLengthDigits = 18;
+
+struct Counts {
+  int fields = 0;
+  int hosts = 0;
+  int lengths = 0;
+  int codings = 0;
+};
+
+[[noreturn]] void malformed(const std::string& what) {
+  throw Error(ErrorCode::malformed_request, what);
+}
+
+bool same(std::string_view left, std::string_view right) {
+  return !IgnoreCase()(left, right) && !IgnoreCase()(right, left);
+}
+
+bool is_token(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    return letter || kTokenSymbols.find(c) != std::string_view::npos;
+  });
+}
+
+bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; }
+
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+std::int64_t length_of(std::string_view digits) {
+  std::int64_t length = 0;
+  const char* end = digits.data() + digits.size();
+  const auto parsed = std::from_chars(digits.data(), end, length);
+  if (digits.empty() || digits.size() > kMaxLengthDigits || digits.front() == '-' ||
+      parsed.ptr != end)
+    malformed("Content-Length is not a number of bytes; send one decimal number.");
+  return length;
+}
+
+bool needs_length(std::string_view method) {
+  constexpr std::array<std::string_view, 3> kWithBody = {"POST", "PUT", "PATCH"};
+  return std::ranges::find(kWithBody, method) != kWithBody.end();
+}
+
+/// Returns the method.
+std::string_view vet_request_line(std::string_view line) {
+  const std::size_t first = line.find(' ');
+  const std::size_t last = line.rfind(' ');
+  if (first == last || !is_token(line.substr(0, first)) || line.at(first + 1) != '/')
+    malformed("The request line is not of the form \"GET /path HTTP/1.1\"; check the client.");
+  const std::string_view target = line.substr(first + 1, last - first - 1);
+  const std::string_view version = line.substr(last + 1);
+  if (target.size() > kMaxTargetBytes)
+    throw Error(ErrorCode::headers_too_large, "The address is longer than 8 KiB; shorten it.");
+  if (target.find(' ') != std::string_view::npos || std::ranges::any_of(target, is_control))
+    malformed("The address contains a space or a control character; percent-encode it.");
+  if (version != "HTTP/1.1" && version != "HTTP/1.0")
+    malformed("The protocol is neither HTTP/1.1 nor HTTP/1.0; use one of them.");
+  return line.substr(0, first);
+}
+
+void vet_field(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
+  if (!is_token(name) || std::ranges::any_of(value, is_control))
+    malformed("A header field is not of the form \"Name: value\"; check the client.");
+  if (same(name, "host")) ++counts.hosts;
+  if (same(name, "content-length")) {
+    ++counts.lengths;
+    framing.content_length = length_of(value);
+  }
+  if (same(name, "transfer-encoding")) {
+    ++counts.codings;
+    framing.chunked = true;
+    if (!same(value, "chunked")) malformed("Transfer-Encoding is not \"chunked\"; use that.");
+  }
+  if (same(name, "content-encoding") && !same(value, "identity")) {
+    throw Error(ErrorCode::unsupported_media_type,
+                "The body has a Content-Encoding; send it uncompressed.");
+  }
+}
+
+void vet_counts(const Counts& counts, std::string_view method) {
+  if (counts.hosts > 1) malformed("There is more than one Host header; send one.");
+  if (counts.lengths + counts.codings > 1)
+    malformed("The length of the body is told more than once; tell it once.");
+  if (needs_length(method) && counts.lengths + counts.codings == 0) {
+    throw Error(ErrorCode::length_required,
+                "The length of the body is not told; send Content-Length, or send it chunked.");
+  }
+}
+
+}  // namespace
+
+Framing vet_head(std::string_view head) {
+  std::size_t end = head.find(kLineEnd);
+  const std::string_view method = vet_request_line(head.substr(0, end));
+  Framing framing;
+  Counts counts;
+  while (true) {
+    head.remove_prefix(end + kLineEnd.size());
+    end = head.find(kLineEnd);
+    const std::string_view line = head.substr(0, end);
+    if (line.empty()) break;
+    if (++counts.fields > kMaxHeaderFields)
+      throw Error(ErrorCode::headers_too_large, "There are over 100 header fields; send fewer.");
+    const std::size_t colon = std::min(line.find(':'), line.size());
+    vet_field(line.substr(0, colon), trim(line.substr(std::min(colon + 1, line.size()))), framing,
+              counts);
+  }
+  vet_counts(counts, method);
+  return framing;
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,35 @@
+#pragma once
+// Names that nobody can guess, and names that content gives itself.
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX
+
+namespace unwrapd::server {
+
+/// A new job id: "j_" and 128 random bits in lowercase hex.
+std::string random_job_id();
+
+/// True for what random_job_id() can return; anything else never reaches the store or a path.
+bool is_job_id(std::string_view text);
+
+/// SHA-256 of bytes that come in pieces.
+class Sha256 {
+ public:
+  Sha256();
+  void add(std::string_view bytes);
+  /// Lowercase hex, 64 characters; call once.
+  std::string finish();
+
+ private:
+  struct Free {
+    void operator()(evp_md_ctx_st* context) const;
+  };
+  std::unique_ptr<evp_md_ctx_st, Free> context_;
+};
+
+std::string sha256(std::string_view bytes);
+
+}  // namespace unwrapd::server

@@ -1,0 +1,47 @@
+#pragma once
+// A job as the store keeps it: one row. The bytes of its mesh and of its answer are files.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "api/job.hpp"
+
+namespace unwrapd::server {
+
+/// A part of an upload: the URI that the document uses for it, and its file in the job's folder.
+struct StoredBuffer {
+  std::string uri;
+  std::string file;
+};
+
+/// What was sent.
+struct JobInput {
+  std::string sha256;                 ///< of the document, lowercase hex
+  std::int64_t bytes = 0;             ///< of the document and its buffers
+  std::vector<StoredBuffer> buffers;  ///< beside the document
+};
+
+struct JobRecord {
+  std::int64_t seq = 0;  ///< the order of arrival
+  std::string id;
+  api::JobState state = api::JobState::queued;
+  std::int64_t created_ms = 0;
+  std::int64_t finished_ms = 0;  ///< 0 while it is not final
+  int attempt = 0;               ///< how often a worker has begun it
+  int crashes = 0;               ///< how often the server died while it ran
+  bool cancel_requested = false;
+  bool synchronous = false;        ///< came by POST /v1/unwrap, with its lower limit of faces
+  bool expired = false;            ///< its files are gone
+  api::Json options;               ///< resolved
+  std::vector<std::string> notes;  ///< of the options, for the report
+  JobInput input;
+  std::string result_format;    ///< glb, gltf or obj, once it has succeeded
+  api::Json problem;            ///< null unless failed or cancelled
+  std::int64_t last_event = 0;  ///< sequence number of the final event
+};
+
+/// The job as its owner sees it, without live progress.
+api::Job to_job(const JobRecord& record);
+
+}  // namespace unwrapd::server

@@ -1,0 +1,111 @@
+#include "server/job_routes.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "server/media_types.hpp"
+#include "server/result_routes.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+JobRecord find_job(JobStore& store, const std::string& id) {
+  std::optional<JobRecord> job = store.find(id);
+  if (!job) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
+  return std::move(*job);
+}
+
+/// The job with its live progress.
+Response job_response(int status, const JobRecord& record, const EventFeed& events) {
+  api::Job job = to_job(record);
+  const std::shared_ptr<JobFeed> feed = events.find(record.id);
+  if (feed && record.attempt > 0) job.progress = feed->progress();
+  Response response = json_response(status, api::to_json(job).dump());
+  response.headers.emplace_back("Cache-Control", "no-store");
+  return response;
+}
+
+/// Waits for the end of a job, at most so long.
+void wait_for(const EventFeed& events, const std::string& id, std::chrono::seconds time) {
+  const std::shared_ptr<JobFeed> feed = events.find(id);
+  if (feed) static_cast<void>(feed->wait_finished(std::chrono::steady_clock::now() + time));
+}
+
+Response post_job(const JobServices& services, const Request& request) {
+  const std::string id = services.submissions.accept(request, false).id;
+  const std::optional<int> wait = preferred_wait(request.header("Prefer"));
+  const int seconds = std::min(wait.value_or(0), services.limits.max_wait_seconds);
+  if (seconds > 0) wait_for(services.events, id, std::chrono::seconds(seconds));
+  const JobRecord job = find_job(services.store, id);
+  const bool finished = wait && api::is_final(job.state);
+  Response response = job_response(finished ? 200 : 202, job, services.events);
+  response.headers.emplace_back("Location", api::job_path(id));
+  if (wait) response.headers.emplace_back("Preference-Applied", "wait=" + std::to_string(seconds));
+  return response;
+}
+
+Response delete_job(const JobServices& services, const Request& request) {
+  const bool was_live = services.queue.cancel_or_remove(request.id);
+  if (was_live) return job_response(202, find_job(services.store, request.id), services.events);
+  Response response;
+  response.status = 204;
+  return response;
+}
+
+/// The answer to a synchronous call, once its job is final.
+Response sync_response(const JobServices& services, const JobRecord& job, const Request& request) {
+  require_result(job);
+  Response response = get_result(services.results, job, request);
+  response.headers.emplace_back("Unwrapd-Report",
+                                read_file(services.blobs.path(job.id, kTotalsFile)));
+  return response;
+}
+
+Response post_unwrap(const JobServices& services, const Request& request) {
+  const std::string id = services.submissions.accept(request, true).id;
+  wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds));
+  JobRecord job = find_job(services.store, id);
+  Response response;
+  try {
+    response = sync_response(services, job, request);
+  } catch (const Error& error) {
+    response = error_response(error, id);
+  }
+  response.headers.emplace_back("Location", api::job_path(id));
+  return response;
+}
+
+}  // namespace
+
+void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
+  const auto find = [services](const Request& request) {
+    return find_job(services.store, request.id);
+  };
+  routes.push_back({"POST", "/v1/jobs",
+                    [services](const Request& request) { return post_job(services, request); }});
+  routes.push_back({"GET", "/v1/jobs/{id}", [services, find](const Request& request) {
+                      return job_response(200, find(request), services.events);
+                    }});
+  routes.push_back({"DELETE", "/v1/jobs/{id}",
+                    [services](const Request& request) { return delete_job(services, request); }});
+  routes.push_back({"GET", "/v1/jobs/{id}/events", [services, find](const Request& request) {
+                      return services.streams.open(find(request), request.header("Last-Event-ID"));
+                    }});
+  routes.push_back({"GET", "/v1/jobs/{id}/result", [services, find](const Request& request) {
+                      return get_result(services.results, find(request), request);
+                    }});
+  routes.push_back({"GET", "/v1/jobs/{id}/report", [services, find](const Request& request) {
+                      return get_file(services.blobs, find(request), kReportFile,
+                                      "application/json");
+                    }});
+  routes.push_back({"GET", "/v1/jobs/{id}/layout.svg", [services, find](const Request& request) {
+                      return get_file(services.blobs, find(request), kLayoutFile, "image/svg+xml");
+                    }});
+}
+
+void add_unwrap_route(std::vector<Route>& routes, const JobServices& services) {
+  routes.push_back({"POST", "/v1/unwrap",
+                    [services](const Request& request) { return post_unwrap(services, request); }});
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,33 @@
+#pragma once
+// The calls on jobs: thin handlers that turn a Request into one call and its value into a Response.
+
+#include <vector>
+
+#include "server/event_streams.hpp"
+#include "server/job_queue.hpp"
+#include "server/job_store.hpp"
+#include "server/result_store.hpp"
+#include "server/router.hpp"
+#include "server/submissions.hpp"
+
+namespace unwrapd::server {
+
+/// What the handlers work on; all of it outlives the routes.
+struct JobServices {
+  JobStore& store;
+  JobQueue& queue;
+  BlobStore& blobs;
+  EventFeed& events;
+  EventStreams& streams;
+  Submissions& submissions;
+  ResultStore& results;
+  const api::Limits& limits;
+};
+
+/// POST /v1/jobs and everything below /v1/jobs/{id}.
+void add_job_routes(std::vector<Route>& routes, const JobServices& services);
+
+/// POST /v1/unwrap.
+void add_unwrap_route(std::vector<Route>& routes, const JobServices& services);
+
+}  // namespace unwrapd::server

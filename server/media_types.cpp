@@ -1,0 +1,156 @@
+#include "server/media_types.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <limits>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+struct Representation {
+  std::string_view format;
+  std::string_view type;
+};
+
+constexpr std::array kRepresentations = {
+    Representation{"glb", "model/gltf-binary"}, Representation{"gltf", "model/gltf+json"},
+    Representation{"obj", "model/obj"}, Representation{"json", "application/json"}};
+
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> items;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(separator), text.size());
+    items.push_back(trim(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return items;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& letter : result)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return result;
+}
+
+template <class Number>
+std::optional<Number> number(std::string_view text) {
+  Number value{};
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (parsed.ec == std::errc::result_out_of_range) return std::numeric_limits<Number>::max();
+  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// An entry of an Accept header.
+struct MediaRange {
+  std::string type;
+  double quality = 1;
+};
+
+MediaRange media_range(std::string_view entry) {
+  const std::vector<std::string_view> parts = split(entry, ';');
+  MediaRange range{.type = parts.empty() ? std::string() : lower(parts.front()), .quality = 1};
+  for (const std::string_view part : parts) {
+    if (part.starts_with("q=")) range.quality = number<double>(part.substr(2)).value_or(0);
+  }
+  return range;
+}
+
+/// How exactly a range names a type: 0 not at all, then */*, model/*, model/obj.
+int closeness(std::string_view range, std::string_view type) {
+  if (range == type) return 3;
+  if (range == "*/*") return 1;
+  const std::string_view group = type.substr(0, type.find('/') + 1);
+  return range.ends_with("/*") && range.substr(0, range.size() - 1) == group ? 2 : 0;
+}
+
+/// The quality that the closest range gives to a type.
+double quality(const std::vector<MediaRange>& ranges, std::string_view type) {
+  int closest = 0;
+  double found = 0;
+  for (const MediaRange& range : ranges) {
+    const int close = closeness(range.type, type);
+    if (close > closest) found = range.quality;
+    closest = std::max(closest, close);
+  }
+  return found;
+}
+
+}  // namespace
+
+BodyKind body_kind(std::string_view content_type) {
+  const std::string type = lower(trim(content_type.substr(0, content_type.find(';'))));
+  if (type == "multipart/form-data") return BodyKind::multipart;
+  const bool is_asset = type.empty() || type == "application/octet-stream" ||
+                        type == media_type("glb") || type == media_type("gltf") ||
+                        type == media_type("obj");
+  if (is_asset) return BodyKind::asset;
+  throw Error(ErrorCode::unsupported_media_type,
+              "The Content-Type is none of model/gltf-binary, model/gltf+json, model/obj, "
+              "application/octet-stream, multipart/form-data; say which of them the body is.");
+}
+
+std::string_view media_type(std::string_view format) {
+  const auto found = std::ranges::find(kRepresentations, format, &Representation::format);
+  return found == kRepresentations.end() ? "application/octet-stream" : found->type;
+}
+
+std::string choose_format(std::string_view accept, std::string_view usual) {
+  std::vector<MediaRange> ranges;
+  for (const std::string_view entry : split(accept, ',')) ranges.push_back(media_range(entry));
+  if (ranges.empty()) return std::string(usual);
+  std::string_view best = usual;
+  double best_quality = quality(ranges, media_type(usual));
+  for (const Representation& candidate : kRepresentations) {
+    const double candidate_quality = quality(ranges, candidate.type);
+    if (candidate_quality > best_quality) best = candidate.format;
+    best_quality = std::max(best_quality, candidate_quality);
+  }
+  if (best_quality > 0) return std::string(best);
+  throw Error(ErrorCode::not_acceptable,
+              "The result can be had as model/gltf-binary, model/gltf+json, model/obj or "
+              "application/json; name one of them in Accept.");
+}
+
+std::optional<int> preferred_wait(std::string_view prefer) {
+  for (const std::string_view preference : split(prefer, ',')) {
+    if (!lower(preference).starts_with("wait=")) continue;
+    const std::optional<int> seconds = number<int>(preference.substr(5));
+    if (seconds && *seconds >= 0) return seconds;
+  }
+  return std::nullopt;
+}
+
+std::optional<ByteRange> single_range(std::string_view range, std::int64_t size) {
+  constexpr std::string_view kUnit = "bytes=";
+  if (!range.starts_with(kUnit)) return std::nullopt;
+  range.remove_prefix(kUnit.size());
+  const std::size_t dash = range.find('-');
+  if (dash == std::string_view::npos) return std::nullopt;
+  const auto first = number<std::int64_t>(range.substr(0, dash));
+  const auto last = number<std::int64_t>(range.substr(dash + 1));
+  if (range.front() == '-') {  // the last bytes of the file
+    if (!last || *last <= 0) return std::nullopt;
+    const std::int64_t length = std::min(*last, size);
+    return ByteRange{size - length, length};
+  }
+  const bool open_end = dash + 1 == range.size();
+  if (!first || (!last && !open_end) || *first >= size) return std::nullopt;
+  const std::int64_t end = open_end ? size - 1 : std::min(*last, size - 1);
+  if (end < *first) return std::nullopt;
+  return ByteRange{*first, end - *first + 1};
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,22 @@
+#pragma once
+// The answers that a finished job has: the asset, the report, the layout.
+
+#include "server/blob_store.hpp"
+#include "server/http.hpp"
+#include "server/job_record.hpp"
+#include "server/result_store.hpp"
+
+namespace unwrapd::server {
+
+/// Throws unless the job has succeeded and its files are still kept: job_unfinished,
+/// result_expired, or the job's own problem.
+void require_result(const JobRecord& job);
+
+/// The asset in the format that Accept chooses, with ETag, If-None-Match and Range.
+Response get_result(ResultStore& results, const JobRecord& job, const Request& request);
+
+/// A file of the job as it is.
+Response get_file(const BlobStore& blobs, const JobRecord& job, std::string_view file,
+                  std::string_view type);
+
+}  // namespace unwrapd::server

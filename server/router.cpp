@@ -1,0 +1,76 @@
+#include "server/router.hpp"
+
+#include <exception>
+#include <optional>
+
+#include "server/identity.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::string_view kIdSegment = "{id}";
+
+/// The first segment of a path, which loses it.
+std::string_view take_segment(std::string_view& path) {
+  const std::size_t end = path.find('/', 1);
+  const std::string_view segment = path.substr(0, end);
+  path.remove_prefix(segment.size());
+  return segment.substr(1);
+}
+
+/// The job id in path, "" for a route without one; empty when the path is not of this route.
+std::optional<std::string> match(std::string_view route, std::string_view path) {
+  std::string id;
+  while (!route.empty() && !path.empty()) {
+    const std::string_view expected = take_segment(route);
+    const std::string_view segment = take_segment(path);
+    const bool same = expected == kIdSegment ? is_job_id(segment) : expected == segment;
+    if (!same) return std::nullopt;
+    if (expected == kIdSegment) id = segment;
+  }
+  if (!route.empty() || !path.empty()) return std::nullopt;
+  return id;
+}
+
+Response not_allowed(const std::string& allowed) {
+  Response response =
+      error_response(Error(ErrorCode::method_not_allowed,
+                           "This method is not allowed here; use one of " + allowed + "."));
+  response.headers.emplace_back("Allow", allowed);
+  return response;
+}
+
+}  // namespace
+
+Response Router::answer(Request request) const noexcept {
+  try {
+    return dispatch(request);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::internal || error.code() == ErrorCode::storage_failed)
+      log_.error("request failed", {{"job", request.id}, {"reason", error.what()}});
+    return error_response(error, request.id);
+  } catch (const std::exception& error) {  // the caller learns nothing of our insides
+    log_.error("unhandled exception", {{"job", request.id}, {"reason", error.what()}});
+    return error_response(Error(ErrorCode::internal, "The server failed to answer; try again."));
+  }
+}
+
+Response Router::dispatch(Request& request) const {
+  const std::string_view method =
+      request.method == "HEAD" ? "GET" : std::string_view(request.method);
+  std::string allowed;
+  for (const Route& route : routes_) {
+    const std::optional<std::string> id = match(route.path, request.path);
+    if (!id) continue;
+    if (route.method == method) {
+      request.id = *id;
+      return route.handler(request);
+    }
+    allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
+    if (route.method == "GET") allowed += ", HEAD";
+  }
+  if (!allowed.empty()) return not_allowed(allowed);
+  throw Error(ErrorCode::not_found, "There is nothing at this address; see /openapi.yaml.");
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,35 @@
+#pragma once
+// From a request to its handler, and from an error to its answer: every handler runs inside
+// answer(), the one door at which what was thrown becomes a problem document.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/http.hpp"
+#include "server/log.hpp"
+
+namespace unwrapd::server {
+
+/// A segment "{id}" of the path matches a job id.
+struct Route {
+  std::string_view method;
+  std::string_view path;
+  Handler handler;
+};
+
+class Router {
+ public:
+  Router(std::vector<Route> routes, const Log& log) : routes_(std::move(routes)), log_(log) {}
+
+  /// Never throws. HEAD is answered as GET is; the caller leaves the body out.
+  [[nodiscard]] Response answer(Request request) const noexcept;
+
+ private:
+  [[nodiscard]] Response dispatch(Request& request) const;
+
+  std::vector<Route> routes_;
+  const Log& log_;
+};
+
+}  // namespace unwrapd::server

@@ -1,0 +1,98 @@
+#include "server/service.hpp"
+
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "server/data_lock.hpp"
+#include "server/http_server.hpp"
+#include "server/info_routes.hpp"
+#include "server/job_routes.hpp"
+#include "server/sweeper.hpp"
+#include "server/worker_pool.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr int kRequestThreads = 64;  // beside those of event streams
+
+HttpConfig http_config(const Config& config) {
+  HttpConfig http;
+  http.host = config.host;
+  http.port = config.port;
+  http.max_connections = config.limits.max_streams + kRequestThreads;
+  http.limits.max_body_bytes = config.limits.max_body_bytes;
+  return http;
+}
+
+}  // namespace
+
+struct Service::Parts {
+  Parts(const Config& given, const Log& log)
+      : config(given),
+        lock(config.data),
+        blobs(config.data),
+        store(config.data / "jobs.sqlite"),
+        queue(store, blobs, events, log,
+              {.max_queue = config.limits.max_queue, .workers = config.workers}),
+        streams(events, config.limits.max_streams),
+        submissions(queue, blobs, config.limits),
+        results(blobs, config.limits),
+        router(routes(), log),
+        http(
+            http_config(config), [this](const Request& request) { return router.answer(request); },
+            log) {
+    queue.recover();
+    blobs.sweep([&](const std::string& job) { return store.find(job).has_value(); });
+    sweeper.emplace(store, blobs, log, std::chrono::seconds(config.keep_seconds));
+    workers.emplace(queue, blobs, config.limits, log,
+                    WorkerConfig{.workers = config.workers, .threads = config.threads});
+    serving = std::jthread([this] { http.serve(); });
+  }
+
+  std::vector<Route> routes() {
+    const JobServices services{store,   queue,       blobs,   events,
+                               streams, submissions, results, config.limits};
+    std::vector<Route> all;
+    add_job_routes(all, services);
+    add_unwrap_route(all, services);
+    add_info_routes(all, queue, config.limits);
+    return all;
+  }
+
+  const Config config;
+  DataLock lock;
+  BlobStore blobs;
+  JobStore store;
+  EventFeed events;
+  JobQueue queue;
+  EventStreams streams;
+  Submissions submissions;
+  ResultStore results;
+  Router router;
+  HttpServer http;
+  std::optional<Sweeper> sweeper;
+  std::optional<WorkerPool> workers;
+  std::jthread serving;
+};
+
+Service::Service(const Config& config, const Log& log)
+    : parts_(std::make_unique<Parts>(config, log)) {}
+
+Service::~Service() {
+  if (!parts_->serving.joinable()) return;
+  parts_->queue.drain(std::chrono::seconds(0));
+  parts_->events.end_all();
+  parts_->http.stop();
+}
+
+int Service::port() const { return parts_->http.port(); }
+
+void Service::drain() {
+  parts_->queue.drain(std::chrono::seconds(parts_->config.drain_seconds));
+  parts_->events.end_all();
+  parts_->http.stop();
+  parts_->serving.join();
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,30 @@
+#pragma once
+// The server as a whole, wired by hand: store, queue, workers and HTTP, in the order in which they
+// need each other. main() adds the command line and the signals.
+
+#include <memory>
+
+#include "server/config.hpp"
+#include "server/log.hpp"
+
+namespace unwrapd::server {
+
+class Service {
+ public:
+  /// Opens the data directory, takes up what the last process left, and serves. Throws Error when
+  /// the directory is in use, the store cannot be read or the address cannot be had.
+  Service(const Config& config, const Log& log);
+  /// Like drain(), without patience.
+  ~Service();
+
+  [[nodiscard]] int port() const;
+  /// New jobs are refused, running ones get drain_seconds, then their place in the queue; event
+  /// streams end; then nothing is served any more. Call once.
+  void drain();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace unwrapd::server

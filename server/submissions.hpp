@@ -1,0 +1,30 @@
+#pragma once
+// From a request with a mesh to a queued job: cheap checks before the body is read, the body
+// straight to disk, and the job in the queue when all of it is there.
+
+#include "api/limits.hpp"
+#include "api/options.hpp"
+#include "server/blob_store.hpp"
+#include "server/http.hpp"
+#include "server/job_queue.hpp"
+
+namespace unwrapd::server {
+
+class Submissions {
+ public:
+  Submissions(JobQueue& queue, BlobStore& blobs, const api::Limits& limits)
+      : queue_(queue), blobs_(blobs), limits_(limits) {}
+
+  /// synchronous: the sender waits, so the mesh must be small. Throws Error: queue_full, draining,
+  /// unsupported_media_type, invalid_option, malformed_request, body_too_large, storage_failed.
+  JobRecord accept(const Request& request, bool synchronous);
+
+ private:
+  JobRecord receive(const Request& request, const std::string& id);
+
+  JobQueue& queue_;
+  BlobStore& blobs_;
+  const api::Limits& limits_;
+};
+
+}  // namespace unwrapd::server

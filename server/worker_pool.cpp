@@ -1,0 +1,96 @@
+#include "server/worker_pool.hpp"
+
+#include <exception>
+#include <memory>
+#include <new>
+
+#include "api/error_table.hpp"
+#include "server/run_job.hpp"
+#include "server/thread_executor.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+using api::JobState;
+
+constexpr std::chrono::seconds kPauseAfterFailure{1};
+
+JobOutcome ended(JobState state, const Error& why, const JobRecord& job) {
+  return {.state = state,
+          .result_format = {},
+          .problem = api::problem(why, job.id),
+          .last_event = 0,
+          .finished_ms = 0};
+}
+
+/// A stop is a failure when time ran out; else the owner, or the server's end, has stopped the job.
+JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds) {
+  if (error.code() != ErrorCode::cancelled) return ended(JobState::failed, error, job.record);
+  if (job.cause != StopCause::time_limit) return ended(JobState::cancelled, error, job.record);
+  const Error late(ErrorCode::time_limit, "The job took longer than the " +
+                                              std::to_string(max_seconds) +
+                                              " s allowed; ask for fewer iterations, or send a "
+                                              "smaller mesh.");
+  return ended(JobState::failed, late, job.record);
+}
+
+}  // namespace
+
+Deadline::Deadline(std::chrono::seconds time, std::function<void()> late)
+    : watch_([this, time, late = std::move(late)](const std::stop_token& stop) {
+        std::unique_lock lock(mutex_);
+        wake_.wait_for(lock, stop, time, [] { return false; });
+        if (!stop.stop_requested()) late();
+      }) {}
+
+WorkerPool::WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
+                       const WorkerConfig& config)
+    : queue_(queue), blobs_(blobs), limits_(limits), log_(log) {
+  for (int worker = 0; worker < config.workers; ++worker)
+    threads_.emplace_back([this, threads = config.threads] { work(threads); });
+}
+
+void WorkerPool::work(int threads) {
+  ThreadExecutor executor(threads);
+  while (true) {
+    try {
+      const std::shared_ptr<RunningJob> job = queue_.take();
+      if (!job) return;
+      work_on(*job, executor);
+    } catch (const std::exception& error) {  // the store: the job is run again at the next start
+      log_.error("a worker failed", {{"reason", error.what()}});
+      std::this_thread::sleep_for(kPauseAfterFailure);
+    }
+  }
+}
+
+void WorkerPool::work_on(RunningJob& job, Executor& executor) {
+  log_.info("job started", {{"job", job.record.id}, {"attempt", job.record.attempt}});
+  JobOutcome outcome;
+  {
+    const Deadline deadline(std::chrono::seconds(limits_.max_job_seconds),
+                            [&] { job.request_stop(StopCause::time_limit); });
+    outcome = attempt(job, executor);
+  }
+  queue_.finish(job, std::move(outcome));
+}
+
+JobOutcome WorkerPool::attempt(const RunningJob& job, Executor& executor) {
+  try {
+    JobOutcome outcome;
+    outcome.result_format = run_job(job, blobs_, limits_, executor);
+    return outcome;
+  } catch (const Error& error) {
+    return outcome_of(error, job, limits_.max_job_seconds);
+  } catch (const std::bad_alloc&) {
+    const Error error(ErrorCode::internal,
+                      "The memory of the server did not suffice; send a smaller mesh.");
+    return ended(JobState::failed, error, job.record);
+  } catch (const std::exception& error) {  // the owner learns nothing of our insides
+    log_.error("unhandled exception", {{"job", job.record.id}, {"reason", error.what()}});
+    return ended(JobState::failed, Error(ErrorCode::internal, "The server made a mistake."),
+                 job.record);
+  }
+}
+
+}  // namespace unwrapd::server
