@@ -8,9 +8,11 @@
 
 namespace unwrapd {
 
-/// An SVG document of the page [0,1]^2, V pointing up. A triangle's colour tells its distortion,
-/// the boundary of every island is drawn, flipped triangles stand out.
-/// unwrapped has one entry for each surface.
+/// An SVG document of the page [0,1]^2 as a square of 4096 units, V pointing up, with a legend
+/// below. A triangle's colour tells its distortion, max(sigma_max, 1 / sigma_min) after one global
+/// scale that makes UV area = 3D area; the boundary of every island is drawn, flipped triangles lie
+/// on top in a colour of their own, faces without area in 3D are left out. unwrapped has one entry
+/// for each surface.
 std::string layout_svg(std::span<const Surface> surfaces,
                        std::span<const UnwrappedSurface> unwrapped);
 

@@ -1,0 +1,116 @@
+#include "core/measure/layout_svg.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+using namespace shapes;
+
+/// The map (x, y) -> (x, y) after `stretch` along x: of a flat mesh its layout.
+UnwrappedSurface flattened(const TriMesh& mesh, double stretch = 1) {
+  UnwrappedSurface out{mesh.faces, {}, {}};
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    out.source.push_back(v);
+    out.uv.emplace_back(stretch * mesh.positions[v].x(), mesh.positions[v].y());
+  }
+  return out;
+}
+
+std::string picture(const TriMesh& mesh, const UnwrappedSurface& out) {
+  const Surface surface = surface_of(mesh);
+  return layout_svg({&surface, 1}, {&out, 1});
+}
+
+/// The data of every path, in order.
+std::vector<std::string> path_data(const std::string& svg) {
+  std::vector<std::string> paths;
+  for (std::size_t at = svg.find("<path"); at != std::string::npos;
+       at = svg.find("<path", at + 1)) {
+    const std::size_t from = svg.find(" d=\"", at) + 4;
+    paths.push_back(svg.substr(from, svg.find('"', from) - from));
+  }
+  return paths;
+}
+
+long count(const std::string& text, char c) { return std::count(text.begin(), text.end(), c); }
+
+/// Twice the signed area of all triangles of a path, in whole units: reads it back as SVG means it.
+long twice_area(const std::string& path) {
+  long sum = 0;
+  const char* p = path.c_str();
+  const auto number = [&p] {
+    char* end = nullptr;
+    const long n = std::strtol(p, &end, 10);
+    p = end;
+    return n;
+  };
+  while (*p == 'M') {
+    ++p, number(), number();
+    ++p;
+    const long ax = number(), ay = number();
+    ++p;
+    const long bx = number(), by = number();
+    ++p;
+    sum += ax * by - ay * bx;
+  }
+  EXPECT_EQ(*p, '\0');
+  return sum;
+}
+
+TEST(LayoutSvg, AnIsometryHasOneColourAndItsBoundary) {
+  const TriMesh mesh = grid(4, 3);
+  const auto paths = path_data(picture(mesh, flattened(mesh)));
+  ASSERT_EQ(paths.size(), 2U);
+  EXPECT_EQ(count(paths[0], 'M'), 24);
+  EXPECT_NEAR(double(twice_area(paths[0])), 2.0 * 40960 * 40960, 1);
+  EXPECT_EQ(count(paths[1], 'M'), 14);
+}
+
+TEST(LayoutSvg, AFlippedTriangleIsInThePathOnTop) {
+  TriMesh mesh = grid(2, 2);
+  UnwrappedSurface out = flattened(mesh);
+  std::swap(out.faces[3][0], out.faces[3][1]);
+  const std::string svg = picture(mesh, out);
+  const auto paths = path_data(svg);
+  const std::string& flipped = paths[paths.size() - 2];
+  EXPECT_EQ(count(flipped, 'M'), 1);
+  EXPECT_LT(twice_area(flipped), 0);
+  EXPECT_NE(svg.find("#ff2a4d"), std::string::npos);
+}
+
+TEST(LayoutSvg, MoreDistortionIsALaterColour) {
+  TriMesh mesh = merged(std::array{grid(1, 1), moved(grid(1, 1), {2, 0, 0})});
+  UnwrappedSurface out = flattened(mesh);
+  for (std::size_t v = 4; v < 8; ++v) out.uv[v] = {0.5 + 0.2 * out.uv[v].x(), 5 * out.uv[v].y()};
+  const auto paths = path_data(picture(mesh, out));
+  ASSERT_EQ(paths.size(), 3U);  // both have the same area: only the second is distorted
+  EXPECT_EQ(twice_area(paths[0]), twice_area(paths[1]));
+  EXPECT_EQ(paths[0].find("M0 0"), 0U);
+}
+
+TEST(LayoutSvg, VerticesSplitWithoutASeamMakeNoBoundary) {
+  const TriMesh mesh = soup(grid(3, 3));
+  const auto paths = path_data(picture(mesh, flattened(mesh)));
+  EXPECT_EQ(count(paths.back(), 'M'), 12);
+}
+
+TEST(LayoutSvg, FacesWithoutAreaAreLeftOut) {
+  TriMesh mesh = grid(1, 1);
+  mesh.faces.push_back({0, 0, 1});
+  EXPECT_EQ(count(path_data(picture(mesh, flattened(mesh)))[0], 'M'), 2);
+}
+
+TEST(LayoutSvg, AnEmptyPageIsStillADocument) {
+  const std::string svg = layout_svg({}, {});
+  EXPECT_EQ(svg.find("<svg "), 0U);
+  EXPECT_NE(svg.find("</svg>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace unwrapd
