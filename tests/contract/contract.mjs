@@ -1,0 +1,54 @@
+// The contract test: the real unwrapd against api/openapi.yaml, both ways. Every status that the
+// document has must be shown by the server, and the server may show none that it does not have.
+//
+//   node contract.mjs [path of unwrapd, else UNWRAPD_BIN]
+import {readFileSync} from 'node:fs';
+import {fileURLToPath} from 'node:url';
+
+import * as cases from './cases.mjs';
+import {fuzz} from './fuzz.mjs';
+import * as limits from './limits.mjs';
+import {Run} from './run.mjs';
+import {startServer} from './server.mjs';
+import {Contract, parseEvents} from './spec.mjs';
+
+function examples(run) {
+  for (const {file, schema} of run.contract.examples()) {
+    const text = readFileSync(file, 'utf8');
+    const problems = file.endsWith('.json')
+      ? run.contract.check(schema, JSON.parse(text))
+      : parseEvents(text).flatMap((event) => run.contract.checkNamed('JobEvent', event));
+    run.expect(`example ${file}`, problems);
+  }
+}
+
+/** Runs one group; an exception is one failure and does not stop the others. */
+async function group(run, name, action) {
+  const before = run.passed;
+  try {
+    await action();
+  } catch (error) {
+    run.expect(`${name} came to its end`, [error.stack]);
+  }
+  console.log(`${name}: ${run.passed - before} passed`);
+}
+
+async function main() {
+  const binary = process.argv[2] ?? process.env.UNWRAPD_BIN;
+  if (!binary) throw new Error('Name the unwrapd to test as the argument or in UNWRAPD_BIN.');
+  const run = new Run(new Contract(fileURLToPath(new URL('../../api/openapi.yaml', import.meta.url))));
+  await group(run, 'examples', () => examples(run));
+  const server = await startServer(binary);
+  for (const [name, action] of Object.entries({...cases, fuzz})) {
+    if (name !== 'failure') await group(run, name, () => action(run, server.base));
+  }
+  run.expectEqual('exit code after SIGTERM', await server.stop(), 0);
+  for (const [name, action] of Object.entries(limits)) {
+    await group(run, name, () => action(run, binary));
+  }
+  run.expect('every documented status was shown', run.contract.unseen());
+  console.log(`${run.passed} passed, ${run.failed} failed`);
+  process.exitCode = run.failed === 0 ? 0 : 1;
+}
+
+await main();

@@ -1,0 +1,158 @@
+// Random requests, from a fixed seed. Whatever is sent, the answer is one that the contract has;
+// and for options the schema is an oracle: what it allows is taken, what it does not is refused.
+import fc from 'fast-check';
+
+import {multipart, request} from './http.mjs';
+import * as meshes from './meshes.mjs';
+
+const kSeed = 20260131;
+const kTiny = meshes.glb(1);
+const kBusy = 429;  // allowed to any submission
+
+async function check(run, name, property, numRuns) {
+  const result = await fc.check(property, {seed: kSeed, numRuns, endOnFailure: false});
+  const report = result.failed
+    ? [`${JSON.stringify(result.counterexample)?.slice(0, 600)}`, String(result.errorInstance)] : [];
+  run.expect(`fuzz: ${name}`, report);
+}
+
+/** Throws what the contract finds wrong with an answer, so that fast-check shrinks the request. */
+function obey(run, id, answer) {
+  const problems = run.contract.judge(id, answer);
+  run.passed += problems.length === 0 ? 1 : 0;
+  if (problems.length > 0) throw new Error(problems.join('; '));
+  return answer;
+}
+
+function validValue(name, schema) {
+  if (schema.enum) return fc.constantFrom(...schema.enum);
+  if (name === 'lambda') return fc.double({min: 0, max: 1e6, noNaN: true});
+  const maximum = {iterations: 30, resolution: 4096}[name] ?? schema.maximum;
+  return fc.integer({min: schema.minimum, max: maximum});
+}
+
+const anyValue = fc.oneof(
+  fc.string(), fc.integer(), fc.double(), fc.constantFrom('', 'auto', 'null', 'NaN', '1e9', '-1'),
+  fc.boolean(), fc.constant(null), fc.array(fc.integer(), {maxLength: 2}));
+
+function someOptions(properties) {
+  const names = Object.keys(properties);
+  const valid = fc.record(
+    Object.fromEntries(names.map((name) => [name, validValue(name, properties[name])])),
+    {requiredKeys: []});
+  const wild = fc.dictionary(fc.oneof(fc.constantFrom(...names), fc.string({minLength: 1})), anyValue,
+                             {maxKeys: 2, noNullPrototype: true});
+  return fc.oneof(valid, fc.tuple(valid, wild).map(([good, bad]) => ({...good, ...bad})));
+}
+
+/** What the schema cannot say: padding is at most a quarter of resolution. */
+function paddingFits({padding = 2, resolution = 1024}) {
+  return 4 * padding <= resolution;
+}
+
+function expectVerdict(answer, allowed) {
+  if (answer.status === kBusy) return;
+  const refused = answer.status === 422;
+  if (refused === allowed) {
+    throw new Error(`${allowed ? 'allowed' : 'forbidden'} by the schema, but ${answer.status}: ` +
+                    answer.body.subarray(0, 200));
+  }
+}
+
+async function jsonOptions(run, base) {
+  const {properties} = run.contract.document.components.schemas.Options;
+  const property = fc.asyncProperty(someOptions(properties), async (options) => {
+    const text = JSON.stringify(options);
+    const sent = JSON.parse(text);  // without what JSON cannot say
+    const {headers, body} = multipart([
+      {name: 'options', type: 'application/json', body: text},
+      {name: 'mesh', type: 'model/gltf-binary', body: kTiny}]);
+    const answer = await request(base, {
+      method: 'POST', path: '/v1/jobs', headers: {...headers, Prefer: 'wait=20'}, body});
+    obey(run, 'createJob', answer);
+    const allowed = run.contract.checkNamed('Options', sent).length === 0 && paddingFits(sent);
+    expectVerdict(answer, allowed);
+  });
+  await check(run, 'options as JSON', property, 250);
+}
+
+/** The value that the text of a query stands for, as the schema sees it. */
+function queryValue(schema, text) {
+  const isNumber = schema.type !== 'string';
+  const pattern = schema.type === 'integer' ? /^-?\d+$/ : /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
+  return isNumber && pattern.test(text) ? Number(text) : text;
+}
+
+async function queryOptions(run, base) {
+  const {Options, Lambda} = run.contract.document.components.schemas;
+  const property = fc.asyncProperty(someOptions(Options.properties), async (options) => {
+    const pairs = Object.entries(options).map(([name, value]) => [name, String(value)]);
+    const meant = Object.fromEntries(pairs.map(([name, text]) => [
+      name, queryValue(name === 'lambda' ? Lambda : Options.properties[name] ?? {}, text)]));
+    const answer = await request(base, {
+      method: 'POST', path: `/v1/jobs?${new URLSearchParams(pairs)}`, body: kTiny,
+      headers: {'Content-Type': 'model/gltf-binary', Prefer: 'wait=20'}});
+    obey(run, 'createJob', answer);
+    const known = run.contract.checkNamed('Options', meant).length === 0;
+    expectVerdict(answer, known && meant.lambda !== null && paddingFits(meant));
+  });
+  await check(run, 'options as a query', property, 250);
+}
+
+/** A good asset with some bytes changed, cut or put in. */
+const brokenAsset = fc.tuple(
+  fc.constantFrom(meshes.glb(2), meshes.obj(2), meshes.gltf().text),
+  fc.array(fc.tuple(fc.nat(), fc.integer({min: 0, max: 255})), {maxLength: 8}),
+  fc.option(fc.nat(), {nil: undefined}))
+  .map(([asset, changes, cut]) => {
+    const bytes = Buffer.from(asset);
+    for (const [at, value] of changes) bytes[at % bytes.length] = value;
+    return cut === undefined ? bytes : bytes.subarray(0, cut % bytes.length);
+  });
+
+const anyBody = fc.oneof(brokenAsset, fc.uint8Array({maxLength: 300}).map((a) => Buffer.from(a)),
+                         fc.string({maxLength: 300}).map((text) => Buffer.from(text)));
+
+const anyType = fc.constantFrom(
+  'model/gltf-binary', 'model/gltf+json', 'model/obj', 'application/octet-stream',
+  'multipart/form-data', 'multipart/form-data; boundary=', 'multipart/form-data; boundary=x',
+  'text/plain', '', 'model/*', 'application/json; charset=utf-8');
+
+const anyAccept = fc.constantFrom(
+  '*/*', 'model/*', 'application/json', 'model/obj;q=0', 'text/html', ',', ';q=x', '*/*;q=0.0');
+
+async function bodies(run, base) {
+  const property = fc.asyncProperty(anyBody, anyType, anyAccept, async (body, type, accept) => {
+    const headers = {'Content-Type': type, Accept: accept};
+    obey(run, 'unwrap', await request(base, {method: 'POST', path: '/v1/unwrap', headers, body}));
+  });
+  await check(run, 'bodies to /v1/unwrap', property, 300);
+  const jobs = fc.asyncProperty(anyBody, anyType, fc.string({maxLength: 12}), async (body, type, wish) => {
+    const Prefer = `wait=${wish.replace(/[^ -~]/g, '')}`;
+    const headers = {'Content-Type': type, Prefer};
+    obey(run, 'createJob', await request(base, {method: 'POST', path: '/v1/jobs', headers, body}));
+  });
+  await check(run, 'bodies to /v1/jobs', jobs, 150);
+}
+
+async function paths(run, base) {
+  const ids = fc.oneof(fc.string({minLength: 1, maxLength: 40}), fc.constantFrom('..', '.', '%00', '%'),
+                       fc.stringMatching(/^j_[0-9a-f]{32}$/));
+  const operations = run.contract.operations().filter(({path}) => path.includes('{id}'));
+  const property = fc.asyncProperty(fc.constantFrom(...operations), ids, async (operation, id) => {
+    const segment = encodeURIComponent(id).replaceAll('.', '%2e');
+    const path = operation.path.replace('{id}', segment);
+    const answer = await request(base, {method: operation.method, path});
+    obey(run, operation.id, answer);
+    if (answer.status !== 404) throw new Error(`status ${answer.status} for a job that is not there`);
+  });
+  await check(run, 'ids', property, 300);
+}
+
+export async function fuzz(run, base) {
+  await jsonOptions(run, base);
+  await queryOptions(run, base);
+  await bodies(run, base);
+  await paths(run, base);
+  await run.call(base, 'getHealth', {status: 200, name: 'alive after the fuzz'});
+}

@@ -1,0 +1,145 @@
+// The statuses that need a server in a special state: tiny limits, a full queue, results that
+// expire, a server that drains. Each state is a server of its own.
+import {failure} from './cases.mjs';
+import {openStream} from './http.mjs';
+import * as meshes from './meshes.mjs';
+import {startServer} from './server.mjs';
+
+const kGlb = {'Content-Type': 'model/gltf-binary'};
+const kSlow = {iterations: 10_000};  // minutes of work, unless it is cancelled
+const kSlowMesh = meshes.glb(150);
+const kPatience = 30_000;            // ms
+
+/** Asks again until done(answer) holds; gives up after kPatience. */
+async function eventually(ask, done) {
+  const end = Date.now() + kPatience;
+  for (;;) {
+    const answer = await ask();
+    if (done(answer) || Date.now() > end) return answer;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+async function withServer(binary, flags, use) {
+  const server = await startServer(binary, flags);
+  try {
+    await use(server);
+  } finally {
+    await server.stop();
+  }
+}
+
+function slowJob(run, base, status) {
+  return run.call(base, 'createJob', {query: kSlow, headers: kGlb, body: kSlowMesh, status});
+}
+
+const idOf = (answer) => JSON.parse(answer.body.toString()).id;
+
+/** Waits until a job runs. */
+async function running(run, base, job) {
+  await eventually(() => run.json(base, 'getJob', {job, status: 200}),
+                   ({state}) => state !== 'queued');
+}
+
+export function tinyLimits(run, binary) {
+  const flags = ['--workers', '1', '--max-body-bytes', '4000', '--max-faces', '20'];
+  return withServer(binary, flags, async ({base}) => {
+    await failure(run, base, {body: meshes.glb(4), code: 'too_many_faces', status: 413});
+    for (const id of ['createJob', 'unwrap']) {
+      const problem = await run.json(base, id, {headers: kGlb, body: meshes.glb(20), status: 413});
+      run.expectEqual(`${id} of a long body`, problem.code, 'body_too_large');
+    }
+  });
+}
+
+export function smallSyncLimit(run, binary) {
+  return withServer(binary, ['--workers', '1', '--max-sync-faces', '20'], async ({base}) => {
+    const problem = await run.json(base, 'unwrap',
+                                   {headers: kGlb, body: meshes.glb(4), status: 413});
+    run.expectEqual('unwrap of a mesh for /v1/jobs', problem.code, 'too_many_faces');
+    const headers = {...kGlb, Prefer: 'wait=30'};
+    const job = await run.json(base, 'createJob', {headers, body: meshes.glb(4), status: 200});
+    run.expectEqual('the same mesh as a job', job.state, 'succeeded');
+  });
+}
+
+export function fullQueue(run, binary) {
+  return withServer(binary, ['--workers', '1', '--max-queue', '1'], async ({base}) => {
+    const first = idOf(await slowJob(run, base, 202));
+    await running(run, base, first);
+    const second = idOf(await slowJob(run, base, 202));
+    await slowJob(run, base, 429);
+    await run.call(base, 'unwrap', {headers: kGlb, body: meshes.glb(), status: 429});
+    await unfinished(run, base, first);
+    await unfinished(run, base, second);
+    await cancelled(run, base, second);
+    await cancelled(run, base, first);
+  });
+}
+
+async function unfinished(run, base, job) {
+  for (const id of ['getResult', 'getReport', 'getLayout']) {
+    const problem = await run.json(base, id, {job, status: 409});
+    run.expectEqual(`${id} of a live job`, problem.code, 'job_unfinished');
+  }
+}
+
+async function cancelled(run, base, job) {
+  await run.call(base, 'deleteJob', {job, status: 202});
+  const last = await eventually(() => run.json(base, 'getJob', {job, status: 200}),
+                                ({state}) => state === 'cancelled');
+  run.expectEqual('a cancelled job', last.state, 'cancelled');
+  const problem = await run.json(base, 'getResult', {job, status: 409});
+  run.expectEqual('the result of a cancelled job', problem.code, 'cancelled');
+  await run.call(base, 'deleteJob', {job, status: 204});
+}
+
+export function tooManyStreams(run, binary) {
+  return withServer(binary, ['--workers', '1', '--max-streams', '1'], async ({base}) => {
+    const job = idOf(await slowJob(run, base, 202));
+    const stream = await openStream(base, `/v1/jobs/${job}/events`);
+    run.expectEqual('the stream that fits', stream.status, 200);
+    const problem = await run.json(base, 'watchJob', {job, status: 503});
+    run.expectEqual('the stream too many', problem.code, 'too_many_streams');
+    stream.close();
+    await run.call(base, 'deleteJob', {job, status: 202});
+  });
+}
+
+export function expiredResults(run, binary) {
+  return withServer(binary, ['--workers', '1', '--keep-seconds', '1'], async ({base}) => {
+    const headers = {...kGlb, Prefer: 'wait=30'};
+    const job = idOf(await run.call(base, 'createJob', {headers, body: meshes.glb(), status: 200}));
+    for (const id of ['getResult', 'getReport', 'getLayout']) {
+      const answer = await eventually(() => run.call(base, id, {job}),
+                                      ({status}) => status === 410);
+      run.expectEqual(`${id} after its time`, answer.status, 410);
+    }
+  });
+}
+
+export function timeLimit(run, binary) {
+  return withServer(binary, ['--workers', '1', '--max-job-seconds', '1', '--drain-seconds', '0'], async ({base}) => {
+    const job = await run.json(base, 'createJob', {
+      query: kSlow, headers: {...kGlb, Prefer: 'wait=30'}, body: kSlowMesh, status: 200,
+    });
+    run.expectEqual('a job that takes too long', job.problem?.code, 'time_limit');
+    for (let i = 0; i < 3; ++i) await slowJob(run, base, 202);
+    await run.call(base, 'unwrap', {headers: kGlb, body: meshes.glb(), status: 409});
+  });
+}
+
+export function draining(run, binary) {
+  return withServer(binary, ['--workers', '1'], async ({base, terminate}) => {
+    const job = idOf(await slowJob(run, base, 202));
+    await running(run, base, job);
+    terminate();
+    const ready = await eventually(() => run.call(base, 'getReadiness'),
+                                   ({status}) => status === 503);
+    run.expectEqual('readiness while draining', ready.status, 503);
+    await slowJob(run, base, 503);
+    await run.call(base, 'unwrap', {headers: kGlb, body: meshes.glb(), status: 503});
+    await run.call(base, 'getHealth', {status: 200});
+    await run.call(base, 'deleteJob', {job, status: 202});
+  });
+}

@@ -1,0 +1,117 @@
+// Small assets, made here: a square grid as GLB, as glTF with its buffer beside it and as OBJ, and
+// the same things broken in one way each.
+
+const kFloat = 5126;
+const kUint32 = 5125;
+
+/** Positions (Float32Array) and indices (Uint32Array) of n by n quads over the unit square. */
+function grid(n) {
+  const positions = new Float32Array(3 * (n + 1) * (n + 1));
+  for (let y = 0; y <= n; ++y) {
+    for (let x = 0; x <= n; ++x) {
+      const height = 0.2 * Math.sin((3 * x) / n) * Math.cos((2 * y) / n);
+      positions.set([x / n, y / n, height], 3 * (y * (n + 1) + x));
+    }
+  }
+  const indices = new Uint32Array(6 * n * n);
+  for (let y = 0; y < n; ++y) {
+    for (let x = 0; x < n; ++x) {
+      const a = y * (n + 1) + x;
+      const b = a + n + 1;
+      indices.set([a, a + 1, b + 1, a, b + 1, b], 6 * (y * n + x));
+    }
+  }
+  return {positions, indices};
+}
+
+function bounds(positions) {
+  const min = [Infinity, Infinity, Infinity];
+  const max = [-Infinity, -Infinity, -Infinity];
+  positions.forEach((value, i) => {
+    min[i % 3] = Math.min(min[i % 3], value);
+    max[i % 3] = Math.max(max[i % 3], value);
+  });
+  return {min, max};
+}
+
+/** The glTF document of a mesh whose only buffer holds indices, then positions. */
+function document({positions, indices}, buffer) {
+  const views = [indices, positions].map((array, i) => ({
+    buffer: 0,
+    byteOffset: i === 0 ? 0 : indices.byteLength,
+    byteLength: array.byteLength,
+  }));
+  return {
+    asset: {version: '2.0'},
+    scene: 0,
+    scenes: [{nodes: [0]}],
+    nodes: [{mesh: 0}],
+    meshes: [{primitives: [{attributes: {POSITION: 1}, indices: 0}]}],
+    accessors: [
+      {bufferView: 0, componentType: kUint32, count: indices.length, type: 'SCALAR'},
+      {bufferView: 1, componentType: kFloat, count: positions.length / 3, type: 'VEC3',
+       ...bounds(positions)},
+    ],
+    bufferViews: views,
+    buffers: [{byteLength: indices.byteLength + positions.byteLength, ...buffer}],
+  };
+}
+
+function binary({positions, indices}) {
+  return Buffer.concat([indices, positions].map((a) => Buffer.from(a.buffer)));
+}
+
+function chunk(type, bytes, filler) {
+  const padding = Buffer.alloc((4 - (bytes.length % 4)) % 4, filler);
+  const head = Buffer.alloc(8);
+  head.writeUInt32LE(bytes.length + padding.length, 0);
+  head.write(type, 4, 'latin1');
+  return Buffer.concat([head, bytes, padding]);
+}
+
+function container(json, bin) {
+  const chunks = [chunk('JSON', Buffer.from(JSON.stringify(json)), ' ')];
+  if (bin) chunks.push(chunk('BIN\0', bin, 0));
+  const body = Buffer.concat(chunks);
+  const head = Buffer.alloc(12);
+  head.write('glTF', 0, 'latin1');
+  head.writeUInt32LE(2, 4);
+  head.writeUInt32LE(12 + body.length, 8);
+  return Buffer.concat([head, body]);
+}
+
+export function glb(n = 4) {
+  const mesh = grid(n);
+  return container(document(mesh, {}), binary(mesh));
+}
+
+/** A .gltf and the buffer that it names uri. */
+export function gltf(uri = 'grid.bin', n = 4) {
+  const mesh = grid(n);
+  return {text: Buffer.from(JSON.stringify(document(mesh, {uri}))), buffer: binary(mesh)};
+}
+
+export function obj(n = 2) {
+  const {positions, indices} = grid(n);
+  const lines = [];
+  for (let i = 0; i < positions.length; i += 3) {
+    lines.push(`v ${positions[i]} ${positions[i + 1]} ${positions[i + 2]}`);
+  }
+  for (let i = 0; i < indices.length; i += 3) {
+    lines.push(`f ${indices[i] + 1} ${indices[i + 1] + 1} ${indices[i + 2] + 1}`);
+  }
+  return Buffer.from(lines.join('\n') + '\n');
+}
+
+/** A GLB whose chunk ends too early: malformed_glb. */
+export function truncatedGlb() {
+  return glb().subarray(0, 100);
+}
+
+/** A glTF without any triangle: no_triangles. */
+export function pointsGlb() {
+  const mesh = grid(2);
+  const json = document(mesh, {});
+  json.meshes[0].primitives[0].mode = 0;
+  return container(json, binary(mesh));
+}

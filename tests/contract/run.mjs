@@ -1,0 +1,54 @@
+// A run of the contract test: it calls operations, lets the contract judge every answer, and counts.
+import {request} from './http.mjs';
+
+const kShown = 40;  // failures that are printed in full
+
+export class Run {
+  constructor(contract) {
+    this.contract = contract;
+    this.passed = 0;
+    this.failed = 0;
+  }
+
+  /** One check: no problem is a pass. */
+  expect(name, problems) {
+    if (problems.length === 0) {
+      this.passed += 1;
+      return;
+    }
+    this.failed += 1;
+    if (this.failed <= kShown) console.log(`FAILED ${name}\n  ${problems.slice(0, 5).join('\n  ')}`);
+  }
+
+  expectEqual(name, actual, expected) {
+    this.expect(name, actual === expected ? [] : [`is ${actual}, expected ${expected}`]);
+  }
+
+  /** Judges an answer that was fetched in some other way. */
+  judge(name, id, answer, status) {
+    const problems = this.contract.judge(id, answer);
+    if (status !== undefined && answer.status !== status) {
+      problems.push(`status ${answer.status}, expected ${status}: ${answer.body?.subarray(0, 300)}`);
+    }
+    this.expect(`${name} (${id})`, problems);
+    return answer;
+  }
+
+  /**
+   * Calls an operation and judges the answer. job fills the path's {id}; query is an object or an
+   * array of pairs; status is the one expected.
+   */
+  async call(base, id, {job, query = {}, headers, body, status, name = ''} = {}) {
+    const {method, path} = this.contract.operation(id);
+    const search = new URLSearchParams(query).toString();
+    const answer = await request(base, {
+      method, headers, body, path: path.replace('{id}', job) + (search ? `?${search}` : ''),
+    });
+    return this.judge(name || `${id} → ${status ?? 'any'}`, id, answer, status);
+  }
+
+  /** The same, and the JSON of its body. */
+  async json(base, id, options) {
+    return JSON.parse((await this.call(base, id, options)).body.toString());
+  }
+}
