@@ -180,6 +180,7 @@ void spend(std::size_t& budget, const Gltf& gltf, std::size_t accessor) {
 void read_views(Gltf& gltf) {
   const auto list = Node(gltf.json).find("bufferViews");
   const std::size_t count = list ? list->array_size() : 0;
+  gltf.views.clear();
   gltf.views.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     gltf.views.push_back(read_view(gltf, list->at(i)));
@@ -191,6 +192,7 @@ void read_accessors(Gltf& gltf) {
   const auto list = Node(gltf.json).find("accessors");
   const std::size_t count = list ? list->array_size() : 0;
   std::size_t budget = sparse_budget(gltf);
+  gltf.accessors.clear();
   gltf.accessors.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     gltf.accessors.push_back(read_accessor(gltf, list->at(i)));

@@ -36,10 +36,11 @@ std::vector<char> used_views(Json& document, std::size_t count) {
 }
 
 /// Takes out the views that only what was replaced had used, and renumbers the others.
-void drop_dead_views(const Json& original, Json& document) {
+void drop_dead_views(const Gltf& gltf, Json& document) {
   const std::size_t count = view_count(document);
-  Json before = original;
-  const std::vector<char> used_before = used_views(before, count);
+  Json before = gltf.json;
+  std::vector<char> used_before = used_views(before, count);
+  for (const std::size_t view : gltf.spent_views) used_before[view] = 1;
   const std::vector<char> used_now = used_views(document, count);
   std::vector<std::size_t> renumbered(count);
   Json kept = Json::array();
@@ -156,10 +157,10 @@ std::string assemble(const Gltf& gltf, PatchedDocument patched, Format format) {
     return finish(document, buffers, gltf.other_chunks, format);
   }
   const std::size_t views_before = view_count(document);
-  if (!gltf.has_foreign_references) drop_dead_views(gltf.json, document);
-  const bool dropped = view_count(document) < views_before;
+  if (!gltf.has_foreign_references) drop_dead_views(gltf, document);
+  const bool has_dead_bytes = gltf.has_dead_bytes || view_count(document) < views_before;
   buffers.push_back(patched.added);
-  std::vector<Run> runs = dropped ? used_runs(document) : whole_buffers(buffers);
+  std::vector<Run> runs = has_dead_bytes ? used_runs(document) : whole_buffers(buffers);
   const std::string bytes = joined(buffers, runs);
   move_views(document, runs);
   Json& list = document["buffers"];

@@ -1,6 +1,7 @@
 // A document's buffers. Nothing is ever opened or fetched: bytes come from the GLB's chunk, from
 // data URIs and from the parts of the request, and every other URI is refused.
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <optional>
 
@@ -79,12 +80,17 @@ std::string external_bytes(const Node& uri, const Input& input) {
   return std::string(part->second);
 }
 
-bool is_meshopt_fallback(const Node& buffer) {
-  const auto extensions = buffer.find("extensions");
-  if (!extensions) return false;
-  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
-    if (const auto meshopt = extensions->find(name)) return meshopt->flag("fallback");
-  return false;
+constexpr std::array<std::string_view, 2> kMeshopt = {"EXT_meshopt_compression",
+                                                      "KHR_meshopt_compression"};
+
+/// A buffer that only stands for what meshopt's views decode to: marked so, or without any source
+/// in a document that uses meshopt. Its bytes are never needed.
+bool is_meshopt_fallback(const Node& buffer, bool has_source, bool uses_meshopt) {
+  if (const auto extensions = buffer.find("extensions"))
+    for (const std::string_view name : kMeshopt)
+      if (const auto meshopt = extensions->find(name); meshopt && meshopt->flag("fallback"))
+        return true;
+  return !has_source && uses_meshopt;
 }
 
 void cut_to_length(std::string& bytes, const Node& buffer) {
@@ -117,13 +123,16 @@ std::string buffer_bytes(const Node& buffer, std::string_view bin, const Input& 
 void resolve_buffers(Gltf& gltf, std::string_view bin, const Input& input) {
   const auto list = Node(gltf.json).find("buffers");
   const std::size_t count = list ? list->array_size() : 0;
+  const bool uses_meshopt = std::any_of(kMeshopt.begin(), kMeshopt.end(),
+                                        [&](auto name) { return uses_extension(gltf.json, name); });
   for (std::size_t i = 0; i < count; ++i) {
     const Node buffer = list->at(i);
     buffer.expect_object();
-    // A fallback's bytes are never used: what would be in it is decoded from its compressed form.
-    const bool fallback = is_meshopt_fallback(buffer);
-    gltf.buffers.push_back(
-        fallback ? std::string() : buffer_bytes(buffer, i == 0 ? bin : std::string_view(), input));
+    const std::string_view own_bin = i == 0 ? bin : std::string_view();
+    const bool has_source = buffer.find("uri") || own_bin.data() != nullptr;
+    gltf.buffers.push_back(is_meshopt_fallback(buffer, has_source, uses_meshopt)
+                               ? std::string()
+                               : buffer_bytes(buffer, own_bin, input));
   }
 }
 

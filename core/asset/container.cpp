@@ -40,13 +40,15 @@ Chunk chunk_at(std::string_view file, std::size_t offset) {
   return {type, file.substr(begin, length), begin + length};
 }
 
-void check_header(std::string_view file) {
+/// The file as far as it says it goes; padding of the transport after that is let go.
+std::string_view checked(std::string_view file) {
   if (word(file, 0) != kMagic) refuse("the GLB does not begin with \"glTF\"", 0);
   if (word(file, 4) != 2) refuse("only version 2 of the GLB container can be read", 4);
-  if (word(file, 8) != file.size())
-    refuse("the GLB states another length than the " + std::to_string(file.size()) +
-               " bytes that were sent",
+  const std::size_t length = word(file, 8);
+  if (length > file.size())
+    refuse("the GLB states more than the " + std::to_string(file.size()) + " bytes that were sent",
            8);
+  return file.substr(0, length);
 }
 
 void append_chunk(std::string& file, std::uint32_t type, std::string_view bytes, char padding) {
@@ -58,8 +60,8 @@ void append_chunk(std::string& file, std::uint32_t type, std::string_view bytes,
 
 }  // namespace
 
-GlbChunks split_glb(std::string_view file) {
-  check_header(file);
+GlbChunks split_glb(std::string_view bytes) {
+  const std::string_view file = checked(bytes);
   const Chunk json = chunk_at(file, kHeaderBytes);
   if (json.type != kJsonChunk) refuse("the first chunk of the GLB is not JSON", kHeaderBytes);
   GlbChunks chunks{json.bytes, {}, {}};

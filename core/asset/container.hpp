@@ -13,8 +13,9 @@ struct GlbChunks {
   std::string_view others;
 };
 
-/// Throws Error{malformed_glb} unless version, lengths and chunk order are exactly right.
-GlbChunks split_glb(std::string_view file);
+/// Throws Error{malformed_glb} unless version, lengths and chunk order are right. Bytes after the
+/// length that the file states are ignored.
+GlbChunks split_glb(std::string_view bytes);
 
 /// Throws Error{body_too_large} when the file would pass the container's 4 GiB.
 std::string join_glb(const GlbChunks& chunks);

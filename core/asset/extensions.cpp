@@ -92,6 +92,19 @@ void check_asset_and_extensions(Gltf& gltf) {
       gltf.has_foreign_references |= !contains(kKnown, used->at(i).text());
 }
 
+bool uses_extension(const Json& document, std::string_view name) {
+  const auto used = Node(document).find("extensionsUsed");
+  for (std::size_t i = 0; used && i < used->array_size(); ++i)
+    if (used->at(i).text() == name) return true;
+  return false;
+}
+
+void add_buffer(Gltf& gltf, std::string bytes) {
+  gltf.json["buffers"].push_back({{"byteLength", bytes.size()}});
+  gltf.buffers.push_back(std::move(bytes));
+  gltf.has_dead_bytes = true;
+}
+
 void forget_extension(Json& document, std::string_view name) {
   for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
     const auto found = document.find(list);

@@ -15,13 +15,6 @@ namespace {
 constexpr std::size_t kMaxZeroElements = 500'000;  // that exist in no file, only as a count
 constexpr std::size_t kAttributeSlack = 64;        // bytes of attributes over bytes of buffers
 
-bool uses_extension(const Gltf& gltf, std::string_view name) {
-  const auto used = Node(gltf.json).find("extensionsUsed");
-  for (std::size_t i = 0; used && i < used->array_size(); ++i)
-    if (used->at(i).text() == name) return true;
-  return false;
-}
-
 void check_position(const Accessor& accessor, bool quantized, const Place& place) {
   const bool narrow = component_bytes(accessor.type) < 4;
   if (accessor.components != 3 || !(accessor.type == ComponentType::f32 || (narrow && quantized)))
@@ -129,7 +122,7 @@ class Account {
 }  // namespace
 
 void check_geometry(Gltf& gltf, const ReadLimits& limits) {
-  const bool quantized = uses_extension(gltf, "KHR_mesh_quantization");
+  const bool quantized = uses_extension(gltf.json, "KHR_mesh_quantization");
   Account account(gltf, limits);
   std::map<std::vector<std::size_t>, std::size_t> pools;
   for (Primitive& primitive : gltf.primitives) {

@@ -82,7 +82,9 @@ struct Gltf {
   std::vector<Piece> pieces;
   std::vector<std::vector<Index>> vertices;  ///< [surface][vertex]: its number in the accessor
   std::size_t pool_count = 0;
-  bool has_foreign_references = false;  ///< an extension may point to views or accessors unseen
+  std::vector<std::size_t> spent_views;  ///< held compressed data that has been decoded
+  bool has_dead_bytes = false;           ///< buffers hold more than what views refer to
+  bool has_foreign_references = false;   ///< an extension may point to views or accessors unseen
 };
 
 std::size_t component_bytes(ComponentType type);

@@ -34,7 +34,8 @@ void read_accessors(Gltf& gltf);
 std::vector<DracoSource> read_meshes(Gltf& gltf);
 void check_nodes(const Gltf& gltf);
 
-/// Decodes the primitives with KHR_draco_mesh_compression.
+/// Decodes the primitives with KHR_draco_mesh_compression into accessors of the document, whose
+/// views, accessors and meshes must then be read again.
 void decode_draco(Gltf& gltf, const std::vector<DracoSource>& sources, const ReadLimits& limits);
 
 /// Types and counts of what makes up the triangles; nothing larger than limits gets past.
@@ -42,6 +43,11 @@ void check_geometry(Gltf& gltf, const ReadLimits& limits);
 
 /// One surface for each mesh that has triangles of its own; fills pieces, vertices and pools.
 std::vector<Surface> build_surfaces(Gltf& gltf, const ReadLimits& limits);
+
+bool uses_extension(const Json& document, std::string_view name);
+
+/// Appends a buffer, in the model and in the document.
+void add_buffer(Gltf& gltf, std::string bytes);
 
 /// Takes `name` out of extensionsUsed and extensionsRequired.
 void forget_extension(Json& document, std::string_view name);

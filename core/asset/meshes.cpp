@@ -118,6 +118,7 @@ void check_scenes(const Gltf& gltf, std::size_t node_count) {
 
 std::vector<DracoSource> read_meshes(Gltf& gltf) {
   std::vector<DracoSource> sources;
+  gltf.primitives.clear();
   const std::size_t mesh_count = list_size(gltf, "meshes");
   for (std::size_t i = 0; i < mesh_count; ++i) {
     const Node list = Node(gltf.json).at("meshes").at(i).at("primitives");
@@ -125,8 +126,12 @@ std::vector<DracoSource> read_meshes(Gltf& gltf) {
       Primitive primitive = read_primitive(gltf, list.at(k));
       primitive.mesh = i;
       primitive.number = k;
-      if (const auto draco = draco_extension(list.at(k)); draco && primitive.has_triangles)
+      if (const auto draco = draco_extension(list.at(k))) {
+        if (!primitive.has_triangles)
+          fail(ErrorCode::malformed_draco, list.at(k).place(),
+               "only triangles can be compressed with Draco; export the asset again");
         sources.push_back(read_draco(gltf, *draco, gltf.primitives.size()));
+      }
       gltf.primitives.push_back(std::move(primitive));
     }
   }

@@ -17,9 +17,13 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
   read_views(gltf);
   decode_meshopt(gltf);
   read_accessors(gltf);
-  const std::vector<DracoSource> draco = read_meshes(gltf);
+  if (const std::vector<DracoSource> sources = read_meshes(gltf); !sources.empty()) {
+    decode_draco(gltf, sources, limits);
+    read_views(gltf);
+    read_accessors(gltf);
+    static_cast<void>(read_meshes(gltf));
+  }
   check_nodes(gltf);
-  decode_draco(gltf, draco, limits);
   check_geometry(gltf, limits);
   surfaces = build_surfaces(gltf, limits);
   return gltf;

@@ -1,0 +1,39 @@
+#pragma once
+// One Draco bitstream, decoded.
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/asset/asset.hpp"
+#include "core/asset/gltf.hpp"
+
+namespace draco {
+class Mesh;
+}
+
+namespace unwrapd::asset {
+
+class DracoMesh {
+ public:
+  /// Throws Error{malformed_draco} at the place when the bitstream is damaged, is no mesh, or
+  /// claims more than its bytes or the limits allow.
+  DracoMesh(std::string_view bytes, const ReadLimits& limits, const Place& place);
+  ~DracoMesh();
+  DracoMesh(const DracoMesh&) = delete;
+  DracoMesh& operator=(const DracoMesh&) = delete;
+
+  [[nodiscard]] std::size_t point_count() const;
+  [[nodiscard]] std::vector<Index> corners() const;  ///< three to a face, in range
+
+  /// The attribute as elements of the accessor's type, each padded to 4 bytes.
+  /// Throws Error{malformed_draco} when there is no such attribute.
+  [[nodiscard]] std::string elements(std::size_t id, const Accessor& accessor) const;
+
+ private:
+  std::unique_ptr<draco::Mesh> mesh_;
+  Place place_;
+};
+
+}  // namespace unwrapd::asset
