@@ -2,9 +2,9 @@
 // are packed on one page, and the page's UVs are measured and put back on the surfaces.
 #include "core/unwrap.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/atlas/charts.hpp"
@@ -33,6 +33,9 @@ void announce(const Progress& progress, const StageEvent& event) {
 }
 
 std::vector<Charts> take_apart(std::span<const Surface> surfaces, SeamMode seams) {
+  const auto is_empty = [](const Surface& surface) { return surface.mesh.faces.empty(); };
+  if (std::all_of(surfaces.begin(), surfaces.end(), is_empty))
+    throw Error(ErrorCode::no_triangles, "the asset has no triangles; there is nothing to unwrap");
   std::vector<Charts> parts;
   parts.reserve(surfaces.size());
   for (const Surface& surface : surfaces) parts.push_back(make_charts(surface, seams));

@@ -21,13 +21,13 @@ constexpr double kNewtonTolerance = 1e-15;  // relative to r
 constexpr std::size_t kBlock = 4096;  // faces a block: fixed, so sums do not depend on threads
 
 /// The positive root of g. g is convex there and g(max(1, Q)) >= 0: Newton descends to the root.
-double hybrid_scale(double w, double q) {
-  if (w >= 1) return 1;
-  if (w <= 0) return q;
+double hybrid_scale(double lambda, double q) {
+  if (std::isinf(lambda)) return 1;
+  const double w = lambda / (1 + lambda), v = 1 / (1 + lambda);  // v: 1 - w without its rounding
   double r = std::max(1.0, q);
   for (int k = 0; k < kMaxNewtonSteps; ++k) {
-    const double g = w * r * (r * r - 1) + (1 - w) * (r - q);
-    const double slope = 3 * w * r * r + 1 - 2 * w;
+    const double g = w * r * (r * r - 1) + v * (r - q);
+    const double slope = w * (3 * r * r - 1) + v;
     const double step = slope > 0 ? g / slope : 0;
     r -= step;
     if (step <= kNewtonTolerance * r) break;
@@ -54,8 +54,8 @@ void write_residual(const RestTriangle& rest, const UvEdges& u, const Similarity
 Similarity fit_similarity(const Jacobian& j, double lambda) {
   assert(lambda >= 0);
   const double q = j.turn_scale();
-  const double r = hybrid_scale(1 / (1 + 1 / lambda), q);  // IEEE: 0 at lambda 0, 1 at infinity
-  if (!(q > 0)) return {r, 0};                             // a collapsed image: all turns fit alike
+  const double r = hybrid_scale(lambda, q);
+  if (!(q > 0)) return {r, 0};  // a collapsed image: all turns fit alike
   return {r * j.e / q, -r * j.h / q};
 }
 

@@ -20,18 +20,22 @@ namespace {
 /// Above this lambda no conformal map of use has energy enough to collapse the hybrid.
 constexpr double kSafeLambda = 0.5;
 
-UvMap map_of_kind(const Disk& disk, InitialMap kind) {
-  switch (kind) {
-    case InitialMap::mean_value:
-      return mean_value_map(disk);
-    case InitialMap::tutte:
-      return tutte_map(disk);
-    case InitialMap::lscm:
-      return conformal_map(disk, Pins::diameter);
-    case InitialMap::automatic:
-      break;
-  }
-  return map_of_kind(disk, disk.loops.size() == 1 ? InitialMap::mean_value : InitialMap::lscm);
+UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
+  const double area = uv_area(disk.rest, disk.faces, uv);
+  if (area > 0)
+    for (Vec2& u : uv) u /= std::sqrt(area);
+  return uv;
+}
+
+/// The paper's choice (Sec. 4.5) is mean_value for one boundary and lscm for several; but a surface
+/// that is nearly developable is nearly solved by lscm, so for one boundary the better is taken.
+UvMap best_map(const Disk& disk) {
+  UvMap conformal = initial_map(disk, InitialMap::lscm);
+  if (disk.loops.size() > 1) return conformal;
+  UvMap convex = initial_map(disk, InitialMap::mean_value);
+  const bool conformal_is_better =
+      arap_energy(disk.rest, disk.faces, conformal) < arap_energy(disk.rest, disk.faces, convex);
+  return conformal_is_better ? conformal : convex;
 }
 
 Rigidity rigidity_of(const Disk& disk, const UnwrapOptions& options) {
@@ -65,11 +69,17 @@ Solution iterate(const Disk& disk, const UnwrapOptions& options, UvMap start,
 }  // namespace
 
 UvMap initial_map(const Disk& disk, InitialMap kind) {
-  UvMap uv = map_of_kind(disk, kind);
-  const double area = uv_area(disk.rest, disk.faces, uv);
-  if (area > 0)
-    for (Vec2& u : uv) u /= std::sqrt(area);
-  return uv;
+  switch (kind) {
+    case InitialMap::mean_value:
+      return scaled_to_unit_area(disk, mean_value_map(disk));
+    case InitialMap::tutte:
+      return scaled_to_unit_area(disk, tutte_map(disk));
+    case InitialMap::lscm:
+      return conformal_map(disk, Pins::diameter);
+    case InitialMap::automatic:
+      break;
+  }
+  return best_map(disk);
 }
 
 Solution solve(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,

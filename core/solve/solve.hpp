@@ -19,8 +19,8 @@ struct SolveWatch {
 Solution solve(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,
                Executor& executor);
 
-/// The map that the iterations start from. automatic: mean_value for one boundary, lscm for several
-/// (Sec. 4.5). Scaled so that UV area = 3D area.
+/// The map that the iterations start from, scaled so that UV area = 3D area. automatic: for one
+/// boundary mean_value or lscm, whichever has less ARAP energy; lscm for several (Sec. 4.5).
 UvMap initial_map(const Disk& disk, InitialMap kind);
 
 }  // namespace unwrapd

@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "core/measure/distortion.hpp"
+#include "core/measure/energy.hpp"
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+UvMap flattened(const TriMesh& mesh) {
+  UvMap uv;
+  for (const Vec3& p : mesh.positions) uv.emplace_back(p.x(), p.y());
+  return uv;
+}
+
+TEST(RestTriangle, KeepsLengthsAnglesAndArea) {
+  const TriMesh mesh = shapes::random_disk(12, 1);
+  const std::vector<RestTriangle> rest = flatten(mesh);
+  for (std::size_t t = 0; t < rest.size(); ++t) {
+    const Triangle& face = mesh.faces[t];
+    const auto at = [&](std::size_t i) { return mesh.positions[std::size_t(face[i % 3])]; };
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(rest[t].edge[i].norm(), (at(i) - at(i + 1)).norm(), 1e-14);
+      const Vec3 a = at(i) - at(i + 2), b = at(i + 1) - at(i + 2);
+      EXPECT_NEAR(rest[t].cot[i], a.dot(b) / a.cross(b).norm(), 1e-10);
+    }
+    EXPECT_NEAR(rest[t].area, face_area(mesh, face), 1e-15);
+    const Vec2 &x0 = rest[t].edge[0], &x1 = rest[t].edge[1];
+    EXPECT_NEAR(x0.x() * x1.y() - x0.y() * x1.x(), 2 * rest[t].area, 1e-15);
+  }
+}
+
+TEST(RestTriangle, RaisesTheHeightOfACapToAMillionthOfItsBase) {
+  const TriMesh cap{{{0, 0, 0}, {1, 0, 0}, {0.5, 1e-9, 0}}, {{0, 1, 2}}};
+  const std::vector<RestTriangle> rest = flatten(cap);
+  EXPECT_NEAR(rest[0].area, 0.5 * kMinHeight, 1e-20);
+}
+
+TEST(RestTriangle, KeepsTheDigitsOfANeedle) {
+  const TriMesh needle{{{0, 0, 0}, {1e-5, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  EXPECT_NEAR(flatten(needle)[0].area / 5e-6, 1, 1e-12);
+}
+
+TEST(Jacobian, HasTheSingularValuesOfAnSvd) {
+  std::mt19937 rng(2);
+  std::normal_distribution<double> any;
+  for (int k = 0; k < 1000; ++k) {
+    TriMesh mesh{{}, {{0, 1, 2}}};
+    UvMap uv;
+    for (int i = 0; i < 3; ++i) {
+      mesh.positions.emplace_back(any(rng), any(rng), any(rng));
+      uv.emplace_back(any(rng), any(rng));
+    }
+    const RestTriangle rest = flatten(mesh)[0];
+    const UvEdges u = uv_edges(mesh.faces[0], uv);
+    Eigen::Matrix2d from, to;
+    from << rest.edge[0], rest.edge[1];
+    to << u[0], u[1];
+    const Eigen::Matrix2d dense = to * from.inverse();
+    const Eigen::Vector2d sigma = Eigen::JacobiSVD<Eigen::Matrix2d>(dense).singularValues();
+    const Jacobian j = jacobian(rest, u);
+    const double scale = sigma[0];
+    EXPECT_NEAR(j.sigma_max() / scale, 1, 1e-9);
+    EXPECT_NEAR(j.sigma_min() / scale, std::copysign(sigma[1], dense.determinant()) / scale, 1e-9);
+  }
+}
+
+TEST(Distortion, OfAnIsometryIsIdeal) {
+  const TriMesh mesh = shapes::grid(7, 5);
+  const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, flattened(mesh)));
+  EXPECT_NEAR(d.angle, 2, 1e-12);
+  EXPECT_NEAR(d.area, 2, 1e-12);
+  EXPECT_NEAR(d.stretch, 1, 1e-12);
+  EXPECT_EQ(d.flipped, 0);
+}
+
+TEST(Distortion, OfAnAnisotropicStretchFollowsSection6) {
+  const TriMesh mesh = shapes::grid(4, 4);
+  UvMap uv = flattened(mesh);
+  for (Vec2& u : uv) u = Vec2(2 * u.x(), u.y()) * 17;  // the global scale must not matter
+  const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, uv));
+  EXPECT_NEAR(d.angle, 2 + 0.5, 1e-12);  // sigma 2 and 1
+  EXPECT_NEAR(d.area, 2, 1e-12);         // the same area everywhere
+  EXPECT_NEAR(d.stretch, std::sqrt((1.0 / 2 + 2.0 / 1) / 2), 1e-12);
+}
+
+TEST(Distortion, OfTwoHalvesOfDifferentSizeFollowsSection6) {
+  const TriMesh mesh = shapes::grid(2, 1, 2, 1);
+  UvMap uv = flattened(mesh);
+  for (Vec2& u : uv)
+    if (u.x() > 1.5) u.x() = 4;  // right half: 3 times the area of the left one
+  const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, uv));
+  const double left = 0.5, right = 1.5;  // det after scaling to the 3D area
+  EXPECT_NEAR(d.area, (left + 1 / left + right + 1 / right) / 2, 1e-12);
+}
+
+TEST(Distortion, CountsFlipsAndNeverFallsBelowTwo) {
+  const TriMesh mesh = shapes::grid(3, 3);
+  UvMap uv = flattened(mesh);
+  for (Vec2& u : uv) u.x() = -u.x();
+  const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, uv));
+  EXPECT_EQ(d.flipped, mesh.face_count());
+  EXPECT_GE(d.angle, 2);
+  EXPECT_GE(d.area, 2);
+}
+
+TEST(Distortion, OfACollapsedMapIsFinite) {
+  const TriMesh mesh = shapes::grid(3, 3);
+  const UvMap point(mesh.positions.size(), Vec2(0, 0));
+  const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, point));
+  EXPECT_TRUE(std::isfinite(d.angle) && std::isfinite(d.area) && std::isfinite(d.stretch));
+  EXPECT_EQ(d.flipped, mesh.face_count());
+}
+
+TEST(Energy, IsZeroForAnIsometryAndKnownForAStretch) {  // Eqs. (A2), (A3)
+  const TriMesh mesh = shapes::grid(4, 4);
+  const std::vector<RestTriangle> rest = flatten(mesh);
+  UvMap uv = flattened(mesh);
+  EXPECT_NEAR(arap_energy(rest, mesh.faces, uv), 0, 1e-15);
+  EXPECT_NEAR(asap_energy(rest, mesh.faces, uv), 0, 1e-15);
+  for (Vec2& u : uv) u.x() *= 3;
+  EXPECT_NEAR(arap_energy(rest, mesh.faces, uv), 4, 1e-12);
+  EXPECT_NEAR(asap_energy(rest, mesh.faces, uv), 2, 1e-12);
+}
+
+}  // namespace
+}  // namespace unwrapd

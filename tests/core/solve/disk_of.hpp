@@ -1,0 +1,27 @@
+#pragma once
+// A mesh that is one disk, ready for the solver, for tests.
+
+#include <memory>
+#include <utility>
+
+#include "core/atlas/charts.hpp"
+#include "core/solve/disk.hpp"
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd::shapes {
+
+/// Owns the chart that its disk looks into.
+struct OwnedDisk {
+  std::unique_ptr<Chart> chart;
+  Disk disk;
+};
+
+inline OwnedDisk disk_of(TriMesh mesh) {
+  Charts charts = make_charts(surface_of(std::move(mesh)), SeamMode::keep);
+  if (charts.charts.size() != 1) throw std::invalid_argument("not one disk");
+  auto chart = std::make_unique<Chart>(std::move(charts.charts.front()));
+  Disk disk = make_disk(chart->mesh, chart->loops);
+  return {std::move(chart), std::move(disk)};
+}
+
+}  // namespace unwrapd::shapes

@@ -1,0 +1,210 @@
+#include "core/unwrap.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "core/error.hpp"
+#include "tests/core/obj_reader.hpp"
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+Unwrapped unwrapped(std::vector<Surface> surfaces, const UnwrapOptions& options = {},
+                    const Progress& progress = {}) {
+  SerialExecutor serial;
+  return unwrap(surfaces, options, progress, serial);
+}
+
+Unwrapped unwrapped(const TriMesh& mesh, const UnwrapOptions& options = {}) {
+  return unwrapped(std::vector{shapes::surface_of(mesh)}, options);
+}
+
+double signed_uv_area(const UnwrappedSurface& s, const Triangle& face) {
+  const Vec2 &a = s.uv[std::size_t(face[0])], &b = s.uv[std::size_t(face[1])],
+             &c = s.uv[std::size_t(face[2])];
+  return ((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x()) / 2;
+}
+
+/// Every face keeps its corners' input vertices, every UV lies on the page.
+void expect_sound(const Surface& in, const UnwrappedSurface& out) {
+  ASSERT_EQ(out.faces.size(), in.mesh.faces.size());
+  ASSERT_EQ(out.source.size(), out.uv.size());
+  for (Index v = 0; v < in.mesh.vertex_count(); ++v) ASSERT_EQ(out.source[std::size_t(v)], v);
+  for (std::size_t t = 0; t < out.faces.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_EQ(out.source[std::size_t(out.faces[t][i])], in.mesh.faces[t][i]);
+  for (const Vec2& u : out.uv) {
+    EXPECT_TRUE(u.allFinite());
+    EXPECT_TRUE(u.minCoeff() >= 0 && u.maxCoeff() <= 1) << u.transpose();
+  }
+}
+
+TEST(Unwrap, AnswersEveryKindOfSurface) {
+  const std::vector<TriMesh> parts{shapes::grid(3, 3), shapes::moved(shapes::cube(1), {5, 0, 0})};
+  for (const TriMesh& mesh :
+       {shapes::grid(4, 4), shapes::annulus(12, 3), shapes::cylinder(12, 4), shapes::cube(2),
+        shapes::sphere(3), shapes::torus(24, 12), shapes::pierced_bar(2), shapes::bow_tie(),
+        shapes::three_faces_at_an_edge(), shapes::soup(shapes::sphere(2)), shapes::merged(parts)}) {
+    const Surface surface = shapes::surface_of(mesh);
+    const Unwrapped u = unwrapped({surface});
+    expect_sound(surface, u.surfaces.front());
+    EXPECT_GT(u.report.fill, 0.1);
+    EXPECT_LE(u.report.fill, 1);
+  }
+}
+
+TEST(Unwrap, GivesOneTexelDensityToAllCharts) {
+  std::vector<Surface> surfaces{shapes::surface_of(shapes::grid(3, 3, 4, 1)),
+                                shapes::surface_of(shapes::sphere(3)),
+                                shapes::surface_of(shapes::grid(2, 2, 0.1, 0.1))};
+  const Unwrapped u = unwrapped(surfaces);
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    double in = 0, out = 0;
+    for (std::size_t t = 0; t < surfaces[s].mesh.faces.size(); ++t) {
+      const Triangle& f = surfaces[s].mesh.faces[t];
+      const auto at = [&](std::size_t i) { return surfaces[s].mesh.positions[std::size_t(f[i])]; };
+      const Vec3 ab = at(1) - at(0), ac = at(2) - at(0);
+      in += std::sqrt(ab.squaredNorm() * ac.squaredNorm() - std::pow(ab.dot(ac), 2)) / 2;
+      out += std::abs(signed_uv_area(u.surfaces[s], u.surfaces[s].faces[t]));
+    }
+    EXPECT_NEAR(std::sqrt(out / in) * 1024 / u.report.texel_density, 1, 1e-9);
+  }
+}
+
+TEST(Unwrap, CountsInItsReportWhatItAnswered) {
+  const Unwrapped u = unwrapped(shapes::sphere(3));
+  EXPECT_EQ(u.report.input.faces, 512);
+  EXPECT_EQ(u.report.input.components, 1);
+  EXPECT_EQ(u.report.input.boundaries, 0);
+  ASSERT_EQ(u.report.charts.size(), 1U);
+  EXPECT_EQ(u.report.charts[0].faces, 512);
+  EXPECT_EQ(u.report.charts[0].boundaries, 1);
+  Index flipped = 0;
+  double fill = 0;
+  for (const Triangle& face : u.surfaces[0].faces) {
+    flipped += signed_uv_area(u.surfaces[0], face) <= 0 ? 1 : 0;
+    fill += std::abs(signed_uv_area(u.surfaces[0], face));
+  }
+  EXPECT_EQ(u.report.distortion.flipped, flipped);
+  EXPECT_NEAR(u.report.fill, fill, 1e-9);
+  EXPECT_GT(u.report.seam_length, 1);  // a sphere does not open without a seam
+}
+
+TEST(Unwrap, TotalsAreTheAreaWeightedMeansOfItsCharts) {
+  std::vector<Surface> surfaces{shapes::surface_of(shapes::sphere(2)),
+                                shapes::surface_of(shapes::cone(20, 5, 3))};
+  const Report r = unwrapped(surfaces).report;
+  double area = 0, angle = 0, d_area = 0;
+  for (const ChartReport& c : r.charts) {
+    area += c.area, angle += c.area * c.distortion.angle, d_area += c.area * c.distortion.area;
+  }
+  EXPECT_NEAR(r.distortion.angle, angle / area, 1e-9);
+  EXPECT_NEAR(r.distortion.area, d_area / area, 1e-9);
+}
+
+TEST(Unwrap, SeamLengthIsThatOfTheCutBruteForce) {
+  const TriMesh mesh = shapes::torus(20, 10);
+  const Unwrapped u = unwrapped(mesh);
+  std::map<std::pair<Index, Index>, std::set<std::pair<double, double>>> sides;
+  const UnwrappedSurface& s = u.surfaces[0];
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = mesh.faces[t][i], b = mesh.faces[t][(i + 1) % 3];
+      const Vec2 sum =
+          s.uv[std::size_t(s.faces[t][i])] + s.uv[std::size_t(s.faces[t][(i + 1) % 3])];
+      sides[std::minmax(a, b)].insert({sum.x(), sum.y()});
+    }
+  double length = 0;
+  for (const auto& [edge, uv] : sides)
+    if (uv.size() > 1)
+      length += (mesh.positions[std::size_t(edge.first)] - mesh.positions[std::size_t(edge.second)])
+                    .norm();
+  EXPECT_NEAR(u.report.seam_length, length, 1e-9);
+}
+
+TEST(Unwrap, TellsProgressThatNeverGoesBack) {
+  double last = 0;
+  int iterations = 0;
+  Progress progress;
+  progress.on_stage = [&](const StageEvent& e) {
+    EXPECT_GE(e.fraction, last);
+    last = e.fraction;
+  };
+  progress.on_iteration = [&](const IterationEvent& e) {
+    EXPECT_GE(e.fraction, last);
+    EXPECT_GE(e.rel_change, -1e-12);
+    EXPECT_GE(e.angle, 2);
+    last = e.fraction;
+    ++iterations;
+  };
+  unwrapped({shapes::surface_of(shapes::sphere(3)), shapes::surface_of(shapes::cone(20, 5))}, {},
+            progress);
+  EXPECT_EQ(iterations, 20);
+  EXPECT_LE(last, 1);
+}
+
+TEST(Unwrap, StopsWhenAsked) {
+  std::stop_source stop;
+  Progress progress;
+  progress.stop = stop.get_token();
+  progress.on_iteration = [&](const IterationEvent&) { stop.request_stop(); };
+  EXPECT_THROW(unwrapped({shapes::surface_of(shapes::sphere(3))}, {}, progress), Error);
+}
+
+ErrorCode refusal(const TriMesh& mesh, const UnwrapOptions& options = {}) {
+  try {
+    unwrapped(mesh, options);
+  } catch (const Error& e) {
+    return e.code();
+  }
+  return ErrorCode::internal;
+}
+
+TEST(Unwrap, RefusesWhatCannotBeDone) {
+  const TriMesh line{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
+  EXPECT_EQ(refusal(line), ErrorCode::zero_area);
+  EXPECT_EQ(refusal(shapes::mobius_strip(20)), ErrorCode::not_orientable);
+  EXPECT_EQ(refusal({}), ErrorCode::no_triangles);
+  const TriMesh mesh = shapes::grid(2, 2);
+  EXPECT_EQ(refusal(mesh, {.method = Method::hybrid, .lambda = -1}), ErrorCode::invalid_option);
+  EXPECT_EQ(refusal(mesh, {.method = Method::hybrid, .lambda = std::nan("")}),
+            ErrorCode::invalid_option);
+  EXPECT_EQ(refusal(mesh, {.iterations = 0}), ErrorCode::invalid_option);
+  EXPECT_EQ(refusal(mesh, {.resolution = 8}), ErrorCode::invalid_option);
+  EXPECT_EQ(refusal(mesh, {.resolution = 64, .padding = 17}), ErrorCode::invalid_option);
+}
+
+TEST(Unwrap, GivesDegenerateFacesUvsAndSaysSo) {
+  TriMesh mesh = shapes::grid(3, 3);
+  mesh.faces.push_back({0, 1, 1});
+  mesh.faces.push_back(mesh.faces[0]);
+  const Surface surface = shapes::surface_of(mesh);
+  const Unwrapped u = unwrapped({surface});
+  expect_sound(surface, u.surfaces[0]);
+  std::set<RepairKind> kinds;
+  for (const Repair& r : u.report.repairs) kinds.insert(r.kind);
+  EXPECT_TRUE(kinds.contains(RepairKind::degenerate_faces_set_aside));
+  EXPECT_TRUE(kinds.contains(RepairKind::duplicate_faces_set_aside));
+}
+
+TEST(Unwrap, AnswersEveryRealMeshOrSaysWhyNot) {
+  const std::filesystem::path data = test_data();
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no test data at " << data;
+  for (const char* folder : {"disk", "closed"})
+    for (const auto& entry : std::filesystem::directory_iterator(data / folder)) {
+      SCOPED_TRACE(entry.path().filename().string());
+      const Surface surface = shapes::surface_of(read_obj(entry.path()));
+      try {
+        expect_sound(surface, unwrapped({surface}).surfaces[0]);
+      } catch (const Error& e) {
+        EXPECT_TRUE(e.code() == ErrorCode::zero_area || e.code() == ErrorCode::not_orientable)
+            << e.what();
+      }
+    }
+}
+
+}  // namespace
+}  // namespace unwrapd
