@@ -19,7 +19,7 @@ JobRecord find_job(JobStore& store, const std::string& id) {
 Response job_response(int status, const JobRecord& record, const EventFeed& events) {
   api::Job job = to_job(record);
   const std::shared_ptr<JobFeed> feed = events.find(record.id);
-  if (feed && record.attempt > 0) job.progress = feed->progress();
+  if (feed && record.state == api::JobState::running) job.progress = feed->progress();
   Response response = json_response(status, api::to_json(job).dump());
   response.headers.emplace_back("Cache-Control", "no-store");
   return response;

@@ -1,0 +1,88 @@
+// Heads of requests: what is fine passes, and what two readers could read differently does not.
+#include "server/http_head.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+#include "core/error.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+std::string head(const std::string& line, const std::string& fields = "") {
+  return line + "\r\nHost: x\r\n" + fields + "\r\n";
+}
+
+/// The code of the error, or nothing when the head passes.
+std::optional<ErrorCode> refusal(const std::string& text) {
+  try {
+    vet_head(text);
+    return std::nullopt;
+  } catch (const Error& error) {
+    return error.code();
+  }
+}
+
+const std::string kPost = "POST /v1/jobs HTTP/1.1";
+
+TEST(HttpHead, ReadsTheFraming) {
+  EXPECT_FALSE(vet_head(head("GET / HTTP/1.1")).has_body());
+  EXPECT_FALSE(vet_head(head(kPost, "Content-Length: 0\r\n")).has_body());
+  EXPECT_EQ(vet_head(head(kPost, "content-length:  12 \r\n")).content_length, 12);
+  EXPECT_TRUE(vet_head(head(kPost, "Transfer-Encoding: Chunked\r\n")).chunked);
+}
+
+TEST(HttpHead, RefusesEveryAmbiguousLength) {
+  for (const char* fields :
+       {"Content-Length: 5\r\nTransfer-Encoding: chunked\r\n",
+        "Content-Length: 5\r\nContent-Length: 5\r\n", "Content-Length: -1\r\n",
+        "Content-Length: +5\r\n", "Content-Length: 5, 5\r\n", "Content-Length: 0x5\r\n",
+        "Content-Length:\r\n", "Content-Length: 99999999999999999999\r\n",
+        "Transfer-Encoding: gzip, chunked\r\n", "Transfer-Encoding: identity\r\n",
+        "Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked\r\n", "Content-Length : 5\r\n",
+        " Content-Length: 5\r\n", "Content-Length: 5\nX: y\r\n"})
+    EXPECT_EQ(refusal(head(kPost, fields)), ErrorCode::malformed_request) << fields;
+}
+
+TEST(HttpHead, AsksForALengthWhereThereMustBeABody) {
+  EXPECT_EQ(refusal(head(kPost)), ErrorCode::length_required);
+  EXPECT_EQ(refusal(head("DELETE /v1/jobs/x HTTP/1.1")), std::nullopt);
+}
+
+TEST(HttpHead, RefusesCompressedBodies) {
+  EXPECT_EQ(refusal(head(kPost, "Content-Length: 5\r\nContent-Encoding: gzip\r\n")),
+            ErrorCode::unsupported_media_type);
+  EXPECT_EQ(refusal(head(kPost, "Content-Length: 5\r\nContent-Encoding: identity\r\n")),
+            std::nullopt);
+}
+
+TEST(HttpHead, RefusesWhatIsNoRequestLine) {
+  for (const char* line :
+       {"", " ", "GET", "GET /", "GET  HTTP/1.1", "GET x HTTP/1.1", "GET / HTTP/2.0",
+        "GET / / HTTP/1.1", "G\x01T / HTTP/1.1", "GET /\x7f HTTP/1.1", "\x16\x03\x01"})
+    EXPECT_EQ(refusal(head(line)), ErrorCode::malformed_request) << line;
+}
+
+TEST(HttpHead, KeepsItsLimits) {
+  EXPECT_EQ(refusal(head("GET /" + std::string(9000, 'a') + " HTTP/1.1")),
+            ErrorCode::headers_too_large);
+  std::string fields;
+  for (int i = 0; i < 101; ++i) fields += "X-" + std::to_string(i) + ": y\r\n";
+  EXPECT_EQ(refusal(head("GET / HTTP/1.1", fields)), ErrorCode::headers_too_large);
+}
+
+TEST(HttpHead, AnyBytesAreAnsweredWithAnErrorOrAFraming) {
+  std::mt19937 random(7);
+  const std::string good = head(kPost, "Content-Length: 5\r\nAccept: */*\r\n");
+  for (int k = 0; k < 20'000; ++k) {
+    std::string text = good;
+    for (int changes = 0; changes < 3; ++changes)
+      text[random() % (text.size() - 4)] = static_cast<char>(random());
+    refusal(text);  // must return
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd::server
