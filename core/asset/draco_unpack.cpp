@@ -102,6 +102,8 @@ class Unpacker {
         views_.add(bytes, stride == accessor.element_bytes ? 0 : stride, kArrayBufferTarget);
     json["count"] = mesh.point_count();
     for (const char* stale : {"byteOffset", "sparse"}) json.erase(stale);
+    if (json.contains("min") || json.contains("max"))
+      set_bounds(json, bytes, stride, accessor.components);
     return put(old, std::move(json));
   }
 

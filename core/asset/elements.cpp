@@ -7,33 +7,43 @@
 namespace unwrapd::asset {
 namespace {
 
-/// Float, or a small integer that may stand for a fraction (glTF 2.0, section 3.11).
-double component(const char* bytes, ComponentType type, bool normalized) {
+/// What a normalised integer stands for (glTF 2.0, section 3.11).
+double normalized(double value, ComponentType type) {
   switch (type) {
-    case ComponentType::i8: {
-      const double value = load<std::int8_t>(bytes);
-      return normalized ? std::max(value / 127, -1.0) : value;
-    }
-    case ComponentType::u8: {
-      const double value = load<std::uint8_t>(bytes);
-      return normalized ? value / 255 : value;
-    }
-    case ComponentType::i16: {
-      const double value = load<std::int16_t>(bytes);
-      return normalized ? std::max(value / 32767, -1.0) : value;
-    }
-    case ComponentType::u16: {
-      const double value = load<std::uint16_t>(bytes);
-      return normalized ? value / 65535 : value;
-    }
+    case ComponentType::i8:
+      return std::max(value / 127, -1.0);
+    case ComponentType::u8:
+      return value / 255;
+    case ComponentType::i16:
+      return std::max(value / 32767, -1.0);
+    case ComponentType::u16:
+      return value / 65535;
     case ComponentType::u32:
+    case ComponentType::f32:
+      break;
+  }
+  return value;
+}
+
+}  // namespace
+
+double component_at(const char* bytes, ComponentType type) {
+  switch (type) {
+    case ComponentType::i8:
+      return load<std::int8_t>(bytes);
+    case ComponentType::u8:
+      return load<std::uint8_t>(bytes);
+    case ComponentType::i16:
+      return load<std::int16_t>(bytes);
+    case ComponentType::u16:
+      return load<std::uint16_t>(bytes);
+    case ComponentType::u32:
+      return load<std::uint32_t>(bytes);
     case ComponentType::f32:
       break;
   }
   return static_cast<double>(load<float>(bytes));
 }
-
-}  // namespace
 
 Elements::Elements(const Gltf& gltf, std::size_t accessor)
     : gltf_(&gltf), accessor_(&gltf.accessors[accessor]) {
@@ -58,7 +68,8 @@ Vec3 Elements::vec3_at(std::size_t element) const {
   if (bytes == nullptr) return Vec3::Zero();
   const std::size_t step = component_bytes(accessor_->type);
   const auto at_axis = [&](std::size_t k) {
-    return component(bytes + k * step, accessor_->type, accessor_->normalized);
+    const double value = component_at(bytes + k * step, accessor_->type);
+    return accessor_->normalized ? normalized(value, accessor_->type) : value;
   };
   return {at_axis(0), at_axis(1), at_axis(2)};
 }

@@ -7,6 +7,9 @@
 
 namespace unwrapd::asset {
 
+/// The component at `bytes` as it is stored; little-endian, any alignment.
+double component_at(const char* bytes, ComponentType type);
+
 class Elements {
  public:
   Elements(const Gltf& gltf, std::size_t accessor);  ///< both must outlive this

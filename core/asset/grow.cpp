@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "core/asset/bytes.hpp"
+#include "core/asset/elements.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -118,6 +119,24 @@ Json index_accessor(const Gltf& gltf, std::optional<std::size_t> old,
   accessor["count"] = corners.size();
   accessor["type"] = "SCALAR";
   return accessor;
+}
+
+void set_bounds(Json& accessor, std::string_view bytes, std::size_t stride,
+                std::size_t components) {
+  const auto type = accessor.at("componentType").get<ComponentType>();
+  const auto value = [&](std::size_t element, std::size_t k) {
+    return component_at(bytes.data() + element * stride + k * component_bytes(type), type);
+  };
+  std::vector<double> low(components);
+  for (std::size_t k = 0; k < components; ++k) low[k] = value(0, k);
+  std::vector<double> high = low;
+  for (std::size_t i = 1; i < bytes.size() / stride; ++i)
+    for (std::size_t k = 0; k < components; ++k) {
+      low[k] = std::min(low[k], value(i, k));
+      high[k] = std::max(high[k], value(i, k));
+    }
+  accessor["min"] = low;
+  accessor["max"] = high;
 }
 
 Json texcoord_accessor(const Gltf& gltf, std::optional<std::size_t> old,

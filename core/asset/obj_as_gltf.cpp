@@ -77,25 +77,15 @@ class Combiner {
   std::unordered_map<std::uint64_t, Index> numbers_;
 };
 
+std::string_view bytes_of(const std::vector<Float3>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Float3)};
+}
+
 Json vec3_accessor(const std::vector<Float3>& values, NewViews& views) {
-  const std::string_view bytes(reinterpret_cast<const char*>(values.data()),
-                               values.size() * sizeof(Float3));
-  return {{"bufferView", views.add(bytes, 0, kArrayBufferTarget)},
+  return {{"bufferView", views.add(bytes_of(values), 0, kArrayBufferTarget)},
           {"componentType", ComponentType::f32},
           {"count", values.size()},
           {"type", "VEC3"}};
-}
-
-void add_bounds(Json& accessor, const std::vector<Float3>& values) {
-  Float3 low = values.front();
-  Float3 high = values.front();
-  for (const Float3& value : values)
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], value[k]);
-      high[k] = std::max(high[k], value[k]);
-    }
-  accessor["min"] = low;
-  accessor["max"] = high;
 }
 
 }  // namespace
@@ -112,7 +102,7 @@ std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedS
   NewViews views(document, 0);
   Json& accessors = document.json["accessors"];
   accessors.push_back(vec3_accessor(vertices.positions, views));
-  add_bounds(accessors.back(), vertices.positions);
+  set_bounds(accessors.back(), bytes_of(vertices.positions), sizeof(Float3), 3);
   accessors.push_back(texcoord_accessor(empty, std::nullopt, vertices.uv, views));
   Json attributes = {{"POSITION", 0}, {"TEXCOORD_0", 1}};
   if (!vertices.normals.empty()) {

@@ -1,5 +1,6 @@
 // Ear clipping in the plane of the polygon's Newell normal. Polygons of scans and CAD are short;
 // a very long one is cut as a fan, because ears cost its square.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <numeric>
