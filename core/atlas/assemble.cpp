@@ -69,28 +69,30 @@ Triangle degenerate_corners(const Triangle& known, const Numbering& numbering) {
   return corners;
 }
 
+/// For each vertex the first chart vertex that it shows, or that one at its position shows.
+std::vector<Index> known_places(const TriMesh& mesh, const std::vector<Triangle>& at) {
+  const std::vector<Index> first_at = weld(mesh.positions);
+  std::vector<Index> of_vertex(mesh.positions.size(), kUncharted);
+  std::vector<Index> of_position = of_vertex;
+  for (Index c = 0; c < static_cast<Index>(3 * mesh.faces.size()); ++c) {
+    const Index v = mesh.faces[c / 3][c % 3], shown = at[c / 3][c % 3];
+    if (of_vertex[v] == kUncharted) of_vertex[v] = shown;
+    if (of_position[first_at[v]] == kUncharted) of_position[first_at[v]] = shown;
+  }
+  for (std::size_t v = 0; v < of_vertex.size(); ++v)
+    if (of_vertex[v] == kUncharted) of_vertex[v] = of_position[first_at[v]];
+  return of_vertex;
+}
+
 void give_corners_to_set_aside(const Surface& surface, const Charts& charts,
                                const Numbering& numbering, std::vector<Triangle>& at) {
   if (charts.set_aside.empty()) return;
-  const std::vector<Triangle>& faces = surface.mesh.faces;
-  const std::vector<Index> first_at = weld(surface.mesh.positions);
-  std::vector<Index> of_vertex(surface.mesh.positions.size(), kUncharted);
-  std::vector<Index> of_position = of_vertex;
-  for (std::size_t t = 0; t < faces.size(); ++t) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Index v = faces[t][i];
-      if (of_vertex[v] == kUncharted) of_vertex[v] = at[t][i];
-      if (of_position[first_at[v]] == kUncharted) of_position[first_at[v]] = at[t][i];
-    }
-  }
-  const auto known = [&](Index v) {
-    return of_vertex[v] != kUncharted ? of_vertex[v] : of_position[first_at[v]];
-  };
+  const std::vector<Index> known = known_places(surface.mesh, at);
   for (std::size_t k = 0; k < charts.set_aside.size(); ++k) {
     const Index t = charts.set_aside[k], original = charts.repeats[k];
-    const auto& [a, b, c] = faces[t];
+    const auto& [a, b, c] = surface.mesh.faces[t];
     at[t] = original != kNoFace ? corners_like(surface, t, original, at[original])
-                                : degenerate_corners({known(a), known(b), known(c)}, numbering);
+                                : degenerate_corners({known[a], known[b], known[c]}, numbering);
   }
 }
 

@@ -21,6 +21,8 @@
 namespace unwrapd {
 namespace {
 
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
 /// Vertices, those of one hole merged, and the inner half-edges that leave each.
 struct Graph {
   std::vector<Index> node_of;   ///< one a vertex; a node is called by one of its vertices
@@ -64,7 +66,6 @@ Graph graph_of(const TriMesh& mesh, const Halfedges& halfedges) {
 
 /// Dijkstra.
 Paths shortest_paths(const Graph& graph, Index root) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
   Paths paths{std::vector<double>(graph.node_of.size(), kFar),
               std::vector<Index>(graph.node_of.size(), kNoTwin)};
   using Entry = std::pair<double, Index>;

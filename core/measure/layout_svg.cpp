@@ -24,6 +24,8 @@ constexpr double kUnits = 40960;  // coordinates a page's side
 constexpr double kWorst = 4;      // distortion at which the last colour begins
 constexpr std::size_t kColourCount = 12;
 
+constexpr long kLegendLeft = 128, kSwatchWidth = 192;  // in 1/4096 of the page's side
+
 /// Lightness falls evenly in OKLCH, hue goes from green over blue to violet: ordered in grey too.
 constexpr std::array<std::string_view, kColourCount> kColours{
     "#d1fdc7", "#a5f0bc", "#74e2ba", "#35d2bc", "#00c0c0", "#00abc1",
@@ -169,14 +171,14 @@ void append_label(std::string& svg, long x, std::string_view label) {
 
 /// Below the page: the colours with their distortion, and the colour of flipped triangles.
 void append_legend(std::string& svg) {
-  constexpr long kLeft = 128, kWidth = 192;
   svg += "<g font-family=\"sans-serif\" font-size=\"88\" fill=\"#16131f\">\n";
   for (std::size_t k = 0; k < kColourCount; ++k)
-    append_swatch(svg, kLeft + static_cast<long>(k) * kWidth, kWidth, kColours[k]);
-  append_label(svg, kLeft, "1: true to shape and size");
-  append_label(svg, kLeft + (kColourCount - 1) * kWidth, "4 or more");
-  append_swatch(svg, kLeft + 15 * kWidth, kWidth, kFlippedColour);
-  append_label(svg, kLeft + 15 * kWidth, "flipped");
+    append_swatch(svg, kLegendLeft + static_cast<long>(k) * kSwatchWidth, kSwatchWidth,
+                  kColours[k]);
+  append_label(svg, kLegendLeft, "1: true to shape and size");
+  append_label(svg, kLegendLeft + (kColourCount - 1) * kSwatchWidth, "4 or more");
+  append_swatch(svg, kLegendLeft + 15 * kSwatchWidth, kSwatchWidth, kFlippedColour);
+  append_label(svg, kLegendLeft + 15 * kSwatchWidth, "flipped");
   svg += "</g>\n";
 }
 

@@ -14,6 +14,8 @@
 namespace unwrapd {
 namespace {
 
+constexpr unsigned kDigitBits = 11;  // of a hash, sorted at a time
+
 struct Entry {
   std::uint32_t hash = 0;
   Index vertex = 0;
@@ -31,10 +33,9 @@ std::uint32_t hash_of(const Vec3& p) {
 }
 
 void sort_by_hash(std::vector<Entry>& entries) {
-  constexpr unsigned kBits = 11;
-  for (unsigned shift = 0; shift < 32; shift += kBits)
-    counting_sort(entries, 1 << kBits, [shift](const Entry& entry) {
-      return static_cast<Index>((entry.hash >> shift) & ((1U << kBits) - 1));
+  for (unsigned shift = 0; shift < 32; shift += kDigitBits)
+    counting_sort(entries, 1 << kDigitBits, [shift](const Entry& entry) {
+      return static_cast<Index>((entry.hash >> shift) & ((1U << kDigitBits) - 1));
     });
 }
 

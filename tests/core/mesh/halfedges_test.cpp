@@ -92,11 +92,11 @@ TEST(Halfedges, ADoubleSidedSheetIsTwoSheets) {
   EXPECT_EQ(std::count(both.twin.begin(), both.twin.end(), kNoTwin), 32);
 }
 
-TEST(Halfedges, AMillionFacesAtOneEdgeAreLeftUnpaired) {
+TEST(Halfedges, ManyFacesAtOneEdgeAreLeftUnpaired) {
   std::vector<Triangle> faces;
-  for (Index t = 0; t < 1'000'000; ++t) faces.push_back({0, 1, t + 2});
-  const Halfedges h = build_halfedges(faces, 1'000'002);
-  EXPECT_EQ(std::count(h.twin.begin(), h.twin.end(), kNoTwin), 3'000'000);
+  for (Index t = 0; t < 100'000; ++t) faces.push_back({0, 1, t + 2});
+  const Halfedges h = build_halfedges(faces, 100'002);
+  EXPECT_EQ(std::count(h.twin.begin(), h.twin.end(), kNoTwin), 300'000);
 }
 
 TEST(BoundaryLoops, FollowOneAnotherAndHoldEveryOpenHalfedgeOnce) {
