@@ -35,6 +35,15 @@ const anyValue = fc.oneof(
   fc.string(), fc.integer(), fc.double(), fc.constantFrom('', 'auto', 'null', 'NaN', '1e9', '-1'),
   fc.boolean(), fc.constant(null), fc.array(fc.integer(), {maxLength: 2}));
 
+/** A value on a bound of an option, or just beyond it. */
+function boundaryOption(properties) {
+  const bounded = Object.entries(properties).filter(([, schema]) => !schema.enum);
+  return fc.constantFrom(...bounded.flatMap(([name, {minimum = 0, maximum = 1e6}]) =>
+    [minimum - 1, minimum - 0.5, minimum, minimum + 0.5, maximum, maximum + 1]
+      .filter((value) => name !== 'iterations' || value < maximum)  // that many would take minutes
+      .map((value) => ({[name]: value}))));
+}
+
 function someOptions(properties) {
   const names = Object.keys(properties);
   const valid = fc.record(
@@ -42,7 +51,8 @@ function someOptions(properties) {
     {requiredKeys: []});
   const wild = fc.dictionary(fc.oneof(fc.constantFrom(...names), fc.string({minLength: 1})), anyValue,
                              {maxKeys: 2, noNullPrototype: true});
-  return fc.oneof(valid, fc.tuple(valid, wild).map(([good, bad]) => ({...good, ...bad})));
+  const bad = fc.oneof(wild, boundaryOption(properties));
+  return fc.oneof(valid, fc.tuple(valid, bad).map((both) => Object.assign({}, ...both)));
 }
 
 /** What the schema cannot say: padding is at most a quarter of resolution. */

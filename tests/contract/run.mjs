@@ -1,7 +1,8 @@
 // A run of the contract test: it calls operations, lets the contract judge every answer, and counts.
 import {request} from './http.mjs';
 
-const kShown = 40;  // failures that are printed in full
+const kShown = 40;    // failures that are printed in full
+const kEchoed = 200;  // characters of a value
 
 export class Run {
   constructor(contract) {
@@ -21,7 +22,9 @@ export class Run {
   }
 
   expectEqual(name, actual, expected) {
-    this.expect(name, actual === expected ? [] : [`is ${actual}, expected ${expected}`]);
+    const short = (value) => String(value).slice(0, kEchoed);
+    this.expect(name, actual === expected
+      ? [] : [`is ${short(actual)}, expected ${short(expected)}`]);
   }
 
   /** Judges an answer that was fetched in some other way. */
