@@ -11,13 +11,6 @@ const kGlb = {'Content-Type': 'model/gltf-binary'};
 const kWait = {...kGlb, Prefer: 'wait=30'};
 const kRepresentations = ['model/gltf-binary', 'model/gltf+json', 'model/obj', 'application/json'];
 
-/** A job that cannot be done, by the status at which its problem is told. */
-const kFailures = {
-  400: {body: meshes.truncatedGlb(), code: 'malformed_glb'},
-  415: {body: Buffer.from([0, 1, 2, 3, 4, 5, 6, 7]), code: 'unknown_format'},
-  422: {body: meshes.pointsGlb(), code: 'no_triangles'},
-};
-
 export async function service(run, base) {
   for (const id of ['getMethods', 'getLimits', 'getHealth', 'getReadiness']) {
     await run.call(base, id, {status: 200});
@@ -125,9 +118,15 @@ async function badOption(run, base, query, name) {
 }
 
 export async function failedJobs(run, base) {
-  for (const [status, {body, code}] of Object.entries(kFailures)) {
-    await failure(run, base, {body, code, status: Number(status)});
+  for (const [code, body] of Object.entries(meshes.kRefused)) {
+    await failure(run, base, {body, code, status: statusOf(code)});
   }
+}
+
+/** What the title of each group of codes says: see api/error_table.cpp. */
+function statusOf(code) {
+  if (code.startsWith('malformed_')) return 400;
+  return code === 'unknown_format' ? 415 : 422;
 }
 
 /** Both ways to send an asset that cannot be done, and what its job answers afterwards. */
@@ -187,6 +186,7 @@ async function badMultipart(run, base, [options, mesh, buffer]) {
     'no mesh': [options, buffer],
     'two meshes': [mesh, mesh],
     'options twice': [options, options, mesh, buffer],
+    'a buffer without a name': [mesh, {...buffer, filename: undefined}],
     'options that are no JSON': [{...options, body: '{"method":'}, mesh, buffer],
   };
   for (const [name, parts] of Object.entries(bad)) {
@@ -197,6 +197,9 @@ async function badMultipart(run, base, [options, mesh, buffer]) {
   const wrong = multipart([{...options, body: '{"iterations":"10"}'}, mesh, buffer]);
   const problem = await run.json(base, 'createJob', {...wrong, status: 422});
   run.expectEqual('pointer into the options part', problem.pointer, '/iterations');
+  const twice = multipart([{...options, body: '{"pins":"diameter","pins":"spectral"}'}, mesh, buffer]);
+  run.expectEqual('pointer to a member given twice',
+                  (await run.json(base, 'createJob', {...twice, status: 422})).pointer, '/pins');
   const truncated = multipart([mesh]);
   await run.call(base, 'createJob', {headers: truncated.headers, status: 400,
                                      body: truncated.body.subarray(0, 80), name: 'cut multipart'});
@@ -209,6 +212,41 @@ export async function badBodies(run, base) {
     await run.call(base, id, {headers, body: meshes.glb(), status: 415});
     const answer = await raw(base, `POST ${path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n`);
     run.judge('a body without length', id, answer, 411);
+  }
+  const {method, path} = run.contract.operation('unwrap');
+  const headers = {...kGlb, 'Transfer-Encoding': 'chunked'};
+  run.judge('a body in chunks', 'unwrap',
+            await request(base, {method, path, headers, body: meshes.glb()}), 200);
+}
+
+/** Requests that begin and do not go on. */
+export async function slowRequests(run, base) {
+  const head = 'POST /v1/jobs HTTP/1.1\r\nHost: x\r\n';
+  const starts = {'half a head': head, 'half a body': `${head}Content-Length: 100\r\n\r\nhalf`};
+  await Promise.all(Object.entries(starts).map(async ([name, text]) =>
+    run.judge(name, 'createJob', await raw(base, text), 408)));
+}
+
+/** A reader who comes after more events than are kept is told which ones are gone. */
+export async function gap(run, base) {
+  const query = {iterations: 5000};
+  const job = await run.json(base, 'createJob',
+                             {query, headers: kWait, body: meshes.glb(2), status: 200});
+  const answer = await run.call(base, 'watchJob', {job: job.id, status: 200});
+  const [first, second] = parseEvents(answer.body.toString());
+  run.expectEqual('what comes first', first?.event, 'gap');
+  run.expectEqual('what comes next', second?.id, first?.data.last + 1);
+}
+
+/** HEAD is GET without the body. */
+export async function heads(run, base) {
+  for (const {id, method, path} of run.contract.operations()) {
+    if (method !== 'GET' || path.includes('{id}')) continue;
+    const get = await run.call(base, id, {status: 200});
+    const answer = await request(base, {method: 'HEAD', path});
+    run.expectEqual(`HEAD ${path}`, answer.status, get.status);
+    run.expectEqual(`its body`, answer.body.length, 0);
+    run.expectEqual(`its type`, answer.headers['content-type'], get.headers['content-type']);
   }
 }
 

@@ -8,7 +8,8 @@ const kPatience = 120_000;  // ms; no answer takes as long unless the server han
 export function request(base, {method = 'GET', path, headers = {}, body}) {
   return new Promise((resolve, reject) => {
     const options = {method, headers: {...headers}, agent: false, timeout: kPatience};
-    if (body !== undefined) options.headers['Content-Length'] ??= body.length;
+    const isChunked = 'Transfer-Encoding' in headers;
+    if (body !== undefined && !isChunked) options.headers['Content-Length'] ??= body.length;
     const call = http.request(new URL(path, base), options, (answer) => {
       const chunks = [];
       answer.on('data', (piece) => chunks.push(piece));

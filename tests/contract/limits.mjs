@@ -48,6 +48,8 @@ export function tinyLimits(run, binary) {
     for (const id of ['createJob', 'unwrap']) {
       const problem = await run.json(base, id, {headers: kGlb, body: meshes.glb(20), status: 413});
       run.expectEqual(`${id} of a long body`, problem.code, 'body_too_large');
+      const headers = {...kGlb, 'Transfer-Encoding': 'chunked'};
+      await run.call(base, id, {headers, body: meshes.glb(20), status: 413, name: 'long, in chunks'});
     }
   });
 }

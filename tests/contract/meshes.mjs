@@ -103,15 +103,62 @@ export function obj(n = 2) {
   return Buffer.from(lines.join('\n') + '\n');
 }
 
-/** A GLB whose chunk ends too early: malformed_glb. */
-export function truncatedGlb() {
-  return glb().subarray(0, 100);
-}
-
-/** A glTF without any triangle: no_triangles. */
-export function pointsGlb() {
+/** A GLB of a small grid after change(document, mesh) has been at it. */
+function changed(change) {
   const mesh = grid(2);
   const json = document(mesh, {});
-  json.meshes[0].primitives[0].mode = 0;
+  change(json, mesh);
   return container(json, binary(mesh));
 }
+
+/** A strip of quads closed with half a turn: a surface with one side. */
+function moebius(n = 12) {
+  const lines = [];
+  for (let i = 0; i < n; ++i) {
+    const turn = (2 * Math.PI * i) / n;
+    for (const side of [-0.3, 0.3]) {
+      const radius = 1 + side * Math.cos(turn / 2);
+      lines.push(`v ${radius * Math.cos(turn)} ${radius * Math.sin(turn)} ` +
+                 `${side * Math.sin(turn / 2)}`);
+    }
+  }
+  for (let i = 0; i < n; ++i) {
+    const [a, b] = [2 * i + 1, 2 * i + 2];
+    const [c, d] = i + 1 < n ? [a + 2, b + 2] : [2, 1];
+    lines.push(`f ${a} ${c} ${b}`, `f ${b} ${c} ${d}`);
+  }
+  return Buffer.from(lines.join('\n') + '\n');
+}
+
+function compressedBy(extension, place) {
+  return changed((json) => {
+    json.extensionsUsed = [extension];
+    json.extensionsRequired = [extension];
+    place(json);
+  });
+}
+
+/** Assets that cannot be done, by the code of the problem that they are to get. */
+export const kRefused = {
+  unknown_format: Buffer.from([0, 1, 2, 3, 4, 5, 6, 7]),
+  malformed_glb: glb().subarray(0, 100),
+  malformed_json: Buffer.from('{"asset":{"version":"2.0"},"meshes":[}'),
+  malformed_gltf: changed((json) => (json.accessors[1].bufferView = 7)),
+  malformed_obj: Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n'),
+  malformed_draco: compressedBy('KHR_draco_mesh_compression', (json) => {
+    json.meshes[0].primitives[0].extensions = {
+      KHR_draco_mesh_compression: {bufferView: 0, attributes: {POSITION: 0}}};
+  }),
+  malformed_meshopt: compressedBy('EXT_meshopt_compression', (json) => {
+    const {byteLength} = json.bufferViews[1];
+    json.bufferViews[1].extensions = {EXT_meshopt_compression: {
+      buffer: 0, byteLength: 50, byteStride: 12, count: byteLength / 12, mode: 'ATTRIBUTES'}};
+  }),
+  missing_buffer: gltf('elsewhere.bin').text,
+  external_uri: gltf('https://example.org/grid.bin').text,
+  unsupported_extension: compressedBy('KHR_unheard_of', () => {}),
+  no_triangles: changed((json) => (json.meshes[0].primitives[0].mode = 0)),
+  zero_area: changed((json, mesh) => mesh.positions.fill(0)),
+  non_finite_position: changed((json, mesh) => (mesh.positions[4] = NaN)),
+  not_orientable: moebius(),
+};
