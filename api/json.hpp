@@ -13,7 +13,7 @@ namespace unwrapd::api {
 using Json = nlohmann::ordered_json;
 
 struct JsonLimits {
-  std::size_t max_bytes = 64 * 1024;
+  std::size_t max_bytes = 65'536;
   int max_depth = 16;
 };
 

@@ -24,7 +24,7 @@ constexpr std::array kIterative = {Method::arap, Method::hybrid};
 constexpr std::array kOnlyHybrid = {Method::hybrid};
 constexpr std::array kOnlyAsap = {Method::asap};
 
-constexpr double kMaxPadding = kMaxResolution / 4;  // and at most a quarter of resolution
+constexpr double kMaxPadding = 0.25 * kMaxResolution;  // and at most a quarter of resolution
 
 /// The field of the options that a member pointer names, in UnwrapOptions or JobOptions itself.
 template <auto kField>
