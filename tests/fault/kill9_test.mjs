@@ -1,0 +1,190 @@
+// The real server, killed and ended while it works: nothing is lost, nothing half written is left,
+// and what was running runs again. UNWRAPD names the binary.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import { existsSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
+import { connect } from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import test from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+
+const QUICK = "iterations=2";
+const LONG = "iterations=10000"; // some seconds of work: killed long before its end
+
+/** An OBJ of a bumpy square of size x size quads. */
+function grid(size) {
+  const lines = [];
+  for (let y = 0; y <= size; y++)
+    for (let x = 0; x <= size; x++)
+      lines.push(`v ${x / size} ${y / size} ${0.3 * Math.sin((5 * x) / size) * Math.cos((4 * y) / size)}`);
+  const at = (x, y) => y * (size + 1) + x + 1;
+  for (let y = 0; y < size; y++)
+    for (let x = 0; x < size; x++) {
+      lines.push(`f ${at(x, y)} ${at(x + 1, y)} ${at(x + 1, y + 1)}`);
+      lines.push(`f ${at(x, y)} ${at(x + 1, y + 1)} ${at(x, y + 1)}`);
+    }
+  return lines.join("\n") + "\n";
+}
+
+class Server {
+  /** Starts a server on a directory; resolves when it has told its address. */
+  static async start(data, ...flags) {
+    const server = new Server();
+    server.process = spawn(
+      process.env.UNWRAPD,
+      ["--listen", "127.0.0.1:0", "--data", data, "--workers", "1", "--log-level", "off", ...flags],
+      { stdio: ["ignore", "pipe", "inherit"] },
+    );
+    server.exited = once(server.process, "exit");
+    const lines = createInterface({ input: server.process.stdout });
+    const [line] = await once(lines, "line");
+    server.url = line.replace("unwrapd listening on ", "");
+    return server;
+  }
+
+  async submit(query, size = 30) {
+    const answer = await fetch(`${this.url}/v1/jobs?${query}`, {
+      method: "POST",
+      headers: { "Content-Type": "model/obj" },
+      body: grid(size),
+    });
+    assert.equal(answer.status, 202);
+    return (await answer.json()).id;
+  }
+
+  async job(id) {
+    return (await fetch(`${this.url}/v1/jobs/${id}`)).json();
+  }
+
+  /** The job, once it is as expected. */
+  async until(id, expected) {
+    for (const giveUp = Date.now() + 240_000; Date.now() < giveUp; await sleep(5)) {
+      const job = await this.job(id);
+      if (expected(job)) return job;
+    }
+    assert.fail(`job ${id} is still ${JSON.stringify(await this.job(id))}`);
+  }
+
+  iterates(id) {
+    return this.until(id, (job) => job.state === "running" && job.progress?.iteration > 0);
+  }
+
+  finished(id) {
+    return this.until(id, (job) => ["succeeded", "failed", "cancelled"].includes(job.state));
+  }
+
+  /** Sends a signal; resolves with [exit code, signal]. */
+  async end(signal) {
+    this.process.kill(signal);
+    return this.exited;
+  }
+}
+
+/** A directory for servers, gone after the test. */
+function dataDirectory(t) {
+  const data = mkdtempSync(join(tmpdir(), "unwrapd-fault-"));
+  t.after(() => rmSync(data, { recursive: true, force: true }));
+  return data;
+}
+
+function filesBelow(directory) {
+  return readdirSync(directory, { recursive: true, withFileTypes: true })
+    .filter((entry) => entry.isFile())
+    .map((entry) => entry.name);
+}
+
+/** An upload that stops half-way; resolves when the server has begun to store it. */
+async function beginUpload(server, data) {
+  const { hostname, port } = new URL(server.url);
+  const socket = connect(Number(port), hostname);
+  socket.on("error", () => {}); // the server is killed
+  socket.write(
+    "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: model/obj\r\nContent-Length: 9000000\r\n\r\n",
+  );
+  socket.write("v 0 0 0\n".repeat(100_000));
+  while (filesBelow(join(data, "incoming")).length === 0) await sleep(5);
+}
+
+test("kill -9: what ran runs again, what waited waits, nothing partial remains", async (t) => {
+  const data = dataDirectory(t);
+  const first = await Server.start(data);
+  const done = await first.submit(QUICK, 6);
+  await first.finished(done);
+  const result = await (await fetch(`${first.url}/v1/jobs/${done}/result`)).text();
+  const running = await first.submit(LONG);
+  const waiting = [await first.submit(QUICK, 4), await first.submit(QUICK, 5)];
+  await first.iterates(running);
+  await beginUpload(first, data);
+  assert.deepEqual(await first.end("SIGKILL"), [null, "SIGKILL"]);
+
+  const second = await Server.start(data);
+  assert.deepEqual(filesBelow(join(data, "incoming")), []);
+  const again = await second.finished(running);
+  assert.equal(again.state, "succeeded");
+  assert.equal(again.attempt, 2);
+  const events = await (await fetch(`${second.url}${again.links.events}`)).text();
+  assert.match(events, /^id: 1000000/m, "the second attempt goes on counting events");
+  for (const id of waiting) {
+    const job = await second.finished(id);
+    assert.deepEqual([job.state, job.attempt], ["succeeded", 1]);
+    assert.equal((await fetch(`${second.url}${job.links.result}`)).status, 200);
+  }
+  assert.equal(await (await fetch(`${second.url}/v1/jobs/${done}/result`)).text(), result);
+  assert.deepEqual(filesBelow(join(data, "blobs")).filter((name) => name.endsWith(".part")), []);
+  assert.deepEqual(await second.end("SIGTERM"), [0, null]);
+});
+
+test("a job that was asked to stop is not run again after kill -9", async (t) => {
+  const data = dataDirectory(t);
+  const first = await Server.start(data);
+  const id = await first.submit(LONG);
+  await first.iterates(id);
+  // Killed in the same breath: the server may or may not get to stop the job, but has noted it.
+  await fetch(`${first.url}/v1/jobs/${id}`, { method: "DELETE" });
+  await first.end("SIGKILL");
+  const second = await Server.start(data);
+  assert.equal((await second.finished(id)).state, "cancelled");
+  await second.end("SIGTERM");
+});
+
+test("a job during which the server dies three times is poison", async (t) => {
+  const data = dataDirectory(t);
+  let server = await Server.start(data);
+  const id = await server.submit(LONG);
+  for (let death = 1; death <= 3; death++) {
+    await server.iterates(id);
+    await server.end("SIGKILL");
+    server = await Server.start(data);
+  }
+  const job = await server.job(id);
+  assert.deepEqual([job.state, job.problem.code, job.attempt], ["failed", "poison", 3]);
+  assert.equal(existsSync(join(data, "blobs", id)), false);
+  await server.end("SIGTERM");
+});
+
+test("SIGTERM: a running job is finished, then the exit code is 0", async (t) => {
+  const data = dataDirectory(t);
+  const first = await Server.start(data, "--drain-seconds", "300");
+  const id = await first.submit(LONG);
+  await first.iterates(id);
+  assert.deepEqual(await first.end("SIGTERM"), [0, null]);
+  const second = await Server.start(data);
+  const job = await second.job(id);
+  assert.deepEqual([job.state, job.attempt], ["succeeded", 1]);
+  await second.end("SIGINT");
+});
+
+test("SIGTERM without patience: the job runs again at the next start", async (t) => {
+  const data = dataDirectory(t);
+  const first = await Server.start(data, "--drain-seconds", "0");
+  const id = await first.submit(LONG);
+  await first.iterates(id);
+  assert.deepEqual(await first.end("SIGTERM"), [0, null]);
+  const second = await Server.start(data);
+  const job = await second.finished(id);
+  assert.deepEqual([job.state, job.attempt], ["succeeded", 2]);
+  await second.end("SIGTERM");
+});

@@ -1,0 +1,107 @@
+// Event streams over HTTP.
+#include "running_server.hpp"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <thread>
+
+namespace unwrapd::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class Events : public RunningServer {
+ protected:
+  std::string events(const std::string& id, const httplib::Headers& headers = {}) {
+    const auto answer = get(id, "events", headers);
+    EXPECT_EQ(answer->get_header_value("Content-Type"), "text/event-stream");
+    EXPECT_EQ(answer->get_header_value("X-Accel-Buffering"), "no");
+    return answer->body;
+  }
+
+  /// A reader that has received its first bytes and stays until the stream ends.
+  std::jthread stay(const std::string& id, std::atomic<int>& begun) {
+    return std::jthread([this, id, &begun] {
+      bool first = true;
+      client().Get("/v1/jobs/" + id + "/events", [&](const char*, std::size_t) {
+        if (first) ++begun;
+        first = false;
+        return true;
+      });
+    });
+  }
+};
+
+TEST_F(Events, TellTheWholeStoryInOrder) {
+  start();
+  const std::string id = submit("?iterations=3");
+  const std::string story = events(id);
+  std::size_t at = 0;
+  for (const char* event :
+       {"event: queued", "event: started", "\"name\":\"read\"", "\"name\":\"solve\"",
+        "event: iteration", "\"i\":3", "\"name\":\"write\"", "event: succeeded"}) {
+    at = story.find(event, at);
+    ASSERT_NE(at, std::string::npos) << event << " in\n" << story;
+  }
+  EXPECT_THAT(story, StartsWith("id: 1\n"));
+  EXPECT_EQ(state(id), "succeeded");
+}
+
+TEST_F(Events, AreResumedAfterTheLastOneSeen) {
+  start();
+  const std::string id = submit("?iterations=3");
+  const std::string whole = events(id);
+  const std::size_t fourth = whole.find("id: 4\n");
+  EXPECT_EQ(events(id, {{"Last-Event-ID", "3"}}), whole.substr(fourth));
+  const std::string last = whole.substr(whole.rfind("id: "));
+  const std::string last_id = last.substr(4, last.find('\n') - 4);
+  EXPECT_EQ(events(id, {{"Last-Event-ID", last_id}}), last);
+  expect_problem(get(id, "events", {{"Last-Event-ID", "x"}}), 400, "malformed_request");
+}
+
+TEST_F(Events, OfALongJobHaveAGapForWhoeverComesLate) {
+  start();
+  const std::string id = submit("?iterations=5000", 4);
+  await_state(id, "succeeded");
+  const std::string late = events(id, {{"Last-Event-ID", "2"}});
+  EXPECT_THAT(late, HasSubstr("event: gap\ndata: {\"first\":3,"));
+  EXPECT_THAT(late, HasSubstr("event: succeeded"));
+}
+
+TEST_F(Events, AfterARestartTheEndIsStillTold) {
+  start();
+  const std::string id = submit();
+  const std::string whole = events(id);
+  restart();
+  const std::string last = events(id);
+  EXPECT_EQ(last, whole.substr(whole.rfind("id: ")));
+}
+
+TEST_F(Events, AReaderThatLeavesCancelsNothing) {
+  start();
+  const std::string id = submit("?iterations=2000", 8);
+  client().Get("/v1/jobs/" + id + "/events", [](const char*, std::size_t) { return false; });
+  await_state(id, "succeeded");
+}
+
+TEST_F(Events, StreamsAreLimitedAndStarveNoOtherRequest) {
+  start();
+  const std::string id = submit_endless();
+  std::atomic<int> begun = 0;
+  std::vector<std::jthread> readers;
+  for (int r = 0; r < config_.limits.max_streams; ++r) readers.push_back(stay(id, begun));
+  await([&] { return begun == config_.limits.max_streams; });
+  const auto refused = get(id, "events");
+  expect_problem(refused, 503, "too_many_streams");
+  EXPECT_TRUE(refused->has_header("Retry-After"));
+  EXPECT_EQ(client().Get("/healthz")->status, 200);
+  client().Delete("/v1/jobs/" + id);
+  readers.clear();
+  await([&] { return get(id, "events")->status == 200; });
+}
+
+}  // namespace
+}  // namespace unwrapd::server
