@@ -97,18 +97,31 @@ ProgressView::~ProgressView() {
 }
 
 void ProgressView::show(const ProgressState& state, Clock::time_point now) {
-  if (style_ == ProgressStyle::none) return;
-  const bool is_bar = style_ == ProgressStyle::bar;
-  const bool new_line = !is_bar && stage_ != state.stage;
-  const Clock::duration interval = is_bar ? Clock::duration(kBarInterval) : kLineInterval;
-  if (drawn_ && now - *drawn_ < interval && !new_line) return;
-  drawn_ = now;
-  stage_ = state.stage;
-  if (is_bar) {
-    out_ << kEraseLine << progress_line(state, width_) << std::flush;
-  } else {
-    out_ << heading(state) << " " << figures(state) << std::endl;
+  if (style_ == ProgressStyle::bar && is_due(kBarInterval, now)) draw_bar(state, now);
+  if (style_ != ProgressStyle::lines) return;
+  if (stages_.insert(state.stage).second) {
+    if (pending_) write_line(*pending_, now);
+    write_line(state, now);
+  } else if (is_due(kLineInterval, now)) {
+    write_line(state, now);
+  } else if (state.iteration > 0) {
+    pending_ = state;
   }
+}
+
+bool ProgressView::is_due(Clock::duration interval, Clock::time_point now) const {
+  return !drawn_ || now - *drawn_ >= interval;
+}
+
+void ProgressView::draw_bar(const ProgressState& state, Clock::time_point now) {
+  out_ << kEraseLine << progress_line(state, width_) << std::flush;
+  drawn_ = now;
+}
+
+void ProgressView::write_line(const ProgressState& state, Clock::time_point now) {
+  out_ << heading(state) << " " << figures(state) << std::endl;
+  drawn_ = now;
+  pending_.reset();
 }
 
 }  // namespace unwrapd::client

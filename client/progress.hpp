@@ -4,6 +4,7 @@
 #include <chrono>
 #include <iosfwd>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "api/json.hpp"
@@ -34,8 +35,8 @@ std::string progress_line(const ProgressState& state, std::size_t width);
 /// How the progress is shown: a bar that is redrawn in place, plain lines, or not at all.
 enum class ProgressStyle { none, lines, bar };
 
-/// Draws on out, at most 20 times a second as a bar, and as lines once for each stage and once a
-/// second between.
+/// Draws on out: as a bar at most 20 times a second; as lines when a kind of stage first begins,
+/// the last figures before it, and once a second between.
 class ProgressView {
  public:
   using Clock = std::chrono::steady_clock;
@@ -49,11 +50,16 @@ class ProgressView {
   void show(const ProgressState& state, Clock::time_point now);
 
  private:
+  [[nodiscard]] bool is_due(Clock::duration interval, Clock::time_point now) const;
+  void draw_bar(const ProgressState& state, Clock::time_point now);
+  void write_line(const ProgressState& state, Clock::time_point now);
+
   std::ostream& out_;
   ProgressStyle style_;
   std::size_t width_;
   std::optional<Clock::time_point> drawn_;
-  std::string stage_;
+  std::set<std::string> stages_;          ///< that have begun
+  std::optional<ProgressState> pending_;  ///< figures that no line has told
 };
 
 }  // namespace unwrapd::client

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdio>
+#include <optional>
 #include <ostream>
 
 #include "api/options.hpp"
@@ -95,16 +96,30 @@ void tell(const Arguments& arguments, const std::string& report_text, const Cons
   }
 }
 
-void write_results(JobClient& client, const Arguments& arguments, const std::string& job_id,
-                   const Console& console) {
-  NewFile result(arguments.out);
-  client.fetch(job_id, "/result", [&](std::string_view bytes) { result.append(bytes); });
-  const std::string report = client.fetch(job_id, "/report");
-  if (!arguments.report.empty()) write_file(arguments.report, report);
-  if (!arguments.layout.empty()) write_file(arguments.layout, client.fetch(job_id, "/layout.svg"));
-  result.commit();
-  tell(arguments, report, console);
-}
+/// The files to write, opened before anything is sent: what cannot be written is known at once.
+class Outputs {
+ public:
+  explicit Outputs(const Arguments& arguments) : result_(arguments.out) {
+    if (!arguments.report.empty()) report_.emplace(arguments.report);
+    if (!arguments.layout.empty()) layout_.emplace(arguments.layout);
+  }
+
+  /// Fetches and writes all of them, and returns the report.
+  std::string fill(JobClient& client, const std::string& job_id) {
+    client.fetch(job_id, "/result", [&](std::string_view bytes) { result_.append(bytes); });
+    std::string report = client.fetch(job_id, "/report");
+    if (report_) report_->append(report);
+    if (layout_) layout_->append(client.fetch(job_id, "/layout.svg"));
+    if (report_) report_->commit();
+    if (layout_) layout_->commit();
+    result_.commit();
+    return report;
+  }
+
+ private:
+  NewFile result_;
+  std::optional<NewFile> report_, layout_;
+};
 
 }  // namespace
 
@@ -114,10 +129,11 @@ void run(const Arguments& arguments, const Console& console, const std::stop_tok
     return;
   }
   file_bytes(arguments.file);
+  Outputs outputs(arguments);
   JobClient client(arguments.server, stop);
   const api::Job job = submit(client, arguments);
   finish_job(client, arguments, job.id, console);
-  write_results(client, arguments, job.id, console);
+  tell(arguments, outputs.fill(client, job.id), console);
 }
 
 }  // namespace unwrapd::client

@@ -111,6 +111,36 @@ TEST(ProgressView, WritesALineForEveryStage) {
   EXPECT_EQ(out.str(), "queued   0%\nread   0%\nsolve   0%\n");
 }
 
+TEST(ProgressView, TellsTheLastFiguresOfTheSolveHoweverFastItWas) {
+  std::ostringstream out;
+  ProgressView view(out, ProgressStyle::lines, 79);
+  const ProgressView::Clock::time_point now;
+  const ProgressState begun =
+      after({}, api::stage_event(1, {.stage = Stage::solve, .chart_count = 1}));
+  ProgressState state = begun;
+  for (int i = 1; i <= 10; ++i) {
+    view.show(state, now);
+    state = after(begun, api::iteration_event(1 + i, {.iteration = i}, 0));
+  }
+  view.show(state, now);
+  view.show(after(state, api::stage_event(12, {.stage = Stage::pack, .chart_count = 1})), now);
+  EXPECT_EQ(std::ranges::count(out.str(), '\n'), 3);
+  EXPECT_THAT(out.str(), HasSubstr("iteration 10 "));
+}
+
+TEST(ProgressView, DoesNotRepeatAStageForEveryChart) {
+  std::ostringstream out;
+  ProgressView view(out, ProgressStyle::lines, 79);
+  ProgressState state;
+  for (state.chart = 0; state.chart < 400; ++state.chart) {
+    for (const char* stage : {"factor", "solve"}) {
+      state.stage = stage;
+      view.show(state, ProgressView::Clock::time_point());
+    }
+  }
+  EXPECT_EQ(std::ranges::count(out.str(), '\n'), 2);
+}
+
 TEST(ProgressView, IsSilentWhenAskedTo) {
   EXPECT_EQ(drawn(ProgressStyle::none, milliseconds(3000)), "");
 }
