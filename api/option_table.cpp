@@ -99,7 +99,7 @@ constexpr std::array kRows = {
                            "Local/global iterations of a chart."),
     choice<&O::initial, kInitialMaps>(
         "initial", kIterative,
-        "The map to start from; auto takes mean_value for one boundary, else lscm."),
+        "The map to start from; auto takes mean_value or lscm, whichever is nearer to rigid."),
     choice<&O::pins, kPins>(
         "pins", kOnlyAsap,
         "How the conformal map is pinned: two vertices at the diameter, or spectrally."),
