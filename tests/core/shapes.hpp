@@ -248,15 +248,28 @@ inline TriMesh moved(TriMesh mesh, const Vec3& by) {
   return mesh;
 }
 
+/// Gives every primitive vertices of its own, as glTF stores them.
+inline Surface in_parts(const TriMesh& mesh, const std::vector<Index>& part) {
+  Surface surface{{}, part, "test"};
+  std::map<std::pair<Index, Index>, Index> number;
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    Triangle face{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto key = std::pair(part[t], mesh.faces[t][i]);
+      const auto [at, is_new] = number.try_emplace(key, surface.mesh.vertex_count());
+      if (is_new) surface.mesh.positions.push_back(mesh.positions[mesh.faces[t][i]]);
+      face[i] = at->second;
+    }
+    surface.mesh.faces.push_back(face);
+  }
+  return surface;
+}
+
 /// Every face with vertices of its own, as flat-shaded exports have it.
 inline TriMesh soup(const TriMesh& mesh) {
-  TriMesh apart;
-  for (const Triangle& face : mesh.faces) {
-    const Index base = apart.vertex_count();
-    for (Index v : face) apart.positions.push_back(mesh.positions[std::size_t(v)]);
-    apart.faces.push_back({base, base + 1, base + 2});
-  }
-  return apart;
+  std::vector<Index> own(mesh.faces.size());
+  std::iota(own.begin(), own.end(), 0);
+  return in_parts(mesh, own).mesh;
 }
 
 /// The same surface with vertices and faces in another order, and faces starting at any corner.

@@ -121,6 +121,12 @@ TEST(Charts, HolesAreNotCut) {
   EXPECT_EQ(repair_count(charts, RepairKind::cut_to_disk), 0);
 }
 
+TEST(Charts, HandlesAreCutThoughThereIsAHole) {
+  TriMesh mesh = torus(9, 8);
+  mesh.faces.erase(mesh.faces.begin() + 20);
+  EXPECT_EQ(repair_count(checked_charts(mesh), RepairKind::cut_to_disk), 1);
+}
+
 TEST(Charts, AMoebiusStripIsRefused) {
   for (SeamMode seams : {SeamMode::automatic, SeamMode::keep, SeamMode::none}) {
     try {
@@ -130,6 +136,62 @@ TEST(Charts, AMoebiusStripIsRefused) {
       EXPECT_EQ(error.code(), ErrorCode::not_orientable);
     }
   }
+}
+
+/// The same vertices for all faces of a group, others for other groups; one primitive.
+TriMesh cut_apart(const TriMesh& mesh, const std::vector<Index>& group) {
+  return in_parts(mesh, group).mesh;
+}
+
+TEST(Charts, ACutThatSomeoneMadeIsKept) {
+  for (const TriMesh& closed : {sphere(3), torus(12, 9)}) {
+    const TriMesh opened = checked_charts(closed).charts.at(0).mesh;
+    const Charts charts = checked_charts(opened);
+    EXPECT_FALSE(charts.input.welded);
+    EXPECT_EQ(charts.input.boundaries, 1);
+    EXPECT_EQ(charts.charts.at(0).mesh.faces, opened.faces);
+    const Charts welded = checked_charts(opened, SeamMode::none);
+    EXPECT_TRUE(welded.input.welded);
+    EXPECT_EQ(welded.input.boundaries, 0);
+    EXPECT_EQ(repair_count(welded, RepairKind::cut_to_disk), 1);
+  }
+}
+
+TEST(Charts, TwoHalvesOfASphereAreKeptAndSixSidesOfACubeAreWelded) {
+  const TriMesh ball = sphere(2), box = cube(2);
+  std::vector<Index> half, side;
+  for (const Triangle& face : ball.faces)
+    half.push_back(ball.positions[face[0]].z() + ball.positions[face[1]].z() +
+                       ball.positions[face[2]].z() >
+                   0);
+  for (Index t = 0; t < box.face_count(); ++t) side.push_back(t / 32);
+  EXPECT_EQ(checked_charts(cut_apart(ball, half)).charts.size(), 2U);
+  const Charts charts = checked_charts(cut_apart(box, side));
+  EXPECT_TRUE(charts.input.welded);
+  EXPECT_EQ(charts.input.components, 1);
+}
+
+TEST(Charts, FlatShadedFacesAreWelded) {
+  for (const TriMesh& mesh : {grid(2, 1), cube(0), sphere(2), random_disk(5, 1)}) {
+    const Charts charts = checked_charts(soup(mesh));
+    EXPECT_TRUE(charts.input.welded);
+    EXPECT_EQ(charts.input.components, 1);
+  }
+}
+
+TEST(Charts, WhatIsWrongWithAMeshIsCounted) {
+  TriMesh mesh = merged(std::array{three_faces_at_an_edge(), moved(torus(6, 5), {9, 0, 0})});
+  mesh.faces.push_back(mesh.faces[1]);
+  mesh.faces.push_back({0, 0, 2});
+  mesh.faces.push_back(mesh.faces[2]);
+  const Charts charts = checked_charts(mesh);
+  EXPECT_EQ(repair_count(charts, RepairKind::degenerate_faces_set_aside), 1);
+  EXPECT_EQ(repair_count(charts, RepairKind::duplicate_faces_set_aside), 2);
+  EXPECT_EQ(repair_count(charts, RepairKind::non_manifold_edges_split), 1);
+  EXPECT_EQ(repair_count(charts, RepairKind::cut_to_disk), 1);
+  EXPECT_EQ(charts.input.genus, 1);
+  EXPECT_EQ(charts.input.components, 4);
+  EXPECT_EQ(charts.input.faces, mesh.face_count());
 }
 
 TEST(Charts, EveryRealMeshBecomesDisks) {

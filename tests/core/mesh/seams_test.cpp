@@ -33,23 +33,6 @@ long open_count(const Pairing& pairing) {
   return std::count(pairing.halfedges.twin.begin(), pairing.halfedges.twin.end(), kNoTwin);
 }
 
-/// Gives every primitive vertices of its own, as glTF stores them.
-Surface in_parts(const TriMesh& mesh, const std::vector<Index>& part) {
-  Surface surface{{}, part, "test"};
-  std::map<std::pair<Index, Index>, Index> number;
-  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
-    Triangle face{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto key = std::pair(part[t], mesh.faces[t][i]);
-      const auto [at, is_new] = number.try_emplace(key, surface.mesh.vertex_count());
-      if (is_new) surface.mesh.positions.push_back(mesh.positions[mesh.faces[t][i]]);
-      face[i] = at->second;
-    }
-    surface.mesh.faces.push_back(face);
-  }
-  return surface;
-}
-
 TEST(Seams, APositionIsOneVertexWhenWelded) {
   const TriMesh mesh = torus(7, 5);
   const Prepared p = prepared(surface_of(soup(mesh)));
@@ -79,6 +62,8 @@ TEST(Seams, ACutInsideAPrimitiveStaysOpen) {
   const Prepared p = prepared(surface);
   EXPECT_EQ(open_count(kept(p)), 16 + 4);
   EXPECT_EQ(open_count(pair_welded(p.welded, p.states)), 16);
+  surface.part.back() = 1;  // with a second primitive, too
+  EXPECT_EQ(open_count(kept(prepared(surface))), 16 + 4);
 }
 
 TEST(Seams, TwoSidesOfASheetInTwoPrimitivesAreNotSewnTogether) {

@@ -28,6 +28,10 @@ TEST(Weld, EqualsASearchThroughAllEarlierPositions) {
 TEST(Weld, NegativeZeroIsZero) {
   const std::vector<Vec3> positions{{0.0, 1, 0}, {-0.0, 1, -0.0}, {0, 1, 1e-300}};
   EXPECT_EQ(weld(positions), (std::vector<Index>{0, 0, 2}));
+  std::vector<Vec3> many;  // so many that their order in memory does not help
+  for (int k = 0; k < 1000; ++k) many.emplace_back(k % 2 == 0 ? 0.0 : -0.0, k / 2, 0);
+  const std::vector<Index> first_at = weld(many);
+  for (Index k = 0; k < 1000; ++k) EXPECT_EQ(first_at[k], k / 2 * 2);
 }
 
 TEST(Weld, NeighbouringDoublesAreDifferent) {
