@@ -1,7 +1,7 @@
-// The shell is a ring of circles that grow from the hole to the rim while their middle moves home:
-//   p(r, t) = (1 - r) c + r (cos t, sin t),   z = dome (1 - r^2) + ruffle r^3 sin(7 t + 5 r).
-// The ruffles give the rim more length than a flat disk's: it cannot be laid flat without
-// distortion, which makes the difference between the methods visible.
+// The shell is a bowl of circles that grow from the hole to the rim, ruffled towards the rim: with
+// a = kBend r the angle from the pole, its profile is (sin a, cos a), bent by more than a right
+// angle, and its radius and height follow sin and cos of 7 t + 3 r. Such a surface cannot be laid
+// flat without distortion, which makes the difference between the methods visible.
 #include "client/sample.hpp"
 
 #include <array>
@@ -21,6 +21,8 @@ using Point = std::array<float, 3>;
 constexpr int kRings = 71;
 constexpr int kSegments = 142;
 constexpr double kHoleRadius = 0.16;
+constexpr double kBend = 1.75;  // of the profile from the pole to the rim, radians
+constexpr double kRuffle = 0.15;
 
 struct Shell {
   std::vector<Point> positions;
@@ -28,10 +30,15 @@ struct Shell {
   std::vector<std::uint16_t> indices;
 };
 
+/// r: 0 at the pole, 1 at the rim; t: around, in radians.
 Point shell_point(double r, double t) {
-  const double x = 0.35 * (1 - r) + r * std::cos(t);
-  const double y = 0.2 * (1 - r) + r * std::sin(t);
-  const double z = 0.6 * (1 - r * r) + 0.22 * r * r * r * std::sin(7 * t + 5 * r);
+  const double bend = kBend * r;
+  const double ruffle = kRuffle * r * r * r * r;
+  const double phase = 7 * t + 3 * r;
+  const double radius = std::sin(bend) * (1 + ruffle * std::sin(phase));
+  const double x = 0.2 * (1 - r) + radius * std::cos(t);
+  const double y = 0.1 * (1 - r) + radius * std::sin(t);
+  const double z = 1.2 * std::cos(bend) + 0.8 * ruffle * std::cos(phase);
   return {static_cast<float>(x), static_cast<float>(z), static_cast<float>(-y)};  // Y is up
 }
 
