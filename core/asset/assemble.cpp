@@ -138,8 +138,10 @@ std::string finish(Json& document, const std::vector<std::string_view>& buffers,
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     Json& buffer = document["buffers"][i];
     buffer["byteLength"] = buffers[i].size();
-    buffer.erase("uri");
-    if (i > 0 || format == Format::gltf) buffer["uri"] = data_uri(buffers[i]);
+    if (i > 0 || format == Format::gltf)
+      buffer["uri"] = data_uri(buffers[i]);
+    else
+      buffer.erase("uri");
   }
   if (format == Format::gltf) return document.dump();
   const std::string json = document.dump();

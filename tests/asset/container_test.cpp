@@ -1,0 +1,106 @@
+#include "tests/asset/support.hpp"
+
+namespace unwrapd::asset::test {
+namespace {
+
+TEST(Recognition, GoesByContent) {
+  EXPECT_EQ(read_file(square().glb()).format(), Format::glb);
+  EXPECT_EQ(read_file(square().gltf()).format(), Format::gltf);
+  EXPECT_EQ(read_file("\xef\xbb\xbf" + square().gltf()).format(), Format::gltf);
+  EXPECT_EQ(read_file("# a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").format(), Format::obj);
+}
+
+TEST(Recognition, RefusesWhatItKnowsToBeSomethingElse) {
+  for (const std::string& file :
+       {std::string("DRACO\2\2\1\1"), std::string("\x1f\x8b\x08"), std::string("PK\3\4"),
+        std::string(), std::string("null"), std::string("[1]"), std::string("hello"),
+        std::string("v 0 0 0\0", 8)})
+    EXPECT_EQ(error_of(file).code(), ErrorCode::unknown_format) << file;
+}
+
+TEST(Glb, EveryPrefixIsRefused) {
+  const std::string file = square().glb();
+  for (std::size_t length = 4; length < file.size(); ++length)
+    EXPECT_EQ(error_of(file.substr(0, length)).code(), ErrorCode::malformed_glb) << length;
+}
+
+TEST(Glb, EveryWrongHeaderWordIsRefusedAtItsByte) {
+  for (const std::size_t byte : {std::size_t{4}, std::size_t{8}, std::size_t{12}}) {
+    std::string file = square().glb();
+    file[byte + 3] = '\x7f';
+    const Error error = error_of(file);
+    EXPECT_EQ(error.code(), ErrorCode::malformed_glb);
+    EXPECT_EQ(error.where(), "byte " + std::to_string(byte));
+  }
+}
+
+TEST(Glb, KeepsTheChunksThatItDoesNotKnow) {
+  std::string file = square().glb();
+  const std::string extra("\x04\0\0\0WHATabcd", 12);
+  file += extra;
+  file[8] = static_cast<char>(file.size() & 0xff);
+  file[9] = static_cast<char>(file.size() >> 8);
+  const Asset asset = read_file(file);
+  EXPECT_TRUE(write(asset, split_nowhere(asset), Format::glb).ends_with(extra));
+}
+
+TEST(Json, DepthIsBoundedWithoutRecursion) {
+  const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+  const std::string file = R"({"asset":{"version":"2.0"},"extras":)" + deep + "}";
+  EXPECT_EQ(error_of(file).code(), ErrorCode::malformed_json);
+  EXPECT_EQ(error_of(glb_of(file, "")).code(), ErrorCode::malformed_json);
+}
+
+TEST(Json, RefusesDuplicateNamesBadTextAndNumbersBeyondADouble) {
+  std::string many = "{";
+  for (int i = 0; i < 100; ++i) many += "\"" + std::to_string(i) + "\":0,";
+  for (const std::string& file : {std::string(R"({"a":1,"a":2})"), many + R"("42":0})",
+                                  std::string(R"({"a":)"), std::string("{\"a\":\"\xff\"}"),
+                                  std::string(R"({"a":1e400})"), std::string(R"({"a":1} x)")})
+    EXPECT_EQ(error_of(file).code(), ErrorCode::malformed_json) << file;
+}
+
+TEST(Uri, OnlyPlainRelativeNamesAreLookedUp) {
+  const std::string bin = square().bin;
+  for (const std::string uri :
+       {"../a.bin", "a/../../b.bin", "/etc/passwd", "file:///etc/passwd", "http://127.0.0.1/x",
+        "C:\\x.bin", "\\\\evil\\x", "..%2fa.bin", "%2fetc%2fpasswd", "a%00.bin", "a%5cb.bin", ""}) {
+    Builder b = square();
+    b.json["buffers"][0] = {{"byteLength", bin.size()}, {"uri", uri}};
+    const std::string document = b.json.dump();
+    try {
+      read({document, {{uri, bin}}}, {});
+      ADD_FAILURE() << uri;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::external_uri) << uri;
+      EXPECT_EQ(error.where(), "/buffers/0/uri");
+    }
+  }
+}
+
+TEST(Uri, ABufferIsFoundByItsNameAsWrittenOrDecoded) {
+  Builder b = square();
+  b.json["buffers"][0] = {{"byteLength", b.bin.size()}, {"uri", "my%20data/a.bin"}};
+  const std::string document = b.json.dump();
+  EXPECT_EQ(error_of(document).code(), ErrorCode::missing_buffer);
+  for (const char* name : {"my%20data/a.bin", "my data/a.bin"})
+    EXPECT_EQ(read({document, {{name, b.bin}}}, {}).surfaces().size(), 1U) << name;
+}
+
+TEST(Uri, AShortOrBrokenBufferIsRefused) {
+  Builder b = square();
+  for (const char* uri : {"data:application/octet-stream;base64,AAAA", "data:;base64,****",
+                          "data:application/octet-stream,AAAA", "data:"}) {
+    b.json["buffers"][0] = {{"byteLength", b.bin.size()}, {"uri", uri}};
+    EXPECT_EQ(error_of(b.json.dump()).code(), ErrorCode::malformed_gltf) << uri;
+  }
+}
+
+TEST(Uri, ThoseOfImagesDoNotMatter) {
+  Builder b = square();
+  b.json["images"] = {{{"uri", "../../../etc/passwd"}}, {{"uri", "http://169.254.169.254/"}}};
+  EXPECT_EQ(read_file(b.gltf()).surfaces().size(), 1U);
+}
+
+}  // namespace
+}  // namespace unwrapd::asset::test

@@ -1,0 +1,191 @@
+#include <Eigen/Geometry>
+#include <sstream>
+
+#include "tests/asset/support.hpp"
+
+namespace unwrapd::asset::test {
+namespace {
+
+const std::string kCube = R"(# a comment
+mtllib cube.mtl
+o Cube
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+vt 0.5 0.5
+vn 0 0 -1
+vn 0 0 1
+g bottom
+usemtl Red
+f 4/1/1 3/1/1 2/1/1 1/1/1   # turned
+usemtl Blue
+s off
+f 5//2 6//2 7//2 8//2
+f 1 2 6 5
+usemtl Red
+f -6 -5 -1 -2
+foo bar
+l 1/1 2/1
+)";
+
+/// Everything of an OBJ but its v, vt and f statements.
+std::vector<std::string> other_lines(const std::string& obj) {
+  std::vector<std::string> lines;
+  std::istringstream stream(obj);
+  for (std::string line; std::getline(stream, line);)
+    if (!line.starts_with("vt ") && !line.starts_with("f ")) lines.push_back(line);
+  return lines;
+}
+
+std::string line_with(const std::string& text, const std::string& start) {
+  const std::size_t at = text.find("\n" + start);
+  return at == std::string::npos ? "" : text.substr(at + 1, text.find('\n', at + 1) - at - 1);
+}
+
+TEST(Obj, PolygonsNegativeIndicesAndPartsAreRead) {
+  const Asset asset = read_file(kCube);
+  const Surface& surface = asset.surfaces()[0];
+  EXPECT_EQ(surface.mesh.vertex_count(), 8);
+  ASSERT_EQ(surface.mesh.face_count(), 8);
+  EXPECT_EQ(surface.part, (std::vector<Index>{1, 1, 2, 2, 2, 2, 1, 1}));
+  EXPECT_EQ(surface.mesh.faces[0], (Triangle{3, 2, 1}));
+  EXPECT_EQ(surface.mesh.faces[7][0], 2);
+  EXPECT_EQ(surface.name, "obj");
+}
+
+TEST(Obj, OnlyTexcoordsAndFacesChange) {
+  const Asset asset = read_file(kCube);
+  const std::string answer = write(asset, split_nowhere(asset), Format::obj);
+  std::vector<std::string> expected = other_lines(kCube);
+  expected.back() = "l 1 2";
+  EXPECT_EQ(other_lines(answer), expected);
+  EXPECT_EQ(line_with(answer, "f 4"), "f 4/4/1 3/3/1 2/2/1 1/1/1   # turned");
+  EXPECT_EQ(line_with(answer, "f 1"), "f 1/1 2/2 6/6 5/5");
+  EXPECT_EQ(line_with(answer, "f 3"), "f 3/3 4/4 8/8 7/7");
+  EXPECT_LT(answer.find("\nvt "), answer.find("\nf "));
+  EXPECT_EQ(answer.find("vt 0.5 0.5"), std::string::npos);
+}
+
+TEST(Obj, APolygonIsCutOnlyWhereASeamRunsThroughIt) {
+  const Asset asset = read_file(kCube);
+  std::vector<UnwrappedSurface> unwrapped = split_nowhere(asset);
+  UnwrappedSurface& surface = unwrapped[0];
+  surface.faces[1][0] = 8;  // the second triangle of the first polygon has a corner of its own
+  surface.source.push_back(asset.surfaces()[0].mesh.faces[1][0]);
+  surface.uv.emplace_back(0.125, 0.25);
+  const std::string answer = write(asset, unwrapped, Format::obj);
+  EXPECT_NE(answer.find("f 4/4/1 3/3/1 2/2/1\nf 4/9/1 2/2/1 1/1/1   # turned\n"),
+            std::string::npos);
+  EXPECT_NE(answer.find("\nvt 0.125 0.25\n"), std::string::npos);
+  EXPECT_NE(answer.find("f 1/1 2/2 6/6 5/5"), std::string::npos);
+}
+
+TEST(Obj, WhatIsWrittenReadsBackWithTheSameFaces) {
+  for (const std::string& text : {kCube, std::string("v 0 0 0\r\nv 1 0 0\r\nv 0 1 \\\r\n 0\r\n"
+                                                     "f 1 2 \\\r\n3\r\n")}) {
+    const Asset asset = read_file(text);
+    const std::string answer = write(asset, split_everywhere(asset), Format::obj);
+    const Asset again = read_file(answer);
+    EXPECT_EQ(again.surfaces()[0].mesh.faces, asset.surfaces()[0].mesh.faces);
+    EXPECT_EQ(again.surfaces()[0].mesh.positions, asset.surfaces()[0].mesh.positions);
+    EXPECT_EQ(again.surfaces()[0].part, asset.surfaces()[0].part);
+    const std::string twice = write(again, split_everywhere(again), Format::obj);
+    EXPECT_EQ(twice, answer);
+  }
+}
+
+TEST(Obj, FaultsAreNamedWithTheirLine) {
+  const std::vector<std::pair<std::string, ErrorCode>> faults = {
+      {"f 1 2 x", ErrorCode::malformed_obj},
+      {"f 1 2 4", ErrorCode::malformed_obj},
+      {"f 0 1 2", ErrorCode::malformed_obj},
+      {"f -4 1 2", ErrorCode::malformed_obj},
+      {"f 1 2 3/1/1", ErrorCode::malformed_obj},
+      {"f 1 2 3/1/1/1", ErrorCode::malformed_obj},
+      {"f 1 2 99999999999", ErrorCode::malformed_obj},
+      {"v 1 2", ErrorCode::malformed_obj},
+      {"v 1 2 zwei", ErrorCode::malformed_obj},
+      {"v 1 2 nan", ErrorCode::non_finite_position},
+      {"v 1 -inf 2", ErrorCode::non_finite_position},
+      {"v 1e400 0 0", ErrorCode::non_finite_position},
+      {"v 1e39 0 0", ErrorCode::non_finite_position}};
+  for (const auto& [line, code] : faults) {
+    const Error error = error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + line + "\nf 1 2 3\n");
+    EXPECT_EQ(error.code(), code) << line;
+    EXPECT_EQ(error.where(), "line 5") << line;
+  }
+  EXPECT_EQ(error_of("v 0 0 0\nv 1 0 0\n").code(), ErrorCode::no_triangles);
+}
+
+TEST(Obj, SmallOddNumbersAreNumbers) {
+  const Asset asset = read_file("v +1 -.5 1e-400\nv 1. 0 0 1 0.5 0.5 0.5\nv\t0 1 0\nf 1 2 3");
+  EXPECT_EQ(asset.surfaces()[0].mesh.positions[0], Vec3(1, -0.5, 0));
+}
+
+TEST(Obj, LimitsHold) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n";
+  EXPECT_EQ(error_of(text, {.max_vertices = 3}).where(), "line 4");
+  EXPECT_EQ(error_of(text, {.max_faces = 1}).code(), ErrorCode::too_many_faces);
+  EXPECT_EQ(read({text, {}}, {.max_vertices = 4, .max_faces = 2}).surfaces().size(), 1U);
+}
+
+TEST(Obj, EveryPrefixIsReadOrRefused) {
+  for (std::size_t length = 0; length < kCube.size(); ++length) {
+    try {
+      const Asset asset = read_file(kCube.substr(0, length));
+      EXPECT_FALSE(write(asset, split_everywhere(asset), Format::obj).empty());
+    } catch (const Error& error) {
+      EXPECT_FALSE(std::string(error.what()).empty());
+    }
+  }
+}
+
+double area_of(const TriMesh& mesh) {
+  double area = 0;
+  for (const Triangle& face : mesh.faces) {
+    const auto at = [&](std::size_t k) {
+      return mesh.positions[static_cast<std::size_t>(face[k])];
+    };
+    area += (at(1) - at(0)).cross(at(2) - at(0)).z() / 2;
+  }
+  return area;
+}
+
+TEST(Obj, ConcavePolygonsAreCutIntoTrianglesThatDoNotOverlap) {
+  // An arrow and a comb: a fan would leave triangles of the wrong sign, and their areas differ.
+  const Asset arrow = read_file("v 0 0 0\nv 2 -1 0\nv 1 0 0\nv 2 1 0\nf 3 4 1 2\n");
+  const Asset comb = read_file(
+      "v 0 0 0\nv 5 0 0\nv 5 3 0\nv 4 1 0\nv 3 3 0\nv 2 1 0\nv 1 3 0\nv 0 1 0\n"
+      "f 1 2 3 4 5 6 7 8\n");
+  for (const auto& [asset, area] : {std::pair(&arrow, 1.0), std::pair(&comb, 10.0)}) {
+    const TriMesh& mesh = asset->surfaces()[0].mesh;
+    EXPECT_NEAR(area_of(mesh), area, 1e-12);
+    for (std::size_t t = 0; t < mesh.faces.size(); ++t)
+      EXPECT_GT(area_of({mesh.positions, {mesh.faces[t]}}), 0) << t;
+  }
+}
+
+TEST(Obj, AsGltfItHasTheSameFacesNormalsAndUvs) {
+  const Asset asset = read_file(
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nvn 0 0 2\nvn 0 1 0\nusemtl a\nf 1//1 2//1 3//2\n"
+      "usemtl b\nf 1//1 3//1 4//2\n");
+  for (const Format format : {Format::glb, Format::gltf}) {
+    const std::string answer = write(asset, split_everywhere(asset), format);
+    const std::vector<ReadPrimitive> primitives = read_naively(answer);
+    ASSERT_EQ(primitives.size(), 2U);
+    EXPECT_EQ(primitives[0].faces[0].at("NORMAL")[0], (std::vector<double>{0, 0, 1}));
+    EXPECT_EQ(primitives[0].faces[0].at("NORMAL")[2], (std::vector<double>{0, 1, 0}));
+    std::vector<ReadPrimitive> expected = primitives;
+    expect_same_but_uv(expected, primitives);
+    EXPECT_EQ(points_of(primitives[1].faces[0])[2], Vec3(0, 1, 1));
+    EXPECT_EQ(read_file(answer).surfaces()[0].mesh.face_count(), 2);
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd::asset::test
