@@ -78,7 +78,7 @@ bool Connection::next_request() {
     const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
     if (left.count() <= 0)
       throw Error(ErrorCode::request_timeout, "The header did not arrive in time; send it faster.");
-    if (!fill(left)) return false;
+    if (!fill(left) && Clock::now() < until) return false;  // the client has left
     end = buffer_.find("\r\n\r\n");
   }
   head_end_ = end + 4;

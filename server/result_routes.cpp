@@ -51,7 +51,7 @@ Response get_result(ResultStore& results, const JobRecord& job, const Request& r
   const std::string etag = "\"" + result.sha256 + "\"";
   Response response;
   response.headers = {{"ETag", etag}, {"Vary", "Accept"}, {"Accept-Ranges", "bytes"}};
-  if (is_known(request.header("If-None-Match"), etag)) {
+  if (request.method != "POST" && is_known(request.header("If-None-Match"), etag)) {
     response.status = 304;
     return response;
   }
