@@ -102,6 +102,7 @@ int Listener::accept() const {
 }
 
 void Listener::stop() const {
+  ::shutdown(socket_, SHUT_RDWR);  // who connects from now on is refused, not left waiting
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = ::write(stop_, &one, sizeof one);
 }
