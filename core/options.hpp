@@ -16,7 +16,7 @@ struct UnwrapOptions {
   double lambda = 0.1;  ///< hybrid only, >= 0: 0 is ASAP, infinity is ARAP
   LambdaUnits lambda_units = LambdaUnits::dimensionless;
   int iterations = 10;                         ///< local/global iterations a chart, >= 1
-  InitialMap initial = InitialMap::automatic;  ///< see initial_map()
+  InitialMap initial = InitialMap::automatic;  ///< see initial_maps()
   Pins pins = Pins::diameter;                  ///< ASAP only: how the conformal map is pinned
   SeamMode seams = SeamMode::automatic;        ///< which vertex copies are welded for topology
   int resolution = 1024;                       ///< side of the square page, texels, [16, 16384]

@@ -20,12 +20,9 @@ class SimplicialSystem final : public PrefactoredSystem<Rhs> {
   using Matrix = Eigen::SparseMatrix<Scalar, Eigen::ColMajor, Index>;
 
  public:
-  explicit SimplicialSystem(const Matrix& lower) : llt_(lower) {
-    if (llt_.info() != Eigen::Success)
-      throw Error(ErrorCode::solver_failed,
-                  "the mesh's matrix is not positive definite in double precision; remove needle "
-                  "and zero-area triangles and try again");
-  }
+  explicit SimplicialSystem(const Matrix& lower) : llt_(lower) {}
+
+  [[nodiscard]] bool is_definite() const { return llt_.info() == Eigen::Success; }
 
   void solve(std::span<Rhs> b) const override {
     const auto& order = llt_.permutationP().indices();  // empty: natural order
@@ -72,14 +69,34 @@ class SimplicialSystem final : public PrefactoredSystem<Rhs> {
   Eigen::SimplicialLLT<Matrix, Eigen::Lower> llt_;
 };
 
+template <typename Scalar, typename Rhs, typename Matrix>
+std::unique_ptr<PrefactoredSystem<Rhs>> definite_or_null(const Matrix& lower) {
+  auto system = std::make_unique<SimplicialSystem<Scalar, Rhs>>(lower);
+  if (!system->is_definite()) return nullptr;
+  return system;
+}
+
+template <typename System>
+System definite(System system) {
+  if (!system)
+    throw Error(ErrorCode::solver_failed,
+                "the mesh's matrix is not positive definite in double precision; remove needle "
+                "and zero-area triangles and try again");
+  return system;
+}
+
 }  // namespace
 
 std::unique_ptr<RealSystem> factor(const SparseMatrix& lower) {
-  return std::make_unique<SimplicialSystem<double, Vec2>>(lower);
+  return definite(definite_or_null<double, Vec2>(lower));
 }
 
 std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower) {
-  return std::make_unique<SimplicialSystem<Complex, Complex>>(lower);
+  return definite(try_factor(lower));
+}
+
+std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower) {
+  return definite_or_null<Complex, Complex>(lower);
 }
 
 }  // namespace unwrapd

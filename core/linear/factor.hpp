@@ -34,4 +34,7 @@ using HermitianSystem = PrefactoredSystem<Complex>;
 std::unique_ptr<RealSystem> factor(const SparseMatrix& lower);
 std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower);
 
+/// As factor(), but nothing where that throws.
+std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower);
+
 }  // namespace unwrapd

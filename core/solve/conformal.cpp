@@ -20,17 +20,21 @@ namespace {
 
 constexpr Complex kI(0, 1);
 
+/// Bending a ribbon a million times longer than wide costs less energy than rounding: H is then
+/// indefinite in double precision. Some of L, which holds lengths, makes it definite again.
+constexpr double kLeastSoftening = 1e-12, kMostSoftening = 1e-2;
+
 std::pair<Index, Index> ends(const Disk& disk, Index h) {
   const Triangle& face = disk.faces[static_cast<std::size_t>(h / 3)];
   return {face[static_cast<std::size_t>(h % 3)], face[static_cast<std::size_t>((h + 1) % 3)]};
 }
 
-/// The lower triangle of H.
-ComplexMatrix conformal_matrix(const Disk& disk) {
+/// The lower triangle of H + softening L.
+ComplexMatrix conformal_matrix(const Disk& disk, double softening = 0) {
   std::vector<double> weight;
   weight.reserve(3 * disk.rest.size());
   for (const RestTriangle& rest : disk.rest)
-    weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
+    for (double cot : rest.cot) weight.push_back((1 + softening) * cot);
   ComplexMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight).cast<Complex>();
   for (const BoundaryLoop& loop : disk.loops)
     for (Index h : loop) {
@@ -57,7 +61,13 @@ std::array<Index, 2> pins_at_diameter(const Disk& disk) {
   return {vertex[static_cast<std::size_t>(a)], vertex[static_cast<std::size_t>(b)]};
 }
 
-std::vector<Complex> solve_pinned(const Disk& disk) {
+/// As try_factor(), but throws when there is nothing left to try.
+std::unique_ptr<HermitianSystem> try_softened(const ComplexMatrix& lower, double softening) {
+  return softening < kMostSoftening ? try_factor(lower) : factor(lower);
+}
+
+/// Nothing when H is not definite in double precision and must not be softened.
+std::vector<Complex> solve_pinned(const Disk& disk, bool may_soften) {
   const auto n = static_cast<std::size_t>(disk.vertex_count());
   const auto [a, b] = pins_at_diameter(disk);
   std::vector<Complex> z(n);
@@ -67,8 +77,15 @@ std::vector<Complex> solve_pinned(const Disk& disk) {
   std::vector<char> fixed(n, 0);
   fixed[static_cast<std::size_t>(a)] = fixed[static_cast<std::size_t>(b)] = 1;
   const FreeVertices free = number_free(fixed);
-  auto reduced = eliminate<ComplexMatrix, Complex>(conformal_matrix(disk), free, z);
-  factor(reduced.lower)->solve(reduced.rhs);
+  const auto reduce = [&](double softening) {
+    return eliminate<ComplexMatrix, Complex>(conformal_matrix(disk, softening), free, z);
+  };
+  auto reduced = reduce(0);
+  std::unique_ptr<HermitianSystem> system = try_factor(reduced.lower);
+  if (!system && !may_soften) return {};
+  for (double softening = kLeastSoftening; !system; softening *= 100)
+    reduced = reduce(softening), system = try_softened(reduced.lower, softening);
+  system->solve(reduced.rhs);
   for (std::size_t v = 0; v < n; ++v)
     if (free.slot[v] != kFixed) z[v] = reduced.rhs[static_cast<std::size_t>(free.slot[v])];
   return z;
@@ -82,10 +99,12 @@ class SpectralIteration {
     for (const BoundaryLoop& loop : disk.loops)
       for (Index h : loop) on_boundary_[static_cast<std::size_t>(ends(disk, h).first)] = 1;
     boundary_count_ = std::accumulate(on_boundary_.begin(), on_boundary_.end(), 0.0);
-    ComplexMatrix shifted = conformal_matrix(disk);
-    for (Index v = 0; v < disk.vertex_count(); ++v)
-      shifted.coeffRef(v, v) += kShift * on_boundary_[static_cast<std::size_t>(v)];
-    system_ = factor(shifted);
+    for (double softening = 0; !system_; softening = std::max(100 * softening, kLeastSoftening)) {
+      ComplexMatrix shifted = conformal_matrix(disk, softening);
+      for (Index v = 0; v < disk.vertex_count(); ++v)
+        shifted.coeffRef(v, v) += kShift * on_boundary_[static_cast<std::size_t>(v)];
+      system_ = try_softened(shifted, softening);
+    }
   }
 
   std::vector<Complex> run(std::vector<Complex> z) const {
@@ -143,8 +162,14 @@ UvMap scaled_to_unit_area(const Disk& disk, std::span<const Complex> z) {
 }  // namespace
 
 UvMap conformal_map(const Disk& disk, Pins pins) {
-  std::vector<Complex> z = solve_pinned(disk);
+  std::vector<Complex> z = solve_pinned(disk, true);
   if (pins == Pins::spectral) z = SpectralIteration(disk).run(std::move(z));
+  return scaled_to_unit_area(disk, z);
+}
+
+std::optional<UvMap> exact_conformal_map(const Disk& disk) {
+  const std::vector<Complex> z = solve_pinned(disk, false);
+  if (z.empty()) return std::nullopt;
   return scaled_to_unit_area(disk, z);
 }
 

@@ -5,8 +5,9 @@
 // only minimum for lambda <= c / 2 is s = 0. There the answer is the limit itself, the ASAP map.
 #include "core/solve/solve.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/measure/distortion.hpp"
@@ -19,23 +20,13 @@ namespace {
 
 /// Above this lambda no conformal map of use has energy enough to collapse the hybrid.
 constexpr double kSafeLambda = 0.5;
+constexpr int kTrialIterations = 2;
 
 UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
   const double area = uv_area(disk.rest, disk.faces, uv);
   if (area > 0)
     for (Vec2& u : uv) u /= std::sqrt(area);
   return uv;
-}
-
-/// The paper's choice (Sec. 4.5) is mean_value for one boundary and lscm for several; but a surface
-/// that is nearly developable is nearly solved by lscm, so for one boundary the better is taken.
-UvMap best_map(const Disk& disk) {
-  UvMap conformal = initial_map(disk, InitialMap::lscm);
-  if (disk.loops.size() > 1) return conformal;
-  UvMap convex = initial_map(disk, InitialMap::mean_value);
-  const bool conformal_is_better =
-      arap_energy(disk.rest, disk.faces, conformal) < arap_energy(disk.rest, disk.faces, convex);
-  return conformal_is_better ? conformal : convex;
 }
 
 Rigidity rigidity_of(const Disk& disk, const UnwrapOptions& options) {
@@ -57,29 +48,43 @@ Solution direct(const Disk& disk, UvMap uv) {
   return solution;
 }
 
-Solution iterate(const Disk& disk, const UnwrapOptions& options, UvMap start,
+UvMap map_of_kind(const Disk& disk, InitialMap kind) {
+  if (kind == InitialMap::lscm) return conformal_map(disk, Pins::diameter);
+  const bool tutte = kind == InitialMap::tutte;
+  return scaled_to_unit_area(disk, tutte ? tutte_map(disk) : mean_value_map(disk));
+}
+
+/// The start from which a few iterations get farthest: energies at the start tell less.
+std::size_t best_of(const std::vector<UvMap>& starts, const Disk& disk, const GlobalStep& global,
+                    const Rigidity& rigidity, Executor& executor) {
+  std::vector<double> energy;
+  for (const UvMap& start : starts)
+    energy.push_back(local_global(disk, global, start, {rigidity, kTrialIterations}, {}, executor)
+                         .energy.back());
+  return static_cast<std::size_t>(std::min_element(energy.begin(), energy.end()) - energy.begin());
+}
+
+Solution iterate(const Disk& disk, const UnwrapOptions& options, std::vector<UvMap> starts,
                  const SolveWatch& watch, Executor& executor) {
   if (watch.on_stage) watch.on_stage(Stage::factor);
   const GlobalStep global(disk);
   if (watch.on_stage) watch.on_stage(Stage::solve);
-  return local_global(disk, global, std::move(start),
-                      {rigidity_of(disk, options), options.iterations}, watch.loop, executor);
+  const Rigidity rigidity = rigidity_of(disk, options);
+  const std::size_t best =
+      starts.size() > 1 ? best_of(starts, disk, global, rigidity, executor) : 0;
+  return local_global(disk, global, std::move(starts[best]), {rigidity, options.iterations},
+                      watch.loop, executor);
 }
 
 }  // namespace
 
-UvMap initial_map(const Disk& disk, InitialMap kind) {
-  switch (kind) {
-    case InitialMap::mean_value:
-      return scaled_to_unit_area(disk, mean_value_map(disk));
-    case InitialMap::tutte:
-      return scaled_to_unit_area(disk, tutte_map(disk));
-    case InitialMap::lscm:
-      return conformal_map(disk, Pins::diameter);
-    case InitialMap::automatic:
-      break;
-  }
-  return best_map(disk);
+std::vector<UvMap> initial_maps(const Disk& disk, InitialMap kind) {
+  if (kind != InitialMap::automatic) return {map_of_kind(disk, kind)};
+  if (disk.loops.size() > 1) return {map_of_kind(disk, InitialMap::lscm)};
+  std::vector<UvMap> maps{map_of_kind(disk, InitialMap::mean_value)};
+  if (std::optional<UvMap> conformal = exact_conformal_map(disk))
+    maps.push_back(std::move(*conformal));
+  return maps;
 }
 
 Solution solve(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,
@@ -91,14 +96,17 @@ Solution solve(const Disk& disk, const UnwrapOptions& options, const SolveWatch&
   }
   const double lambda = mean_lambda(disk, rigidity_of(disk, options));
   if (lambda > kSafeLambda)
-    return iterate(disk, options, initial_map(disk, options.initial), watch, executor);
+    return iterate(disk, options, initial_maps(disk, options.initial), watch, executor);
 
   UvMap conformal = conformal_map(disk, options.pins);
   if (lambda <= asap_energy(disk.rest, disk.faces, conformal) / 2)
     return direct(disk, std::move(conformal));
-  const bool open = options.initial == InitialMap::automatic || options.initial == InitialMap::lscm;
-  UvMap start = open ? std::move(conformal) : initial_map(disk, options.initial);
-  return iterate(disk, options, std::move(start), watch, executor);
+  std::vector<UvMap> starts;
+  if (options.initial == InitialMap::automatic)
+    starts.push_back(std::move(conformal));
+  else
+    starts = initial_maps(disk, options.initial);
+  return iterate(disk, options, std::move(starts), watch, executor);
 }
 
 }  // namespace unwrapd

@@ -2,6 +2,7 @@
 // One chart, one method: ASAP directly, ARAP and Hybrid by local/global iterations.
 
 #include <functional>
+#include <vector>
 
 #include "core/options.hpp"
 #include "core/progress.hpp"
@@ -19,8 +20,9 @@ struct SolveWatch {
 Solution solve(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,
                Executor& executor);
 
-/// The map that the iterations start from, scaled so that UV area = 3D area. automatic: for one
-/// boundary mean_value or lscm, whichever has less ARAP energy; lscm for several (Sec. 4.5).
-UvMap initial_map(const Disk& disk, InitialMap kind);
+/// The maps that the iterations may start from, each scaled so that UV area = 3D area. One, but for
+/// automatic on one boundary: mean_value, and lscm where it is exact; solve() then takes the one
+/// from which a few iterations get farthest. automatic on several boundaries: lscm (Sec. 4.5).
+std::vector<UvMap> initial_maps(const Disk& disk, InitialMap kind);
 
 }  // namespace unwrapd

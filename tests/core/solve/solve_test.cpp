@@ -113,7 +113,7 @@ UvMap dense_arap_iteration(const Disk& disk, const UvMap& uv) {
 TEST(Solve, AgreesWithDenseMatricesAndAnSvd) {
   for (const TriMesh& mesh : {shapes::random_disk(8, 5), shapes::annulus(12, 3)}) {
     const OwnedDisk d = disk_of(mesh);
-    UvMap dense = initial_map(d.disk, InitialMap::tutte);
+    UvMap dense = initial_maps(d.disk, InitialMap::tutte).front();
     for (int k = 0; k < 5; ++k) dense = dense_arap_iteration(d.disk, dense);
     const UvMap uv = solved(d.disk, {.iterations = 5, .initial = InitialMap::tutte}).uv;
     EXPECT_LT(gap_up_to_similarity(uv, dense), 1e-8);
@@ -275,6 +275,16 @@ TEST(Solve, SurvivesNeedlesCapsAndHighValence) {
       const OwnedDisk d = disk_of(mesh);
       for (const Vec2& u : solved(d.disk, {.method = method}).uv) EXPECT_TRUE(u.allFinite());
     }
+}
+
+TEST(Solve, FlattensARibbonAMillionTimesLongerThanWide) {
+  const OwnedDisk d = disk_of(shapes::grid(3000, 1, 1500, 1e-4));
+  EXPECT_LT(solved(d.disk, {}).energy.back(), 1e-4);
+  for (Method method : {Method::asap, Method::arap, Method::hybrid})
+    for (InitialMap start : {InitialMap::lscm, InitialMap::mean_value, InitialMap::tutte})
+      for (Pins pins : {Pins::diameter, Pins::spectral})
+        for (const Vec2& u : solved(d.disk, {.method = method, .initial = start, .pins = pins}).uv)
+          ASSERT_TRUE(u.allFinite());
 }
 
 }  // namespace
