@@ -21,7 +21,8 @@ export async function service(run, base) {
 }
 
 export async function lifeOfAJob(run, base) {
-  const created = await run.call(base, 'createJob', {headers: kGlb, body: meshes.glb(), status: 202});
+  const created = await run.call(base, 'createJob',
+                                 {headers: kGlb, body: meshes.glb(), status: 202});
   const job = created.headers.location?.split('/').pop();
   const watched = await run.call(base, 'watchJob', {job, status: 200});
   const events = parseEvents(watched.body.toString());
@@ -58,7 +59,8 @@ async function partsOfAResult(run, base, job) {
   await get({'If-None-Match': etag}, 304);
   await get({'If-None-Match': '"another"'}, 200);
   const part = await get({Range: 'bytes=4-11', 'If-Range': etag}, 206);
-  run.expectEqual('the part', part.body.toString('hex'), whole.body.subarray(4, 12).toString('hex'));
+  run.expectEqual('the part', part.body.toString('hex'),
+                  whole.body.subarray(4, 12).toString('hex'));
   run.expectEqual('its place', part.headers['content-range'], `bytes 4-11/${whole.body.length}`);
   await get({Range: 'bytes=4-11', 'If-Range': '"another"'}, 200);
   await get({Range: `bytes=${whole.body.length}-`}, 200);
@@ -77,7 +79,8 @@ async function validGltf(run, name, bytes) {
 }
 
 export async function preferWait(run, base) {
-  const answer = await run.call(base, 'createJob', {headers: kWait, body: meshes.obj(), status: 200});
+  const answer = await run.call(base, 'createJob',
+                                {headers: kWait, body: meshes.obj(), status: 200});
   const job = JSON.parse(answer.body.toString());
   run.expectEqual('a job that was waited for', job.state, 'succeeded');
   const result = await run.call(base, 'getResult', {job: job.id, status: 200});
@@ -111,7 +114,8 @@ export async function badOptions(run, base) {
 
 async function badOption(run, base, query, name) {
   for (const id of ['createJob', 'unwrap']) {
-    const problem = await run.json(base, id, {query, headers: kGlb, body: meshes.glb(), status: 422});
+    const problem = await run.json(base, id,
+                                   {query, headers: kGlb, body: meshes.glb(), status: 422});
     run.expectEqual(`code for a bad ${name}`, problem.code, 'invalid_option');
     run.expectEqual(`pointer for a bad ${name}`, problem.pointer, `/${name}`);
   }
@@ -157,7 +161,8 @@ export async function unwrapAtOnce(run, base) {
   await run.call(base, 'unwrap', {headers: {...kGlb, Accept: 'text/html'}, body: meshes.glb(),
                                   status: 406});
   const conditions = {'If-None-Match': '*', Range: 'bytes=0-3'};  // of GET alone
-  await run.call(base, 'unwrap', {headers: {...kGlb, ...conditions}, body: meshes.glb(), status: 200});
+  await run.call(base, 'unwrap',
+                 {headers: {...kGlb, ...conditions}, body: meshes.glb(), status: 200});
 }
 
 export async function multipartBodies(run, base) {
@@ -199,7 +204,8 @@ async function badMultipart(run, base, [options, mesh, buffer]) {
   const wrong = multipart([{...options, body: '{"iterations":"10"}'}, mesh, buffer]);
   const problem = await run.json(base, 'createJob', {...wrong, status: 422});
   run.expectEqual('pointer into the options part', problem.pointer, '/iterations');
-  const twice = multipart([{...options, body: '{"pins":"diameter","pins":"spectral"}'}, mesh, buffer]);
+  const pinsTwice = '{"pins":"diameter","pins":"spectral"}';
+  const twice = multipart([{...options, body: pinsTwice}, mesh, buffer]);
   run.expectEqual('pointer to a member given twice',
                   (await run.json(base, 'createJob', {...twice, status: 422})).pointer, '/pins');
   const truncated = multipart([mesh]);

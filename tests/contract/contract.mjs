@@ -36,7 +36,8 @@ async function group(run, name, action) {
 async function main() {
   const binary = process.argv[2] ?? process.env.UNWRAPD_BIN;
   if (!binary) throw new Error('Name the unwrapd to test as the argument or in UNWRAPD_BIN.');
-  const run = new Run(new Contract(fileURLToPath(new URL('../../api/openapi.yaml', import.meta.url))));
+  const contract = new URL('../../api/openapi.yaml', import.meta.url);
+  const run = new Run(new Contract(fileURLToPath(contract)));
   await group(run, 'examples', () => examples(run));
   const server = await startServer(binary);
   for (const [name, action] of Object.entries({...cases, fuzz})) {

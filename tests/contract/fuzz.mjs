@@ -12,7 +12,8 @@ const kBusy = 429;  // allowed to any submission
 async function check(run, name, property, numRuns) {
   const result = await fc.check(property, {seed: kSeed, numRuns, endOnFailure: false});
   const report = result.failed
-    ? [`${JSON.stringify(result.counterexample)?.slice(0, 600)}`, String(result.errorInstance)] : [];
+    ? [`${JSON.stringify(result.counterexample)?.slice(0, 600)}`, String(result.errorInstance)]
+    : [];
   run.expect(`fuzz: ${name}`, report);
 }
 
@@ -49,8 +50,8 @@ function someOptions(properties) {
   const valid = fc.record(
     Object.fromEntries(names.map((name) => [name, validValue(name, properties[name])])),
     {requiredKeys: []});
-  const wild = fc.dictionary(fc.oneof(fc.constantFrom(...names), fc.string({minLength: 1})), anyValue,
-                             {maxKeys: 2, noNullPrototype: true});
+  const anyName = fc.oneof(fc.constantFrom(...names), fc.string({minLength: 1}));
+  const wild = fc.dictionary(anyName, anyValue, {maxKeys: 2, noNullPrototype: true});
   const bad = fc.oneof(wild, boundaryOption(properties));
   return fc.oneof(valid, fc.tuple(valid, bad).map((both) => Object.assign({}, ...both)));
 }
@@ -137,7 +138,8 @@ async function bodies(run, base) {
     obey(run, 'unwrap', await request(base, {method: 'POST', path: '/v1/unwrap', headers, body}));
   });
   await check(run, 'bodies to /v1/unwrap', property, 300);
-  const jobs = fc.asyncProperty(anyBody, anyType, fc.string({maxLength: 12}), async (body, type, wish) => {
+  const anyWish = fc.string({maxLength: 12});
+  const jobs = fc.asyncProperty(anyBody, anyType, anyWish, async (body, type, wish) => {
     const Prefer = `wait=${wish.replace(/[^ -~]/g, '')}`;
     const headers = {'Content-Type': type, Prefer};
     obey(run, 'createJob', await request(base, {method: 'POST', path: '/v1/jobs', headers, body}));
@@ -146,7 +148,8 @@ async function bodies(run, base) {
 }
 
 async function paths(run, base) {
-  const ids = fc.oneof(fc.string({minLength: 1, maxLength: 40}), fc.constantFrom('..', '.', '%00', '%'),
+  const ids = fc.oneof(fc.string({minLength: 1, maxLength: 40}),
+                       fc.constantFrom('..', '.', '%00', '%'),
                        fc.stringMatching(/^j_[0-9a-f]{32}$/));
   const operations = run.contract.operations().filter(({path}) => path.includes('{id}'));
   const property = fc.asyncProperty(fc.constantFrom(...operations), ids, async (operation, id) => {
@@ -154,7 +157,7 @@ async function paths(run, base) {
     const path = operation.path.replace('{id}', segment);
     const answer = await request(base, {method: operation.method, path});
     obey(run, operation.id, answer);
-    if (answer.status !== 404) throw new Error(`status ${answer.status} for a job that is not there`);
+    if (answer.status !== 404) throw new Error(`status ${answer.status} for an unknown job`);
   });
   await check(run, 'ids', property, 300);
 }

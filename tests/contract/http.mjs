@@ -23,7 +23,7 @@ export function request(base, {method = 'GET', path, headers = {}, body}) {
   });
 }
 
-/** Opens a stream and leaves it open: resolves to {status, headers, close} once its head is here. */
+/** Opens a stream and leaves it open; resolves to {status, headers, close} with its head. */
 export function openStream(base, path) {
   return new Promise((resolve, reject) => {
     const call = http.request(new URL(path, base), {agent: false}, (answer) => {

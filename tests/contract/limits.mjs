@@ -49,7 +49,8 @@ export function tinyLimits(run, binary) {
       const problem = await run.json(base, id, {headers: kGlb, body: meshes.glb(20), status: 413});
       run.expectEqual(`${id} of a long body`, problem.code, 'body_too_large');
       const headers = {...kGlb, 'Transfer-Encoding': 'chunked'};
-      await run.call(base, id, {headers, body: meshes.glb(20), status: 413, name: 'long, in chunks'});
+      await run.call(base, id,
+                     {headers, body: meshes.glb(20), status: 413, name: 'long, in chunks'});
     }
   });
 }
@@ -121,7 +122,8 @@ export function expiredResults(run, binary) {
 }
 
 export function timeLimit(run, binary) {
-  return withServer(binary, ['--workers', '1', '--max-job-seconds', '1', '--drain-seconds', '0'], async ({base}) => {
+  const flags = ['--workers', '1', '--max-job-seconds', '1', '--drain-seconds', '0'];
+  return withServer(binary, flags, async ({base}) => {
     const job = await run.json(base, 'createJob', {
       query: kSlow, headers: {...kGlb, Prefer: 'wait=30'}, body: kSlowMesh, status: 200,
     });

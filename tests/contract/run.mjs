@@ -1,4 +1,4 @@
-// A run of the contract test: it calls operations, lets the contract judge every answer, and counts.
+// A run of the contract test: calls operations, lets the contract judge every answer, counts.
 import {request} from './http.mjs';
 
 const kShown = 40;    // failures that are printed in full
@@ -18,7 +18,8 @@ export class Run {
       return;
     }
     this.failed += 1;
-    if (this.failed <= kShown) console.log(`FAILED ${name}\n  ${problems.slice(0, 5).join('\n  ')}`);
+    if (this.failed > kShown) return;
+    console.log(`FAILED ${name}\n  ${problems.slice(0, 5).join('\n  ')}`);
   }
 
   expectEqual(name, actual, expected) {
@@ -31,7 +32,8 @@ export class Run {
   judge(name, id, answer, status) {
     const problems = this.contract.judge(id, answer);
     if (status !== undefined && answer.status !== status) {
-      problems.push(`status ${answer.status}, expected ${status}: ${answer.body?.subarray(0, 300)}`);
+      const said = answer.body?.subarray(0, 300);
+      problems.push(`status ${answer.status}, expected ${status}: ${said}`);
     }
     this.expect(`${name} (${id})`, problems);
     return answer;
