@@ -13,7 +13,8 @@ namespace unwrapd::asset {
 namespace {
 
 constexpr std::size_t kMaxZeroElements = 500'000;  // that exist in no file, only as a count
-constexpr std::size_t kAttributeSlack = 64;        // bytes of attributes over bytes of buffers
+constexpr std::size_t kMaxSharing = 64;            // bytes of attributes over bytes of buffers
+constexpr std::size_t kFreeAttributeBytes = std::size_t{16} << 20;  // that may share any bytes
 
 void check_position(const Accessor& accessor, bool quantized, const Place& place) {
   const bool narrow = component_bytes(accessor.type) < 4;
@@ -95,7 +96,7 @@ class Account {
           gltf_.accessors[accessor].view
               ? gltf_.accessors[accessor].count * gltf_.accessors[accessor].element_bytes
               : 0;
-    if (attribute_bytes_ / kAttributeSlack > buffer_bytes_)
+    if (attribute_bytes_ > kFreeAttributeBytes + kMaxSharing * buffer_bytes_)
       fail(ErrorCode::too_many_vertices, primitive_place(primitive),
            "too many attributes share the same bytes; export the asset again");
   }
