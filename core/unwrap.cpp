@@ -192,6 +192,7 @@ Unwrapped unwrap(std::span<const Surface> surfaces, const UnwrapOptions& options
   Unwrapped unwrapped;
   unwrapped.report = describe(parts, mapped);
   std::vector<UvMap> islands;
+  islands.reserve(mapped.size());
   for (MappedChart& chart : mapped) islands.push_back(std::move(chart.uv));
   const double scale = place(islands, options);
 

@@ -40,7 +40,8 @@ struct Reduced {
 template <typename Matrix, typename Value>
 Reduced<Matrix, Value> eliminate(const Matrix& lower, const FreeVertices& free,
                                  std::span<const Value> value) {
-  Reduced<Matrix, Value> r{Matrix(free.count, free.count), {}};
+  Reduced<Matrix, Value> r;
+  r.lower.resize(free.count, free.count);
   r.rhs.assign(static_cast<std::size_t>(free.count), Value(value[0] * 0.0));
   r.lower.reserve(lower.nonZeros());
   const auto pull = [&](Index row, Index fixed, const auto& entry) {

@@ -88,7 +88,8 @@ LinearSystem mean_value_system(const Disk& disk, const ConvexMap& map) {
       couple(face[i], face[(i + 1) % 3], tangent / rest.edge[i].norm());
       couple(face[i], face[(i + 2) % 3], tangent / rest.edge[(i + 2) % 3].norm());
     }
-  LinearSystem system{SparseMatrix(map.inner.count, map.inner.count), std::move(rhs)};
+  LinearSystem system{{}, std::move(rhs)};
+  system.matrix.resize(map.inner.count, map.inner.count);
   system.matrix.setFromTriplets(entries.begin(), entries.end());
   return system;
 }

@@ -21,6 +21,8 @@ class GlobalStep {
   /// the map, keeps full precision near convergence.
   void advance(std::span<const Vec2> residual, std::span<Vec2> uv, Executor& executor) const;
 
+  [[nodiscard]] const Disk& disk() const { return disk_; }
+
  private:
   const Disk& disk_;
   std::unique_ptr<RealSystem> system_;

@@ -28,9 +28,9 @@ class Iteration {
 
 }  // namespace
 
-Solution local_global(const Disk& disk, const GlobalStep& global, UvMap start,
-                      const LocalGlobalOptions& options, const LoopWatch& watch,
-                      Executor& executor) {
+Solution local_global(const GlobalStep& global, UvMap start, const LocalGlobalOptions& options,
+                      const LoopWatch& watch, Executor& executor) {
+  const Disk& disk = global.disk();
   Iteration iteration(disk, options.rigidity, executor);
   Solution solution{.uv = std::move(start), .energy = {}};
   solution.energy.push_back(iteration.fit(solution.uv));

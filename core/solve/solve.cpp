@@ -55,12 +55,13 @@ UvMap map_of_kind(const Disk& disk, InitialMap kind) {
 }
 
 /// The start from which a few iterations get farthest: energies at the start tell less.
-std::size_t best_of(const std::vector<UvMap>& starts, const Disk& disk, const GlobalStep& global,
+std::size_t best_of(const std::vector<UvMap>& starts, const GlobalStep& global,
                     const Rigidity& rigidity, Executor& executor) {
-  std::vector<double> energy;
-  for (const UvMap& start : starts)
-    energy.push_back(local_global(disk, global, start, {rigidity, kTrialIterations}, {}, executor)
-                         .energy.back());
+  const auto energy_after_trial = [&](const UvMap& start) {
+    return local_global(global, start, {rigidity, kTrialIterations}, {}, executor).energy.back();
+  };
+  std::vector<double> energy(starts.size());
+  std::transform(starts.begin(), starts.end(), energy.begin(), energy_after_trial);
   return static_cast<std::size_t>(std::min_element(energy.begin(), energy.end()) - energy.begin());
 }
 
@@ -70,10 +71,9 @@ Solution iterate(const Disk& disk, const UnwrapOptions& options, std::vector<UvM
   const GlobalStep global(disk);
   if (watch.on_stage) watch.on_stage(Stage::solve);
   const Rigidity rigidity = rigidity_of(disk, options);
-  const std::size_t best =
-      starts.size() > 1 ? best_of(starts, disk, global, rigidity, executor) : 0;
-  return local_global(disk, global, std::move(starts[best]), {rigidity, options.iterations},
-                      watch.loop, executor);
+  const std::size_t best = starts.size() > 1 ? best_of(starts, global, rigidity, executor) : 0;
+  return local_global(global, std::move(starts[best]), {rigidity, options.iterations}, watch.loop,
+                      executor);
 }
 
 }  // namespace
