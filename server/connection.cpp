@@ -15,7 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kReadBytes = 64 * 1024;
+constexpr std::size_t kReadBytes = std::size_t{64} * 1024;
 constexpr std::size_t kMaxChunkLine = 256;  // a chunk's size with its extensions
 constexpr int kMaxTrailers = 32;
 constexpr std::chrono::seconds kLingerTime{10};

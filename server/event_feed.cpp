@@ -7,7 +7,7 @@ namespace unwrapd::server {
 namespace {
 
 constexpr std::int64_t kSeqsPerAttempt = 1'000'000'000;
-constexpr std::size_t kMaxReadingBytes = 64 * 1024;
+constexpr std::size_t kMaxReadingBytes = std::size_t{64} * 1024;
 
 }  // namespace
 

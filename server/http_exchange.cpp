@@ -8,7 +8,7 @@
 namespace unwrapd::server {
 namespace {
 
-constexpr std::int64_t kFilePiece = 256 * 1024;
+constexpr std::int64_t kFilePiece = std::int64_t{256} * 1024;
 constexpr std::size_t kLongestRoute = 256;  // httplib's routing recurses over longer paths
 
 /// A connection as httplib sees it: bytes without chunks.

@@ -56,8 +56,8 @@ std::int64_t length_of(std::string_view digits) {
 }
 
 bool needs_length(std::string_view method) {
-  constexpr std::array<std::string_view, 3> kWithBody = {"POST", "PUT", "PATCH"};
-  return std::ranges::find(kWithBody, method) != kWithBody.end();
+  constexpr std::array<std::string_view, 3> with_body = {"POST", "PUT", "PATCH"};
+  return std::ranges::find(with_body, method) != with_body.end();
 }
 
 /// Returns the method.

@@ -7,8 +7,8 @@
 
 namespace unwrapd::server {
 
-inline constexpr std::size_t kMaxHeadBytes = 32 * 1024;
-inline constexpr std::size_t kMaxTargetBytes = 8 * 1024;
+inline constexpr std::size_t kMaxHeadBytes = std::size_t{32} * 1024;
+inline constexpr std::size_t kMaxTargetBytes = std::size_t{8} * 1024;
 inline constexpr int kMaxHeaderFields = 100;
 
 /// How the body of a request is delimited.

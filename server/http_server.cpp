@@ -33,6 +33,7 @@ HttpServer::HttpServer(const HttpConfig& config, Handler answer, const Log& log)
 
 void HttpServer::serve() {
   std::vector<std::jthread> threads;
+  threads.reserve(static_cast<std::size_t>(config_.max_connections));
   for (int i = 0; i < config_.max_connections; ++i) threads.emplace_back([this] { work(); });
   while (true) {
     const int client = listener_.accept();

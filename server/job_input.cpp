@@ -7,8 +7,8 @@
 namespace unwrapd::server {
 namespace {
 
-constexpr std::size_t kPieceBytes = 256 * 1024;
-constexpr std::size_t kMaxOptionsBytes = 64 * 1024;
+constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
+constexpr std::size_t kMaxOptionsBytes = std::size_t{64} * 1024;
 constexpr std::size_t kMaxBuffers = 1000;
 
 /// A file that grows in pieces worth a system call each.
@@ -141,6 +141,7 @@ Upload receive_parts(BodyReader& body, const std::filesystem::path& folder) {
 
 LoadedInput::LoadedInput(const BlobStore& blobs, const JobRecord& job)
     : document_(read_file(blobs.path(job.id, kDocumentFile))) {
+  buffers_.reserve(job.input.buffers.size());
   for (const StoredBuffer& buffer : job.input.buffers)
     buffers_.emplace_back(buffer.uri, read_file(blobs.path(job.id, buffer.file)));
 }

@@ -22,6 +22,7 @@ struct JobInput {
   std::vector<StoredBuffer> buffers;  ///< beside the document
 };
 
+// NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct JobRecord {
   std::int64_t seq = 0;  ///< the order of arrival
   std::string id;

@@ -3,6 +3,7 @@
 namespace unwrapd::server {
 
 ThreadExecutor::ThreadExecutor(int threads) {
+  helpers_.reserve(static_cast<std::size_t>(threads));
   for (int helper = 1; helper < threads; ++helper)
     helpers_.emplace_back([this](const std::stop_token& stop) { serve(stop); });
 }

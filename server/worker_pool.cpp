@@ -46,6 +46,7 @@ Deadline::Deadline(std::chrono::seconds time, std::function<void()> late)
 WorkerPool::WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
                        const WorkerConfig& config)
     : queue_(queue), blobs_(blobs), limits_(limits), log_(log) {
+  threads_.reserve(static_cast<std::size_t>(config.workers));
   for (int worker = 0; worker < config.workers; ++worker)
     threads_.emplace_back([this, threads = config.threads] { work(threads); });
 }
