@@ -14,6 +14,7 @@
 namespace unwrapd::asset {
 namespace {
 
+constexpr std::size_t kAlignment = 8;  // of runs of bytes, as they had in their buffers
 constexpr std::string_view kDataUri = "data:application/octet-stream;base64,";
 
 std::size_t number(const Json& object, const char* key) {
@@ -90,7 +91,6 @@ std::vector<Run> used_runs(const Json& document) {
 }
 
 std::string joined(const std::vector<std::string_view>& buffers, std::vector<Run>& runs) {
-  constexpr std::size_t kAlignment = 8;
   std::string bytes;
   for (Run& run : runs) {
     pad(bytes, kAlignment);

@@ -72,6 +72,7 @@ struct Piece {
   std::size_t face_count = 0;
 };
 
+// NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct Gltf {
   Json json;
   std::vector<std::string> buffers;  ///< one for each of the document's, cut to its byteLength

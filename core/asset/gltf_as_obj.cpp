@@ -1,14 +1,15 @@
+// OBJ holds geometry, UVs and normals; of a glTF only these are written. Normals are written corner
+// by corner: the pieces of a surface may have different ones at the same vertex.
 #include <optional>
 #include <string_view>
 
+#include "core/asset/as_size.hpp"
 #include "core/asset/convert.hpp"
 #include "core/asset/elements.hpp"
 #include "core/asset/obj_text.hpp"
 
 namespace unwrapd::asset {
 namespace {
-
-std::size_t as_size(Index index) { return static_cast<std::size_t>(index); }
 
 /// The accessor of the normals that go with a piece: those of the first primitive that shows it.
 std::vector<std::optional<std::size_t>> normals_of_pieces(const Gltf& gltf) {
@@ -65,7 +66,7 @@ class ObjFromGltf {
     const Piece& piece = gltf_.pieces[number];
     const bool has_normals = normal_accessors_[number].has_value() && piece.face_count > 0;
     if (has_normals) write_normals(piece, *normal_accessors_[number]);
-    const UnwrappedSurface& unwrapped = unwrapped_[number_of_surface(piece)];
+    const UnwrappedSurface& unwrapped = unwrapped_[piece.surface];
     for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
       out_ += 'f';
       for (std::size_t k = 0; k < 3; ++k)
@@ -73,8 +74,6 @@ class ObjFromGltf {
       out_ += '\n';
     }
   }
-
-  static std::size_t number_of_surface(const Piece& piece) { return piece.surface; }
 
   void append_corner(const UnwrappedSurface& unwrapped, Index corner, Index normal) {
     append_obj_corner(out_, vertex_base_ + unwrapped.source[as_size(corner)],
@@ -85,9 +84,11 @@ class ObjFromGltf {
     const Elements normals(gltf_, accessor);
     const Surface& surface = surfaces_[piece.surface];
     for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t)
-      for (const Index corner : surface.mesh.faces[t])
-        append_vec3(out_, "vn",
-                    normals.vec3_at(as_size(gltf_.vertices[piece.surface][as_size(corner)])));
+      for (const Index corner : surface.mesh.faces[t]) {
+        const Index vertex = gltf_.vertices[piece.surface][as_size(corner)];
+        const Vec3 normal = normals.vec3_at(as_size(vertex));
+        append_vec3(out_, "vn", normal.allFinite() ? normal : Vec3(0, 0, 0));
+      }
   }
 
   const Gltf& gltf_;

@@ -1,3 +1,4 @@
+// Bytes of new accessors: grown attributes, smaller or larger indices, texture coordinates.
 #include "core/asset/grow.hpp"
 
 #include <algorithm>
@@ -5,13 +6,12 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/asset/as_size.hpp"
 #include "core/asset/bytes.hpp"
 #include "core/asset/elements.hpp"
 
 namespace unwrapd::asset {
 namespace {
-
-std::size_t as_size(Index index) { return static_cast<std::size_t>(index); }
 
 /// Elements of vertex attributes begin at multiples of 4 bytes.
 std::string dense_bytes(const Gltf& gltf, const Accessor& accessor,

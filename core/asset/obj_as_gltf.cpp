@@ -6,6 +6,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "core/asset/as_size.hpp"
 #include "core/asset/bytes.hpp"
 #include "core/asset/convert.hpp"
 #include "core/asset/grow.hpp"
@@ -15,8 +16,6 @@ namespace unwrapd::asset {
 namespace {
 
 using Float3 = std::array<float, 3>;
-
-std::size_t as_size(Index index) { return static_cast<std::size_t>(index); }
 
 Float3 as_floats(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};

@@ -1,13 +1,10 @@
-#include <charconv>
-#include <optional>
-
+// The text is copied statement by statement: vt lines go, the new ones stand before the first face.
+#include "core/asset/as_size.hpp"
 #include "core/asset/obj.hpp"
 #include "core/asset/obj_text.hpp"
 
 namespace unwrapd::asset {
 namespace {
-
-std::size_t as_size(Index index) { return static_cast<std::size_t>(index); }
 
 class ObjWriter {
  public:

@@ -1,4 +1,5 @@
 #pragma once
+// From the bytes of a GLB or .gltf to a checked document and its surfaces.
 
 #include <vector>
 

@@ -1,14 +1,16 @@
+// Which vertices a seam splits follows from the faces alone: walk them, and give every new vertex
+// of a surface the pool's own vertex when it is the first to ask for it, else a copy.
 #include "core/asset/split.hpp"
 
 #include <algorithm>
 #include <cassert>
 
+#include "core/asset/as_size.hpp"
+
 namespace unwrapd::asset {
 namespace {
 
 constexpr Index kNotPlaced = -1;
-
-std::size_t as_size(Index index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 

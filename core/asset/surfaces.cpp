@@ -6,6 +6,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "core/asset/as_size.hpp"
 #include "core/asset/elements.hpp"
 #include "core/asset/gltf_steps.hpp"
 
@@ -13,8 +14,6 @@ namespace unwrapd::asset {
 namespace {
 
 constexpr Index kUnused = -1;
-
-std::size_t as_size(Index index) { return static_cast<std::size_t>(index); }
 
 /// Vertex numbers of a primitive, in the order in which its mode takes them.
 std::vector<Index> read_corners(const Gltf& gltf, const Primitive& primitive) {
