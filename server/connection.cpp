@@ -76,9 +76,10 @@ bool Connection::next_request() {
     if (buffer_.size() > kMaxHeadBytes)
       throw Error(ErrorCode::headers_too_large, "The header is longer than 32 KiB; shorten it.");
     const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
-    if (left.count() <= 0)
+    const bool more = left.count() > 0 && fill(left);
+    if (!more && Clock::now() >= until)
       throw Error(ErrorCode::request_timeout, "The header did not arrive in time; send it faster.");
-    if (!fill(left) && Clock::now() < until) return false;  // the client has left
+    if (!more) return false;  // the client has gone
     end = buffer_.find("\r\n\r\n");
   }
   head_end_ = end + 4;

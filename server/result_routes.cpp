@@ -6,8 +6,10 @@
 namespace unwrapd::server {
 namespace {
 
-/// Whether If-None-Match names this tag.
-bool is_known(const std::string& if_none_match, const std::string& etag) {
+/// Whether the sender has what this tag names, and asks only for something else.
+bool is_known(const Request& request, const std::string& etag) {
+  if (request.method == "POST") return false;  // an answer to a call, not a copy of a resource
+  const std::string if_none_match = request.header("If-None-Match");
   return if_none_match == "*" || if_none_match.find(etag) != std::string::npos;
 }
 
@@ -51,7 +53,7 @@ Response get_result(ResultStore& results, const JobRecord& job, const Request& r
   const std::string etag = "\"" + result.sha256 + "\"";
   Response response;
   response.headers = {{"ETag", etag}, {"Vary", "Accept"}, {"Accept-Ranges", "bytes"}};
-  if (request.method != "POST" && is_known(request.header("If-None-Match"), etag)) {
+  if (request.method != "POST" && is_known(request, etag)) {
     response.status = 304;
     return response;
   }

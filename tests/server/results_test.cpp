@@ -100,6 +100,10 @@ TEST_F(Results, ASmallMeshIsUnwrappedInOneCall) {
   const httplib::Headers accept = {{"Accept", "application/json"}};
   const auto json = client().Post("/v1/unwrap", accept, grid_obj(4), "model/obj");
   EXPECT_THAT(json->body, StartsWith("{\"report\""));
+  const httplib::Headers known = {{"If-None-Match", answer->get_header_value("ETag")}};
+  const auto again =
+      client().Post("/v1/unwrap?method=asap", known, grid_glb(4), "model/gltf-binary");
+  EXPECT_EQ(again->body, answer->body);
 }
 
 TEST_F(Results, TheOneCallRefusesWhatOnlyAJobMayBe) {
