@@ -17,6 +17,7 @@
 namespace unwrapd::server {
 
 /// How a job ends.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct JobOutcome {
   api::JobState state = api::JobState::succeeded;
   std::string result_format;

@@ -134,9 +134,9 @@ std::optional<int> preferred_wait(std::string_view prefer) {
 }
 
 std::optional<ByteRange> single_range(std::string_view range, std::int64_t size) {
-  constexpr std::string_view kUnit = "bytes=";
-  if (!range.starts_with(kUnit)) return std::nullopt;
-  range.remove_prefix(kUnit.size());
+  constexpr std::string_view unit = "bytes=";
+  if (!range.starts_with(unit)) return std::nullopt;
+  range.remove_prefix(unit.size());
   const std::size_t dash = range.find('-');
   if (dash == std::string_view::npos) return std::nullopt;
   const auto first = number<std::int64_t>(range.substr(0, dash));

@@ -97,7 +97,7 @@ std::string run_job(const RunningJob& job, BlobStore& blobs, const api::Limits& 
   progress.on_stage(
       {.stage = Stage::write, .chart = 0, .chart_count = 0, .fraction = kWriteFraction});
   const asset::Format format = output_format(options.output, asset.format());
-  const std::string name(format_name(format));
+  std::string name(format_name(format));
   write_result(blobs, record.id, name, asset::write(asset, unwrapped.surfaces, format));
   blobs.write(record.id, kLayoutFile, layout_svg(asset.surfaces(), unwrapped.surfaces));
   blobs.write(record.id, kUvFile, encode_uvs(unwrapped.surfaces));
