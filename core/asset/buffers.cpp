@@ -67,7 +67,7 @@ std::string data_uri_bytes(const Node& uri) {
 
 std::string external_bytes(const Node& uri, const Input& input) {
   const std::string decoded = percent_decoded(uri.text());
-  if (!is_plain_relative(uri.text()) || !is_plain_relative(decoded))
+  if (!is_plain_relative(decoded))
     fail(ErrorCode::external_uri, uri.place(),
          "no file or address is ever opened; embed the buffer, or send it as a part of the "
          "request under a plain relative name");

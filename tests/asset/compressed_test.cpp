@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "tests/asset/memory_guard.hpp"
 #include "tests/asset/support.hpp"
 
 namespace unwrapd::asset::test {
@@ -115,6 +116,36 @@ TEST(Draco, EveryPrefixAndManyFlippedBytesAreReadOrRefused) {
         EXPECT_NE(error.code(), ErrorCode::internal);
       }
     }
+  }
+}
+
+std::string varint(std::uint32_t value) {
+  std::string bytes;
+  for (; value > 127; value >>= 7) bytes += static_cast<char>((value & 127) | 128);
+  return bytes + static_cast<char>(value);
+}
+
+TEST(Draco, WhatABitstreamClaimsIsJudgedBeforeMemoryIsTakenForIt) {
+  constexpr std::size_t header = 11;
+  const std::string sequential = draco_bitstream(3, draco::MESH_SEQUENTIAL_ENCODING);
+  ASSERT_EQ(sequential[header], 18);      // faces
+  ASSERT_EQ(sequential[header + 1], 16);  // points
+  ASSERT_EQ(sequential[header + 2], 1);   // indices follow, a byte each
+  std::string wide;  // the same indices in the 32 bits that so many points would give them
+  for (std::size_t i = 0; i < 54; ++i) wide += sequential[header + 3 + i] + std::string(3, '\0');
+  const std::string edgebreaker = draco_bitstream(3, draco::MESH_EDGEBREAKER_ENCODING);
+  const std::vector<std::string> claims = {
+      sequential.substr(0, header + 1) + varint(9'000'000) + '\1' + wide +
+          sequential.substr(header + 57),
+      sequential.substr(0, header + 1) + varint(9'000'000) + sequential.substr(header + 2),
+      sequential.substr(0, header) + varint(9'000'000) + sequential.substr(header + 1),
+      edgebreaker.substr(0, header + 1) + varint(30'000) + varint(15'000'000) + '\0' +
+          varint(15'000'000) + varint(0) + edgebreaker.substr(header + 6)};
+  for (const std::string& claim : claims) {
+    const std::string file = wrapped(claim, 16, 54);
+    const MemoryPeak peak;
+    EXPECT_EQ(error_of(file).code(), ErrorCode::malformed_draco);
+    EXPECT_LT(peak.bytes(), std::size_t{8} << 20);
   }
 }
 

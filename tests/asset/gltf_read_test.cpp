@@ -178,6 +178,30 @@ TEST(GltfRead, EveryFaultIsNamedWithItsPlace) {
   }
 }
 
+TEST(GltfRead, AnAccessorMayEndWithItsViewButNotAByteLater) {
+  struct Layout {
+    std::size_t offset, count, stride;
+    bool fits;
+  };
+  const std::vector<Layout> layouts = {{0, 4, 0, true},    {0, 5, 0, false},    {12, 3, 0, true},
+                                       {12, 4, 0, false},  {13, 3, 0, false},   {0, 3, 16, true},
+                                       {4, 3, 16, true},   {8, 3, 16, false},   {0, 4, 16, false},
+                                       {36, 1, 252, true}, {37, 1, 252, false}, {0, 3, 8, false}};
+  for (const Layout& layout : layouts) {
+    Builder b = square();
+    b.json["accessors"][0]["byteOffset"] = layout.offset;
+    b.json["accessors"][0]["count"] = layout.count;
+    if (layout.stride > 0) b.json["bufferViews"][0]["byteStride"] = layout.stride;
+    b.json["meshes"][0]["primitives"][0]["indices"] = b.add("SCALAR", 5121, {0, 0, 0});
+    const std::string file = b.glb();
+    SCOPED_TRACE(b.json["accessors"][0].dump() + std::to_string(layout.stride));
+    if (layout.fits)
+      EXPECT_NO_THROW(read_file(file));
+    else
+      EXPECT_EQ(error_of(file).where(), "/accessors/0");
+  }
+}
+
 TEST(GltfRead, NoIndexMayPassTheVerticesOrRestart) {
   for (const double index : {4.0, 65535.0}) {
     Builder b = square();

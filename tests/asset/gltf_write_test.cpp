@@ -196,6 +196,41 @@ TEST(GltfWrite, IndicesAreOfTheSmallestTypeThatHoldsThem) {
   }
 }
 
+TEST(GltfWrite, TheIndexThatRestartsAPrimitiveIsNeverUsed) {
+  for (const int unused : {0, 1}) {
+    Builder b;  // 21,845 faces over three vertices: split everywhere, the last index is 65534
+    std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    if (unused > 0) points.insert(points.end(), {9, 9, 9});
+    std::vector<double> corners;
+    for (int i = 0; i < 21'845; ++i) corners.insert(corners.end(), {0, 1, 2});
+    const std::size_t position = b.add("VEC3", 5126, points);
+    b.add_primitive({{"POSITION", position}}, b.add("SCALAR", 5121, corners));
+    const Json after = json_of(answer_to(b.glb()));
+    EXPECT_EQ(after["accessors"][1]["componentType"], unused > 0 ? 5125 : 5123);
+  }
+}
+
+TEST(GltfWrite, WhatIsKeptStaysAsAlignedAsItWas) {
+  Builder b = grid(3);
+  const std::size_t odd = b.add_view(std::string(8, 'x'));
+  b.json["bufferViews"][odd]["byteOffset"] = b.bin.size() - 7;
+  b.json["bufferViews"][odd]["byteLength"] = 3;
+  b.json["bufferViews"].push_back(
+      {{"buffer", 0}, {"byteOffset", b.bin.size() - 4}, {"byteLength", 4}});
+  b.json["images"] = {{{"bufferView", odd}, {"mimeType", "image/png"}},
+                      {{"bufferView", odd + 1}, {"mimeType", "image/png"}}};
+  const Json after = json_of(answer_to(b.glb()));
+  const Json& views = after["bufferViews"];
+  EXPECT_EQ(
+      views[after["images"][0]["bufferView"].get<std::size_t>()]["byteOffset"].get<std::size_t>() %
+          4,
+      1U);
+  EXPECT_EQ(
+      views[after["images"][1]["bufferView"].get<std::size_t>()]["byteOffset"].get<std::size_t>() %
+          4,
+      0U);
+}
+
 TEST(GltfWrite, SeveralBuffersBecomeOneUnlessTheyCarryMore) {
   Builder b = square();
   b.json["buffers"].push_back(
