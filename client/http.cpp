@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kConnectSeconds = 5;
 constexpr int kSilenceSeconds = 60;  // event streams send a heartbeat every 15 s
-constexpr std::size_t kBlockBytes = 64 * 1024;
+constexpr std::size_t kBlockBytes = 65'536;
 
 httplib::Client connection(const ServerUrl& server) {
   httplib::Client client(server.origin);
@@ -60,14 +60,14 @@ class Guard {
   std::exception_ptr thrown_;
 };
 
-/// Sends one request with the stop token watching it.
+/// Sends one request with the stop token watching it; guard is that of its callbacks.
 template <class Send>
-httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, Send&& send) {
+httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, const Guard& guard,
+                        Send&& send) {
   httplib::Client client = connection(server);
-  Guard guard;
   const std::stop_callback on_stop(stop, [&] { client.stop(); });
   if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
-  httplib::Result result = send(client, guard);
+  httplib::Result result = send(client);
   guard.rethrow();
   if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
   if (!result)
@@ -76,6 +76,29 @@ httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, Se
                                              "); start it, or name another with --server.");
   return result;
 }
+
+/// Hands the library the next block of an upload.
+void send_block(UploadReader& reader, std::size_t length, httplib::DataSink& sink) {
+  std::array<char, kBlockBytes> block;
+  const std::size_t count = reader.read(block.data(), std::min(length, block.size()));
+  sink.write(block.data(), count);
+}
+
+/// Where the body of an answer goes: to the caller's sink when it is a success, else into text.
+struct Receiver {
+  const BytesSink& sink;
+  bool to_sink = false;
+  std::string text;
+
+  void begin(int status) { to_sink = sink && status >= 200 && status < 300; }
+  void take(std::string_view bytes) {
+    if (to_sink) {
+      sink(bytes);
+    } else {
+      text += bytes;
+    }
+  }
+};
 
 Reply to_reply(const httplib::Result& result) {
   return {result->status, lower_case(result->headers), result->body};
@@ -93,44 +116,38 @@ Http::Http(ServerUrl server, std::stop_token stop)
 
 Reply Http::post(const std::string& path, const Upload& upload, const Headers& headers) const {
   UploadReader reader(upload);
-  const auto send = [&](httplib::Client& client, Guard& guard) {
-    const auto next_block = [&](std::size_t, std::size_t length, httplib::DataSink& sink) {
-      return guard([&] {
-        std::array<char, kBlockBytes> block;
-        const std::size_t count = reader.read(block.data(), std::min(length, block.size()));
-        sink.write(block.data(), count);
-      });
-    };
+  Guard guard;
+  const auto next_block = [&](std::size_t, std::size_t length, httplib::DataSink& sink) {
+    return guard([&] { send_block(reader, length, sink); });
+  };
+  const auto send = [&](httplib::Client& client) {
     return client.Post(server_.prefix + path, to_httplib(headers), upload.bytes(), next_block,
                        upload.content_type);
   };
-  return to_reply(perform(server_, stop_, send));
+  return to_reply(perform(server_, stop_, guard, send));
 }
 
 Reply Http::get(const std::string& path, const Headers& headers, const BytesSink& sink) const {
-  bool to_sink = false;
-  std::string body;
+  Receiver receiver{.sink = sink, .text = {}};
   const auto on_head = [&](const httplib::Response& response) {
-    to_sink = sink && response.status >= 200 && response.status < 300;
+    receiver.begin(response.status);
     return !stop_.stop_requested();
   };
-  const auto send = [&](httplib::Client& client, Guard& guard) {
-    const auto on_bytes = [&](const char* data, std::size_t length) {
-      const std::string_view bytes(data, length);
-      return !stop_.stop_requested() && guard([&] { to_sink ? sink(bytes) : void(body += bytes); });
-    };
+  Guard guard;
+  const auto on_bytes = [&](const char* data, std::size_t length) {
+    return !stop_.stop_requested() && guard([&] { receiver.take({data, length}); });
+  };
+  const auto send = [&](httplib::Client& client) {
     return client.Get(server_.prefix + path, to_httplib(headers), on_head, on_bytes);
   };
-  Reply reply = to_reply(perform(server_, stop_, send));
-  reply.body = std::move(body);
+  Reply reply = to_reply(perform(server_, stop_, guard, send));
+  reply.body = std::move(receiver.text);
   return reply;
 }
 
 Reply Http::remove(const std::string& path) const {
-  const auto send = [&](httplib::Client& client, Guard&) {
-    return client.Delete(server_.prefix + path);
-  };
-  return to_reply(perform(server_, stop_, send));
+  const auto send = [&](httplib::Client& client) { return client.Delete(server_.prefix + path); };
+  return to_reply(perform(server_, stop_, {}, send));
 }
 
 }  // namespace unwrapd::client

@@ -19,13 +19,13 @@ constexpr int kUnavailable = 503;
 constexpr long kLongestRetryAfterSeconds = 60;
 
 std::string percent_encoded(const std::string& text) {
-  constexpr const char* kDigits = "0123456789ABCDEF";
+  constexpr const char* digits = "0123456789ABCDEF";
   std::string encoded;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
                        c == '-' || c == '.' || c == '_' || c == '~';
-    encoded += plain ? std::string(1, c) : std::string{'%', kDigits[byte >> 4], kDigits[byte & 15]};
+    encoded += plain ? std::string(1, c) : std::string{'%', digits[byte >> 4], digits[byte & 15]};
   }
   return encoded;
 }
@@ -92,36 +92,42 @@ api::Job JobClient::submit(const Upload& upload, const OptionTexts& options) {
 }
 
 api::Job JobClient::follow(const std::string& job_id, const EventSink& on_event) {
-  std::string last_id;
-  std::optional<api::Job> job;
-  int lost = 0;
-  milliseconds wait = patience_.first_pause;
-  const auto take = [&](const SseEvent& event) {
-    last_id = event.id;
-    lost = 0;
-    wait = patience_.first_pause;
-    if (is_final_event(event)) job = job_of(json_of(event.data));
-    on_event(event);
-  };
+  Following following{.last_id = {}, .job = {}, .wait = patience_.first_pause};
   while (true) {
     try {
-      SseParser parser;
-      Headers headers = {{"Accept", "text/event-stream"}};
-      if (!last_id.empty()) headers["Last-Event-ID"] = last_id;
-      const Reply reply = http_.get(api::job_path(job_id) + "/events", headers,
-                                    [&](std::string_view bytes) { parser.feed(bytes, take); });
-      if (job) return *job;
-      if (!reply.ok() && !is_busy(reply)) refuse(reply);
-      api::Job now = state_of(job_id);  // no stream to be had, or it ended early
-      if (api::is_final(now.state)) return now;
-      lost = 0;
+      read_events(job_id, following, on_event);
     } catch (const Failure& failure) {
-      if (job) return *job;
-      if (failure.code() != ExitCode::unreachable || ++lost >= patience_.lost_connections) throw;
+      if (!following.job && !may_reconnect(failure, following)) throw;
     }
-    pause(wait);
-    wait = std::min(2 * wait, patience_.longest_pause);
+    if (following.job) return *following.job;
+    pause(following.wait);
+    following.wait = std::min(2 * following.wait, patience_.longest_pause);
   }
+}
+
+bool JobClient::may_reconnect(const Failure& failure, Following& following) const {
+  return failure.code() == ExitCode::unreachable && ++following.lost < patience_.lost_connections;
+}
+
+void JobClient::read_events(const std::string& job_id, Following& following,
+                            const EventSink& on_event) {
+  const auto take = [&](const SseEvent& event) {
+    following.last_id = event.id;
+    following.lost = 0;
+    following.wait = patience_.first_pause;
+    if (is_final_event(event)) following.job = job_of(json_of(event.data));
+    on_event(event);
+  };
+  SseParser parser;
+  Headers headers = {{"Accept", "text/event-stream"}};
+  if (!following.last_id.empty()) headers["Last-Event-ID"] = following.last_id;
+  const Reply reply = http_.get(api::job_path(job_id) + "/events", headers,
+                                [&](std::string_view bytes) { parser.feed(bytes, take); });
+  if (following.job) return;
+  if (!reply.ok() && !is_busy(reply)) refuse(reply);
+  const api::Job now = state_of(job_id);  // no stream to be had, or it ended early
+  following.lost = 0;
+  if (api::is_final(now.state)) following.job = now;
 }
 
 std::string JobClient::fetch(const std::string& job_id, const std::string& what) {

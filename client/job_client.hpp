@@ -5,10 +5,12 @@
 #include <chrono>
 #include <functional>
 #include <map>
+#include <optional>
 #include <stop_token>
 #include <string>
 
 #include "api/job.hpp"
+#include "client/failure.hpp"
 #include "client/http.hpp"
 #include "client/sse.hpp"
 #include "client/upload.hpp"
@@ -49,6 +51,17 @@ class JobClient {
   void cancel(const std::string& job_id);
 
  private:
+  /// What following a job remembers from one connection to the next.
+  struct Following {
+    std::string last_id;
+    std::optional<api::Job> job;  ///< once it is final
+    std::chrono::milliseconds wait;
+    int lost = 0;  ///< connections in a row without a sign of life
+  };
+
+  /// One connection's worth of events; without a stream, the job's state.
+  void read_events(const std::string& job_id, Following& following, const EventSink& on_event);
+  bool may_reconnect(const Failure& failure, Following& following) const;
   api::Job state_of(const std::string& job_id);
   void pause(std::chrono::milliseconds duration);
 

@@ -44,12 +44,12 @@ Point shell_point(double r, double t) {
 
 /// The cross product of the surface's two tangents, by central differences.
 Point shell_normal(double r, double t) {
-  constexpr double kStep = 1e-3;
+  constexpr double step = 1e-3;
   const auto tangent = [](const Point& from, const Point& to) {
     return std::array<double, 3>{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
   };
-  const auto a = tangent(shell_point(r - kStep, t), shell_point(r + kStep, t));
-  const auto b = tangent(shell_point(r, t - kStep), shell_point(r, t + kStep));
+  const auto a = tangent(shell_point(r - step, t), shell_point(r + step, t));
+  const auto b = tangent(shell_point(r, t - step), shell_point(r, t + step));
   const std::array<double, 3> n = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                                    a[0] * b[1] - a[1] * b[0]};
   const double length = std::hypot(n[0], n[1], n[2]);
@@ -98,7 +98,7 @@ Json bounds(const std::vector<Point>& points, bool upper) {
 }
 
 Json document(const Shell& shell) {
-  constexpr int kFloat = 5126, kUnsignedShort = 5123, kVertices = 34962, kIndices = 34963;
+  constexpr int float_type = 5126, short_type = 5123, vertex_target = 34962, index_target = 34963;
   const std::size_t points = shell.positions.size() * sizeof(Point);
   const std::size_t indices = shell.indices.size() * sizeof(std::uint16_t);
   const auto view = [](std::size_t offset, std::size_t length, int target) {
@@ -108,7 +108,7 @@ Json document(const Shell& shell) {
     return Json{
         {"bufferView", buffer_view}, {"componentType", type}, {"count", count}, {"type", shape}};
   };
-  Json position = accessor(0, kFloat, shell.positions.size(), "VEC3");
+  Json position = accessor(0, float_type, shell.positions.size(), "VEC3");
   position["min"] = bounds(shell.positions, false);
   position["max"] = bounds(shell.positions, true);
   Json json;
@@ -120,10 +120,10 @@ Json document(const Shell& shell) {
   json["meshes"] = Json::array({Json{{"name", "shell"}}});
   json["meshes"][0]["primitives"] = Json::array(
       {Json{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}}, {"indices", 2}, {"material", 0}}});
-  json["accessors"] = {position, accessor(1, kFloat, shell.normals.size(), "VEC3"),
-                       accessor(2, kUnsignedShort, shell.indices.size(), "SCALAR")};
-  json["bufferViews"] = {view(0, points, kVertices), view(points, points, kVertices),
-                         view(2 * points, indices, kIndices)};
+  json["accessors"] = {position, accessor(1, float_type, shell.normals.size(), "VEC3"),
+                       accessor(2, short_type, shell.indices.size(), "SCALAR")};
+  json["bufferViews"] = {view(0, points, vertex_target), view(points, points, vertex_target),
+                         view(2 * points, indices, index_target)};
   json["buffers"] = Json::array({Json{{"byteLength", 2 * points + indices}}});
   return json;
 }

@@ -25,20 +25,22 @@ bool is_host_character(char c) {
   return alphanumeric || c == '-' || c == '.' || c == '_';
 }
 
-/// "host" or "[v6]", with ":port" or without.
-void check_authority(std::string_view authority, std::string_view text) {
-  std::size_t host_end = authority.find(':');
+/// Checks the host and returns what follows it: "" or ":port".
+std::string_view after_host(std::string_view authority, std::string_view text) {
   if (authority.starts_with('[')) {
     const std::size_t bracket = authority.find(']');
     if (bracket == std::string_view::npos) refuse(text, "has no closing bracket");
-    host_end = bracket + 1 == authority.size() ? std::string_view::npos : bracket + 1;
-  } else {
-    const std::string_view host = authority.substr(0, host_end);
-    if (host.empty()) refuse(text, "names no host");
-    if (!std::ranges::all_of(host, is_host_character)) refuse(text, "has a host that is no name");
+    return authority.substr(bracket + 1);
   }
-  if (host_end == std::string_view::npos) return;
-  if (authority[host_end] != ':' || !is_port(authority.substr(host_end + 1)))
+  const std::string_view host = authority.substr(0, authority.find(':'));
+  if (host.empty()) refuse(text, "names no host");
+  if (!std::ranges::all_of(host, is_host_character)) refuse(text, "has a host that is no name");
+  return authority.substr(host.size());
+}
+
+void check_authority(std::string_view authority, std::string_view text) {
+  const std::string_view port = after_host(authority, text);
+  if (!port.empty() && !(port.front() == ':' && is_port(port.substr(1))))
     refuse(text, "has no valid port");
 }
 
