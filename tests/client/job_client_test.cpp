@@ -149,8 +149,8 @@ TEST(JobClient, ComesBackWhenTheQueueWasFull) {
 }
 
 TEST(JobClient, StopsInTheMiddleOfAWaitForTheNextEvent) {
+  std::stop_source stop;  // outlives the server, whose thread asks it
   FakeServer server;
-  std::stop_source stop;
   server.routes().Get(kEvents, [&](const httplib::Request&, httplib::Response& reply) {
     reply.set_chunked_content_provider("text/event-stream", [&](std::size_t, auto& sink) {
       const std::string frame = api::sse_frame(api::started_event(1, 1));
