@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <memory>
 #include <thread>
 
 #include "core/error.hpp"
@@ -41,7 +43,14 @@ TEST_F(Shutdown, AJobThatIsNotDoneInTimeRunsAgainAtTheNextStart) {
   const std::string waiting = submit();
   await_state(running, "running");
   std::string seen;
-  std::jthread reader([&] { seen = get(waiting, "events")->body; });
+  std::atomic<bool> is_reading = false;
+  std::jthread reader([&, client = std::make_shared<httplib::Client>(client())] {
+    client->Get("/v1/jobs/" + waiting + "/events", [&](const char* data, std::size_t size) {
+      seen.append(data, size);
+      return is_reading = true;
+    });
+  });
+  await([&] { return is_reading.load(); });
   restart();
   reader.join();
   EXPECT_THAT(seen, Not(HasSubstr("succeeded")));
