@@ -53,7 +53,7 @@ const MAX_LINES = [
 ];
 
 /** Words that have no place in the project: left-overs, and paths of a developer's machine. */
-const FORBIDDEN = [/\bTODO\b/, /\bFIXME\b/, /\bXXX\b/, /\/work\//, /"resolved":/];
+const FORBIDDEN = [/\bTODO\b/, /\bFIXME\b/, /\bXXX\b/, /\/(home|Users|mnt)\/\w/, /"resolved":/];
 
 const SOURCE = /\.(cpp|hpp|mjs|js|ts|py|md|txt|json|yaml|yml|sh|cmake)$|(^|\/)(dev|run)$/;
 const SKIPPED = new Set([".git", "build", "out", "data", "node_modules"]);
