@@ -1,6 +1,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <iostream>
 
 #include "client/interrupt.hpp"
@@ -41,6 +42,7 @@ ExitCode perform(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a server that hangs up is an error to report, not our end
   const auto parsed = parse_arguments(argc, argv);
   if (const auto* message = std::get_if<Message>(&parsed)) {
     (message->code == ExitCode::ok ? std::cout : std::cerr) << message->text << std::flush;
