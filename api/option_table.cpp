@@ -95,8 +95,20 @@ constexpr std::array kRows = {
     choice<&O::lambda_units, kLambdaUnits>(
         "lambda_units", kOnlyHybrid,
         "Whether lambda is dimensionless or as printed in the paper's Eq. (5)."),
-    figure<&O::iterations>("iterations", {1, {}}, kIterative,
-                           "Local/global iterations of a chart."),
+    OptionRow{
+        .name = "iterations",
+        .type = OptionType::integer,
+        .choices = {},
+        .minimum = 1,
+        .maximum = {},
+        .description = "Local/global iterations of a chart.",
+        .methods = kIterative,
+        .get =
+            [](const JobOptions& options) {
+              return Json(options.unwrap.stop.iterations.value_or(10));
+            },
+        .set = [](JobOptions& options,
+                  double value) { options.unwrap.stop.iterations = static_cast<int>(value); }},
     choice<&O::initial, kInitialMaps>(
         "initial", kIterative,
         "The map to start from; auto takes mean_value or lscm, whichever is nearer to rigid."),

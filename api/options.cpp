@@ -120,6 +120,11 @@ std::optional<double> value_of(const OptionRow& row, const Json& json) {
 
 /// Options as they are gathered: the values so far and which were given.
 struct Gathering {
+  explicit Gathering(const Limits& server) : limits(server) {
+    Stop& stop = options.unwrap.stop;
+    stop.max_iterations = std::min(stop.max_iterations, limits.max_iterations);
+  }
+
   const Limits& limits;
   JobOptions options;
   std::vector<const OptionRow*> given;
@@ -154,7 +159,7 @@ struct Gathering {
 }  // namespace
 
 JobOptions parse_options(const Query& query, const Limits& limits) {
-  Gathering gathering{limits, {}, {}};
+  Gathering gathering(limits);
   for (const auto& [name, text] : query) gathering.add(name, text);
   return gathering.finish();
 }
@@ -163,7 +168,7 @@ JobOptions parse_options(const Json& object, const Limits& limits) {
   if (!object.is_object()) {
     throw Error(ErrorCode::invalid_option, "The options must be a JSON object.");
   }
-  Gathering gathering{limits, {}, {}};
+  Gathering gathering(limits);
   for (const auto& [name, value] : object.items()) {
     if (value.is_null() && name == "lambda") continue;  // as in resolved options
     gathering.add(name, value);

@@ -44,8 +44,10 @@ enum class ErrorCode {
   zero_area,
   non_finite_position,
   not_orientable,
+  invalid_constraint,
   // the work
   solver_failed,
+  guarantee_failed,
   time_limit,
   cancelled,
   poison,

@@ -17,8 +17,14 @@ void require(bool holds, const std::string& what, const std::string& pointer) {
 void validate(const UnwrapOptions& options, int max_iterations) {
   require(options.lambda >= 0 && !std::isnan(options.lambda),
           "lambda must be a number of at least 0", "/lambda");
-  require(options.iterations >= 1 && options.iterations <= max_iterations,
-          "iterations must lie between 1 and " + std::to_string(max_iterations), "/iterations");
+  const Stop& stop = options.stop;
+  const std::string range = "between 1 and " + std::to_string(max_iterations);
+  require(!stop.iterations || (*stop.iterations >= 1 && *stop.iterations <= max_iterations),
+          "stop.iterations must lie " + range, "/stop/iterations");
+  require(stop.max_iterations >= 1 && stop.max_iterations <= max_iterations,
+          "stop.max_iterations must lie " + range, "/stop/max_iterations");
+  require(stop.tolerance > 0 && stop.tolerance < 1, "stop.tolerance must lie between 0 and 1",
+          "/stop/tolerance");
   require(options.resolution >= kMinResolution && options.resolution <= kMaxResolution,
           "resolution must lie between " + std::to_string(kMinResolution) + " and " +
               std::to_string(kMaxResolution) + " texels",

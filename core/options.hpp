@@ -1,26 +1,58 @@
 #pragma once
 // What a user can ask for. Aggregates with defaults in place; validate() is the one check.
 
-#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd {
 
-enum class Method { asap, arap, hybrid };
+enum class Method { asap, arap, hybrid, abf, linabf, cp, bff, ic, slim };
 enum class InitialMap { automatic, mean_value, tutte, lscm };  ///< automatic: "auto" on the wire
 enum class Pins { diameter, spectral };
 enum class LambdaUnits { dimensionless, paper };
 enum class SeamMode { automatic, keep, none };  ///< automatic: "auto" on the wire
+enum class Guarantee { none, flip_free, bijective };
+enum class RepairMethod { untangle, virtual_boundary };  ///< how flipped triangles are turned back
+enum class BoundaryShape { free, circle, square };
+
+/// When the iterations of ARAP and Hybrid end.
+struct Stop {
+  std::optional<int> iterations =
+      {};                    ///< given: so many plain ones, as in the paper (Sec. 4.4); >= 1
+  double tolerance = 1e-6;   ///< else: accelerated, until the energy falls by less than this share
+  int max_iterations = 500;  ///< and never more than this many, >= 1
+};
+
+/// A vertex that shall lie at a given place of the plane (Sec. 7).
+struct PositionConstraint {
+  Index surface = 0;                 ///< which of the asset's surfaces
+  std::optional<Index> vertex = {};  ///< of that surface; without it:
+  Vec3 position = Vec3::Zero();      ///< the vertices nearest to this point, all at one place
+  Vec2 uv = Vec2::Zero();            ///< in the page's coordinates, V pointing up
+  double weight = std::numeric_limits<double>::infinity();  ///< finite, > 0: in least squares
+};
 
 struct UnwrapOptions {
   Method method = Method::arap;
   double lambda = 0.1;  ///< hybrid only, >= 0: 0 is ASAP, infinity is ARAP
+  std::vector<double> lambda_curve =
+      {};  ///< hybrid only: these instead of lambda, one map for each
   LambdaUnits lambda_units = LambdaUnits::dimensionless;
-  int iterations = 10;                         ///< local/global iterations a chart, >= 1
+  Stop stop = {};
   InitialMap initial = InitialMap::automatic;  ///< see initial_maps()
   Pins pins = Pins::diameter;                  ///< ASAP only: how the conformal map is pinned
   SeamMode seams = SeamMode::automatic;        ///< which vertex copies are welded for topology
   int resolution = 1024;                       ///< side of the square page, texels, [16, 16384]
   int padding = 2;                             ///< gap between islands and to the border, texels
+  Guarantee guarantee = Guarantee::flip_free;  ///< what holds of the UVs that are written
+  RepairMethod repair = RepairMethod::untangle;
+  BoundaryShape boundary =
+      BoundaryShape::free;  ///< ASAP, ARAP, Hybrid: where the longest loop lies
+  std::vector<PositionConstraint> constraints =
+      {};  ///< ASAP, ARAP, Hybrid; the page is then theirs
 };
 
 inline constexpr int kMinResolution = 16;

@@ -3,10 +3,12 @@
 // Lengths are in mesh units, D has its ideal at 2, energies are divided by the surface area.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/mesh/tri_mesh.hpp"
+#include "core/options.hpp"
 
 namespace unwrapd {
 
@@ -18,7 +20,22 @@ struct Distortion {
   Index flipped = 0;   ///< triangles of negative orientation; D is computed on |sigma|
 };
 
-enum class StopReason { iterations, direct, collapse_guard };
+enum class StopReason {
+  iterations,      ///< as many plain iterations as were asked for
+  direct,          ///< the method is one solve
+  collapse_guard,  ///< a step would have shrunk the map to almost nothing
+  converged,       ///< the energy fell by less than the tolerance over a window
+  max_iterations,  ///< the limit came before convergence
+};
+
+/// What a guarantee took: what was wrong with the solved map, and what putting it right cost.
+struct Mending {
+  Index flips = 0;                ///< flipped triangles of the solved map that were turned back
+  Index overlaps = 0;             ///< overlapping pairs of triangles that were parted
+  double energy_rise = 0;         ///< relative; 0 where nothing was mended
+  bool virtual_boundary = false;  ///< by the convex virtual boundary (Sec. 4.4)
+  Index parts = 1;                ///< the chart was split into so many; 1: it was not
+};
 
 struct ChartReport {
   Index surface = 0;  ///< which of the surfaces the chart belongs to
@@ -26,10 +43,12 @@ struct ChartReport {
   Index vertices = 0;
   Index boundaries = 0;  ///< boundary loops of the chart as solved
   double area = 0;       ///< 3D area
-  Distortion distortion;
+  Distortion distortion = {};
   int iterations = 0;
   StopReason stop_reason = StopReason::iterations;
-  std::vector<double> energy;  ///< energy[0] of the initial map, energy[k] after iteration k
+  std::vector<double> energy = {};  ///< energy[0] of the initial map, energy[k] after iteration k
+  std::optional<Index> overlaps = {};  ///< overlapping pairs of triangles, where they were counted
+  Mending mending = {};
 };
 
 /// What the mesh was as it came in, over all surfaces, after the seams were decided.
@@ -49,6 +68,14 @@ enum class RepairKind {
   cut_to_disk,                 ///< closed or high-genus components opened along a cut graph
 };
 
+/// One point of a lambda curve: all charts together.
+struct CurvePoint {
+  double lambda = 0;
+  double energy = 0;  ///< E of Eq. (5) in the units of lambda, over the surface area
+  Distortion distortion = {};
+  int iterations = 0;  ///< of the chart that took most
+};
+
 struct Repair {
   RepairKind kind = RepairKind::degenerate_faces_set_aside;
   Index surface = 0;
@@ -60,10 +87,12 @@ struct Report {
   std::vector<Repair> repairs;
   std::vector<std::string> notes;  ///< sentences for the user, e.g. an option without effect
   std::vector<ChartReport> charts;
-  Distortion distortion;     ///< over all charts, area-weighted
-  double seam_length = 0;    ///< 3D length of edges whose UVs differ on both sides
-  double fill = 0;           ///< UV area of the islands ÷ area of the page
-  double texel_density = 0;  ///< texels per mesh unit
+  Distortion distortion = {};             ///< over all charts, area-weighted
+  double seam_length = 0;                 ///< 3D length of edges whose UVs differ on both sides
+  double fill = 0;                        ///< UV area of the islands ÷ area of the page
+  double texel_density = 0;               ///< texels per mesh unit
+  Guarantee guarantee = Guarantee::none;  ///< what holds of the UVs that are written
+  std::vector<CurvePoint> curve = {};     ///< one for each lambda of a curve, in its order
 };
 
 }  // namespace unwrapd

@@ -133,8 +133,9 @@ std::vector<MappedChart> map_charts(const std::vector<Charts>& parts, const Unwr
         throw Error(ErrorCode::cancelled, "the job was cancelled");
       watch.begin(chart.mesh.faces.size());
       const Disk disk = make_disk(chart.mesh, chart.loops);
-      Solution solution = solve(disk, options, watch.watch(disk, options.iterations), executor);
-      mapped.push_back(finish(disk, chart, std::move(solution)));
+      Solver solver(disk, options, {}, executor);
+      const int most = options.stop.iterations.value_or(options.stop.max_iterations);
+      mapped.push_back(finish(disk, chart, solver.run(options.lambda, watch.watch(disk, most))));
       mapped.back().report.surface = static_cast<Index>(s);
       watch.end();
     }

@@ -1,49 +1,57 @@
 // Eq. (4): sum_j [cot + cot](u_i - u_j) = sum_j [cot L + cot L](x_i - x_j) for every vertex i.
 // The matrix is a sum of positive semidefinite element matrices whatever the cotangents' signs; its
-// only null space is translation. Adding the diagonal entry of vertex 0 once more removes it and
-// leaves the solution exact, because the right-hand side adds up to zero.
+// only null space is translation. Fixed vertices are eliminated and springs add to the diagonal:
+// either removes that null space. Where nothing is held, adding the diagonal entry of vertex 0 once
+// more does, and leaves the solution exact, because the right-hand side adds up to zero.
 #include "core/solve/global_step.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <vector>
 
 namespace unwrapd {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // vertices a block
-
-std::unique_ptr<RealSystem> factor_cotangent_matrix(const Disk& disk) {
+SparseMatrix held_matrix(const Disk& disk, const Holds& holds) {
   std::vector<double> weight;
   weight.reserve(3 * disk.rest.size());
   for (const RestTriangle& rest : disk.rest)
     weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
   SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight);
-  lower.coeffRef(0, 0) *= 2;
-  return factor(lower);
+  for (const Spring& spring : holds.springs)
+    lower.coeffRef(spring.vertex, spring.vertex) += 2 * spring.weight;
+  if (holds.empty()) lower.coeffRef(0, 0) *= 2;
+  return lower;
+}
+
+FreeVertices free_vertices(const Disk& disk, const Holds& holds) {
+  std::vector<char> fixed(disk.positions.size(), 0);
+  for (const FixedPoint& point : holds.fixed) fixed[static_cast<std::size_t>(point.vertex)] = 1;
+  return number_free(fixed);
 }
 
 }  // namespace
 
-GlobalStep::GlobalStep(const Disk& disk) : disk_(disk), system_(factor_cotangent_matrix(disk)) {}
+GlobalStep::GlobalStep(const Disk& disk, const Holds& holds) : free_(free_vertices(disk, holds)) {
+  const SparseMatrix lower = held_matrix(disk, holds);
+  if (holds.fixed.empty()) {
+    system_ = factor(lower);
+  } else if (free_.count > 0) {
+    const std::vector<Vec2> nowhere(free_.slot.size(), Vec2::Zero());  // only the matrix is wanted
+    system_ = factor(eliminate<SparseMatrix, Vec2>(lower, free_, nowhere).lower);
+  }
+}
 
-void GlobalStep::advance(std::span<const Vec2> residual, std::span<Vec2> uv,
-                         Executor& executor) const {
-  const VertexCorners& corners = disk_.corners;
-  const std::size_t n = uv.size();
-  assert(corners.begin.size() == n + 1 && residual.size() == corners.corner.size());
-  std::vector<Vec2> change(n);
-  executor.for_each_block(static_cast<int>((n + kBlock - 1) / kBlock), [&](int block) {
-    const std::size_t first = static_cast<std::size_t>(block) * kBlock;
-    for (std::size_t v = first; v < std::min(n, first + kBlock); ++v) {
-      Vec2 sum = Vec2::Zero();
-      for (Index k = corners.begin[v]; k < corners.begin[v + 1]; ++k)
-        sum += residual[static_cast<std::size_t>(corners.corner[static_cast<std::size_t>(k)])];
-      change[v] = sum;
-    }
-  });
+void GlobalStep::solve(std::span<Vec2> force) const {
+  assert(force.size() == free_.slot.size());
+  if (!system_) return;
+  if (free_.count == static_cast<Index>(force.size())) return system_->solve(force);
+  std::vector<Vec2> change(static_cast<std::size_t>(free_.count));
+  for (std::size_t v = 0; v < force.size(); ++v)
+    if (free_.slot[v] != kFixed) change[static_cast<std::size_t>(free_.slot[v])] = force[v];
   system_->solve(change);
-  for (std::size_t v = 0; v < n; ++v) uv[v] += change[v];
+  for (std::size_t v = 0; v < force.size(); ++v)
+    force[v] = free_.slot[v] == kFixed ? Vec2(Vec2::Zero())
+                                       : change[static_cast<std::size_t>(free_.slot[v])];
 }
 
 }  // namespace unwrapd

@@ -4,27 +4,27 @@
 #include <memory>
 #include <span>
 
-#include "core/executor.hpp"
+#include "core/linear/eliminate.hpp"
 #include "core/linear/factor.hpp"
 #include "core/solve/disk.hpp"
+#include "core/solve/holds.hpp"
 
 namespace unwrapd {
 
-/// The matrix of Eq. (4) with vertex 0 pinned, factored once. It depends on the mesh alone.
+/// The matrix of Eq. (4), factored once: the Hessian of Objective for fixed fits. It depends on the
+/// mesh, on which vertices are held and on the springs' weights, not on where they are held.
 class GlobalStep {
  public:
-  /// Throws Error{solver_failed}. disk must outlive the step.
-  explicit GlobalStep(const Disk& disk);
+  /// Throws Error{solver_failed}.
+  GlobalStep(const Disk& disk, const Holds& holds);
 
-  /// Moves uv to the minimiser of Eq. (1) for the fits whose residual local_step() left: uv becomes
-  /// uv + A^-1 r, r the residual summed over each vertex's corners. Solving for the change, not for
-  /// the map, keeps full precision near convergence.
-  void advance(std::span<const Vec2> residual, std::span<Vec2> uv, Executor& executor) const;
-
-  [[nodiscard]] const Disk& disk() const { return disk_; }
+  /// Replaces force (Objective::evaluate()) by the change of the map A^-1 force; fixed vertices do
+  /// not move. Solving for the change, not for the map, keeps full precision near convergence.
+  /// Thread-safe.
+  void solve(std::span<Vec2> force) const;
 
  private:
-  const Disk& disk_;
+  FreeVertices free_;
   std::unique_ptr<RealSystem> system_;
 };
 

@@ -6,45 +6,25 @@
 #include "core/measure/distortion.hpp"
 
 namespace unwrapd {
-namespace {
-
-/// The state that one iteration hands to the next: the residual belongs to solution.uv.
-class Iteration {
- public:
-  Iteration(const Disk& disk, const Rigidity& rigidity, Executor& executor)
-      : disk_(disk), rigidity_(rigidity), executor_(executor), residual_(3 * disk.faces.size()) {}
-
-  double fit(const UvMap& uv) {
-    return local_step({disk_.rest, disk_.faces}, uv, rigidity_, residual_, executor_);
-  }
-  void stitch(const GlobalStep& global, UvMap& uv) { global.advance(residual_, uv, executor_); }
-
- private:
-  const Disk& disk_;
-  Rigidity rigidity_;
-  Executor& executor_;
-  std::vector<Vec2> residual_;
-};
-
-}  // namespace
-
-Solution local_global(const GlobalStep& global, UvMap start, const LocalGlobalOptions& options,
+Solution local_global(const Assembly& assembly, UvMap start, const LocalGlobalOptions& options,
                       const LoopWatch& watch, Executor& executor) {
-  const Disk& disk = global.disk();
-  Iteration iteration(disk, options.rigidity, executor);
+  const Disk& disk = assembly.disk;
+  Objective objective(disk, options.rigidity, assembly.holds, executor);
+  std::vector<Vec2> step(start.size());  // the force on the map, then the change that it makes
   Solution solution{.uv = std::move(start), .energy = {}};
-  solution.energy.push_back(iteration.fit(solution.uv));
+  solution.energy.push_back(objective.evaluate(solution.uv, step));
   const double least_area = kMinAreaShare * uv_area(disk.rest, disk.faces, solution.uv);
   for (int k = 0; k < options.iterations; ++k) {
     if (watch.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
     UvMap next = solution.uv;
-    iteration.stitch(global, next);
+    assembly.global.solve(step);
+    for (std::size_t v = 0; v < next.size(); ++v) next[v] += step[v];
     if (uv_area(disk.rest, disk.faces, next) < least_area) {
       solution.stop_reason = StopReason::collapse_guard;
       break;
     }
     solution.uv = std::move(next);
-    solution.energy.push_back(iteration.fit(solution.uv));
+    solution.energy.push_back(objective.evaluate(solution.uv, step));
     ++solution.iterations;
     if (watch.on_iteration) watch.on_iteration(solution);
   }

@@ -7,7 +7,7 @@
 
 #include "core/report.hpp"
 #include "core/solve/global_step.hpp"
-#include "core/solve/local_step.hpp"
+#include "core/solve/objective.hpp"
 
 namespace unwrapd {
 
@@ -26,15 +26,23 @@ struct LoopWatch {
   std::stop_token stop;
 };
 
+/// A disk, its held vertices, and the system that was factored for both.
+struct Assembly {
+  const Disk& disk;
+  const Holds& holds;
+  const GlobalStep& global;
+};
+
 struct LocalGlobalOptions {
   Rigidity rigidity;
   int iterations = 10;
 };
 
-/// Runs the iterations from the map start. The energy never rises. A step that would leave less
-/// than kMinAreaShare of the start's UV area is rejected and ends the run (collapse_guard).
+/// Runs plain iterations from the map start, in which fixed vertices lie where they are held. The
+/// energy never rises. A step that would leave less than kMinAreaShare of the start's UV area is
+/// rejected and ends the run (collapse_guard).
 /// Throws Error{cancelled} within one iteration of a stop request.
-Solution local_global(const GlobalStep& global, UvMap start, const LocalGlobalOptions& options,
+Solution local_global(const Assembly& assembly, UvMap start, const LocalGlobalOptions& options,
                       const LoopWatch& watch, Executor& executor);
 
 inline constexpr double kMinAreaShare = 0.01;

@@ -14,6 +14,7 @@
 #include "core/measure/energy.hpp"
 #include "core/solve/conformal.hpp"
 #include "core/solve/convex_map.hpp"
+#include "core/solve/methods.hpp"
 
 namespace unwrapd {
 namespace {
@@ -29,10 +30,9 @@ UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
   return uv;
 }
 
-Rigidity rigidity_of(const Disk& disk, const UnwrapOptions& options) {
-  if (options.method == Method::arap) return {};
-  if (options.lambda_units == LambdaUnits::dimensionless) return {options.lambda, false};
-  return {options.lambda / (disk.unit * disk.unit), true};  // Eq. (5) in units of area 1
+Rigidity rigidity_of(const Disk& disk, double lambda, LambdaUnits units) {
+  if (units == LambdaUnits::dimensionless) return {lambda, false};
+  return {lambda / (disk.unit * disk.unit), true};  // Eq. (5) in units of area 1
 }
 
 /// The area-weighted mean of lambda_t.
@@ -55,25 +55,19 @@ UvMap map_of_kind(const Disk& disk, InitialMap kind) {
 }
 
 /// The start from which a few iterations get farthest: energies at the start tell less.
-std::size_t best_of(const std::vector<UvMap>& starts, const GlobalStep& global,
+std::size_t best_of(const std::vector<UvMap>& starts, const Assembly& assembly,
                     const Rigidity& rigidity, Executor& executor) {
+  if (starts.size() == 1) return 0;
   const auto energy_after_trial = [&](const UvMap& start) {
-    return local_global(global, start, {rigidity, kTrialIterations}, {}, executor).energy.back();
+    return local_global(assembly, start, {rigidity, kTrialIterations}, {}, executor).energy.back();
   };
   std::vector<double> energy(starts.size());
   std::transform(starts.begin(), starts.end(), energy.begin(), energy_after_trial);
   return static_cast<std::size_t>(std::min_element(energy.begin(), energy.end()) - energy.begin());
 }
 
-Solution iterate(const Disk& disk, const UnwrapOptions& options, std::vector<UvMap> starts,
-                 const SolveWatch& watch, Executor& executor) {
-  if (watch.on_stage) watch.on_stage(Stage::factor);
-  const GlobalStep global(disk);
-  if (watch.on_stage) watch.on_stage(Stage::solve);
-  const Rigidity rigidity = rigidity_of(disk, options);
-  const std::size_t best = starts.size() > 1 ? best_of(starts, global, rigidity, executor) : 0;
-  return local_global(global, std::move(starts[best]), {rigidity, options.iterations}, watch.loop,
-                      executor);
+void tell(const SolveWatch& watch, Stage stage) {
+  if (watch.on_stage) watch.on_stage(stage);
 }
 
 }  // namespace
@@ -87,26 +81,54 @@ std::vector<UvMap> initial_maps(const Disk& disk, InitialMap kind) {
   return maps;
 }
 
-Solution solve(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,
-               Executor& executor) {
-  if (watch.on_stage) watch.on_stage(Stage::setup);
-  if (options.method == Method::asap) {
-    if (watch.on_stage) watch.on_stage(Stage::solve);
-    return direct(disk, conformal_map(disk, options.pins));
-  }
-  const double lambda = mean_lambda(disk, rigidity_of(disk, options));
-  if (lambda > kSafeLambda)
-    return iterate(disk, options, initial_maps(disk, options.initial), watch, executor);
+Solver::Solver(const Disk& disk, const UnwrapOptions& options, Holds holds, Executor& executor)
+    : disk_(disk), options_(options), holds_(std::move(holds)), executor_(executor) {}
 
-  UvMap conformal = conformal_map(disk, options.pins);
-  if (lambda <= asap_energy(disk.rest, disk.faces, conformal) / 2)
-    return direct(disk, std::move(conformal));
-  std::vector<UvMap> starts;
-  if (options.initial == InitialMap::automatic)
-    starts.push_back(std::move(conformal));
-  else
-    starts = initial_maps(disk, options.initial);
-  return iterate(disk, options, std::move(starts), watch, executor);
+const std::vector<UvMap>& Solver::starts() {
+  if (starts_.empty()) starts_ = initial_maps(disk_, options_.initial);
+  return starts_;
+}
+
+const UvMap& Solver::conformal() {
+  if (!conformal_) conformal_ = conformal_map(disk_, options_.pins);
+  return *conformal_;
+}
+
+Solution Solver::iterate(const Rigidity& rigidity, const std::vector<UvMap>& starts,
+                         const SolveWatch& watch) {
+  if (!global_) {
+    tell(watch, Stage::factor);
+    global_.emplace(disk_, holds_);
+  }
+  tell(watch, Stage::solve);
+  const Assembly assembly{disk_, holds_, *global_};
+  const UvMap& start = starts[best_of(starts, assembly, rigidity, executor_)];
+  const LocalGlobalOptions plain{rigidity, options_.stop.iterations.value_or(10)};
+  return local_global(assembly, start, plain, watch.loop, executor_);
+}
+
+Solution Solver::hybrid(const Rigidity& rigidity, const SolveWatch& watch) {
+  const double lambda = mean_lambda(disk_, rigidity);
+  if (lambda > kSafeLambda) return iterate(rigidity, starts(), watch);
+  if (lambda <= asap_energy(disk_.rest, disk_.faces, conformal()) / 2)
+    return direct(disk_, conformal());
+  if (options_.initial == InitialMap::automatic) return iterate(rigidity, {conformal()}, watch);
+  return iterate(rigidity, starts(), watch);
+}
+
+Solution Solver::run(double lambda, const SolveWatch& watch) {
+  tell(watch, Stage::setup);
+  switch (options_.method) {
+    case Method::asap:
+      tell(watch, Stage::solve);
+      return direct(disk_, conformal());
+    case Method::arap:
+      return iterate({}, starts(), watch);
+    case Method::hybrid:
+      return hybrid(rigidity_of(disk_, lambda, options_.lambda_units), watch);
+    default:
+      return other_method(disk_, options_.method, watch, executor_);
+  }
 }
 
 }  // namespace unwrapd

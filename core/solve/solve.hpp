@@ -2,6 +2,7 @@
 // One chart, one method: ASAP directly, ARAP and Hybrid by local/global iterations.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/options.hpp"
@@ -16,12 +17,36 @@ struct SolveWatch {
   LoopWatch loop;
 };
 
-/// Solves one disk. Throws Error{solver_failed, cancelled}.
-Solution solve(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,
-               Executor& executor);
+/// One disk under one set of options. What depends on the mesh and on which vertices are held (the
+/// initial maps, the factored system) is made when it is first needed and kept: another lambda
+/// costs iterations only. Used by one thread at a time.
+class Solver {
+ public:
+  /// disk, options and executor must outlive the solver.
+  Solver(const Disk& disk, const UnwrapOptions& options, Holds holds, Executor& executor);
+
+  /// Solves by options.method; lambda counts for Method::hybrid, in options.lambda_units. The same
+  /// whatever was run before. Throws Error{solver_failed, cancelled}.
+  Solution run(double lambda, const SolveWatch& watch);
+
+ private:
+  const std::vector<UvMap>& starts();
+  const UvMap& conformal();
+  Solution hybrid(const Rigidity& rigidity, const SolveWatch& watch);
+  Solution iterate(const Rigidity& rigidity, const std::vector<UvMap>& starts,
+                   const SolveWatch& watch);
+
+  const Disk& disk_;
+  const UnwrapOptions& options_;
+  Holds holds_;
+  Executor& executor_;
+  std::vector<UvMap> starts_;
+  std::optional<UvMap> conformal_;
+  std::optional<GlobalStep> global_;
+};
 
 /// The maps that the iterations may start from, each scaled so that UV area = 3D area. One, but for
-/// automatic on one boundary: mean_value, and lscm where it is exact; solve() then takes the one
+/// automatic on one boundary: mean_value, and lscm where it is exact; Solver then takes the one
 /// from which a few iterations get farthest. automatic on several boundaries: lscm (Sec. 4.5).
 std::vector<UvMap> initial_maps(const Disk& disk, InitialMap kind);
 

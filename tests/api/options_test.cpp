@@ -122,7 +122,7 @@ TEST(Options, RefuseNumbersOutsideOfWhatCanBeCounted) {
   }
   expect_refused(refusal(R"({"iterations":1.5})"), "iterations", "1.5");
   expect_refused(refusal(R"({"iterations":1e300})"), "iterations", "1e300");
-  EXPECT_EQ(parse_options_text(R"({"iterations":20.0})", kLimits).unwrap.iterations, 20);
+  EXPECT_EQ(parse_options_text(R"({"iterations":20.0})", kLimits).unwrap.stop.iterations, 20);
 }
 
 TEST(Options, RefusePaddingOfMoreThanAQuarter) {
@@ -133,7 +133,7 @@ TEST(Options, RefusePaddingOfMoreThanAQuarter) {
 TEST(Options, IterationsObeyTheServersOwnLimit) {
   Limits strict;
   strict.max_iterations = 20;
-  EXPECT_EQ(parse_options(Query{{"iterations", "20"}}, strict).unwrap.iterations, 20);
+  EXPECT_EQ(parse_options(Query{{"iterations", "20"}}, strict).unwrap.stop.iterations, 20);
   const Error error = error_of([&] { parse_options(Query{{"iterations", "21"}}, strict); });
   EXPECT_STREQ(error.what(), "iterations must be an integer between 1 and 20.");
 }

@@ -172,7 +172,7 @@ TEST(Unwrap, RefusesWhatCannotBeDone) {
   EXPECT_EQ(refusal(mesh, {.method = Method::hybrid, .lambda = -1}), ErrorCode::invalid_option);
   EXPECT_EQ(refusal(mesh, {.method = Method::hybrid, .lambda = std::nan("")}),
             ErrorCode::invalid_option);
-  EXPECT_EQ(refusal(mesh, {.iterations = 0}), ErrorCode::invalid_option);
+  EXPECT_EQ(refusal(mesh, {.stop = {.iterations = 0}}), ErrorCode::invalid_option);
   EXPECT_EQ(refusal(mesh, {.resolution = 8}), ErrorCode::invalid_option);
   EXPECT_EQ(refusal(mesh, {.resolution = 64, .padding = 17}), ErrorCode::invalid_option);
 }

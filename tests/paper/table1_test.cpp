@@ -41,7 +41,7 @@ Charts load(const char* file) {
 Distortion solved(const Chart& chart, const UnwrapOptions& options) {
   const Disk disk = make_disk(chart.mesh, chart.loops);
   SerialExecutor serial;
-  const Solution s = solve(disk, options, {}, serial);
+  const Solution s = Solver(disk, options, {}, serial).run(options.lambda, {});
   return distortion(distortion_sums(disk.rest, disk.faces, s.uv));
 }
 
@@ -83,7 +83,7 @@ void expect_curve(const char* file, std::initializer_list<Step> steps) {
     const UnwrapOptions options{.method = Method::hybrid,
                                 .lambda = step.lambda * area,  // Eq. (5) grows with area
                                 .lambda_units = LambdaUnits::paper,
-                                .iterations = 2000};
+                                .stop = {.iterations = 2000}};
     const Distortion d = solved(charts.charts[0], options);
     std::printf("%20g  %.4f   %.4f\n", step.lambda, d.angle, d.area);
     EXPECT_NEAR(d.angle, step.angle, 0.002) << step.lambda;
@@ -117,8 +117,9 @@ TEST_F(Paper, DimensionlessLambdaIsMonotone) {
     const Charts charts = load(file);
     Distortion last{.angle = 0, .area = 1e9};
     for (double lambda : {0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0, 1e4}) {
-      const Distortion d = solved(charts.charts[0],
-                                  {.method = Method::hybrid, .lambda = lambda, .iterations = 1000});
+      const Distortion d =
+          solved(charts.charts[0],
+                 {.method = Method::hybrid, .lambda = lambda, .stop = {.iterations = 1000}});
       EXPECT_LT(d.area, last.area * (1 + 1e-6)) << file << ' ' << lambda;
       EXPECT_GT(d.angle, last.angle - 1e-6) << file << ' ' << lambda;
       last = d;

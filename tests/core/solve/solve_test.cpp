@@ -30,7 +30,7 @@ class TwoThreads final : public Executor {
 
 Solution solved(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch = {}) {
   SerialExecutor serial;
-  return solve(disk, options, watch, serial);
+  return Solver(disk, options, {}, serial).run(options.lambda, watch);
 }
 
 std::vector<TriMesh> curved_disks() {
@@ -62,8 +62,9 @@ TEST(Solve, EnergyNeverRises) {
     for (double lambda : {0.05, 0.5, 5.0}) {
       const OwnedDisk d = disk_of(mesh);
       for (const UnwrapOptions& options :
-           {UnwrapOptions{.iterations = 60},
-            UnwrapOptions{.method = Method::hybrid, .lambda = lambda, .iterations = 60}}) {
+           {UnwrapOptions{.stop = {.iterations = 60}},
+            UnwrapOptions{
+                .method = Method::hybrid, .lambda = lambda, .stop = {.iterations = 60}}}) {
         const std::vector<double> energy = solved(d.disk, options).energy;
         for (std::size_t k = 1; k < energy.size(); ++k)
           EXPECT_LE(energy[k], energy[k - 1] * (1 + 1e-12) + 1e-24);
@@ -115,7 +116,7 @@ TEST(Solve, AgreesWithDenseMatricesAndAnSvd) {
     const OwnedDisk d = disk_of(mesh);
     UvMap dense = initial_maps(d.disk, InitialMap::tutte).front();
     for (int k = 0; k < 5; ++k) dense = dense_arap_iteration(d.disk, dense);
-    const UvMap uv = solved(d.disk, {.iterations = 5, .initial = InitialMap::tutte}).uv;
+    const UvMap uv = solved(d.disk, {.stop = {.iterations = 5}, .initial = InitialMap::tutte}).uv;
     EXPECT_LT(gap_up_to_similarity(uv, dense), 1e-8);
   }
 }
@@ -158,7 +159,7 @@ TEST(Solve, SmallLambdaNeverCollapses) {
     for (double lambda : {1e-6, 1e-4, 1e-3, 1e-2, 3e-2, 0.1}) {
       const OwnedDisk d = disk_of(mesh);
       const Solution s =
-          solved(d.disk, {.method = Method::hybrid, .lambda = lambda, .iterations = 500});
+          solved(d.disk, {.method = Method::hybrid, .lambda = lambda, .stop = {.iterations = 500}});
       EXPECT_GE(uv_area(d.disk.rest, d.disk.faces, s.uv), kMinAreaShare);
     }
 }
@@ -236,7 +237,8 @@ TEST(Solve, GivesTheSameBytesOnOneAndTwoThreads) {
   SerialExecutor one;
   TwoThreads two;
   const UnwrapOptions options{.method = Method::hybrid, .lambda = 0.3};
-  const Solution a = solve(d.disk, options, {}, one), b = solve(d.disk, options, {}, two);
+  const Solution a = Solver(d.disk, options, {}, one).run(options.lambda, {});
+  const Solution b = Solver(d.disk, options, {}, two).run(options.lambda, {});
   EXPECT_EQ(a.uv, b.uv);
   EXPECT_EQ(a.energy, b.energy);
 }
@@ -252,7 +254,7 @@ TEST(Solve, StopsWithinOneIterationOfACancel) {
     if (seen == 3) stop.request_stop();
   };
   try {
-    solved(d.disk, {.iterations = 1000}, watch);
+    solved(d.disk, {.stop = {.iterations = 1000}}, watch);
     FAIL() << "the solver did not stop";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::cancelled);

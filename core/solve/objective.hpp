@@ -1,0 +1,35 @@
+#pragma once
+// What the iterations of ARAP and Hybrid minimise: the energy of the method, each triangle's fit
+// being the best there is (min over L of Eq. 2, 5), plus that of the springs (Sec. 7).
+
+#include <span>
+#include <vector>
+
+#include "core/executor.hpp"
+#include "core/solve/disk.hpp"
+#include "core/solve/holds.hpp"
+#include "core/solve/local_step.hpp"
+
+namespace unwrapd {
+
+class Objective {
+ public:
+  /// disk, holds and executor must outlive the objective.
+  Objective(const Disk& disk, const Rigidity& rigidity, const Holds& holds, Executor& executor);
+
+  /// Returns E(uv). force[v] becomes -dE/du_v: zero at fixed vertices. For fixed fits the Hessian
+  /// of E is the matrix of GlobalStep, so that one plain iteration is uv += A^-1 force. Both spans
+  /// have one entry a vertex. The same for any executor.
+  double evaluate(std::span<const Vec2> uv, std::span<Vec2> force);
+
+ private:
+  double pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const;
+
+  const Disk& disk_;
+  Rigidity rigidity_;
+  const Holds& holds_;
+  Executor& executor_;
+  std::vector<Vec2> residual_;  // one a corner
+};
+
+}  // namespace unwrapd
