@@ -13,8 +13,8 @@ constexpr std::array<std::string_view, 4> kRepairKinds = {
     "cut_to_disk"};
 
 /// The stages of timings_ms, in the order in which a job goes through them.
-constexpr std::array kTimings = {"queue",   "read", "setup", "factor", "solve",
-                                 "measure", "pack", "write", "total"};
+constexpr std::array kTimings = {"queue",    "read",    "setup", "factor", "solve",
+                                 "untangle", "measure", "pack",  "write",  "total"};
 
 Json to_json(const Distortion& distortion) {
   return {{"angle", finite(distortion.angle)},

@@ -17,6 +17,9 @@ void require(bool holds, const std::string& what, const std::string& pointer) {
 void validate(const UnwrapOptions& options, int max_iterations) {
   require(options.lambda >= 0 && !std::isnan(options.lambda),
           "lambda must be a number of at least 0", "/lambda");
+  for (double lambda : options.lambda_curve)
+    require(lambda >= 0 && !std::isnan(lambda), "every lambda must be a number of at least 0",
+            "/lambda");
   const Stop& stop = options.stop;
   const std::string range = "between 1 and " + std::to_string(max_iterations);
   require(!stop.iterations || (*stop.iterations >= 1 && *stop.iterations <= max_iterations),

@@ -23,4 +23,10 @@ struct Unwrapped {
 Unwrapped unwrap(std::span<const Surface> surfaces, const UnwrapOptions& options,
                  const Progress& progress, Executor& executor);
 
+/// One atlas for each value of options.lambda_curve, in its order, every one the same as if its
+/// lambda had been asked for alone; only Report::curve, which all of them have, is more. The
+/// surfaces are analysed and factored once. Without a curve: what unwrap() gives.
+std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const UnwrapOptions& options,
+                                    const Progress& progress, Executor& executor);
+
 }  // namespace unwrapd

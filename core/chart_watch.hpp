@@ -1,0 +1,45 @@
+#pragma once
+// From what a solver tells of one chart to what a job tells of itself.
+
+#include <optional>
+
+#include "core/progress.hpp"
+#include "core/solve/solve.hpp"
+
+namespace unwrapd {
+
+/// The share of the job that lies behind us when solving begins and when it ends.
+inline constexpr double kSolveBegin = 0.10, kSolveEnd = 0.90;
+
+/// Where the solving of charts stands: which chart, which lambda, how far. Charts weigh by their
+/// faces, the lambdas of a chart weigh alike.
+class ChartWatch {
+ public:
+  /// progress must outlive the watch.
+  ChartWatch(const Progress& progress, Index chart_count, std::size_t face_count);
+
+  void begin_chart(std::size_t faces, std::size_t lambda_count);
+  /// lambda is told with every event of the run; empty when there is but one map.
+  void begin_run(std::optional<double> lambda);
+  void end_run() { ++runs_done_; }
+  void end_chart();
+
+  void tell(Stage stage) const;
+  /// What to hand to a Solver. disk and stop must outlive it.
+  [[nodiscard]] SolveWatch solve_watch(const Disk& disk, const Stop& stop) const;
+  void throw_if_cancelled() const;
+  [[nodiscard]] const std::stop_token& stop() const { return progress_.stop; }
+
+ private:
+  [[nodiscard]] double fraction(double of_run) const;
+  [[nodiscard]] IterationEvent describe(const Disk& disk, const Solution& s,
+                                        const Stop& stop) const;
+
+  const Progress& progress_;
+  Index chart_ = 0, chart_count_;
+  double faces_total_, faces_done_ = 0, faces_now_ = 0;
+  double runs_ = 1, runs_done_ = 0;
+  std::optional<double> lambda_;
+};
+
+}  // namespace unwrapd

@@ -1,0 +1,31 @@
+#pragma once
+// One chart through the solver: every lambda that is asked for, each map kept to its promise.
+
+#include <vector>
+
+#include "core/atlas/charts.hpp"
+#include "core/chart_watch.hpp"
+#include "core/measure/distortion.hpp"
+
+namespace unwrapd {
+
+/// A chart with its map: a part of the chart that was solved, if the guarantee took a split.
+struct MappedChart {
+  Chart chart;
+  UvMap uv;             ///< in mesh units, UV area = 3D area
+  DistortionSums sums;  ///< of that map
+  ChartReport report;   ///< surface is left 0 for the caller to fill in
+};
+
+/// Whether a map is wanted for each value of a list, which counts for Method::hybrid alone.
+bool is_curve(const UnwrapOptions& options);
+
+/// The values of lambda that are asked for: those of the curve, or one.
+std::vector<double> lambdas_of(const UnwrapOptions& options);
+
+/// For each of lambdas_of(): the chart's parts with their maps. The mesh is analysed and factored
+/// once. Throws Error{solver_failed, guarantee_failed, cancelled}.
+std::vector<std::vector<MappedChart>> map_chart(const Chart& chart, const UnwrapOptions& options,
+                                                ChartWatch& watch, Executor& executor);
+
+}  // namespace unwrapd
