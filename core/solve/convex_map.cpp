@@ -4,11 +4,11 @@
 
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include "core/linear/dominant_lu.hpp"
 #include "core/linear/eliminate.hpp"
 #include "core/linear/factor.hpp"
+#include "core/solve/boundary_shape.hpp"
 
 namespace unwrapd {
 namespace {
@@ -19,30 +19,14 @@ struct ConvexMap {
   UvMap uv;  ///< of all vertices; inner ones at the origin
 };
 
-Index start_vertex(const Disk& disk, Index h) {
-  return disk.faces[static_cast<std::size_t>(h / 3)][static_cast<std::size_t>(h % 3)];
-}
-
-double edge_length(const Disk& disk, Index h) {
-  return disk.rest[static_cast<std::size_t>(h / 3)].edge[static_cast<std::size_t>(h % 3)].norm();
-}
-
-/// The longest loop on the circle of area 1, by arc length.
-ConvexMap boundary_on_circle(const Disk& disk) {
+ConvexMap with_boundary(const Disk& disk, std::span<const FixedPoint> boundary) {
   ConvexMap map{{}, UvMap(disk.positions.size(), Vec2::Zero())};
-  std::vector<char> on_circle(disk.positions.size(), 0);
-  double perimeter = 0;
-  for (Index h : disk.loops.front()) perimeter += edge_length(disk, h);
-  const double radius = std::sqrt(1 / std::numbers::pi);
-  double arc = 0;
-  for (Index h : disk.loops.front()) {
-    const auto v = static_cast<std::size_t>(start_vertex(disk, h));
-    const double angle = 2 * std::numbers::pi * arc / perimeter;
-    on_circle[v] = 1;
-    map.uv[v] = radius * Vec2(std::cos(angle), std::sin(angle));
-    arc += edge_length(disk, h);
+  std::vector<char> fixed(disk.positions.size(), 0);
+  for (const FixedPoint& point : boundary) {
+    fixed[static_cast<std::size_t>(point.vertex)] = 1;
+    map.uv[static_cast<std::size_t>(point.vertex)] = point.at;
   }
-  map.inner = number_free(on_circle);
+  map.inner = number_free(fixed);
   return map;
 }
 
@@ -97,7 +81,15 @@ LinearSystem mean_value_system(const Disk& disk, const ConvexMap& map) {
 }  // namespace
 
 UvMap tutte_map(const Disk& disk) {
-  ConvexMap map = boundary_on_circle(disk);
+  return tutte_map(disk, boundary_points(disk, BoundaryShape::circle));
+}
+
+UvMap mean_value_map(const Disk& disk) {
+  return mean_value_map(disk, boundary_points(disk, BoundaryShape::circle));
+}
+
+UvMap tutte_map(const Disk& disk, std::span<const FixedPoint> boundary) {
+  ConvexMap map = with_boundary(disk, boundary);
   const std::vector<double> equal(3 * disk.faces.size(), 1.0);
   const SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), equal);
   auto reduced = eliminate<SparseMatrix, Vec2>(lower, map.inner, map.uv);
@@ -106,8 +98,8 @@ UvMap tutte_map(const Disk& disk) {
   return std::move(map.uv);
 }
 
-UvMap mean_value_map(const Disk& disk) {
-  ConvexMap map = boundary_on_circle(disk);
+UvMap mean_value_map(const Disk& disk, std::span<const FixedPoint> boundary) {
+  ConvexMap map = with_boundary(disk, boundary);
   LinearSystem system = mean_value_system(disk, map);
   if (map.inner.count > 0) solve_dominant(system.matrix, system.rhs);
   place_inner(system.rhs, map);
