@@ -7,7 +7,7 @@
 #include "api/options.hpp"
 #include "api/report.hpp"
 #include "core/asset/asset.hpp"
-#include "core/measure/layout_svg.hpp"
+#include "core/figure/layout_svg.hpp"
 #include "core/unwrap.hpp"
 #include "server/job_input.hpp"
 #include "server/result_store.hpp"

@@ -12,10 +12,11 @@ const MAY_INCLUDE = {
   "core/linear": ["core/mesh"],
   "core/solve": ["core/linear", "core/measure", "core/mesh"],
   "core/atlas": ["core/solve", "core/linear", "core/measure", "core/mesh"],
+  "core/figure": ["core/measure", "core/mesh"],
   "core/asset": ["core/mesh"],
   core: ["core/atlas", "core/solve", "core/linear", "core/measure", "core/mesh"],
   api: [],
-  server: ["api", "core", "core/asset", "core/atlas", "core/measure", "core/mesh", "core/solve", "core/linear"],
+  server: ["api", "core", "core/asset", "core/atlas", "core/figure", "core/measure", "core/mesh", "core/solve", "core/linear"],
   client: ["api"],
 };
 
@@ -28,6 +29,7 @@ const PLAIN_FOR = {
   "core/linear": PLAIN,
   "core/solve": PLAIN,
   "core/atlas": PLAIN,
+  "core/figure": PLAIN,
   api: ["core/error.hpp", "core/options.hpp", "core/report.hpp", "core/progress.hpp", "core/mesh/tri_mesh.hpp"],
   client: [],
 };
@@ -39,6 +41,7 @@ const ONLY_IN = [
   { header: /^(thread|chrono|iostream|mutex|atomic|future)$/, files: /^(?!core\/)/ },
   { header: /^spdlog\//, files: /^server\// },
   { header: /^CLI\//, files: /^(server|client)\// },
+  { header: /^png\.h$/, files: /^(server\/png_file\.cpp$|tests\/server\/)/ },
   { header: /^sqlite3\.h$/, files: /^(server|tests\/server)\// },
   { header: /^(draco\/|meshoptimizer\.h|tiny_gltf\.h)/, files: /^(core\/asset|tests\/asset|tests\/fuzz)\// },
   { header: /^Eigen\//, files: /^(core|server|api|tests)\// },

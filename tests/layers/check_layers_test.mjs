@@ -16,6 +16,9 @@ test("core's folders include downwards only", () => {
   refuses("core/asset/gltf.cpp", '"core/options.hpp"');
   refuses("core/atlas/pack.cpp", '"core/unwrap.hpp"');
   refuses("core/unwrap.cpp", '"core/asset/asset.hpp"');
+  refuses("core/measure/energy.cpp", '"core/figure/image.hpp"');
+  refuses("core/figure/preview.cpp", '"core/solve/arap.hpp"');
+  accepts("core/figure/preview.cpp", '"core/measure/jacobian.hpp"');
   accepts("core/solve/arap.cpp", '"core/linear/cholesky.hpp"');
   accepts("core/atlas/charts.cpp", '"core/options.hpp"');
   accepts("core/unwrap.cpp", '"core/atlas/pack.hpp"');
@@ -39,6 +42,8 @@ test("a library is seen by its own folder only", () => {
   refuses("core/solve/arap.cpp", "<chrono>");
   refuses("core/solve/arap.cpp", "<iostream>");
   refuses("client/run.cpp", "<spdlog/spdlog.h>");
+  refuses("core/figure/image.cpp", "<png.h>");
+  accepts("server/png_file.cpp", "<png.h>");
   refuses("api/job.cpp", "<draco/compression/decode.h>");
   accepts("client/http.cpp", "<httplib.h>");
   accepts("core/asset/gltf.cpp", "<nlohmann/json.hpp>");

@@ -1,4 +1,4 @@
-#include "core/measure/layout_svg.hpp"
+#include "core/figure/layout_svg.hpp"
 
 #include <gtest/gtest.h>
 
@@ -87,11 +87,12 @@ TEST(LayoutSvg, AFlippedTriangleIsInThePathOnTop) {
 TEST(LayoutSvg, MoreDistortionIsALaterColour) {
   TriMesh mesh = merged(std::array{grid(1, 1), moved(grid(1, 1), {2, 0, 0})});
   UnwrappedSurface out = flattened(mesh);
-  for (std::size_t v = 4; v < 8; ++v) out.uv[v] = {0.5 + 0.2 * out.uv[v].x(), 5 * out.uv[v].y()};
+  for (std::size_t v = 0; v < 4; ++v) out.uv[v] *= 0.1;
+  for (std::size_t v = 4; v < 8; ++v) out.uv[v] = {0.02 * out.uv[v].x(), 0.5 * out.uv[v].y()};
   const auto paths = path_data(picture(mesh, out));
   ASSERT_EQ(paths.size(), 3U);  // both have the same area: only the second is distorted
-  EXPECT_EQ(twice_area(paths[0]), twice_area(paths[1]));
-  EXPECT_EQ(paths[0].find("M0 0"), 0U);
+  EXPECT_NEAR(double(twice_area(paths[0])), double(twice_area(paths[1])), 1e5);
+  EXPECT_EQ(paths[0].find("M0 0"), 0U) << paths[0];
 }
 
 TEST(LayoutSvg, VerticesSplitWithoutASeamMakeNoBoundary) {

@@ -1,0 +1,57 @@
+#pragma once
+// What the colours of a layout say: which figure of a triangle is shown, and on what scale.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "core/figure/image.hpp"
+#include "core/measure/jacobian.hpp"
+
+namespace unwrapd {
+
+enum class Colouring { stretch, angle, area, flips };
+
+/// In the order of the enumerators.
+inline constexpr std::array<std::string_view, 4> kColouringNames = {"stretch", "angle", "area",
+                                                                    "flips"};
+
+std::optional<Colouring> colouring_named(std::string_view name);
+
+/// A figure that stands below the bar.
+struct Tick {
+  double value = 0;
+  std::string_view label;
+};
+
+/// Colours of equal width on a logarithmic scale of ratios. The last one is of all values from
+/// `high` on; where `two_sided`, the first one is of all below `low`.
+struct ColourScale {
+  std::string_view title;
+  std::string_view caption;  ///< what is shown; ratios, without unit
+  std::span<const Rgb> colours;
+  double low = 1;
+  double high = 4;
+  bool two_sided = false;
+  std::span<const Tick> ticks;
+
+  /// Where a value lies on the bar, in colours from its left end; NaN counts as the worst.
+  [[nodiscard]] double position(double value) const;
+  /// The number of its colour.
+  [[nodiscard]] std::uint8_t colour_of(double value) const;
+};
+
+const ColourScale& colour_scale(Colouring colouring);
+
+inline constexpr Rgb kFlippedColour = {0xff, 0x2a, 0x4d};
+inline constexpr Rgb kInk = {0x16, 0x13, 0x1f};
+inline constexpr Rgb kPaper = {0xff, 0xff, 0xff};
+inline constexpr Rgb kPage = {0xf3, 0xf2, 0xf5};
+
+/// The figure of a triangle that is not flipped, `scale` being the factor for UVs that makes UV
+/// area = 3D area: sigma_max / sigma_min (angle), the determinant (area), max(sigma_max,
+/// 1 / sigma_min) (stretch), 1 (flips). Infinite or NaN where the image has no area.
+double shown_value(Colouring colouring, const Jacobian& j, double scale);
+
+}  // namespace unwrapd

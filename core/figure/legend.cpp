@@ -1,0 +1,31 @@
+#include "core/figure/legend.hpp"
+
+#include <algorithm>
+
+namespace unwrapd {
+namespace {
+
+constexpr double kTitleX = 96, kTitleSize = 116, kTextSize = 84;
+constexpr double kBarX = 1536, kBarWidth = 1820, kFlippedX = 3648, kFlippedWidth = 240;
+constexpr double kBarTop = kPageUnits + 72, kBarHeight = 96;
+constexpr double kTitleBaseline = kPageUnits + 152, kBaseline = kPageUnits + 262;
+
+}  // namespace
+
+Legend legend_of(const ColourScale& scale) {
+  Legend legend;
+  const double width = kBarWidth / std::max(4.0, static_cast<double>(scale.colours.size()));
+  for (std::size_t k = 0; k < scale.colours.size(); ++k)
+    legend.swatches.push_back(
+        {kBarX + static_cast<double>(k) * width, kBarTop, width, kBarHeight, scale.colours[k]});
+  legend.swatches.push_back({kFlippedX, kBarTop, kFlippedWidth, kBarHeight, kFlippedColour});
+  legend.labels = {{kTitleX, kTitleBaseline, kTitleSize, scale.title},
+                   {kTitleX, kBaseline, kTextSize, scale.caption},
+                   {kFlippedX, kBaseline, kTextSize, "flipped"}};
+  for (const Tick& tick : scale.ticks)
+    legend.labels.push_back(
+        {kBarX + scale.position(tick.value) * width, kBaseline, kTextSize, tick.label});
+  return legend;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,100 @@
+#include "core/figure/painting.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/mesh/counting_sort.hpp"
+#include "core/mesh/edges.hpp"
+#include "core/mesh/weld.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr double kSlack = 1e-6;  // of the page: rounding does not change the frame
+
+/// The face laid flat; area 0 when it has none.
+RestTriangle laid_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
+  RestTriangle rest;
+  const double base = (b - a).norm(), twice_area = (b - a).cross(c - a).norm();
+  if (!(twice_area > 0)) return rest;
+  const double foot = (b - a).dot(c - a) / base, height = twice_area / base;
+  rest.edge = {Vec2(-base, 0), Vec2(base - foot, -height), Vec2(foot, height)};
+  rest.area = twice_area / 2;
+  return rest;
+}
+
+/// Calls visit(face number, area, jacobian) for every face with an area.
+template <class Visit>
+void for_each_face(const TriMesh& mesh, const UnwrappedSurface& unwrapped, Visit visit) {
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    const auto& [a, b, c] = mesh.faces[t];
+    const RestTriangle rest = laid_flat(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+    if (rest.area > 0)
+      visit(t, rest.area, jacobian(rest, uv_edges(unwrapped.faces[t], unwrapped.uv)));
+  }
+}
+
+/// The scale of UVs that makes UV area = 3D area.
+double common_scale(std::span<const Surface> surfaces,
+                    std::span<const UnwrappedSurface> unwrapped) {
+  double area = 0, uv_area = 0;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    for_each_face(surfaces[s].mesh, unwrapped[s], [&](std::size_t, double a, const Jacobian& j) {
+      area += a;
+      uv_area += a * std::abs(j.determinant());
+    });
+  }
+  return uv_area > 0 ? std::sqrt(area / uv_area) : 1;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::uint8_t>> painted_faces(std::span<const Surface> surfaces,
+                                                     std::span<const UnwrappedSurface> unwrapped,
+                                                     Colouring colouring) {
+  assert(surfaces.size() == unwrapped.size());
+  const double scale = common_scale(surfaces, unwrapped);
+  const ColourScale& colours = colour_scale(colouring);
+  std::vector<std::vector<std::uint8_t>> painted(surfaces.size());
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    painted[s].assign(surfaces[s].mesh.faces.size(), kHiddenFace);
+    for_each_face(surfaces[s].mesh, unwrapped[s], [&](std::size_t t, double, const Jacobian& j) {
+      painted[s][t] =
+          j.sigma_min() > 0 ? colours.colour_of(shown_value(colouring, j, scale)) : kFlippedFace;
+    });
+  }
+  return painted;
+}
+
+std::vector<Edge> outline(const UnwrappedSurface& surface) {
+  std::vector<Vec3> places(surface.uv.size());
+  for (std::size_t v = 0; v < places.size(); ++v) places[v] << surface.uv[v], 0;
+  const std::vector<Triangle> faces = renumbered(surface.faces, weld(places));
+  auto sides = edge_sides(faces, [&](Index h) { return !repeats_vertex(faces[face_of(h)]); });
+  sort_by_edge(sides, static_cast<Index>(places.size()));
+  std::vector<Edge> edges;
+  for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
+    if (last - first > 1) return;
+    edges.push_back(
+        {start_of(surface.faces, first->halfedge), end_of(surface.faces, first->halfedge)});
+  });
+  return edges;
+}
+
+Frame frame_of(std::span<const UnwrappedSurface> unwrapped) {
+  Vec2 low = Vec2::Zero(), high = Vec2::Ones();
+  for (const UnwrappedSurface& surface : unwrapped) {
+    for (const Vec2& uv : surface.uv) {
+      low = low.cwiseMin(uv);
+      high = high.cwiseMax(uv);
+    }
+  }
+  const double side = (high - low).maxCoeff();
+  if (!(low.minCoeff() < -kSlack || high.maxCoeff() > 1 + kSlack)) return {};
+  return {.corner = (low + high) / 2 - Vec2::Constant(side / 2), .side = side};
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,43 @@
+#pragma once
+// What a picture of a layout is made of, whichever way it is drawn: a colour for each face, and the
+// edges at which an island ends.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/figure/colour_scale.hpp"
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// Instead of a colour's number.
+inline constexpr std::uint8_t kFlippedFace = 254;
+inline constexpr std::uint8_t kHiddenFace = 255;  ///< no area in 3D: left out
+
+/// One entry for each face of each surface: the number of its colour in colour_scale(colouring),
+/// kFlippedFace where sigma_min <= 0, or kHiddenFace. unwrapped has one entry for each surface.
+std::vector<std::vector<std::uint8_t>> painted_faces(std::span<const Surface> surfaces,
+                                                     std::span<const UnwrappedSurface> unwrapped,
+                                                     Colouring colouring);
+
+using Edge = std::array<Index, 2>;  ///< vertices of an UnwrappedSurface
+
+/// The edges that have a face on one side only of the page. Found by place, since vertices may be
+/// split for other reasons than a seam.
+std::vector<Edge> outline(const UnwrappedSurface& surface);
+
+/// The square of UV space that a picture shows: the page [0,1]^2, or a greater one about all
+/// islands where positions were prescribed that lie off the page.
+struct Frame {
+  Vec2 corner = Vec2::Zero();  ///< of least u and v
+  double side = 1;             ///< > 0
+
+  /// In [0,1]^2.
+  [[nodiscard]] Vec2 place(const Vec2& uv) const { return (uv - corner) / side; }
+};
+
+Frame frame_of(std::span<const UnwrappedSurface> unwrapped);
+
+}  // namespace unwrapd
