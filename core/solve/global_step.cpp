@@ -23,15 +23,10 @@ SparseMatrix held_matrix(const Disk& disk, const Holds& holds) {
   return lower;
 }
 
-FreeVertices free_vertices(const Disk& disk, const Holds& holds) {
-  std::vector<char> fixed(disk.positions.size(), 0);
-  for (const FixedPoint& point : holds.fixed) fixed[static_cast<std::size_t>(point.vertex)] = 1;
-  return number_free(fixed);
-}
-
 }  // namespace
 
-GlobalStep::GlobalStep(const Disk& disk, const Holds& holds) : free_(free_vertices(disk, holds)) {
+GlobalStep::GlobalStep(const Disk& disk, const Holds& holds)
+    : free_(free_vertices(disk.positions.size(), holds)) {
   const SparseMatrix lower = held_matrix(disk, holds);
   if (holds.fixed.empty()) {
     system_ = factor(lower);
@@ -43,12 +38,11 @@ GlobalStep::GlobalStep(const Disk& disk, const Holds& holds) : free_(free_vertic
 
 void GlobalStep::solve(std::span<Vec2> force) const {
   assert(force.size() == free_.slot.size());
-  if (!system_) return;
   if (free_.count == static_cast<Index>(force.size())) return system_->solve(force);
   std::vector<Vec2> change(static_cast<std::size_t>(free_.count));
   for (std::size_t v = 0; v < force.size(); ++v)
     if (free_.slot[v] != kFixed) change[static_cast<std::size_t>(free_.slot[v])] = force[v];
-  system_->solve(change);
+  if (system_) system_->solve(change);
   for (std::size_t v = 0; v < force.size(); ++v)
     force[v] = free_.slot[v] == kFixed ? Vec2(Vec2::Zero())
                                        : change[static_cast<std::size_t>(free_.slot[v])];
