@@ -1,0 +1,88 @@
+#pragma once
+// A picture made band by band: only one band's samples are in memory, whatever the size, and each
+// band looks only at what touches it.
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/figure/image.hpp"
+#include "core/figure/scan.hpp"
+#include "core/mesh/counting_sort.hpp"
+
+namespace unwrapd {
+
+/// The samples of some rows of pixels.
+class Band {
+ public:
+  static constexpr int kPixels = 16;  ///< its height
+  static constexpr int kRows = kPixels * kSamples;
+
+  Band(int width, const Rgb& background)
+      : columns_(width * kSamples), background_(background), colour_(size()), depth_(size()) {}
+
+  /// Moves to the rows from `first` on, empty.
+  void start(int first);
+
+  [[nodiscard]] SampleRange rows() const { return {first_, first_ + kRows}; }
+  [[nodiscard]] int columns() const { return columns_; }
+
+  /// Paints over what is there.
+  void fill(const ScreenTriangle& triangle, const Rgb& colour);
+
+  /// The place of a sample of this band, for colour_at() and is_nearer().
+  [[nodiscard]] std::size_t place(int row, int column) const {
+    return static_cast<std::size_t>(row - first_) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+  /// Whether nothing as near has been there; if so, it has now. Nearer is greater.
+  bool take_nearer(std::size_t place, float depth) {
+    if (!(depth > depth_[place])) return false;
+    depth_[place] = depth;
+    return true;
+  }
+  Rgb& colour_at(std::size_t place) { return colour_[place]; }
+
+  /// Writes the means of the samples into the picture's rows.
+  void resolve(Image& image) const;
+
+ private:
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(kRows) * static_cast<std::size_t>(columns_);
+  }
+
+  int first_ = 0;
+  int columns_;
+  Rgb background_;
+  std::vector<Rgb> colour_;
+  std::vector<float> depth_;
+};
+
+/// Draws `count` things in their order: triangle(k) tells where thing k is, draw(k, band) draws
+/// what of it lies in a band.
+template <class TriangleOf, class Draw>
+void draw_in_bands(Image& image, const Rgb& background, Index count, TriangleOf triangle,
+                   Draw draw) {
+  struct Touch {
+    Index band = 0;
+    Index thing = 0;
+  };
+  const Index bands = (image.height + Band::kPixels - 1) / Band::kPixels;
+  std::vector<Touch> touches;
+  for (Index k = 0; k < count; ++k) {
+    const SampleRange rows = rows_of(triangle(k));
+    const Index first = std::max(0, rows.first) / Band::kRows;
+    for (Index b = first; b < bands && b * Band::kRows < rows.end; ++b) touches.push_back({b, k});
+  }
+  counting_sort(touches, bands, [](const Touch& touch) { return touch.band; });
+  Band band(image.width, background);
+  std::size_t next = 0;
+  for (Index b = 0; b < bands; ++b) {
+    band.start(b * Band::kRows);
+    for (; next < touches.size() && touches[next].band == b; ++next)
+      draw(touches[next].thing, band);
+    band.resolve(image);
+  }
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,98 @@
+#include "core/figure/layout_image.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+#include "core/figure/legend.hpp"
+#include "core/figure/lettering.hpp"
+#include "core/figure/painting.hpp"
+#include "core/figure/raster.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr double kOutlineWidth = 3, kFlipWidth = 12;  // in 1/4096 of the page's side
+constexpr double kMinLine = 0.7;                      // pixels
+
+using Drawing = std::vector<FlatTriangle>;
+
+/// From UVs and from units of the legend to pixels.
+struct Scale {
+  Frame frame;
+  double size;  ///< of the page, pixels
+
+  [[nodiscard]] Vec2 pixel(const Vec2& uv) const {
+    const Vec2 place = frame.place(uv);
+    return {size * place.x(), size * (1 - place.y())};
+  }
+  [[nodiscard]] double length(double units) const { return units * size / kPageUnits; }
+  [[nodiscard]] double line(double units) const { return std::max(kMinLine, length(units)); }
+};
+
+ScreenTriangle on_screen(const Triangle& face, const UvMap& uv, const Scale& scale) {
+  return {snapped(scale.pixel(uv[face[0]])), snapped(scale.pixel(uv[face[1]])),
+          snapped(scale.pixel(uv[face[2]]))};
+}
+
+/// A flipped triangle; with `width` > 0 so broad that it shows however small it is.
+void append_flipped(Drawing& drawing, const Triangle& face, const UvMap& uv, const Scale& scale,
+                    double width) {
+  drawing.push_back({on_screen(face, uv, scale), kFlippedColour});
+  for (std::size_t k = 0; width > 0 && k < 3; ++k)
+    append_line(drawing, {scale.pixel(uv[face[k]]), scale.pixel(uv[face[(k + 1) % 3]])}, width,
+                kFlippedColour);
+}
+
+void append_faces(Drawing& drawing, const UnwrappedSurface& surface,
+                  std::span<const std::uint8_t> painted, std::span<const Rgb> colours,
+                  const Scale& scale) {
+  for (std::size_t t = 0; t < painted.size(); ++t) {
+    if (painted[t] < colours.size())
+      drawing.push_back({on_screen(surface.faces[t], surface.uv, scale), colours[painted[t]]});
+  }
+}
+
+void append_outline(Drawing& drawing, const UnwrappedSurface& surface, const Scale& scale) {
+  for (const Edge& edge : outline(surface))
+    append_line(drawing, {scale.pixel(surface.uv[edge[0]]), scale.pixel(surface.uv[edge[1]])},
+                scale.line(kOutlineWidth), kInk);
+}
+
+void append_legend(Drawing& drawing, const ColourScale& colours, const Scale& scale,
+                   double height) {
+  append_rectangle(drawing, {0, scale.size}, {scale.size, height}, kPaper);
+  const Legend legend = legend_of(colours);
+  for (const Swatch& s : legend.swatches) {
+    append_rectangle(drawing, {scale.length(s.x), scale.length(s.y)},
+                     {scale.length(s.x + s.width), scale.length(s.y + s.height)}, s.colour);
+  }
+  for (const Label& label : legend.labels)
+    append_text(drawing, label.text, {scale.length(label.x), scale.length(label.y)},
+                scale.length(label.size));
+}
+
+}  // namespace
+
+Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
+                   Colouring colouring, int size) {
+  assert(size >= kMinImageSize && size <= kMaxImageSize);
+  const ColourScale& colours = colour_scale(colouring);
+  const Scale scale{.frame = frame_of(unwrapped), .size = static_cast<double>(size)};
+  const int height = size + static_cast<int>(std::lround(scale.length(kLegendUnits)));
+  const auto painted = painted_faces(surfaces, unwrapped, colouring);
+  Drawing drawing;
+  for (std::size_t s = 0; s < unwrapped.size(); ++s)
+    append_faces(drawing, unwrapped[s], painted[s], colours.colours, scale);
+  const double flip_width = colouring == Colouring::flips ? scale.line(kFlipWidth) : 0;
+  for (std::size_t s = 0; s < unwrapped.size(); ++s)
+    for (std::size_t t = 0; t < painted[s].size(); ++t)
+      if (painted[s][t] == kFlippedFace)
+        append_flipped(drawing, unwrapped[s].faces[t], unwrapped[s].uv, scale, flip_width);
+  for (const UnwrappedSurface& surface : unwrapped) append_outline(drawing, surface, scale);
+  append_legend(drawing, colours, scale, height);
+  return rasterised(drawing, size, height, kPage);
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,17 @@
+#pragma once
+// The UV layout as a picture of pixels: what layout_svg() draws, without a program that reads SVG.
+
+#include <span>
+
+#include "core/figure/colour_scale.hpp"
+#include "core/figure/image.hpp"
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// `size` pixels wide, in [kMinImageSize, kMaxImageSize], and as much higher as the legend takes.
+/// unwrapped has one entry for each surface.
+Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
+                   Colouring colouring, int size);
+
+}  // namespace unwrapd

@@ -1,0 +1,36 @@
+#pragma once
+// Flat drawings in pixels: triangles and lines of one colour each, the later over the earlier.
+
+#include <span>
+#include <vector>
+
+#include "core/figure/image.hpp"
+#include "core/figure/scan.hpp"
+
+namespace unwrapd {
+
+struct FlatTriangle {
+  ScreenTriangle corners;
+  Rgb colour;
+};
+
+/// The outline of a line: eight corners, clockwise as seen; it has flattened round ends. Of these,
+/// corners 0 to 3 lie about `to`, 4 to 7 about `from`. Pixels.
+std::array<Vec2, 8> line_outline(const Vec2& from, const Vec2& to, double width);
+
+/// The same in triangles.
+void append_line(std::vector<FlatTriangle>& drawing, const std::array<Vec2, 2>& ends, double width,
+                 const Rgb& colour);
+
+/// An axis-parallel rectangle, pixels.
+void append_rectangle(std::vector<FlatTriangle>& drawing, const Vec2& low, const Vec2& high,
+                      const Rgb& colour);
+
+/// The picture, anti-aliased; width and height in pixels, both >= 1.
+Image rasterised(std::span<const FlatTriangle> drawing, int width, int height,
+                 const Rgb& background);
+
+/// A picture of one colour, to draw into.
+Image blank_image(int width, int height);
+
+}  // namespace unwrapd
