@@ -1,0 +1,52 @@
+#pragma once
+// A symmetric positive definite matrix with two unknowns a vertex and the pattern of a mesh:
+// assembled from one 6-by-6 element a face, its order analysed once, refilled and refactored for
+// every new set of elements. Rejected: triplets and a fresh matrix each time, as slow as the
+// factor.
+
+#include <Eigen/SparseCholesky>
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/linear/eliminate.hpp"
+#include "core/linear/sparse.hpp"
+
+namespace unwrapd {
+
+/// Row and column 2i + c belong to unknown c of corner i. Only the lower triangle is read.
+using PairElement = std::array<std::array<double, 6>, 6>;
+
+class PairSystem {
+ public:
+  /// faces index slots: unknowns of vertex v are rows 2 slot[v] and 2 slot[v] + 1; vertices whose
+  /// slot is kFixed have none. slots must outlive the system; count > 0.
+  PairSystem(std::span<const Triangle> faces, const FreeVertices& slots);
+
+  void clear();
+
+  /// Adds the element of face t.
+  void add(std::size_t t, const PairElement& element);
+
+  /// Adds x to both diagonal entries of every vertex.
+  void add_to_diagonal(double x);
+
+  /// Factors what was added since clear(). False when it is not positive definite in double
+  /// precision.
+  [[nodiscard]] bool factor();
+
+  /// Replaces b, one pair a slot, by the solution.
+  void solve(std::vector<Vec2>& b) const;
+
+ private:
+  void build_pattern(std::span<const Triangle> faces);
+  [[nodiscard]] Index entry(Index row, Index column) const;
+
+  const FreeVertices& slots_;
+  SparseMatrix lower_;
+  std::vector<std::array<Index, 21>> target_;  ///< of each face: where its lower entries go, or -1
+  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt_;
+};
+
+}  // namespace unwrapd
