@@ -3,17 +3,21 @@
 // A hybrid of very small lambda has nothing to hold it open: with c the conformal energy of the
 // ASAP map over its area, a map of uniform scale s costs c s^2 + lambda (s^2 - 1)^2 per area, whose
 // only minimum for lambda <= c / 2 is s = 0. There the answer is the limit itself, the ASAP map.
+// Two held vertices hold it open.
 #include "core/solve/solve.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
+#include "core/solve/accelerate.hpp"
 #include "core/solve/conformal.hpp"
 #include "core/solve/convex_map.hpp"
+#include "core/solve/hold_align.hpp"
 #include "core/solve/methods.hpp"
 
 namespace unwrapd {
@@ -42,9 +46,10 @@ double mean_lambda(const Disk& disk, const Rigidity& rigidity) {
   return sum;
 }
 
-Solution direct(const Disk& disk, UvMap uv) {
+Solution direct(const Disk& disk, const Holds& holds, UvMap uv) {
   Solution solution{.uv = std::move(uv), .energy = {}, .stop_reason = StopReason::direct};
-  solution.energy.push_back(asap_energy(disk.rest, disk.faces, solution.uv));
+  solution.energy.push_back(asap_energy(disk.rest, disk.faces, solution.uv) +
+                            spring_energy(holds, solution.uv));
   return solution;
 }
 
@@ -81,16 +86,38 @@ std::vector<UvMap> initial_maps(const Disk& disk, InitialMap kind) {
   return maps;
 }
 
-Solver::Solver(const Disk& disk, const UnwrapOptions& options, Holds holds, Executor& executor)
-    : disk_(disk), options_(options), holds_(std::move(holds)), executor_(executor) {}
+Solver::Solver(const Disk& disk, const UnwrapOptions& options, Held held, Executor& executor)
+    : disk_(disk),
+      options_(options),
+      holds_(std::move(held.holds)),
+      held_start_(std::move(held.start)),
+      executor_(executor) {
+  assert(held_start_.size() == (holds_.empty() ? 0 : disk.positions.size()));
+}
+
+void Solver::move(Held held) {
+  assert(is_moved(holds_, held.holds));
+  holds_ = std::move(held.holds);
+  held_start_ = std::move(held.start);
+  starts_.clear();
+  conformal_.reset();
+}
 
 const std::vector<UvMap>& Solver::starts() {
-  if (starts_.empty()) starts_ = initial_maps(disk_, options_.initial);
+  if (starts_.empty() && holds_.empty()) starts_ = initial_maps(disk_, options_.initial);
+  if (starts_.empty()) starts_ = {held_start_};
   return starts_;
 }
 
+UvMap Solver::conformal_under_holds() {
+  if (holds_.empty()) return conformal_map(disk_, options_.pins);
+  if (holds_.count() == 1) return held_start(conformal_map(disk_, options_.pins), holds_);
+  if (!conformal_system_) conformal_system_.emplace(disk_, holds_);
+  return conformal_system_->solve(holds_);
+}
+
 const UvMap& Solver::conformal() {
-  if (!conformal_) conformal_ = conformal_map(disk_, options_.pins);
+  if (!conformal_) conformal_ = conformal_under_holds();
   return *conformal_;
 }
 
@@ -103,15 +130,19 @@ Solution Solver::iterate(const Rigidity& rigidity, const std::vector<UvMap>& sta
   tell(watch, Stage::solve);
   const Assembly assembly{disk_, holds_, *global_};
   const UvMap& start = starts[best_of(starts, assembly, rigidity, executor_)];
-  const LocalGlobalOptions plain{rigidity, options_.stop.iterations.value_or(10)};
-  return local_global(assembly, start, plain, watch.loop, executor_);
+  const Stop& stop = options_.stop;
+  if (stop.iterations)
+    return local_global(assembly, start, {rigidity, *stop.iterations}, watch.loop, executor_);
+  Descent descent(assembly, start, rigidity, executor_);
+  return run_to_convergence(descent, {stop.tolerance, stop.max_iterations}, watch.loop);
 }
 
 Solution Solver::hybrid(const Rigidity& rigidity, const SolveWatch& watch) {
   const double lambda = mean_lambda(disk_, rigidity);
   if (lambda > kSafeLambda) return iterate(rigidity, starts(), watch);
-  if (lambda <= asap_energy(disk_.rest, disk_.faces, conformal()) / 2)
-    return direct(disk_, conformal());
+  const bool is_held_open = holds_.count() > 1;
+  if (lambda <= (is_held_open ? 0 : asap_energy(disk_.rest, disk_.faces, conformal()) / 2))
+    return direct(disk_, holds_, conformal());
   if (options_.initial == InitialMap::automatic) return iterate(rigidity, {conformal()}, watch);
   return iterate(rigidity, starts(), watch);
 }
@@ -121,7 +152,7 @@ Solution Solver::run(double lambda, const SolveWatch& watch) {
   switch (options_.method) {
     case Method::asap:
       tell(watch, Stage::solve);
-      return direct(disk_, conformal());
+      return direct(disk_, holds_, conformal());
     case Method::arap:
       return iterate({}, starts(), watch);
     case Method::hybrid:

@@ -77,8 +77,12 @@ TEST(Solve, ReportedEnergyIsThatOfTheSingularValues) {  // Eq. (A2)
     const OwnedDisk d = disk_of(mesh);
     const Solution s = solved(d.disk, {});
     EXPECT_NEAR(s.energy.back(), arap_energy(d.disk.rest, d.disk.faces, s.uv), 1e-12);
-    EXPECT_EQ(s.iterations, 10);
-    EXPECT_EQ(s.energy.size(), 11U);
+    EXPECT_EQ(s.energy.size(), std::size_t(s.iterations) + 1);
+    const Solution plain = solved(d.disk, {.stop = {.iterations = 10}});
+    EXPECT_NEAR(plain.energy.back(), arap_energy(d.disk.rest, d.disk.faces, plain.uv), 1e-12);
+    EXPECT_EQ(plain.iterations, 10);
+    EXPECT_EQ(plain.energy.size(), 11U);
+    EXPECT_EQ(plain.stop_reason, StopReason::iterations);
   }
 }
 

@@ -1,0 +1,108 @@
+// The plain iteration is a gradient descent with step 1 in the metric of its matrix A, and crawls
+// where the triangles' rotations must travel far. L-BFGS (Nocedal 1980) with A^-1 for its first
+// Hessian needs the same solve and one evaluation an iteration (docs/adr/0010 has the figures of
+// Nesterov's and Anderson's ways). As A bounds the curvature from above, the plain step never
+// raises the energy: it is what is left when no step along the direction lowers it enough.
+#include "core/solve/accelerate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/measure/distortion.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr double kSufficient = 1e-4;  // Armijo: this share of the fall that the slope promises
+constexpr int kHalvings = 3;
+
+}  // namespace
+
+Descent::Descent(const Assembly& assembly, UvMap start, const Rigidity& rigidity,
+                 Executor& executor)
+    : global_(assembly.global),
+      disk_(assembly.disk),
+      objective_(assembly.disk, rigidity, assembly.holds, executor),
+      memory_(executor),
+      solution_{.uv = std::move(start), .energy = {}},
+      trial_(solution_.uv.size()) {
+  const std::size_t n = trial_.size();
+  for (auto* vector :
+       {&now_.force, &now_.plain, &before_.force, &before_.plain, &direction_, &force_at_trial_})
+    vector->resize(n);
+  solution_.energy.push_back(objective_.evaluate(solution_.uv, now_.force));
+  if (std::isfinite(rigidity.lambda))
+    least_area_ = kMinAreaShare * uv_area(disk_.rest, disk_.faces, solution_.uv);
+}
+
+double Descent::try_step(double length, std::span<const Vec2> direction) {
+  for (std::size_t v = 0; v < trial_.size(); ++v)
+    trial_[v] = solution_.uv[v] + length * direction[v];
+  if (least_area_ > 0 && uv_area(disk_.rest, disk_.faces, trial_) < least_area_) {
+    solution_.stop_reason = StopReason::collapse_guard;
+    return std::numeric_limits<double>::infinity();
+  }
+  return objective_.evaluate(trial_, force_at_trial_);
+}
+
+bool Descent::advance(double slope, std::span<const Vec2> direction) {
+  if (!(slope > 0)) return false;
+  double length = 1;
+  for (int k = 0; k <= kHalvings; ++k, length /= 2) {
+    const double energy = try_step(length, direction);
+    if (!(energy <= this->energy() - kSufficient * length * slope)) continue;
+    step_.resize(trial_.size());
+    for (std::size_t v = 0; v < trial_.size(); ++v) step_[v] = trial_[v] - solution_.uv[v];
+    std::swap(now_, before_);
+    std::swap(now_.force, force_at_trial_);
+    std::swap(solution_.uv, trial_);
+    solution_.energy.push_back(energy);
+    ++solution_.iterations;
+    return true;
+  }
+  return false;
+}
+
+bool Descent::step() {
+  solution_.stop_reason = StopReason::converged;
+  now_.plain = now_.force;
+  global_.solve(now_.plain);
+  if (!step_.empty()) memory_.learn(step_, before_, now_);
+  const bool is_plain = memory_.empty();
+  if (advance(memory_.direct(now_, direction_), direction_)) return true;
+  if (is_plain) return false;
+  memory_.forget();
+  return advance(memory_.direct(now_, direction_), direction_);
+}
+
+bool Descent::has_converged(double tolerance) const {
+  const std::vector<double>& energy = solution_.energy;
+  if (energy.back() <= kNothing) return true;
+  return energy.size() > kWindow &&
+         energy[energy.size() - 1 - kWindow] - energy.back() <= tolerance * energy.back();
+}
+
+Solution run_to_convergence(Descent& descent, const DescentOptions& options,
+                            const LoopWatch& watch) {
+  StopReason reason = StopReason::converged;
+  while (!descent.has_converged(options.tolerance)) {
+    if (watch.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+    if (descent.solution().iterations >= options.max_iterations) {
+      reason = StopReason::max_iterations;
+      break;
+    }
+    if (!descent.step()) {
+      reason = descent.solution().stop_reason;
+      break;
+    }
+    if (watch.on_iteration) watch.on_iteration(descent.solution());
+  }
+  Solution solution = descent.solution();
+  solution.stop_reason = reason;
+  return solution;
+}
+
+}  // namespace unwrapd
