@@ -43,8 +43,9 @@ PairSystem::PairSystem(std::span<const Triangle> faces, const FreeVertices& slot
     for (std::size_t i = 0; i < 6; ++i)
       for (std::size_t j = 0; j <= i; ++j) {
         const bool is_inside = row[i] != kNowhere && row[j] != kNowhere;
-        target_[t][next++] =
-            is_inside ? entry(std::max(row[i], row[j]), std::min(row[i], row[j])) : kNowhere;
+        target_[t][next++] = {
+            is_inside ? entry(std::max(row[i], row[j]), std::min(row[i], row[j])) : kNowhere,
+            i != j && row[i] == row[j]};
       }
   }
   llt_.analyzePattern(lower_);
@@ -77,8 +78,8 @@ void PairSystem::add(std::size_t t, const PairElement& element) {
   std::size_t next = 0;
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
-      const Index at = target_[t][next++];
-      if (at != kNowhere) lower_.valuePtr()[at] += element[i][j];
+      const auto [at, is_twice] = target_[t][next++];
+      if (at != kNowhere) lower_.valuePtr()[at] += is_twice ? 2 * element[i][j] : element[i][j];
     }
 }
 

@@ -20,8 +20,9 @@ using PairElement = std::array<std::array<double, 6>, 6>;
 
 class PairSystem {
  public:
-  /// faces index slots: unknowns of vertex v are rows 2 slot[v] and 2 slot[v] + 1; vertices whose
-  /// slot is kFixed have none. slots must outlive the system; count > 0.
+  /// faces index slots: the unknowns of vertex v are rows 2 slot[v] and 2 slot[v] + 1; vertices may
+  /// share a slot, and those whose slot is kFixed have none. slots must outlive the system;
+  /// count > 0.
   PairSystem(std::span<const Triangle> faces, const FreeVertices& slots);
 
   void clear();
@@ -45,7 +46,14 @@ class PairSystem {
 
   const FreeVertices& slots_;
   SparseMatrix lower_;
-  std::vector<std::array<Index, 21>> target_;  ///< of each face: where its lower entries go, or -1
+  /// Where an entry of an element goes: into lower_'s values, or nowhere (-1). An entry off the
+  /// element's diagonal that lands on that of the matrix counts twice, for both triangles.
+  struct Target {
+    Index at;
+    bool is_twice;
+  };
+
+  std::vector<std::array<Target, 21>> target_;  ///< of each face's lower triangle
   Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt_;
 };
 

@@ -24,10 +24,10 @@ constexpr double kTolerance = 1e-7;       // relative to an angle
 
 double square(double x) { return x * x; }
 
-/// The wheel multiplier of corner i's vertex; 0 on the boundary.
+/// The wheel multiplier of a corner's ring; 0 where it has none.
 double wheel(const Triangle& face, std::size_t corner, const AngleSystem& system) {
-  const Index slot = system.inner().slot[static_cast<std::size_t>(face[corner])];
-  return slot == kFixed ? 0 : system.multipliers()[static_cast<std::size_t>(slot)][1];
+  const Index ring = system.rings().of.slot[static_cast<std::size_t>(face[corner])];
+  return ring == kFixed ? 0 : system.multipliers()[static_cast<std::size_t>(ring)][1];
 }
 
 class AngleNewton {

@@ -17,24 +17,19 @@ constexpr double kLeastGap = 0.1;  // of an angle's distance from pi, which scal
 constexpr double kLeastShift = 1e-13, kMostShift = 1e-3;  // of the reduced matrix' diagonal, ~1
 constexpr std::size_t kBlock = 2048;                      // faces a block
 
-FreeVertices inner_vertices(const Disk& disk) {
-  std::vector<char> on_boundary(disk.positions.size(), 0);
-  for (const BoundaryLoop& loop : disk.loops)
-    for (Index h : loop)
-      on_boundary[static_cast<std::size_t>(
-          disk.faces[static_cast<std::size_t>(h / 3)][static_cast<std::size_t>(h % 3)])] = 1;
-  return number_free(on_boundary);
+Index start_vertex(const Disk& disk, Index h) {
+  return disk.faces[static_cast<std::size_t>(h / 3)][static_cast<std::size_t>(h % 3)];
 }
 
 double dot(const FaceAngles& x, const FaceAngles& y) {
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
 
-/// body(slot, i) for every corner i that lies at an inner vertex.
+/// body(ring, i) for every corner i that lies on a ring.
 template <class Body>
-void for_inner_corners(const Triangle& face, const FreeVertices& inner, Body body) {
+void for_ring_corners(const Triangle& face, const Rings& rings, Body body) {
   for (std::size_t i = 0; i < 3; ++i) {
-    const Index slot = inner.slot[static_cast<std::size_t>(face[i])];
+    const Index slot = rings.of.slot[static_cast<std::size_t>(face[i])];
     if (slot != kFixed) body(static_cast<std::size_t>(slot), i);
   }
 }
@@ -50,28 +45,45 @@ std::vector<FaceAngles> mesh_angles(const Disk& disk) {
 
 std::vector<FaceAngles> target_angles(const Disk& disk) {
   std::vector<FaceAngles> angles = mesh_angles(disk);
-  const FreeVertices inner = inner_vertices(disk);
-  std::vector<double> sum(static_cast<std::size_t>(inner.count), 0.0);
+  std::vector<double> sum(disk.positions.size(), 0.0);
   for (std::size_t t = 0; t < angles.size(); ++t)
-    for_inner_corners(disk.faces[t], inner,
-                      [&](std::size_t v, std::size_t i) { sum[v] += angles[t][i]; });
+    for (std::size_t i = 0; i < 3; ++i)
+      sum[static_cast<std::size_t>(disk.faces[t][i])] += angles[t][i];
+  for (const BoundaryLoop& loop : disk.loops)
+    for (Index h : loop) sum[static_cast<std::size_t>(start_vertex(disk, h))] = 2 * kPi;
   for (std::size_t t = 0; t < angles.size(); ++t)
-    for_inner_corners(disk.faces[t], inner, [&](std::size_t v, std::size_t i) {
-      const double scaled = angles[t][i] * 2 * kPi / sum[v];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double scaled =
+          angles[t][i] * 2 * kPi / sum[static_cast<std::size_t>(disk.faces[t][i])];
       angles[t][i] = std::min(scaled, kPi - kLeastGap * (kPi - angles[t][i]));
-    });
+    }
   return angles;
+}
+
+Rings make_rings(const Disk& disk) {
+  std::vector<char> on_boundary(disk.positions.size(), 0);
+  for (const BoundaryLoop& loop : disk.loops)
+    for (Index h : loop) on_boundary[static_cast<std::size_t>(start_vertex(disk, h))] = 1;
+  Rings rings{number_free(on_boundary), {}};
+  rings.turn.assign(static_cast<std::size_t>(rings.of.count), 2 * kPi);
+  for (std::size_t hole = 1; hole < disk.loops.size(); ++hole) {
+    for (Index h : disk.loops[hole])
+      rings.of.slot[static_cast<std::size_t>(start_vertex(disk, h))] = rings.of.count;
+    rings.turn.push_back(static_cast<double>(disk.loops[hole].size() + 2) * kPi);
+    ++rings.of.count;
+  }
+  return rings;
 }
 
 double Misfit::largest() const {
   double most = 0;
   for (double x : triangle) most = std::max(most, std::abs(x));
-  for (const Vec2& x : vertex) most = std::max({most, std::abs(x[0]), std::abs(x[1])});
+  for (const Vec2& x : ring) most = std::max({most, std::abs(x[0]), std::abs(x[1])});
   return most;
 }
 
 /// What a face gives to the reduced system: B_t, whose row 2i + c is the gradient of constraint c
-/// (planarity, wheel) of corner i's vertex; P_t; and the change that it would make alone.
+/// (planarity, wheel) of corner i's ring; P_t; and the change that it would make alone.
 struct AngleSystem::FaceBlock {
   std::array<FaceAngles, 6> gradient{};
   std::array<FaceAngles, 3> projection{};
@@ -113,19 +125,19 @@ PairElement AngleSystem::FaceBlock::element() const {
 }
 
 AngleSystem::AngleSystem(const Disk& disk, Executor& executor)
-    : disk_(disk), executor_(executor), inner_(inner_vertices(disk)) {
-  if (inner_.count > 0) system_.emplace(disk.faces, inner_);
-  multipliers_.assign(static_cast<std::size_t>(inner_.count), Vec2::Zero());
+    : disk_(disk), executor_(executor), rings_(make_rings(disk)) {
+  if (rings_.of.count > 0) system_.emplace(disk.faces, rings_.of);
+  multipliers_.assign(static_cast<std::size_t>(rings_.of.count), Vec2::Zero());
 }
 
 Misfit AngleSystem::misfit(std::span<const FaceAngles> angles) const {
-  Misfit misfit{std::vector<double>(angles.size()),
-                std::vector<Vec2>(static_cast<std::size_t>(inner_.count), Vec2(-2 * kPi, 0))};
+  Misfit misfit{std::vector<double>(angles.size()), std::vector<Vec2>(rings_.turn.size())};
+  for (std::size_t r = 0; r < misfit.ring.size(); ++r) misfit.ring[r] = Vec2(-rings_.turn[r], 0);
   for (std::size_t t = 0; t < angles.size(); ++t) {
     const FaceAngles& a = angles[t];
     misfit.triangle[t] = a[0] + a[1] + a[2] - kPi;
-    for_inner_corners(disk_.faces[t], inner_, [&](std::size_t v, std::size_t i) {
-      misfit.vertex[v] += Vec2(a[i], std::log(std::sin(a[(i + 1) % 3]) / std::sin(a[(i + 2) % 3])));
+    for_ring_corners(disk_.faces[t], rings_, [&](std::size_t v, std::size_t i) {
+      misfit.ring[v] += Vec2(a[i], std::log(std::sin(a[(i + 1) % 3]) / std::sin(a[(i + 2) % 3])));
     });
   }
   return misfit;
@@ -159,12 +171,12 @@ std::vector<FaceAngles> AngleSystem::step(std::span<const FaceAngles> angles,
   const std::vector<FaceBlock> block = blocks(angles, model);
   Misfit left = misfit(angles);
   for (std::size_t t = 0; t < angles.size(); ++t) {
-    for_inner_corners(disk_.faces[t], inner_, [&](std::size_t v, std::size_t i) {
-      left.vertex[v] += Vec2(dot(block[t].gradient[2 * i], block[t].change),
-                             dot(block[t].gradient[2 * i + 1], block[t].change));
+    for_ring_corners(disk_.faces[t], rings_, [&](std::size_t v, std::size_t i) {
+      left.ring[v] += Vec2(dot(block[t].gradient[2 * i], block[t].change),
+                           dot(block[t].gradient[2 * i + 1], block[t].change));
     });
   }
-  multipliers_ = std::move(left.vertex);
+  multipliers_ = std::move(left.ring);
   if (system_) {
     factor(block);
     system_->solve(multipliers_);
@@ -172,7 +184,7 @@ std::vector<FaceAngles> AngleSystem::step(std::span<const FaceAngles> angles,
   std::vector<FaceAngles> change(angles.size());
   for (std::size_t t = 0; t < angles.size(); ++t) {
     FaceAngles pull{};
-    for_inner_corners(disk_.faces[t], inner_, [&](std::size_t v, std::size_t i) {
+    for_ring_corners(disk_.faces[t], rings_, [&](std::size_t v, std::size_t i) {
       for (std::size_t j = 0; j < 3; ++j)
         pull[j] += multipliers_[v][0] * block[t].gradient[2 * i][j] +
                    multipliers_[v][1] * block[t].gradient[2 * i + 1][j];

@@ -5,11 +5,13 @@
 // Three kinds of constraints (Sheffer et al. 2005, Eqs. 2-4): a triangle's angles add up to pi;
 // those about an inner vertex v to 2 pi (planarity); and the sides met on a walk about v close up
 // (the wheel): the sum of log sin over the angles that follow v in their triangles equals that over
-// the angles that precede it.
+// the angles that precede it. A hole of n corners is a ring like an inner vertex: a walk about it
+// meets the fans of all its vertices, whose angles add up to (n + 2) pi. Without that the map would
+// turn and grow around holes, which a layout can only smear.
 //
 // With a diagonal Hessian D of the corners, a triangle's own constraint is a projection P of its
-// three corners, without multipliers. What is left is B P B' m = r with two unknowns an inner
-// vertex: positive definite and with the pattern of the mesh, so that one Cholesky factor serves,
+// three corners, without multipliers. What is left is B P B' m = r with two unknowns a
+// ring: positive definite and with the pattern of the mesh, so that one Cholesky factor serves,
 // where the reduction of Sheffer et al. ends in an indefinite one.
 
 #include <optional>
@@ -28,13 +30,21 @@ using FaceAngles = std::array<double, 3>;  ///< at corner i of a face, radians
 std::vector<FaceAngles> mesh_angles(const Disk& disk);
 
 /// As mesh_angles(), those about every inner vertex scaled to a sum of 2 pi: what angles shall
-/// deviate from as little as possible.
+/// deviate from as little as possible. All in (0, pi).
 std::vector<FaceAngles> target_angles(const Disk& disk);
+
+/// What a walk can be made about: inner vertices and holes.
+struct Rings {
+  FreeVertices of;           ///< slot[v]: the ring of vertex v; kFixed on the longest loop
+  std::vector<double> turn;  ///< what the angles of each ring must add up to; 2 pi, (n + 2) pi
+};
+
+Rings make_rings(const Disk& disk);
 
 /// How far angles are from lying flat; all zero when they do.
 struct Misfit {
   std::vector<double> triangle;  ///< sum of angles - pi, one a face
-  std::vector<Vec2> vertex;      ///< (sum of angles - 2 pi, log of the wheel), one an inner vertex
+  std::vector<Vec2> ring;        ///< (sum of angles - turn, log of the wheel), one a ring
 
   /// The greatest of all, absolute.
   [[nodiscard]] double largest() const;
@@ -51,15 +61,15 @@ class AngleSystem {
   /// disk and executor must outlive the system.
   AngleSystem(const Disk& disk, Executor& executor);
 
-  [[nodiscard]] const FreeVertices& inner() const { return inner_; }
+  [[nodiscard]] const Rings& rings() const { return rings_; }
 
   [[nodiscard]] Misfit misfit(std::span<const FaceAngles> angles) const;
 
   /// The change of least model under which the misfit vanishes to first order. Leaves the
-  /// multipliers of the vertices' constraints in multipliers(). Throws Error{solver_failed}.
+  /// multipliers of the rings' constraints in multipliers(). Throws Error{solver_failed}.
   std::vector<FaceAngles> step(std::span<const FaceAngles> angles, const AngleModel& model);
 
-  /// (planarity, wheel) of every inner vertex, of the last step.
+  /// (planarity, wheel) of every ring, of the last step.
   [[nodiscard]] std::span<const Vec2> multipliers() const { return multipliers_; }
 
  private:
@@ -70,7 +80,7 @@ class AngleSystem {
 
   const Disk& disk_;
   Executor& executor_;
-  FreeVertices inner_;
+  Rings rings_;
   std::optional<PairSystem> system_;
   std::vector<Vec2> multipliers_;
 };
