@@ -66,8 +66,8 @@ Solution cp(const Disk& disk, const SolveWatch& watch) {
   const std::vector<double> bent = curvature(filled.disk, filled.disk.rest);
   check(watch.loop);
   if (watch.on_stage) watch.on_stage(Stage::factor);
-  const std::vector<double> u =
-      flat_scales(filled.disk, cotan_laplacian(filled.disk, filled.disk.rest), bent);
+  const InnerSystem inner(filled.disk, cotan_laplacian(filled.disk, filled.disk.rest));
+  const std::vector<double> u = flat_scales(filled.disk, inner, bent);
   check(watch.loop);
   if (watch.on_stage) watch.on_stage(Stage::solve);
   std::vector<RestTriangle> flat = scaled(filled.disk, u);

@@ -1,6 +1,7 @@
 #include "core/solve/methods.hpp"
 
 #include "core/error.hpp"
+#include "core/solve/bff.hpp"
 #include "core/solve/cp.hpp"
 
 namespace unwrapd {
@@ -9,6 +10,8 @@ Solution other_method(const Disk& disk, Method method, const SolveWatch& watch,
                       Executor& executor) {
   static_cast<void>(executor);
   switch (method) {
+    case Method::bff:
+      return bff(disk, watch);
     case Method::cp:
       return cp(disk, watch);
     default:

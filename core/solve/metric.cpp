@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include "core/linear/eliminate.hpp"
-#include "core/linear/factor.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd {
@@ -55,19 +54,52 @@ SparseMatrix cotan_laplacian(const Disk& disk, std::span<const RestTriangle> tri
   return lower_laplacian(disk.faces, disk.vertex_count(), weight);
 }
 
-std::vector<double> flat_scales(const Disk& disk, const SparseMatrix& laplacian,
+std::vector<double> product(const SparseMatrix& laplacian, std::span<const double> x) {
+  std::vector<double> y(x.size(), 0.0);
+  for (Index j = 0; j < static_cast<Index>(laplacian.cols()); ++j)
+    for (SparseMatrix::InnerIterator it(laplacian, j); it; ++it) {
+      const auto row = static_cast<std::size_t>(it.row()), column = static_cast<std::size_t>(j);
+      y[row] += it.value() * x[column];
+      if (row != column) y[column] += it.value() * x[row];
+    }
+  return y;
+}
+
+InnerSystem::InnerSystem(const Disk& disk, SparseMatrix lower)
+    : lower_(std::move(lower)), inner_(number_free(boundary_vertices(disk))) {
+  if (inner_.count == 0) return;
+  const std::vector<Vec2> zero(disk.positions.size(), Vec2::Zero());
+  system_ = factor(eliminate<SparseMatrix, Vec2>(lower_, inner_, zero).lower);
+}
+
+void InnerSystem::solve(std::span<Vec2> x) const {
+  if (inner_.count == 0) return;
+  std::vector<Vec2> rhs(static_cast<std::size_t>(inner_.count));
+  const auto slot = [&](std::size_t v) { return static_cast<std::size_t>(inner_.slot[v]); };
+  const auto is_inner = [&](std::size_t v) { return inner_.slot[v] != kFixed; };
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (is_inner(v)) rhs[slot(v)] = x[v];
+  for (Index j = 0; j < static_cast<Index>(lower_.cols()); ++j)
+    for (SparseMatrix::InnerIterator it(lower_, j); it; ++it) {
+      const auto row = static_cast<std::size_t>(it.row()), column = static_cast<std::size_t>(j);
+      if (is_inner(row) && !is_inner(column)) rhs[slot(row)] -= it.value() * x[column];
+      if (is_inner(column) && !is_inner(row)) rhs[slot(column)] -= it.value() * x[row];
+    }
+  system_->solve(rhs);
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (is_inner(v)) x[v] = rhs[slot(v)];
+}
+
+std::vector<double> flat_scales(const Disk& disk, const InnerSystem& inner,
                                 std::span<const double> curvature) {
   const std::vector<char> on_boundary = boundary_vertices(disk);
-  const FreeVertices free = number_free(on_boundary);
-  std::vector<double> u(on_boundary.size(), 0.0);
-  if (free.count == 0) return u;
-  const std::vector<Vec2> zero(u.size(), Vec2::Zero());
-  auto [lower, rhs] = eliminate<SparseMatrix, Vec2>(laplacian, free, zero);
-  for (std::size_t v = 0; v < u.size(); ++v)
-    if (free.slot[v] != kFixed) rhs[static_cast<std::size_t>(free.slot[v])].x() = -curvature[v];
-  factor(lower)->solve(rhs);
-  for (std::size_t v = 0; v < u.size(); ++v)
-    if (free.slot[v] != kFixed) u[v] = rhs[static_cast<std::size_t>(free.slot[v])].x();
+  std::vector<Vec2> x(curvature.size(), Vec2::Zero());
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (on_boundary[v] == 0) x[v].x() = -curvature[v];
+  inner.solve(x);
+  std::vector<double> u;
+  u.reserve(x.size());
+  for (const Vec2& value : x) u.push_back(value.x());
   return u;
 }
 

@@ -3,9 +3,12 @@
 // Shared by the methods that flatten the metric first and draw the map afterwards (cp, bff, ic).
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "core/linear/eliminate.hpp"
+#include "core/linear/factor.hpp"
 #include "core/solve/disk.hpp"
 
 namespace unwrapd {
@@ -33,9 +36,28 @@ std::vector<char> boundary_vertices(const Disk& disk);
 /// L u is the change of the curvature, to first order.
 SparseMatrix cotan_laplacian(const Disk& disk, std::span<const RestTriangle> triangles);
 
+/// L x at every vertex, from the lower triangle of L.
+std::vector<double> product(const SparseMatrix& laplacian, std::span<const double> x);
+
+/// The rows of a Laplacian that belong to inner vertices, factored once.
+class InnerSystem {
+ public:
+  /// lower: as from cotan_laplacian(). Throws Error{solver_failed}.
+  InnerSystem(const Disk& disk, SparseMatrix lower);
+
+  /// x: one entry a vertex. Values on the boundary stay; inside, x becomes the solution of L x =
+  /// what was there. Zeros inside give the harmonic extension of the boundary. Thread-safe.
+  void solve(std::span<Vec2> x) const;
+
+ private:
+  SparseMatrix lower_;
+  FreeVertices inner_;
+  std::unique_ptr<RealSystem> system_;
+};
+
 /// The log scale factors, 0 on the boundary, that make the metric flat inside to first order:
-/// L u = -K inside. Throws Error{solver_failed}.
-std::vector<double> flat_scales(const Disk& disk, const SparseMatrix& laplacian,
+/// L u = -K inside.
+std::vector<double> flat_scales(const Disk& disk, const InnerSystem& inner,
                                 std::span<const double> curvature);
 
 }  // namespace unwrapd
