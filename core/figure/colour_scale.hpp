@@ -47,7 +47,7 @@ const ColourScale& colour_scale(Colouring colouring);
 inline constexpr Rgb kFlippedColour = {0xff, 0x2a, 0x4d};
 inline constexpr Rgb kInk = {0x16, 0x13, 0x1f};
 inline constexpr Rgb kPaper = {0xff, 0xff, 0xff};
-inline constexpr Rgb kPage = {0xf3, 0xf2, 0xf5};
+inline constexpr Rgb kPage = {0xe9, 0xe8, 0xed};
 
 /// The figure of a triangle that is not flipped, `scale` being the factor for UVs that makes UV
 /// area = 3D area: sigma_max / sigma_min (angle), the determinant (area), max(sigma_max,

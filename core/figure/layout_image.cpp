@@ -68,9 +68,11 @@ void append_legend(Drawing& drawing, const ColourScale& colours, const Scale& sc
     append_rectangle(drawing, {scale.length(s.x), scale.length(s.y)},
                      {scale.length(s.x + s.width), scale.length(s.y + s.height)}, s.colour);
   }
-  for (const Label& label : legend.labels)
-    append_text(drawing, label.text, {scale.length(label.x), scale.length(label.y)},
-                scale.length(label.size));
+  for (const Label& label : legend.labels) {
+    const double size = scale.length(label.size);
+    const double left = label.is_centred ? text_width(label.text, size) / 2 : 0;
+    append_text(drawing, label.text, {scale.length(label.x) - left, scale.length(label.y)}, size);
+  }
 }
 
 }  // namespace

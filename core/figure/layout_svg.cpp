@@ -120,6 +120,7 @@ void append_label(std::string& svg, const Label& label) {
   append_attribute(svg, "x", label.x);
   append_attribute(svg, "y", label.y);
   append_attribute(svg, "font-size", label.size);
+  if (label.is_centred) svg += " text-anchor=\"middle\"";
   svg.append(">").append(label.text).append("</text>\n");
 }
 

@@ -6,7 +6,7 @@ namespace unwrapd {
 namespace {
 
 constexpr double kTitleX = 96, kTitleSize = 116, kTextSize = 84;
-constexpr double kBarX = 1536, kBarWidth = 1820, kFlippedX = 3648, kFlippedWidth = 240;
+constexpr double kBarX = 1472, kBarWidth = 1820, kFlippedX = 3744, kFlippedWidth = 252;
 constexpr double kBarTop = kPageUnits + 72, kBarHeight = 96;
 constexpr double kTitleBaseline = kPageUnits + 152, kBaseline = kPageUnits + 262;
 
@@ -22,9 +22,11 @@ Legend legend_of(const ColourScale& scale) {
   legend.labels = {{kTitleX, kTitleBaseline, kTitleSize, scale.title},
                    {kTitleX, kBaseline, kTextSize, scale.caption},
                    {kFlippedX, kBaseline, kTextSize, "flipped"}};
-  for (const Tick& tick : scale.ticks)
+  for (const Tick& tick : scale.ticks) {
+    const bool is_last = &tick == &scale.ticks.back();  // words: they go on to the right
     legend.labels.push_back(
-        {kBarX + scale.position(tick.value) * width, kBaseline, kTextSize, tick.label});
+        {kBarX + scale.position(tick.value) * width, kBaseline, kTextSize, tick.label, !is_last});
+  }
   return legend;
 }
 

@@ -19,9 +19,10 @@ struct Swatch {
 };
 
 struct Label {
-  double x = 0, y = 0;  ///< start of the baseline
+  double x = 0, y = 0;  ///< start of the baseline, or its middle
   double size = 0;      ///< height of the font
   std::string_view text;
+  bool is_centred = false;
 };
 
 struct Legend {

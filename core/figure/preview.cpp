@@ -1,0 +1,221 @@
+// A z-buffer over samples, after Catmull 1974, with normals interpolated, after Phong 1975, and
+// taken from the face itself where an edge is sharp. Both sides of a face are drawn, the inner one
+// greyer. Rays would need a tree over the faces, to no visible gain without shadows.
+#include "core/figure/preview.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+#include "core/figure/bands.hpp"
+#include "core/figure/colour_scale.hpp"
+#include "core/figure/raster.hpp"
+#include "core/figure/seam_lines.hpp"
+#include "core/figure/shading.hpp"
+#include "core/figure/view.hpp"
+#include "core/mesh/weld.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr double kSeamWidth = 2.4 / 1024, kBoundaryWidth = 1.5 / 1024;  // of the picture's side
+constexpr double kMinLine = 0.8;                                        // pixels
+constexpr double kLift = 0.004;  // of the extent: lines lie so much in front of their faces
+constexpr double kMinChecks = 2, kMaxChecks = 4096;
+
+/// A surface on the screen; one entry for each vertex of the mesh.
+struct Projected {
+  std::vector<ScreenPoint> at;
+  std::vector<float> depth;
+  std::vector<Vec3> normal;  ///< of the welded vertex, unit or zero
+};
+
+/// Part of a line, in front of the surface.
+struct LinePart {
+  ScreenTriangle corners;
+  std::array<float, 3> depth;
+  Rgb colour;
+};
+
+Vec3 unit_or_zero(const Vec3& v) {
+  const double length = v.norm();
+  return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
+}
+
+/// Twice the area times the normal, in the view's units.
+Vec3 face_normal(const TriMesh& mesh, const Triangle& face, const View& view) {
+  const Vec3 a = mesh.positions[face[0]] / view.unit;
+  return (mesh.positions[face[1]] / view.unit - a).cross(mesh.positions[face[2]] / view.unit - a);
+}
+
+std::vector<Vec3> vertex_normals(const TriMesh& mesh, const View& view) {
+  const std::vector<Index> place = weld(mesh.positions);
+  std::vector<Vec3> sum(mesh.positions.size(), Vec3::Zero());
+  for (const Triangle& face : mesh.faces) {
+    const Vec3 normal = face_normal(mesh, face, view);
+    for (const Index v : face) sum[place[v]] += normal;
+  }
+  std::vector<Vec3> normal(sum.size());
+  for (std::size_t v = 0; v < sum.size(); ++v) normal[v] = unit_or_zero(sum[place[v]]);
+  return normal;
+}
+
+Projected projected(const TriMesh& mesh, const View& view) {
+  Projected out{.at = {}, .depth = {}, .normal = vertex_normals(mesh, view)};
+  for (const Vec3& position : mesh.positions) {
+    out.at.push_back(snapped(view.pixel(position)));
+    out.depth.push_back(static_cast<float>(view.depth(position)));
+  }
+  return out;
+}
+
+void append_line(std::vector<LinePart>& parts, const std::array<Vec3, 2>& ends, const View& view,
+                 double width, const Rgb& colour) {
+  const std::array<Vec2, 8> outline =
+      line_outline(view.pixel(ends[0]), view.pixel(ends[1]), std::max(kMinLine, width));
+  std::array<float, 2> depth{};
+  for (std::size_t k = 0; k < 2; ++k)
+    depth[k] = static_cast<float>(view.depth(ends[k]) + kLift * view.extent);
+  const auto depth_at = [&](std::size_t corner) { return depth[corner < 4 ? 1 : 0]; };
+  for (std::size_t k = 2; k < outline.size(); ++k)
+    parts.push_back({{snapped(outline[0]), snapped(outline[k - 1]), snapped(outline[k])},
+                     {depth_at(0), depth_at(k - 1), depth_at(k)},
+                     colour});
+}
+
+void append_lines(std::vector<LinePart>& parts, const Surface& surface,
+                  const UnwrappedSurface& unwrapped, const View& view) {
+  const double side = 2 * view.centre;
+  for (const SeamLine& line : seam_lines(surface, unwrapped)) {
+    const std::array<Vec3, 2> ends = {surface.mesh.positions[unwrapped.source[line.edge[0]]],
+                                      surface.mesh.positions[unwrapped.source[line.edge[1]]]};
+    append_line(parts, ends, view, side * (line.is_seam ? kSeamWidth : kBoundaryWidth),
+                line.is_seam ? kSeamColour : kInk);
+  }
+}
+
+/// Squares along the page's side.
+double checks_of(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
+                 const View& view) {
+  double area = 0, uv_area = 0;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    for (const Triangle& face : surfaces[s].mesh.faces)
+      area += face_normal(surfaces[s].mesh, face, view).norm() / 2;
+    for (const Triangle& face : unwrapped[s].faces) {
+      const Vec2 a = unwrapped[s].uv[face[0]];
+      const Vec2 b = unwrapped[s].uv[face[1]] - a, c = unwrapped[s].uv[face[2]] - a;
+      uv_area += std::abs(b.x() * c.y() - b.y() * c.x()) / 2;
+    }
+  }
+  const double across = view.extent / view.pixels;  // in the units of area
+  const double checks = kChecksAcross / across * std::sqrt(area / uv_area);
+  return checks >= kMinChecks ? std::round(std::min(checks, kMaxChecks)) : kMinChecks;
+}
+
+/// One surface, ready to be drawn face by face.
+class Painter {
+ public:
+  Painter(const Surface& surface, const UnwrappedSurface& unwrapped, const View& view,
+          double checks)
+      : surface_(surface),
+        unwrapped_(unwrapped),
+        view_(view),
+        checks_(checks),
+        projected_(projected(surface.mesh, view)) {}
+
+  [[nodiscard]] Index face_count() const { return surface_.mesh.face_count(); }
+
+  [[nodiscard]] ScreenTriangle triangle(Index t) const {
+    const auto& [a, b, c] = surface_.mesh.faces[t];
+    return {projected_.at[a], projected_.at[b], projected_.at[c]};
+  }
+
+  void draw(Index t, Band& band) const {
+    const ScreenTriangle corners = triangle(t);
+    const CornerWeights weights(corners);
+    const FaceLook look = look_of(t);
+    const Triangle& face = surface_.mesh.faces[t];
+    scan(corners, band.rows(), band.columns(), [&](int row, const SampleRange& range) {
+      for (int column = range.first; column < range.end; ++column) {
+        const std::array<double, 3> w = weights.at(row, column);
+        const double depth = w[0] * projected_.depth[face[0]] + w[1] * projected_.depth[face[1]] +
+                             w[2] * projected_.depth[face[2]];
+        const std::size_t place = band.place(row, column);
+        if (band.take_nearer(place, static_cast<float>(depth)))
+          band.colour_at(place) = shaded(look, w, checks_);
+      }
+    });
+  }
+
+ private:
+  [[nodiscard]] FaceLook look_of(Index t) const {
+    const Vec3 normal = unit_or_zero(face_normal(surface_.mesh, surface_.mesh.faces[t], view_));
+    const bool is_inside = normal.dot(view_.toward) < 0;
+    FaceLook look{.normal = {}, .uv = {}, .is_inside = is_inside};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 n = corner_normal(normal, projected_.normal[surface_.mesh.faces[t][k]]);
+      look.normal[k] =
+          (is_inside ? -1 : 1) * Vec3(view_.right.dot(n), view_.up.dot(n), view_.toward.dot(n));
+      look.uv[k] = unwrapped_.uv[unwrapped_.faces[t][k]];
+    }
+    return look;
+  }
+
+  const Surface& surface_;
+  const UnwrappedSurface& unwrapped_;
+  const View& view_;
+  double checks_;
+  Projected projected_;
+};
+
+void draw_line(const LinePart& part, Band& band) {
+  const CornerWeights weights(part.corners);
+  scan(part.corners, band.rows(), band.columns(), [&](int row, const SampleRange& range) {
+    for (int column = range.first; column < range.end; ++column) {
+      const std::array<double, 3> w = weights.at(row, column);
+      const double depth = w[0] * part.depth[0] + w[1] * part.depth[1] + w[2] * part.depth[2];
+      const std::size_t place = band.place(row, column);
+      if (band.take_nearer(place, static_cast<float>(depth))) band.colour_at(place) = part.colour;
+    }
+  });
+}
+
+}  // namespace
+
+Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
+              int size) {
+  assert(surfaces.size() == unwrapped.size());
+  assert(size >= kMinImageSize && size <= kMaxImageSize);
+  const View view = view_of(surfaces, size);
+  const double checks = checks_of(surfaces, unwrapped, view);
+  std::vector<Painter> painters;
+  std::vector<LinePart> lines;
+  std::vector<Index> first_face = {0};
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    painters.emplace_back(surfaces[s], unwrapped[s], view, checks);
+    append_lines(lines, surfaces[s], unwrapped[s], view);
+    first_face.push_back(first_face.back() + painters.back().face_count());
+  }
+  const Index faces = first_face.back();
+  const auto surface_of = [&](Index k) {
+    return std::ranges::upper_bound(first_face, k) - first_face.begin() - 1;
+  };
+  Image image = blank_image(size, size);
+  draw_in_bands(
+      image, kPaper, faces + static_cast<Index>(lines.size()),
+      [&](Index k) {
+        const auto s = surface_of(k);
+        return k < faces ? painters[s].triangle(k - first_face[s]) : lines[k - faces].corners;
+      },
+      [&](Index k, Band& band) {
+        const auto s = surface_of(k);
+        if (k < faces) return painters[s].draw(k - first_face[s], band);
+        draw_line(lines[k - faces], band);
+      });
+  return image;
+}
+
+}  // namespace unwrapd

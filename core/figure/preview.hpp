@@ -1,0 +1,25 @@
+#pragma once
+// The textured mesh as a picture: a checkerboard laid on the page and drawn on the surface, the
+// usual way to see what a map does to angles and areas.
+
+#include <span>
+
+#include "core/figure/image.hpp"
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// A square picture of `size` pixels, in [kMinImageSize, kMaxImageSize], on white. Squares of the
+/// checkerboard have one size on the page, chosen so that about kChecksAcross of them cross the
+/// surface; seams are drawn pink and boundaries of the surface dark, both where they can be seen.
+/// Surfaces lie where their own coordinates put them. unwrapped has one entry for each.
+Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
+              int size);
+
+inline constexpr int kChecksAcross = 26;
+
+inline constexpr Rgb kLightCheck = {0xfb, 0xf8, 0xf1};
+inline constexpr Rgb kDarkCheck = {0x2f, 0x77, 0xa8};
+inline constexpr Rgb kSeamColour = {0xff, 0x2d, 0x8e};
+
+}  // namespace unwrapd
