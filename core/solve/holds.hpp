@@ -1,6 +1,7 @@
 #pragma once
 // Vertices of a disk that are held in the plane (Sec. 7).
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -30,11 +31,30 @@ struct Holds {
   [[nodiscard]] std::size_t count() const { return fixed.size() + springs.size(); }
 };
 
+/// What is held, and a map from which the iterations may start: fixed vertices lie at their places.
+/// All empty: nothing is held.
+struct Held {
+  Holds holds;
+  UvMap start;
+};
+
 /// Numbers the vertices that are not fixed.
 inline FreeVertices free_vertices(std::size_t vertex_count, const Holds& holds) {
   std::vector<char> fixed(vertex_count, 0);
   for (const FixedPoint& point : holds.fixed) fixed[static_cast<std::size_t>(point.vertex)] = 1;
   return number_free(fixed);
+}
+
+/// Whether both hold the same vertices with the same weights, be it at other places.
+inline bool is_moved(const Holds& a, const Holds& b) {
+  const auto same_vertex = [](const FixedPoint& p, const FixedPoint& q) {
+    return p.vertex == q.vertex;
+  };
+  const auto same_spring = [](const Spring& p, const Spring& q) {
+    return p.vertex == q.vertex && p.weight == q.weight;
+  };
+  return std::ranges::equal(a.fixed, b.fixed, same_vertex) &&
+         std::ranges::equal(a.springs, b.springs, same_spring);
 }
 
 /// What the springs add to the energy of the map uv.

@@ -7,6 +7,7 @@
 
 #include "core/options.hpp"
 #include "core/progress.hpp"
+#include "core/solve/conformal_system.hpp"
 #include "core/solve/local_global.hpp"
 
 namespace unwrapd {
@@ -22,8 +23,12 @@ struct SolveWatch {
 /// costs iterations only. Used by one thread at a time.
 class Solver {
  public:
-  /// disk, options and executor must outlive the solver.
-  Solver(const Disk& disk, const UnwrapOptions& options, Holds holds, Executor& executor);
+  /// disk, options and executor must outlive the solver. Under holds the iterations start from
+  /// held.start, whatever options.initial says.
+  Solver(const Disk& disk, const UnwrapOptions& options, Held held, Executor& executor);
+
+  /// Holds the same vertices, with the same weights, at other places: nothing is factored again.
+  void move(Held held);
 
   /// Solves by options.method; lambda counts for Method::hybrid, in options.lambda_units. The same
   /// whatever was run before. Throws Error{solver_failed, cancelled}.
@@ -32,6 +37,7 @@ class Solver {
  private:
   const std::vector<UvMap>& starts();
   const UvMap& conformal();
+  UvMap conformal_under_holds();
   Solution hybrid(const Rigidity& rigidity, const SolveWatch& watch);
   Solution iterate(const Rigidity& rigidity, const std::vector<UvMap>& starts,
                    const SolveWatch& watch);
@@ -39,10 +45,12 @@ class Solver {
   const Disk& disk_;
   const UnwrapOptions& options_;
   Holds holds_;
+  UvMap held_start_;
   Executor& executor_;
   std::vector<UvMap> starts_;
   std::optional<UvMap> conformal_;
   std::optional<GlobalStep> global_;
+  std::optional<ConformalSystem> conformal_system_;
 };
 
 /// The maps that the iterations may start from, each scaled so that UV area = 3D area. One, but for

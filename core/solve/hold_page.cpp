@@ -1,0 +1,71 @@
+// ARAP and Hybrid measure stretch against the surface, so they must know how long a mesh unit is on
+// the page. The held vertices tell: the chart, solved freely, is laid over them. Solving for that
+// scale together with the map would let the map shrink wherever that pays.
+#include "core/solve/hold_page.hpp"
+
+#include <cassert>
+#include <utility>
+
+#include "core/solve/boundary_shape.hpp"
+#include "core/solve/conformal.hpp"
+#include "core/solve/convex_map.hpp"
+#include "core/solve/hold_align.hpp"
+#include "core/solve/solve.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr int kGuideIterations = 10;
+
+/// The longer side of the rectangle around the map.
+double extent(const UvMap& uv) {
+  Vec2 low = uv.front(), high = uv.front();
+  for (const Vec2& u : uv) low = low.cwiseMin(u), high = high.cwiseMax(u);
+  return (high - low).maxCoeff();
+}
+
+}  // namespace
+
+Holds PageFrame::to_disk(Holds page) const {
+  for (FixedPoint& p : page.fixed) p.at = (p.at - origin) / scale;
+  for (Spring& s : page.springs) s.at = (s.at - origin) / scale;
+  return page;
+}
+
+UvMap PageFrame::to_page(UvMap uv, const Holds& page) const {
+  for (Vec2& u : uv) u = origin + scale * u;
+  for (const FixedPoint& p : page.fixed) uv[static_cast<std::size_t>(p.vertex)] = p.at;
+  return uv;
+}
+
+UvMap guide_map(const Disk& disk, const UnwrapOptions& options, const std::stop_token& stop,
+                Executor& executor) {
+  if (options.method == Method::asap) return conformal_map(disk, options.pins);
+  const UnwrapOptions plain{
+      .method = Method::arap, .stop = {.iterations = kGuideIterations}, .initial = options.initial};
+  SolveWatch watch;
+  watch.loop.stop = stop;
+  return Solver(disk, plain, {}, executor).run(0, watch).uv;
+}
+
+PageFrame page_frame(const UvMap& guide, const Holds& page, const UnwrapOptions& options) {
+  const Alignment alignment = align(guide, page);
+  if (page.count() > 1) return {alignment.to, alignment.scale};
+  const double side = 1 - 2.0 * options.padding / options.resolution;
+  return {alignment.to, side / extent(guide)};
+}
+
+Held held_on_page(const PageFrame& frame, const UvMap& guide, const Holds& page) {
+  Holds holds = frame.to_disk(page);
+  UvMap start = held_start(guide, holds);
+  return {std::move(holds), std::move(start)};
+}
+
+Held held_boundary(const Disk& disk, const UnwrapOptions& options) {
+  assert(options.boundary != BoundaryShape::free);
+  Holds holds{.fixed = boundary_points(disk, options.boundary), .springs = {}};
+  UvMap start = mean_value_map(disk, holds.fixed);
+  return {std::move(holds), std::move(start)};
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,43 @@
+#pragma once
+// Places on the page, where users give them, and places in the disk's own units, where maps are
+// solved.
+
+#include <stop_token>
+
+#include "core/executor.hpp"
+#include "core/options.hpp"
+#include "core/solve/disk.hpp"
+#include "core/solve/holds.hpp"
+
+namespace unwrapd {
+
+/// page = origin + scale * u.
+struct PageFrame {
+  Vec2 origin = Vec2::Zero();
+  double scale = 1;  ///< of the page's units in one disk unit
+
+  [[nodiscard]] Holds to_disk(Holds page) const;
+
+  /// The map on the page; fixed vertices exactly where page has them.
+  [[nodiscard]] UvMap to_page(UvMap uv, const Holds& page) const;
+};
+
+/// The map of a chart of which nothing is held: ASAP's own for ASAP, else that of some plain ARAP
+/// iterations, which tells lengths better than any map they start from. Made once, however often
+/// the targets move. Throws Error{solver_failed, cancelled}.
+UvMap guide_map(const Disk& disk, const UnwrapOptions& options, const std::stop_token& stop,
+                Executor& executor);
+
+/// Where on the page a chart's held vertices, page (not empty, in the page's units), put its disk:
+/// the frame in which they lie as far apart as in the guide (see align()). One vertex alone tells
+/// no size: the chart's bounding square then fills the page up to the padding.
+PageFrame page_frame(const UvMap& guide, const Holds& page, const UnwrapOptions& options);
+
+/// page in disk units, with the guide laid on it.
+Held held_on_page(const PageFrame& frame, const UvMap& guide, const Holds& page);
+
+/// The longest loop on the shape of options.boundary, with the mean-value map inside it. On the
+/// circle that is free of flips. options.boundary is not free. Throws Error{solver_failed}.
+Held held_boundary(const Disk& disk, const UnwrapOptions& options);
+
+}  // namespace unwrapd
