@@ -1,0 +1,37 @@
+#pragma once
+// What a user wants held (Sec. 7), as holds of each chart's vertices.
+
+#include <span>
+#include <vector>
+
+#include "core/atlas/charts.hpp"
+#include "core/mesh/tri_mesh.hpp"
+#include "core/options.hpp"
+#include "core/solve/holds.hpp"
+
+namespace unwrapd {
+
+/// The weights of soft constraints. A vertex on a spring of weight w adds w |u - uv|^2 to the
+/// energy of its chart, both in units in which the chart's surface has area 1; energies are then of
+/// the order of 0.01 to 1. Beyond these bounds double precision would no longer see one beside the
+/// other.
+inline constexpr double kLeastWeight = 1e-9, kMostWeight = 1e9;
+
+/// The holds of every chart, in the page's coordinates: result[s][k] for chart k of surface s. All
+/// are empty when there are no constraints; else each has at least one vertex.
+///
+/// A constraint holds one vertex in each chart in which its vertex occurs (given by position: in
+/// which a vertex occurs at the place nearest to it; of places equally near, that of the lowest
+/// vertex). Where a cut runs through that vertex, it is the one that the lowest corner of a face
+/// shows. Constraints of one vertex with the same uv are one; soft ones add up; a hard one makes
+/// soft ones of no effect. UVs are compared as the 32-bit floats that are written.
+///
+/// Throws Error{invalid_constraint}, where = "/constraints/<i>": no such surface or vertex; a
+/// vertex in no face; one vertex at two places; two vertices at one; a chart all of whose targets
+/// are one; a weight out of bounds; a uv beyond 32-bit floats. where = "/constraints": a chart that
+/// has none.
+std::vector<std::vector<Holds>> page_holds(std::span<const Surface> surfaces,
+                                           std::span<const Charts> charts,
+                                           std::span<const PositionConstraint> constraints);
+
+}  // namespace unwrapd
