@@ -1,12 +1,8 @@
 // Times and memory of the core, as ratios within one run: machines are noisy, ratios less so.
 //   unwrapd_bench            the table: ours against CGAL, growth, memory
 //   unwrapd_bench --memory N the peak resident set of one ARAP call on N faces (one process each)
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -15,8 +11,8 @@
 
 #include "core/unwrap.hpp"
 #include "tests/bench/cgal_arap.hpp"
+#include "tests/bench/measure.hpp"
 #include "tests/core/obj_reader.hpp"
-#include "tests/core/shapes.hpp"
 
 namespace unwrapd::bench {
 namespace {
@@ -25,11 +21,11 @@ constexpr int kRuns = 5;
 
 double seconds_of(const std::vector<Surface>& surfaces, const UnwrapOptions& options) {
   SerialExecutor serial;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const Unwrapped unwrapped = unwrap(surfaces, options, {}, serial);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  const double seconds = watch.seconds();
   if (unwrapped.surfaces.empty()) std::abort();  // keeps the result alive
-  return took.count();
+  return seconds;
 }
 
 double median_seconds(const TriMesh& mesh, const UnwrapOptions& options) {
@@ -43,15 +39,6 @@ double median_seconds(const TriMesh& mesh, const UnwrapOptions& options) {
 TriMesh subdivided_to(TriMesh mesh, std::size_t faces) {
   while (mesh.faces.size() < faces) mesh = shapes::subdivided(mesh);
   return mesh;
-}
-
-/// A bumpy open surface of about `faces` triangles.
-TriMesh sheet(double faces) {
-  const auto side = static_cast<Index>(std::lround(std::sqrt(faces / 2)));
-  return shapes::mapped_grid(side, side, shapes::Wrap::none, [](double u, double v) {
-    return Vec3(u, v,
-                0.2 * std::sin(7 * u + 2 * v) * std::cos(5 * v) + 0.02 * std::sin(40 * u * v));
-  });
 }
 
 void compare_with_cgal() {
@@ -80,12 +67,6 @@ void show_growth() {
     std::printf("%10zu faces %37.3f %9.2f\n", mesh.faces.size(), s,
                 1e6 * s / static_cast<double>(mesh.faces.size()));
   }
-}
-
-double peak_megabytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
 int show_memory(double faces) {
