@@ -8,6 +8,7 @@ namespace unwrapd {
 namespace {
 
 constexpr Index kNowhere = -1;
+constexpr double kLeastRaise = 1e-14, kMostRaise = 0.01;  // of the diagonal
 
 using Pattern = Eigen::SparseMatrix<char, Eigen::ColMajor, Index>;
 
@@ -83,14 +84,23 @@ void PairSystem::add(std::size_t t, const PairElement& element) {
     }
 }
 
-void PairSystem::add_to_diagonal(double x) {
+void PairSystem::raise_diagonal(double share) {
   for (Index j = 0; j < static_cast<Index>(lower_.cols()); ++j)
-    lower_.valuePtr()[lower_.outerIndexPtr()[j]] += x;
+    lower_.valuePtr()[lower_.outerIndexPtr()[j]] *= 1 + share;
+}
+
+bool PairSystem::try_factor() {
+  llt_.factorize(lower_);
+  return llt_.info() == Eigen::Success;
 }
 
 bool PairSystem::factor() {
-  llt_.factorize(lower_);
-  return llt_.info() == Eigen::Success;
+  if (try_factor()) return true;
+  for (double share = kLeastRaise; share <= kMostRaise; share *= 100) {
+    raise_diagonal(share);
+    if (try_factor()) return true;
+  }
+  return false;
 }
 
 void PairSystem::solve(std::vector<Vec2>& b) const {

@@ -30,11 +30,8 @@ class PairSystem {
   /// Adds the element of face t.
   void add(std::size_t t, const PairElement& element);
 
-  /// Adds x to both diagonal entries of every vertex.
-  void add_to_diagonal(double x);
-
-  /// Factors what was added since clear(). False when it is not positive definite in double
-  /// precision.
+  /// Factors what was added since clear(). Where that is not positive definite in double precision
+  /// the diagonal is raised, by a hundredth of it at most: false when that does not help either.
   [[nodiscard]] bool factor();
 
   /// Replaces b, one pair a slot, by the solution.
@@ -43,6 +40,8 @@ class PairSystem {
  private:
   void build_pattern(std::span<const Triangle> faces);
   [[nodiscard]] Index entry(Index row, Index column) const;
+  [[nodiscard]] bool try_factor();
+  void raise_diagonal(double share);
 
   const FreeVertices& slots_;
   SparseMatrix lower_;

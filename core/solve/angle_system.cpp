@@ -14,8 +14,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kLeastGap = 0.1;  // of an angle's distance from pi, which scaling may not use up
-constexpr double kLeastShift = 1e-13, kMostShift = 1e-3;  // of the reduced matrix' diagonal, ~1
-constexpr std::size_t kBlock = 2048;                      // faces a block
+constexpr std::size_t kBlock = 2048;  // faces a block
 
 Index start_vertex(const Disk& disk, Index h) {
   return disk.faces[static_cast<std::size_t>(h / 3)][static_cast<std::size_t>(h % 3)];
@@ -156,14 +155,11 @@ std::vector<AngleSystem::FaceBlock> AngleSystem::blocks(std::span<const FaceAngl
 }
 
 void AngleSystem::factor(std::span<const FaceBlock> blocks) {
-  for (double shift = kLeastShift; shift <= kMostShift; shift *= 100) {
-    system_->clear();
-    for (std::size_t t = 0; t < blocks.size(); ++t) system_->add(t, blocks[t].element());
-    system_->add_to_diagonal(shift);
-    if (system_->factor()) return;
-  }
-  throw Error(ErrorCode::solver_failed,
-              "the angles of this mesh cannot be made to lie flat; choose method asap or arap");
+  system_->clear();
+  for (std::size_t t = 0; t < blocks.size(); ++t) system_->add(t, blocks[t].element());
+  if (!system_->factor())
+    throw Error(ErrorCode::solver_failed,
+                "the angles of this mesh cannot be made to lie flat; choose method asap or arap");
 }
 
 std::vector<FaceAngles> AngleSystem::step(std::span<const FaceAngles> angles,

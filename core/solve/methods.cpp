@@ -1,15 +1,23 @@
 #include "core/solve/methods.hpp"
 
 #include "core/error.hpp"
+#include "core/solve/abf.hpp"
 #include "core/solve/bff.hpp"
 #include "core/solve/cp.hpp"
+#include "core/solve/linabf.hpp"
+#include "core/solve/slim.hpp"
 
 namespace unwrapd {
 
 Solution other_method(const Disk& disk, Method method, const SolveWatch& watch,
                       Executor& executor) {
-  static_cast<void>(executor);
   switch (method) {
+    case Method::abf:
+      return abf(disk, watch, executor);
+    case Method::linabf:
+      return linabf(disk, watch, executor);
+    case Method::slim:
+      return slim(disk, watch, executor);
     case Method::bff:
       return bff(disk, watch);
     case Method::cp:
