@@ -9,12 +9,6 @@
 namespace unwrapd::server {
 namespace {
 
-JobRecord find_job(JobStore& store, const std::string& id) {
-  std::optional<JobRecord> job = store.find(id);
-  if (!job) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
-  return std::move(*job);
-}
-
 /// The job with its live progress.
 Response job_response(int status, const JobRecord& record, const EventFeed& events) {
   api::Job job = to_job(record);
@@ -77,6 +71,12 @@ Response post_unwrap(const JobServices& services, const Request& request) {
 
 }  // namespace
 
+JobRecord find_job(JobStore& store, const std::string& id) {
+  std::optional<JobRecord> job = store.find(id);
+  if (!job) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
+  return std::move(*job);
+}
+
 void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
   const auto find = [services](const Request& request) {
     return find_job(services.store, request.id);
@@ -97,9 +97,6 @@ void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
   routes.push_back({"GET", "/v1/jobs/{id}/report", [services, find](const Request& request) {
                       return get_file(services.blobs, find(request), kReportFile,
                                       "application/json");
-                    }});
-  routes.push_back({"GET", "/v1/jobs/{id}/layout.svg", [services, find](const Request& request) {
-                      return get_file(services.blobs, find(request), kLayoutFile, "image/svg+xml");
                     }});
 }
 

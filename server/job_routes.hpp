@@ -24,7 +24,10 @@ struct JobServices {
   const api::Limits& limits;
 };
 
-/// POST /v1/jobs and everything below /v1/jobs/{id}.
+/// Throws Error{not_found}.
+JobRecord find_job(JobStore& store, const std::string& id);
+
+/// POST /v1/jobs and everything below /v1/jobs/{id} but the pictures.
 void add_job_routes(std::vector<Route>& routes, const JobServices& services);
 
 /// POST /v1/unwrap.

@@ -46,21 +46,27 @@ void require_result(const JobRecord& job) {
   }
 }
 
-Response get_result(ResultStore& results, const JobRecord& job, const Request& request) {
-  require_result(job);
-  const std::string format = choose_format(request.header("Accept"), job.result_format);
-  const StoredResult result = results.open(job, format);
-  const std::string etag = "\"" + result.sha256 + "\"";
+Response stored_response(const StoredResult& stored, std::string_view type,
+                         const Request& request) {
+  const std::string etag = "\"" + stored.sha256 + "\"";
   Response response;
-  response.headers = {{"ETag", etag}, {"Vary", "Accept"}, {"Accept-Ranges", "bytes"}};
-  if (request.method != "POST" && is_known(request, etag)) {
+  response.headers = {{"ETag", etag}, {"Accept-Ranges", "bytes"}};
+  if (is_known(request, etag)) {
     response.status = 304;
     return response;
   }
-  response.content_type = media_type(format);
-  FileBody body{.file = result.file, .offset = 0, .length = result.file->size()};
+  response.content_type = type;
+  FileBody body{.file = stored.file, .offset = 0, .length = stored.file->size()};
   if (range_counts(request, etag)) send_range(request, body, response);
   response.body = std::move(body);
+  return response;
+}
+
+Response get_result(ResultStore& results, const JobRecord& job, const Request& request) {
+  require_result(job);
+  const std::string format = choose_format(request.header("Accept"), job.result_format);
+  Response response = stored_response(results.open(job, format), media_type(format), request);
+  response.headers.emplace_back("Vary", "Accept");
   return response;
 }
 

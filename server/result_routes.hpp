@@ -1,5 +1,5 @@
 #pragma once
-// The answers that a finished job has: the asset, the report, the layout.
+// The answers that a finished job has: the asset and the report.
 
 #include "server/blob_store.hpp"
 #include "server/http.hpp"
@@ -11,6 +11,9 @@ namespace unwrapd::server {
 /// Throws unless the job has succeeded and its files are still kept: job_unfinished,
 /// result_expired, or the job's own problem.
 void require_result(const JobRecord& job);
+
+/// A stored file, with ETag, If-None-Match and Range.
+Response stored_response(const StoredResult& stored, std::string_view type, const Request& request);
 
 /// The asset in the format that Accept chooses, with ETag, If-None-Match and Range.
 Response get_result(ResultStore& results, const JobRecord& job, const Request& request);

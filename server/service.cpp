@@ -8,6 +8,7 @@
 #include "server/http_server.hpp"
 #include "server/info_routes.hpp"
 #include "server/job_routes.hpp"
+#include "server/picture_routes.hpp"
 #include "server/sweeper.hpp"
 #include "server/worker_pool.hpp"
 
@@ -38,6 +39,7 @@ struct Service::Parts {
         streams(events, config.limits.max_streams),
         submissions(queue, blobs, config.limits),
         results(blobs, config.limits),
+        pictures(blobs, config.limits),
         router(routes(), log),
         http(
             http_config(config), [this](const Request& request) { return router.answer(request); },
@@ -56,6 +58,7 @@ struct Service::Parts {
     std::vector<Route> all;
     add_job_routes(all, services);
     add_unwrap_route(all, services);
+    add_picture_routes(all, store, pictures);
     add_info_routes(all, queue, config.limits);
     return all;
   }
@@ -69,6 +72,7 @@ struct Service::Parts {
   EventStreams streams;
   Submissions submissions;
   ResultStore results;
+  PictureStore pictures;
   Router router;
   HttpServer http;
   std::optional<Sweeper> sweeper;

@@ -1,0 +1,23 @@
+#include "server/png_file.hpp"
+
+#include <png.h>
+
+#include "core/error.hpp"
+
+namespace unwrapd::server {
+
+std::string encode_png(const Image& image) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width);
+  header.height = static_cast<png_uint_32>(image.height);
+  header.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr) == 0)
+    throw Error(ErrorCode::internal, "The picture could not be written; ask for a smaller one.");
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace unwrapd::server
