@@ -1,0 +1,41 @@
+#pragma once
+// An energy that keeps triangles from flipping, or turns flipped ones back: the method's own, plus
+// a term that grows without bound as a triangle's area goes to zero.
+
+#include <span>
+#include <vector>
+
+#include "core/linear/eliminate.hpp"
+#include "core/solve/local_step.hpp"
+
+namespace unwrapd {
+
+/// E = sum A_t [ fit(J_t) + weight (|J_t|^2 / 2 + (1 + det^2 J_t) / 2) / chi(det J_t) - 2 weight ]
+/// with chi(d) = (d + sqrt(epsilon^2 + d^2)) / 2. fit: the method's energy, Eq. (5).
+struct Barrier {
+  Rigidity rigidity;
+  double weight = 1;
+  double epsilon = 0;  ///< 0: infinite unless every triangle is positive
+};
+
+/// Triangles whose free vertices are to be moved. Vertices are numbered by faces.
+struct BarrierMesh {
+  std::vector<Triangle> faces;
+  std::vector<RestTriangle> rest;  ///< one a face: the shape and size that it should have
+  FreeVertices free;               ///< one slot a vertex
+};
+
+double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier);
+
+/// The least determinant of the triangles' Jacobians.
+double least_determinant(const BarrierMesh& mesh, std::span<const Vec2> uv);
+
+/// Gradient and the lower triangle of a positive semidefinite Hessian: unknowns 2s and 2s+1 are u
+/// and v of slot s. Each triangle's Hessian is projected exactly.
+struct Quadratic {
+  Eigen::VectorXd gradient;
+  SparseMatrix hessian;
+};
+Quadratic barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier);
+
+}  // namespace unwrapd

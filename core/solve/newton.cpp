@@ -1,0 +1,98 @@
+// A step ends before the first triangle collapses on its way (the step rule of Smith and Schaefer,
+// "Bijective Parameterization with Free Boundaries", SIGGRAPH 2015), then is halved until the
+// energy falls as the gradient promises (Armijo). Quasi-Newton with the mesh's Laplacian would need
+// no factor for each step, but stalls where slivers meet barriers.
+#include "core/solve/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace unwrapd {
+namespace {
+
+constexpr double kArmijo = 1e-4;
+constexpr int kMostHalvings = 40;
+constexpr double kOfTheWayToCollapse = 0.8;
+constexpr double kLeastShift = 1e-10;  // added to the diagonal, of its mean
+constexpr double kMostShift = 1e2;
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// The least t > 0 at which a + b t + c t^2 is zero, for a > 0; infinity when there is none.
+double first_root(double a, double b, double c) {
+  const double inside = b * b - 4 * a * c;
+  if (inside < 0) return INFINITY;
+  const double near = -b + std::copysign(std::sqrt(inside), -b);  // the root without cancellation
+  const double one = near == 0 ? INFINITY : 2 * a / near;
+  const double other = c == 0 ? INFINITY : near / (2 * c);
+  const double least = std::min(one > 0 ? one : INFINITY, other > 0 ? other : INFINITY);
+  return least;
+}
+
+/// The step length at which the first triangle has no area left.
+double collapse_length(const BarrierMesh& mesh, const UvMap& uv, const UvMap& move) {
+  double length = INFINITY;
+  for (const Triangle& face : mesh.faces) {
+    const UvEdges u = uv_edges(face, uv), d = uv_edges(face, move);
+    length = std::min(length, first_root(cross(u[0], u[1]), cross(u[0], d[1]) + cross(d[0], u[1]),
+                                         cross(d[0], d[1])));
+  }
+  return length;
+}
+
+UvMap spread(const FreeVertices& free, const Eigen::VectorXd& x) {
+  UvMap move(free.slot.size(), Vec2::Zero());
+  for (std::size_t v = 0; v < move.size(); ++v)
+    if (free.slot[v] != kFixed) move[v] = Vec2(x[2 * free.slot[v]], x[2 * free.slot[v] + 1]);
+  return move;
+}
+
+UvMap moved(const UvMap& uv, const UvMap& move, double length) {
+  UvMap to(uv.size());
+  for (std::size_t v = 0; v < uv.size(); ++v) to[v] = uv[v] + length * move[v];
+  return to;
+}
+
+}  // namespace
+
+bool Newton::factor(SparseMatrix hessian) {
+  if (!is_analysed_) llt_.analyzePattern(hessian);
+  is_analysed_ = true;
+  const double mean = hessian.diagonal().sum() / static_cast<double>(hessian.rows());
+  double added = 0;
+  for (double shift = kLeastShift; shift <= kMostShift; shift *= 1e3) {
+    for (Index k = 0; k < hessian.rows(); ++k) hessian.coeffRef(k, k) += shift * mean - added;
+    added = shift * mean;
+    llt_.factorize(hessian);
+    if (llt_.info() == Eigen::Success) return true;
+  }
+  return false;
+}
+
+double Newton::step(UvMap& uv, const Barrier& barrier) {
+  Quadratic model = barrier_model(mesh_, uv, barrier);
+  if (!factor(std::move(model.hessian))) return 0;
+  const Eigen::VectorXd x = llt_.solve(-model.gradient);
+  const double slope = model.gradient.dot(x);
+  if (!(slope < 0)) return 0;
+  const UvMap move = spread(mesh_.free, x);
+  const double before = barrier_energy(mesh_, uv, barrier);
+  double length = 1;
+  if (barrier.epsilon == 0)
+    length = std::min(length, kOfTheWayToCollapse * collapse_length(mesh_, uv, move));
+  for (int k = 0; k < kMostHalvings; ++k, length /= 2) {
+    UvMap next = moved(uv, move, length);
+    const double after = barrier_energy(mesh_, next, barrier);
+    if (!(after <= before + kArmijo * length * slope)) continue;
+    uv = std::move(next);
+    return (before - after) / std::abs(before);
+  }
+  return 0;
+}
+
+void Newton::descend(UvMap& uv, const Barrier& barrier, int most, double tolerance) {
+  for (int k = 0; k < most; ++k)
+    if (step(uv, barrier) < tolerance) return;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,31 @@
+#pragma once
+// Projected Newton on a barrier energy, with a line search that never lets a triangle flip.
+
+#include <Eigen/SparseCholesky>
+
+#include "core/solve/barrier.hpp"
+
+namespace unwrapd {
+
+/// One mesh whose free vertices are moved downhill. The order of elimination is found once.
+class Newton {
+ public:
+  /// mesh must outlive this.
+  explicit Newton(const BarrierMesh& mesh) : mesh_(mesh) {}
+
+  /// One step. Returns the share by which the energy fell: 0 when it can fall no further. With
+  /// epsilon 0 the triangles must be positive, and remain so.
+  double step(UvMap& uv, const Barrier& barrier);
+
+  /// Steps until one lowers the energy by less than `tolerance` of it; at most `most` of them.
+  void descend(UvMap& uv, const Barrier& barrier, int most, double tolerance);
+
+ private:
+  bool factor(SparseMatrix hessian);
+
+  const BarrierMesh& mesh_;
+  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt_;
+  bool is_analysed_ = false;
+};
+
+}  // namespace unwrapd

@@ -1,0 +1,25 @@
+#pragma once
+// Small parts of a disk, to be mended while the rest holds still.
+
+#include <span>
+#include <vector>
+
+#include "core/solve/barrier.hpp"
+#include "core/solve/disk.hpp"
+
+namespace unwrapd {
+
+/// A part of a disk with vertices numbered anew. Those that may move have all their faces in it.
+struct Patch {
+  BarrierMesh mesh;
+  std::vector<Index> face;    ///< patch face -> face of the disk
+  std::vector<Index> vertex;  ///< patch vertex -> vertex of the disk
+};
+
+/// The connected parts within `rings` rings of the given faces: what a ring is away may move unless
+/// held (one a vertex, or empty), their outermost vertices may not. Where most of the disk would be
+/// loose, all of it is. Parts in which nothing may move are left out.
+std::vector<Patch> patches_around(const Disk& disk, std::span<const Index> faces, int rings,
+                                  std::span<const char> held);
+
+}  // namespace unwrapd

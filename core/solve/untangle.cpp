@@ -1,0 +1,198 @@
+// Around the flips, everything within a few rings of triangles is let loose; the rest of the map
+// holds the rim. First the regularised barrier turns the triangles over (its epsilon shrinks with
+// the worst of them); then, from a map without flips, the method's own energy is minimised under a
+// barrier that fades. Where that fails the patch grows, in the end to the whole chart, and at last
+// the whole chart starts anew from Tutte's map, which has no flips to begin with.
+//
+// Beginning with the whole chart would do as well, at many times the cost.
+#include "core/solve/untangle.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/measure/distortion.hpp"
+#include "core/measure/orientation.hpp"
+#include "core/solve/convex_map.hpp"
+#include "core/solve/fill_holes.hpp"
+#include "core/solve/newton.hpp"
+#include "core/solve/patch.hpp"
+#include "core/solve/virtual_boundary.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr int kFirstRings = 2;
+constexpr int kMostRings = 64;
+constexpr int kMostTurning = 80;       // Newton steps under the regularised barrier
+constexpr double kEpsilonShare = 0.2;  // of the worst determinant
+constexpr double kLeastEpsilon = 1e-6;
+constexpr double kStuck = 1e-5;            // relative fall of the energy in one step
+constexpr int kMostFading = 20;            // Newton steps for each weight
+constexpr double kFadingTolerance = 1e-4;  // relative fall of the energy in one step
+constexpr std::array<double, 3> kFading = {1e-1, 1e-2, 1e-3};  // weights of the barrier
+
+constexpr double kConformalBelow = 0.01;  // lambda: below, sizes are not the energy's business
+constexpr double kLeastStretch = 1e-12;
+
+void throw_if_stopped(const MapIntent& intent) {
+  if (intent.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+}
+
+void scale(RestTriangle& rest, double by) {
+  for (Vec2& e : rest.edge) e *= by;
+  rest.area *= by * by;
+}
+
+/// The factor by which each rest triangle is taken larger or smaller. Angles alone say nothing
+/// about size: there the neighbours' mean stretch is kept.
+double target_scale(const Disk& disk, Index face, const UvMap& uv) {
+  double sum = 0;
+  int count = 0;
+  for (Index v : disk.faces[face])
+    for (Index c = disk.corners.begin[v]; c < disk.corners.begin[v + 1]; ++c) {
+      const Index t = disk.corners.corner[c] / 3;
+      const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
+      sum += std::log(std::max(kLeastStretch, std::hypot(j.turn_scale(), j.deformation())));
+      ++count;
+    }
+  return std::exp(sum / count);
+}
+
+/// Targets of the size that the map has there, for energies that do not care about size.
+void follow_sizes(const Disk& disk, const UvMap& uv, Patch& patch) {
+  for (std::size_t k = 0; k < patch.face.size(); ++k)
+    scale(patch.mesh.rest[k], target_scale(disk, patch.face[k], uv));
+}
+
+/// The patch with targets that fit into its rim, which encloses the same area however the triangles
+/// lie: else the best of maps has tiny determinants, and nothing tells them from flips.
+BarrierMesh fitted(const BarrierMesh& mesh, const UvMap& uv) {
+  double room = 0, wanted = 0;
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    wanted += mesh.rest[t].area;
+    room += mesh.rest[t].area * jacobian(mesh.rest[t], uv_edges(mesh.faces[t], uv)).determinant();
+  }
+  BarrierMesh fit = mesh;
+  const bool has_rim = mesh.free.count < static_cast<Index>(mesh.free.slot.size());
+  if (has_rim && room > 0)
+    for (RestTriangle& rest : fit.rest) scale(rest, std::sqrt(room / wanted));
+  return fit;
+}
+
+bool is_untangled(const BarrierMesh& mesh, const UvMap& uv) {
+  return least_determinant(mesh, uv) > 0 && flipped_faces(mesh.faces, uv).empty();
+}
+
+/// Turns the triangles of a patch over; false when they will not.
+bool turn_over(const BarrierMesh& patch, const MapIntent& intent, UvMap& uv) {
+  const BarrierMesh mesh = fitted(patch, uv);
+  Newton newton(mesh);
+  for (int k = 0; k < kMostTurning; ++k) {
+    if (is_untangled(mesh, uv)) return true;
+    throw_if_stopped(intent);
+    const double worst = std::min(0.0, least_determinant(mesh, uv));
+    const double epsilon = std::max(kLeastEpsilon, -kEpsilonShare * worst);
+    const double fall = newton.step(uv, {{0.0}, 1, epsilon});
+    if (fall == 0 || (fall < kStuck && epsilon == kLeastEpsilon)) break;
+  }
+  return is_untangled(mesh, uv);
+}
+
+/// From a map without flips to one of little energy without flips.
+void fade(const BarrierMesh& mesh, const MapIntent& intent, UvMap& uv) {
+  Newton newton(mesh);
+  for (double weight : kFading) {
+    throw_if_stopped(intent);
+    newton.descend(uv, {intent.rigidity, weight, 0}, kMostFading, kFadingTolerance);
+  }
+}
+
+UvMap map_of(const Patch& patch, const UvMap& uv) {
+  UvMap own;
+  own.reserve(patch.vertex.size());
+  for (Index v : patch.vertex) own.push_back(uv[v]);
+  return own;
+}
+
+void put_back(const Patch& patch, const UvMap& own, UvMap& uv) {
+  for (std::size_t v = 0; v < own.size(); ++v) uv[patch.vertex[v]] = own[v];
+}
+
+/// Lets a patch without flips find its least energy.
+void settle(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv) {
+  if (intent.rigidity.lambda < kConformalBelow) follow_sizes(disk, uv, patch);
+  UvMap own = map_of(patch, uv);
+  fade(patch.mesh, intent, own);
+  put_back(patch, own, uv);
+}
+
+/// Mends one patch; the map stays as it is when that fails.
+bool mend(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv) {
+  UvMap own = map_of(patch, uv);
+  if (!turn_over(patch.mesh, intent, own)) return false;
+  put_back(patch, own, uv);
+  settle(disk, intent, patch, uv);
+  return true;
+}
+
+Patch whole(const Disk& disk) {
+  const std::vector<Index> any{0};
+  return std::move(patches_around(disk, any, static_cast<int>(disk.faces.size()), {}).front());
+}
+
+UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
+  const double area = uv_area(disk.rest, disk.faces, uv);
+  for (Vec2& u : uv) u /= std::sqrt(area);
+  return uv;
+}
+
+/// A new map of the whole disk, from one that has no flips by construction; false when rounding
+/// spoils it.
+bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv) {
+  start = scaled_to_unit_area(disk, std::move(start));
+  if (!flipped_faces(disk.faces, start).empty()) return false;
+  uv = std::move(start);
+  Patch patch = whole(disk);
+  settle(disk, intent, patch, uv);
+  return true;
+}
+
+UvMap tutte_without_holes(const Disk& disk) {
+  UvMap uv = tutte_map(fill_holes(disk).disk);
+  uv.resize(disk.positions.size());
+  return uv;
+}
+
+bool holds_any(const MapIntent& intent) {
+  return std::any_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
+}
+
+/// Patches of growing size; returns the faces that are flipped in the end.
+std::vector<Index> mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv) {
+  std::vector<Index> flipped = flipped_faces(disk.faces, uv);
+  bool was_whole = false;
+  for (int rings = kFirstRings; !was_whole && !flipped.empty(); rings *= 2) {
+    for (Patch& patch : patches_around(disk, flipped, rings, intent.held)) {
+      was_whole = patch.face.size() == disk.faces.size();
+      mend(disk, intent, patch, uv);
+    }
+    flipped = flipped_faces(disk.faces, uv);
+    if (rings > kMostRings) break;
+  }
+  return flipped;
+}
+
+}  // namespace
+
+Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
+  const std::vector<Index> left = mend_patches(disk, intent, uv);
+  if (left.empty()) return 0;
+  if (!holds_any(intent) && (start_anew(disk, intent, virtual_boundary_map(disk, uv), uv) ||
+                             start_anew(disk, intent, tutte_without_holes(disk), uv)))
+    return 0;
+  return static_cast<Index>(left.size());
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,26 @@
+#pragma once
+// Flipped triangles turned back, at the least cost in energy (Sec. 4.4, last paragraph).
+
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "core/solve/disk.hpp"
+#include "core/solve/local_step.hpp"
+
+namespace unwrapd {
+
+/// What a map was made for, and what of it must stay.
+struct MapIntent {
+  Rigidity rigidity;       ///< the energy whose rise shall be small
+  std::vector<char> held;  ///< one a vertex, 1: it must not move; empty: none
+  std::stop_token stop;
+};
+
+/// Moves the vertices near flipped or collapsed triangles (not counter-clockwise, by the exact
+/// test) until there are none, as few as possible of them. Returns how many are left: above zero
+/// only where held vertices leave no way, or double precision none.
+/// Throws Error{cancelled}.
+Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv);
+
+}  // namespace unwrapd

@@ -1,0 +1,181 @@
+#include "core/solve/untangle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/error.hpp"
+#include "core/measure/energy.hpp"
+#include "core/measure/orientation.hpp"
+#include "core/solve/patch.hpp"
+#include "core/solve/solve.hpp"
+#include "tests/core/obj_reader.hpp"
+#include "tests/core/solve/disk_of.hpp"
+
+namespace unwrapd {
+namespace {
+
+using shapes::disk_of;
+
+UvMap from_above(const Disk& disk) {
+  UvMap uv;
+  for (const Vec3& p : disk.positions) uv.emplace_back(p.x(), p.y());
+  return uv;
+}
+
+std::size_t flips(const Disk& disk, const UvMap& uv) {
+  return flipped_faces(disk.faces, uv).size();
+}
+
+UvMap solved(const Disk& disk, const UnwrapOptions& options = {}) {
+  SerialExecutor serial;
+  return Solver(disk, options, {}, serial).run(options.lambda, {}).uv;
+}
+
+TEST(Untangle, LeavesAMapWithoutFlipsAsItIs) {
+  const auto owned = disk_of(shapes::random_disk(8, 1));
+  const UvMap before = solved(owned.disk);
+  ASSERT_EQ(flips(owned.disk, before), 0U);
+  UvMap after = before;
+  EXPECT_EQ(untangle(owned.disk, {}, after), 0);
+  EXPECT_EQ(after, before);
+}
+
+TEST(Untangle, TurnsOneVertexBackAndMovesOnlyItsNeighbours) {
+  const auto owned = disk_of(shapes::grid(20, 20));
+  const UvMap flat = from_above(owned.disk);
+  UvMap uv = flat;
+  const std::size_t v = 10 * 21 + 10;
+  uv[v] += Vec2(0.12, 0.03);  // over its neighbour and the next
+  ASSERT_GE(flips(owned.disk, uv), 2U);
+  EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
+  EXPECT_EQ(flips(owned.disk, uv), 0U);
+  for (std::size_t k = 0; k < uv.size(); ++k) {
+    EXPECT_TRUE((flat[k] - flat[v]).norm() < 0.3 || uv[k] == flat[k]) << k;
+  }
+  EXPECT_LT(arap_energy(owned.disk.rest, owned.disk.faces, uv), 1e-3);
+}
+
+TEST(Untangle, TurnsBackWhatAnyShakingFlipped) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 rng(seed);
+    const auto owned = disk_of(shapes::random_disk(Index(2 + seed % 12), seed));
+    const double by = 0.02 * double(1 + seed % 10);
+    std::uniform_real_distribution<double> shake(-by, by);
+    UvMap uv = from_above(owned.disk);
+    for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
+    EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
+    EXPECT_EQ(flips(owned.disk, uv), 0U);
+  }
+}
+
+TEST(Untangle, TurnsAWholeMirroredMapBack) {
+  for (const TriMesh& mesh :
+       {shapes::grid(5, 5), shapes::annulus(20, 3), shapes::sphere_cap(12, 5)}) {
+    const auto owned = disk_of(mesh);
+    UvMap uv = from_above(owned.disk);
+    for (Vec2& u : uv) u.x() = -u.x();
+    EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
+    EXPECT_EQ(flips(owned.disk, uv), 0U);
+  }
+}
+
+TEST(Untangle, OpensAMapThatCollapsedToAPointOrALine) {
+  for (const TriMesh& mesh : {shapes::random_disk(5, 2), shapes::annulus(16, 2)}) {
+    const auto owned = disk_of(mesh);
+    UvMap point(owned.disk.positions.size(), Vec2(0.1, 0.2));
+    EXPECT_EQ(untangle(owned.disk, {}, point), 0);
+    UvMap line = from_above(owned.disk);
+    for (Vec2& u : line) u.y() = u.x();
+    EXPECT_EQ(untangle(owned.disk, {}, line), 0);
+    EXPECT_EQ(flips(owned.disk, line), 0U);
+  }
+}
+
+TEST(Untangle, NeverMovesHeldVertices) {
+  const auto owned = disk_of(shapes::grid(8, 8));
+  UvMap uv = from_above(owned.disk);
+  const std::size_t v = 4 * 9 + 4;
+  MapIntent intent{.rigidity = {}, .held = std::vector<char>(uv.size(), 0), .stop = {}};
+  uv[v] += Vec2(0.2, 0);
+  intent.held[v] = 1;
+  for (std::size_t k = 0; k < 9; ++k) intent.held[k] = 1;
+  const UvMap before = uv;
+  EXPECT_EQ(untangle(owned.disk, intent, uv), 0);
+  for (std::size_t k = 0; k < uv.size(); ++k)
+    EXPECT_TRUE(intent.held[k] == 0 || uv[k] == before[k]) << k;
+}
+
+TEST(Untangle, SaysSoWhereHeldVerticesLeaveNoWay) {
+  const auto owned = disk_of(shapes::grid(2, 2));
+  UvMap uv = from_above(owned.disk);
+  const MapIntent intent{.rigidity = {}, .held = std::vector<char>(uv.size(), 1), .stop = {}};
+  std::swap(uv[0], uv[8]);
+  EXPECT_EQ(std::size_t(untangle(owned.disk, intent, uv)), flips(owned.disk, uv));
+  EXPECT_GT(flips(owned.disk, uv), 0U);
+}
+
+TEST(Untangle, KeepsTheSizesOfAConformalMap) {
+  const auto owned = disk_of(shapes::sphere_cap(40, 30, 2.9));  // scales from 1 to some hundred
+  UvMap uv = solved(owned.disk, {.method = Method::asap});
+  const double before = asap_energy(owned.disk.rest, owned.disk.faces, uv);
+  uv[0] += 3 * (uv[41] - uv[0]);
+  ASSERT_GT(flips(owned.disk, uv), 0U);
+  EXPECT_EQ(untangle(owned.disk, {.rigidity = {0.0}, .held = {}, .stop = {}}, uv), 0);
+  EXPECT_LT(asap_energy(owned.disk.rest, owned.disk.faces, uv), before * 1.01);
+}
+
+TEST(Untangle, StopsWhenAsked) {
+  const auto owned = disk_of(shapes::grid(5, 5));
+  UvMap uv = from_above(owned.disk);
+  std::swap(uv[0], uv[35]);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(untangle(owned.disk, {.rigidity = {}, .held = {}, .stop = stop.get_token()}, uv),
+               Error);
+}
+
+TEST(Untangle, CostsLittleEnergyOnRealMeshes) {
+  if (test_data().empty()) GTEST_SKIP() << "no test data (UNWRAPD_TEST_DATA)";
+  for (const char* name : {"paper/Cow_dABF.obj", "disk/fish22k_pd_cut.obj"}) {
+    const auto owned = disk_of(read_obj(test_data() / name));
+    UvMap uv = solved(owned.disk, {.stop = {.iterations = 10}});
+    const double before = arap_energy(owned.disk.rest, owned.disk.faces, uv);
+    EXPECT_GT(flips(owned.disk, uv), 0U) << name << " no longer shows anything";
+    EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
+    EXPECT_LT(arap_energy(owned.disk.rest, owned.disk.faces, uv), before * 1.01);
+  }
+}
+
+TEST(Patches, LetRingsLooseAndHoldTheRim) {
+  const auto owned = disk_of(shapes::grid(12, 12));
+  const Index face = 2 * (6 * 12 + 6);
+  for (int rings : {0, 1, 2}) {
+    const auto patches = patches_around(owned.disk, std::vector{face}, rings, {});
+    ASSERT_EQ(patches.size(), 1U);
+    const Patch& patch = patches[0];
+    std::vector<int> faces_of(owned.disk.positions.size(), 0);
+    for (Index t : patch.face)
+      for (Index v : owned.disk.faces[std::size_t(t)]) ++faces_of[std::size_t(v)];
+    for (std::size_t k = 0; k < patch.vertex.size(); ++k) {
+      const auto v = std::size_t(patch.vertex[k]);
+      const Index all = owned.disk.corners.begin[v + 1] - owned.disk.corners.begin[v];
+      EXPECT_TRUE(patch.mesh.free.slot[k] == kFixed || faces_of[v] == all) << v;
+    }
+    for (std::size_t k = 0; k < patch.face.size(); ++k)
+      for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(patch.vertex[std::size_t(patch.mesh.faces[k][i])],
+                  owned.disk.faces[std::size_t(patch.face[k])][i]);
+  }
+}
+
+TEST(Patches, ThatDoNotTouchAreApart) {
+  const auto owned = disk_of(shapes::grid(40, 4));
+  const std::vector<Index> faces{0, 300};
+  EXPECT_EQ(patches_around(owned.disk, faces, 1, {}).size(), 2U);
+  EXPECT_EQ(patches_around(owned.disk, faces, 60, {}).size(), 1U);
+}
+
+}  // namespace
+}  // namespace unwrapd
