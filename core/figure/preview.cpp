@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/figure/bands.hpp"
@@ -33,12 +34,31 @@ struct Projected {
   std::vector<Vec3> normal;  ///< of the welded vertex, unit or zero
 };
 
-/// Part of a line, in front of the surface.
-struct LinePart {
+struct DepthTriangle {
   ScreenTriangle corners;
   std::array<float, 3> depth;
+};
+
+/// Part of a line, in front of the surface.
+struct LinePart {
+  DepthTriangle triangle;
   Rgb colour;
 };
+
+/// Calls visit(place in the band, weights) for the samples that nothing hides as yet.
+template <class Visit>
+void for_each_visible(const DepthTriangle& triangle, Band& band, Visit visit) {
+  const std::array<float, 3>& depth = triangle.depth;
+  scan(triangle.corners, band.rows(), band.columns(), [&](int row, const SampleRange& range) {
+    const CornerWeights weights(triangle.corners, row);
+    std::size_t place = band.place(row, range.first);
+    for (int column = range.first; column < range.end; ++column, ++place) {
+      const std::array<double, 3> weight = weights.at(column);
+      const double here = weight[0] * depth[0] + weight[1] * depth[1] + weight[2] * depth[2];
+      if (band.take_nearer(place, static_cast<float>(here))) visit(place, weight);
+    }
+  });
+}
 
 Vec3 unit_or_zero(const Vec3& v) {
   const double length = v.norm();
@@ -81,8 +101,8 @@ void append_line(std::vector<LinePart>& parts, const std::array<Vec3, 2>& ends, 
     depth[k] = static_cast<float>(view.depth(ends[k]) + kLift * view.extent);
   const auto depth_at = [&](std::size_t corner) { return depth[corner < 4 ? 1 : 0]; };
   for (std::size_t k = 2; k < outline.size(); ++k)
-    parts.push_back({{snapped(outline[0]), snapped(outline[k - 1]), snapped(outline[k])},
-                     {depth_at(0), depth_at(k - 1), depth_at(k)},
+    parts.push_back({{{snapped(outline[0]), snapped(outline[k - 1]), snapped(outline[k])},
+                      {depth_at(0), depth_at(k - 1), depth_at(k)}},
                      colour});
 }
 
@@ -134,19 +154,16 @@ class Painter {
   }
 
   void draw(Index t, Band& band) const {
-    const ScreenTriangle corners = triangle(t);
-    const CornerWeights weights(corners);
+    const auto& [a, b, c] = surface_.mesh.faces[t];
+    const DepthTriangle face{triangle(t),
+                             {projected_.depth[a], projected_.depth[b], projected_.depth[c]}};
     const FaceLook look = look_of(t);
-    const Triangle& face = surface_.mesh.faces[t];
-    scan(corners, band.rows(), band.columns(), [&](int row, const SampleRange& range) {
-      for (int column = range.first; column < range.end; ++column) {
-        const std::array<double, 3> w = weights.at(row, column);
-        const double depth = w[0] * projected_.depth[face[0]] + w[1] * projected_.depth[face[1]] +
-                             w[2] * projected_.depth[face[2]];
-        const std::size_t place = band.place(row, column);
-        if (band.take_nearer(place, static_cast<float>(depth)))
-          band.colour_at(place) = shaded(look, w, checks_);
-      }
+    Lit colours{};
+    std::size_t quad = std::numeric_limits<std::size_t>::max();
+    for_each_visible(face, band, [&](std::size_t place, const auto& weight) {
+      if (place / kSamples != quad) colours = lit(look, weight);  // slow, and changes slowly:
+      quad = place / kSamples;  // once for the samples of a pixel in one row
+      band.colour_at(place) = is_dark(look, weight, checks_) ? colours.dark : colours.light;
     });
   }
 
@@ -172,15 +189,8 @@ class Painter {
 };
 
 void draw_line(const LinePart& part, Band& band) {
-  const CornerWeights weights(part.corners);
-  scan(part.corners, band.rows(), band.columns(), [&](int row, const SampleRange& range) {
-    for (int column = range.first; column < range.end; ++column) {
-      const std::array<double, 3> w = weights.at(row, column);
-      const double depth = w[0] * part.depth[0] + w[1] * part.depth[1] + w[2] * part.depth[2];
-      const std::size_t place = band.place(row, column);
-      if (band.take_nearer(place, static_cast<float>(depth))) band.colour_at(place) = part.colour;
-    }
-  });
+  for_each_visible(part.triangle, band,
+                   [&](std::size_t place, const auto&) { band.colour_at(place) = part.colour; });
 }
 
 }  // namespace
@@ -208,7 +218,8 @@ Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurfac
       image, kPaper, faces + static_cast<Index>(lines.size()),
       [&](Index k) {
         const auto s = surface_of(k);
-        return k < faces ? painters[s].triangle(k - first_face[s]) : lines[k - faces].corners;
+        return k < faces ? painters[s].triangle(k - first_face[s])
+                         : lines[k - faces].triangle.corners;
       },
       [&](Index k, Band& band) {
         const auto s = surface_of(k);

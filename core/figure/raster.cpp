@@ -12,11 +12,11 @@ std::array<Vec2, 8> line_outline(const Vec2& from, const Vec2& to, double width)
   const double length = (to - from).norm();
   const Vec2 along = length > 0 ? Vec2((to - from) / length) : Vec2(1, 0);
   const Vec2 across(-along.y(), along.x());
+  const double radius = width / 2 / std::cos(std::numbers::pi / 8);
   std::array<Vec2, 8> corners;
   for (std::size_t k = 0; k < 8; ++k) {
     const double turn = (static_cast<double>(k) - 1.5) * std::numbers::pi / 4;
-    corners[k] =
-        (k < 4 ? to : from) + width / 2 * (std::cos(turn) * along + std::sin(turn) * across);
+    corners[k] = (k < 4 ? to : from) + radius * (std::cos(turn) * along + std::sin(turn) * across);
   }
   return corners;
 }

@@ -91,23 +91,28 @@ void scan(const ScreenTriangle& t, const SampleRange& rows, int columns, Visit v
   }
 }
 
-/// The weights of a triangle's corners at a sample inside, each in [0, 1], with sum 1.
+/// The weights of a triangle's corners along a row of samples: inside, each is in [0, 1]; their sum
+/// is 1. The triangle has an area.
 class CornerWeights {
  public:
-  explicit CornerWeights(const ScreenTriangle& t)
-      : t_(t), area_(static_cast<double>(scan_detail::cross(t[0], t[1], t[2]))) {}
+  CornerWeights(const ScreenTriangle& t, int row)
+      : scale_(1 / static_cast<double>(scan_detail::cross(t[0], t[1], t[2]))),
+        step_{std::int64_t{kSampleSteps} * (t[1][1] - t[2][1]),
+              std::int64_t{kSampleSteps} * (t[2][1] - t[0][1])} {
+    const ScreenPoint first = {kSampleSteps / 2, row * kSampleSteps + kSampleSteps / 2};
+    start_ = {scan_detail::cross(t[1], t[2], first), scan_detail::cross(t[2], t[0], first)};
+  }
 
-  [[nodiscard]] std::array<double, 3> at(int row, int column) const {
-    const ScreenPoint sample = {column * kSampleSteps + kSampleSteps / 2,
-                                row * kSampleSteps + kSampleSteps / 2};
-    const double a = static_cast<double>(scan_detail::cross(t_[1], t_[2], sample)) / area_;
-    const double b = static_cast<double>(scan_detail::cross(t_[2], t_[0], sample)) / area_;
+  [[nodiscard]] std::array<double, 3> at(int column) const {
+    const double a = scale_ * static_cast<double>(start_[0] + column * step_[0]);
+    const double b = scale_ * static_cast<double>(start_[1] + column * step_[1]);
     return {a, b, 1 - a - b};
   }
 
  private:
-  const ScreenTriangle& t_;
-  double area_;
+  double scale_;
+  std::array<std::int64_t, 2> step_;  // from one sample to the next
+  std::array<std::int64_t, 2> start_;
 };
 
 }  // namespace unwrapd

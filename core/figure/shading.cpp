@@ -18,16 +18,22 @@ const Vec3 kHalfway = (kKeyLamp + Vec3::UnitZ()).normalized();  // for the gloss
 
 constexpr double kMaxSquare = 1e15;  // beyond it neighbours cannot be told apart
 
-bool is_dark(const Vec2& uv, double checks) {
-  const auto number = [checks](double x) {
-    return static_cast<std::int64_t>(std::floor(std::clamp(checks * x, -kMaxSquare, kMaxSquare)));
-  };
-  return ((number(uv.x()) + number(uv.y())) & 1) != 0;
+std::int64_t square_of(double x, double checks) {
+  return static_cast<std::int64_t>(std::floor(std::clamp(checks * x, -kMaxSquare, kMaxSquare)));
 }
 
 double to_the_32nd(double x) {
   for (int k = 0; k < 5; ++k) x *= x;
   return x;
+}
+
+Rgb under(const Rgb& paint, double light, double gloss) {
+  Rgb colour;
+  for (std::size_t part = 0; part < 3; ++part) {
+    const double value = paint[part] * light + 255 * gloss;
+    colour[part] = static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0) + 0.5);
+  }
+  return colour;
 }
 
 }  // namespace
@@ -36,25 +42,21 @@ Vec3 corner_normal(const Vec3& face, const Vec3& vertex) {
   return face.dot(vertex) > kSharp ? vertex : face;
 }
 
-Rgb shaded(const FaceLook& look, const std::array<double, 3>& weight, double checks) {
-  Vec3 normal = Vec3::Zero();
-  Vec2 uv = Vec2::Zero();
-  for (std::size_t k = 0; k < 3; ++k) {
-    normal += weight[k] * look.normal[k];
-    uv += weight[k] * look.uv[k];
-  }
-  const double length = normal.norm();
-  normal = length > 0 ? Vec3(normal / length) : Vec3(Vec3::UnitZ());
+Lit lit(const FaceLook& look, const std::array<double, 3>& weight) {
+  const Vec3 sum =
+      weight[0] * look.normal[0] + weight[1] * look.normal[1] + weight[2] * look.normal[2];
+  const double length = sum.norm();
+  const Vec3 normal = length > 0 ? Vec3(sum / length) : Vec3(Vec3::UnitZ());
   const double light = kAmbient + kKey * std::max(0.0, normal.dot(kKeyLamp)) +
                        kFill * std::max(0.0, normal.dot(kFillLamp));
   const double gloss = kGloss * to_the_32nd(std::max(0.0, normal.dot(kHalfway)));
-  const Rgb& paint = is_dark(uv, checks) ? kDarkCheck : kLightCheck;
-  Rgb colour;
-  for (std::size_t part = 0; part < 3; ++part) {
-    const double lit = paint[part] * light * (look.is_inside ? kInside : 1) + 255 * gloss;
-    colour[part] = static_cast<std::uint8_t>(std::lround(std::clamp(lit, 0.0, 255.0)));
-  }
-  return colour;
+  const double seen = light * (look.is_inside ? kInside : 1);
+  return {.light = under(kLightCheck, seen, gloss), .dark = under(kDarkCheck, seen, gloss)};
+}
+
+bool is_dark(const FaceLook& look, const std::array<double, 3>& weight, double checks) {
+  const Vec2 uv = weight[0] * look.uv[0] + weight[1] * look.uv[1] + weight[2] * look.uv[2];
+  return ((square_of(uv.x(), checks) + square_of(uv.y(), checks)) & 1) != 0;
 }
 
 }  // namespace unwrapd

@@ -19,7 +19,13 @@ struct FaceLook {
 /// vector, or zero) must count.
 Vec3 corner_normal(const Vec3& face, const Vec3& vertex);
 
-/// The colour where the corners have these weights; `checks` squares lie along the page's side.
-Rgb shaded(const FaceLook& look, const std::array<double, 3>& weight, double checks);
+/// The colours of both kinds of squares where the corners have these weights.
+struct Lit {
+  Rgb light, dark;
+};
+Lit lit(const FaceLook& look, const std::array<double, 3>& weight);
+
+/// Whether there is a dark square of the board; `checks` squares lie along the page's side.
+bool is_dark(const FaceLook& look, const std::array<double, 3>& weight, double checks);
 
 }  // namespace unwrapd
