@@ -6,14 +6,15 @@
 #include "core/atlas/charts.hpp"
 #include "core/chart_watch.hpp"
 #include "core/measure/distortion.hpp"
+#include "core/solve/holds.hpp"
 
 namespace unwrapd {
 
 /// A chart with its map: a part of the chart that was solved, if the guarantee took a split.
 struct MappedChart {
   Chart chart;
-  UvMap uv;             ///< in mesh units, UV area = 3D area
-  DistortionSums sums;  ///< of that map
+  UvMap uv;             ///< in mesh units, UV area = 3D area; under position constraints the page's
+  DistortionSums sums;  ///< of that map, in mesh units
   ChartReport report;   ///< surface is left 0 for the caller to fill in
 };
 
@@ -23,9 +24,15 @@ bool is_curve(const UnwrapOptions& options);
 /// The values of lambda that are asked for: those of the curve, or one.
 std::vector<double> lambdas_of(const UnwrapOptions& options);
 
+/// A chart and its position constraints, in the page's coordinates; empty: it is packed.
+struct ChartJob {
+  const Chart& chart;
+  const Holds& page;
+};
+
 /// For each of lambdas_of(): the chart's parts with their maps. The mesh is analysed and factored
 /// once. Throws Error{solver_failed, guarantee_failed, cancelled}.
-std::vector<std::vector<MappedChart>> map_chart(const Chart& chart, const UnwrapOptions& options,
+std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const UnwrapOptions& options,
                                                 ChartWatch& watch, Executor& executor);
 
 }  // namespace unwrapd

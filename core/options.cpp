@@ -32,6 +32,11 @@ void validate(const UnwrapOptions& options, int max_iterations) {
           "resolution must lie between " + std::to_string(kMinResolution) + " and " +
               std::to_string(kMaxResolution) + " texels",
           "/resolution");
+  require(options.constraints.empty() || can_hold(options.method),
+          "constraints need method asap, arap or hybrid", "/constraints");
+  require(options.constraints.empty() || options.boundary == BoundaryShape::free,
+          "constraints and a boundary shape exclude each other; leave one of them out",
+          "/boundary");
   require(options.padding >= 0 && 4 * options.padding <= options.resolution,
           "padding must lie between 0 and a quarter of resolution", "/padding");
 }

@@ -30,9 +30,10 @@ struct Stop {
 struct PositionConstraint {
   Index surface = 0;                 ///< which of the asset's surfaces
   std::optional<Index> vertex = {};  ///< of that surface; without it:
-  Vec3 position = Vec3::Zero();      ///< the vertices nearest to this point, all at one place
-  Vec2 uv = Vec2::Zero();            ///< in the page's coordinates, V pointing up
-  double weight = std::numeric_limits<double>::infinity();  ///< finite, > 0: in least squares
+  Vec3 position = Vec3::Zero();      ///< the vertex nearest to this point of space
+  Vec2 uv = Vec2::Zero();  ///< in the page's coordinates, V pointing up; need not lie on the page
+  double weight =
+      std::numeric_limits<double>::infinity();  ///< finite: in least squares, page_holds()
 };
 
 struct UnwrapOptions {
@@ -42,7 +43,7 @@ struct UnwrapOptions {
       {};  ///< hybrid only: these instead of lambda, one map for each
   LambdaUnits lambda_units = LambdaUnits::dimensionless;
   Stop stop = {};
-  InitialMap initial = InitialMap::automatic;  ///< see initial_maps()
+  InitialMap initial = InitialMap::automatic;  ///< see initial_map()
   Pins pins = Pins::diameter;                  ///< ASAP only: how the conformal map is pinned
   SeamMode seams = SeamMode::automatic;        ///< which vertex copies are welded for topology
   int resolution = 1024;                       ///< side of the square page, texels, [16, 16384]
@@ -57,6 +58,11 @@ struct UnwrapOptions {
 
 inline constexpr int kMinResolution = 16;
 inline constexpr int kMaxResolution = 16384;
+
+/// Whether the method can hold vertices where a user wants them (constraints, boundary).
+inline bool can_hold(Method method) {
+  return method == Method::asap || method == Method::arap || method == Method::hybrid;
+}
 
 /// Throws Error{invalid_option} with the JSON pointer of the first option that is out of range.
 void validate(const UnwrapOptions& options, int max_iterations);

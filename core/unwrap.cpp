@@ -3,9 +3,11 @@
 #include "core/unwrap.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/atlas/constraints.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/error.hpp"
 #include "core/map_chart.hpp"
@@ -22,6 +24,7 @@ constexpr double kChartsBegin = 0.05, kPackBegin = kSolveEnd, kMeasureBegin = 0.
 struct Layout {
   std::vector<Charts> surfaces;             ///< with the charts as mapped
   std::vector<std::vector<UvMap>> islands;  ///< islands[s][k]: the map of chart k of surface s
+  DistortionSums sums;                      ///< of all charts, in mesh units
   Report report;
 };
 
@@ -63,18 +66,9 @@ std::vector<Layout> empty_layouts(const std::vector<Charts>& parts, std::size_t 
   return {map_count, layout};
 }
 
-/// Sums of a chart in units of its own area; all charts share one density.
-DistortionSums in_mesh_units(DistortionSums own, double area) {
-  own.angle *= area / own.area;
-  own.inverse *= own.uv_area / own.area * area / own.area;
-  own.stretch *= own.uv_area / own.area * area / own.area;
-  own.area = own.uv_area = area;
-  return own;
-}
-
-void add_chart(Layout& layout, std::size_t surface, MappedChart mapped, DistortionSums& sums) {
+void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
   mapped.report.surface = static_cast<Index>(surface);
-  sums += in_mesh_units(mapped.sums, mapped.report.area);
+  layout.sums += mapped.sums;
   layout.report.charts.push_back(std::move(mapped.report));
   layout.surfaces[surface].charts.push_back(std::move(mapped.chart));
   layout.islands[surface].push_back(std::move(mapped.uv));
@@ -91,24 +85,25 @@ ChartWatch chart_watch(const std::vector<Charts>& parts, const Progress& progres
   return {progress, static_cast<Index>(chart_count), face_count};
 }
 
-std::vector<Layout> map_charts(const std::vector<Charts>& parts, const UnwrapOptions& options,
-                               const Progress& progress, Executor& executor) {
+/// page: the position constraints of every chart of every surface.
+std::vector<Layout> map_charts(const std::vector<Charts>& parts,
+                               const std::vector<std::vector<Holds>>& page,
+                               const UnwrapOptions& options, const Progress& progress,
+                               Executor& executor) {
   ChartWatch watch = chart_watch(parts, progress);
   std::vector<Layout> layouts = empty_layouts(parts, lambdas_of(options).size());
-  std::vector<DistortionSums> sums(layouts.size());
   for (std::size_t s = 0; s < parts.size(); ++s)
-    for (const Chart& chart : parts[s].charts) {
-      auto maps = map_chart(chart, options, watch, executor);
+    for (std::size_t c = 0; c < parts[s].charts.size(); ++c) {
+      auto maps = map_chart({parts[s].charts[c], page[s][c]}, options, watch, executor);
       for (std::size_t k = 0; k < maps.size(); ++k)
-        for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped), sums[k]);
+        for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped));
     }
-  for (std::size_t k = 0; k < layouts.size(); ++k)
-    layouts[k].report.distortion = distortion(sums[k]);
+  for (Layout& layout : layouts) layout.report.distortion = distortion(layout.sums);
   return layouts;
 }
 
-/// Places every chart on the page; the maps become page UVs.
-void place(Layout& layout, const UnwrapOptions& options) {
+/// Places every chart on the page; the maps become page UVs. Returns their common scale.
+double place(Layout& layout, const UnwrapOptions& options) {
   std::vector<UvMap> islands;
   for (std::vector<UvMap>& own : layout.islands)
     std::move(own.begin(), own.end(), std::back_inserter(islands));
@@ -120,10 +115,15 @@ void place(Layout& layout, const UnwrapOptions& options) {
       for (Vec2& u : uv) u = placements[i](u);
       ++i;
     }
-  const double scale = placements.front().scale;
-  for (const ChartReport& chart : layout.report.charts)
-    layout.report.fill += chart.area * scale * scale;
-  layout.report.texel_density = scale * options.resolution;
+  return placements.front().scale;
+}
+
+/// Charts under position constraints are on the page already.
+void lay_out_page(Layout& layout, const UnwrapOptions& options) {
+  const double scale = options.constraints.empty() ? place(layout, options) : 1;
+  const double density = std::sqrt(layout.sums.uv_area / layout.sums.area);
+  layout.report.fill = layout.sums.uv_area * scale * scale;
+  layout.report.texel_density = scale * density * options.resolution;
 }
 
 Unwrapped put_back(std::span<const Surface> surfaces, Layout layout) {
@@ -167,10 +167,11 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   validate(options, std::numeric_limits<int>::max());
   announce(progress, Stage::setup, 0, kChartsBegin);
   const std::vector<Charts> parts = take_apart(surfaces, options.seams);
-  std::vector<Layout> layouts = map_charts(parts, options, progress, executor);
+  const auto page = page_holds(surfaces, parts, options.constraints);
+  std::vector<Layout> layouts = map_charts(parts, page, options, progress, executor);
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
-  for (Layout& layout : layouts) place(layout, options);
+  for (Layout& layout : layouts) lay_out_page(layout, options);
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
   std::vector<Unwrapped> maps;
   for (Layout& layout : layouts) maps.push_back(put_back(surfaces, std::move(layout)));

@@ -17,9 +17,11 @@ struct Unwrapped {
   Report report;
 };
 
-/// Unwraps all surfaces into one atlas in [0,1]^2 at one texel density. The same input gives the
-/// same bytes whatever the executor.
-/// Throws Error: invalid_option, no_triangles, zero_area, not_orientable, solver_failed, cancelled.
+/// Unwraps all surfaces into one atlas in [0,1]^2 at one texel density; under position constraints
+/// the charts lie where these put them instead. The same input gives the same bytes whatever the
+/// executor.
+/// Throws Error: invalid_option, no_triangles, zero_area, not_orientable, invalid_constraint,
+/// solver_failed, guarantee_failed, cancelled.
 Unwrapped unwrap(std::span<const Surface> surfaces, const UnwrapOptions& options,
                  const Progress& progress, Executor& executor);
 

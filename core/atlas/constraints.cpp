@@ -46,13 +46,13 @@ Eigen::Vector2f written(const Vec2& uv) { return uv.cast<float>(); }
 void check_range(const PositionConstraint& c, std::span<const Surface> surfaces, std::size_t i) {
   const auto count = static_cast<Index>(surfaces.size());
   if (c.surface < 0 || c.surface >= count)
-    refuse("there is no surface " + std::to_string(c.surface) + "; name one of the asset's " +
+    refuse("there is no mesh " + std::to_string(c.surface) + "; name one of the asset's " +
                std::to_string(count) + ", counted from 0",
            i);
   const Index vertices = surfaces[static_cast<std::size_t>(c.surface)].mesh.vertex_count();
   if (c.vertex && (*c.vertex < 0 || *c.vertex >= vertices))
-    refuse("there is no vertex " + std::to_string(*c.vertex) + "; name one of the surface's " +
-               std::to_string(vertices) + ", counted from 0, or give a position",
+    refuse("there is no vertex " + std::to_string(*c.vertex) + "; name one of the mesh's " +
+               std::to_string(vertices) + ", counted from 0, or a point in space",
            i);
   if (!std::isinf(c.weight) && !(c.weight >= kLeastWeight && c.weight <= kMostWeight))
     refuse("weight must lie between 1e-9 and 1e9; leave it out to hold the vertex exactly", i);
@@ -64,13 +64,13 @@ std::vector<ChartVertex> find(const VertexFinder& finder, const PositionConstrai
                               std::size_t i) {
   if (!c.vertex) {
     const std::optional<Index> nearest = finder.nearest(c.position);
-    if (!nearest) refuse("the surface has no triangles; name another surface", i);
+    if (!nearest) refuse("the mesh has no triangles; name another", i);
     return finder.at_place_of(*nearest);
   }
   std::vector<ChartVertex> found = finder.of_vertex(*c.vertex);
   if (found.empty())
     refuse("vertex " + std::to_string(*c.vertex) +
-               " is in no triangle that has an area; name one that is, or give a position",
+               " is in no triangle that has an area; name another, or a point in space",
            i);
   return found;
 }
@@ -164,7 +164,7 @@ Holds merge(ChartPins pins, Index vertex_count) {
 
 [[noreturn]] void refuse_free(const Chart& chart, std::size_t surface) {
   throw Error(ErrorCode::invalid_constraint,
-              "the chart with face " + std::to_string(chart.face_source.front()) + " of surface " +
+              "the chart with face " + std::to_string(chart.face_source.front()) + " of mesh " +
                   std::to_string(surface) +
                   " has no constraint and would be laid over the others; hold a vertex of every "
                   "chart, or of none",

@@ -68,4 +68,14 @@ Held held_boundary(const Disk& disk, const UnwrapOptions& options) {
   return {std::move(holds), std::move(start)};
 }
 
+ChartHold hold_chart(const Disk& disk, const UnwrapOptions& options, Holds page,
+                     const std::stop_token& stop, Executor& executor) {
+  if (!can_hold(options.method)) return {};
+  if (page.empty() && options.boundary == BoundaryShape::free) return {};
+  if (page.empty()) return {.held = held_boundary(disk, options)};
+  const UvMap guide = guide_map(disk, options, stop, executor);
+  const PageFrame frame = page_frame(guide, page, options);
+  return {.held = held_on_page(frame, guide, page), .page = std::move(page), .frame = frame};
+}
+
 }  // namespace unwrapd

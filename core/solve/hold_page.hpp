@@ -2,6 +2,7 @@
 // Places on the page, where users give them, and places in the disk's own units, where maps are
 // solved.
 
+#include <optional>
 #include <stop_token>
 
 #include "core/executor.hpp"
@@ -39,5 +40,17 @@ Held held_on_page(const PageFrame& frame, const UvMap& guide, const Holds& page)
 /// The longest loop on the shape of options.boundary, with the mean-value map inside it. On the
 /// circle that is free of flips. options.boundary is not free. Throws Error{solver_failed}.
 Held held_boundary(const Disk& disk, const UnwrapOptions& options);
+
+/// How a chart is held. All empty: it is not.
+struct ChartHold {
+  Held held;                            ///< what a Solver takes
+  Holds page = {};                      ///< the same on the page, of position constraints
+  std::optional<PageFrame> frame = {};  ///< under position constraints
+};
+
+/// By the position constraints in page, if any, else by options.boundary. Only ASAP, ARAP and
+/// Hybrid hold. Throws Error{solver_failed, cancelled}.
+ChartHold hold_chart(const Disk& disk, const UnwrapOptions& options, Holds page,
+                     const std::stop_token& stop, Executor& executor);
 
 }  // namespace unwrapd

@@ -177,7 +177,7 @@ TEST(Constraints, RefuseWhatDoesNotExist) {
   PositionConstraint elsewhere = pin(0, 0, 0);
   for (Index surface : {-1, 1}) {
     elsewhere.surface = surface;
-    expect_refused(asset, {pin(0, 0, 0), elsewhere}, "/constraints/1", "no surface");
+    expect_refused(asset, {pin(0, 0, 0), elsewhere}, "/constraints/1", "no mesh");
   }
   for (Index vertex : {-1, 9})
     expect_refused(asset, {pin(vertex, 0, 0)}, "/constraints/0", "no vertex");
@@ -226,7 +226,7 @@ TEST(Constraints, RefuseTargetsThatTellNoSize) {
 
 TEST(Constraints, RefuseChartsThatHaveNone) {
   const Asset asset = asset_of({shapes::grid(2, 2), shapes::grid(3, 3)});
-  expect_refused(asset, {pin(0, 0, 0)}, "/constraints", "face 0 of surface 1");
+  expect_refused(asset, {pin(0, 0, 0)}, "/constraints", "face 0 of mesh 1");
   PositionConstraint second = pin(0, 1, 1);
   second.surface = 1;
   EXPECT_NO_THROW(held(asset, {pin(0, 0, 0), second}));

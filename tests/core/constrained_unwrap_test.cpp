@@ -1,0 +1,168 @@
+// Constraints and boundary shapes through the front door.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/error.hpp"
+#include "core/unwrap.hpp"
+#include "tests/core/obj_reader.hpp"
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+Unwrapped unwrapped(const std::vector<TriMesh>& meshes, const UnwrapOptions& options) {
+  std::vector<Surface> surfaces;
+  for (const TriMesh& mesh : meshes) surfaces.push_back(shapes::surface_of(mesh));
+  SerialExecutor serial;
+  return unwrap(surfaces, options, {}, serial);
+}
+
+constexpr std::array kMethods{Method::asap, Method::arap, Method::hybrid};
+
+PositionConstraint pin(Index vertex, double u, double v) {
+  return {.vertex = vertex, .uv = Vec2(u, v)};
+}
+
+double signed_area(const UnwrappedSurface& s) {
+  double sum = 0;
+  for (const auto& [a, b, c] : s.faces) {
+    const Vec2 p = s.uv[std::size_t(b)] - s.uv[std::size_t(a)];
+    const Vec2 q = s.uv[std::size_t(c)] - s.uv[std::size_t(a)];
+    sum += (p.x() * q.y() - p.y() * q.x()) / 2;
+  }
+  return sum;
+}
+
+TEST(ConstrainedUnwrap, WritesHardPinsExactly) {
+  const TriMesh mesh = shapes::shuffled(shapes::random_disk(12, 3), 4);
+  for (Method method : kMethods) {
+    UnwrapOptions options{.method = method};
+    for (Index v : {5, 60, 90, 141}) {
+      const Vec3& p = mesh.positions[std::size_t(v)];
+      options.constraints.push_back(pin(v, 0.1 + 0.7 * p.x(), 0.9 - 0.7 * p.y()));
+      options.constraints.back().uv.y() = 0.1 + 0.7 * p.y();
+    }
+    const Unwrapped u = unwrapped({mesh}, options);
+    for (const PositionConstraint& c : options.constraints)
+      EXPECT_EQ(u.surfaces[0].uv[std::size_t(*c.vertex)].cast<float>(), c.uv.cast<float>());
+  }
+}
+
+TEST(ConstrainedUnwrap, HoldsASheetWhereItIsPut) {
+  const TriMesh mesh = shapes::grid(8, 4, 2, 1);
+  for (Method method : kMethods) {
+    const Unwrapped u = unwrapped(
+        {mesh}, {.method = method, .constraints = {pin(0, 0.25, 0.5), pin(8, 0.75, 0.5)}});
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+      const Vec2 wanted = Vec2(0.25, 0.5) + mesh.positions[std::size_t(v)].head<2>() / 4;
+      EXPECT_LT((u.surfaces[0].uv[std::size_t(v)] - wanted).norm(), 1e-6);
+    }
+    EXPECT_NEAR(u.report.fill, 0.125, 1e-6);
+    EXPECT_NEAR(u.report.texel_density, 256, 1e-3);
+    EXPECT_NEAR(u.report.distortion.area, 2, 1e-6);
+  }
+}
+
+TEST(ConstrainedUnwrap, HoldsByPositionAsByIndex) {
+  const TriMesh mesh = shapes::random_disk(9, 3);
+  UnwrapOptions by_index, by_place;
+  for (Index v : {0, 9, 99, 44}) {
+    const Vec3& p = mesh.positions[std::size_t(v)];
+    by_index.constraints.push_back(pin(v, p.x(), p.y()));
+    by_place.constraints.push_back(
+        {.position = p + Vec3(0, 0, 1e-3), .uv = p.head<2>(), .weight = 1e9});
+    by_index.constraints.back().weight = 1e9;
+  }
+  EXPECT_EQ(unwrapped({mesh}, by_index).surfaces[0].uv, unwrapped({mesh}, by_place).surfaces[0].uv);
+}
+
+TEST(ConstrainedUnwrap, ReportsTheDistortionOfChartsAtTheirOwnScales) {
+  PositionConstraint small = pin(0, 0, 0), wide = pin(3, 0.1, 0);
+  small.surface = wide.surface = 1;
+  const Unwrapped u = unwrapped({shapes::grid(3, 3), shapes::grid(3, 3)},
+                                {.constraints = {pin(0, 0.4, 0.4), pin(3, 0.6, 0.4), small, wide}});
+  // areas 0.04 and 0.01 of the page for 1 each: after the global scale 1.6 and 0.4
+  EXPECT_NEAR(u.report.fill, 0.05, 1e-9);
+  EXPECT_NEAR(u.report.distortion.area, (1.6 + 1 / 1.6 + 0.4 + 1 / 0.4) / 2, 1e-6);
+  EXPECT_NEAR(u.report.distortion.angle, 2, 1e-6);
+  EXPECT_NEAR(u.report.charts[0].distortion.area, 2, 1e-6);
+}
+
+TEST(ConstrainedUnwrap, HoldsOnACutSurfaceToo) {
+  const TriMesh mesh = shapes::sphere(2);
+  for (Method method : kMethods) {
+    UnwrapOptions options{.method = method, .guarantee = Guarantee::none};
+    options.constraints = {pin(0, 0.2, 0.2), pin(3, 0.8, 0.3), pin(1, 0.5, 0.9)};
+    const Unwrapped u = unwrapped({mesh}, options);
+    for (const PositionConstraint& c : options.constraints)
+      EXPECT_EQ(u.surfaces[0].uv[std::size_t(*c.vertex)], c.uv);
+  }
+}
+
+TEST(ConstrainedUnwrap, HoldsEveryMapOfACurve) {
+  UnwrapOptions options{.method = Method::hybrid, .lambda_curve = {0, 1e-4, 0.1, 10}};
+  options.constraints = {pin(0, 0.1, 0.1), pin(9, 0.9, 0.1), pin(99, 0.9, 0.8)};
+  const std::vector<Surface> surfaces{shapes::surface_of(shapes::random_disk(9, 3))};
+  SerialExecutor serial;
+  const std::vector<Unwrapped> maps = unwrap_curve(surfaces, options, {}, serial);
+  ASSERT_EQ(maps.size(), 4U);
+  for (const Unwrapped& map : maps) {
+    for (const PositionConstraint& c : options.constraints)
+      EXPECT_EQ(map.surfaces[0].uv[std::size_t(*c.vertex)], c.uv);
+    EXPECT_GT(map.report.fill, 0.01 * maps[0].report.fill);
+  }
+}
+
+TEST(ConstrainedUnwrap, FillsCircleAndSquareAndPacksThem) {
+  for (Method method : kMethods) {
+    const auto fill = [&](BoundaryShape shape) {
+      return unwrapped({shapes::sphere_cap(64, 8, 1.2)}, {.method = method, .boundary = shape});
+    };
+    const double page = std::pow(1 - 2 * 2.0 / 1024, 2);
+    const Unwrapped square = fill(BoundaryShape::square), circle = fill(BoundaryShape::circle);
+    EXPECT_NEAR(square.report.fill, page, 1e-3);
+    EXPECT_NEAR(circle.report.fill, page * std::numbers::pi / 4, 3e-3);
+    for (const Unwrapped* u : {&square, &circle}) {
+      EXPECT_NEAR(signed_area(u->surfaces[0]), u->report.fill, 1e-5);
+      for (const Vec2& p : u->surfaces[0].uv) EXPECT_TRUE(p.minCoeff() >= 0 && p.maxCoeff() <= 1);
+    }
+  }
+}
+
+TEST(ConstrainedUnwrap, RefusesWhatCannotBe) {
+  const auto refused = [](const UnwrapOptions& options, ErrorCode code, const std::string& where) {
+    try {
+      unwrapped({shapes::grid(2, 2)}, options);
+      ADD_FAILURE() << "not refused";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), code) << e.what();
+      EXPECT_EQ(e.where(), where);
+    }
+  };
+  refused({.constraints = {pin(0, 0, 0), pin(1, 0, 0)}}, ErrorCode::invalid_constraint,
+          "/constraints/1");
+  refused({.method = Method::slim, .constraints = {pin(0, 0, 0)}}, ErrorCode::invalid_option,
+          "/constraints");
+  refused({.boundary = BoundaryShape::square, .constraints = {pin(0, 0, 0)}},
+          ErrorCode::invalid_option, "/boundary");
+}
+
+TEST(ConstrainedUnwrap, HoldsRealMeshes) {
+  if (test_data().empty()) GTEST_SKIP() << "no test data";
+  for (const char* name : {"Cow_dABF", "Balls"}) {
+    const TriMesh mesh = read_obj(test_data() / "paper" / (std::string(name) + ".obj"));
+    for (Method method : kMethods) {
+      UnwrapOptions options{
+          .method = method, .stop = {.iterations = 10}, .guarantee = Guarantee::none};
+      options.constraints = {pin(10, 0.2, 0.2), pin(200, 0.7, 0.3)};
+      const Unwrapped u = unwrapped({mesh}, options);
+      for (const PositionConstraint& c : options.constraints)
+        EXPECT_EQ(u.surfaces[0].uv[std::size_t(*c.vertex)], c.uv);
+      EXPECT_GT(u.report.fill, 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd
