@@ -5,7 +5,7 @@
 // raises the energy: it is what is left when no step along the direction lowers it enough.
 #include "core/solve/accelerate.hpp"
 
-#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -30,8 +30,8 @@ Descent::Descent(const Assembly& assembly, UvMap start, const Rigidity& rigidity
       solution_{.uv = std::move(start), .energy = {}},
       trial_(solution_.uv.size()) {
   const std::size_t n = trial_.size();
-  for (auto* vector :
-       {&now_.force, &now_.plain, &before_.force, &before_.plain, &direction_, &force_at_trial_})
+  for (auto* vector : {&now_.force, &now_.plain, &before_.force, &before_.plain, &step_,
+                       &direction_, &force_at_trial_})
     vector->resize(n);
   solution_.energy.push_back(objective_.evaluate(solution_.uv, now_.force));
   if (std::isfinite(rigidity.lambda))
@@ -54,13 +54,13 @@ bool Descent::advance(double slope, std::span<const Vec2> direction) {
   for (int k = 0; k <= kHalvings; ++k, length /= 2) {
     const double energy = try_step(length, direction);
     if (!(energy <= this->energy() - kSufficient * length * slope)) continue;
-    step_.resize(trial_.size());
     for (std::size_t v = 0; v < trial_.size(); ++v) step_[v] = trial_[v] - solution_.uv[v];
     std::swap(now_, before_);
     std::swap(now_.force, force_at_trial_);
     std::swap(solution_.uv, trial_);
     solution_.energy.push_back(energy);
     ++solution_.iterations;
+    has_stepped_ = true;
     return true;
   }
   return false;
@@ -70,11 +70,12 @@ bool Descent::step() {
   solution_.stop_reason = StopReason::converged;
   now_.plain = now_.force;
   global_.solve(now_.plain);
-  if (!step_.empty()) memory_.learn(step_, before_, now_);
+  if (std::exchange(has_stepped_, false)) memory_.learn(step_, before_, now_);
   const bool is_plain = memory_.empty();
   if (advance(memory_.direct(now_, direction_), direction_)) return true;
   if (is_plain) return false;
   memory_.forget();
+  solution_.stop_reason = StopReason::converged;
   return advance(memory_.direct(now_, direction_), direction_);
 }
 
@@ -85,24 +86,27 @@ bool Descent::has_converged(double tolerance) const {
          energy[energy.size() - 1 - kWindow] - energy.back() <= tolerance * energy.back();
 }
 
-Solution run_to_convergence(Descent& descent, const DescentOptions& options,
-                            const LoopWatch& watch) {
-  StopReason reason = StopReason::converged;
+void Descent::take_over(const Solution& before) {
+  const double own = energy();
+  assert(own <= before.energy.back());
+  solution_.energy = before.energy;
+  solution_.energy.push_back(own);
+  solution_.iterations = before.iterations + 1;
+}
+
+Solution Descent::finish(StopReason reason) && {
+  solution_.stop_reason = reason;
+  return std::move(solution_);
+}
+
+StopReason run(Descent& descent, const DescentOptions& options, const LoopWatch& watch) {
   while (!descent.has_converged(options.tolerance)) {
     if (watch.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
-    if (descent.solution().iterations >= options.max_iterations) {
-      reason = StopReason::max_iterations;
-      break;
-    }
-    if (!descent.step()) {
-      reason = descent.solution().stop_reason;
-      break;
-    }
+    if (descent.solution().iterations >= options.max_iterations) return StopReason::max_iterations;
+    if (!descent.step()) return descent.solution().stop_reason;
     if (watch.on_iteration) watch.on_iteration(descent.solution());
   }
-  Solution solution = descent.solution();
-  solution.stop_reason = reason;
-  return solution;
+  return StopReason::converged;
 }
 
 }  // namespace unwrapd

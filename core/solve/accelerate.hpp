@@ -16,10 +16,9 @@ class Descent {
   /// One iteration: one solve and, nearly always, one evaluation of the energy, which never rises.
   /// False, and nothing is done, when double precision knows no lower energy (converged) or the map
   /// would shrink to less than kMinAreaShare of the start's area (collapse_guard; the energies of
-  /// finite lambda only, because that of ARAP does not fall towards a point).
+  /// finite lambda only, because that of ARAP does not fall towards a point): solution() tells.
   bool step();
 
-  /// The map so far; stop_reason is meant for when step() is false.
   [[nodiscard]] const Solution& solution() const { return solution_; }
   [[nodiscard]] double energy() const { return solution_.energy.back(); }
 
@@ -27,8 +26,17 @@ class Descent {
   /// to nothing.
   [[nodiscard]] bool has_converged(double tolerance) const;
 
-  static constexpr std::size_t kWindow = 5;
-  static constexpr double kNothing = 1e-18;  ///< energy of a map that is isometric to 1e-9
+  /// Goes on as if it came after the iterations of another descent, whose map had a higher energy:
+  /// the change from that map to its own counts as one iteration.
+  void take_over(const Solution& before);
+
+  /// The map so far, with stop_reason.
+  Solution finish(StopReason reason) &&;
+
+  /// Five iterations would stop on the plateaus where flaps of a shape are about to turn over (Cow,
+  /// Beetle: 2 and 10 % above the minimum that follows).
+  static constexpr std::size_t kWindow = 10;
+  static constexpr double kNothing = 1e-16;  ///< energy of a map that is isometric to 1e-8
 
  private:
   bool advance(double slope, std::span<const Vec2> direction);
@@ -43,16 +51,16 @@ class Descent {
   std::vector<Vec2> step_, direction_, force_at_trial_;
   UvMap trial_;
   double least_area_ = 0;
+  bool has_stepped_ = false;  // step_ is yet to be learnt
 };
 
 struct DescentOptions {
   double tolerance = 1e-6;
-  int max_iterations = 500;
+  int max_iterations = 500;  ///< those before the call included
 };
 
-/// Steps until the energy has converged, the iterations so far included.
+/// Steps until the descent ends, and tells why: converged, max_iterations or collapse_guard.
 /// Throws Error{cancelled} within one iteration of a stop request.
-Solution run_to_convergence(Descent& descent, const DescentOptions& options,
-                            const LoopWatch& watch);
+StopReason run(Descent& descent, const DescentOptions& options, const LoopWatch& watch);
 
 }  // namespace unwrapd

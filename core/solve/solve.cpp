@@ -12,11 +12,13 @@
 #include <optional>
 #include <utility>
 
+#include "core/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
-#include "core/solve/accelerate.hpp"
+#include "core/solve/accelerate_race.hpp"
 #include "core/solve/conformal.hpp"
 #include "core/solve/convex_map.hpp"
+#include "core/solve/frames.hpp"
 #include "core/solve/hold_align.hpp"
 #include "core/solve/methods.hpp"
 
@@ -53,22 +55,12 @@ Solution direct(const Disk& disk, const Holds& holds, UvMap uv) {
   return solution;
 }
 
-UvMap map_of_kind(const Disk& disk, InitialMap kind) {
-  if (kind == InitialMap::lscm) return conformal_map(disk, Pins::diameter);
-  const bool tutte = kind == InitialMap::tutte;
-  return scaled_to_unit_area(disk, tutte ? tutte_map(disk) : mean_value_map(disk));
-}
-
-/// The start from which a few iterations get farthest: energies at the start tell less.
-std::size_t best_of(const std::vector<UvMap>& starts, const Assembly& assembly,
-                    const Rigidity& rigidity, Executor& executor) {
-  if (starts.size() == 1) return 0;
-  const auto energy_after_trial = [&](const UvMap& start) {
-    return local_global(assembly, start, {rigidity, kTrialIterations}, {}, executor).energy.back();
-  };
-  std::vector<double> energy(starts.size());
-  std::transform(starts.begin(), starts.end(), energy.begin(), energy_after_trial);
-  return static_cast<std::size_t>(std::min_element(energy.begin(), energy.end()) - energy.begin());
+/// Nothing where the frames contradict each other so much that the map collapses, as around a
+/// cylinder.
+std::optional<UvMap> usable_frame_map(const Disk& disk, const GlobalStep& global) {
+  UvMap uv = frame_map(disk, global);
+  if (!(uv_area(disk.rest, disk.faces, uv) > kMinAreaShare)) return std::nullopt;
+  return scaled_to_unit_area(disk, std::move(uv));
 }
 
 void tell(const SolveWatch& watch, Stage stage) {
@@ -77,13 +69,12 @@ void tell(const SolveWatch& watch, Stage stage) {
 
 }  // namespace
 
-std::vector<UvMap> initial_maps(const Disk& disk, InitialMap kind) {
-  if (kind != InitialMap::automatic) return {map_of_kind(disk, kind)};
-  if (disk.loops.size() > 1) return {map_of_kind(disk, InitialMap::lscm)};
-  std::vector<UvMap> maps{map_of_kind(disk, InitialMap::mean_value)};
-  if (std::optional<UvMap> conformal = exact_conformal_map(disk))
-    maps.push_back(std::move(*conformal));
-  return maps;
+UvMap initial_map(const Disk& disk, InitialMap kind, const GlobalStep& global) {
+  if (kind == InitialMap::mean_value) return scaled_to_unit_area(disk, mean_value_map(disk));
+  if (kind == InitialMap::tutte) return scaled_to_unit_area(disk, tutte_map(disk));
+  if (kind == InitialMap::automatic)
+    if (std::optional<UvMap> frames = usable_frame_map(disk, global)) return std::move(*frames);
+  return conformal_map(disk, Pins::diameter);
 }
 
 Solver::Solver(const Disk& disk, const UnwrapOptions& options, Held held, Executor& executor)
@@ -99,14 +90,30 @@ void Solver::move(Held held) {
   assert(is_moved(holds_, held.holds));
   holds_ = std::move(held.holds);
   held_start_ = std::move(held.start);
-  starts_.clear();
+  start_.reset();
   conformal_.reset();
 }
 
-const std::vector<UvMap>& Solver::starts() {
-  if (starts_.empty() && holds_.empty()) starts_ = initial_maps(disk_, options_.initial);
-  if (starts_.empty()) starts_ = {held_start_};
-  return starts_;
+bool Solver::is_automatic() const {
+  return options_.initial == InitialMap::automatic && holds_.empty();
+}
+
+const UvMap& Solver::start() {
+  if (!start_)
+    start_ = holds_.empty() ? initial_map(disk_, options_.initial, *global_) : held_start_;
+  return *start_;
+}
+
+/// The start to try beside start(); none where double precision knows no conformal map.
+const UvMap* Solver::second_start() {
+  if (!second_start_) {
+    try {
+      second_start_ = exact_conformal_map(disk_);
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::solver_failed) throw;
+    }
+  }
+  return second_start_ ? &*second_start_ : nullptr;
 }
 
 UvMap Solver::conformal_under_holds() {
@@ -121,30 +128,41 @@ const UvMap& Solver::conformal() {
   return *conformal_;
 }
 
-Solution Solver::iterate(const Rigidity& rigidity, const std::vector<UvMap>& starts,
-                         const SolveWatch& watch) {
+/// As many plain iterations as were asked for, from the better start where there are two.
+Solution Solver::iterate_plainly(const Race& race) {
+  const auto solution = [&](const UvMap& from, int iterations, const LoopWatch& watch) {
+    return local_global(race.assembly, from, {race.rigidity, iterations}, watch, executor_);
+  };
+  const UvMap* from = &start();
+  const UvMap* other = is_automatic() && disk_.loops.size() > 1 ? second_start() : nullptr;
+  const auto energy_after_trial = [&](const UvMap& map) {
+    return solution(map, kTrialIterations, {{}, race.watch.stop}).energy.back();
+  };
+  if (other != nullptr && energy_after_trial(*other) < energy_after_trial(*from)) from = other;
+  return solution(*from, *options_.stop.iterations, race.watch);
+}
+
+Solution Solver::iterate(const Rigidity& rigidity, const SolveWatch& watch) {
   if (!global_) {
     tell(watch, Stage::factor);
     global_.emplace(disk_, holds_);
   }
+  const UvMap& first = start();
   tell(watch, Stage::solve);
-  const Assembly assembly{disk_, holds_, *global_};
-  const UvMap& start = starts[best_of(starts, assembly, rigidity, executor_)];
   const Stop& stop = options_.stop;
-  if (stop.iterations)
-    return local_global(assembly, start, {rigidity, *stop.iterations}, watch.loop, executor_);
-  Descent descent(assembly, start, rigidity, executor_);
-  return run_to_convergence(descent, {stop.tolerance, stop.max_iterations}, watch.loop);
+  const Assembly assembly{disk_, holds_, *global_};
+  const Race race{assembly, rigidity, {stop.tolerance, stop.max_iterations}, watch.loop, executor_};
+  if (stop.iterations) return iterate_plainly(race);
+  return run_race(race, first, [&] { return is_automatic() ? second_start() : nullptr; });
 }
 
 Solution Solver::hybrid(const Rigidity& rigidity, const SolveWatch& watch) {
   const double lambda = mean_lambda(disk_, rigidity);
-  if (lambda > kSafeLambda) return iterate(rigidity, starts(), watch);
+  if (lambda > kSafeLambda) return iterate(rigidity, watch);
   const bool is_held_open = holds_.count() > 1;
   if (lambda <= (is_held_open ? 0 : asap_energy(disk_.rest, disk_.faces, conformal()) / 2))
     return direct(disk_, holds_, conformal());
-  if (options_.initial == InitialMap::automatic) return iterate(rigidity, {conformal()}, watch);
-  return iterate(rigidity, starts(), watch);
+  return iterate(rigidity, watch);
 }
 
 Solution Solver::run(double lambda, const SolveWatch& watch) {
@@ -154,7 +172,7 @@ Solution Solver::run(double lambda, const SolveWatch& watch) {
       tell(watch, Stage::solve);
       return direct(disk_, holds_, conformal());
     case Method::arap:
-      return iterate({}, starts(), watch);
+      return iterate({}, watch);
     case Method::hybrid:
       return hybrid(rigidity_of(disk_, lambda, options_.lambda_units), watch);
     default:

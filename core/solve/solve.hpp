@@ -7,6 +7,7 @@
 
 #include "core/options.hpp"
 #include "core/progress.hpp"
+#include "core/solve/accelerate_race.hpp"
 #include "core/solve/conformal_system.hpp"
 #include "core/solve/local_global.hpp"
 
@@ -35,27 +36,33 @@ class Solver {
   Solution run(double lambda, const SolveWatch& watch);
 
  private:
-  const std::vector<UvMap>& starts();
+  const UvMap& start();
+  const UvMap* second_start();
   const UvMap& conformal();
   UvMap conformal_under_holds();
+  [[nodiscard]] bool is_automatic() const;
   Solution hybrid(const Rigidity& rigidity, const SolveWatch& watch);
-  Solution iterate(const Rigidity& rigidity, const std::vector<UvMap>& starts,
-                   const SolveWatch& watch);
+  Solution iterate(const Rigidity& rigidity, const SolveWatch& watch);
+  Solution iterate_plainly(const Race& race);
 
   const Disk& disk_;
   const UnwrapOptions& options_;
   Holds holds_;
   UvMap held_start_;
   Executor& executor_;
-  std::vector<UvMap> starts_;
+  std::optional<UvMap> start_, second_start_;
   std::optional<UvMap> conformal_;
   std::optional<GlobalStep> global_;
   std::optional<ConformalSystem> conformal_system_;
 };
 
-/// The maps that the iterations may start from, each scaled so that UV area = 3D area. One, but for
-/// automatic on one boundary: mean_value, and lscm where it is exact; Solver then takes the one
-/// from which a few iterations get farthest. automatic on several boundaries: lscm (Sec. 4.5).
-std::vector<UvMap> initial_maps(const Disk& disk, InitialMap kind);
+/// The map that the iterations start from, scaled so that UV area = 3D area. Throws
+/// Error{solver_failed}.
+/// mean_value and tutte have no flipped triangles on a disk of one boundary whose inner edges do
+/// not join boundary vertices; lscm may have some. automatic: frame_map(), which is exact on
+/// developable disks and elsewhere some ten iterations ahead of the others; where it has collapsed,
+/// lscm. It may have flips too. Solver then tries lscm beside it, where that may pay (run_race());
+/// under a given number of plain iterations only with several boundaries.
+UvMap initial_map(const Disk& disk, InitialMap kind, const GlobalStep& global);
 
 }  // namespace unwrapd

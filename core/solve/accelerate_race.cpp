@@ -1,0 +1,62 @@
+// Which of two starts leads to the lower minimum shows late: energies at the start, and for the
+// first ten iterations, tell how good a start is, not where it leads. But starts that lead to
+// different minima were only seen where descents are long, and there a second one of 40 iterations
+// costs little. Measured on 52 charts (docs/adr/0004). Rejected: both starts on every mesh, which
+// doubles the cost of those that need neither.
+#include "core/solve/accelerate_race.hpp"
+
+#include <algorithm>
+
+namespace unwrapd {
+namespace {
+
+constexpr int kPatience = 40;               // iterations of the first descent on its own
+constexpr int kPatienceAroundHoles = 24;    // the same with several boundaries
+constexpr std::size_t kBout = 8;            // after so many iterations the second one is dropped
+constexpr double kHopelesslyBehind = 1.03;  // if its energy is so many times that of the first
+
+bool has_holes(const Race& race) { return race.assembly.disk.loops.size() > 1; }
+
+int patience(const Race& race) {
+  const int most = has_holes(race) ? kPatienceAroundHoles : kPatience;
+  return std::min(most, race.options.max_iterations - 1);  // the change counts as one more
+}
+
+double energy_after(const Descent& descent, std::size_t iterations) {
+  const std::vector<double>& energy = descent.solution().energy;
+  return energy[std::min(iterations, energy.size() - 1)];
+}
+
+/// Runs the second descent as far as the first one has come. Whether its energy is lower there.
+bool overtakes(const Race& race, Descent& second, const Descent& first) {
+  const LoopWatch silent{{}, race.watch.stop};
+  const int most = patience(race), bout = std::min(static_cast<int>(kBout), most);
+  run(second, {race.options.tolerance, bout}, silent);
+  if (energy_after(second, kBout) > kHopelesslyBehind * energy_after(first, kBout)) return false;
+  run(second, {race.options.tolerance, most}, silent);
+  return second.energy() < first.energy();
+}
+
+Solution go_on(const Race& race, Descent descent) {
+  const StopReason reason = run(descent, race.options, race.watch);
+  return std::move(descent).finish(reason);
+}
+
+}  // namespace
+
+Solution run_race(const Race& race, const UvMap& first,
+                  const std::function<const UvMap*()>& second) {
+  Descent leader(race.assembly, first, race.rigidity, race.executor);
+  const StopReason reason = run(leader, {race.options.tolerance, patience(race)}, race.watch);
+  const bool came_to_rest = reason != StopReason::max_iterations && !has_holes(race);
+  if (came_to_rest || leader.energy() <= Descent::kNothing) return std::move(leader).finish(reason);
+  const UvMap* other = second();
+  if (other == nullptr) return go_on(race, std::move(leader));
+  Descent challenger(race.assembly, *other, race.rigidity, race.executor);
+  if (!overtakes(race, challenger, leader)) return go_on(race, std::move(leader));
+  challenger.take_over(leader.solution());
+  if (race.watch.on_iteration) race.watch.on_iteration(challenger.solution());
+  return go_on(race, std::move(challenger));
+}
+
+}  // namespace unwrapd
