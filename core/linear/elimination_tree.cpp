@@ -1,0 +1,157 @@
+// The elimination tree with path compression (Liu, "The role of elimination trees in sparse
+// factorization", 1990) and the factor's column counts from the leaves of its row subtrees
+// (Gilbert, Ng, Peyton, "An efficient algorithm to compute row and column counts for sparse
+// Cholesky factorization", 1994). Both nearly linear in the entries of the matrix. Rejected: the
+// counts by merging the columns themselves, linear in the entries of the factor.
+#include "core/linear/elimination_tree.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace unwrapd {
+namespace {
+
+constexpr Index kNone = -1;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+std::vector<Index> inverse(std::span<const Index> order) {
+  std::vector<Index> position(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) position[at(order[k])] = static_cast<Index>(k);
+  return position;
+}
+
+std::vector<Index> parents(const Graph& graph, std::span<const Index> order) {
+  const std::vector<Index> position = inverse(order);
+  std::vector<Index> parent(order.size(), kNoParent), ancestor(order.size(), kNone);
+  for (Index k = 0; k < static_cast<Index>(order.size()); ++k)
+    for (Index v : graph.of(order[at(k)]))
+      for (Index j = position[at(v)]; j != kNone && j < k;) {
+        const Index next = std::exchange(ancestor[at(j)], k);
+        if (next == kNone) parent[at(j)] = k;
+        j = next;
+      }
+  return parent;
+}
+
+/// The columns so that each follows its descendants, the children of a node in their old order.
+std::vector<Index> postorder(std::span<const Index> parent) {
+  const auto n = static_cast<Index>(parent.size());
+  std::vector<Index> first_child(parent.size(), kNone), next_sibling(parent.size(), kNone);
+  std::vector<Index> order, path;
+  for (Index k = n - 1; k >= 0; --k)
+    if (parent[at(k)] != kNoParent)
+      next_sibling[at(k)] = std::exchange(first_child[at(parent[at(k)])], k);
+  order.reserve(parent.size());
+  for (Index root = 0; root < n; ++root) {
+    if (parent[at(root)] != kNoParent) continue;
+    path.push_back(root);
+    while (!path.empty()) {
+      const Index child = std::exchange(first_child[at(path.back())], kNone);
+      if (child != kNone) {
+        path.push_back(child);
+        continue;
+      }
+      const Index done = path.back();
+      path.pop_back();
+      order.push_back(done);
+      if (next_sibling[at(done)] != kNone) path.push_back(next_sibling[at(done)]);
+    }
+  }
+  return order;
+}
+
+/// The tree renumbered in postorder, its counts still missing.
+EliminationTree in_postorder(std::span<const Index> order, std::span<const Index> parent) {
+  const std::vector<Index> old = postorder(parent);
+  const std::vector<Index> renumbered = inverse(old);
+  EliminationTree tree;
+  for (Index k : old) {
+    tree.order.push_back(order[at(k)]);
+    const Index p = parent[at(k)];
+    tree.parent.push_back(p == kNoParent ? kNoParent : renumbered[at(p)]);
+  }
+  tree.position = inverse(tree.order);
+  return tree;
+}
+
+/// Finds which entries of the matrix are leaves of row subtrees, columns taken in postorder.
+class RowSubtrees {
+ public:
+  explicit RowSubtrees(std::span<const Index> parent)
+      : parent_(parent),
+        first_(parent.size(), kNone),
+        last_first_(parent.size(), kNone),
+        last_leaf_(parent.size(), kNone),
+        ancestor_(parent.size()) {
+    for (std::size_t k = 0; k < parent.size(); ++k) {
+      ancestor_[k] = static_cast<Index>(k);
+      if (first_[k] == kNone) first_[k] = static_cast<Index>(k);
+      if (parent[k] != kNoParent && first_[at(parent[k])] == kNone)
+        first_[at(parent[k])] = first_[k];
+    }
+  }
+
+  [[nodiscard]] bool is_tree_leaf(Index k) const { return first_[at(k)] == k; }
+
+  /// Nothing else of column j will be asked for.
+  void finish(Index j) {
+    if (parent_[at(j)] != kNoParent) ancestor_[at(j)] = parent_[at(j)];
+  }
+
+  /// Is column j a leaf of the subtree of row i > j?
+  bool is_leaf(Index i, Index j) {
+    if (first_[at(j)] <= last_first_[at(i)]) return false;
+    last_first_[at(i)] = first_[at(j)];
+    previous_ = std::exchange(last_leaf_[at(i)], j);
+    return true;
+  }
+
+  /// Where the path of the leaf just found meets that of the leaf before it; kNone: no such leaf.
+  Index meeting() {
+    if (previous_ == kNone) return kNone;
+    Index top = previous_;
+    while (top != ancestor_[at(top)]) top = ancestor_[at(top)];
+    for (Index k = previous_; k != top;) k = std::exchange(ancestor_[at(k)], top);
+    return top;
+  }
+
+ private:
+  std::span<const Index> parent_;
+  std::vector<Index> first_;       ///< the first descendant of each column
+  std::vector<Index> last_first_;  ///< of each row: that of the last leaf
+  std::vector<Index> last_leaf_;   ///< of each row
+  std::vector<Index> ancestor_;    ///< a forest of the finished columns, paths compressed
+  Index previous_ = kNone;
+};
+
+/// Each leaf of a row subtree adds one to the counts on its path to the root; the node where two
+/// paths meet, and the parent of each column's diagonal entry, take one off again.
+std::vector<Index> column_counts(const Graph& graph, const EliminationTree& tree) {
+  RowSubtrees subtrees(tree.parent);
+  std::vector<Index> count(tree.parent.size());
+  for (Index j = 0; j < static_cast<Index>(count.size()); ++j) {
+    count[at(j)] += subtrees.is_tree_leaf(j) ? 1 : 0;
+    if (tree.parent[at(j)] != kNoParent) --count[at(tree.parent[at(j)])];
+    for (Index v : graph.of(tree.order[at(j)])) {
+      const Index i = tree.position[at(v)];
+      if (i < j || !subtrees.is_leaf(i, j)) continue;
+      ++count[at(j)];
+      if (const Index m = subtrees.meeting(); m != kNone) --count[at(m)];
+    }
+    subtrees.finish(j);
+  }
+  for (std::size_t j = 0; j < count.size(); ++j)
+    if (tree.parent[j] != kNoParent) count[at(tree.parent[j])] += count[j];
+  return count;
+}
+
+}  // namespace
+
+EliminationTree elimination_tree(const Graph& graph, std::vector<Index> order) {
+  EliminationTree tree = in_postorder(order, parents(graph, order));
+  tree.count = column_counts(graph, tree);
+  return tree;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,58 @@
+#pragma once
+// One dense front of the multifrontal method: the pivot columns of a supernode, with what its
+// children and the matrix add to them, and the update that it leaves to its parent.
+
+#include <cstddef>
+#include <memory>
+
+#include "core/linear/front_panel.hpp"
+
+namespace unwrapd {
+
+/// Memory that grows and is never cleared.
+class Scratch {
+ public:
+  /// Room for n numbers; what was there before is lost.
+  double* room(std::size_t n) {
+    if (n > size_) memory_ = std::make_unique_for_overwrite<double[]>(size_ = n + n / 2);
+    return memory_.get();
+  }
+
+ private:
+  std::unique_ptr<double[]> memory_;
+  std::size_t size_ = 0;
+};
+
+/// Where a front's numbers are. The rows below the pivots start at a whole pack, update_begin();
+/// rows between are zero.
+struct FrontView {
+  PanelShape shape{};
+  std::size_t stride = 0;     ///< rows of a column, padded
+  double* columns = nullptr;  ///< of the symmetric matrix, of which only the lower triangle counts
+  double* strips = nullptr;   ///< a copy of the pivot columns, see front_kernels.hpp
+  double* inverse = nullptr;  ///< kPack columns of L11^-1, by rows
+
+  [[nodiscard]] std::size_t update_begin() const { return padded(shape.pivots, kPack); }
+  [[nodiscard]] std::size_t size() const { return update_begin() + shape.below; }
+};
+
+class Front {
+ public:
+  /// Starts anew, with zeros.
+  void reset(PanelShape shape);
+
+  /// Row j of column j; the rows below it follow.
+  [[nodiscard]] double* diagonal(std::size_t j) { return view_.columns + j * (view_.stride + 1); }
+  [[nodiscard]] std::size_t update_begin() const { return view_.update_begin(); }
+
+  /// Turns the pivot columns into those of the Cholesky factor, takes their products from the rest,
+  /// which is then the update, and writes the panel (shape.size() numbers). False when a pivot is
+  /// not positive and finite. The same bits on any processor.
+  [[nodiscard]] bool factor(double* panel) const;
+
+ private:
+  FrontView view_;
+  Scratch columns_, strips_, inverse_;
+};
+
+}  // namespace unwrapd

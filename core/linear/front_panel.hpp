@@ -1,0 +1,54 @@
+#pragma once
+// The finished columns of a supernode, as the solves read them.
+
+#include <algorithm>
+#include <cstddef>
+
+namespace unwrapd {
+
+inline constexpr std::size_t kPack = 4;  ///< columns that are worked on at once
+inline constexpr std::size_t kDuo = 2;   ///< rows that are worked on at once
+
+constexpr std::size_t padded(std::size_t n, std::size_t to) { return (n + to - 1) / to * to; }
+
+/// A panel holds [L11^-1; L21 L11^-1] of `pivots` columns with `below` rows under them. Columns
+/// come in blocks of kPack. A block starts at the row of its first column, zeros above the diagonal
+/// included, and ends at height(). In it, two rows of each column follow two rows of the column
+/// before: one cache line holds two rows of the block, and solves read all lines in order.
+struct PanelShape {
+  std::size_t pivots;
+  std::size_t below;
+
+  [[nodiscard]] std::size_t height() const { return padded(pivots + below, kDuo); }
+
+  /// Where the block starts whose first column is k, a multiple of kPack.
+  [[nodiscard]] std::size_t block_begin(std::size_t k) const {
+    return k * height() - k * (k - kPack) / 2;
+  }
+  /// Columns of that block.
+  [[nodiscard]] std::size_t width(std::size_t k) const { return std::min(kPack, pivots - k); }
+
+  /// Row r of column k + c, in the block that starts with column k.
+  [[nodiscard]] std::size_t entry(std::size_t r, std::size_t k, std::size_t c) const {
+    return block_begin(k) + ((r - k) / kDuo * width(k) + c) * kDuo + r % kDuo;
+  }
+
+  [[nodiscard]] std::size_t size() const {
+    const std::size_t whole = pivots / kPack * kPack;
+    return block_begin(whole) + (pivots - whole) * (height() - whole);
+  }
+};
+
+/// Two right-hand sides over the rows of one panel, height() entries each.
+struct PanelVectors {
+  double* u;
+  double* v;
+};
+
+/// sum += panel * x: x has pivots entries, sum height(). They do not overlap.
+void multiply_panel(const double* panel, PanelShape shape, PanelVectors x, PanelVectors sum);
+
+/// x = panel^T * y: y has height() entries, x pivots. They do not overlap.
+void multiply_transposed(const double* panel, PanelShape shape, PanelVectors y, PanelVectors x);
+
+}  // namespace unwrapd

@@ -1,0 +1,32 @@
+#pragma once
+// In which order to eliminate the vertices of a symmetric matrix, so that its factor stays sparse.
+
+#include <span>
+#include <vector>
+
+#include "core/linear/sparse.hpp"
+
+namespace unwrapd {
+
+/// Who is coupled with whom: the neighbours of vertex v are neighbour[begin[v]] ..
+/// neighbour[begin[v+1]-1], v itself not among them; every pair is listed from both sides.
+struct Graph {
+  std::vector<Index> begin;
+  std::vector<Index> neighbour;
+
+  [[nodiscard]] Index vertex_count() const { return static_cast<Index>(begin.size()) - 1; }
+  [[nodiscard]] std::span<const Index> of(Index v) const {
+    const auto first = static_cast<std::size_t>(begin[static_cast<std::size_t>(v)]);
+    const auto last = static_cast<std::size_t>(begin[static_cast<std::size_t>(v) + 1]);
+    return std::span(neighbour).subspan(first, last - first);
+  }
+};
+
+/// The pattern of a compressed lower triangle, as a graph. begin: column_count + 1 offsets into
+/// row.
+Graph graph_of_lower(std::span<const Index> begin, std::span<const Index> row);
+
+/// order[k]: the vertex to eliminate k-th. Deterministic.
+std::vector<Index> fill_reducing_order(const Graph& graph);
+
+}  // namespace unwrapd

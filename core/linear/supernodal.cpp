@@ -1,0 +1,119 @@
+// Chains of the elimination tree whose columns have the same rows become supernodes; a supernode is
+// then merged with its parent where that stores few zeros, because small dense blocks cost more in
+// overhead than zeros cost in arithmetic (relaxed amalgamation: Ashcraft, Grimes 1989; thresholds
+// as in Chen, Davis, Hager, Rajamanickam, "CHOLMOD", 2008). The rows follow from the row subtrees
+// of the merged tree, which lists them in ascending order without sorting.
+#include "core/linear/supernodal.hpp"
+
+#include <utility>
+
+namespace unwrapd {
+namespace {
+
+constexpr Index kNone = -1;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// A dense trapezoid: columns with their rows, the columns' own rows included.
+struct Block {
+  double columns, rows, zeros;
+
+  [[nodiscard]] double entries() const {
+    return columns * (columns + 1) / 2 + columns * (rows - columns);
+  }
+};
+
+Block merged(const Block& child, const Block& parent) {
+  const double missing = child.columns * (child.columns + parent.rows - child.rows);
+  return {child.columns + parent.columns, child.columns + parent.rows,
+          child.zeros + parent.zeros + missing};
+}
+
+bool is_worth_merging(const Block& both) {
+  const double share = both.zeros / both.entries();
+  return both.columns <= 4 || both.zeros == 0 || (both.columns <= 16 && share < 0.8) ||
+         (both.columns <= 48 && share < 0.1) || share < 0.05;
+}
+
+/// The first column of each supernode, and the end of the last.
+std::vector<Index> maximal_supernodes(const EliminationTree& tree) {
+  const auto n = static_cast<Index>(tree.parent.size());
+  std::vector<Index> first;
+  for (Index k = 0; k < n; ++k)
+    if (k == 0 || tree.parent[at(k - 1)] != k || tree.count[at(k - 1)] != tree.count[at(k)] + 1)
+      first.push_back(k);
+  first.push_back(n);
+  return first;
+}
+
+/// Merges supernodes with their parents, from the roots down, where the parent follows at once.
+std::vector<Index> relaxed_supernodes(const EliminationTree& tree) {
+  const std::vector<Index> first = maximal_supernodes(tree);
+  std::vector<Index> kept{first.back()};
+  Block parent{};
+  for (std::size_t s = first.size() - 1; s-- > 0;) {
+    const Index last = first[s + 1] - 1;
+    const Block own{double(first[s + 1] - first[s]), double(tree.count[at(first[s])]), 0};
+    const Block both = merged(own, parent);
+    if (tree.parent[at(last)] == first[s + 1] && is_worth_merging(both)) {
+      kept.back() = first[s];
+      parent = both;
+    } else {
+      kept.push_back(first[s]);
+      parent = own;
+    }
+  }
+  return {kept.rbegin(), kept.rend()};
+}
+
+std::vector<Index> supernode_of_columns(std::span<const Index> first) {
+  std::vector<Index> supernode(at(first.back()));
+  for (std::size_t s = 0; s + 1 < first.size(); ++s)
+    for (Index k = first[s]; k < first[s + 1]; ++k) supernode[at(k)] = static_cast<Index>(s);
+  return supernode;
+}
+
+/// Row i belongs to every supernode on the way up from those of its entries to its own.
+std::vector<Index> rows_of(const Graph& graph, const Supernodes& nodes,
+                           std::span<const Index> supernode, std::span<const Index> parent) {
+  std::vector<Index> row(nodes.row_begin.back()), reached(nodes.count(), kNone);
+  std::vector<std::size_t> next(nodes.row_begin.begin(), nodes.row_begin.end() - 1);
+  for (Index i = 0; i < static_cast<Index>(supernode.size()); ++i) {
+    reached[at(supernode[at(i)])] = i;
+    for (Index v : graph.of(nodes.order[at(i)])) {
+      const Index j = nodes.position[at(v)];
+      if (j > i) continue;
+      for (Index s = supernode[at(j)]; reached[at(s)] != i; s = parent[at(s)]) {
+        reached[at(s)] = i;
+        row[next[at(s)]++] = i;
+      }
+    }
+  }
+  return row;
+}
+
+}  // namespace
+
+Supernodes analyse(const Graph& graph) {
+  EliminationTree tree = elimination_tree(graph, fill_reducing_order(graph));
+  Supernodes nodes;
+  nodes.first = relaxed_supernodes(tree);
+  const std::vector<Index> supernode = supernode_of_columns(nodes.first);
+  const std::size_t count = nodes.first.size() - 1;
+  nodes.child_count.assign(count, 0);
+  nodes.row_begin.assign(count + 1, 0);
+  std::vector<Index> parent(count, kNone);
+  for (std::size_t s = 0; s < count; ++s) {
+    const std::size_t last = at(nodes.first[s + 1] - 1);
+    nodes.row_begin[s + 1] = nodes.row_begin[s] + at(tree.count[last] - 1);
+    if (tree.parent[last] == kNoParent) continue;
+    parent[s] = supernode[at(tree.parent[last])];
+    ++nodes.child_count[at(parent[s])];
+  }
+  nodes.order = std::move(tree.order);
+  nodes.position = std::move(tree.position);
+  nodes.row = rows_of(graph, nodes, supernode, parent);
+  return nodes;
+}
+
+}  // namespace unwrapd

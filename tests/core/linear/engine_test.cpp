@@ -1,0 +1,237 @@
+#include "core/linear/engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SparseCholesky>
+#include <random>
+#include <thread>
+
+#include "core/measure/energy.hpp"
+#include "core/solve/convex_map.hpp"
+#include "core/solve/objective.hpp"
+#include "tests/core/obj_reader.hpp"
+#include "tests/core/solve/disk_of.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// The engine that ours is compared with.
+class Reference final : public RealSystem {
+ public:
+  explicit Reference(const SparseMatrix& lower) : llt_(lower) {}
+  [[nodiscard]] bool is_definite() const { return llt_.info() == Eigen::Success; }
+  void solve(std::span<Vec2> b) const override {
+    Eigen::Map<Eigen::Matrix2Xd> x(b.front().data(), 2, Eigen::Index(b.size()));
+    x = llt_.solve(x.transpose()).transpose().eval();
+  }
+
+ private:
+  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt_;
+};
+
+std::unique_ptr<RealSystem> ours(const SparseMatrix& lower) {
+  return try_factor(analyse(lower), lower);
+}
+
+/// The matrix of the global step, nothing held.
+SparseMatrix arap_matrix(const Disk& disk) {
+  std::vector<double> weight;
+  for (const RestTriangle& rest : disk.rest)
+    weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
+  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight);
+  lower.coeffRef(0, 0) *= 2;
+  return lower;
+}
+
+/// Sums to zero, as the forces on a free disk do.
+std::vector<Vec2> random_forces(const SparseMatrix& lower, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<double> normal;
+  std::vector<Vec2> b(std::size_t(lower.cols()));
+  Vec2 mean = Vec2::Zero();
+  for (Vec2& x : b) x = Vec2(normal(rng), normal(rng)), mean += x / double(b.size());
+  for (Vec2& x : b) x -= mean;
+  return b;
+}
+
+double norm(const std::vector<Vec2>& x) {
+  double sum = 0;
+  for (const Vec2& p : x) sum += p.squaredNorm();
+  return std::sqrt(sum);
+}
+
+double gap(std::vector<Vec2> x, const std::vector<Vec2>& y) {
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= y[i];
+  return norm(x);
+}
+
+std::vector<Vec2> solution(const RealSystem& system, std::vector<Vec2> b) {
+  system.solve(b);
+  return b;
+}
+
+/// |A x - b| over |A| |x|: the size of the change of the matrix for which x is the exact solution.
+double backward_error(const SparseMatrix& lower, const std::vector<Vec2>& x,
+                      const std::vector<Vec2>& b) {
+  const auto n = Eigen::Index(x.size());
+  const Eigen::MatrixX2d dense =
+      Eigen::Map<const Eigen::Matrix2Xd>(x.front().data(), 2, n).transpose();
+  const Eigen::MatrixX2d ax = lower.selfadjointView<Eigen::Lower>() * dense;
+  const Eigen::MatrixX2d right =
+      Eigen::Map<const Eigen::Matrix2Xd>(b.front().data(), 2, n).transpose();
+  return (ax - right).norm() / (lower.norm() * dense.norm());
+}
+
+template <typename Visit>
+void for_each_disk_of_the_data(Visit visit) {
+  for (const char* folder : {"disk", "paper"})
+    for (const auto& entry : std::filesystem::directory_iterator(test_data() / folder)) {
+      if (entry.path().extension() != ".obj") continue;
+      SCOPED_TRACE(entry.path().filename());
+      const Charts charts = make_charts(shapes::surface_of(read_obj(entry.path())), SeamMode::keep);
+      for (const Chart& chart : charts.charts) visit(make_disk(chart.mesh, chart.loops));
+    }
+}
+
+std::vector<TriMesh> odd_disks() {
+  const auto flat = [](double r, double phi) {
+    return Vec3(r * std::cos(phi), r * std::sin(phi), r * r);
+  };
+  return {shapes::grid(1, 1),
+          shapes::grid(200, 1),
+          shapes::random_disk(40, 3),
+          shapes::shuffled(shapes::random_disk(60, 4), 5),
+          shapes::annulus(70, 9),
+          shapes::polar_disk(3000, 1, shapes::kTurn, flat),  // one vertex with 3000 neighbours
+          shapes::polar_disk(700, 4, shapes::kTurn, flat)};
+}
+
+TEST(Engine, SolvesLikeTheReference) {
+  for (const TriMesh& mesh : odd_disks()) {
+    const shapes::OwnedDisk owned = shapes::disk_of(mesh);
+    const SparseMatrix lower = arap_matrix(owned.disk);
+    const std::vector<Vec2> b = random_forces(lower, 1);
+    const std::vector<Vec2> expected = solution(Reference(lower), b);
+    const std::vector<Vec2> x = solution(*ours(lower), b);
+    EXPECT_LT(gap(x, expected), 1e-9 * norm(expected)) << mesh.vertex_count();
+    EXPECT_LT(backward_error(lower, x, b), 1e-14);
+  }
+}
+
+TEST(Engine, SolvesLikeTheReferenceOnAllData) {
+  if (test_data().empty()) GTEST_SKIP() << "no test data";
+  for_each_disk_of_the_data([](const Disk& disk) {
+    const SparseMatrix lower = arap_matrix(disk);
+    const std::vector<Vec2> b = random_forces(lower, 2);
+    const auto system = ours(lower);
+    ASSERT_NE(system, nullptr);
+    const std::vector<Vec2> x = solution(*system, b);
+    EXPECT_LT(backward_error(lower, x, b), 1e-13);
+    EXPECT_LT(backward_error(lower, x, b),
+              1e-15 + 20 * backward_error(lower, solution(Reference(lower), b), b));
+  });
+}
+
+double energy_after_ten_iterations(const Disk& disk, const RealSystem& system) {
+  SerialExecutor serial;
+  const Holds nothing;
+  Objective objective(disk, Rigidity{}, nothing, serial);
+  UvMap uv = tutte_map(disk);
+  std::vector<Vec2> force(uv.size());
+  for (int k = 0; k < 10; ++k) {
+    objective.evaluate(uv, force);
+    system.solve(force);
+    for (std::size_t v = 0; v < uv.size(); ++v) uv[v] += force[v];
+  }
+  return objective.evaluate(uv, force);
+}
+
+TEST(Engine, GivesTheReferencesEnergyOnAllData) {
+  if (test_data().empty()) GTEST_SKIP() << "no test data";
+  for_each_disk_of_the_data([](const Disk& disk) {
+    const SparseMatrix lower = arap_matrix(disk);
+    const double expected = energy_after_ten_iterations(disk, Reference(lower));
+    EXPECT_NEAR(energy_after_ten_iterations(disk, *ours(lower)), expected, 1e-7 * expected + 1e-12);
+  });
+}
+
+/// A bumpy disk in which every fourth corner is pulled to within `height` of the side opposite.
+TriMesh with_caps(double height) {
+  TriMesh mesh = shapes::random_disk(24, 6);
+  const std::size_t count = mesh.faces.size();
+  for (std::size_t t = 0; t < count; t += 4) {  // a new vertex near the middle of a side
+    const auto [a, b, c] = mesh.faces[t];
+    const auto at = [&](Index v) { return mesh.positions[std::size_t(v)]; };
+    const Index m = mesh.vertex_count();
+    mesh.positions.push_back((1 - height) * (at(a) + at(b)) / 2 + height * at(c));
+    mesh.faces[t] = {a, m, c};
+    mesh.faces.push_back({m, b, c});
+    mesh.faces.push_back({a, b, m});
+  }
+  return mesh;
+}
+
+TEST(Engine, HoldsOutOnCapsAndNeedles) {
+  for (double height : {1e-3, 1e-6, 1e-9}) {
+    const shapes::OwnedDisk owned = shapes::disk_of(with_caps(height));
+    const SparseMatrix lower = arap_matrix(owned.disk);
+    ASSERT_TRUE(Reference(lower).is_definite()) << height;
+    const auto system = ours(lower);
+    ASSERT_NE(system, nullptr) << height;
+    const std::vector<Vec2> b = random_forces(lower, 3);
+    EXPECT_LT(backward_error(lower, solution(*system, b), b), 1e-13) << height;
+    const double expected = energy_after_ten_iterations(owned.disk, Reference(lower));
+    EXPECT_NEAR(energy_after_ten_iterations(owned.disk, *system), expected, 1e-7 * expected)
+        << height;
+  }
+}
+
+TEST(Engine, RefusesWhatIsNotDefinite) {
+  const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(30, 7));
+  SparseMatrix lower = arap_matrix(owned.disk);
+  const auto analysis = analyse(lower);
+  for (double bad : {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    SparseMatrix changed = lower;
+    changed.coeffRef(300, 300) = bad;
+    EXPECT_EQ(try_factor(analysis, changed), nullptr) << bad;
+  }
+  EXPECT_NE(try_factor(analysis, lower), nullptr);
+}
+
+TEST(Engine, OneAnalysisServesOtherNumbers) {
+  const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(30, 8));
+  SparseMatrix lower = arap_matrix(owned.disk);
+  const auto analysis = analyse(lower);
+  lower.coeffRef(5, 5) += 3, lower.coeffRef(99, 99) += 0.5;
+  const std::vector<Vec2> b = random_forces(lower, 4);
+  const std::vector<Vec2> expected = solution(Reference(lower), b);
+  EXPECT_LT(gap(solution(*try_factor(analysis, lower), b), expected), 1e-9 * norm(expected));
+}
+
+TEST(Engine, GivesTheSameBitsAgainAndFromAnyThread) {
+  const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(50, 9));
+  const SparseMatrix lower = arap_matrix(owned.disk);
+  const auto system = ours(lower);
+  const std::vector<Vec2> b = random_forces(lower, 5);
+  const std::vector<Vec2> expected = solution(*ours(lower), b);
+  std::vector<Vec2> elsewhere;
+  std::thread other([&] { elsewhere = solution(*system, b); });
+  EXPECT_EQ(solution(*system, b), expected);
+  other.join();
+  EXPECT_EQ(elsewhere, expected);
+}
+
+TEST(Engine, SolvesWhatFallsApart) {  // several components, one of them a single vertex
+  const TriMesh mesh =
+      shapes::merged(std::vector{shapes::random_disk(20, 1), shapes::random_disk(3, 2),
+                                 TriMesh{{Vec3(0, 0, 0)}, {}}, shapes::sphere_cap(30, 12)});
+  SparseMatrix lower = lower_laplacian(mesh.faces, mesh.vertex_count(),
+                                       std::vector<double>(3 * mesh.faces.size(), 0.7));
+  for (Index v = 0; v < mesh.vertex_count(); ++v) lower.coeffRef(v, v) += 0.1;
+  const std::vector<Vec2> b = random_forces(lower, 6);
+  const std::vector<Vec2> expected = solution(Reference(lower), b);
+  EXPECT_LT(gap(solution(*ours(lower), b), expected), 1e-12 * norm(expected));
+}
+
+}  // namespace
+}  // namespace unwrapd
