@@ -2,8 +2,8 @@
 //
 // The square's corners are vertices: pure arc length would cut them off, and the page would not be
 // filled to its corners. They are counted from the vertex where the surface's own boundary is
-// sharpest, so that a sheet with four corners keeps them. A triangle all of whose vertices lie on
-// one side of the square has no area; on a circle that cannot be.
+// sharpest, so that a sheet with four corners keeps them. An edge across the surface between two
+// vertices of one side cuts off what cannot have area; on a circle that cannot be.
 #include "core/solve/boundary_shape.hpp"
 
 #include <algorithm>
@@ -98,13 +98,33 @@ std::vector<FixedPoint> on_square(const Chain& chain) {
     const double begin = chain.arc[corner[k]], end = chain.arc[corner[k + 1]];
     for (std::size_t v = corner[k]; v < corner[k + 1]; ++v) {
       const double t = end > begin ? (chain.arc[v] - begin) / (end - begin) : 0;
-      points.push_back({chain.vertex[v], (1 - t) * place[k] + t * place[(k + 1) % count]});
+      points.push_back({chain.vertex[v], place[k] + t * (place[(k + 1) % 4] - place[k])});
     }
   }
   return points;
 }
 
+/// The sides of the square that a place lies on, one bit each.
+int sides_of(const Vec2& p) {
+  return (p.x() == -0.5 ? 1 : 0) | (p.x() == 0.5 ? 2 : 0) | (p.y() == -0.5 ? 4 : 0) |
+         (p.y() == 0.5 ? 8 : 0);
+}
+
 }  // namespace
+
+bool flattens_a_triangle(const Disk& disk, const std::vector<FixedPoint>& points) {
+  std::vector<int> sides(disk.positions.size(), 0);
+  for (const FixedPoint& p : points) sides[static_cast<std::size_t>(p.vertex)] = sides_of(p.at);
+  std::vector<char> is_boundary(3 * disk.faces.size(), 0);
+  for (Index h : disk.loops.front()) is_boundary[static_cast<std::size_t>(h)] = 1;
+  for (std::size_t h = 0; h < is_boundary.size(); ++h) {
+    const Triangle& face = disk.faces[h / 3];
+    const int common = sides[static_cast<std::size_t>(face[h % 3])] &
+                       sides[static_cast<std::size_t>(face[(h + 1) % 3])];
+    if (is_boundary[h] == 0 && common != 0) return true;
+  }
+  return false;
+}
 
 std::vector<FixedPoint> boundary_points(const Disk& disk, BoundaryShape shape) {
   assert(shape != BoundaryShape::free);

@@ -16,4 +16,8 @@ namespace unwrapd {
 /// shape: circle or square.
 std::vector<FixedPoint> boundary_points(const Disk& disk, BoundaryShape shape);
 
+/// Whether an edge inside the surface joins two vertices of one side of the square: what it cuts
+/// off then has no area, and no map with that boundary is free of flips. points: of the square.
+bool flattens_a_triangle(const Disk& disk, const std::vector<FixedPoint>& points);
+
 }  // namespace unwrapd

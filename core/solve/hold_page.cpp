@@ -6,6 +6,7 @@
 #include <cassert>
 #include <utility>
 
+#include "core/error.hpp"
 #include "core/solve/boundary_shape.hpp"
 #include "core/solve/conformal.hpp"
 #include "core/solve/convex_map.hpp"
@@ -64,6 +65,13 @@ Held held_on_page(const PageFrame& frame, const UvMap& guide, const Holds& page)
 Held held_boundary(const Disk& disk, const UnwrapOptions& options) {
   assert(options.boundary != BoundaryShape::free);
   Holds holds{.fixed = boundary_points(disk, options.boundary), .springs = {}};
+  if (options.boundary == BoundaryShape::square && options.guarantee != Guarantee::none &&
+      flattens_a_triangle(disk, holds.fixed))
+    throw Error(
+        ErrorCode::invalid_constraint,
+        "an edge joins two vertices of one side of the square, so that triangles would have "
+        "no area; choose the boundary circle, or guarantee none",
+        "/boundary");
   UvMap start = mean_value_map(disk, holds.fixed);
   return {std::move(holds), std::move(start)};
 }

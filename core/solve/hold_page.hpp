@@ -38,7 +38,9 @@ PageFrame page_frame(const UvMap& guide, const Holds& page, const UnwrapOptions&
 Held held_on_page(const PageFrame& frame, const UvMap& guide, const Holds& page);
 
 /// The longest loop on the shape of options.boundary, with the mean-value map inside it. On the
-/// circle that is free of flips. options.boundary is not free. Throws Error{solver_failed}.
+/// circle that is free of flips. options.boundary is not free. Throws Error{solver_failed}, and
+/// Error{invalid_constraint} where a square cannot be free of flips but options.guarantee asks for
+/// it.
 Held held_boundary(const Disk& disk, const UnwrapOptions& options);
 
 /// How a chart is held. All empty: it is not.
@@ -49,7 +51,7 @@ struct ChartHold {
 };
 
 /// By the position constraints in page, if any, else by options.boundary. Only ASAP, ARAP and
-/// Hybrid hold. Throws Error{solver_failed, cancelled}.
+/// Hybrid hold. Throws Error{solver_failed, invalid_constraint, cancelled}.
 ChartHold hold_chart(const Disk& disk, const UnwrapOptions& options, Holds page,
                      const std::stop_token& stop, Executor& executor);
 

@@ -38,11 +38,16 @@ struct Held {
   UvMap start;
 };
 
-/// Numbers the vertices that are not fixed.
-inline FreeVertices free_vertices(std::size_t vertex_count, const Holds& holds) {
+/// One a vertex: 1 where it is fixed.
+inline std::vector<char> fixed_vertices(std::size_t vertex_count, const Holds& holds) {
   std::vector<char> fixed(vertex_count, 0);
   for (const FixedPoint& point : holds.fixed) fixed[static_cast<std::size_t>(point.vertex)] = 1;
-  return number_free(fixed);
+  return fixed;
+}
+
+/// Numbers the vertices that are not fixed.
+inline FreeVertices free_vertices(std::size_t vertex_count, const Holds& holds) {
+  return number_free(fixed_vertices(vertex_count, holds));
 }
 
 /// Whether both hold the same vertices with the same weights, be it at other places.

@@ -131,9 +131,12 @@ TEST(ConstrainedUnwrap, FillsCircleAndSquareAndPacksThem) {
 }
 
 TEST(ConstrainedUnwrap, RefusesWhatCannotBe) {
-  const auto refused = [](const UnwrapOptions& options, ErrorCode code, const std::string& where) {
+  TriMesh mesh = shapes::grid(2, 2);
+  mesh.positions.emplace_back(0.25, -0.1, 0);
+  mesh.faces.push_back({0, 9, 1});  // an ear: flat on a side of the square
+  const auto refused = [&](const UnwrapOptions& options, ErrorCode code, const std::string& where) {
     try {
-      unwrapped({shapes::grid(2, 2)}, options);
+      unwrapped({mesh}, options);
       ADD_FAILURE() << "not refused";
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), code) << e.what();
@@ -146,6 +149,9 @@ TEST(ConstrainedUnwrap, RefusesWhatCannotBe) {
           "/constraints");
   refused({.boundary = BoundaryShape::square, .constraints = {pin(0, 0, 0)}},
           ErrorCode::invalid_option, "/boundary");
+  refused({.boundary = BoundaryShape::square}, ErrorCode::invalid_constraint, "/boundary");
+  EXPECT_NO_THROW(
+      unwrapped({mesh}, {.guarantee = Guarantee::none, .boundary = BoundaryShape::square}));
 }
 
 TEST(ConstrainedUnwrap, HoldsRealMeshes) {

@@ -61,7 +61,7 @@ TEST(BoundaryShape, FillsTheSquareToItsCorners) {
     const OwnedDisk d = disk_of(mesh);
     const auto points = boundary_points(d.disk, BoundaryShape::square);
     ASSERT_EQ(points.size(), d.disk.loops.front().size());
-    for (const FixedPoint& p : points) EXPECT_NEAR(p.at.lpNorm<Eigen::Infinity>(), 0.5, 1e-15);
+    for (const FixedPoint& p : points) EXPECT_EQ(p.at.lpNorm<Eigen::Infinity>(), 0.5);
     EXPECT_NEAR(enclosed_area(points), points.size() == 3 ? 0.5 : 1, 1e-12);
   }
 }
@@ -90,6 +90,25 @@ TEST(BoundaryShape, KeepsTheCornersOfASheet) {
     const bool corner = at.head<2>().cwiseAbs().minCoeff() > 0.499;
     EXPECT_EQ(corner, p.at.cwiseAbs().minCoeff() == 0.5);
   }
+}
+
+TEST(BoundaryShape, TellsWhenTheSquareFlattensATriangle) {
+  const auto flattens = [](const TriMesh& mesh) {
+    const OwnedDisk d = disk_of(mesh);
+    return flattens_a_triangle(d.disk, boundary_points(d.disk, BoundaryShape::square));
+  };
+  EXPECT_FALSE(flattens(shapes::grid(6, 6)));
+  EXPECT_FALSE(flattens(shapes::sphere_cap(24, 8, 1.5)));
+  TriMesh ear = shapes::grid(6, 6);
+  ear.positions.emplace_back(0.25, -0.1, 0);  // on the lower side, over one edge
+  ear.faces.push_back({1, 49, 2});
+  EXPECT_TRUE(flattens(ear));
+  TriMesh flap = ear;  // the same with a vertex inside the ear: no face has three on the side
+  flap.faces.back() = {1, 49, 50};
+  flap.positions.emplace_back(0.25, -0.03, 0);
+  flap.faces.push_back({49, 2, 50});
+  flap.faces.push_back({2, 1, 50});
+  EXPECT_TRUE(flattens(flap));
 }
 
 TEST(BoundaryShape, HasItsCornersOnRealMeshesToo) {
