@@ -11,26 +11,30 @@ Event started_event(std::int64_t seq, int attempt) {
 }
 
 Event stage_event(std::int64_t seq, const StageEvent& stage) {
-  return {seq,
-          "stage",
-          {{"name", stage_name(stage.stage)},
-           {"chart", stage.chart},
-           {"of", stage.chart_count},
-           {"fraction", finite(stage.fraction)}}};
+  Event event{seq,
+              "stage",
+              {{"name", stage_name(stage.stage)},
+               {"chart", stage.chart},
+               {"of", stage.chart_count},
+               {"fraction", finite(stage.fraction)}}};
+  if (stage.lambda) event.data["lambda"] = finite(*stage.lambda);
+  return event;
 }
 
 Event iteration_event(std::int64_t seq, const IterationEvent& iteration, double ms) {
-  return {seq,
-          "iteration",
-          {{"chart", iteration.chart},
-           {"i", iteration.iteration},
-           {"energy", finite(iteration.energy)},
-           {"rel_change", finite(iteration.rel_change)},
-           {"angle", finite(iteration.angle)},
-           {"area", finite(iteration.area)},
-           {"flipped", iteration.flipped},
-           {"fraction", finite(iteration.fraction)},
-           {"ms", finite(ms)}}};
+  Event event{seq,
+              "iteration",
+              {{"chart", iteration.chart},
+               {"i", iteration.iteration},
+               {"energy", finite(iteration.energy)},
+               {"rel_change", finite(iteration.rel_change)},
+               {"angle", finite(iteration.angle)},
+               {"area", finite(iteration.area)},
+               {"flipped", iteration.flipped},
+               {"fraction", finite(iteration.fraction)},
+               {"ms", finite(ms)}}};
+  if (iteration.lambda) event.data["lambda"] = finite(*iteration.lambda);
+  return event;
 }
 
 Event final_event(std::int64_t seq, const Job& job) {

@@ -20,7 +20,8 @@ struct Event {
 
 inline constexpr std::string_view kPing = ": ping\n\n";  ///< keeps an idle connection open
 
-/// position: how many jobs are ahead.
+/// Stage and iteration events of a curve say which lambda they are of. position: how many jobs are
+/// ahead.
 Event queued_event(std::int64_t seq, std::int64_t position);
 Event started_event(std::int64_t seq, int attempt);
 Event stage_event(std::int64_t seq, const StageEvent& stage);

@@ -8,6 +8,7 @@ Json to_json(const Limits& limits) {
           {"max_faces", limits.max_faces},
           {"max_sync_faces", limits.max_sync_faces},
           {"max_iterations", limits.max_iterations},
+          {"max_constraints", limits.max_constraints},
           {"max_job_seconds", limits.max_job_seconds},
           {"max_wait_seconds", limits.max_wait_seconds},
           {"max_queue", limits.max_queue},

@@ -12,7 +12,8 @@ struct Limits {
   std::int64_t max_vertices = 10'000'000;
   std::int64_t max_faces = 20'000'000;
   std::int64_t max_sync_faces = 50'000;  ///< POST /v1/unwrap; larger meshes go to /v1/jobs
-  int max_iterations = 10'000;           ///< the highest value of the option iterations
+  int max_iterations = 10'000;           ///< of the options stop.iterations and stop.max_iterations
+  int max_constraints = 100'000;         ///< entries of the option constraints
   int max_job_seconds = 600;             ///< of work, the queue not counted
   int max_wait_seconds = 60;             ///< the longest Prefer: wait that is honoured
   int max_queue = 256;                   ///< jobs waiting for a worker

@@ -1,14 +1,12 @@
-// Text or JSON becomes a value in three steps that are the same for every option: find the row,
-// read the value as the row's type, check the row's range. core's validate() then checks what
-// concerns more than one option.
+// A query becomes the JSON object that says the same; every option of an object is then found in
+// the table, checked against its row and set. core's validate() checks what concerns more than one.
 #include "api/options.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <limits>
 #include <numeric>
+#include <utility>
 
+#include "api/option_values.hpp"
 #include "core/error.hpp"
 
 namespace unwrapd::api {
@@ -18,23 +16,7 @@ constexpr std::size_t kMaxEchoed = 40;      // characters of a user's text in a 
 constexpr std::size_t kMaxMisspelling = 2;  // edits between a name and what was meant
 
 [[noreturn]] void refuse(std::string_view name, const std::string& message) {
-  throw Error(ErrorCode::invalid_option, message, "/" + pointer_token(name));
-}
-
-std::string listed(std::span<const std::string_view> names) {
-  std::string text;
-  for (const std::string_view name : names) {
-    if (!text.empty()) text += ", ";
-    text += name;
-  }
-  return text;
-}
-
-/// "1" for 1, "0.5" for 0.5.
-std::string plain(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
+  throw Error(ErrorCode::invalid_option, message, option_pointer(name));
 }
 
 /// The number of single-character edits that turn a into b.
@@ -52,70 +34,36 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// "iterations" of "stop.iterations"; of a name without a group, itself.
+std::string_view last_part(std::string_view name) { return name.substr(name.rfind('.') + 1); }
+
 [[noreturn]] void refuse_unknown(std::string_view name) {
   const std::string_view asked = name.substr(0, kMaxEchoed);
-  std::vector<std::string_view> names;
-  for (const OptionRow& row : option_table()) names.push_back(row.name);
-  const auto distance = [&](std::string_view other) { return edit_distance(asked, other); };
-  const auto nearest = std::ranges::min_element(names, {}, distance);
-  const bool is_near = distance(*nearest) <= std::min(kMaxMisspelling, asked.size() / 2);
-  const std::string advice = is_near ? "did you mean " + std::string(*nearest) + "?"
-                                     : "the options are " + listed(names) + ".";
+  const auto distance = [&](const OptionRow& row) {
+    return std::min(edit_distance(asked, row.name), edit_distance(asked, last_part(row.name)));
+  };
+  const OptionRow& nearest = *std::ranges::min_element(option_table(), {}, distance);
+  std::string advice = "the options are ";
+  for (const OptionRow& row : option_table())
+    advice += std::string(row.name) + (&row == &option_table().back() ? "." : ", ");
+  if (distance(nearest) <= std::min(kMaxMisspelling, asked.size() / 2))
+    advice = "did you mean " + std::string(nearest.name) + "?";
   refuse(name, "There is no option of this name: " + advice);
 }
 
-/// What a value of this option must be: "between 1 and 10000".
-std::string allowed(const OptionRow& row, const Limits& limits) {
-  if (row.type == OptionType::choice) return "one of " + listed(row.choices);
-  const std::string kind = row.type == OptionType::integer ? "an integer" : "a finite number";
-  const std::optional<double> maximum = option_maximum(row, limits);
-  if (!maximum) return kind + " of at least " + plain(row.minimum);
-  return kind + " between " + plain(row.minimum) + " and " + plain(*maximum);
+/// Whether options share this name as their group, as stop does.
+bool is_group(std::string_view name) {
+  return std::ranges::any_of(option_table(), [&](const OptionRow& row) {
+    return row.name.size() > name.size() && row.name.starts_with(name) &&
+           row.name[name.size()] == '.';
+  });
 }
 
-bool in_range(const OptionRow& row, double value, const Limits& limits) {
-  const double maximum = option_maximum(row, limits).value_or(std::numeric_limits<double>::max());
-  return value >= row.minimum && value <= maximum;  // false for NaN
-}
-
-std::optional<double> choice_index(const OptionRow& row, std::string_view text) {
-  const auto found = std::ranges::find(row.choices, text);
-  if (found == row.choices.end()) return std::nullopt;
-  return static_cast<double>(found - row.choices.begin());
-}
-
-template <class T>
-std::optional<double> whole_number(std::string_view text) {
-  T value{};
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return static_cast<double>(value);
-}
-
-/// Text as the row's type; empty when it is none.
-std::optional<double> value_of(const OptionRow& row, const std::string& text) {
-  switch (row.type) {
-    case OptionType::choice:
-      return choice_index(row, text);
-    case OptionType::integer:
-      return whole_number<std::int64_t>(text);
-    case OptionType::number:
-      return whole_number<double>(text);
-  }
-  return std::nullopt;
-}
-
-/// JSON as the row's type; 10.0 is an integer, as JSON Schema has it.
-std::optional<double> value_of(const OptionRow& row, const Json& json) {
-  if (row.type == OptionType::choice) {
-    if (!json.is_string()) return std::nullopt;
-    return choice_index(row, json.get_ref<const std::string&>());
-  }
-  if (!json.is_number()) return std::nullopt;
-  const double value = json.get<double>();
-  if (row.type == OptionType::integer && std::trunc(value) != value) return std::nullopt;
-  return value;
+/// The place of an option in an object, made where it is missing.
+Json& member(Json& object, std::string_view name) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string_view::npos) return object[std::string(name)];
+  return object[std::string(name.substr(0, dot))][std::string(name.substr(dot + 1))];
 }
 
 /// Options as they are gathered: the values so far and which were given.
@@ -129,28 +77,49 @@ struct Gathering {
   JobOptions options;
   std::vector<const OptionRow*> given;
 
-  void add(std::string_view name, const auto& raw) {
+  void add(const std::string& name, const Json& value) {
     const OptionRow* row = find_option(name);
     if (row == nullptr) refuse_unknown(name);
-    if (std::ranges::find(given, row) != given.end()) {
-      refuse(name, std::string(name) + " is given twice: give it once.");
-    }
-    const std::optional<double> value = value_of(*row, raw);
-    const bool fits = value && (row->type == OptionType::choice || in_range(*row, *value, limits));
-    if (!fits) refuse(name, std::string(name) + " must be " + allowed(*row, limits) + ".");
-    row->set(options, *value);
+    if (value.is_null() && row->nullable) return;  // as in resolved options
+    check_value(*row, value, limits);
+    row->set(options, value);
     given.push_back(row);
+  }
+
+  void add_group(const std::string& name, const Json& group) {
+    if (!group.is_object()) refuse(name, name + " must be an object, each option of it a member.");
+    for (const auto& [inner, value] : group.items()) add(name + "." + inner, value);
+  }
+
+  void add_all(const Json& object) {
+    for (const auto& [name, value] : object.items()) {
+      if (is_group(name)) {
+        add_group(name, value);
+      } else if (find_option(name) != nullptr && name.find('.') != std::string::npos) {
+        refuse(name, "In JSON a dot means an object within: write {\"stop\": {...}}.");
+      } else {
+        add(name, value);
+      }
+    }
+  }
+
+  [[nodiscard]] bool changes_nothing(const OptionRow& row) const {
+    if (!has_effect(row, options.unwrap.method)) return true;
+    const bool plain = options.unwrap.stop.iterations.has_value();
+    return plain && (row.name == "stop.tolerance" || row.name == "stop.max_iterations");
   }
 
   JobOptions finish() {
     validate(options.unwrap, limits.max_iterations);
-    const Json resolved = to_json(options);
     for (const OptionRow* row : given) {
-      if (has_effect(*row, options.unwrap.method)) continue;
-      if (resolved.at(std::string(row->name)) == option_default(*row)) continue;
-      options.notes.push_back("The option " + std::string(row->name) +
-                              " has no effect with the method " +
-                              std::string(method_name(options.unwrap.method)) + ".");
+      if (!changes_nothing(*row)) continue;
+      if (!row->nullable && row->get(options) == option_default(*row, limits)) continue;
+      const bool with_method = has_effect(*row, options.unwrap.method);
+      options.notes.push_back(
+          "The option " + std::string(row->name) + " has no effect with " +
+          (with_method ? "stop.iterations"
+                       : "the method " + std::string(method_name(options.unwrap.method))) +
+          ".");
     }
     return std::move(options);
   }
@@ -158,10 +127,26 @@ struct Gathering {
 
 }  // namespace
 
+std::string option_pointer(std::string_view name) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string_view::npos || !is_group(name.substr(0, dot)))
+    return "/" + pointer_token(name);
+  return "/" + std::string(name.substr(0, dot)) + "/" + pointer_token(name.substr(dot + 1));
+}
+
+Json options_object(const Query& query) {
+  Json object = Json::object();
+  for (const auto& [name, text] : query) {
+    const OptionRow* row = find_option(name);
+    if (row == nullptr) refuse_unknown(name);
+    if (query.count(name) > 1) refuse(name, name + " is given twice: give it once.");
+    member(object, name) = value_of_text(*row, text);
+  }
+  return object;
+}
+
 JobOptions parse_options(const Query& query, const Limits& limits) {
-  Gathering gathering(limits);
-  for (const auto& [name, text] : query) gathering.add(name, text);
-  return gathering.finish();
+  return parse_options(options_object(query), limits);
 }
 
 JobOptions parse_options(const Json& object, const Limits& limits) {
@@ -169,15 +154,19 @@ JobOptions parse_options(const Json& object, const Limits& limits) {
     throw Error(ErrorCode::invalid_option, "The options must be a JSON object.");
   }
   Gathering gathering(limits);
-  for (const auto& [name, value] : object.items()) {
-    if (value.is_null() && name == "lambda") continue;  // as in resolved options
-    gathering.add(name, value);
-  }
+  gathering.add_all(object);
   return gathering.finish();
 }
 
 JobOptions parse_options_text(std::string_view text, const Limits& limits) {
-  return parse_options(parse_json(text), limits);
+  return parse_options(parse_json(text, {.max_bytes = kMaxOptionsBytes}), limits);
+}
+
+Json to_json(const JobOptions& options) {
+  Json json = Json::object();
+  for (const OptionRow& row : option_table()) member(json, row.name) = row.get(options);
+  if (options.unwrap.method != Method::hybrid) json["lambda"] = nullptr;
+  return json;
 }
 
 }  // namespace unwrapd::api

@@ -2,7 +2,6 @@
 // Options on the wire. One table says everything about an option; parsing (query and JSON), the
 // answer of GET /v1/methods, the resolved options of a job and the client's flags all come from it.
 
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -26,20 +25,31 @@ struct JobOptions {
   std::vector<std::string> notes;
 };
 
-enum class OptionType { choice, number, integer };
+enum class OptionType {
+  choice,
+  number,
+  integer,
+  numbers,      ///< a number, or a list of different ones: "1,2" in a query
+  constraints,  ///< a list of objects (see constraints.hpp): their JSON in a query
+};
 
+inline constexpr std::size_t kMaxNumbers = 32;  ///< entries of an option of type numbers
+
+/// An option. In JSON "stop.iterations" is the member iterations of the object stop.
 struct OptionRow {
-  std::string_view name;  ///< on the wire; the flag is this with dashes
+  std::string_view name;  ///< on the wire; the flag is this with dashes for "_" and "."
   OptionType type;
   std::span<const std::string_view> choices;  ///< of a choice, in the order of its enumerators
-  double minimum;                             ///< of a number or integer
-  std::optional<double> maximum;              ///< empty: none, or a Limit (see option_maximum())
-  std::string_view description;               ///< one sentence
-  std::span<const Method> methods;            ///< with which it has an effect
+  double minimum;                             ///< of a number
+  std::optional<double> maximum;              ///< of a number; empty: none, or the server's
+  int Limits::*limit;            ///< the server's own maximum, of a number or of a list's entries
+  bool nullable;                 ///< null counts as not given
+  std::string_view description;  ///< one sentence
+  std::span<const Method> methods;  ///< with which it has an effect
 
-  /// The option in its wire type (a choice as its name), from and to the options.
+  /// The option as JSON, from and to the options; set() takes what check_value() lets pass.
   Json (*get)(const JobOptions&);
-  void (*set)(JobOptions&, double);  ///< of a choice: its index
+  void (*set)(JobOptions&, const Json&);
 };
 
 std::span<const OptionRow> option_table();
@@ -47,10 +57,16 @@ std::span<const OptionRow> option_table();
 /// The row of this name, or nullptr.
 const OptionRow* find_option(std::string_view name);
 
-/// The default, as in JobOptions{}.
-Json option_default(const OptionRow& row);
+/// Where an option stands in JSON: "/stop/iterations" for "stop.iterations".
+std::string option_pointer(std::string_view name);
 
-/// The highest value allowed, where there is one: iterations has the server's own.
+/// The row that a pointer leads to or into ("/constraints/2/uv"), or nullptr.
+const OptionRow* option_at(std::string_view pointer);
+
+/// What an option is when it is not given, on a server of these limits.
+Json option_default(const OptionRow& row, const Limits& limits);
+
+/// The highest number allowed, where there is one.
 std::optional<double> option_maximum(const OptionRow& row, const Limits& limits);
 
 /// Whether the option changes anything with this method.
@@ -60,17 +76,24 @@ std::string_view method_name(Method method);
 
 using Query = std::multimap<std::string, std::string>;  ///< a decoded query string
 
+/// A query as the JSON object that says the same. Text that is none of its option's type stays a
+/// string. Throws Error{invalid_option} for an option that is unknown or given twice.
+Json options_object(const Query& query);
+
 /// Options of a query string; those not named keep their default. Throws Error{invalid_option}
 /// with the pointer "/name" of the first option that is unknown, given twice, of the wrong type or
 /// out of range.
 JobOptions parse_options(const Query& query, const Limits& limits);
 
-/// The same from a JSON object; a null lambda counts as not given, so that resolved options can be
-/// sent again.
+/// The same from a JSON object; null counts as not given where an option can be null in resolved
+/// options, so that these can be sent again.
 JobOptions parse_options(const Json& object, const Limits& limits);
 
 /// The same from JSON text, strictly: also throws malformed_request for what is no JSON.
 JobOptions parse_options_text(std::string_view text, const Limits& limits);
+
+/// The longest JSON text of options that is read: room for as many constraints as may be given.
+inline constexpr std::size_t kMaxOptionsBytes = std::size_t{16} * 1024 * 1024;
 
 /// The resolved options, every default filled in; lambda is null unless the method is hybrid.
 Json to_json(const JobOptions& options);

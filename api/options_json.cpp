@@ -1,4 +1,4 @@
-// What the table tells others: the resolved options of a job and the body of GET /v1/methods.
+// What the table tells others: rows by name or pointer, defaults, and the body of GET /v1/methods.
 #include <algorithm>
 #include <array>
 
@@ -19,6 +19,18 @@ constexpr std::array kMethods = {
     MethodRow{Method::arap, "As rigid as possible",
               "Keeps angles and areas together; iterates between local fits and one global solve."},
     MethodRow{Method::hybrid, "Hybrid", "Between asap and arap: lambda weighs area against angle."},
+    MethodRow{Method::abf, "Angle-based flattening",
+              "Keeps angles: finds the nearest ones that close up in the plane (ABF++)."},
+    MethodRow{Method::linabf, "Linear angle-based flattening",
+              "Keeps angles: abf's equations made linear, one solve."},
+    MethodRow{Method::cp, "Curvature prescription",
+              "Keeps angles: scales edges until all curvature is at the boundary."},
+    MethodRow{Method::bff, "Boundary first flattening",
+              "Keeps angles: the boundary of least area distortion first, then its inside."},
+    MethodRow{Method::ic, "Inverse curvature",
+              "Keeps angles: edge lengths of a flat metric by the inverse curvature map."},
+    MethodRow{Method::slim, "Scalable locally injective mapping",
+              "Keeps shapes and never flips a triangle (symmetric Dirichlet energy)."},
 };
 
 std::string_view type_name(OptionType type) {
@@ -26,9 +38,12 @@ std::string_view type_name(OptionType type) {
     case OptionType::choice:
       return "string";
     case OptionType::number:
+    case OptionType::numbers:
       return "number";
     case OptionType::integer:
       return "integer";
+    case OptionType::constraints:
+      return "array";
   }
   return {};
 }
@@ -39,15 +54,23 @@ Json bound(const OptionRow& row, double value) {
   return value;
 }
 
+/// The most entries of a list, where the option can be one.
+std::optional<std::size_t> most_items(const OptionRow& row, const Limits& limits) {
+  if (row.type == OptionType::numbers) return kMaxNumbers;
+  if (row.type == OptionType::constraints) return static_cast<std::size_t>(limits.*row.limit);
+  return std::nullopt;
+}
+
 Json option_json(const OptionRow& row, const Limits& limits) {
   Json json = {{"name", row.name}, {"type", type_name(row.type)}};
   if (row.type == OptionType::choice) {
     json["enum"] = row.choices;
-  } else {
+  } else if (row.type != OptionType::constraints) {
     json["minimum"] = bound(row, row.minimum);
     if (const auto maximum = option_maximum(row, limits)) json["maximum"] = bound(row, *maximum);
   }
-  json["default"] = option_default(row);
+  if (const auto most = most_items(row, limits)) json["max_items"] = *most;
+  json["default"] = option_default(row, limits);
   json["description"] = row.description;
   json["methods"] = Json::array();
   for (const Method method : row.methods) json["methods"].push_back(method_name(method));
@@ -72,22 +95,26 @@ const OptionRow* find_option(std::string_view name) {
   return found == option_table().end() ? nullptr : &*found;
 }
 
-Json option_default(const OptionRow& row) { return row.get(JobOptions{}); }
+const OptionRow* option_at(std::string_view pointer) {
+  const auto leads_here = [&](const OptionRow& row) {
+    const std::string own = option_pointer(row.name);
+    return pointer.starts_with(own) && (pointer.size() == own.size() || pointer[own.size()] == '/');
+  };
+  const auto found = std::ranges::find_if(option_table(), leads_here);
+  return found == option_table().end() ? nullptr : &*found;
+}
+
+Json option_default(const OptionRow& row, const Limits& limits) {
+  return row.get(parse_options(Json::object(), limits));
+}
 
 std::optional<double> option_maximum(const OptionRow& row, const Limits& limits) {
-  if (row.name == "iterations") return limits.max_iterations;
+  if (row.type == OptionType::integer && row.limit != nullptr) return limits.*row.limit;
   return row.maximum;
 }
 
 bool has_effect(const OptionRow& row, Method method) {
   return std::ranges::find(row.methods, method) != row.methods.end();
-}
-
-Json to_json(const JobOptions& options) {
-  Json json = Json::object();
-  for (const OptionRow& row : option_table()) json[std::string(row.name)] = row.get(options);
-  if (options.unwrap.method != Method::hybrid) json["lambda"] = nullptr;
-  return json;
 }
 
 Json methods_json(const Limits& limits) {

@@ -7,7 +7,9 @@ namespace unwrapd::api {
 namespace {
 
 // Each in the order of its enumerators.
-constexpr std::array<std::string_view, 3> kStopReasons = {"iterations", "direct", "collapse_guard"};
+constexpr std::array<std::string_view, 5> kStopReasons = {"iterations", "direct", "collapse_guard",
+                                                          "converged", "max_iterations"};
+constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "bijective"};
 constexpr std::array<std::string_view, 4> kRepairKinds = {
     "degenerate_faces_set_aside", "duplicate_faces_set_aside", "non_manifold_edges_split",
     "cut_to_disk"};
@@ -36,6 +38,21 @@ Json to_json(const Repair& repair) {
           {"count", repair.count}};
 }
 
+Json to_json(const Mending& mending) {
+  return {{"flips", mending.flips},
+          {"overlaps", mending.overlaps},
+          {"energy_rise", finite(mending.energy_rise)},
+          {"virtual_boundary", mending.virtual_boundary},
+          {"parts", mending.parts}};
+}
+
+Json to_json(const CurvePoint& point) {
+  return {{"lambda", finite(point.lambda)},
+          {"energy", finite(point.energy)},
+          {"distortion", to_json(point.distortion)},
+          {"iterations", point.iterations}};
+}
+
 Json to_json(const ChartReport& chart) {
   Json energy = Json::array();
   for (const double value : chart.energy) energy.push_back(finite(value));
@@ -45,6 +62,8 @@ Json to_json(const ChartReport& chart) {
           {"boundaries", chart.boundaries},
           {"area", finite(chart.area)},
           {"distortion", to_json(chart.distortion)},
+          {"overlaps", chart.overlaps ? Json(*chart.overlaps) : Json()},
+          {"mending", to_json(chart.mending)},
           {"iterations", chart.iterations},
           {"stop_reason", kStopReasons[static_cast<std::size_t>(chart.stop_reason)]},
           {"energy", std::move(energy)}};
@@ -88,6 +107,8 @@ Json to_json(const Report& report, const ReportContext& context) {
           {"notes", notes_json(report, context)},
           {"charts", array_of(report.charts)},
           {"distortion", to_json(report.distortion)},
+          {"guarantee", kGuarantees[static_cast<std::size_t>(report.guarantee)]},
+          {"curve", array_of(report.curve)},
           {"seam_length", finite(report.seam_length)},
           {"fill", finite(report.fill)},
           {"texel_density", finite(report.texel_density)},

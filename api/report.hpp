@@ -16,7 +16,8 @@ struct ReportContext {
   std::string sha256 = {};   ///< of the request's mesh document, lowercase hex
   std::int64_t bytes = 0;    ///< of the mesh document and its buffers
   std::string version = {};  ///< of the solver: "0.1.0"
-  /// Milliseconds by stage: queue, read, setup, factor, solve, measure, pack, write, total.
+  /// Milliseconds by stage: queue, read, setup, factor, solve, untangle, measure, pack, write,
+  /// total.
   std::map<std::string, double> timings_ms = {};
   std::vector<std::string> notes = {};  ///< beside core's own (see JobOptions::notes)
 };

@@ -7,6 +7,7 @@
 
 #include "api/error_table.hpp"
 #include "api/options.hpp"
+#include "client/files.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -37,23 +38,27 @@ Exit codes:
 std::string flag_name(std::string_view option) {
   std::string flag(option);
   std::ranges::replace(flag, '_', '-');
+  std::ranges::replace(flag, '.', '-');
   return "--" + flag;
 }
 
 std::string value_text(const api::Json& value) {
+  if (value.is_null() || value.is_array()) return "none";
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// "asap|arap|hybrid", "INT >= 1", "NUMBER >= 0", "INT in [16, 16384]".
+/// "asap|arap|hybrid", "INT >= 1", "NUMBER[,NUMBER...] >= 0", "INT in [16, 16384]".
 std::string range_text(const api::OptionRow& row) {
+  if (row.type == api::OptionType::constraints) return "FILE.json";
   if (row.type == api::OptionType::choice) {
     std::string text;
     for (const std::string_view choice : row.choices)
       text += (text.empty() ? "" : "|") + std::string(choice);
     return text;
   }
-  const std::string kind = row.type == api::OptionType::integer ? "INT" : "NUMBER";
-  const auto figure = [](double value) { return std::to_string(std::lround(value)); };
+  std::string kind = row.type == api::OptionType::integer ? "INT" : "NUMBER";
+  if (row.type == api::OptionType::numbers) kind += "[,NUMBER...]";
+  const auto figure = [](double value) { return api::Json(value).dump(); };
   if (!row.maximum) return kind + " >= " + figure(row.minimum);
   return kind + " in [" + figure(row.minimum) + ", " + figure(*row.maximum) + "]";
 }
@@ -62,11 +67,15 @@ std::string range_text(const api::OptionRow& row) {
 void add_option_flags(CLI::App& app, OptionTexts& options) {
   for (const api::OptionRow& row : api::option_table()) {
     const std::string name(row.name);
-    const std::string text =
-        std::string(row.description) + " Default: " + value_text(api::option_default(row)) + ".";
+    const std::string text = std::string(row.description) +
+                             " Default: " + value_text(api::option_default(row, {})) + ".";
+    const bool is_file = row.type == api::OptionType::constraints;
     app.add_option_function<std::string>(
            flag_name(row.name),
-           [&options, name](const std::string& value) { options[name] = value; }, text)
+           [&options, name, is_file](const std::string& value) {
+             options[name] = is_file ? read_file(value) : value;
+           },
+           text)
         ->type_name(range_text(row))
         ->group("Options of the unwrapping");
   }
@@ -79,6 +88,19 @@ struct Raw {
   double timeout_seconds = 0;
 };
 
+void add_picture_flags(CLI::App& app, Arguments& arguments) {
+  app.add_option("--layout", arguments.layout,
+                 "Write a picture of the UV layout here, an SVG or, by its extension, a PNG")
+      ->type_name("PATH");
+  app.add_option("--layout-colour", arguments.layout_colour,
+                 "What the layout's colours say. Default: stretch")
+      ->check(CLI::IsMember({"stretch", "angle", "area", "flips"}))
+      ->type_name("stretch|angle|area|flips");
+  app.add_option("--preview", arguments.preview,
+                 "Write a picture of the mesh (PNG), textured with a checkerboard, here")
+      ->type_name("PATH");
+}
+
 void add_flags(CLI::App& app, Raw& raw) {
   Arguments& arguments = raw.arguments;
   app.add_option("FILE", arguments.file, "The mesh: .glb, .gltf or .obj")->type_name("");
@@ -87,8 +109,7 @@ void add_flags(CLI::App& app, Raw& raw) {
                  "otherwise. Without it FILE's name with \".uv\" before the extension")
       ->type_name("OUT");
   app.add_option("--report", arguments.report, "Write the report (JSON) here")->type_name("PATH");
-  app.add_option("--layout", arguments.layout, "Write a picture of the UV layout (SVG) here")
-      ->type_name("PATH");
+  add_picture_flags(app, arguments);
   app.add_flag("--json", arguments.json,
                "Print the report (JSON) on stdout and nothing else there");
   app.add_flag("-q,--quiet", arguments.quiet, "Show no progress and no summary");
@@ -116,13 +137,17 @@ std::string format_of(const fs::path& path) {
 /// The options must make sense by themselves; what this server allows beyond is its own affair.
 void check_options(const OptionTexts& options) {
   api::Limits limits;
-  limits.max_iterations = std::numeric_limits<int>::max();
+  limits.max_iterations = limits.max_constraints = std::numeric_limits<int>::max();
   try {
     api::parse_options(std::multimap<std::string, std::string>(options.begin(), options.end()),
                        limits);
   } catch (const Error& error) {
-    const std::string flag = error.where().empty() ? "" : flag_name(error.where().substr(1)) + ": ";
-    throw Failure(ExitCode::usage, flag + error.what());
+    const api::OptionRow* row = api::option_at(error.where());
+    std::string message = row == nullptr ? "" : flag_name(row->name) + ": ";
+    message += error.what();
+    if (row != nullptr && row->type == api::OptionType::constraints)
+      message += " (at " + error.where() + ")";
+    throw Failure(ExitCode::usage, message);
   }
 }
 

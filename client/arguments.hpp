@@ -15,8 +15,10 @@ struct Arguments {
   std::filesystem::path file;  ///< to unwrap; empty with sample
   std::filesystem::path out;   ///< where the result goes, never empty unless sample is given
   std::filesystem::path report;
-  std::filesystem::path layout;
-  std::filesystem::path sample;  ///< write the sample mesh here and do nothing else
+  std::filesystem::path layout;   ///< a PNG where its extension says so, else an SVG
+  std::string layout_colour;      ///< what the layout's colours say; empty: the server's default
+  std::filesystem::path preview;  ///< the textured mesh, PNG
+  std::filesystem::path sample;   ///< write the sample mesh here and do nothing else
   ServerUrl server;
   OptionTexts options;  ///< as given, with output filled in; checked
   std::chrono::milliseconds timeout{0};

@@ -44,7 +44,7 @@ class JobClient {
   /// is taken up again behind the last event seen. Throws Failure: as submit.
   api::Job follow(const std::string& job_id, const EventSink& on_event);
 
-  /// The body of a GET on the job: what is "/result", "/report" or "/layout.svg".
+  /// The body of a GET on the job: what is "/result", "/report", "/layout.svg" and so on.
   std::string fetch(const std::string& job_id, const std::string& what);
   void fetch(const std::string& job_id, const std::string& what, const BytesSink& sink);
 

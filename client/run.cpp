@@ -13,21 +13,13 @@
 namespace unwrapd::client {
 namespace {
 
-/// The options in their wire types, as a multipart request carries them.
-std::string options_json(const OptionTexts& options) {
-  api::Json json = api::Json::object();
-  for (const auto& [name, text] : options) {
-    const api::OptionRow* row = api::find_option(name);
-    const bool is_text = row == nullptr || row->type == api::OptionType::choice;
-    json[name] = is_text ? api::Json(text) : api::Json::parse(text);
-  }
-  return json.dump();
-}
-
+/// Options travel in the query as long as they are short; constraints and buffers need parts.
 api::Job submit(JobClient& client, const Arguments& arguments) {
   const auto buffers = external_buffers(arguments.file);
-  if (buffers.empty()) return client.submit(raw_upload(arguments.file), arguments.options);
-  const std::string options = options_json(arguments.options);
+  if (buffers.empty() && !arguments.options.contains("constraints"))
+    return client.submit(raw_upload(arguments.file), arguments.options);
+  const api::Query given(arguments.options.begin(), arguments.options.end());
+  const std::string options = api::options_object(given).dump();
   return client.submit(multipart_upload(options, arguments.file, buffers), {});
 }
 
@@ -96,12 +88,20 @@ void tell(const Arguments& arguments, const std::string& report_text, const Cons
   }
 }
 
+std::string layout_path(const Arguments& arguments) {
+  std::string path = arguments.layout.extension() == ".png" ? "/layout.png" : "/layout.svg";
+  if (!arguments.layout_colour.empty()) path += "?colour=" + arguments.layout_colour;
+  return path;
+}
+
 /// The files to write, opened before anything is sent: what cannot be written is known at once.
 class Outputs {
  public:
   explicit Outputs(const Arguments& arguments) : result_(arguments.out) {
     if (!arguments.report.empty()) report_.emplace(arguments.report);
     if (!arguments.layout.empty()) layout_.emplace(arguments.layout);
+    if (!arguments.preview.empty()) preview_.emplace(arguments.preview);
+    layout_path_ = layout_path(arguments);
   }
 
   /// Fetches and writes all of them, and returns the report.
@@ -109,16 +109,19 @@ class Outputs {
     client.fetch(job_id, "/result", [&](std::string_view bytes) { result_.append(bytes); });
     std::string report = client.fetch(job_id, "/report");
     if (report_) report_->append(report);
-    if (layout_) layout_->append(client.fetch(job_id, "/layout.svg"));
+    if (layout_) layout_->append(client.fetch(job_id, layout_path_));
+    if (preview_) preview_->append(client.fetch(job_id, "/preview.png"));
     if (report_) report_->commit();
     if (layout_) layout_->commit();
+    if (preview_) preview_->commit();
     result_.commit();
     return report;
   }
 
  private:
   NewFile result_;
-  std::optional<NewFile> report_, layout_;
+  std::optional<NewFile> report_, layout_, preview_;
+  std::string layout_path_;
 };
 
 }  // namespace

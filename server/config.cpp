@@ -79,8 +79,10 @@ void add_limit_flags(CLI::App& app, api::Limits& limits) {
   add_number(app, "--max-faces", limits.max_faces, "Triangles of an asset", Counts{1, kMaxCount});
   add_number(app, "--max-sync-faces", limits.max_sync_faces,
              "Triangles of an asset sent to /v1/unwrap", Counts{1, kMaxCount});
-  add_number(app, "--max-iterations", limits.max_iterations, "The option iterations",
-             {1, 1'000'000});
+  add_number(app, "--max-iterations", limits.max_iterations,
+             "The options stop.iterations and stop.max_iterations", {1, 1'000'000});
+  add_number(app, "--max-constraints", limits.max_constraints, "Entries of the option constraints",
+             {0, 10'000'000});
   add_number(app, "--max-job-seconds", limits.max_job_seconds, "Work on one job", {1, kMaxSeconds});
   add_number(app, "--max-wait-seconds", limits.max_wait_seconds, "Prefer: wait", {0, 3600});
   add_number(app, "--max-queue", limits.max_queue, "Jobs that wait for a worker", {1, 1'000'000});

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "api/options.hpp"
 #include "core/error.hpp"
 
 namespace unwrapd::server {
 namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
-constexpr std::size_t kMaxOptionsBytes = std::size_t{64} * 1024;
 constexpr std::size_t kMaxBuffers = 1000;
 
 /// A file that grows in pieces worth a system call each.
@@ -79,8 +79,8 @@ class PartWriter {
 
   void append_option_text(std::string_view bytes) {
     upload_.options->append(bytes);
-    if (upload_.options->size() > kMaxOptionsBytes)
-      throw Error(ErrorCode::body_too_large, "The part \"options\" exceeds 64 KiB; shorten it.");
+    if (upload_.options->size() > api::kMaxOptionsBytes)
+      throw Error(ErrorCode::body_too_large, "The part \"options\" exceeds 16 MiB; shorten it.");
   }
 
   void start_document() {

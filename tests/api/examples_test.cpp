@@ -39,9 +39,10 @@ TEST(Examples, OfJobsAreReadAndWrittenUnchanged) {
 }
 
 TEST(Examples, OfProblemsHaveTheirRowsStatusAndTitle) {
-  for (const char* name : {"not_found", "invalid_option", "queue_full"}) {
+  for (const char* name :
+       {"not_found", "invalid_option", "invalid_constraint", "guarantee_failed", "queue_full"}) {
     const Json json = Json::parse(example("problem_" + std::string(name) + ".json"));
-    EXPECT_EQ(problem(error_from_problem(json)), json);
+    EXPECT_EQ(problem(error_from_problem(json), json.value("job", "")), json);
     EXPECT_EQ(json.at("code"), name);
   }
 }

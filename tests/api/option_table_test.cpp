@@ -20,9 +20,31 @@ std::vector<std::string> names() {
   return all;
 }
 
+/// "stop" of "stop.iterations"; of a name without a group, itself.
+std::string first_part(std::string_view name) {
+  return std::string(name.substr(0, name.find('.')));
+}
+
+/// The members of the options' object, in the order of the table.
+std::vector<std::string> members() {
+  std::vector<std::string> all;
+  for (const std::string& name : names())
+    if (all.empty() || all.back() != first_part(name)) all.push_back(first_part(name));
+  return all;
+}
+
 std::vector<std::string> schema_of(const OptionRow& row) {
   if (row.name == "lambda") return {"components", "schemas", "Lambda"};  // elsewhere it may be null
+  const std::size_t dot = row.name.find('.');
+  if (dot != std::string_view::npos)
+    return {"components", "schemas", "Stop", "properties", std::string(row.name.substr(dot + 1))};
   return {"components", "schemas", "Options", "properties", std::string(row.name)};
+}
+
+std::string type_of(const OptionRow& row) {
+  if (row.type == OptionType::integer) return row.nullable ? "[integer, 'null']" : "integer";
+  if (row.type == OptionType::constraints) return "array";
+  return row.type == OptionType::choice ? "string" : "number";
 }
 
 std::string text(const Json& value) {
@@ -30,9 +52,14 @@ std::string text(const Json& value) {
 }
 
 TEST(OptionTable, IsTheContractsListOfOptions) {
-  EXPECT_THAT(keys({"components", "schemas", "Options", "properties"}), ElementsAreArray(names()));
+  EXPECT_THAT(keys({"components", "schemas", "Options", "properties"}),
+              ElementsAreArray(members()));
   EXPECT_THAT(list({"components", "schemas", "ResolvedOptions"}, "required"),
-              ElementsAreArray(names()));
+              ElementsAreArray(members()));
+  std::vector<std::string> of_stop;
+  for (const std::string& name : names())
+    if (first_part(name) == "stop") of_stop.push_back(name.substr(5));
+  EXPECT_THAT(keys({"components", "schemas", "Stop", "properties"}), ElementsAreArray(of_stop));
 }
 
 TEST(OptionTable, HasEveryOptionAsAQueryParameterOfBothPosts) {
@@ -46,16 +73,25 @@ TEST(OptionTable, HasEveryOptionAsAQueryParameterOfBothPosts) {
   }
 }
 
-TEST(OptionTable, AgreesWithTheContractInTypeRangeAndDefault) {
+TEST(OptionTable, AgreesWithTheContractInTypeAndDefault) {
   for (const OptionRow& row : option_table()) {
     const std::vector<std::string> schema = schema_of(row);
-    EXPECT_EQ(scalar(schema, "default"), text(option_default(row))) << row.name;
-    if (row.type == OptionType::choice) {
-      EXPECT_EQ(scalar(schema, "type"), "string") << row.name;
-      EXPECT_THAT(list(schema, "enum"), ElementsAreArray(row.choices)) << row.name;
-      continue;
+    EXPECT_EQ(scalar(schema, "type"), type_of(row)) << row.name;
+    const std::string told = scalar(schema, "default"), own = text(option_default(row, {}));
+    if (row.type == OptionType::number || row.type == OptionType::numbers) {
+      EXPECT_EQ(std::stod(told), std::stod(own)) << row.name;
+    } else {
+      EXPECT_EQ(told, own) << row.name;
     }
-    EXPECT_EQ(scalar(schema, "type"), row.type == OptionType::integer ? "integer" : "number");
+    if (row.type != OptionType::choice) continue;
+    EXPECT_THAT(list(schema, "enum"), ElementsAreArray(row.choices)) << row.name;
+  }
+}
+
+TEST(OptionTable, AgreesWithTheContractInRange) {
+  for (const OptionRow& row : option_table()) {
+    if (row.type == OptionType::choice || row.type == OptionType::constraints) continue;
+    const std::vector<std::string> schema = schema_of(row);
     EXPECT_EQ(std::stod(scalar(schema, "minimum")), row.minimum) << row.name;
     const std::optional<double> maximum = option_maximum(row, Limits{});
     EXPECT_EQ(scalar(schema, "maximum").empty(), !maximum) << row.name;
@@ -64,11 +100,40 @@ TEST(OptionTable, AgreesWithTheContractInTypeRangeAndDefault) {
   }
 }
 
+TEST(OptionTable, AgreesWithTheContractInTheLengthOfLists) {
+  const std::vector<std::string> options = {"components", "schemas", "Options", "properties"};
+  std::vector<std::string> constraints = options;
+  constraints.emplace_back("constraints");
+  EXPECT_EQ(scalar(constraints, "maxItems"), std::to_string(Limits{}.max_constraints));
+  const std::vector<std::string> lambdas = section({"components", "schemas", "Lambdas", "oneOf"});
+  EXPECT_THAT(lambdas, testing::Contains("          maxItems: " + std::to_string(kMaxNumbers)));
+}
+
 TEST(OptionTable, DefaultsAreAllowedValues) {
   for (const OptionRow& row : option_table()) {
-    const Json object = {{std::string(row.name), option_default(row)}};
-    EXPECT_NO_THROW(parse_options(object, Limits{})) << row.name;
+    const Json value = option_default(row, {});
+    if (value.is_null()) continue;  // not given, which needs no value
+    const std::string given = value.is_string() ? value.get<std::string>() : value.dump();
+    const JobOptions options = parse_options(Query{{std::string(row.name), given}}, Limits{});
+    EXPECT_EQ(row.get(options), value) << row.name;
   }
+}
+
+TEST(OptionTable, KnowsARowByItsPointer) {
+  for (const OptionRow& row : option_table()) {
+    EXPECT_EQ(option_at(option_pointer(row.name)), &row);
+    EXPECT_EQ(option_at(option_pointer(row.name) + "/0/deeper"), &row);
+    EXPECT_NE(option_at(option_pointer(row.name) + "x"), &row);
+  }
+  EXPECT_EQ(option_at("/stop"), nullptr);
+  EXPECT_EQ(option_at(""), nullptr);
+}
+
+TEST(OptionTable, OnASmallServerTheDefaultIsWhatTheServerAllows) {
+  Limits limits;
+  limits.max_iterations = 20;
+  EXPECT_EQ(option_default(*find_option("stop.max_iterations"), limits), 20);
+  EXPECT_EQ(option_default(*find_option("stop.max_iterations"), Limits{}), 500);
 }
 
 TEST(OptionTable, EveryChoiceSetsAnOptionOfItsOwn) {
@@ -87,16 +152,21 @@ TEST(OptionTable, EveryChoiceSetsAnOptionOfItsOwn) {
 TEST(OptionTable, ChoicesNameTheEnumeratorsThatTheySay) {
   const auto options = [](const Query& query) { return parse_options(query, Limits{}); };
   EXPECT_EQ(options({{"method", "hybrid"}}).unwrap.method, Method::hybrid);
+  EXPECT_EQ(options({{"method", "slim"}}).unwrap.method, Method::slim);
   EXPECT_EQ(options({{"lambda_units", "paper"}}).unwrap.lambda_units, LambdaUnits::paper);
   EXPECT_EQ(options({{"initial", "lscm"}}).unwrap.initial, InitialMap::lscm);
   EXPECT_EQ(options({{"pins", "spectral"}}).unwrap.pins, Pins::spectral);
+  EXPECT_EQ(options({{"guarantee", "bijective"}}).unwrap.guarantee, Guarantee::bijective);
+  EXPECT_EQ(options({{"repair", "virtual_boundary"}}).unwrap.repair,
+            RepairMethod::virtual_boundary);
+  EXPECT_EQ(options({{"boundary", "square"}}).unwrap.boundary, BoundaryShape::square);
   EXPECT_EQ(options({{"seams", "none"}}).unwrap.seams, SeamMode::none);
   EXPECT_EQ(options({{"output", "obj"}}).output, OutputFormat::obj);
 }
 
 TEST(Methods, ListEveryMethodWithExactlyItsOptions) {
   const Json json = methods_json(Limits{});
-  ASSERT_EQ(json.at("methods").size(), 3U);
+  ASSERT_EQ(json.at("methods").size(), 9U);
   EXPECT_EQ(json.at("options").size(), option_table().size());
   for (const Json& method : json.at("methods")) {
     const std::set<std::string> own = method.at("options");
@@ -107,12 +177,18 @@ TEST(Methods, ListEveryMethodWithExactlyItsOptions) {
   }
 }
 
-TEST(Methods, TellTheServersOwnMaximumOfIterations) {
+TEST(Methods, TellTheServersOwnLimits) {
   Limits limits;
   limits.max_iterations = 77;
+  limits.max_constraints = 5;
+  std::size_t told = 0;
   const Json json = methods_json(limits);
-  EXPECT_EQ(json.at("options").at(3).at("name"), "iterations");
-  EXPECT_EQ(json.at("options").at(3).at("maximum"), 77);
+  for (const Json& option : json.at("options")) {
+    if (option.at("type") == "integer" && option.at("name").get<std::string>().starts_with("stop"))
+      told += option.at("maximum") == 77 ? 1 : 0;
+    if (option.at("name") == "constraints") told += option.at("max_items") == 5 ? 1 : 0;
+  }
+  EXPECT_EQ(told, 3U);
 }
 
 TEST(Limits, AreExactlyThoseOfTheContract) {

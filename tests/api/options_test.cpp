@@ -25,21 +25,66 @@ Error refusal(const std::string& json) {
   return error_of([&] { parse_options_text(json, kLimits); });
 }
 
+/// The option's own pointer, or one into its value.
 void expect_refused(const Error& error, const std::string& name, const std::string& value) {
   EXPECT_EQ(error.code(), ErrorCode::invalid_option) << name << "=" << value;
-  EXPECT_EQ(error.where(), "/" + name) << name << "=" << value;
+  const std::string own = option_pointer(name);
+  EXPECT_EQ(error.where().substr(0, own.size()), own) << name << "=" << value;
+}
+
+/// {"stop":{"iterations":VALUE}} for stop.iterations.
+std::string object_text(const std::string& name, const std::string& value) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string::npos) return "{\"" + name + "\":" + value + "}";
+  return "{\"" + name.substr(0, dot) + "\":" + object_text(name.substr(dot + 1), value) + "}";
+}
+
+double random_share(std::mt19937& rng) { return std::uniform_real_distribution<>(0, 1)(rng); }
+
+Json random_number(const OptionRow& row, std::mt19937& rng) {
+  const double maximum = row.name == "padding" ? 4 : option_maximum(row, kLimits).value_or(1e6);
+  const double value = row.minimum + random_share(rng) * (maximum - row.minimum);
+  if (row.type == OptionType::integer) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+Json random_constraints(std::mt19937& rng) {
+  Json list = Json::array();
+  while (random_share(rng) < 0.7) {
+    Json one = Json::object();
+    if (random_share(rng) < 0.5) {
+      one["vertex"] = rng() % 1000;
+    } else {
+      one["at"] = {random_share(rng), -random_share(rng), 1e6 * random_share(rng)};
+    }
+    one["uv"] = {random_share(rng), 2 * random_share(rng)};
+    one["weight"] = random_share(rng) < 0.5 ? Json() : Json(1e-3 + random_share(rng));
+    one["mesh"] = rng() % 3;
+    list.push_back(one);
+  }
+  return list;
 }
 
 /// A random value that the row allows.
 Json random_value(const OptionRow& row, std::mt19937& rng) {
-  const double span = std::uniform_real_distribution<double>(0, 1)(rng);
+  if (row.type == OptionType::constraints) return random_constraints(rng);
   if (row.type == OptionType::choice) {
-    return row.choices[static_cast<std::size_t>(span * static_cast<double>(row.choices.size()))];
+    const double index = random_share(rng) * static_cast<double>(row.choices.size());
+    return row.choices[static_cast<std::size_t>(index)];
   }
-  const double maximum = row.name == "padding" ? 4 : option_maximum(row, kLimits).value_or(1e6);
-  const double value = row.minimum + span * (maximum - row.minimum);
-  if (row.type == OptionType::integer) return static_cast<std::int64_t>(value);
-  return value;
+  if (row.type != OptionType::numbers || random_share(rng) < 0.5) return random_number(row, rng);
+  Json list = Json::array();
+  for (std::size_t left = 1 + rng() % kMaxNumbers; left > 0; --left)
+    list.push_back(random_number(row, rng));
+  return list;
+}
+
+/// The value as a query says it: a list of numbers without its brackets.
+std::string query_text(const OptionRow& row, const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  const std::string text = value.dump();
+  const bool is_list = row.type == OptionType::numbers && value.is_array();
+  return is_list ? text.substr(1, text.size() - 2) : text;
 }
 
 TEST(Options, DefaultWhenNothingIsSaid) {
@@ -48,15 +93,29 @@ TEST(Options, DefaultWhenNothingIsSaid) {
   EXPECT_EQ(to_json(parse_options_text("{}", kLimits)), from_query);
 }
 
+/// Values of all options, by name, that go together.
+Json random_values(std::mt19937& rng) {
+  Json values = Json::object();
+  for (const OptionRow& row : option_table()) {
+    Json value = random_value(row, rng);
+    const bool one = row.type == OptionType::numbers && value.is_array() && value.size() == 1;
+    values[std::string(row.name)] = one ? value[0] : value;  // a query cannot tell a list of one
+  }
+  if (values["constraints"].empty()) return values;
+  values["method"] = "hybrid";
+  values["boundary"] = "free";
+  return values;
+}
+
 TEST(Options, EveryAllowedValueSurvivesJsonAndQuery) {
   std::mt19937 rng(11);
   for (int k = 0; k < 500; ++k) {
     Json object = Json::object();
     Query query;
-    for (const OptionRow& row : option_table()) {
-      const Json value = random_value(row, rng);
-      object[std::string(row.name)] = value;
-      query.emplace(row.name, value.is_string() ? value.get<std::string>() : value.dump());
+    const Json values = random_values(rng);
+    for (const auto& [name, value] : values.items()) {
+      object.merge_patch(Json::parse(object_text(name, value.dump())));
+      query.emplace(name, query_text(*find_option(name), value));
     }
     const JobOptions options = parse_options(object, kLimits);
     EXPECT_EQ(to_json(parse_options(query, kLimits)), to_json(options));
@@ -67,7 +126,9 @@ TEST(Options, EveryAllowedValueSurvivesJsonAndQuery) {
 
 TEST(Options, ResolvedOnesCanBeSentAgainAndStayAsTheyAre) {
   for (const char* text :
-       {"{}", R"({"method":"asap","pins":"spectral"})", R"({"method":"hybrid","lambda":1e-300})"}) {
+       {"{}", R"({"method":"asap","pins":"spectral"})", R"({"method":"hybrid","lambda":1e-300})",
+        R"({"method":"hybrid","lambda":[3,1,2],"stop":{"iterations":10}})",
+        R"({"constraints":[{"at":[1,2,3],"uv":[0,1]}],"method":"asap"})"}) {
     const Json resolved = to_json(parse_options_text(text, kLimits));
     const JobOptions again = parse_options(resolved, kLimits);
     EXPECT_EQ(to_json(again), resolved);
@@ -78,22 +139,22 @@ TEST(Options, ResolvedOnesCanBeSentAgainAndStayAsTheyAre) {
 TEST(Options, RefuseAWrongTypeOfEveryOption) {
   for (const OptionRow& row : option_table()) {
     const std::string name(row.name);
-    for (const char* value : {"[]", "{}", "true", "\"\"", "\"x\"", "\"1\"", "-1e9"}) {
-      expect_refused(refusal("{\"" + name + "\":" + value + "}"), name, value);
+    for (const char* value : {"[[]]", "{}", "true", "\"\"", "\"x\"", "\"1\"", "-1e9"}) {
+      expect_refused(refusal(object_text(name, value)), name, value);
     }
     const char* other = row.type == OptionType::choice ? "1" : "\"auto\"";
-    expect_refused(refusal("{\"" + name + "\":" + other + "}"), name, other);
+    expect_refused(refusal(object_text(name, other)), name, other);
     for (const char* value : {"", " ", "x", "-1e9", "nan", "NaN", "1x", " 1", "1 ", "+1", "true"}) {
       expect_refused(refusal(Query{{name, value}}), name, value);
     }
   }
 }
 
-TEST(Options, RefuseNullButForLambda) {
+TEST(Options, RefuseNullButWhereResolvedOptionsHaveIt) {
   for (const OptionRow& row : option_table()) {
-    const std::string text = "{\"" + std::string(row.name) + "\":null}";
-    if (row.name == "lambda") {
-      EXPECT_NO_THROW(parse_options_text(text, kLimits));
+    const std::string text = object_text(std::string(row.name), "null");
+    if (row.name == "lambda" || row.name == "stop.iterations") {
+      EXPECT_EQ(to_json(parse_options_text(text, kLimits)), to_json(JobOptions{}));
     } else {
       expect_refused(refusal(text), std::string(row.name), "null");
     }
@@ -107,22 +168,64 @@ TEST(Options, RefuseEveryBoundPassedByOne) {
     const auto low = static_cast<std::int64_t>(row.minimum) - 1;
     const auto high = static_cast<std::int64_t>(*option_maximum(row, kLimits)) + 1;
     for (const std::int64_t value : {low, high}) {
-      expect_refused(refusal(Query{{name, std::to_string(value)}}), name, std::to_string(value));
-      expect_refused(refusal(Json{{name, value}}.dump()), name, std::to_string(value));
+      const std::string text = std::to_string(value);
+      expect_refused(refusal(Query{{name, text}}), name, text);
+      expect_refused(refusal(object_text(name, text)), name, text);
     }
   }
 }
 
 TEST(Options, RefuseNumbersOutsideOfWhatCanBeCounted) {
-  for (const char* value : {"0", "1000000000", "99999999999999999999", "1.5", "1e2", "0x10"}) {
-    expect_refused(refusal(Query{{"iterations", value}}), "iterations", value);
+  for (const char* name : {"stop.iterations", "stop.max_iterations"}) {
+    for (const char* value : {"0", "1000000000", "99999999999999999999", "1.5", "1e2", "0x10"}) {
+      expect_refused(refusal(Query{{name, value}}), name, value);
+    }
+    expect_refused(refusal(object_text(name, "1.5")), name, "1.5");
+    expect_refused(refusal(object_text(name, "1e300")), name, "1e300");
   }
-  for (const char* value : {"inf", "infinity", "-0.1", "1e999", "nan", "--1", "0,1"}) {
+  for (const char* value : {"inf", "infinity", "-0.1", "1e999", "nan", "--1", "0.1;1"}) {
     expect_refused(refusal(Query{{"lambda", value}}), "lambda", value);
   }
-  expect_refused(refusal(R"({"iterations":1.5})"), "iterations", "1.5");
-  expect_refused(refusal(R"({"iterations":1e300})"), "iterations", "1e300");
-  EXPECT_EQ(parse_options_text(R"({"iterations":20.0})", kLimits).unwrap.stop.iterations, 20);
+  for (const char* value : {"0", "-1e-6", "0.11", "1e-13"}) {
+    expect_refused(refusal(Query{{"stop.tolerance", value}}), "stop.tolerance", value);
+  }
+  const std::string whole = R"({"stop":{"iterations":20.0}})";
+  EXPECT_EQ(parse_options_text(whole, kLimits).unwrap.stop.iterations, 20);
+}
+
+TEST(Options, KeepTheOrderOfLambdas) {
+  const auto curve = [](const JobOptions& options) { return options.unwrap.lambda_curve; };
+  const std::vector<double> three = {1, 0.01, 0.1};
+  EXPECT_EQ(curve(parse_options(Query{{"lambda", "1,0.01,1e-1"}}, kLimits)), three);
+  EXPECT_EQ(curve(parse_options_text(R"({"lambda":[1,0.01,0.1]})", kLimits)), three);
+  EXPECT_EQ(curve(parse_options_text(R"({"lambda":[5]})", kLimits)), std::vector<double>{5});
+  EXPECT_TRUE(curve(parse_options(Query{{"lambda", "5"}}, kLimits)).empty());
+}
+
+TEST(Options, RefuseListsOfLambdasThatSayNothingClear) {
+  std::string long_list = "0";
+  for (std::size_t k = 1; k <= kMaxNumbers; ++k) long_list += "," + std::to_string(k);
+  for (const std::string& list : {std::string("1,1"), std::string("1,2,1.0"), std::string("1,-1"),
+                                  std::string("0,-0"), long_list}) {
+    expect_refused(refusal(Query{{"lambda", list}}), "lambda", list);
+    expect_refused(refusal(R"({"lambda":[)" + list + "]}"), "lambda", list);
+  }
+  for (const char* list : {",", "1,", ",1", "1,,2", "1, 2", "[1,2]", "1,x"}) {
+    expect_refused(refusal(Query{{"lambda", list}}), "lambda", list);
+  }
+  expect_refused(refusal(R"({"lambda":[]})"), "lambda", "[]");
+}
+
+TEST(Options, RefuseAGroupThatIsNoObjectAndADotInJson) {
+  for (const char* value : {"1", "[]", "null", "\"iterations\""}) {
+    const Error error = refusal(object_text("stop", value));
+    expect_refused(error, "stop", value);
+    EXPECT_THAT(error.what(), HasSubstr("must be an object"));
+  }
+  const Error error = refusal(R"({"stop.iterations":10})");
+  expect_refused(error, "stop.iterations", "10");
+  EXPECT_THAT(error.what(), HasSubstr("{\"stop\": {"));
+  expect_refused(refusal(Query{{"stop", "10"}}), "stop", "10");
 }
 
 TEST(Options, RefusePaddingOfMoreThanAQuarter) {
@@ -133,21 +236,28 @@ TEST(Options, RefusePaddingOfMoreThanAQuarter) {
 TEST(Options, IterationsObeyTheServersOwnLimit) {
   Limits strict;
   strict.max_iterations = 20;
-  EXPECT_EQ(parse_options(Query{{"iterations", "20"}}, strict).unwrap.stop.iterations, 20);
-  const Error error = error_of([&] { parse_options(Query{{"iterations", "21"}}, strict); });
-  EXPECT_STREQ(error.what(), "iterations must be an integer between 1 and 20.");
+  for (const char* option : {"stop.iterations", "stop.max_iterations"}) {
+    const std::string name = option;
+    EXPECT_NO_THROW(parse_options(Query{{name, "20"}}, strict));
+    const Error error = error_of([&] { parse_options(Query{{name, "21"}}, strict); });
+    EXPECT_EQ(error.what(), name + " must be an integer between 1 and 20.");
+  }
+  EXPECT_EQ(parse_options(Query{}, strict).unwrap.stop.max_iterations, 20);
 }
 
 TEST(Options, RefuseADuplicate) {
   expect_refused(refusal(Query{{"method", "arap"}, {"method", "arap"}}), "method", "twice");
+  const Query both = {{"stop.iterations", "1"}, {"stop.iterations", "1"}};
+  expect_refused(refusal(both), "stop.iterations", "twice");
   expect_refused(refusal(R"({"method":"arap","method":"arap"})"), "method", "twice");
 }
 
 TEST(Options, SayWhatIsAllowed) {
-  EXPECT_STREQ(refusal(Query{{"method", "abf"}}).what(),
-               "method must be one of asap, arap, hybrid.");
-  EXPECT_STREQ(refusal(Query{{"lambda", "-1"}}).what(),
-               "lambda must be a finite number of at least 0.");
+  EXPECT_STREQ(refusal(Query{{"method", "lscm"}}).what(),
+               "method must be one of asap, arap, hybrid, abf, linabf, cp, bff, ic, slim.");
+  EXPECT_STREQ(
+      refusal(Query{{"lambda", "-1"}}).what(),
+      "lambda must be a finite number of at least 0, or a list of at most 32 different ones.");
   EXPECT_STREQ(refusal(Query{{"resolution", "8"}}).what(),
                "resolution must be an integer between 16 and 16384.");
 }
@@ -156,7 +266,10 @@ TEST(Options, GuessWhatAMisspeltNameMeant) {
   for (const auto& [asked, meant] : Query{{"metod", "method"},
                                           {"lamda", "lambda"},
                                           {"lambda-units", "lambda_units"},
-                                          {"iteration", "iterations"},
+                                          {"iterations", "stop.iterations"},
+                                          {"stop.iteration", "stop.iterations"},
+                                          {"tolerence", "stop.tolerance"},
+                                          {"garantee", "guarantee"},
                                           {"resolutoin", "resolution"}}) {
     const Error error = refusal(Query{{asked, "1"}});
     expect_refused(error, asked, "1");
@@ -184,8 +297,13 @@ TEST(Options, RefuseAnythingButAnObject) {
 TEST(Options, NoteWhatWasGivenButHasNoEffect) {
   EXPECT_THAT(parse_options(Query{{"lambda", "0.1"}}, kLimits).notes,
               testing::ElementsAre("The option lambda has no effect with the method arap."));
-  EXPECT_THAT(parse_options_text(R"({"iterations":99,"method":"asap"})", kLimits).notes,
-              testing::ElementsAre("The option iterations has no effect with the method asap."));
+  EXPECT_THAT(
+      parse_options_text(R"({"stop":{"iterations":99},"method":"asap"})", kLimits).notes,
+      testing::ElementsAre("The option stop.iterations has no effect with the method asap."));
+  const Query both = {{"stop.iterations", "5"}, {"stop.tolerance", "1e-3"}};
+  EXPECT_THAT(
+      parse_options(both, kLimits).notes,
+      testing::ElementsAre("The option stop.tolerance has no effect with stop.iterations."));
   EXPECT_TRUE(parse_options(Query{{"method", "hybrid"}, {"lambda", "2"}}, kLimits).notes.empty());
 }
 

@@ -1,0 +1,135 @@
+#include "api/option_values.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "api/constraints.hpp"
+#include "core/error.hpp"
+
+namespace unwrapd::api {
+namespace {
+
+/// The text as a number, whole to its last character; else as the string that it is.
+template <class Number>
+Json number_of(std::string_view text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  const bool fits =
+      error == std::errc() && stop == end && std::isfinite(static_cast<double>(value));
+  return fits ? Json(value) : Json(text);
+}
+
+Json numbers_of(std::string_view text) {
+  Json list = Json::array();
+  while (true) {
+    const std::size_t comma = text.find(',');
+    list.push_back(number_of<double>(text.substr(0, comma)));
+    if (comma == std::string_view::npos) break;
+    text.remove_prefix(comma + 1);
+  }
+  return list.size() == 1 ? list[0] : list;
+}
+
+/// Text that is no JSON stays the string that it is.
+Json json_of(const std::string& text) {
+  try {
+    return parse_json(text, {.max_bytes = kMaxOptionsBytes});
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::malformed_request) throw;
+    return text;
+  }
+}
+
+/// "1" for 1, "0.5" for 0.5.
+std::string plain(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+std::string listed(std::span<const std::string_view> names) {
+  std::string text;
+  for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+/// What a value of this option must be: "an integer between 1 and 10000".
+std::string allowed(const OptionRow& row, const Limits& limits) {
+  if (row.type == OptionType::choice) return "one of " + listed(row.choices);
+  const std::string kind = row.type == OptionType::integer ? "an integer" : "a finite number";
+  const std::optional<double> maximum = option_maximum(row, limits);
+  std::string text = kind + (maximum ? " between " + plain(row.minimum) + " and " + plain(*maximum)
+                                     : " of at least " + plain(row.minimum));
+  if (row.type == OptionType::numbers)
+    text += ", or a list of at most " + std::to_string(kMaxNumbers) + " different ones";
+  return text;
+}
+
+/// JSON as a number in the row's range; 10.0 is an integer, as JSON Schema has it.
+bool is_number_of(const OptionRow& row, const Json& value, const Limits& limits) {
+  if (!value.is_number()) return false;
+  const double figure = value.get<double>();
+  if (row.type == OptionType::integer && std::trunc(figure) != figure) return false;
+  const double maximum = option_maximum(row, limits).value_or(std::numeric_limits<double>::max());
+  return figure >= row.minimum && figure <= maximum;  // false for NaN
+}
+
+bool is_list_of(const OptionRow& row, const Json& value, const Limits& limits) {
+  if (!value.is_array() || value.empty() || value.size() > kMaxNumbers) return false;
+  const auto fits = [&](const Json& entry) { return is_number_of(row, entry, limits); };
+  if (!std::ranges::all_of(value, fits)) return false;
+  auto figures = value.get<std::vector<double>>();
+  std::ranges::sort(figures);
+  return std::ranges::adjacent_find(figures) == figures.end();
+}
+
+bool fits(const OptionRow& row, const Json& value, const Limits& limits) {
+  switch (row.type) {
+    case OptionType::choice:
+      return value.is_string() &&
+             std::ranges::find(row.choices, value.get_ref<const std::string&>()) !=
+                 row.choices.end();
+    case OptionType::number:
+    case OptionType::integer:
+      return is_number_of(row, value, limits);
+    case OptionType::numbers:
+      return is_number_of(row, value, limits) || is_list_of(row, value, limits);
+    case OptionType::constraints:
+      static_cast<void>(constraints_from_json(value, limits.*row.limit, option_pointer(row.name)));
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Json value_of_text(const OptionRow& row, const std::string& text) {
+  switch (row.type) {
+    case OptionType::choice:
+      return text;
+    case OptionType::integer:
+      return number_of<std::int64_t>(text);
+    case OptionType::number:
+      return number_of<double>(text);
+    case OptionType::numbers:
+      return numbers_of(text);
+    case OptionType::constraints:
+      return json_of(text);
+  }
+  return text;
+}
+
+void check_value(const OptionRow& row, const Json& value, const Limits& limits) {
+  if (fits(row, value, limits)) return;
+  throw Error(ErrorCode::invalid_option,
+              std::string(row.name) + " must be " + allowed(row, limits) + ".",
+              option_pointer(row.name));
+}
+
+}  // namespace unwrapd::api
