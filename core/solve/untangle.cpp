@@ -165,8 +165,9 @@ UvMap tutte_without_holes(const Disk& disk) {
   return uv;
 }
 
-bool holds_any(const MapIntent& intent) {
-  return std::any_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
+bool may_start_anew(const MapIntent& intent) {
+  return !intent.in_place &&
+         std::none_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
 }
 
 /// Patches of growing size; returns the faces that are flipped in the end.
@@ -189,8 +190,8 @@ std::vector<Index> mend_patches(const Disk& disk, const MapIntent& intent, UvMap
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   const std::vector<Index> left = mend_patches(disk, intent, uv);
   if (left.empty()) return 0;
-  if (!holds_any(intent) && (start_anew(disk, intent, virtual_boundary_map(disk, uv), uv) ||
-                             start_anew(disk, intent, tutte_without_holes(disk), uv)))
+  if (may_start_anew(intent) && (start_anew(disk, intent, virtual_boundary_map(disk, uv), uv) ||
+                                 start_anew(disk, intent, tutte_without_holes(disk), uv)))
     return 0;
   return static_cast<Index>(left.size());
 }

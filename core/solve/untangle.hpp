@@ -15,6 +15,7 @@ struct MapIntent {
   Rigidity rigidity;       ///< the energy whose rise shall be small
   std::vector<char> held;  ///< one a vertex, 1: it must not move; empty: none
   std::stop_token stop;
+  bool in_place = false;  ///< only near the flips: never a new map of the whole disk
 };
 
 /// Moves the vertices near flipped or collapsed triangles (not counter-clockwise, by the exact

@@ -1,0 +1,22 @@
+#pragma once
+// Page UVs as every format writes them, without a triangle lost to rounding.
+
+#include <stop_token>
+#include <vector>
+
+#include "core/atlas/charts.hpp"
+
+namespace unwrapd {
+
+/// UVs are multiples of this: for those in [0, 1] both v and 1 - v are floats, so that neither
+/// writing V downwards (glTF) nor upwards (OBJ) rounds again.
+inline constexpr double kUvStep = 0x1p-24;
+
+/// Every UV on the page to the nearest multiple of kUvStep; uv is a chart's map without flips.
+/// Triangles that would flip or vanish by that are made a few steps larger, at their neighbours'
+/// expense; vertices with held[v] (one a vertex, or empty) are only rounded. Returns how many
+/// triangles are not counter-clockwise in the end. Throws Error{cancelled}.
+Index snap(const Chart& chart, const std::vector<char>& held, const std::stop_token& stop,
+           UvMap& uv);
+
+}  // namespace unwrapd

@@ -1,0 +1,24 @@
+#pragma once
+// One chart made two, where its map covers the page twice or cannot be mended.
+
+#include <array>
+#include <vector>
+
+#include "core/atlas/charts.hpp"
+
+namespace unwrapd {
+
+/// A part of a chart: again a disk (holes allowed).
+struct ChartPart {
+  Chart chart;
+  std::vector<Index> vertex;  ///< part vertex -> vertex of the chart that was split
+};
+
+/// Parts the faces so that those of seeds[0] and of seeds[1] are in different parts: each face goes
+/// with the seeds that are nearer over the surface. Seeds are disjoint, none empty; where a part
+/// would fall to pieces, there are more than two. Every face is in exactly one part, with its
+/// corners in their order.
+std::vector<ChartPart> split_chart(const Chart& chart,
+                                   const std::array<std::vector<Index>, 2>& seeds);
+
+}  // namespace unwrapd
