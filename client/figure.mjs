@@ -1,0 +1,159 @@
+// A page like Figures 5 and 6 of the paper: one mesh, flattened by every method that the server
+// knows and by Hybrid with several lambdas, each map with [D_angle, D_area] in brackets.
+//
+//   node figure.mjs SERVER UNWRAP MESH OUT.html
+//
+// The page is one file without scripts: pictures are part of it, nothing is fetched.
+import { execFile } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { promisify } from "node:util";
+
+/** Weights of Eq. (5) from almost conformal to almost rigid. */
+const LAMBDAS = [1e-4, 1e-3, 1e-2, 0.1];
+
+/** The other methods, in the order and with the names of Table 1; then later ones. */
+const OTHERS = {
+  abf: "ABF++",
+  linabf: "LABF",
+  ic: "IC",
+  cp: "CP",
+  bff: "BFF",
+  slim: "SLIM",
+};
+
+/** The maps of the page as {title, options}, in two rows: the paper's own and the others. */
+export function plan(methods, optionNames) {
+  const has = (name) => methods.includes(name);
+  const raw = optionNames.includes("guarantee") ? { guarantee: "none" } : {};
+  const map = (title, options) => ({ title, options: { ...options, ...raw } });
+  const hybrids = LAMBDAS.map((lambda) =>
+    map(`λ = ${lambda}`, { method: "hybrid", lambda: String(lambda), "lambda-units": "paper" }));
+  return [
+    [...(has("asap") ? [map("ASAP (λ = 0)", { method: "asap" })] : []),
+     ...(has("hybrid") ? hybrids : []),
+     ...(has("arap") ? [map("ARAP (λ = ∞)", { method: "arap" })] : [])],
+    Object.keys(OTHERS).filter(has).map((name) => map(OTHERS[name], { method: name })),
+  ];
+}
+
+/** D as the paper prints it; a map so distorted that digits mean nothing is given as a power. */
+export function figure(value) {
+  if (!Number.isFinite(value)) return "∞";
+  return value < 1e4 ? value.toFixed(2) : value.toExponential(0).replace("e+", "e");
+}
+
+const escapeText = (text) =>
+  text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll('"', "&quot;");
+
+/** "[2.05, 2.19]", and the flips where there are any. */
+export function caption({ angle, area, flipped }) {
+  const flips = flipped > 0 ? ` · ${flipped} flipped` : "";
+  return `[${figure(angle)}, ${figure(area)}]${flips}`;
+}
+
+const picture = (kind, png, alt) =>
+  `<img class="${kind}" alt="${escapeText(alt)}" src="data:image/png;base64,${png}">`;
+
+function card(map) {
+  const title = escapeText(map.title);
+  if (map.problem) {
+    return `<figure><div class="problem">${escapeText(map.problem)}</div>` +
+      `<figcaption><b>${title}</b></figcaption></figure>`;
+  }
+  return `<figure>${picture("preview", map.preview, `${map.title} on the mesh`)}` +
+    picture("layout", map.layout, `${map.title}, the page`) +
+    `<figcaption><b>${title}</b><br>${caption(map.report.distortion)}</figcaption></figure>`;
+}
+
+const STYLE = `
+  body { font: 16px/1.4 system-ui, sans-serif; color: #16131f; margin: 2rem auto; max-width: 100rem;
+         padding: 0 1.5rem; }
+  h1 { font-size: 1.6rem; margin: 0; } p { max-width: 62rem; color: #4a4658; }
+  section { display: grid; grid-template-columns: repeat(auto-fill, minmax(13.5rem, 1fr)); gap: 1.5rem;
+            margin: 1.5rem 0 2rem; }
+  figure { margin: 0; } img { display: block; width: 100%; object-fit: cover; }
+  .preview { aspect-ratio: 1; } .layout { aspect-ratio: 1; object-position: top; }
+  .bar { aspect-ratio: 4096 / 320; object-position: bottom; max-width: 60rem; }
+  figcaption { text-align: center; padding-top: .4rem; font-variant-numeric: tabular-nums; }
+  .problem { aspect-ratio: 1 / 2; display: grid; place-content: center; padding: 1rem;
+             text-align: center; background: #e9e8ed; box-sizing: border-box; }
+  @media print { body { margin: 0; } section { break-inside: avoid; } }`;
+
+/** The page, whole. rows: maps as plan() gives them, each with report, layout and preview or with
+ * problem. */
+export function page(name, rows) {
+  const done = rows.flat().find((map) => map.layout);
+  const faces = done ? `, ${done.report.input.faces} triangles` : "";
+  const bar = done ? `<img class="bar" alt="the colours" src="data:image/png;base64,${done.layout}">` : "";
+  const sections = rows.filter((row) => row.length > 0)
+    .map((row) => `<section>\n${row.map(card).join("\n")}\n</section>`).join("\n");
+  return `<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>${escapeText(name)}: maps</title>
+<meta name="viewport" content="width=device-width"><style>${STYLE}
+</style></head><body>
+<h1>${escapeText(name)}${faces}</h1>
+<p>Effect of λ in the hybrid energy (5), compared with other methods. Numbers in brackets: angular
+and area distortion, [D<sub>angle</sub>, D<sub>area</sub>]; both are at best 2. Each map is shown as
+a checkerboard on the mesh and as the page it comes from, coloured by stretch.</p>
+${sections}
+${bar}
+</body></html>
+`;
+}
+
+const run = promisify(execFile);
+
+/** One job by the client, with its pictures as base64; a refusal becomes the map's problem. */
+async function solve({ title, options }, { unwrap, server, mesh, folder }) {
+  const at = (file) => join(folder, file);
+  const flags = Object.entries(options).flatMap(([name, value]) => [`--${name}`, value]);
+  try {
+    await run(unwrap, [mesh, "--server", server, "--quiet", "-o", at("result"), "--report",
+      at("report.json"), "--layout", at("layout.png"), "--preview", at("preview.png"), ...flags]);
+  } catch (error) {
+    return { title, problem: (error.stderr || error.message).trim() };
+  }
+  const base64 = (file) => readFileSync(at(file)).toString("base64");
+  return { title, report: JSON.parse(readFileSync(at("report.json"), "utf8")),
+           layout: base64("layout.png"), preview: base64("preview.png") };
+}
+
+async function knownTo(server) {
+  const answer = await fetch(`${server}/v1/methods`);
+  if (!answer.ok) throw new Error(`${server} does not tell its methods: ${answer.status}`);
+  const { methods, options } = await answer.json();
+  const names = (list) => (Array.isArray(list) ? list.map((x) => x.name ?? x) : Object.keys(list));
+  return { methods: names(methods), options: names(options) };
+}
+
+async function main([server, unwrap, mesh, out]) {
+  const known = await knownTo(server);
+  const folder = mkdtempSync(join(tmpdir(), "figure-"));
+  try {
+    const rows = [];
+    for (const row of plan(known.methods, known.options)) {
+      rows.push([]);
+      for (const map of row) {
+        const solved = await solve(map, { unwrap, server, mesh, folder });
+        rows.at(-1).push(solved);
+        console.log(`   ${map.title}: ${solved.problem ?? caption(solved.report.distortion)}`);
+      }
+    }
+    writeFileSync(out, page(basename(mesh), rows));
+    if (!rows.flat().some((map) => map.layout)) throw new Error("no map could be made");
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  const words = process.argv.slice(2);
+  if (words.length !== 4) {
+    console.error("usage: node figure.mjs SERVER UNWRAP MESH OUT.html");
+    process.exit(2);
+  }
+  await main(words);
+}
