@@ -14,7 +14,7 @@ namespace unwrapd {
 namespace {
 
 constexpr double kOutlineWidth = 3, kFlipWidth = 12;  // in 1/4096 of the page's side
-constexpr double kMinLine = 0.7;                      // pixels
+constexpr double kMinLine = 0.7, kMinFlip = 3;        // pixels
 
 using Drawing = std::vector<FlatTriangle>;
 
@@ -87,7 +87,8 @@ Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedS
   Drawing drawing;
   for (std::size_t s = 0; s < unwrapped.size(); ++s)
     append_faces(drawing, unwrapped[s], painted[s], colours.colours, scale);
-  const double flip_width = colouring == Colouring::flips ? scale.line(kFlipWidth) : 0;
+  const double flip_width =
+      colouring == Colouring::flips ? std::max(kMinFlip, scale.length(kFlipWidth)) : 0;
   for (std::size_t s = 0; s < unwrapped.size(); ++s)
     for (std::size_t t = 0; t < painted[s].size(); ++t)
       if (painted[s][t] == kFlippedFace)
