@@ -40,6 +40,16 @@ TEST(Arguments, AResultIsWrittenBesideTheFileWhenNoNameIsGiven) {
   EXPECT_EQ(accepted({"chair.obj", "--output", "auto"}).out, "chair.uv.obj");
 }
 
+TEST(Arguments, PicturesHaveNamesAndTheLayoutAColour) {
+  const Arguments arguments =
+      accepted({"a.glb", "--layout", "l.png", "--layout-colour", "area", "--preview", "p.png"});
+  EXPECT_EQ(arguments.layout, "l.png");
+  EXPECT_EQ(arguments.layout_colour, "area");
+  EXPECT_EQ(arguments.preview, "p.png");
+  EXPECT_EQ(accepted({"a.glb"}).layout_colour, "");
+  EXPECT_EQ(refused({"a.glb", "--layout-colour", "size"}).code, ExitCode::usage);
+}
+
 TEST(Arguments, TheFormatFollowsTheResultsName) {
   EXPECT_EQ(accepted({"a.obj", "-o", "b.glb"}).options.at("output"), "glb");
   EXPECT_EQ(accepted({"a.obj", "-o", "b.bin"}).options.count("output"), 0);
