@@ -4,6 +4,7 @@
 #include "core/solve/abf.hpp"
 #include "core/solve/bff.hpp"
 #include "core/solve/cp.hpp"
+#include "core/solve/ic.hpp"
 #include "core/solve/linabf.hpp"
 #include "core/solve/slim.hpp"
 
@@ -20,6 +21,8 @@ Solution other_method(const Disk& disk, Method method, const SolveWatch& watch,
       return slim(disk, watch, executor);
     case Method::bff:
       return bff(disk, watch);
+    case Method::ic:
+      return ic(disk, watch);
     case Method::cp:
       return cp(disk, watch);
     default:
