@@ -240,13 +240,24 @@ TEST_P(Flattening, AnswersClosedTubesOrSaysWhyNot) {
 }
 
 std::string name_of(const testing::TestParamInfo<Method>& method) {
-  if (method.param == Method::cp) return "cp";
-  return method.param == Method::bff ? "bff" : "ic";
+  switch (method.param) {
+    case Method::abf:
+      return "abf";
+    case Method::linabf:
+      return "linabf";
+    case Method::cp:
+      return "cp";
+    default:
+      return method.param == Method::bff ? "bff" : "ic";
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Flattening, testing::Values(Method::cp, Method::bff, Method::ic),
+INSTANTIATE_TEST_SUITE_P(Methods, Flattening,
+                         testing::Values(Method::abf, Method::linabf, Method::cp, Method::bff,
+                                         Method::ic),
                          name_of);
-INSTANTIATE_TEST_SUITE_P(Methods, ExactFlattening, testing::Values(Method::cp, Method::bff),
+INSTANTIATE_TEST_SUITE_P(Methods, ExactFlattening,
+                         testing::Values(Method::abf, Method::linabf, Method::cp, Method::bff),
                          name_of);
 
 }  // namespace
