@@ -1,11 +1,16 @@
 // Which of two starts leads to the lower minimum shows late: energies at the start, and for the
 // first ten iterations, tell how good a start is, not where it leads. But starts that lead to
 // different minima were only seen where descents are long, and there a second one of 40 iterations
-// costs little. Measured on 52 charts (docs/adr/0004). Rejected: both starts on every mesh, which
-// doubles the cost of those that need neither.
+// costs little. Flips in a start are no such sign: a flip-free one gets the same flips within five
+// iterations, but for a few meshes, of fast descents again. Measured on 52 charts (docs/adr/0004).
+// Rejected: both starts on every mesh, which doubles the cost of those that need neither.
 #include "core/solve/accelerate_race.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/measure/distortion.hpp"
 
 namespace unwrapd {
 namespace {
@@ -13,6 +18,7 @@ namespace {
 constexpr int kPatience = 40;               // iterations of the first descent on its own
 constexpr int kPatienceAroundHoles = 24;    // the same with several boundaries
 constexpr std::size_t kBout = 8;            // after so many iterations the second one is dropped
+constexpr double kFewFlips = 0.01;          // of all triangles: more of them are no accident
 constexpr double kHopelesslyBehind = 1.03;  // if its energy is so many times that of the first
 
 bool has_holes(const Race& race) { return race.assembly.disk.loops.size() > 1; }
@@ -25,6 +31,19 @@ int patience(const Race& race) {
 double energy_after(const Descent& descent, std::size_t iterations) {
   const std::vector<double>& energy = descent.solution().energy;
   return energy[std::min(iterations, energy.size() - 1)];
+}
+
+/// Why to try a second start, after the first descent ended for this reason or used its patience
+/// up.
+std::optional<SecondStart> reason_for_second(const Race& race, const Descent& first,
+                                             StopReason reason) {
+  if (first.energy() <= Descent::kNothing) return std::nullopt;
+  if (has_holes(race) || reason == StopReason::max_iterations) return SecondStart::other_minimum;
+  const Disk& disk = race.assembly.disk;
+  const Index flips = distortion_sums(disk.rest, disk.faces, first.solution().uv).flipped;
+  const double share = static_cast<double>(flips) / static_cast<double>(disk.faces.size());
+  if (flips > 0 && share < kFewFlips) return SecondStart::flip_free;
+  return std::nullopt;
 }
 
 /// Runs the second descent as far as the first one has come. Whether its energy is lower there.
@@ -45,12 +64,11 @@ Solution go_on(const Race& race, Descent descent) {
 }  // namespace
 
 Solution run_race(const Race& race, const UvMap& first,
-                  const std::function<const UvMap*()>& second) {
+                  const std::function<const UvMap*(SecondStart)>& second) {
   Descent leader(race.assembly, first, race.rigidity, race.executor);
   const StopReason reason = run(leader, {race.options.tolerance, patience(race)}, race.watch);
-  const bool came_to_rest = reason != StopReason::max_iterations && !has_holes(race);
-  if (came_to_rest || leader.energy() <= Descent::kNothing) return std::move(leader).finish(reason);
-  const UvMap* other = second();
+  const std::optional<SecondStart> wanted = reason_for_second(race, leader, reason);
+  const UvMap* other = wanted ? second(*wanted) : nullptr;
   if (other == nullptr) return go_on(race, std::move(leader));
   Descent challenger(race.assembly, *other, race.rigidity, race.executor);
   if (!overtakes(race, challenger, leader)) return go_on(race, std::move(leader));

@@ -16,13 +16,18 @@ struct Race {
   Executor& executor;
 };
 
-/// Descends from the map first. When that takes long (and at once when the disk has several
-/// boundaries, where the way one start goes says little), the map that second() gives is
-/// descended from in silence for as many iterations, or fewer when it falls behind; the one
-/// of the lower energy goes on. Nothing, where second() gives none. The energies are those of the
-/// first descent up to the change; they never rise. Throws Error{cancelled}, and what second()
-/// does.
+/// What a second start is wanted for.
+enum class SecondStart {
+  other_minimum,  ///< the first descent takes long, or the disk has several boundaries
+  flip_free,      ///< the first descent came to rest with a few triangles flipped
+};
+
+/// Descends from the map first, unless SecondStart says otherwise to the end. Then the map that
+/// second() gives is descended from in silence for as many iterations, or fewer when it falls
+/// behind; the one of the lower energy goes on. Nothing of this where second() gives no map. The
+/// energies told are those of the first descent up to the change; they never rise.
+/// Throws Error{cancelled}, and what second() throws.
 Solution run_race(const Race& race, const UvMap& first,
-                  const std::function<const UvMap*()>& second);
+                  const std::function<const UvMap*(SecondStart)>& second);
 
 }  // namespace unwrapd

@@ -104,16 +104,20 @@ const UvMap& Solver::start() {
   return *start_;
 }
 
-/// The start to try beside start(); none where double precision knows no conformal map.
-const UvMap* Solver::second_start() {
-  if (!second_start_) {
-    try {
-      second_start_ = exact_conformal_map(disk_);
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::solver_failed) throw;
-    }
+/// A conformal map to find another minimum from; none where double precision knows none. The
+/// mean-value map where flips shall not come from the start.
+const UvMap* Solver::second_start(SecondStart kind) {
+  std::optional<UvMap>& map = kind == SecondStart::flip_free ? flip_free_start_ : second_start_;
+  if (map) return &*map;
+  try {
+    if (kind == SecondStart::flip_free)
+      map = initial_map(disk_, InitialMap::mean_value, *global_);
+    else
+      map = exact_conformal_map(disk_);
+  } catch (const Error& e) {  // the job goes on from the first start
+    if (e.code() != ErrorCode::solver_failed) throw;
   }
-  return second_start_ ? &*second_start_ : nullptr;
+  return map ? &*map : nullptr;
 }
 
 UvMap Solver::conformal_under_holds() {
@@ -134,7 +138,8 @@ Solution Solver::iterate_plainly(const Race& race) {
     return local_global(race.assembly, from, {race.rigidity, iterations}, watch, executor_);
   };
   const UvMap* from = &start();
-  const UvMap* other = is_automatic() && disk_.loops.size() > 1 ? second_start() : nullptr;
+  const UvMap* other =
+      is_automatic() && disk_.loops.size() > 1 ? second_start(SecondStart::other_minimum) : nullptr;
   const auto energy_after_trial = [&](const UvMap& map) {
     return solution(map, kTrialIterations, {{}, race.watch.stop}).energy.back();
   };
@@ -153,7 +158,8 @@ Solution Solver::iterate(const Rigidity& rigidity, const SolveWatch& watch) {
   const Assembly assembly{disk_, holds_, *global_};
   const Race race{assembly, rigidity, {stop.tolerance, stop.max_iterations}, watch.loop, executor_};
   if (stop.iterations) return iterate_plainly(race);
-  return run_race(race, first, [&] { return is_automatic() ? second_start() : nullptr; });
+  return run_race(race, first,
+                  [&](SecondStart kind) { return is_automatic() ? second_start(kind) : nullptr; });
 }
 
 Solution Solver::hybrid(const Rigidity& rigidity, const SolveWatch& watch) {

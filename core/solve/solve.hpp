@@ -37,7 +37,7 @@ class Solver {
 
  private:
   const UvMap& start();
-  const UvMap* second_start();
+  const UvMap* second_start(SecondStart kind);
   const UvMap& conformal();
   UvMap conformal_under_holds();
   [[nodiscard]] bool is_automatic() const;
@@ -50,7 +50,7 @@ class Solver {
   Holds holds_;
   UvMap held_start_;
   Executor& executor_;
-  std::optional<UvMap> start_, second_start_;
+  std::optional<UvMap> start_, second_start_, flip_free_start_;
   std::optional<UvMap> conformal_;
   std::optional<GlobalStep> global_;
   std::optional<ConformalSystem> conformal_system_;
