@@ -27,7 +27,9 @@ Json links(std::string_view id) {
           {"events", self + "/events"},
           {"result", self + "/result"},
           {"report", self + "/report"},
-          {"layout", self + "/layout.svg"}};
+          {"layout", self + "/layout.svg"},
+          {"layout_png", self + "/layout.png"},
+          {"preview", self + "/preview.png"}};
 }
 
 Json to_json(const JobProgress& progress) {

@@ -4,6 +4,7 @@ import validator from 'gltf-validator';
 
 import {multipart, raw, request} from './http.mjs';
 import * as meshes from './meshes.mjs';
+import {kOutcomes} from './run.mjs';
 import {parseEvents} from './spec.mjs';
 
 const kUnknownJob = `j_${'0'.repeat(32)}`;
@@ -34,9 +35,9 @@ export async function lifeOfAJob(run, base) {
   await run.call(base, 'getResult', {job, headers: {Accept: 'image/png'}, status: 406});
   await partsOfAResult(run, base, job);
   await run.call(base, 'getReport', {job, status: 200});
-  await run.call(base, 'getLayout', {job, status: 200});
+  await pictures(run, base, job);
   await run.call(base, 'deleteJob', {job, status: 204});
-  for (const id of ['getJob', 'deleteJob', 'watchJob', 'getResult', 'getReport', 'getLayout']) {
+  for (const id of ['getJob', 'deleteJob', 'watchJob', ...kOutcomes]) {
     await run.call(base, id, {job, status: 404, name: 'a removed job is gone'});
   }
 }
@@ -64,6 +65,35 @@ async function partsOfAResult(run, base, job) {
   run.expectEqual('its place', part.headers['content-range'], `bytes 4-11/${whole.body.length}`);
   await get({Range: 'bytes=4-11', 'If-Range': '"another"'}, 200);
   await get({Range: `bytes=${whole.body.length}-`}, 200);
+}
+
+/** Every picture in every colour, its tag and parts, and what its parameters may not be. */
+async function pictures(run, base, job) {
+  const colour = ['stretch', 'angle', 'area', 'flips'];
+  const known = {getLayout: {colour}, getLayoutPng: {colour, size: [64, 200]},
+                 getPreview: {size: [65, 256]}};
+  for (const [id, parameters] of Object.entries(known)) {
+    const get = (query, status, headers) => run.call(base, id, {job, query, headers, status});
+    for (const [name, values] of Object.entries(parameters)) {
+      for (const value of values) await get({[name]: value}, 200);
+    }
+    const {headers, body} = await get({}, 200);
+    await get({}, 304, {'If-None-Match': headers.etag});
+    const part = await get({}, 206, {Range: 'bytes=1-3'});
+    run.expectEqual(`a part of ${id}`, part.body.toString('hex'), body.subarray(1, 4).toString('hex'));
+    await badParameters(run, base, job, id);
+  }
+}
+
+async function badParameters(run, base, job, id) {
+  const bad = {colour: ['', 'red', 'Area'], size: ['63', '4097', '-64', '1e2', '64px', ''],
+               color: ['area']};
+  const pairs = Object.entries(bad).flatMap(([name, values]) => values.map((v) => [[name, v]]));
+  for (const query of [...pairs, [['size', '64'], ['size', '65']]]) {
+    const problem = await run.json(base, id, {job, query, status: 422});
+    run.expectEqual(`code of ${id} ${query}`, problem.code, 'invalid_option');
+    run.expectEqual(`pointer of ${id} ${query}`, problem.pointer, `/${query[0][0]}`);
+  }
 }
 
 async function representation(run, base, job, type) {
@@ -101,12 +131,81 @@ export async function everyOption(run, base) {
   }
 }
 
-export async function badOptions(run, base) {
-  const bad = {method: 'abf', lambda: '-1', lambda_units: 'miles', iterations: '0', initial: '7',
-               pins: 'none', seams: 'yes', resolution: '15', padding: '-1', output: 'png'};
-  for (const [name, value] of Object.entries({...bad, lamda: '1', iterations: '1000000000'})) {
-    await badOption(run, base, [[name, value]], name);
+/** How iterations stop is shown whole, whatever part of it was given. */
+export async function stops(run, base) {
+  const plain = {iterations: 7, tolerance: 1e-6, max_iterations: 500};
+  const accelerated = {iterations: null, tolerance: 1e-3, max_iterations: 40};
+  const cases = [[{'stop.iterations': 7}, plain],
+                 [{'stop.tolerance': 1e-3, 'stop.max_iterations': 40}, accelerated]];
+  for (const [query, stop] of cases) {
+    const job = await run.json(base, 'createJob',
+                               {query, headers: kWait, body: meshes.glb(), status: 200});
+    run.expectEqual('the whole stop', JSON.stringify(job.options?.stop), JSON.stringify(stop));
+    const {charts} = await run.json(base, 'getReport', {job: job.id, status: 200});
+    const wanted = stop.iterations ? charts[0].iterations === 7 : charts[0].iterations <= 40;
+    run.expectEqual(`iterations for ${JSON.stringify(query)}`, wanted, true);
   }
+}
+
+/** A job with several lambdas answers with the map of each, in every representation. */
+export async function curve(run, base) {
+  const query = {method: 'hybrid', lambda: '1,0.01'};
+  const {id: job} = await run.json(base, 'createJob',
+                                   {query, headers: kWait, body: meshes.glb(), status: 200});
+  for (const id of kOutcomes) {
+    const bodies = [];
+    for (const lambda of ['1', '0.01']) {
+      const {body} = await run.call(base, id, {job, query: {lambda}, status: 200});
+      bodies.push(body.toString('hex'));
+    }
+    const first = await run.call(base, id, {job, status: 200});
+    run.expectEqual(`${id}: the first is the usual`, first.body.toString('hex'), bodies[0]);
+    run.expectEqual(`${id}: the second is another`, bodies[1] === bodies[0], false);
+    const problem = await run.json(base, id, {job, query: {lambda: '2'}, status: 422});
+    run.expectEqual(`${id}: pointer of another lambda`, problem.pointer, '/lambda');
+  }
+  const report = await run.json(base, 'getReport', {job, query: {lambda: '0.01'}, status: 200});
+  run.expectEqual('the curve', report.curve.map(({lambda}) => lambda).join(), '1,0.01');
+  const watched = await run.call(base, 'watchJob', {job, status: 200});
+  const lambdas = parseEvents(watched.body.toString()).map(({data}) => data.lambda);
+  run.expectEqual('events of both', [1, 0.01].every((lambda) => lambdas.includes(lambda)), true);
+}
+
+/** Positions that hold, and positions that contradict each other. */
+export async function constraints(run, base) {
+  const pins = [{vertex: 0, uv: [0.1, 0.1]}, {vertex: 2, uv: [0.8, 0.1]}];
+  const send = (list, name) => run.json(base, 'createJob', {
+    query: {constraints: JSON.stringify(list)}, headers: kWait, body: meshes.glb(2), status: 200,
+    name});
+  const job = await send(pins, 'positions');
+  run.expectEqual('a job with positions', job.state, 'succeeded');
+  run.expectEqual('positions, resolved', JSON.stringify(job.options?.constraints),
+                  JSON.stringify(pins.map((pin) => ({...pin, weight: null, mesh: 0}))));
+  const headers = {Accept: 'application/json'};
+  const result = await run.json(base, 'getResult', {job: job.id, headers, status: 200});
+  const [mesh] = result.meshes;
+  for (const {vertex, uv} of pins) {
+    const at = mesh.vertex_map.indexOf(vertex);
+    const off = Math.max(...[0, 1].map((c) => Math.abs(mesh.uv[2 * at + c] - uv[c])));
+    run.expectEqual(`vertex ${vertex} is in its place`, off < 1e-6, true);
+  }
+  const failed = await send([...pins, {vertex: 0, uv: [0.5, 0.5]}], 'a contradiction');
+  run.expectEqual('a contradiction', failed.problem?.code, 'invalid_constraint');
+  await run.call(base, 'getResult', {job: failed.id, status: 422});
+}
+
+export async function badOptions(run, base) {
+  const bad = {method: 'lscm', lambda: '-1', lambda_units: 'miles', 'stop.iterations': '0',
+               'stop.tolerance': '1', 'stop.max_iterations': '1000000000', initial: '7',
+               pins: 'none', guarantee: 'some', repair: 'none', boundary: 'oval',
+               constraints: '7', seams: 'yes', resolution: '15', padding: '-1', output: 'png'};
+  for (const [name, value] of Object.entries({...bad, lamda: '1', iterations: '10', stop: '10'})) {
+    await badOption(run, base, [[name, value]], name.replace('.', '/'));
+  }
+  await badOption(run, base, [['lambda', '1,2,1']], 'lambda');
+  await badOption(run, base, [['constraints', '[{"vertex":0,"uv":[0]}]']], 'constraints/0/uv');
+  await badOption(run, base, [['constraints', '[{"vertex":0,"uv":[0,0]}]'], ['method', 'abf']],
+                  'constraints');
   await badOption(run, base, [['lambda', 'nan']], 'lambda');
   await badOption(run, base, [['method', 'arap'], ['method', 'asap']], 'method');
   await badOption(run, base, [['resolution', '16'], ['padding', '5']], 'padding');
@@ -142,7 +241,7 @@ export async function failure(run, base, {body, code, status}) {
                                  {headers: {...type, Prefer: 'wait=30'}, body, status: 200});
   run.expectEqual(`a job of ${code}`, created.state, 'failed');
   run.expectEqual(`its problem`, created.problem?.code, code);
-  for (const id of ['getResult', 'getReport', 'getLayout']) {
+  for (const id of kOutcomes) {
     const problem = await run.json(base, id, {job: created.id, status});
     run.expectEqual(`${id} of a failed job`, problem.code, code);
   }
@@ -201,9 +300,9 @@ async function badMultipart(run, base, [options, mesh, buffer]) {
       await run.call(base, id, {...multipart(parts), status: 400, name});
     }
   }
-  const wrong = multipart([{...options, body: '{"iterations":"10"}'}, mesh, buffer]);
+  const wrong = multipart([{...options, body: '{"stop":{"iterations":"10"}}'}, mesh, buffer]);
   const problem = await run.json(base, 'createJob', {...wrong, status: 422});
-  run.expectEqual('pointer into the options part', problem.pointer, '/iterations');
+  run.expectEqual('pointer into the options part', problem.pointer, '/stop/iterations');
   const pinsTwice = '{"pins":"diameter","pins":"spectral"}';
   const twice = multipart([{...options, body: pinsTwice}, mesh, buffer]);
   run.expectEqual('pointer to a member given twice',
@@ -237,7 +336,7 @@ export async function slowRequests(run, base) {
 
 /** A reader who comes after more events than are kept is told which ones are gone. */
 export async function gap(run, base) {
-  const query = {iterations: 5000};
+  const query = {'stop.iterations': 5000};
   const job = await run.json(base, 'createJob',
                              {query, headers: kWait, body: meshes.glb(2), status: 200});
   const answer = await run.call(base, 'watchJob', {job: job.id, status: 200});
@@ -259,7 +358,7 @@ export async function heads(run, base) {
 }
 
 export async function unknownJobs(run, base) {
-  for (const id of ['getJob', 'deleteJob', 'watchJob', 'getResult', 'getReport', 'getLayout']) {
+  for (const id of ['getJob', 'deleteJob', 'watchJob', ...kOutcomes]) {
     for (const job of [kUnknownJob, 'j_1', 'x', '%2e%2e', 'j_%00']) {
       await run.call(base, id, {job, status: 404, name: `unknown job ${job}`});
     }

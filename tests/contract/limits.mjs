@@ -3,10 +3,11 @@
 import {failure} from './cases.mjs';
 import {openStream} from './http.mjs';
 import * as meshes from './meshes.mjs';
+import {kOutcomes} from './run.mjs';
 import {startServer} from './server.mjs';
 
 const kGlb = {'Content-Type': 'model/gltf-binary'};
-const kSlow = {iterations: 10_000};  // minutes of work, unless it is cancelled
+const kSlow = {'stop.iterations': 10_000};  // minutes of work, unless it is cancelled
 const kSlowMesh = meshes.glb(150);
 const kPatience = 30_000;            // ms
 
@@ -81,7 +82,7 @@ export function fullQueue(run, binary) {
 }
 
 async function unfinished(run, base, job) {
-  for (const id of ['getResult', 'getReport', 'getLayout']) {
+  for (const id of kOutcomes) {
     const problem = await run.json(base, id, {job, status: 409});
     run.expectEqual(`${id} of a live job`, problem.code, 'job_unfinished');
   }
@@ -113,7 +114,7 @@ export function expiredResults(run, binary) {
   return withServer(binary, ['--workers', '1', '--keep-seconds', '1'], async ({base}) => {
     const headers = {...kGlb, Prefer: 'wait=30'};
     const job = idOf(await run.call(base, 'createJob', {headers, body: meshes.glb(), status: 200}));
-    for (const id of ['getResult', 'getReport', 'getLayout']) {
+    for (const id of kOutcomes) {
       const answer = await eventually(() => run.call(base, id, {job}),
                                       ({status}) => status === 410);
       run.expectEqual(`${id} after its time`, answer.status, 410);

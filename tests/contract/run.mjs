@@ -1,6 +1,9 @@
 // A run of the contract test: calls operations, lets the contract judge every answer, counts.
 import {request} from './http.mjs';
 
+/** What a job that succeeded has to show. */
+export const kOutcomes = ['getResult', 'getReport', 'getLayout', 'getLayoutPng', 'getPreview'];
+
 const kShown = 40;    // failures that are printed in full
 const kEchoed = 200;  // characters of a value
 
