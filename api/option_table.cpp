@@ -28,7 +28,6 @@ constexpr std::array kEveryMethod = {Method::asap, Method::arap,   Method::hybri
                                      Method::abf,  Method::linabf, Method::cp,
                                      Method::bff,  Method::ic,     Method::slim};
 constexpr std::array kLocalGlobal = {Method::arap, Method::hybrid};
-constexpr std::array kIterative = {Method::arap, Method::hybrid, Method::slim};
 constexpr std::array kHolding = {Method::asap, Method::arap, Method::hybrid};
 constexpr std::array kOnlyHybrid = {Method::hybrid};
 constexpr std::array kOnlyAsap = {Method::asap};
@@ -161,13 +160,13 @@ constexpr std::array kRows = {
               .nullable = true,
               .description = "So many plain iterations of every chart, as in the paper; without "
                              "it accelerated ones, until they converge.",
-              .methods = kIterative,
+              .methods = kLocalGlobal,
               .get = get_iterations,
               .set = set_iterations},
-    figure<&Stop::tolerance>("stop.tolerance", {kMinTolerance, kMaxTolerance}, kIterative,
+    figure<&Stop::tolerance>("stop.tolerance", {kMinTolerance, kMaxTolerance}, kLocalGlobal,
                              "Converged is when the energy falls by less than this share."),
     figure<&Stop::max_iterations>("stop.max_iterations", {1, {}, &Limits::max_iterations},
-                                  kIterative, "Accelerated iterations of a chart, at most."),
+                                  kLocalGlobal, "Accelerated iterations of a chart, at most."),
     choice<&O::initial, kInitialMaps>(
         "initial", kLocalGlobal,
         "The map to start from; auto takes the one that promises the least energy."),

@@ -24,6 +24,7 @@ constexpr const char* kFooter = R"(Examples:
   unwrap chair.glb                                 writes chair.uv.glb
   unwrap chair.gltf -o chair.glb --method asap     buffers beside chair.gltf are sent with it
   unwrap bust.obj -o bust.uv.obj --method hybrid --lambda 0.1 --layout bust.svg
+  unwrap bust.glb --method hybrid --lambda 1,0.1   writes bust.uv.1.glb and bust.uv.0.1.glb
   unwrap chair.glb --json --quiet | jq .distortion
   unwrap --sample shell.glb                        a mesh to try all this with
 
@@ -106,7 +107,8 @@ void add_flags(CLI::App& app, Raw& raw) {
   app.add_option("FILE", arguments.file, "The mesh: .glb, .gltf or .obj")->type_name("");
   app.add_option("-o,--out", arguments.out,
                  "Where the result goes; its extension is the format unless --output says "
-                 "otherwise. Without it FILE's name with \".uv\" before the extension")
+                 "otherwise. Without it FILE's name with \".uv\" before the extension. With a "
+                 "list of lambdas there is one for each, with the lambda before the extension")
       ->type_name("OUT");
   app.add_option("--report", arguments.report, "Write the report (JSON) here")->type_name("PATH");
   add_picture_flags(app, arguments);
@@ -151,6 +153,15 @@ void check_options(const OptionTexts& options) {
   }
 }
 
+/// The lambdas of a list, in its order, when the method makes a map for each.
+std::vector<std::string> lambdas_of(const OptionTexts& options) {
+  const auto method = options.find("method");
+  const auto lambda = options.find("lambda");
+  const bool is_list = lambda != options.end() && lambda->second.find(',') != std::string::npos;
+  if (!is_list || method == options.end() || method->second != "hybrid") return {};
+  return CLI::detail::split(lambda->second, ',');
+}
+
 /// Checks what the parser cannot, and fills in what follows from the rest.
 Arguments complete(Raw raw) {
   Arguments& arguments = raw.arguments;
@@ -161,6 +172,7 @@ Arguments complete(Raw raw) {
   arguments.server = parse_server_url(raw.server);
   arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));
   check_options(arguments.options);
+  arguments.lambdas = lambdas_of(arguments.options);
   const auto output = arguments.options.find("output");
   const bool output_given = output != arguments.options.end();
   if (arguments.out.empty()) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "client/failure.hpp"
 #include "client/job_client.hpp"
@@ -20,7 +21,8 @@ struct Arguments {
   std::filesystem::path preview;  ///< the textured mesh, PNG
   std::filesystem::path sample;   ///< write the sample mesh here and do nothing else
   ServerUrl server;
-  OptionTexts options;  ///< as given, with output filled in; checked
+  OptionTexts options;               ///< as given, with output filled in; checked
+  std::vector<std::string> lambdas;  ///< of a list with the method hybrid, as given; else empty
   std::chrono::milliseconds timeout{0};
   bool json = false;
   bool quiet = false;

@@ -2,12 +2,13 @@
 
 #include <array>
 #include <cstdio>
-#include <optional>
 #include <ostream>
+#include <vector>
 
 #include "api/options.hpp"
 #include "client/files.hpp"
 #include "client/gltf_buffers.hpp"
+#include "client/outputs.hpp"
 #include "client/sample.hpp"
 
 namespace unwrapd::client {
@@ -70,16 +71,12 @@ std::string summary(const std::string& name, const api::Json& report) {
   return name + text.data();
 }
 
-void tell(const Arguments& arguments, const std::string& report_text, const Console& console) {
-  if (arguments.json) {
-    console.out << report_text << std::endl;
-    return;
-  }
-  if (arguments.quiet) return;
+/// A line for each map, then the notes, which are the same for all.
+void tell_maps(const std::vector<WrittenMap>& maps, const Console& console) {
   try {
-    const api::Json report = api::Json::parse(report_text);
-    console.out << summary(arguments.out.string(), report);
-    for (const api::Json& note : report.at("notes"))
+    for (const WrittenMap& map : maps)
+      console.out << summary(map.result, api::Json::parse(map.report));
+    for (const api::Json& note : api::Json::parse(maps.front().report).at("notes"))
       console.out << "note: " << note.get<std::string>() << "\n";
     console.out << std::flush;
   } catch (const api::Json::exception&) {
@@ -88,41 +85,13 @@ void tell(const Arguments& arguments, const std::string& report_text, const Cons
   }
 }
 
-std::string layout_path(const Arguments& arguments) {
-  std::string path = arguments.layout.extension() == ".png" ? "/layout.png" : "/layout.svg";
-  if (!arguments.layout_colour.empty()) path += "?colour=" + arguments.layout_colour;
-  return path;
+void tell(const Arguments& arguments, const std::vector<WrittenMap>& maps, const Console& console) {
+  if (arguments.json) {
+    console.out << maps.front().report << std::endl;
+  } else if (!arguments.quiet) {
+    tell_maps(maps, console);
+  }
 }
-
-/// The files to write, opened before anything is sent: what cannot be written is known at once.
-class Outputs {
- public:
-  explicit Outputs(const Arguments& arguments) : result_(arguments.out) {
-    if (!arguments.report.empty()) report_.emplace(arguments.report);
-    if (!arguments.layout.empty()) layout_.emplace(arguments.layout);
-    if (!arguments.preview.empty()) preview_.emplace(arguments.preview);
-    layout_path_ = layout_path(arguments);
-  }
-
-  /// Fetches and writes all of them, and returns the report.
-  std::string fill(JobClient& client, const std::string& job_id) {
-    client.fetch(job_id, "/result", [&](std::string_view bytes) { result_.append(bytes); });
-    std::string report = client.fetch(job_id, "/report");
-    if (report_) report_->append(report);
-    if (layout_) layout_->append(client.fetch(job_id, layout_path_));
-    if (preview_) preview_->append(client.fetch(job_id, "/preview.png"));
-    if (report_) report_->commit();
-    if (layout_) layout_->commit();
-    if (preview_) preview_->commit();
-    result_.commit();
-    return report;
-  }
-
- private:
-  NewFile result_;
-  std::optional<NewFile> report_, layout_, preview_;
-  std::string layout_path_;
-};
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-// The files of jobs: DIR/blobs/<job>/{document,buffer_N,result.*,report.json,layout.svg,uv.bin*}.
+// The files of jobs: DIR/blobs/<job>/{document,buffer_N,result.*,report.json*,layout.svg,uv.bin*}.
 // An upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is written
 // under another name, synced and renamed. What a crash leaves behind is swept at the next start.
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "server/map_choice.hpp"
 #include "server/media_types.hpp"
 #include "server/result_routes.hpp"
 
@@ -49,7 +50,7 @@ Response delete_job(const JobServices& services, const Request& request) {
 /// The answer to a synchronous call, once its job is final.
 Response sync_response(const JobServices& services, const JobRecord& job, const Request& request) {
   require_result(job);
-  Response response = get_result(services.results, job, request);
+  Response response = get_result(services.results, job, 0, request);
   response.headers.emplace_back("Unwrapd-Report",
                                 read_file(services.blobs.path(job.id, kTotalsFile)));
   return response;
@@ -92,10 +93,14 @@ void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
                       return services.streams.open(find(request), request.header("Last-Event-ID"));
                     }});
   routes.push_back({"GET", "/v1/jobs/{id}/result", [services, find](const Request& request) {
-                      return get_result(services.results, find(request), request);
+                      const JobRecord job = find(request);
+                      const std::size_t map = only_chosen_map(job, request.query);
+                      return get_result(services.results, job, map, request);
                     }});
   routes.push_back({"GET", "/v1/jobs/{id}/report", [services, find](const Request& request) {
-                      return get_file(services.blobs, find(request), kReportFile,
+                      const JobRecord job = find(request);
+                      const std::size_t map = only_chosen_map(job, request.query);
+                      return get_file(services.blobs, job, map_file(kReportFile, map),
                                       "application/json");
                     }});
 }

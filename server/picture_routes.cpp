@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "server/job_routes.hpp"
+#include "server/map_choice.hpp"
 #include "server/result_routes.hpp"
 
 namespace unwrapd::server {
@@ -30,7 +31,11 @@ int parse_size(const std::string& text) {
 
 Response get_picture(PictureStore& pictures, const JobRecord& job, PictureKind kind,
                      const Request& request) {
-  const Picture picture = picture_of(kind, request.query);
+  std::multimap<std::string, std::string> query = request.query;
+  const std::size_t map = chosen_map(job, query);
+  query.erase("lambda");
+  Picture picture = picture_of(kind, query);
+  picture.uv_file = map_file(kUvFile, map);
   require_result(job);
   const std::string_view type = kind == PictureKind::layout_svg ? "image/svg+xml" : "image/png";
   return stored_response(pictures.open(job, picture), type, request);

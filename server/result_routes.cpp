@@ -62,10 +62,11 @@ Response stored_response(const StoredResult& stored, std::string_view type,
   return response;
 }
 
-Response get_result(ResultStore& results, const JobRecord& job, const Request& request) {
+Response get_result(ResultStore& results, const JobRecord& job, std::size_t map,
+                    const Request& request) {
   require_result(job);
   const std::string format = choose_format(request.header("Accept"), job.result_format);
-  Response response = stored_response(results.open(job, format), media_type(format), request);
+  Response response = stored_response(results.open(job, map, format), media_type(format), request);
   response.headers.emplace_back("Vary", "Accept");
   return response;
 }

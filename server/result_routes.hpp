@@ -15,8 +15,10 @@ void require_result(const JobRecord& job);
 /// A stored file, with ETag, If-None-Match and Range.
 Response stored_response(const StoredResult& stored, std::string_view type, const Request& request);
 
-/// The asset in the format that Accept chooses, with ETag, If-None-Match and Range.
-Response get_result(ResultStore& results, const JobRecord& job, const Request& request);
+/// The asset by one of the job's maps, in the format that Accept chooses, with ETag, If-None-Match
+/// and Range.
+Response get_result(ResultStore& results, const JobRecord& job, std::size_t map,
+                    const Request& request);
 
 /// A file of the job as it is.
 Response get_file(const BlobStore& blobs, const JobRecord& job, std::string_view file,

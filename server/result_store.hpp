@@ -1,6 +1,7 @@
 #pragma once
 // The results of jobs as files, in the job's own format and, made when somebody asks, in others.
 
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -17,7 +18,7 @@ namespace unwrapd::server {
 /// "glb", "gltf" or "obj".
 std::string_view format_name(asset::Format format);
 
-/// Stores a result and, beside it, the SHA-256 that becomes its ETag.
+/// Stores a result of a job's first map and, beside it, the SHA-256 that becomes its ETag.
 void write_result(BlobStore& blobs, std::string_view job, std::string_view format,
                   std::string_view bytes);
 
@@ -31,12 +32,12 @@ class ResultStore {
  public:
   ResultStore(BlobStore& blobs, const api::Limits& limits) : blobs_(blobs), limits_(limits) {}
 
-  /// The result of a succeeded job in a format (glb, gltf, obj, json). Throws what asset::write()
-  /// throws when the asset cannot be had in it.
-  StoredResult open(const JobRecord& job, std::string_view format);
+  /// The result of a succeeded job by one of its maps (see map_choice.hpp), in a format (glb, gltf,
+  /// obj, json). Throws what asset::write() throws when the asset cannot be had in it.
+  StoredResult open(const JobRecord& job, std::size_t map, std::string_view format);
 
  private:
-  std::string make(const JobRecord& job, std::string_view format) const;
+  std::string make(const JobRecord& job, std::size_t map, std::string_view format) const;
 
   BlobStore& blobs_;
   const api::Limits& limits_;

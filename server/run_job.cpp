@@ -10,6 +10,7 @@
 #include "core/figure/layout_svg.hpp"
 #include "core/unwrap.hpp"
 #include "server/job_input.hpp"
+#include "server/map_choice.hpp"
 #include "server/result_store.hpp"
 #include "server/stage_clock.hpp"
 #include "server/uv_file.hpp"
@@ -74,6 +75,19 @@ api::ReportContext context_of(const RunningJob& job, StageClock& clock) {
           .notes = job.record.notes};
 }
 
+/// What every map of a job needs to be answered with: the rest is made when somebody asks.
+void write_maps(const RunningJob& job, BlobStore& blobs, const std::vector<Unwrapped>& maps,
+                StageClock& clock) {
+  const std::string& id = job.record.id;
+  for (std::size_t map = 0; map < maps.size(); ++map)
+    blobs.write(id, map_file(kUvFile, map), encode_uvs(maps[map].surfaces));
+  check_stop(job);
+  blobs.write(id, kTotalsFile, api::totals_json(maps.front().report).dump());
+  const api::ReportContext context = context_of(job, clock);
+  for (std::size_t map = 0; map < maps.size(); ++map)
+    blobs.write(id, map_file(kReportFile, map), api::to_json(maps[map].report, context).dump());
+}
+
 }  // namespace
 
 asset::ReadLimits read_limits(const JobRecord& job, const api::Limits& limits) {
@@ -92,19 +106,17 @@ std::string run_job(const RunningJob& job, BlobStore& blobs, const api::Limits& 
   check_stop(job);
 
   const api::JobOptions options = api::parse_options(record.options, limits);
-  const Unwrapped unwrapped = unwrap(asset.surfaces(), options.unwrap, progress, executor);
+  const std::vector<Unwrapped> maps =
+      unwrap_curve(asset.surfaces(), options.unwrap, progress, executor);
 
   progress.on_stage(
       {.stage = Stage::write, .chart = 0, .chart_count = 0, .fraction = kWriteFraction});
   const asset::Format format = output_format(options.output, asset.format());
   std::string name(format_name(format));
-  write_result(blobs, record.id, name, asset::write(asset, unwrapped.surfaces, format));
-  blobs.write(record.id, kLayoutFile, layout_svg(asset.surfaces(), unwrapped.surfaces));
-  blobs.write(record.id, kUvFile, encode_uvs(unwrapped.surfaces));
-  check_stop(job);
-  blobs.write(record.id, kTotalsFile, api::totals_json(unwrapped.report).dump());
-  blobs.write(record.id, kReportFile,
-              api::to_json(unwrapped.report, context_of(job, clock)).dump());
+  const std::vector<UnwrappedSurface>& first = maps.front().surfaces;
+  write_result(blobs, record.id, name, asset::write(asset, first, format));
+  blobs.write(record.id, kLayoutFile, layout_svg(asset.surfaces(), first));
+  write_maps(job, blobs, maps, clock);
   return name;
 }
 

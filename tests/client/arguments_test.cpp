@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "api/options.hpp"
+#include "tests/client/temporary_folder.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -61,12 +62,36 @@ TEST(Arguments, EveryOptionOfTheApiIsAFlag) {
   for (const api::OptionRow& row : api::option_table()) {
     std::string flag = "--" + std::string(row.name);
     std::ranges::replace(flag, '_', '-');
+    std::ranges::replace(flag, '.', '-');
     EXPECT_THAT(help, HasSubstr(flag + " "));
-    const api::Json value = api::option_default(row);
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    if (row.type == api::OptionType::constraints) continue;
+    const api::Json value = api::option_default(row, {});
+    const std::string text = value.is_null()     ? "7"
+                             : value.is_string() ? value.get<std::string>()
+                                                 : value.dump();
     EXPECT_EQ(accepted({"a.glb", flag.c_str(), text.c_str()}).options.at(std::string(row.name)),
               text);
   }
+}
+
+TEST(Arguments, ConstraintsAreReadFromAFileAndCheckedWithTheirPlace) {
+  const TemporaryFolder folder;
+  const std::string good = R"([{"vertex":1,"uv":[0,1]}])";
+  const std::string file = folder.write("pins.json", good);
+  EXPECT_EQ(accepted({"a.glb", "--constraints", file.c_str()}).options.at("constraints"), good);
+  const std::string bad = folder.write("bad.json", R"([{"vertex":1,"uv":[0]}])");
+  const Message message = refused({"a.glb", "--constraints", bad.c_str()});
+  EXPECT_EQ(message.code, ExitCode::usage);
+  EXPECT_THAT(message.text, HasSubstr("/constraints/0/uv"));
+  EXPECT_EQ(refused({"a.glb", "--constraints", "none.json"}).code, ExitCode::file);
+}
+
+TEST(Arguments, AListOfLambdasIsOneOnlyWithTheMethodHybrid) {
+  const std::vector<std::string> three = {"1", "0.01", "1e-1"};
+  EXPECT_EQ(accepted({"a.glb", "--method", "hybrid", "--lambda", "1,0.01,1e-1"}).lambdas, three);
+  EXPECT_TRUE(accepted({"a.glb", "--lambda", "1,0.01"}).lambdas.empty());
+  EXPECT_TRUE(accepted({"a.glb", "--method", "hybrid", "--lambda", "1"}).lambdas.empty());
+  EXPECT_EQ(refused({"a.glb", "--method", "hybrid", "--lambda", "1,1"}).code, ExitCode::usage);
 }
 
 TEST(Arguments, AreCheckedBeforeAnythingIsSent) {
@@ -74,8 +99,8 @@ TEST(Arguments, AreCheckedBeforeAnythingIsSent) {
        {std::vector<const char*>{"a.glb", "--method", "magic"},
         {"a.glb", "--lambda", "-1"},
         {"a.glb", "--lambda", "nan"},
-        {"a.glb", "--iterations", "0"},
-        {"a.glb", "--iterations", "2.5"},
+        {"a.glb", "--stop-iterations", "0"},
+        {"a.glb", "--stop-iterations", "2.5"},
         {"a.glb", "--resolution", "1e9"},
         {"a.glb", "--timeout", "-1"},
         {"a.glb", "--timeout", "nan"},
@@ -92,7 +117,8 @@ TEST(Arguments, AreCheckedBeforeAnythingIsSent) {
 }
 
 TEST(Arguments, LeaveTheServersOwnLimitsToTheServer) {
-  EXPECT_EQ(accepted({"a.glb", "--iterations", "1000000"}).options.at("iterations"), "1000000");
+  EXPECT_EQ(accepted({"a.glb", "--stop-iterations", "1000000"}).options.at("stop.iterations"),
+            "1000000");
 }
 
 TEST(Arguments, HelpTellsTheExitCodes) {

@@ -59,7 +59,7 @@ TEST(JobClient, SubmitsTheBytesWithTheOptionsInTheQuery) {
 TEST(JobClient, ShowsTheServersProblem) {
   FakeServer server;
   server.routes().Post("/v1/jobs", [&](const httplib::Request&, httplib::Response& reply) {
-    const Error error(ErrorCode::invalid_option, "iterations must be lower.", "/iterations");
+    const Error error(ErrorCode::invalid_option, "iterations must be lower.", "/stop/iterations");
     answer(reply, 422, api::problem(error));
   });
   server.start();
@@ -67,7 +67,7 @@ TEST(JobClient, ShowsTheServersProblem) {
   const Upload upload = raw_upload(folder.write("mesh.obj", "v"));
   const std::string message =
       expect_failure(ExitCode::job_failed, [&] { client_of(server).submit(upload, {}); });
-  for (const char* part : {"iterations must be lower.", "invalid_option", "/iterations"})
+  for (const char* part : {"iterations must be lower.", "invalid_option", "/stop/iterations"})
     EXPECT_THAT(message, HasSubstr(part));
 }
 

@@ -25,11 +25,30 @@ function obey(run, id, answer) {
   return answer;
 }
 
+const kLambda = fc.double({min: 0, max: 1e6, noNaN: true});
+
+const kStop = fc.record({
+  iterations: fc.option(fc.integer({min: 1, max: 30})),
+  tolerance: fc.double({min: 1e-12, max: 0.1, noNaN: true}),
+  max_iterations: fc.integer({min: 1, max: 60}),
+}, {requiredKeys: []});
+
+const kPoint = fc.double({min: -2, max: 2, noNaN: true});
+
+const kConstraint = fc.tuple(
+  fc.oneof(fc.record({vertex: fc.integer({min: 0, max: 5})}),
+           fc.record({at: fc.array(kPoint, {minLength: 3, maxLength: 3})})),
+  fc.record({uv: fc.array(kPoint, {minLength: 2, maxLength: 2}),
+             weight: fc.option(fc.double({min: 1e-6, max: 1e6, noNaN: true})),
+             mesh: fc.integer({min: 0, max: 1})}, {requiredKeys: ['uv']}))
+  .map(([which, what]) => ({...which, ...what}));
+
 function validValue(name, schema) {
   if (schema.enum) return fc.constantFrom(...schema.enum);
-  if (name === 'lambda') return fc.double({min: 0, max: 1e6, noNaN: true});
-  const maximum = {iterations: 30, resolution: 4096}[name] ?? schema.maximum;
-  return fc.integer({min: schema.minimum, max: maximum});
+  if (name === 'lambda') return fc.oneof(kLambda, fc.uniqueArray(kLambda, {minLength: 1, maxLength: 4}));
+  if (name === 'stop') return kStop;
+  if (name === 'constraints') return fc.array(kConstraint, {maxLength: 3});
+  return fc.integer({min: schema.minimum, max: name === 'resolution' ? 4096 : schema.maximum});
 }
 
 const anyValue = fc.oneof(
@@ -39,10 +58,12 @@ const anyValue = fc.oneof(
 /** A value on a bound of an option, or just beyond it. */
 function boundaryOption(properties) {
   const bounded = Object.entries(properties).filter(([, schema]) => !schema.enum);
-  return fc.constantFrom(...bounded.flatMap(([name, {minimum = 0, maximum = 1e6}]) =>
-    [minimum - 1, minimum - 0.5, minimum, minimum + 0.5, maximum, maximum + 1]
-      .filter((value) => name !== 'iterations' || value < maximum)  // that many would take minutes
-      .map((value) => ({[name]: value}))));
+  const stops = [{iterations: 0}, {iterations: 1}, {iterations: 1.5}, {iterations: 10_001},
+                 {max_iterations: 0}, {max_iterations: 10_001}, {tolerance: 0}, {tolerance: 0.2}];
+  return fc.constantFrom(...stops.map((stop) => ({stop})),
+    ...bounded.flatMap(([name, {minimum = 0, maximum = 1e6}]) =>
+      [minimum - 1, minimum - 0.5, minimum, minimum + 0.5, maximum, maximum + 1]
+        .map((value) => ({[name]: value}))));
 }
 
 function someOptions(properties) {
@@ -56,9 +77,11 @@ function someOptions(properties) {
   return fc.oneof(valid, fc.tuple(valid, bad).map((both) => Object.assign({}, ...both)));
 }
 
-/** What the schema cannot say: padding is at most a quarter of resolution. */
-function paddingFits({padding = 2, resolution = 1024}) {
-  return 4 * padding <= resolution;
+/** What the schema cannot say: which options go together. */
+function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary = 'free',
+                     constraints = []}) {
+  const held = ['asap', 'arap', 'hybrid'].includes(method) && boundary === 'free';
+  return 4 * padding <= resolution && (constraints.length === 0 || held);
 }
 
 function expectVerdict(answer, allowed) {
@@ -81,7 +104,7 @@ async function jsonOptions(run, base) {
     const answer = await request(base, {
       method: 'POST', path: '/v1/jobs', headers: {...headers, Prefer: 'wait=20'}, body});
     obey(run, 'createJob', answer);
-    const allowed = run.contract.checkNamed('Options', sent).length === 0 && paddingFits(sent);
+    const allowed = run.contract.checkNamed('Options', sent).length === 0 && goTogether(sent);
     expectVerdict(answer, allowed);
   });
   await check(run, 'options as JSON', property, 250);
@@ -90,22 +113,57 @@ async function jsonOptions(run, base) {
 /** The value that the text of a query stands for, as the schema sees it. */
 function queryValue(schema, text) {
   const isNumber = schema.type !== 'string';
-  const pattern = schema.type === 'integer' ? /^-?\d+$/ : /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
+  const pattern = String(schema.type).startsWith('integer') ? /^-?\d+$/ : /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
   return isNumber && pattern.test(text) ? Number(text) : text;
 }
 
+/** Options as the pairs of a query: members of stop by their path, lists of numbers with commas. */
+function queryPairs(options) {
+  const isGroup = ([name, value]) => name === 'stop' && value?.constructor === Object;
+  const text = (name, value) => name === 'constraints' ? JSON.stringify(value) : String(value);
+  return Object.entries(options).flatMap(([name, value]) => isGroup([name, value])
+    ? Object.entries(value).filter(([, v]) => v !== null).map(([m, v]) => [`stop.${m}`, String(v)])
+    : [[name, text(name, value)]]);
+}
+
+function constraintsOf(text) {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return text;
+  }
+}
+
+/** The options that the pairs of a query stand for. */
+function meantBy(pairs, {Options, Stop, Lambda}) {
+  const meant = {};
+  for (const [name, text] of pairs) {
+    const [group, member] = name.split('.');
+    if (group === 'stop' && member in Stop.properties) {
+      meant.stop = {...meant.stop, [member]: queryValue(Stop.properties[member], text)};
+    } else if (name === 'lambda') {
+      const numbers = text.split(',').map((part) => queryValue(Lambda, part));
+      meant.lambda = numbers.length > 1 ? numbers : numbers[0];
+    } else if (name === 'constraints') {
+      meant.constraints = constraintsOf(text);
+    } else {
+      meant[name] = queryValue(Options.properties[name] ?? {}, text);
+    }
+  }
+  return meant;
+}
+
 async function queryOptions(run, base) {
-  const {Options, Lambda} = run.contract.document.components.schemas;
-  const property = fc.asyncProperty(someOptions(Options.properties), async (options) => {
-    const pairs = Object.entries(options).map(([name, value]) => [name, String(value)]);
-    const meant = Object.fromEntries(pairs.map(([name, text]) => [
-      name, queryValue(name === 'lambda' ? Lambda : Options.properties[name] ?? {}, text)]));
+  const {schemas} = run.contract.document.components;
+  const property = fc.asyncProperty(someOptions(schemas.Options.properties), async (options) => {
+    const pairs = queryPairs(options);
+    const meant = meantBy(pairs, schemas);
     const answer = await request(base, {
       method: 'POST', path: `/v1/jobs?${new URLSearchParams(pairs)}`, body: kTiny,
       headers: {'Content-Type': 'model/gltf-binary', Prefer: 'wait=20'}});
     obey(run, 'createJob', answer);
     const known = run.contract.checkNamed('Options', meant).length === 0;
-    expectVerdict(answer, known && meant.lambda !== null && paddingFits(meant));
+    expectVerdict(answer, known && goTogether(meant));
   });
   await check(run, 'options as a query', property, 250);
 }

@@ -107,7 +107,7 @@ test("an OBJ comes back as an OBJ with vt", async () => {
 
 test("a .gltf takes its buffers along, and any format goes into any other", async () => {
   splitSample();
-  const run = await unwrap(at("shell.gltf"), "-o", at("joined.glb"), "--iterations", "3");
+  const run = await unwrap(at("shell.gltf"), "-o", at("joined.glb"), "--stop-iterations", "3");
   assert.equal(run.code, 0, run.err);
   const { json, bin } = readGlb(at("joined.glb"));
   assert.equal(uvsOf(json, bin).length, 2 * 10224);
@@ -125,7 +125,7 @@ test("--json prints the report and nothing else", async () => {
 });
 
 test("a mistake on the command line is 2 and names the flag", async () => {
-  for (const words of [["--method", "magic"], ["--lambda", "-1"], ["--iterations", "0"], ["--no-such"]]) {
+  for (const words of [["--method", "magic"], ["--lambda", "-1"], ["--stop-iterations", "0"], ["--no-such"]]) {
     const run = await unwrap(at("shell.glb"), ...words);
     assert.equal(run.code, 2, words.join(" "));
     assert.match(run.err, new RegExp(words[0].slice(2)));
@@ -133,9 +133,9 @@ test("a mistake on the command line is 2 and names the flag", async () => {
 });
 
 test("what the server refuses is 1 and its problem is told", async () => {
-  const limit = await unwrap(at("shell.glb"), "--iterations", "1000000000");
+  const limit = await unwrap(at("shell.glb"), "--stop-iterations", "1000000000");
   assert.equal(limit.code, 1);
-  assert.match(limit.err, /invalid_option.*\/iterations/);
+  assert.match(limit.err, /invalid_option.*\/stop\/iterations/);
   writeFileSync(at("no_mesh.glb"), "this is no mesh");
   const file = await unwrap(at("no_mesh.glb"));
   assert.equal(file.code, 1);
@@ -170,12 +170,12 @@ async function cancelled(run, code) {
 }
 
 test("Ctrl-C cancels the job and is 130", async () => {
-  const long = [at("shell.glb"), "-o", at("long.glb"), "--iterations", "10000"];
+  const long = [at("shell.glb"), "-o", at("long.glb"), "--stop-iterations", "10000"];
   const stop = (child, text) => /iteration/.test(text) && child.kill("SIGINT");
   await cancelled(await unwrapWith({}, long, stop), 130);
   assert.deepEqual(readdirSync(folder).filter((name) => name.startsWith("long")), []);
 });
 
 test("--timeout cancels the job and is 3", async () => {
-  await cancelled(await unwrap(at("shell.glb"), "--iterations", "10000", "--timeout", "0.5"), 3);
+  await cancelled(await unwrap(at("shell.glb"), "--stop-iterations", "10000", "--timeout", "0.5"), 3);
 });

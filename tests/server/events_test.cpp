@@ -37,7 +37,7 @@ class Events : public RunningServer {
 
 TEST_F(Events, TellTheWholeStoryInOrder) {
   start();
-  const std::string id = submit("?iterations=3");
+  const std::string id = submit("?stop.iterations=3");
   const std::string story = events(id);
   std::size_t at = 0;
   for (const char* event :
@@ -52,7 +52,7 @@ TEST_F(Events, TellTheWholeStoryInOrder) {
 
 TEST_F(Events, AreResumedAfterTheLastOneSeen) {
   start();
-  const std::string id = submit("?iterations=3");
+  const std::string id = submit("?stop.iterations=3");
   const std::string whole = events(id);
   const std::size_t fourth = whole.find("id: 4\n");
   EXPECT_EQ(events(id, {{"Last-Event-ID", "3"}}), whole.substr(fourth));
@@ -64,7 +64,7 @@ TEST_F(Events, AreResumedAfterTheLastOneSeen) {
 
 TEST_F(Events, OfALongJobHaveAGapForWhoeverComesLate) {
   start();
-  const std::string id = submit("?iterations=5000", 4);
+  const std::string id = submit("?stop.iterations=5000", 4);
   await_state(id, "succeeded");
   const std::string late = events(id, {{"Last-Event-ID", "2"}});
   EXPECT_THAT(late, HasSubstr("event: gap\ndata: {\"first\":3,"));
@@ -82,7 +82,7 @@ TEST_F(Events, AfterARestartTheEndIsStillTold) {
 
 TEST_F(Events, AReaderThatLeavesCancelsNothing) {
   start();
-  const std::string id = submit("?iterations=2000", 8);
+  const std::string id = submit("?stop.iterations=2000", 8);
   client().Get("/v1/jobs/" + id + "/events", [](const char*, std::size_t) { return false; });
   await_state(id, "succeeded");
 }

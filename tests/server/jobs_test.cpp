@@ -7,6 +7,8 @@
 #include <set>
 #include <thread>
 
+#include "api/options.hpp"
+
 namespace unwrapd::server {
 namespace {
 
@@ -76,7 +78,7 @@ TEST_F(Jobs, AFormWithoutItsMeshOrWithAnythingTwiceIsRefused) {
 TEST_F(Jobs, WaitingIsAnsweredEarlyWhenTheJobIsNotDone) {
   config_.limits.max_wait_seconds = 1;
   start();
-  const auto answer = client().Post("/v1/jobs?iterations=10000", {{"Prefer", "wait=100"}},
+  const auto answer = client().Post("/v1/jobs?stop.iterations=10000", {{"Prefer", "wait=100"}},
                                     grid_obj(40), "model/obj");
   EXPECT_EQ(answer->status, 202);
   EXPECT_EQ(answer->get_header_value("Preference-Applied"), "wait=1");
@@ -85,12 +87,12 @@ TEST_F(Jobs, WaitingIsAnsweredEarlyWhenTheJobIsNotDone) {
 
 TEST_F(Jobs, BadOptionsAreToldAtOnceWithTheirPlace) {
   start();
-  for (const char* option : {"method=best", "lambda=-1", "lambda=nan", "iterations=0",
-                             "iterations=1000000000", "nonsense=1"}) {
+  for (const char* option : {"method=best", "lambda=-1", "lambda=nan", "stop.iterations=0",
+                             "stop.iterations=1000000000", "iterations=10", "nonsense=1"}) {
     const auto answer = client().Post("/v1/jobs?" + std::string(option), grid_obj(2), "model/obj");
     expect_problem(answer, 422, "invalid_option");
     const std::string name = std::string(option).substr(0, std::string(option).find('='));
-    EXPECT_EQ(api::Json::parse(answer->body).value("pointer", ""), "/" + name);
+    EXPECT_EQ(api::Json::parse(answer->body).value("pointer", ""), api::option_pointer(name));
   }
 }
 

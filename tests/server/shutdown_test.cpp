@@ -68,7 +68,8 @@ TEST_F(Shutdown, WaitingRequestsAreAnswered) {
   std::jthread sender([&, client = std::make_shared<httplib::Client>(client())] {
     const httplib::Headers wait = {{"Prefer", "wait=60"}};
     client->set_read_timeout(std::chrono::minutes(2));
-    status = client->Post("/v1/jobs?iterations=10000", wait, grid_obj(40), "model/obj")->status;
+    status =
+        client->Post("/v1/jobs?stop.iterations=10000", wait, grid_obj(40), "model/obj")->status;
   });
   const std::filesystem::path blobs = dir_.path() / "blobs";
   await([&] { return !std::filesystem::is_empty(blobs); });

@@ -1,0 +1,74 @@
+#include "client/outputs.hpp"
+
+namespace unwrapd::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "lambda=1e%2B5" of "1e+5": in a query a plus is a space.
+std::string lambda_query(const std::string& lambda) {
+  if (lambda.empty()) return {};
+  std::string query = "lambda=";
+  for (const char c : lambda) query += c == '+' ? "%2B" : std::string(1, c);
+  return query;
+}
+
+std::string joined(const std::string& path, const std::string& query) {
+  if (query.empty()) return path;
+  return path + (path.find('?') == std::string::npos ? "?" : "&") + query;
+}
+
+std::string layout_of(const Arguments& arguments) {
+  std::string path = arguments.layout.extension() == ".png" ? "/layout.png" : "/layout.svg";
+  if (!arguments.layout_colour.empty()) path += "?colour=" + arguments.layout_colour;
+  return path;
+}
+
+}  // namespace
+
+fs::path map_path(const fs::path& path, const std::string& lambda) {
+  if (lambda.empty()) return path;
+  fs::path named = path;
+  named.replace_filename(path.stem().string() + "." + lambda + path.extension().string());
+  return named;
+}
+
+Outputs::Map::Map(const Arguments& arguments, const std::string& lambda)
+    : name(map_path(arguments.out, lambda).string()),
+      query(lambda_query(lambda)),
+      layout_path(layout_of(arguments)),
+      result(map_path(arguments.out, lambda)) {
+  if (!arguments.layout.empty()) layout.emplace(map_path(arguments.layout, lambda));
+  if (!arguments.preview.empty()) preview.emplace(map_path(arguments.preview, lambda));
+}
+
+std::string Outputs::Map::fetch(JobClient& client, const std::string& job_id) {
+  client.fetch(job_id, joined("/result", query),
+               [&](std::string_view bytes) { result.append(bytes); });
+  if (layout) layout->append(client.fetch(job_id, joined(layout_path, query)));
+  if (preview) preview->append(client.fetch(job_id, joined("/preview.png", query)));
+  return client.fetch(job_id, joined("/report", query));
+}
+
+void Outputs::Map::commit() {
+  if (layout) layout->commit();
+  if (preview) preview->commit();
+  result.commit();
+}
+
+Outputs::Outputs(const Arguments& arguments) {
+  for (const std::string& lambda : arguments.lambdas) maps_.emplace_back(arguments, lambda);
+  if (maps_.empty()) maps_.emplace_back(arguments, "");
+  if (!arguments.report.empty()) report_.emplace(arguments.report);
+}
+
+std::vector<WrittenMap> Outputs::fill(JobClient& client, const std::string& job_id) {
+  std::vector<WrittenMap> written;
+  for (Map& map : maps_) written.push_back({map.name, map.fetch(client, job_id)});
+  if (report_) report_->append(written.front().report);
+  if (report_) report_->commit();
+  for (Map& map : maps_) map.commit();
+  return written;
+}
+
+}  // namespace unwrapd::client
