@@ -144,7 +144,7 @@ void check_spread(const Holds& holds, const ChartPins& pins) {
 }
 
 /// pins: of one chart, not empty, in the order of the constraints.
-Holds merge(ChartPins pins, Index vertex_count) {
+Holds merge(const ChartPins& pins, Index vertex_count) {
   Holds holds;
   ChartPins hard_pins, sorted = pins;
   counting_sort(sorted, vertex_count, [](const Pin& pin) { return std::size_t(pin.vertex); });
@@ -179,12 +179,12 @@ std::vector<std::vector<Holds>> page_holds(std::span<const Surface> surfaces,
   std::vector<std::vector<Holds>> holds;
   for (const Charts& part : charts) holds.emplace_back(part.charts.size());
   if (constraints.empty()) return holds;
-  std::vector<std::vector<ChartPins>> pins = find_all(surfaces, charts, constraints);
+  const std::vector<std::vector<ChartPins>> pins = find_all(surfaces, charts, constraints);
   for (std::size_t s = 0; s < holds.size(); ++s)
     for (std::size_t k = 0; k < holds[s].size(); ++k) {
       const Chart& chart = charts[s].charts[k];
       if (pins[s][k].empty()) refuse_free(chart, s);
-      holds[s][k] = merge(std::move(pins[s][k]), chart.mesh.vertex_count());
+      holds[s][k] = merge(pins[s][k], chart.mesh.vertex_count());
     }
   return holds;
 }

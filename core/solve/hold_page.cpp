@@ -83,7 +83,8 @@ ChartHold hold_chart(const Disk& disk, const UnwrapOptions& options, Holds page,
   if (page.empty()) return {.held = held_boundary(disk, options)};
   const UvMap guide = guide_map(disk, options, stop, executor);
   const PageFrame frame = page_frame(guide, page, options);
-  return {.held = held_on_page(frame, guide, page), .page = std::move(page), .frame = frame};
+  Held held = held_on_page(frame, guide, page);
+  return {.held = std::move(held), .page = std::move(page), .frame = frame};
 }
 
 }  // namespace unwrapd
