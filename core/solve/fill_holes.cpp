@@ -1,22 +1,17 @@
 #include "core/solve/fill_holes.hpp"
 
-#include <algorithm>
-
 #include "core/mesh/edges.hpp"
 #include "core/solve/lay_out.hpp"
 
 namespace unwrapd {
 namespace {
 
-/// Lengths below this, in disk units, count as this: rims may have edges of length zero.
-constexpr double kLeastLength = 1e-12;
-
 RestTriangle triangle_of(const Disk& disk, const Triangle& face) {
   std::array<double, 3> length{};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto a = static_cast<std::size_t>(face[i]);
     const auto b = static_cast<std::size_t>(face[(i + 1) % 3]);
-    length[i] = std::max((disk.positions[a] - disk.positions[b]).norm(), kLeastLength);
+    length[i] = (disk.positions[a] - disk.positions[b]).norm();
   }
   return triangle_of_lengths(length);
 }

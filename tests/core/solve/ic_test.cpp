@@ -181,6 +181,23 @@ TEST(Ic, ConvergesAtVerticesOfThreeFaces) {  // circles that cross at right angl
   }
 }
 
+TEST(CirclePacking, LetsTheLinksOfInnerVerticesCrossFlatEnoughToClose) {
+  // The angles at a vertex whose circle shrinks to a point tend to the sum of (pi - crossing angle)
+  // over its link: to be flat for some radius it must be more than 2 pi.
+  for (const TriMesh& mesh : {with_split_faces(shapes::random_disk(9, 5)), shapes::cone(4, 2, 9),
+                              shapes::cone(3, 2, 9), shapes::cone(4, 3, 0.1)}) {
+    const OwnedDisk d = disk_of(mesh);
+    const CirclePacking packing = circle_packing(d.disk);
+    std::vector<double> most(d.disk.positions.size(), 0.0);
+    for (std::size_t t = 0; t < d.disk.faces.size(); ++t)
+      for (std::size_t i = 0; i < 3; ++i)
+        most[std::size_t(d.disk.faces[t][i])] += kPi - std::acos(packing.crossing[t][(i + 1) % 3]);
+    for (const BoundaryLoop& loop : d.disk.loops)
+      for (Index h : loop) most[std::size_t(d.disk.faces[std::size_t(h / 3)][h % 3])] = 1e9;
+    for (double sum : most) EXPECT_GT(sum, 2 * kPi + 0.05);
+  }
+}
+
 TEST(Ic, ConvergesAtVerticesOfFourFaces) {
   for (double skew : {0.0, 0.4, 0.8}) {  // a cross in a frame that is sheared
     TriMesh mesh = shapes::polar_disk(4, 3, shapes::kTurn, [&](double r, double phi) {
