@@ -193,29 +193,6 @@ TEST(Options, RefuseNumbersOutsideOfWhatCanBeCounted) {
   EXPECT_EQ(parse_options_text(whole, kLimits).unwrap.stop.iterations, 20);
 }
 
-TEST(Options, KeepTheOrderOfLambdas) {
-  const auto curve = [](const JobOptions& options) { return options.unwrap.lambda_curve; };
-  const std::vector<double> three = {1, 0.01, 0.1};
-  EXPECT_EQ(curve(parse_options(Query{{"lambda", "1,0.01,1e-1"}}, kLimits)), three);
-  EXPECT_EQ(curve(parse_options_text(R"({"lambda":[1,0.01,0.1]})", kLimits)), three);
-  EXPECT_EQ(curve(parse_options_text(R"({"lambda":[5]})", kLimits)), std::vector<double>{5});
-  EXPECT_TRUE(curve(parse_options(Query{{"lambda", "5"}}, kLimits)).empty());
-}
-
-TEST(Options, RefuseListsOfLambdasThatSayNothingClear) {
-  std::string long_list = "0";
-  for (std::size_t k = 1; k <= kMaxNumbers; ++k) long_list += "," + std::to_string(k);
-  for (const std::string& list : {std::string("1,1"), std::string("1,2,1.0"), std::string("1,-1"),
-                                  std::string("0,-0"), long_list}) {
-    expect_refused(refusal(Query{{"lambda", list}}), "lambda", list);
-    expect_refused(refusal(R"({"lambda":[)" + list + "]}"), "lambda", list);
-  }
-  for (const char* list : {",", "1,", ",1", "1,,2", "1, 2", "[1,2]", "1,x"}) {
-    expect_refused(refusal(Query{{"lambda", list}}), "lambda", list);
-  }
-  expect_refused(refusal(R"({"lambda":[]})"), "lambda", "[]");
-}
-
 TEST(Options, RefuseAGroupThatIsNoObjectAndADotInJson) {
   for (const char* value : {"1", "[]", "null", "\"iterations\""}) {
     const Error error = refusal(object_text("stop", value));

@@ -119,7 +119,8 @@ function queryValue(schema, text) {
 
 /** Options as the pairs of a query: members of stop by their path, lists of numbers with commas. */
 function queryPairs(options) {
-  const isGroup = ([name, value]) => name === 'stop' && value?.constructor === Object;
+  const isGroup = ([name, value]) =>
+    name === 'stop' && value !== null && typeof value === 'object' && !Array.isArray(value);
   const text = (name, value) => name === 'constraints' ? JSON.stringify(value) : String(value);
   return Object.entries(options).flatMap(([name, value]) => isGroup([name, value])
     ? Object.entries(value).filter(([, v]) => v !== null).map(([m, v]) => [`stop.${m}`, String(v)])
