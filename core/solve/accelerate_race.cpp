@@ -23,9 +23,11 @@ constexpr double kHopelesslyBehind = 1.03;  // if its energy is so many times th
 
 bool has_holes(const Race& race) { return race.assembly.disk.loops.size() > 1; }
 
+/// Leaves one iteration for the change to a second start, which counts as one: around holes always,
+/// so that one is tried however few iterations there are.
 int patience(const Race& race) {
-  const int most = has_holes(race) ? kPatienceAroundHoles : kPatience;
-  return std::min(most, race.options.max_iterations - 1);  // the change counts as one more
+  const int most = race.options.max_iterations;
+  return has_holes(race) ? std::min(kPatienceAroundHoles, most - 1) : std::min(kPatience, most);
 }
 
 double energy_after(const Descent& descent, std::size_t iterations) {
@@ -38,6 +40,7 @@ double energy_after(const Descent& descent, std::size_t iterations) {
 std::optional<SecondStart> reason_for_second(const Race& race, const Descent& first,
                                              StopReason reason) {
   if (first.energy() <= Descent::kNothing) return std::nullopt;
+  if (first.solution().iterations >= race.options.max_iterations) return std::nullopt;
   if (has_holes(race) || reason == StopReason::max_iterations) return SecondStart::other_minimum;
   const Disk& disk = race.assembly.disk;
   const Index flips = distortion_sums(disk.rest, disk.faces, first.solution().uv).flipped;
