@@ -1,36 +1,59 @@
-// Table 1 of the paper on its own five models, and the hybrid's way from ASAP to ARAP (Figs. 5, 6).
-// D_area is compared with what every implementation reaches (Isis: 2.145, not the printed 2.11).
+// Table 1 of the paper on its own five models, every column, and the hybrid's way from ASAP to ARAP
+// (Figs. 5, 6). ./dev bench table1 prints the table.
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "core/atlas/charts.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/solve/solve.hpp"
+#include "tests/bench/table1.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd {
 namespace {
 
-struct Model {
-  const char* name;
-  const char* file;
-  InitialMap start;   // Sec. 4.5: LSCM where there are several boundaries
-  double asap_angle;  // printed
-  double arap_angle;  // printed
-  double arap_area;   // as reproduced by all
-  double printed_area;
+using bench::Column;
+using bench::kColumns;
+using bench::kModels;
+using bench::Model;
+
+/// A figure that is not reached, and what comes out instead (docs/adr/0013).
+struct Exception {
+  std::string_view column, model;
+  std::optional<double> angle, area;  ///< ours, where the printed one is not within kTolerance
 };
 
-constexpr std::array<Model, 5> kModels{{
-    {"Gargoyle", "Gargoyle_ABF.obj", InitialMap::mean_value, 2.00, 2.06, 2.057, 2.05},
-    {"Isis", "Isis_dABF.obj", InitialMap::mean_value, 2.05, 2.19, 2.145, 2.11},
-    {"Balls", "Balls.obj", InitialMap::mean_value, 2.02, 2.07, 2.054, 2.04},
-    {"Cow", "Cow_dABF.obj", InitialMap::mean_value, 2.01, 2.03, 2.020, 2.03},
-    {"Beetle", "Beetle_ABF.obj", InitialMap::lscm, 2.00, 2.01, 2.013, 2.01},
+constexpr double kTolerance = 0.02;
+
+constexpr std::array<Exception, 14> kExceptions{{
+    {"LSCM", "Gargoyle", {}, 15.12},  // depends on the pins
+    {"LSCM", "Isis", {}, 16.44},
+    {"LSCM", "Balls", {}, 2.504},
+    {"LSCM", "Cow", {}, 18.52},
+    {"dABF", "Isis", {}, 8.246},
+    {"LABF", "Isis", 2.075, 7.784},
+    {"IC", "Gargoyle", 2.163, {}},
+    {"IC", "Isis", 3.001, 3.794},
+    {"IC", "Balls", 2.111, 2.345},
+    {"IC", "Cow", {}, 2.340},
+    {"IC", "Beetle", {}, 2.187},
+    {"CP", "Isis", 2.101, 7.034},
+    {"CP", "Balls", 2.025, 2.339},
+    {"ARAP", "Isis", {}, 2.145},  // for every implementation that was tried
 }};
+
+Exception exception_of(const Column& column, const Model& model) {
+  for (const Exception& e : kExceptions)
+    if (e.column == column.name && e.model == model.name) return e;
+  return {};
+}
 
 /// One of the paper's models as its one chart.
 Charts load(const char* file) {
@@ -52,21 +75,62 @@ class Paper : public testing::Test {
   }
 };
 
-TEST_F(Paper, TenPlainIterationsReproduceTheColumnsOfTable1) {
-  std::printf("%-9s | ASAP D_angle        | ARAP D_angle        | ARAP D_area         | flips\n",
-              "");
-  for (const Model& model : kModels) {
-    const Charts charts = load(model.file);
-    ASSERT_EQ(charts.charts.size(), 1U) << model.name;
-    const Distortion asap = solved(charts.charts[0], {.method = Method::asap});
-    const Distortion arap = solved(charts.charts[0], {.initial = model.start});
-    std::printf("%-9s | %.4f  paper %.2f  | %.4f  paper %.2f  | %.4f  paper %.2f  | %d\n",
-                model.name, asap.angle, model.asap_angle, arap.angle, model.arap_angle, arap.area,
-                model.printed_area, arap.flipped);
-    EXPECT_NEAR(asap.angle, model.asap_angle, 0.01) << model.name;
-    EXPECT_NEAR(arap.angle, model.arap_angle, 0.006) << model.name;
-    EXPECT_NEAR(arap.area, model.arap_area, 0.012) << model.name;
+/// One figure: the printed one where it is reached, else the one that is known to come out.
+void expect_figure(double ours, std::optional<double> printed, std::optional<double> known) {
+  if (!printed) return;
+  const double expected = known.value_or(*printed);
+  EXPECT_NEAR(ours, expected, known ? 0.01 * expected : kTolerance);
+  EXPECT_TRUE(!known || std::abs(ours - *printed) > kTolerance) << "no exception any more";
+}
+
+TEST_F(Paper, Table1IsReproduced) {
+  for (std::size_t m = 0; m < kModels.size(); ++m) {
+    const Charts charts = load(kModels[m].file);
+    ASSERT_EQ(charts.charts.size(), 1U) << kModels[m].name;
+    for (const Column& column : kColumns) {
+      const auto& printed = column.printed[m];
+      if (!printed.angle) continue;
+      SCOPED_TRACE(std::string(column.name) + " of " + kModels[m].name);
+      const Distortion d = solved(charts.charts[0], bench::options_of(kModels[m], column.method));
+      const Exception known = exception_of(column, kModels[m]);
+      expect_figure(d.angle, printed.angle, known.angle);
+      expect_figure(d.area, printed.area, known.area);
+      const bool may_flip = column.method == Method::asap || column.method == Method::arap;
+      EXPECT_TRUE(may_flip || d.flipped == 0) << d.flipped;
+    }
   }
+}
+
+/// What another program gives for a method that came after the paper; a tolerance for D_area.
+struct Peer {
+  std::size_t model;
+  double angle, area, tolerance;
+};
+
+void expect_peer(Method method, const Peer& peer) {
+  SCOPED_TRACE(kModels[peer.model].name);
+  const Charts charts = load(kModels[peer.model].file);
+  const Distortion d = solved(charts.charts[0], {.method = method});
+  EXPECT_NEAR(d.angle, peer.angle, 0.005);
+  EXPECT_NEAR(d.area, peer.area, peer.tolerance);
+  EXPECT_EQ(d.flipped, 0);
+}
+
+TEST_F(Paper, BoundaryFirstFlatteningAgreesWithItsAuthorsProgram) {
+  for (const Peer& peer : {Peer{0, 2.004, 2.649, 0.01},
+                           {1, 2.050, 6.66, 0.5},  // theirs depends on an axis, see bff.cpp
+                           {2, 2.026, 2.392, 0.01},
+                           {3, 2.010, 2.172, 0.01},
+                           {4, 2.001, 2.098, 0.01}})
+    expect_peer(Method::bff, peer);
+}
+
+TEST_F(Paper, SymmetricDirichletAgreesWithLibigl) {  // Gargoyle takes too long for a test
+  for (const Peer& peer : {Peer{1, 2.156, 2.088, 0.01},
+                           {2, 2.075, 2.045, 0.01},
+                           {3, 2.022, 2.011, 0.01},
+                           {4, 2.013, 2.011, 0.01}})
+    expect_peer(Method::slim, peer);
 }
 
 /// Converged figures for lambda as printed, the mesh scaled to area 1 (Figs. 5 and 6).
