@@ -3,12 +3,11 @@
 
 #include "core/error.hpp"
 #include "core/measure/distortion.hpp"
-#include "core/measure/energy.hpp"
 #include "core/solve/boundary_shape.hpp"
-#include "core/solve/hold_align.hpp"
 #include "core/solve/hold_page.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/core/solve/disk_of.hpp"
+#include "tests/core/solve/holds_of.hpp"
 
 namespace unwrapd {
 namespace {
@@ -36,33 +35,6 @@ PageSolve solved_on_page(const Disk& disk, const UnwrapOptions& options, const H
   s.solution = Solver(disk, options, s.hold.held, serial).run(options.lambda, {});
   s.page = s.hold.frame->to_page(s.solution.uv, page);
   return s;
-}
-
-/// count different vertices over the page, where the vertex lies in the x-y plane, but not quite.
-std::vector<FixedPoint> scattered(const Disk& disk, std::size_t count, unsigned seed) {
-  std::mt19937 rng(seed);
-  std::uniform_real_distribution<double> off(-0.02, 0.02);
-  std::vector<Index> vertex(disk.positions.size());
-  std::iota(vertex.begin(), vertex.end(), 0);
-  std::shuffle(vertex.begin(), vertex.end(), rng);
-  std::vector<FixedPoint> points;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vec3& p = disk.positions[std::size_t(vertex[k])];
-    points.push_back({vertex[k], Vec2(0.5 + 0.6 * p.x() + off(rng), 0.5 + 0.6 * p.y() + off(rng))});
-  }
-  return points;
-}
-
-std::vector<Spring> as_springs(const std::vector<FixedPoint>& points, double weight) {
-  std::vector<Spring> springs;
-  for (const FixedPoint& p : points) springs.push_back({p.vertex, p.at, weight});
-  return springs;
-}
-
-double greatest_gap(const UvMap& a, const UvMap& b) {
-  double gap = 0;
-  for (std::size_t v = 0; v < a.size(); ++v) gap = std::max(gap, (a[v] - b[v]).norm());
-  return gap;
 }
 
 TEST(HeldSolve, KeepsHardPinsToTheLastBitInAllMethods) {
@@ -276,54 +248,6 @@ TEST(HeldSolve, StopsWhenAskedWhileItLooksForTheScale) {
     FAIL() << "not stopped";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::cancelled);
-  }
-}
-
-TEST(Align, FindsTheSimilarityThatMovedTheMap) {
-  const OwnedDisk d = disk_of(shapes::random_disk(6, 4));
-  UvMap uv, moved;
-  for (const Vec3& p : d.disk.positions) {
-    uv.push_back(p.head<2>());
-    moved.push_back(Vec2(2, 3) + 0.4 * Vec2(0.6 * p.x() - 0.8 * p.y(), 0.8 * p.x() + 0.6 * p.y()));
-  }
-  for (double weight : {1e-6, 1.0, 1e6}) {
-    Holds holds;
-    for (Index v : {3, 9, 20}) holds.fixed.push_back({v, moved[std::size_t(v)]});
-    for (Index v : {1, 30}) holds.springs.push_back({v, moved[std::size_t(v)], weight});
-    const Alignment a = align(uv, holds);
-    EXPECT_NEAR(a.scale, 0.4, 1e-12);
-    EXPECT_LT(greatest_gap(held_start(uv, holds), moved), 1e-12);
-  }
-}
-
-TEST(Align, TurnsForLeastSquares) {
-  const OwnedDisk d = disk_of(shapes::random_disk(6, 4));
-  UvMap uv;
-  for (const Vec3& p : d.disk.positions) uv.push_back(p.head<2>());
-  Holds holds{scattered(d.disk, 3, 1), {}};
-  for (Spring& s : as_springs(scattered(d.disk, 9, 1), 0.3))
-    if (s.vertex != holds.fixed[0].vertex && s.vertex != holds.fixed[1].vertex &&
-        s.vertex != holds.fixed[2].vertex)
-      holds.springs.push_back(s);
-  const auto error = [&](const Alignment& a) {
-    double sum = 0;
-    for (const FixedPoint& p : holds.fixed)
-      sum += (a(uv[std::size_t(p.vertex)]) - p.at).squaredNorm();
-    for (const Spring& s : holds.springs)
-      sum += 0.3 / 1.3 * (a(uv[std::size_t(s.vertex)]) - s.at).squaredNorm();
-    return sum;
-  };
-  const Alignment best = align(uv, holds);
-  for (double angle : {-1e-5, 1e-5, 1.0, 3.0}) {
-    Alignment other = best;
-    other.cosine = best.cosine * std::cos(angle) - best.sine * std::sin(angle);
-    other.sine = best.sine * std::cos(angle) + best.cosine * std::sin(angle);
-    EXPECT_GT(error(other), error(best));
-  }
-  for (double shift : {-1e-5, 1e-5}) {
-    Alignment other = best;
-    other.to += Vec2(shift, shift);
-    EXPECT_GT(error(other), error(best));
   }
 }
 

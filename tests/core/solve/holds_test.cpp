@@ -11,6 +11,7 @@
 #include "core/solve/global_step.hpp"
 #include "core/solve/objective.hpp"
 #include "tests/core/solve/disk_of.hpp"
+#include "tests/core/solve/holds_of.hpp"
 
 namespace unwrapd {
 namespace {
@@ -29,12 +30,6 @@ std::vector<FixedPoint> random_points(const Disk& disk, std::size_t count, unsig
   for (std::size_t k = 0; k < count; ++k)
     points.push_back({vertex[k], Vec2(place(rng), place(rng))});
   return points;
-}
-
-std::vector<Spring> as_springs(const std::vector<FixedPoint>& points, double weight) {
-  std::vector<Spring> springs;
-  for (const FixedPoint& p : points) springs.push_back({p.vertex, p.at, weight});
-  return springs;
 }
 
 /// The first half of the points fixed, the others on springs.
@@ -78,12 +73,6 @@ UvMap dense_asap(const Disk& disk, const Holds& holds) {
   UvMap uv;
   for (Eigen::Index v = 0; v < n; ++v) uv.emplace_back(x.segment<2>(2 * v));
   return uv;
-}
-
-double greatest_gap(const UvMap& a, const UvMap& b) {
-  double gap = 0;
-  for (std::size_t v = 0; v < a.size(); ++v) gap = std::max(gap, (a[v] - b[v]).norm());
-  return gap;
 }
 
 std::vector<TriMesh> small_disks() {
