@@ -28,6 +28,7 @@ std::string formatted(const char* format, double value) {
 
 std::string heading(const ProgressState& state) {
   std::string text = state.stage;
+  if (state.lambda) text += " lambda " + formatted("%.6g", *state.lambda);
   if (state.charts > 0)
     text += " chart " + std::to_string(state.chart + 1) + "/" + std::to_string(state.charts);
   return text;
@@ -62,6 +63,9 @@ ProgressState advance(ProgressState state, const std::string& event, const api::
     take(data, "chart", state.chart);
     take(data, "fraction", state.fraction);
     state.fraction = std::clamp(state.fraction, 0.0, 1.0);
+    const auto lambda = data.find("lambda");
+    const bool is_known = lambda != data.end() && lambda->is_number();
+    state.lambda = is_known ? std::optional(lambda->get<double>()) : std::nullopt;
   }
   if (event == "stage") {
     const auto name = data.find("name");

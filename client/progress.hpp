@@ -14,7 +14,8 @@ namespace unwrapd::client {
 /// The latest known figures. chart counts from 0; charts is 0 while their number is not known.
 struct ProgressState {
   std::string stage = "upload";
-  double fraction = 0;  ///< of the whole job, [0, 1]
+  double fraction = 0;           ///< of the whole job, [0, 1]
+  std::optional<double> lambda;  ///< of several, the one that is worked on
   int chart = 0;
   int charts = 0;
   int iteration = 0;  ///< 0 before the first

@@ -75,6 +75,15 @@ TEST(SseFrame, PingIsACommentThatReadersPassOver) {
   EXPECT_EQ(read_frames(stream).size(), 2U);
 }
 
+TEST(Events, OfACurveSayWhichLambdaTheyAreOf) {
+  const Event stage = stage_event(1, {.stage = Stage::solve, .lambda = 0.01});
+  const Event iteration = iteration_event(2, {.iteration = 1, .lambda = 1.0}, 0);
+  EXPECT_EQ(stage.data.at("lambda"), 0.01);
+  EXPECT_EQ(iteration.data.at("lambda"), 1.0);
+  EXPECT_FALSE(stage_event(1, {.stage = Stage::solve}).data.contains("lambda"));
+  EXPECT_FALSE(iteration_event(2, {.iteration = 1}, 0).data.contains("lambda"));
+}
+
 TEST(Events, HaveOnlyFiniteFigures) {
   const double infinity = std::numeric_limits<double>::infinity();
   const IterationEvent iteration{.chart = 1,

@@ -40,6 +40,14 @@ TEST(Progress, TellsWhatTheEventsTold) {
     EXPECT_THAT(line, HasSubstr(part));
 }
 
+TEST(Progress, OfSeveralLambdasSaysWhichOneAsLongAsTheEventsDo) {
+  const StageEvent of_one = {.stage = Stage::solve, .fraction = 0.3, .lambda = 0.01};
+  const ProgressState one = after({}, api::stage_event(1, of_one));
+  EXPECT_THAT(progress_line(one, 200), HasSubstr("solve lambda 0.01 "));
+  const ProgressState all = after(one, api::stage_event(2, {.stage = Stage::pack}));
+  EXPECT_THAT(progress_line(all, 200), testing::Not(HasSubstr("lambda")));
+}
+
 TEST(Progress, NeverGrowsWiderThanTheTerminal) {
   for (std::size_t width = 1; width <= 160; ++width)
     EXPECT_LE(progress_line(busy(), width).size(), width);
