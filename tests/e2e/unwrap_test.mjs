@@ -116,6 +116,32 @@ test("a .gltf takes its buffers along, and any format goes into any other", asyn
   assert.match(readFileSync(at("shell.uv.obj"), "utf8"), /^vt /m);
 });
 
+test("a list of lambdas writes a file for each and one report with the curve", async () => {
+  const words = ["--method", "hybrid", "--lambda", "1,0.01", "--stop-iterations", "2"];
+  const run = await unwrap(at("shell.glb"), "-o", at("curve.glb"), "--report", at("curve.json"), ...words);
+  assert.equal(run.code, 0, run.err);
+  const maps = ["curve.1.glb", "curve.0.01.glb"].map((name) => readGlb(at(name)));
+  const [first, second] = maps.map(({ json, bin }) => uvsOf(json, bin));
+  assert.notDeepEqual(first, second);
+  assert.match(run.out, /curve\.1\.glb: .*\n.*curve\.0\.01\.glb: /);
+  const { curve } = JSON.parse(readFileSync(at("curve.json"), "utf8"));
+  assert.deepEqual(curve.map(({ lambda }) => lambda), [1, 0.01]);
+});
+
+test("--constraints puts vertices where its file says", async () => {
+  writeFileSync(at("pins.json"), '[{"vertex":0,"uv":[0.25,0.25]},{"at":[1,0,0],"uv":[0.75,0.25]}]');
+  writeFileSync(at("square.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
+  const words = ["-o", at("held.obj"), "--constraints", at("pins.json")];
+  const run = await unwrap(at("square.obj"), ...words);
+  assert.equal(run.code, 0, run.err);
+  const lines = readFileSync(at("held.obj"), "utf8").match(/^vt .*$/gm);
+  const uvs = lines.map((line) => line.split(" ").slice(1, 3).map(Number));
+  for (const corner of [[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]]) {
+    const off = Math.min(...uvs.map(([u, v]) => Math.hypot(u - corner[0], v - corner[1])));
+    assert.ok(off < 1e-5, `${corner} in ${JSON.stringify(uvs)}`);
+  }
+});
+
 test("--json prints the report and nothing else", async () => {
   const run = await unwrap(at("shell.glb"), "-o", at("json.glb"), "--json", "--method", "hybrid");
   assert.equal(run.code, 0, run.err);
