@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/atlas/promise.hpp"
 #include "core/error.hpp"
 #include "core/solve/hold_page.hpp"
 
@@ -19,28 +20,68 @@ DistortionSums in_mesh_units(DistortionSums sums, double unit, double scale) {
   return sums;
 }
 
+/// The energy that keeping a promise shall raise as little as it can: the method's own. Methods
+/// that draw a map from angles or scales have that of angles.
+Rigidity rigidity_of(const Disk& disk, const UnwrapOptions& options, double lambda) {
+  switch (options.method) {
+    case Method::arap:
+    case Method::slim:
+      return {};
+    case Method::hybrid:
+      if (options.lambda_units == LambdaUnits::dimensionless) return {lambda, false};
+      return {lambda / (disk.unit * disk.unit), true};
+    default:
+      return {0, false};
+  }
+}
+
+std::vector<char> held_vertices(const Disk& disk, const Holds& holds) {
+  std::vector<char> held(disk.positions.size(), 0);
+  for (const FixedPoint& point : holds.fixed) held[static_cast<std::size_t>(point.vertex)] = 1;
+  return held;
+}
+
 /// Scales a free map to UV area = 3D area in mesh units: all charts then share one texel density.
 /// One under position constraints goes to its place on the page.
-MappedChart finish(const Disk& disk, const Chart& chart, const ChartHold& hold, Solution solution) {
+MappedChart finish(const Disk& disk, KeptPart part, const ChartHold& hold,
+                   const Solution& solution) {
   MappedChart mapped;
-  const DistortionSums own = distortion_sums(disk.rest, disk.faces, solution.uv);
+  const DistortionSums own = distortion_sums(disk.rest, disk.faces, part.uv);
   const double even = std::sqrt(own.area / own.uv_area);
   if (!std::isfinite(even))
     throw Error(ErrorCode::solver_failed,
                 "a chart collapsed to zero area; choose another method or initial map");
   const PageFrame frame = hold.frame.value_or(PageFrame{Vec2::Zero(), disk.unit * even});
-  solution.uv = frame.to_page(std::move(solution.uv), hold.page);
+  mapped.uv = frame.to_page(std::move(part.uv), hold.page);
+  mapped.held = held_vertices(disk, hold.page);
   mapped.sums = in_mesh_units(own, disk.unit, frame.scale);
-  mapped.report = {.faces = chart.mesh.face_count(),
-                   .vertices = chart.mesh.vertex_count(),
-                   .boundaries = static_cast<Index>(chart.loops.size()),
+  mapped.report = {.faces = part.chart.mesh.face_count(),
+                   .vertices = part.chart.mesh.vertex_count(),
+                   .boundaries = static_cast<Index>(part.chart.loops.size()),
                    .area = mapped.sums.area,
                    .distortion = distortion(mapped.sums),
                    .iterations = solution.iterations,
                    .stop_reason = solution.stop_reason,
-                   .energy = std::move(solution.energy)};
-  mapped.uv = std::move(solution.uv);
-  mapped.chart = chart;
+                   .energy = solution.energy};
+  mapped.chart = std::move(part.chart);
+  return mapped;
+}
+
+/// The parts that keep the promise, each with its share of the map. What mending took is told with
+/// the first of them.
+std::vector<MappedChart> finish_parts(const Disk& disk, Kept kept, const ChartHold& hold,
+                                      const Solution& solution) {
+  std::vector<MappedChart> mapped;
+  if (kept.parts.size() == 1) {
+    mapped.push_back(finish(disk, std::move(kept.parts.front()), hold, solution));
+  } else {
+    for (KeptPart& part : kept.parts) {
+      const Disk own = make_disk(part.chart.mesh, part.chart.loops);
+      mapped.push_back(finish(own, std::move(part), {}, solution));
+      mapped.back().report.mending.parts = kept.mending.parts;
+    }
+  }
+  mapped.front().report.mending = kept.mending;
   return mapped;
 }
 
@@ -66,7 +107,13 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
   for (std::size_t k = 0; k < lambdas.size(); ++k) {
     watch.begin_run(is_curve(options) ? std::optional(lambdas[k]) : std::nullopt);
     Solution solution = solver.run(lambdas[k], watch.solve_watch(disk, options.stop));
-    maps[k].push_back(finish(disk, chart, hold, std::move(solution)));
+    const Promise promise{options.guarantee,
+                          options.repair,
+                          {.rigidity = rigidity_of(disk, options, lambdas[k]),
+                           .held = held_vertices(disk, hold.held.holds),
+                           .stop = watch.stop()}};
+    Kept kept = keep_promise(chart, disk, std::move(solution.uv), promise);
+    maps[k] = finish_parts(disk, std::move(kept), hold, solution);
     watch.end_run();
   }
   watch.end_chart();

@@ -13,9 +13,10 @@ namespace unwrapd {
 /// A chart with its map: a part of the chart that was solved, if the guarantee took a split.
 struct MappedChart {
   Chart chart;
-  UvMap uv;             ///< in mesh units, UV area = 3D area; under position constraints the page's
-  DistortionSums sums;  ///< of that map, in mesh units
-  ChartReport report;   ///< surface is left 0 for the caller to fill in
+  UvMap uv;  ///< in mesh units, UV area = 3D area; under position constraints the page's
+  std::vector<char> held = {};  ///< one a vertex, 1: fixed by a position constraint
+  DistortionSums sums;          ///< of that map, in mesh units
+  ChartReport report;           ///< surface is left 0 for the caller to fill in
 };
 
 /// Whether a map is wanted for each value of a list, which counts for Method::hybrid alone.

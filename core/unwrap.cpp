@@ -9,6 +9,7 @@
 
 #include "core/atlas/constraints.hpp"
 #include "core/atlas/pack.hpp"
+#include "core/atlas/promise.hpp"
 #include "core/error.hpp"
 #include "core/map_chart.hpp"
 #include "core/measure/seam_length.hpp"
@@ -24,7 +25,8 @@ constexpr double kChartsBegin = 0.05, kPackBegin = kSolveEnd, kMeasureBegin = 0.
 struct Layout {
   std::vector<Charts> surfaces;             ///< with the charts as mapped
   std::vector<std::vector<UvMap>> islands;  ///< islands[s][k]: the map of chart k of surface s
-  DistortionSums sums;                      ///< of all charts, in mesh units
+  std::vector<std::vector<std::vector<char>>> held;  ///< held[s][k]: see MappedChart
+  DistortionSums sums;                               ///< of all charts, in mesh units
   Report report;
 };
 
@@ -55,6 +57,7 @@ void add_input(Report& report, const Charts& part, Index surface) {
 std::vector<Layout> empty_layouts(const std::vector<Charts>& parts, std::size_t map_count) {
   Layout layout;
   layout.islands.resize(parts.size());
+  layout.held.resize(parts.size());
   for (std::size_t s = 0; s < parts.size(); ++s) {
     add_input(layout.report, parts[s], static_cast<Index>(s));
     layout.surfaces.push_back({.charts = {},
@@ -72,6 +75,7 @@ void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
   layout.report.charts.push_back(std::move(mapped.report));
   layout.surfaces[surface].charts.push_back(std::move(mapped.chart));
   layout.islands[surface].push_back(std::move(mapped.uv));
+  layout.held[surface].push_back(std::move(mapped.held));
 }
 
 ChartWatch chart_watch(const std::vector<Charts>& parts, const Progress& progress) {
@@ -126,6 +130,23 @@ void lay_out_page(Layout& layout, const UnwrapOptions& options) {
   layout.report.texel_density = scale * density * options.resolution;
 }
 
+/// The promise kept in what is written; the report tells what is true there.
+void keep_on_page(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop) {
+  auto report = layout.report.charts.begin();
+  layout.report.guarantee = options.guarantee;
+  layout.report.distortion.flipped = 0;
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
+      Promise promise{.guarantee = options.guarantee};
+      promise.intent = {.rigidity = {}, .held = layout.held[s][k], .stop = stop};
+      const Written written =
+          keep_on_page(layout.surfaces[s].charts[k], promise, layout.islands[s][k]);
+      report->distortion.flipped = written.flipped;
+      report->overlaps = written.overlaps;
+      layout.report.distortion.flipped += written.flipped;
+    }
+}
+
 Unwrapped put_back(std::span<const Surface> surfaces, Layout layout) {
   Unwrapped unwrapped;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
@@ -171,7 +192,10 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   std::vector<Layout> layouts = map_charts(parts, page, options, progress, executor);
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
-  for (Layout& layout : layouts) lay_out_page(layout, options);
+  for (Layout& layout : layouts) {
+    lay_out_page(layout, options);
+    keep_on_page(layout, options, progress.stop);
+  }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
   std::vector<Unwrapped> maps;
   for (Layout& layout : layouts) maps.push_back(put_back(surfaces, std::move(layout)));

@@ -69,9 +69,18 @@ void set_least_height(double least_height, const UvMap& uv, Disk& disk) {
 
 }  // namespace
 
+double uv_step(const UvMap& uv) {
+  double reach = 1;
+  for (const Vec2& u : uv) reach = std::max({reach, u.cwiseAbs().maxCoeff(), std::abs(1 - u.y())});
+  double step = kUvStep;
+  while (reach * kUvStep > step) step *= 2;
+  return step;
+}
+
 Index snap(const Chart& chart, const std::vector<char>& held, const std::stop_token& stop,
            UvMap& uv) {
-  for (Vec2& u : uv) u /= kUvStep;
+  const double step = uv_step(uv);
+  for (Vec2& u : uv) u /= step;
   UvMap best = rounded(uv);
   std::size_t flipped = flipped_faces(chart.mesh.faces, best).size();
   if (flipped > 0) {
@@ -87,7 +96,7 @@ Index snap(const Chart& chart, const std::vector<char>& held, const std::stop_to
       if (flipped == 0) break;
     }
   }
-  for (std::size_t v = 0; v < uv.size(); ++v) uv[v] = best[v] * kUvStep;
+  for (std::size_t v = 0; v < uv.size(); ++v) uv[v] = best[v] * step;
   return static_cast<Index>(flipped);
 }
 

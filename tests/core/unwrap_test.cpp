@@ -70,7 +70,7 @@ TEST(Unwrap, GivesOneTexelDensityToAllCharts) {
       in += std::sqrt(ab.squaredNorm() * ac.squaredNorm() - std::pow(ab.dot(ac), 2)) / 2;
       out += std::abs(signed_uv_area(u.surfaces[s], u.surfaces[s].faces[t]));
     }
-    EXPECT_NEAR(std::sqrt(out / in) * 1024 / u.report.texel_density, 1, 1e-9);
+    EXPECT_NEAR(std::sqrt(out / in) * 1024 / u.report.texel_density, 1, 1e-5);  // UVs are rounded
   }
 }
 
@@ -89,7 +89,7 @@ TEST(Unwrap, CountsInItsReportWhatItAnswered) {
     fill += std::abs(signed_uv_area(u.surfaces[0], face));
   }
   EXPECT_EQ(u.report.distortion.flipped, flipped);
-  EXPECT_NEAR(u.report.fill, fill, 1e-9);
+  EXPECT_NEAR(u.report.fill, fill, 1e-6);  // UVs are rounded
   EXPECT_GT(u.report.seam_length, 1);  // a sphere does not open without a seam
 }
 

@@ -138,14 +138,17 @@ TEST(Untangle, StopsWhenAsked) {
 
 TEST(Untangle, CostsLittleEnergyOnRealMeshes) {
   if (test_data().empty()) GTEST_SKIP() << "no test data (UNWRAPD_TEST_DATA)";
-  for (const char* name : {"paper/Cow_dABF.obj", "disk/fish22k_pd_cut.obj"}) {
+  std::size_t turned = 0;
+  for (const char* name :
+       {"paper/Beetle_ABF.obj", "paper/Cow_dABF.obj", "paper/Gargoyle_ABF.obj"}) {
     const auto owned = disk_of(read_obj(test_data() / name));
-    UvMap uv = solved(owned.disk, {.stop = {.iterations = 10}});
+    UvMap uv = solved(owned.disk);
     const double before = arap_energy(owned.disk.rest, owned.disk.faces, uv);
-    EXPECT_GT(flips(owned.disk, uv), 0U) << name << " no longer shows anything";
+    turned += flips(owned.disk, uv);
     EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
-    EXPECT_LT(arap_energy(owned.disk.rest, owned.disk.faces, uv), before * 1.01);
+    EXPECT_LT(arap_energy(owned.disk.rest, owned.disk.faces, uv), before * 1.005) << name;
   }
+  EXPECT_GT(turned, 0U) << "these meshes no longer show anything";
 }
 
 TEST(Patches, LetRingsLooseAndHoldTheRim) {

@@ -1,0 +1,195 @@
+// First in place (flips are untangled, or the virtual boundary of Sec. 4.4 is used), then by
+// splitting: parts keep their share of the map, so that only the seam is lost. A part that still
+// breaks the promise is split again; in the end single triangles keep any promise.
+#include "core/atlas/promise.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/atlas/snap.hpp"
+#include "core/atlas/split_chart.hpp"
+#include "core/error.hpp"
+#include "core/measure/orientation.hpp"
+#include "core/measure/overlaps.hpp"
+#include "core/solve/virtual_boundary.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr std::size_t kMostPairs = 1 << 20;  // of overlapping triangles, counted in one chart
+
+double energy_of(const Disk& disk, const UvMap& uv, const Rigidity& rigidity) {
+  double energy = 0;
+  for (std::size_t t = 0; t < disk.faces.size(); ++t) {
+    const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
+    const double lambda = rigidity.at(disk.rest[t].area);
+    energy += fit_energy(j, fit_similarity(j, lambda), disk.rest[t].area, lambda);
+  }
+  return energy;
+}
+
+bool holds_any(const MapIntent& intent) {
+  return std::any_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
+}
+
+/// Mends the map of one disk; returns how many flips are left.
+Index mend(const Disk& disk, const Promise& promise, UvMap& uv, Mending& mending) {
+  if (promise.repair == RepairMethod::virtual_boundary && !holds_any(promise.intent)) {
+    UvMap padded = virtual_boundary_map(disk, uv);
+    if (flipped_faces(disk.faces, padded).empty()) {
+      uv = std::move(padded);
+      mending.virtual_boundary = true;
+      return 0;
+    }
+  }
+  return untangle(disk, promise.intent, uv);
+}
+
+/// Faces that must come apart: two sets, disjoint, none empty.
+using Seeds = std::array<std::vector<Index>, 2>;
+
+/// A flipped face and the rest of the chart's rim, so that each part has less to hold together.
+Seeds seeds_at_flips(const Chart& chart, const std::vector<Index>& flipped) {
+  const Index a = flipped.front();
+  Index farthest = a == 0 ? 1 : 0;
+  const auto middle = [&](Index t) { return chart.mesh.positions[chart.mesh.faces[t][0]]; };
+  for (Index t = 0; t < chart.mesh.face_count(); ++t)
+    if (t != a && (middle(t) - middle(a)).norm() > (middle(farthest) - middle(a)).norm())
+      farthest = t;
+  return {std::vector{a}, std::vector{farthest}};
+}
+
+/// The connected components of a set of faces: number[t], or -1 outside.
+std::vector<Index> component_numbers(const Chart& chart, const std::vector<char>& in_set) {
+  std::vector<Index> number(in_set.size(), -1);
+  Index count = 0;
+  for (std::size_t start = 0; start < in_set.size(); ++start) {
+    if (in_set[start] == 0 || number[start] >= 0) continue;
+    std::vector<Index> open{static_cast<Index>(start)};
+    number[start] = count;
+    while (!open.empty()) {
+      const Index t = open.back();
+      open.pop_back();
+      for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+        const Index twin = chart.halfedges.twin[h];
+        if (twin == kNoTwin || in_set[twin / 3] == 0 || number[twin / 3] >= 0) continue;
+        number[twin / 3] = count;
+        open.push_back(twin / 3);
+      }
+    }
+    ++count;
+  }
+  return number;
+}
+
+/// The two regions of the first overlap whole, where they do not hang together; else the two faces.
+Seeds seeds_at_overlaps(const Chart& chart, const std::vector<std::array<Index, 2>>& pairs) {
+  std::vector<char> in_set(chart.mesh.faces.size(), 0);
+  for (const auto& [s, t] : pairs) in_set[s] = in_set[t] = 1;
+  const std::vector<Index> number = component_numbers(chart, in_set);
+  const auto apart = std::find_if(pairs.begin(), pairs.end(), [&](const auto& pair) {
+    return number[pair[0]] != number[pair[1]];
+  });
+  if (apart == pairs.end()) return {std::vector{pairs[0][0]}, std::vector{pairs[0][1]}};
+  Seeds seeds;
+  for (std::size_t k : {0U, 1U})
+    for (std::size_t t = 0; t < number.size(); ++t)
+      if (number[t] == number[(*apart)[k]]) seeds[k].push_back(static_cast<Index>(t));
+  return seeds;
+}
+
+std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& uv) {
+  if (is_plainly_injective(chart.mesh.faces, chart.loops, uv)) return {};
+  return overlapping_pairs(chart.mesh.faces, uv, kMostPairs);
+}
+
+[[noreturn]] void fail(const std::string& why) {
+  throw Error(ErrorCode::guarantee_failed,
+              why + "; loosen the constraints, or ask for guarantee=none to have the map as it is");
+}
+
+/// Splits a part in two or more and puts them on the list of those to be looked at.
+void split(const KeptPart& part, const Seeds& seeds, std::vector<KeptPart>& open) {
+  for (ChartPart& piece : split_chart(part.chart, seeds)) {
+    UvMap uv;
+    for (Index v : piece.vertex) uv.push_back(part.uv[v]);
+    open.push_back({std::move(piece.chart), std::move(uv)});
+  }
+}
+
+/// The seeds of the split that a part needs; both empty where it keeps the promise.
+Seeds seeds_needed(const KeptPart& part, const Promise& promise, Mending& mending) {
+  const std::vector<Index> flipped = flipped_faces(part.chart.mesh.faces, part.uv);
+  if (!flipped.empty()) {
+    if (part.chart.mesh.face_count() == 1) fail("a triangle has no area in the map");
+    return seeds_at_flips(part.chart, flipped);
+  }
+  if (promise.guarantee != Guarantee::bijective) return {};
+  const auto pairs = overlaps_of(part.chart, part.uv);
+  if (pairs.empty()) return {};
+  mending.overlaps += static_cast<Index>(pairs.size());
+  return seeds_at_overlaps(part.chart, pairs);
+}
+
+/// Splits until every part keeps the promise. A part that was cut off for its flips may be
+/// untangled where the whole could not.
+std::vector<KeptPart> split_as_needed(KeptPart whole, const Promise& promise, Mending& mending) {
+  std::vector<KeptPart> open, kept;
+  open.push_back(std::move(whole));
+  for (bool is_whole = true; !open.empty(); is_whole = false) {
+    KeptPart part = std::move(open.back());
+    open.pop_back();
+    if (promise.intent.stop.stop_requested())
+      throw Error(ErrorCode::cancelled, "the job was cancelled");
+    if (!is_whole && !flipped_faces(part.chart.mesh.faces, part.uv).empty()) {
+      const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
+      untangle(disk, {.rigidity = promise.intent.rigidity, .held = {}, .stop = promise.intent.stop},
+               part.uv);
+    }
+    const Seeds seeds = seeds_needed(part, promise, mending);
+    if (seeds[0].empty())
+      kept.push_back(std::move(part));
+    else if (holds_any(promise.intent))
+      fail("the held vertices leave no map without flips or overlaps");
+    else
+      split(part, seeds, open);
+  }
+  return kept;
+}
+
+}  // namespace
+
+Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise& promise) {
+  Kept kept;
+  if (promise.guarantee == Guarantee::none) {
+    kept.parts.push_back({chart, std::move(uv)});
+    return kept;
+  }
+  const std::size_t flips = flipped_faces(disk.faces, uv).size();
+  if (flips > 0) {
+    const double before = energy_of(disk, uv, promise.intent.rigidity);
+    const Index left = mend(disk, promise, uv, kept.mending);
+    kept.mending.flips = static_cast<Index>(flips);
+    if (left == 0) {
+      const double after = energy_of(disk, uv, promise.intent.rigidity);
+      kept.mending.energy_rise = before > 0 ? (after - before) / before : 0;
+    }
+  }
+  kept.parts = split_as_needed({chart, std::move(uv)}, promise, kept.mending);
+  kept.mending.parts = static_cast<Index>(kept.parts.size());
+  return kept;
+}
+
+Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv) {
+  if (promise.guarantee == Guarantee::none)
+    return {static_cast<Index>(flipped_faces(chart.mesh.faces, page_uv).size()), {}};
+  if (snap(chart, promise.intent.held, promise.intent.stop, page_uv) > 0)
+    fail("a triangle is too small beside the page for the precision in which UVs are written");
+  if (promise.guarantee != Guarantee::bijective) return {};
+  if (!overlaps_of(chart, page_uv).empty())
+    fail("two triangles are too near to each other for the precision in which UVs are written");
+  return {0, 0};
+}
+
+}  // namespace unwrapd

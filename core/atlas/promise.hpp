@@ -1,0 +1,49 @@
+#pragma once
+// The guarantee kept for one chart: its map mended, and the chart split where nothing else helps.
+
+#include <optional>
+#include <vector>
+
+#include "core/atlas/charts.hpp"
+#include "core/solve/disk.hpp"
+#include "core/solve/untangle.hpp"
+
+namespace unwrapd {
+
+/// A chart, whole or one part of it, with its map.
+struct KeptPart {
+  Chart chart;
+  UvMap uv;  ///< in the units of the map that was handed in
+};
+
+struct Kept {
+  std::vector<KeptPart> parts;  ///< one: the chart was not split
+  Mending mending;
+};
+
+/// What is promised, and how it may be kept.
+struct Promise {
+  Guarantee guarantee = Guarantee::flip_free;
+  RepairMethod repair = RepairMethod::untangle;
+  MapIntent intent = {};  ///< held vertices stay; a chart that has some is not split
+};
+
+/// uv: the solved map of the chart's disk, in disk units. Afterwards no triangle of a part is
+/// flipped (flip_free), and no two of a part overlap (bijective), by exact tests; under
+/// Guarantee::none the map stays as it is. The energy that mending.energy_rise tells of is that of
+/// intent.rigidity. Throws Error{guarantee_failed} where held vertices leave no way, or a single
+/// triangle has no area in the map; Error{cancelled}.
+Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise& promise);
+
+/// What is true of the UVs that are written.
+struct Written {
+  Index flipped = 0;
+  std::optional<Index> overlaps = {};  ///< pairs of triangles; counted where none are promised
+};
+
+/// Rounds a kept part's page UVs to what every format writes exactly, and keeps the promise there;
+/// vertices that promise.intent holds are only rounded. Under Guarantee::none nothing moves.
+/// Throws Error{guarantee_failed, cancelled}.
+Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv);
+
+}  // namespace unwrapd

@@ -1,0 +1,137 @@
+#include "core/atlas/promise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "core/error.hpp"
+#include "core/measure/orientation.hpp"
+#include "core/measure/overlaps.hpp"
+#include "core/solve/solve.hpp"
+#include "tests/core/obj_reader.hpp"
+#include "tests/core/solve/disk_of.hpp"
+
+namespace unwrapd {
+namespace {
+
+using shapes::disk_of;
+
+UvMap from_above(const Disk& disk) {
+  UvMap uv;
+  for (const Vec3& p : disk.positions) uv.emplace_back(p.x(), p.y());
+  return uv;
+}
+
+UvMap solved(const Disk& disk) {
+  SerialExecutor serial;
+  const UnwrapOptions options;
+  return Solver(disk, options, {}, serial).run(0, {}).uv;
+}
+
+void expect_kept(const Chart& chart, const Kept& kept, Guarantee guarantee) {
+  std::set<Index> faces;
+  for (const KeptPart& part : kept.parts) {
+    EXPECT_TRUE(flipped_faces(part.chart.mesh.faces, part.uv).empty());
+    EXPECT_TRUE(guarantee != Guarantee::bijective ||
+                overlapping_pairs(part.chart.mesh.faces, part.uv, 1).empty());
+    faces.insert(part.chart.face_source.begin(), part.chart.face_source.end());
+  }
+  EXPECT_EQ(faces.size(), chart.mesh.faces.size());
+  EXPECT_EQ(std::size_t(kept.mending.parts), kept.parts.size());
+}
+
+/// Flat, but wound up by more than a turn in the plane.
+TriMesh spiral() {
+  return shapes::mapped_grid(60, 2, shapes::Wrap::none, [](double u, double v) {
+    const double r = 2 - v, angle = 8 * u;
+    return Vec3(r * std::cos(angle), r * std::sin(angle), 0.5 * u);
+  });
+}
+
+TEST(Promise, OfNothingLeavesTheMapAsItIs) {
+  const auto owned = disk_of(shapes::grid(4, 4));
+  UvMap uv = from_above(owned.disk);
+  std::swap(uv[0], uv[12]);
+  const Kept kept = keep_promise(*owned.chart, owned.disk, uv, {.guarantee = Guarantee::none});
+  ASSERT_EQ(kept.parts.size(), 1U);
+  EXPECT_EQ(kept.parts[0].uv, uv);
+  EXPECT_EQ(kept.mending.flips, 0);
+}
+
+TEST(Promise, OfNoFlipsIsKeptAndTellsItsPrice) {
+  for (RepairMethod repair : {RepairMethod::untangle, RepairMethod::virtual_boundary}) {
+    const auto owned = disk_of(shapes::grid(12, 12));
+    UvMap uv = from_above(owned.disk);
+    uv[6 * 13 + 6] += Vec2(0.2, 0.05);
+    const auto flips = flipped_faces(owned.disk.faces, uv).size();
+    ASSERT_GT(flips, 0U);
+    const Kept kept = keep_promise(*owned.chart, owned.disk, uv, {.repair = repair});
+    expect_kept(*owned.chart, kept, Guarantee::flip_free);
+    EXPECT_EQ(std::size_t(kept.mending.flips), flips);
+    EXPECT_EQ(kept.mending.parts, 1);
+    EXPECT_EQ(kept.mending.virtual_boundary, repair == RepairMethod::virtual_boundary);
+    EXPECT_LT(kept.mending.energy_rise, 0.5);
+  }
+}
+
+TEST(Promise, OfInjectivitySplitsAStripThatLiesOnItself) {
+  const auto owned = disk_of(spiral());
+  UvMap uv = from_above(owned.disk);
+  if (!flipped_faces(owned.disk.faces, uv).empty())
+    for (Vec2& u : uv) u.x() = -u.x();
+  ASSERT_TRUE(flipped_faces(owned.disk.faces, uv).empty());
+  const Kept loose = keep_promise(*owned.chart, owned.disk, uv, {});
+  EXPECT_EQ(loose.parts.size(), 1U);
+  EXPECT_EQ(loose.parts[0].uv, uv);
+  const Kept kept = keep_promise(*owned.chart, owned.disk, uv, {.guarantee = Guarantee::bijective});
+  expect_kept(*owned.chart, kept, Guarantee::bijective);
+  EXPECT_GT(kept.mending.overlaps, 0);
+  EXPECT_EQ(kept.parts.size(), 2U);
+}
+
+TEST(Promise, IsKeptOnEveryRandomDisk) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 rng(seed);
+    const auto owned = disk_of(shapes::random_disk(Index(2 + seed % 15), seed));
+    std::uniform_real_distribution<double> shake(-0.01 * seed, 0.01 * seed);
+    UvMap uv = from_above(owned.disk);
+    for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
+    for (Guarantee guarantee : {Guarantee::flip_free, Guarantee::bijective})
+      expect_kept(*owned.chart,
+                  keep_promise(*owned.chart, owned.disk, uv, {.guarantee = guarantee}), guarantee);
+  }
+}
+
+TEST(Promise, FailsWhereHeldVerticesBreakIt) {
+  const auto owned = disk_of(shapes::grid(2, 2));
+  UvMap uv = from_above(owned.disk);
+  std::swap(uv[0], uv[8]);
+  Promise promise;
+  promise.intent.held.assign(uv.size(), 1);
+  try {
+    keep_promise(*owned.chart, owned.disk, uv, promise);
+    FAIL() << "kept what cannot be kept";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::guarantee_failed);
+  }
+}
+
+TEST(Promise, IsKeptOnRealMeshes) {
+  if (test_data().empty()) GTEST_SKIP() << "no test data (UNWRAPD_TEST_DATA)";
+  for (const char* name : {"paper/Isis_dABF.obj", "paper/Beetle_ABF.obj", "paper/Balls.obj",
+                           "paper/Cow_dABF.obj", "disk/hand_lowres.obj"}) {
+    SCOPED_TRACE(name);
+    const auto owned = disk_of(read_obj(test_data() / name));
+    const UvMap uv = solved(owned.disk);
+    for (Guarantee guarantee : {Guarantee::flip_free, Guarantee::bijective}) {
+      const Kept kept = keep_promise(*owned.chart, owned.disk, uv, {.guarantee = guarantee});
+      expect_kept(*owned.chart, kept, guarantee);
+      EXPECT_TRUE(guarantee == Guarantee::bijective || kept.mending.parts == 1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd

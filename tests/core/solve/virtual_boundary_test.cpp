@@ -1,0 +1,72 @@
+#include "core/solve/virtual_boundary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/measure/orientation.hpp"
+#include "tests/core/solve/disk_of.hpp"
+
+namespace unwrapd {
+namespace {
+
+using shapes::disk_of;
+
+UvMap from_above(const Disk& disk) {
+  UvMap uv;
+  for (const Vec3& p : disk.positions) uv.emplace_back(p.x(), p.y());
+  return uv;
+}
+
+double farthest_move(const UvMap& a, const UvMap& b) {
+  double farthest = 0;
+  for (std::size_t v = 0; v < a.size(); ++v) farthest = std::max(farthest, (a[v] - b[v]).norm());
+  return farthest;
+}
+
+TEST(VirtualBoundary, LeavesAMapWithoutFlipsWhereItIs) {
+  for (const TriMesh& mesh :
+       {shapes::grid(8, 8), shapes::annulus(24, 4), shapes::sphere_cap(16, 5)}) {
+    const auto owned = disk_of(mesh);
+    const UvMap uv = from_above(owned.disk);
+    ASSERT_TRUE(flipped_faces(owned.disk.faces, uv).empty());
+    EXPECT_LT(farthest_move(virtual_boundary_map(owned.disk, uv), uv), 1e-9);
+  }
+}
+
+TEST(VirtualBoundary, TurnsEveryFlipBackWhateverTheMap) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto owned = disk_of(shapes::random_disk(Index(2 + seed % 10), seed));
+    std::mt19937 rng(seed);
+    std::uniform_real_distribution<double> shake(-0.02 * seed, 0.02 * seed);
+    UvMap uv = from_above(owned.disk);
+    for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
+    EXPECT_TRUE(flipped_faces(owned.disk.faces, virtual_boundary_map(owned.disk, uv)).empty());
+  }
+}
+
+TEST(VirtualBoundary, LetsTheBoundaryKeepItsShape) {
+  const auto owned = disk_of(shapes::grid(16, 4, 4, 1));
+  UvMap uv = from_above(owned.disk);
+  const UvMap flat = uv;
+  uv[2 * 17 + 8] += Vec2(0.3, 0.02);
+  ASSERT_FALSE(flipped_faces(owned.disk.faces, uv).empty());
+  const UvMap mended = virtual_boundary_map(owned.disk, uv);
+  EXPECT_TRUE(flipped_faces(owned.disk.faces, mended).empty());
+  for (std::size_t v = 0; v < flat.size(); ++v)  // the ends of the strip are far from the flip
+    if (std::abs(flat[v].x()) > 0.8) {
+      EXPECT_LT((mended[v] - flat[v]).norm(), 0.02) << v;
+    }
+}
+
+TEST(VirtualBoundary, ClosesHolesWithoutFlips) {
+  const auto owned = disk_of(shapes::annulus(20, 2));
+  UvMap uv = from_above(owned.disk);
+  for (std::size_t v = 0; v < uv.size(); v += 3) uv[v] = -uv[v];
+  ASSERT_FALSE(flipped_faces(owned.disk.faces, uv).empty());
+  EXPECT_TRUE(flipped_faces(owned.disk.faces, virtual_boundary_map(owned.disk, uv)).empty());
+}
+
+}  // namespace
+}  // namespace unwrapd
