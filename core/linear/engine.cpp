@@ -222,6 +222,7 @@ class MultifrontalSystem final : public RealSystem {
 }  // namespace
 
 std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower) {
+  assert(lower.isCompressed());
   const std::span begin(lower.outerIndexPtr(), static_cast<std::size_t>(lower.cols()) + 1);
   const std::span row(lower.innerIndexPtr(), static_cast<std::size_t>(lower.nonZeros()));
   Analysis analysis;
@@ -237,6 +238,7 @@ std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower) {
 
 std::unique_ptr<RealSystem> try_factor(std::shared_ptr<const Analysis> analysis,
                                        const SparseMatrix& lower) {
+  assert(lower.isCompressed() && analysis->entry_row.size() == at(Index(lower.nonZeros())));
   auto system = std::make_unique<MultifrontalSystem>(std::move(analysis));
   if (!system->factor(lower.valuePtr())) return nullptr;
   return system;

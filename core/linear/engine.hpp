@@ -21,9 +21,10 @@ struct Analysis {
   std::size_t pending_size = 0;          ///< the most that updates ever occupy at once
 };
 
+/// lower: the lower triangle, compressed.
 std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower);
 
-/// Nothing when the matrix, of the analysed pattern, is not positive definite in double precision.
+/// Nothing when the matrix, of the pattern analysed, is not positive definite in double precision.
 std::unique_ptr<RealSystem> try_factor(std::shared_ptr<const Analysis> analysis,
                                        const SparseMatrix& lower);
 

@@ -1,5 +1,5 @@
-// First engine: Eigen's simplicial L L* over an AMD ordering. The triangular solves are ours: both
-// coordinates of a vertex go through one sweep over L, where Eigen would sweep once for each.
+// Real systems go to our own engine (engine.hpp), Hermitian ones to Eigen's simplicial L L* over an
+// AMD ordering, which has no supernodes but needs no code for complex fronts.
 #include "core/linear/factor.hpp"
 
 #include <Eigen/SparseCholesky>
@@ -8,26 +8,21 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/linear/engine.hpp"
 
 namespace unwrapd {
 namespace {
 
-double conjugate(double x) { return x; }
-Complex conjugate(const Complex& x) { return std::conj(x); }
-
-template <typename Scalar, typename Rhs>
-class SimplicialSystem final : public PrefactoredSystem<Rhs> {
-  using Matrix = Eigen::SparseMatrix<Scalar, Eigen::ColMajor, Index>;
-
+class SimplicialSystem final : public HermitianSystem {
  public:
-  explicit SimplicialSystem(const Matrix& lower) : llt_(lower) {}
+  explicit SimplicialSystem(const ComplexMatrix& lower) : llt_(lower) {}
 
   [[nodiscard]] bool is_definite() const { return llt_.info() == Eigen::Success; }
 
-  void solve(std::span<Rhs> b) const override {
+  void solve(std::span<Complex> b) const override {
     const auto& order = llt_.permutationP().indices();  // empty: natural order
     assert(static_cast<Eigen::Index>(b.size()) == llt_.rows());
-    std::vector<Rhs> x(b.begin(), b.end());
+    std::vector<Complex> x(b.begin(), b.end());
     for (Eigen::Index i = 0; i < order.size(); ++i)
       x[static_cast<std::size_t>(order[i])] = b[static_cast<std::size_t>(i)];
     forward(x);
@@ -38,15 +33,15 @@ class SimplicialSystem final : public PrefactoredSystem<Rhs> {
   }
 
  private:
-  const Matrix& factor() const { return llt_.matrixL().nestedExpression(); }
+  const ComplexMatrix& factor() const { return llt_.matrixL().nestedExpression(); }
 
   /// L y = x, column by column; the diagonal is the first entry of each.
-  void forward(std::vector<Rhs>& x) const {
-    const Matrix& l = factor();
+  void forward(std::vector<Complex>& x) const {
+    const ComplexMatrix& l = factor();
     const Index* begin = l.outerIndexPtr();
     for (std::size_t j = 0; j < x.size(); ++j) {
       const Index first = begin[j];
-      const Rhs xj = x[j] / l.valuePtr()[first];
+      const Complex xj = x[j] / l.valuePtr()[first];
       x[j] = xj;
       for (Index p = first + 1; p < begin[j + 1]; ++p)
         x[static_cast<std::size_t>(l.innerIndexPtr()[p])] -= l.valuePtr()[p] * xj;
@@ -54,27 +49,20 @@ class SimplicialSystem final : public PrefactoredSystem<Rhs> {
   }
 
   /// L* x = y.
-  void backward(std::vector<Rhs>& x) const {
-    const Matrix& l = factor();
+  void backward(std::vector<Complex>& x) const {
+    const ComplexMatrix& l = factor();
     const Index* begin = l.outerIndexPtr();
     for (std::size_t j = x.size(); j-- > 0;) {
       const Index first = begin[j];
-      Rhs xj = x[j];
+      Complex xj = x[j];
       for (Index p = first + 1; p < begin[j + 1]; ++p)
-        xj -= conjugate(l.valuePtr()[p]) * x[static_cast<std::size_t>(l.innerIndexPtr()[p])];
-      x[j] = xj / conjugate(l.valuePtr()[first]);
+        xj -= std::conj(l.valuePtr()[p]) * x[static_cast<std::size_t>(l.innerIndexPtr()[p])];
+      x[j] = xj / std::conj(l.valuePtr()[first]);
     }
   }
 
-  Eigen::SimplicialLLT<Matrix, Eigen::Lower> llt_;
+  Eigen::SimplicialLLT<ComplexMatrix, Eigen::Lower> llt_;
 };
-
-template <typename Scalar, typename Rhs, typename Matrix>
-std::unique_ptr<PrefactoredSystem<Rhs>> definite_or_null(const Matrix& lower) {
-  auto system = std::make_unique<SimplicialSystem<Scalar, Rhs>>(lower);
-  if (!system->is_definite()) return nullptr;
-  return system;
-}
 
 template <typename System>
 System definite(System system) {
@@ -88,7 +76,13 @@ System definite(System system) {
 }  // namespace
 
 std::unique_ptr<RealSystem> factor(const SparseMatrix& lower) {
-  return definite(definite_or_null<double, Vec2>(lower));
+  SparseMatrix compressed;
+  if (!lower.isCompressed()) {
+    compressed = lower;
+    compressed.makeCompressed();
+  }
+  const SparseMatrix& matrix = lower.isCompressed() ? lower : compressed;
+  return definite(try_factor(analyse(matrix), matrix));
 }
 
 std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower) {
@@ -96,7 +90,9 @@ std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower) {
 }
 
 std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower) {
-  return definite_or_null<Complex, Complex>(lower);
+  auto system = std::make_unique<SimplicialSystem>(lower);
+  if (!system->is_definite()) return nullptr;
+  return system;
 }
 
 }  // namespace unwrapd
