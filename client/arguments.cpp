@@ -59,7 +59,10 @@ std::string range_text(const api::OptionRow& row) {
   }
   std::string kind = row.type == api::OptionType::integer ? "INT" : "NUMBER";
   if (row.type == api::OptionType::numbers) kind += "[,NUMBER...]";
-  const auto figure = [](double value) { return api::Json(value).dump(); };
+  const auto figure = [](double value) {
+    const bool is_whole = std::trunc(value) == value;
+    return is_whole ? std::to_string(std::lround(value)) : api::Json(value).dump();
+  };
   if (!row.maximum) return kind + " >= " + figure(row.minimum);
   return kind + " in [" + figure(row.minimum) + ", " + figure(*row.maximum) + "]";
 }

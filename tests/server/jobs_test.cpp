@@ -1,4 +1,6 @@
 // The life of jobs, as their owners see it over HTTP.
+#include "api/options.hpp"  // Eigen before httplib, whose headers define _res
+
 #include "running_server.hpp"
 
 #include <gmock/gmock.h>
@@ -6,8 +8,6 @@
 #include <atomic>
 #include <set>
 #include <thread>
-
-#include "api/options.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -94,6 +94,26 @@ TEST_F(Jobs, BadOptionsAreToldAtOnceWithTheirPlace) {
     const std::string name = std::string(option).substr(0, std::string(option).find('='));
     EXPECT_EQ(api::Json::parse(answer->body).value("pointer", ""), api::option_pointer(name));
   }
+}
+
+TEST_F(Jobs, ConstraintsMayBeManyButNoMoreThanTheLimit) {
+  config_.limits.max_constraints = 2000;
+  start();
+  std::string list = R"({"vertex":0,"uv":[0.5,0.5],"weight":1})";
+  const auto send = [&] {
+    const std::string text = R"({"constraints":[)" + list + "]}";
+    return client().Post("/v1/jobs", httplib::MultipartFormDataItems{
+                                         {"options", text, "", "application/json"},
+                                         {"mesh", grid_obj(2), "grid.obj", "model/obj"}});
+  };
+  for (int k = 1; k < 2000; ++k) list += R"(,{"vertex":0,"uv":[0.5,0.5],"weight":1})";
+  const auto most = send();
+  EXPECT_EQ(most->status, 202) << most->body;
+  EXPECT_EQ(api::Json::parse(most->body).at("options").at("constraints").size(), 2000U);
+  list += R"(,{"vertex":0,"uv":[0.5,0.5],"weight":1})";
+  const auto more = send();
+  expect_problem(more, 422, "invalid_option");
+  EXPECT_EQ(api::Json::parse(more->body).at("pointer"), "/constraints");
 }
 
 TEST_F(Jobs, AnAssetThatCannotBeReadFailsItsJobWithAProblem) {
