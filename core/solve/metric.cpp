@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "core/mesh/edges.hpp"
 
@@ -65,29 +64,31 @@ std::vector<double> product(const SparseMatrix& laplacian, std::span<const doubl
   return y;
 }
 
-InnerSystem::InnerSystem(const Disk& disk, SparseMatrix lower)
-    : lower_(std::move(lower)), inner_(number_free(boundary_vertices(disk))) {
+InnerSystem::InnerSystem(const Disk& disk, const SparseMatrix& lower)
+    : inner_(number_free(boundary_vertices(disk))) {
   if (inner_.count == 0) return;
   const std::vector<Vec2> zero(disk.positions.size(), Vec2::Zero());
-  system_ = factor(eliminate<SparseMatrix, Vec2>(lower_, inner_, zero).lower);
+  system_ = factor(eliminate<SparseMatrix, Vec2>(lower, inner_, zero).lower);
+  for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j)
+    for (SparseMatrix::InnerIterator it(lower, j); it; ++it) {
+      const auto i = static_cast<Index>(it.row());
+      const Index row = inner_.slot[static_cast<std::size_t>(i)];
+      const Index column = inner_.slot[static_cast<std::size_t>(j)];
+      if (row != kFixed && column == kFixed) coupling_.push_back({row, j, it.value()});
+      if (row == kFixed && column != kFixed) coupling_.push_back({column, i, it.value()});
+    }
 }
 
 void InnerSystem::solve(std::span<Vec2> x) const {
   if (inner_.count == 0) return;
   std::vector<Vec2> rhs(static_cast<std::size_t>(inner_.count));
-  const auto slot = [&](std::size_t v) { return static_cast<std::size_t>(inner_.slot[v]); };
-  const auto is_inner = [&](std::size_t v) { return inner_.slot[v] != kFixed; };
   for (std::size_t v = 0; v < x.size(); ++v)
-    if (is_inner(v)) rhs[slot(v)] = x[v];
-  for (Index j = 0; j < static_cast<Index>(lower_.cols()); ++j)
-    for (SparseMatrix::InnerIterator it(lower_, j); it; ++it) {
-      const auto row = static_cast<std::size_t>(it.row()), column = static_cast<std::size_t>(j);
-      if (is_inner(row) && !is_inner(column)) rhs[slot(row)] -= it.value() * x[column];
-      if (is_inner(column) && !is_inner(row)) rhs[slot(column)] -= it.value() * x[row];
-    }
+    if (inner_.slot[v] != kFixed) rhs[static_cast<std::size_t>(inner_.slot[v])] = x[v];
+  for (const Coupling& c : coupling_)
+    rhs[static_cast<std::size_t>(c.row)] -= c.value * x[static_cast<std::size_t>(c.boundary)];
   system_->solve(rhs);
   for (std::size_t v = 0; v < x.size(); ++v)
-    if (is_inner(v)) x[v] = rhs[slot(v)];
+    if (inner_.slot[v] != kFixed) x[v] = rhs[static_cast<std::size_t>(inner_.slot[v])];
 }
 
 std::vector<double> flat_scales(const Disk& disk, const InnerSystem& inner,

@@ -43,15 +43,21 @@ std::vector<double> product(const SparseMatrix& laplacian, std::span<const doubl
 class InnerSystem {
  public:
   /// lower: as from cotan_laplacian(). Throws Error{solver_failed}.
-  InnerSystem(const Disk& disk, SparseMatrix lower);
+  InnerSystem(const Disk& disk, const SparseMatrix& lower);
 
   /// x: one entry a vertex. Values on the boundary stay; inside, x becomes the solution of L x =
   /// what was there. Zeros inside give the harmonic extension of the boundary. Thread-safe.
   void solve(std::span<Vec2> x) const;
 
  private:
-  SparseMatrix lower_;
+  struct Coupling {
+    Index row;       ///< slot of an inner vertex
+    Index boundary;  ///< a neighbour on the boundary
+    double value;
+  };
+
   FreeVertices inner_;
+  std::vector<Coupling> coupling_;
   std::unique_ptr<RealSystem> system_;
 };
 
