@@ -34,30 +34,42 @@ std::vector<Index> parents(const Graph& graph, std::span<const Index> order) {
   return parent;
 }
 
-/// The columns so that each follows its descendants, the children of a node in their old order.
-std::vector<Index> postorder(std::span<const Index> parent) {
-  const auto n = static_cast<Index>(parent.size());
-  std::vector<Index> first_child(parent.size(), kNone), next_sibling(parent.size(), kNone);
-  std::vector<Index> order, path;
-  for (Index k = n - 1; k >= 0; --k)
+/// Of each column: its first child, and the next child of its parent; both ascending.
+struct Children {
+  std::vector<Index> first, next;
+};
+
+Children children_of(std::span<const Index> parent) {
+  Children children{std::vector<Index>(parent.size(), kNone),
+                    std::vector<Index>(parent.size(), kNone)};
+  for (auto k = static_cast<Index>(parent.size()); k-- > 0;)
     if (parent[at(k)] != kNoParent)
-      next_sibling[at(k)] = std::exchange(first_child[at(parent[at(k)])], k);
-  order.reserve(parent.size());
-  for (Index root = 0; root < n; ++root) {
-    if (parent[at(root)] != kNoParent) continue;
-    path.push_back(root);
-    while (!path.empty()) {
-      const Index child = std::exchange(first_child[at(path.back())], kNone);
-      if (child != kNone) {
-        path.push_back(child);
-        continue;
-      }
-      const Index done = path.back();
-      path.pop_back();
-      order.push_back(done);
-      if (next_sibling[at(done)] != kNone) path.push_back(next_sibling[at(done)]);
+      children.next[at(k)] = std::exchange(children.first[at(parent[at(k)])], k);
+  return children;
+}
+
+/// Appends the descendants of a root, and it, each after its own descendants; uses up the children.
+void append_subtree(Index root, Children& children, std::vector<Index>& order) {
+  std::vector<Index> path{root};
+  while (!path.empty()) {
+    const Index child = std::exchange(children.first[at(path.back())], kNone);
+    if (child != kNone) {
+      path.push_back(child);
+      continue;
     }
+    order.push_back(path.back());
+    const Index sibling = children.next[at(path.back())];
+    path.pop_back();
+    if (sibling != kNone) path.push_back(sibling);
   }
+}
+
+std::vector<Index> postorder(std::span<const Index> parent) {
+  Children children = children_of(parent);
+  std::vector<Index> order;
+  order.reserve(parent.size());
+  for (std::size_t k = 0; k < parent.size(); ++k)
+    if (parent[k] == kNoParent) append_subtree(static_cast<Index>(k), children, order);
   return order;
 }
 
@@ -126,19 +138,25 @@ class RowSubtrees {
 };
 
 /// Each leaf of a row subtree adds one to the counts on its path to the root; the node where two
-/// paths meet, and the parent of each column's diagonal entry, take one off again.
+/// paths meet takes one off again.
+void count_leaves(const Graph& graph, const EliminationTree& tree, Index j, RowSubtrees& subtrees,
+                  std::span<Index> count) {
+  for (Index v : graph.of(tree.order[at(j)])) {
+    const Index i = tree.position[at(v)];
+    if (i < j || !subtrees.is_leaf(i, j)) continue;
+    ++count[at(j)];
+    if (const Index m = subtrees.meeting(); m != kNone) --count[at(m)];
+  }
+}
+
+/// As differences first: a column has what its children have, but for their diagonal entries.
 std::vector<Index> column_counts(const Graph& graph, const EliminationTree& tree) {
   RowSubtrees subtrees(tree.parent);
   std::vector<Index> count(tree.parent.size());
   for (Index j = 0; j < static_cast<Index>(count.size()); ++j) {
     count[at(j)] += subtrees.is_tree_leaf(j) ? 1 : 0;
     if (tree.parent[at(j)] != kNoParent) --count[at(tree.parent[at(j)])];
-    for (Index v : graph.of(tree.order[at(j)])) {
-      const Index i = tree.position[at(v)];
-      if (i < j || !subtrees.is_leaf(i, j)) continue;
-      ++count[at(j)];
-      if (const Index m = subtrees.meeting(); m != kNone) --count[at(m)];
-    }
+    count_leaves(graph, tree, j, subtrees, count);
     subtrees.finish(j);
   }
   for (std::size_t j = 0; j < count.size(); ++j)

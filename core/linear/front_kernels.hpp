@@ -66,21 +66,25 @@ class FrontKernels {
     return f_.strips + row / kStrip * kStrip * f_.shape.pivots + row % kStrip;
   }
 
+  /// sum[c] += weight[c] * rows, for the rows that kCount registers hold.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void add_product(const double* rows, const double* weight,
+                                                 Lanes (&sum)[kPack][kCount]) {
+    for (std::size_t c = 0; c < kPack; ++c)
+      for (std::size_t p = 0; p < kCount; ++p) sum[c][p] += lanes(rows + p * kLanes) * weight[c];
+  }
+
   /// tile = rows * columns, over `depth` products.
   template <std::size_t kRows>
   [[gnu::always_inline]] static void multiply(const double* rows, Columns columns,
                                               std::size_t depth, Tile<kRows>& tile) {
-    constexpr std::size_t kRegisters = std::min<std::size_t>(2, kRows / kLanes);
-    for (std::size_t r = 0; r < kRows; r += kRegisters * kLanes) {
-      Lanes sum[kPack][kRegisters] = {};
+    constexpr std::size_t count = std::min<std::size_t>(2, kRows / kLanes);
+    for (std::size_t r = 0; r < kRows; r += count * kLanes) {
+      Lanes sum[kPack][count] = {};
       for (std::size_t k = 0; k < depth; ++k)
-        for (std::size_t c = 0; c < kPack; ++c)
-          for (std::size_t p = 0; p < kRegisters; ++p)
-            sum[c][p] +=
-                lanes(rows + k * kStrip + r + p * kLanes) * columns.entry[k * columns.stride + c];
+        add_product(rows + k * kStrip + r, columns.entry + k * columns.stride, sum);
       for (std::size_t c = 0; c < kPack; ++c)
-        for (std::size_t p = 0; p < kRegisters; ++p)
-          lanes(tile.column[c] + r + p * kLanes) = sum[c][p];
+        for (std::size_t p = 0; p < count; ++p) lanes(tile.column[c] + r + p * kLanes) = sum[c][p];
     }
   }
 

@@ -73,23 +73,42 @@ std::vector<Index> supernode_of_columns(std::span<const Index> first) {
   return supernode;
 }
 
-/// Row i belongs to every supernode on the way up from those of its entries to its own.
-std::vector<Index> rows_of(const Graph& graph, const Supernodes& nodes,
-                           std::span<const Index> supernode, std::span<const Index> parent) {
-  std::vector<Index> row(nodes.row_begin.back()), reached(nodes.count(), kNone);
-  std::vector<std::size_t> next(nodes.row_begin.begin(), nodes.row_begin.end() - 1);
-  for (Index i = 0; i < static_cast<Index>(supernode.size()); ++i) {
-    reached[at(supernode[at(i)])] = i;
-    for (Index v : graph.of(nodes.order[at(i)])) {
-      const Index j = nodes.position[at(v)];
-      if (j > i) continue;
-      for (Index s = supernode[at(j)]; reached[at(s)] != i; s = parent[at(s)]) {
-        reached[at(s)] = i;
-        row[next[at(s)]++] = i;
-      }
+/// Collects the rows of supernodes: row i belongs to every one on the way up from those of its
+/// entries to its own.
+class RowLists {
+ public:
+  RowLists(const std::vector<std::size_t>& begin, std::span<const Index> parent)
+      : row(begin.back()),
+        parent_(parent),
+        reached_(parent.size(), kNone),
+        next_(begin.begin(), begin.end() - 1) {}
+
+  void start(Index i, Index own_supernode) { reached_[at(own_supernode)] = i; }
+
+  void climb(Index i, Index s) {
+    for (; reached_[at(s)] != i; s = parent_[at(s)]) {
+      reached_[at(s)] = i;
+      row[next_[at(s)]++] = i;
     }
   }
-  return row;
+
+  std::vector<Index> row;
+
+ private:
+  std::span<const Index> parent_;
+  std::vector<Index> reached_;  ///< of each supernode: the last row that came by
+  std::vector<std::size_t> next_;
+};
+
+std::vector<Index> rows_of(const Graph& graph, const Supernodes& nodes,
+                           std::span<const Index> supernode, std::span<const Index> parent) {
+  RowLists lists(nodes.row_begin, parent);
+  for (Index i = 0; i < static_cast<Index>(supernode.size()); ++i) {
+    lists.start(i, supernode[at(i)]);
+    for (Index v : graph.of(nodes.order[at(i)]))
+      if (const Index j = nodes.position[at(v)]; j < i) lists.climb(i, supernode[at(j)]);
+  }
+  return std::move(lists.row);
 }
 
 }  // namespace
