@@ -28,7 +28,7 @@ constexpr std::array kMethods = {
     MethodRow{Method::bff, "Boundary first flattening",
               "Keeps angles: the boundary of least area distortion first, then its inside."},
     MethodRow{Method::ic, "Inverse curvature",
-              "Keeps angles: edge lengths of a flat metric by the inverse curvature map."},
+              "Flattens a metric of circles about the vertices by the inverse curvature map."},
     MethodRow{Method::slim, "Scalable locally injective mapping",
               "Keeps shapes and never flips a triangle (symmetric Dirichlet energy)."},
 };

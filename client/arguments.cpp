@@ -98,7 +98,7 @@ void add_picture_flags(CLI::App& app, Arguments& arguments) {
       ->type_name("PATH");
   app.add_option("--layout-colour", arguments.layout_colour,
                  "What the layout's colours say. Default: stretch")
-      ->check(CLI::IsMember({"stretch", "angle", "area", "flips"}))
+      ->check(CLI::IsMember({"stretch", "angle", "area", "flips"}).description(""))
       ->type_name("stretch|angle|area|flips");
   app.add_option("--preview", arguments.preview,
                  "Write a picture of the mesh (PNG), textured with a checkerboard, here")

@@ -77,7 +77,7 @@ TEST(Arguments, EveryOptionOfTheApiIsAFlag) {
 TEST(Arguments, HelpTellsRangesAsTheyAreTyped) {
   const std::string help = refused({"--help"}).text;
   for (const char* range :
-       {"--stop-iterations INT >= 1\n", "--stop-tolerance NUMBER in [1e-12, 0.1]",
+       {"--stop-max-iterations INT >= 1\n", "--stop-tolerance NUMBER in [1e-12, 0.1]",
         "--lambda NUMBER[,NUMBER...] >= 0\n", "INT in [16, 16384]", "--constraints FILE.json",
         "asap|arap|hybrid|abf"})
     EXPECT_THAT(help, HasSubstr(range));
