@@ -8,7 +8,7 @@ namespace unwrapd {
 namespace {
 
 constexpr Index kNowhere = -1;
-constexpr double kLeastRaise = 1e-14, kMostRaise = 0.01;  // of the diagonal
+constexpr std::array kRaises{1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2};  // of the diagonal
 
 using Pattern = Eigen::SparseMatrix<char, Eigen::ColMajor, Index>;
 
@@ -33,41 +33,43 @@ Pattern slot_pattern(std::span<const Triangle> faces, const FreeVertices& slots)
 PairSystem::PairSystem(std::span<const Triangle> faces, const FreeVertices& slots) : slots_(slots) {
   assert(slots.count > 0);
   build_pattern(faces);
-  target_.resize(faces.size());
-  for (std::size_t t = 0; t < faces.size(); ++t) {
-    std::array<Index, 6> row{};
-    for (std::size_t k = 0; k < 6; ++k) {
-      const Index s = slots.slot[static_cast<std::size_t>(faces[t][k / 2])];
-      row[k] = s == kFixed ? kNowhere : 2 * s + static_cast<Index>(k % 2);
-    }
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < 6; ++i)
-      for (std::size_t j = 0; j <= i; ++j) {
-        const bool is_inside = row[i] != kNowhere && row[j] != kNowhere;
-        target_[t][next++] = {
-            is_inside ? entry(std::max(row[i], row[j]), std::min(row[i], row[j])) : kNowhere,
-            i != j && row[i] == row[j]};
-      }
-  }
+  target_.reserve(faces.size());
+  for (const Triangle& face : faces) target_.push_back(targets(face));
   llt_.analyzePattern(lower_);
+}
+
+PairSystem::FaceTargets PairSystem::targets(const Triangle& face) const {
+  std::array<Index, 6> row{};
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Index slot = slots_.slot[static_cast<std::size_t>(face[k / 2])];
+    row[k] = slot == kFixed ? kNowhere : 2 * slot + static_cast<Index>(k % 2);
+  }
+  FaceTargets targets{};
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const bool is_inside = row[i] != kNowhere && row[j] != kNowhere;
+      targets[next++] = {is_inside ? entry(row[i], row[j]) : kNowhere, i != j && row[i] == row[j]};
+    }
+  return targets;
 }
 
 void PairSystem::build_pattern(std::span<const Triangle> faces) {
   const Pattern pattern = slot_pattern(faces, slots_);
-  lower_.resize(2 * slots_.count, 2 * slots_.count);
-  lower_.reserve(4 * static_cast<Index>(pattern.nonZeros()));
-  for (Index j = 0; j < 2 * slots_.count; ++j) {
+  const Index n = 2 * slots_.count;
+  lower_.resize(n, n);
+  lower_.reserve(4 * pattern.nonZeros());
+  for (Index j = 0; j < n; ++j) {
     lower_.startVec(j);
     for (Pattern::InnerIterator it(pattern, j / 2); it; ++it)
-      for (Index k = 0; k < 2; ++k) {
-        const Index i = 2 * static_cast<Index>(it.row()) + k;
+      for (Eigen::Index i = 2 * it.row(); i < 2 * it.row() + 2; ++i)
         if (i >= j) lower_.insertBack(i, j) = 0;
-      }
   }
   lower_.finalize();
 }
 
-Index PairSystem::entry(Index row, Index column) const {
+Index PairSystem::entry(Index a, Index b) const {
+  const auto [column, row] = std::minmax(a, b);
   const Index* begin = lower_.innerIndexPtr() + lower_.outerIndexPtr()[column];
   const Index* end = lower_.innerIndexPtr() + lower_.outerIndexPtr()[column + 1];
   return static_cast<Index>(std::lower_bound(begin, end, row) - lower_.innerIndexPtr());
@@ -96,7 +98,7 @@ bool PairSystem::try_factor() {
 
 bool PairSystem::factor() {
   if (try_factor()) return true;
-  for (double share = kLeastRaise; share <= kMostRaise; share *= 100) {
+  for (double share : kRaises) {
     raise_diagonal(share);
     if (try_factor()) return true;
   }

@@ -38,21 +38,23 @@ class PairSystem {
   void solve(std::vector<Vec2>& b) const;
 
  private:
-  void build_pattern(std::span<const Triangle> faces);
-  [[nodiscard]] Index entry(Index row, Index column) const;
-  [[nodiscard]] bool try_factor();
-  void raise_diagonal(double share);
-
-  const FreeVertices& slots_;
-  SparseMatrix lower_;
   /// Where an entry of an element goes: into lower_'s values, or nowhere (-1). An entry off the
   /// element's diagonal that lands on that of the matrix counts twice, for both triangles.
   struct Target {
     Index at;
     bool is_twice;
   };
+  using FaceTargets = std::array<Target, 21>;  ///< of a face's lower triangle, by rows
 
-  std::vector<std::array<Target, 21>> target_;  ///< of each face's lower triangle
+  void build_pattern(std::span<const Triangle> faces);
+  [[nodiscard]] FaceTargets targets(const Triangle& face) const;
+  [[nodiscard]] Index entry(Index a, Index b) const;
+  [[nodiscard]] bool try_factor();
+  void raise_diagonal(double share);
+
+  const FreeVertices& slots_;
+  SparseMatrix lower_;
+  std::vector<FaceTargets> target_;
   Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt_;
 };
 

@@ -89,8 +89,8 @@ class AngleNewton {
 
 }  // namespace
 
-FlatAngles flat_angles(const Disk& disk, std::stop_token stop, const AngleWatch& on_iteration,
-                       Executor& executor) {
+FlatAngles flat_angles(const Disk& disk, const std::stop_token& stop,
+                       const AngleWatch& on_iteration, Executor& executor) {
   AngleNewton newton(disk, executor);
   FlatAngles flat{newton.angles(), {newton.energy()}};
   while (flat.iterations < kMaxAngleIterations && flat.stop_reason != StopReason::converged) {

@@ -25,8 +25,8 @@ using AngleWatch = std::function<void(const FlatAngles&)>;
 /// the largest relative change of an angle falls below 1e-7 (converged) or after
 /// kMaxAngleIterations: where the tip of a spike needs more than the mesh has, the least energy is
 /// at angles of 0, which are approached and not reached. Throws Error{solver_failed, cancelled}.
-FlatAngles flat_angles(const Disk& disk, std::stop_token stop, const AngleWatch& on_iteration,
-                       Executor& executor);
+FlatAngles flat_angles(const Disk& disk, const std::stop_token& stop,
+                       const AngleWatch& on_iteration, Executor& executor);
 
 inline constexpr int kMaxAngleIterations = 30;
 

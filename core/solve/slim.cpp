@@ -1,9 +1,9 @@
 // Every iteration solves for the minimum of a convex proxy, reweighted so that its gradient is the
 // energy's, and goes there as far as no triangle flips and the energy falls (Armijo). The start is
-// the best of three maps, each at its best scale: a convex map never flips on a 3-connected mesh,
-// a conformal one is exact on developable shapes. Holes are closed for the convex maps, which
-// would flip triangles around them. Rejected: one convex start alone, as published; it shrinks deep
-// shapes a thousandfold and the iterations then have that to undo.
+// the best of three maps, each at its best scale: convex maps never flip on a 3-connected mesh, a
+// conformal one is the answer on developable shapes. Holes are closed for the convex maps, which
+// would open them as far as they go: a tube starts at an energy of 9.7 instead of 19. Rejected: to
+// stop by the length of a step, as is common; it says little of what is left to gain.
 #include "core/solve/slim.hpp"
 
 #include <algorithm>

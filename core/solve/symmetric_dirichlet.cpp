@@ -76,7 +76,8 @@ double symmetric_dirichlet_energy(const Disk& disk, std::span<const Vec2> uv, Ex
     for (std::size_t t = begin; t < end && sum[b] < kInfinity; ++t) {
       const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
       const bool is_upright = orientation(disk.faces[t], uv) > 0;
-      sum[b] += is_upright ? disk.rest[t].area * symmetric_dirichlet(j) : kInfinity;
+      const double density = is_upright ? symmetric_dirichlet(j) : kInfinity;
+      sum[b] += disk.rest[t].area * density;
     }
   });
   double total = 0;
