@@ -24,8 +24,6 @@ template <typename Lanes>
   return factor<Quad>(front, panel);
 }
 
-bool factor_baseline(const FrontView& front, double* panel) { return factor<Duo>(front, panel); }
-
 }  // namespace
 
 void Front::reset(PanelShape shape) {
@@ -43,7 +41,9 @@ void Front::reset(PanelShape shape) {
 
 bool Front::factor(double* panel) const {
   static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
-  return has_avx2 ? factor_avx2(view_, panel) : factor_baseline(view_, panel);
+  return has_avx2 ? factor_avx2(view_, panel) : factor_on_baseline(panel);
 }
+
+bool Front::factor_on_baseline(double* panel) const { return unwrapd::factor<Duo>(view_, panel); }
 
 }  // namespace unwrapd

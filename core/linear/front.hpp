@@ -50,6 +50,9 @@ class Front {
   /// not positive and finite. The same bits on any processor.
   [[nodiscard]] bool factor(double* panel) const;
 
+  /// The same with the registers of the x86-64 baseline, whatever the processor has.
+  [[nodiscard]] bool factor_on_baseline(double* panel) const;
+
  private:
   FrontView view_;
   Scratch columns_, strips_, inverse_;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <limits>
 #include <random>
 #include <vector>
@@ -71,6 +72,21 @@ TEST(Front, LeavesTheSchurComplementAndTheInversePanel) {
       for (Eigen::Index i = j; i < b; ++i)
         EXPECT_NEAR(front.diagonal(front.update_begin() + std::size_t(j))[i - j], schur(i, j),
                     1e-10 * a.norm());
+  }
+}
+
+TEST(Front, GivesTheSameBitsWithAnyRegisters) {
+  Front wide, narrow;
+  for (const PanelShape& shape : shapes_of_fronts()) {
+    const auto n = Eigen::Index(shape.pivots + shape.below);
+    const Eigen::MatrixXd a = random_definite(n, 5);
+    std::vector<double> panel(shape.size()), other(shape.size());
+    fill(wide, shape, a), fill(narrow, shape, a);
+    ASSERT_TRUE(wide.factor(panel.data()) && narrow.factor_on_baseline(other.data()));
+    EXPECT_EQ(panel, other);
+    const std::size_t end = wide.update_begin() + shape.below;
+    for (std::size_t j = wide.update_begin(); j < end; ++j)
+      EXPECT_TRUE(std::equal(wide.diagonal(j), wide.diagonal(j) + (end - j), narrow.diagonal(j)));
   }
 }
 
