@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "core/atlas/constraints.hpp"
@@ -122,12 +123,26 @@ double place(Layout& layout, const UnwrapOptions& options) {
   return placements.front().scale;
 }
 
+/// Says where constraints reach beyond the page.
+void note_charts_beyond(Layout& layout) {
+  const auto is_beyond = [](const Vec2& u) { return u.minCoeff() < 0 || u.maxCoeff() > 1; };
+  std::ptrdiff_t count = 0;
+  for (const std::vector<UvMap>& own : layout.islands)
+    count += std::count_if(own.begin(), own.end(), [&](const UvMap& uv) {
+      return std::any_of(uv.begin(), uv.end(), is_beyond);
+    });
+  if (count > 0)
+    layout.report.notes.push_back("The constraints put " + std::to_string(count) +
+                                  " of the charts partly or wholly outside the page.");
+}
+
 /// Charts under position constraints are on the page already.
 void lay_out_page(Layout& layout, const UnwrapOptions& options) {
   const double scale = options.constraints.empty() ? place(layout, options) : 1;
   const double density = std::sqrt(layout.sums.uv_area / layout.sums.area);
   layout.report.fill = layout.sums.uv_area * scale * scale;
   layout.report.texel_density = scale * density * options.resolution;
+  if (!options.constraints.empty()) note_charts_beyond(layout);
 }
 
 /// The promise kept in what is written; the report tells what is true there.
@@ -188,7 +203,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   validate(options, std::numeric_limits<int>::max());
   announce(progress, Stage::setup, 0, kChartsBegin);
   const std::vector<Charts> parts = take_apart(surfaces, options.seams);
-  const auto page = page_holds(surfaces, parts, options.constraints);
+  const auto page = page_holds(surfaces, parts, options.constraints, progress.stop);
   std::vector<Layout> layouts = map_charts(parts, page, options, progress, executor);
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);

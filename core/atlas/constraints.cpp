@@ -78,11 +78,13 @@ std::vector<ChartVertex> find(const VertexFinder& finder, const PositionConstrai
 /// For each surface, each chart: its pins in the order of the constraints.
 std::vector<std::vector<ChartPins>> find_all(std::span<const Surface> surfaces,
                                              std::span<const Charts> charts,
-                                             std::span<const PositionConstraint> constraints) {
+                                             std::span<const PositionConstraint> constraints,
+                                             const std::stop_token& stop) {
   std::vector<std::vector<ChartPins>> pins;
   for (const Charts& part : charts) pins.emplace_back(part.charts.size());
   std::vector<std::optional<VertexFinder>> finders(surfaces.size());
   for (std::size_t i = 0; i < constraints.size(); ++i) {
+    if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
     const PositionConstraint& c = constraints[i];
     check_range(c, surfaces, i);
     const auto s = static_cast<std::size_t>(c.surface);
@@ -175,11 +177,12 @@ Holds merge(const ChartPins& pins, Index vertex_count) {
 
 std::vector<std::vector<Holds>> page_holds(std::span<const Surface> surfaces,
                                            std::span<const Charts> charts,
-                                           std::span<const PositionConstraint> constraints) {
+                                           std::span<const PositionConstraint> constraints,
+                                           const std::stop_token& stop) {
   std::vector<std::vector<Holds>> holds;
   for (const Charts& part : charts) holds.emplace_back(part.charts.size());
   if (constraints.empty()) return holds;
-  const std::vector<std::vector<ChartPins>> pins = find_all(surfaces, charts, constraints);
+  const std::vector<std::vector<ChartPins>> pins = find_all(surfaces, charts, constraints, stop);
   for (std::size_t s = 0; s < holds.size(); ++s)
     for (std::size_t k = 0; k < holds[s].size(); ++k) {
       const Chart& chart = charts[s].charts[k];

@@ -2,6 +2,7 @@
 // What a user wants held (Sec. 7), as holds of each chart's vertices.
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/atlas/charts.hpp"
@@ -29,9 +30,10 @@ inline constexpr double kLeastWeight = 1e-9, kMostWeight = 1e9;
 /// Throws Error{invalid_constraint}, where = "/constraints/<i>": no such surface or vertex; a
 /// vertex in no face; one vertex at two places; two vertices at one; a chart all of whose targets
 /// are one; a weight out of bounds; a uv beyond 32-bit floats. where = "/constraints": a chart that
-/// has none.
+/// has none. Throws Error{cancelled}.
 std::vector<std::vector<Holds>> page_holds(std::span<const Surface> surfaces,
                                            std::span<const Charts> charts,
-                                           std::span<const PositionConstraint> constraints);
+                                           std::span<const PositionConstraint> constraints,
+                                           const std::stop_token& stop);
 
 }  // namespace unwrapd

@@ -1,10 +1,9 @@
-// The nearest vertex is found by a sweep from the point's place among the vertices sorted by x, to
-// both sides, until x alone is farther away than the best. Exact, and no tree to build: a
-// constraint that names a vertex's own position touches the few vertices that share its x.
+// Corners are sorted by the surface's vertices by counting: a vertex is looked up at once, however
+// many copies of it the charts have.
 #include "core/atlas/vertex_finder.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <utility>
 
 namespace unwrapd {
 namespace {
@@ -21,18 +20,6 @@ std::vector<ChartVertex> one_a_chart(std::vector<ChartVertex> found) {
   found.erase(std::unique(found.begin(), found.end(), same_chart), found.end());
   return found;
 }
-
-/// The best so far of a search for the nearest.
-struct Nearest {
-  Index vertex = -1;
-  double distance2 = std::numeric_limits<double>::infinity();
-
-  void offer(Index v, double d2) {
-    if (vertex != -1 && (d2 > distance2 || (d2 == distance2 && v > vertex))) return;
-    vertex = v;
-    distance2 = d2;
-  }
-};
 
 }  // namespace
 
@@ -53,8 +40,9 @@ VertexFinder::VertexFinder(const Surface& surface, const Charts& charts) : surfa
     return static_cast<std::size_t>(face[static_cast<std::size_t>(corner % 3)]);
   };
   for_each_corner([&](const ChartVertex& c) { ++begin_[vertex_at(c.corner) + 1]; });
+  std::vector<Index> shown;
   for (std::size_t v = 0; v < n; ++v) {
-    if (begin_[v + 1] > 0) by_x_.push_back(static_cast<Index>(v));
+    if (begin_[v + 1] > 0) shown.push_back(static_cast<Index>(v));
     begin_[v + 1] += begin_[v];
   }
   corners_.resize(static_cast<std::size_t>(begin_.back()));
@@ -62,12 +50,7 @@ VertexFinder::VertexFinder(const Surface& surface, const Charts& charts) : surfa
   for_each_corner([&](const ChartVertex& c) {
     corners_[static_cast<std::size_t>(next[vertex_at(c.corner)]++)] = c;
   });
-  std::stable_sort(by_x_.begin(), by_x_.end(),
-                   [&](Index a, Index b) { return position(a).x() < position(b).x(); });
-}
-
-const Vec3& VertexFinder::position(Index vertex) const {
-  return surface_.mesh.positions[static_cast<std::size_t>(vertex)];
+  places_.emplace(surface.mesh.positions, std::move(shown));
 }
 
 void VertexFinder::add_corners(Index vertex, std::vector<ChartVertex>& found) const {
@@ -82,28 +65,13 @@ std::vector<ChartVertex> VertexFinder::of_vertex(Index vertex) const {
 }
 
 std::optional<Index> VertexFinder::nearest(const Vec3& point) const {
-  if (by_x_.empty()) return std::nullopt;
-  const auto from = std::partition_point(by_x_.begin(), by_x_.end(),
-                                         [&](Index v) { return position(v).x() < point.x(); });
-  Nearest best;
-  const auto offer = [&](Index v) {
-    const double dx = position(v).x() - point.x();
-    if (dx * dx > best.distance2) return false;
-    best.offer(v, (position(v) - point).squaredNorm());
-    return true;
-  };
-  for (auto up = from; up != by_x_.end() && offer(*up);) ++up;
-  for (auto down = from; down != by_x_.begin() && offer(*(down - 1));) --down;
-  return best.vertex;
+  return places_->nearest(point);
 }
 
 std::vector<ChartVertex> VertexFinder::at_place_of(Index vertex) const {
-  const Vec3& place = position(vertex);
-  auto at = std::partition_point(by_x_.begin(), by_x_.end(),
-                                 [&](Index v) { return position(v).x() < place.x(); });
   std::vector<ChartVertex> found;
-  for (; at != by_x_.end() && position(*at).x() == place.x(); ++at)
-    if (position(*at) == place) add_corners(*at, found);
+  const Vec3& place = surface_.mesh.positions[static_cast<std::size_t>(vertex)];
+  for (Index v : places_->at(place)) add_corners(v, found);
   return one_a_chart(std::move(found));
 }
 

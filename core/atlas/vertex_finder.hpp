@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/atlas/charts.hpp"
+#include "core/mesh/point_tree.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd {
@@ -35,13 +36,12 @@ class VertexFinder {
   [[nodiscard]] std::vector<ChartVertex> at_place_of(Index vertex) const;
 
  private:
-  [[nodiscard]] const Vec3& position(Index vertex) const;
   void add_corners(Index vertex, std::vector<ChartVertex>& found) const;
 
   const Surface& surface_;
   std::vector<Index> begin_;          // of each vertex's corners; one entry more than vertices
   std::vector<ChartVertex> corners_;  // by vertex, then by corner
-  std::vector<Index> by_x_;           // vertices that charts show, ascending
+  std::optional<PointTree> places_;   // of the vertices that charts show
 };
 
 }  // namespace unwrapd

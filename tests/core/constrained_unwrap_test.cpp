@@ -97,6 +97,19 @@ TEST(ConstrainedUnwrap, ReportsTheDistortionOfChartsAtTheirOwnScales) {
   EXPECT_NEAR(u.report.charts[0].distortion.area, 2, 1e-6);
 }
 
+TEST(ConstrainedUnwrap, SaysWhenChartsReachBeyondThePage) {
+  const auto notes = [](double u) {
+    return unwrapped({shapes::grid(3, 3)}, {.constraints = {pin(0, 0.1, 0.1), pin(3, u, 0.1)}})
+        .report.notes.size();
+  };
+  EXPECT_EQ(notes(0.9), 0U);
+  EXPECT_EQ(notes(1.1), 1U);
+  const Vec2 far(0.1, 40.7);  // held in floats there too
+  const Unwrapped u =
+      unwrapped({shapes::grid(3, 3)}, {.constraints = {pin(0, 0.1, 40.2), pin(3, 0.1, 40.7)}});
+  EXPECT_LT((u.surfaces[0].uv[3] - far).norm(), 4e-6);
+}
+
 TEST(ConstrainedUnwrap, HoldsOnACutSurfaceToo) {
   const TriMesh mesh = shapes::sphere(2);
   for (Method method : kMethods) {
@@ -136,6 +149,57 @@ TEST(ConstrainedUnwrap, FillsCircleAndSquareAndPacksThem) {
       for (const Vec2& p : u->surfaces[0].uv) EXPECT_TRUE(p.minCoeff() >= 0 && p.maxCoeff() <= 1);
     }
   }
+}
+
+/// Triangles of the written floats that are not counter-clockwise.
+Index flips(const UnwrappedSurface& s) {
+  Index count = 0;
+  for (const auto& [a, b, c] : s.faces) {
+    const Eigen::Vector2f u = s.uv[std::size_t(a)].cast<float>();
+    const Vec2 p = (s.uv[std::size_t(b)].cast<float>() - u).cast<double>();
+    const Vec2 q = (s.uv[std::size_t(c)].cast<float>() - u).cast<double>();
+    count += p.x() * q.y() - p.y() * q.x() <= 0;
+  }
+  return count;
+}
+
+TEST(ConstrainedUnwrap, KeepsItsPromiseAroundPinsOrSaysThatItCannot) {
+  int kept = 0, asked = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const TriMesh mesh = shapes::random_disk(9, seed);
+    std::mt19937 rng(seed);
+    std::uniform_real_distribution<double> off(-0.03, 0.03);
+    UnwrapOptions options;
+    for (Index v = Index(seed); v < mesh.vertex_count(); v += 17) {
+      const Vec3& p = mesh.positions[std::size_t(v)];
+      options.constraints.push_back(
+          pin(v, 0.2 + 0.6 * p.x() + off(rng), 0.2 + 0.6 * p.y() + off(rng)));
+    }
+    for (Method method : kMethods) {
+      options.method = method;
+      ++asked;
+      try {
+        const Unwrapped u = unwrapped({mesh}, options);
+        EXPECT_EQ(flips(u.surfaces[0]), 0);
+        for (const PositionConstraint& c : options.constraints)
+          EXPECT_LE((u.surfaces[0].uv[std::size_t(*c.vertex)] - c.uv).lpNorm<Eigen::Infinity>(),
+                    kHalfStep);
+        ++kept;
+      } catch (const Error& e) {
+        EXPECT_EQ(e.code(), ErrorCode::guarantee_failed) << e.what();
+      }
+    }
+  }
+  EXPECT_GE(kept, asked / 2);
+}
+
+TEST(ConstrainedUnwrap, KeepsItsPromiseInsideACircle) {
+  for (Method method : kMethods)
+    for (unsigned seed : {1U, 2U, 3U}) {
+      const Unwrapped u = unwrapped({shapes::random_disk(9, seed)},
+                                    {.method = method, .boundary = BoundaryShape::circle});
+      EXPECT_EQ(flips(u.surfaces[0]), 0);
+    }
 }
 
 TEST(ConstrainedUnwrap, RefusesWhatCannotBe) {

@@ -27,7 +27,7 @@ Asset asset_of(const std::vector<TriMesh>& meshes, SeamMode seams = SeamMode::au
 
 std::vector<std::vector<Holds>> held(const Asset& asset,
                                      const std::vector<PositionConstraint>& constraints) {
-  return page_holds(asset.surfaces, asset.charts, constraints);
+  return page_holds(asset.surfaces, asset.charts, constraints, {});
 }
 
 PositionConstraint pin(Index vertex, double u, double v) {
@@ -222,6 +222,14 @@ TEST(Constraints, RefuseTargetsThatTellNoSize) {
   expect_refused(asset, {soft(8, 0.1, 0.2, 1), soft(0, 0.1, 0.2, 1)}, "/constraints/1", "size");
   expect_refused(asset, {pin(8, 0.1, 0.2), soft(0, 0.1, 0.2, 1)}, "/constraints/1", "size");
   EXPECT_NO_THROW(held(asset, {soft(8, 0.1, 0.2, 1)}));
+}
+
+TEST(Constraints, StopWhenAsked) {
+  const Asset asset = asset_of({shapes::grid(2, 2)});
+  std::stop_source source;
+  source.request_stop();
+  const std::vector<PositionConstraint> constraints{pin(0, 0, 0)};
+  EXPECT_THROW(page_holds(asset.surfaces, asset.charts, constraints, source.get_token()), Error);
 }
 
 TEST(Constraints, RefuseChartsThatHaveNone) {

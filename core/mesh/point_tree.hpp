@@ -1,0 +1,52 @@
+#pragma once
+// Points in space, to be found by place.
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// A k-d tree (Bentley 1975) over some of the points of a list.
+class PointTree {
+ public:
+  /// points must outlive the tree; of: which of them, ascending. Positions are finite.
+  PointTree(std::span<const Vec3> points, std::vector<Index> of);
+
+  /// The point nearest to a place, the lowest of equally near ones; nothing when there are none.
+  [[nodiscard]] std::optional<Index> nearest(const Vec3& place) const;
+
+  /// All points at exactly this place, ascending.
+  [[nodiscard]] std::vector<Index> at(const Vec3& place) const;
+
+ private:
+  struct Range {
+    std::size_t first, last;
+    [[nodiscard]] std::size_t middle() const { return first + (last - first) / 2; }
+  };
+  struct Box {
+    Vec3 low, high;
+    [[nodiscard]] double distance2(const Vec3& place) const {
+      return (place - place.cwiseMax(low).cwiseMin(high)).squaredNorm();
+    }
+  };
+  struct Nearest {
+    Index point = 0;
+    double distance2 = std::numeric_limits<double>::infinity();
+  };
+
+  [[nodiscard]] const Vec3& point(std::size_t node) const;
+  void build(Range range);
+  [[nodiscard]] double distance2(Range range, const Vec3& place) const;
+  void search(Range range, const Vec3& place, Nearest& best) const;
+  void collect(Range range, const Vec3& place, std::vector<Index>& found) const;
+
+  std::span<const Vec3> points_;
+  std::vector<Index> of_;  // the middle of a range parts it
+  std::vector<Box> box_;   // of the range that is parted there
+};
+
+}  // namespace unwrapd
