@@ -35,14 +35,10 @@ bool holds_any(const MapIntent& intent) {
 
 /// Mends the map of one disk; returns how many flips are left.
 Index mend(const Disk& disk, const Promise& promise, UvMap& uv, Mending& mending) {
-  if (promise.repair == RepairMethod::virtual_boundary && !holds_any(promise.intent)) {
-    UvMap padded = virtual_boundary_map(disk, uv);
-    if (flipped_faces(disk.faces, padded).empty()) {
-      uv = std::move(padded);
-      mending.virtual_boundary = true;
-      return 0;
-    }
-  }
+  mending.virtual_boundary = promise.repair == RepairMethod::virtual_boundary &&
+                             !holds_any(promise.intent) &&
+                             start_anew(disk, promise.intent, virtual_boundary_map(disk, uv), uv);
+  if (mending.virtual_boundary) return 0;
   return untangle(disk, promise.intent, uv);
 }
 

@@ -16,7 +16,7 @@
 namespace unwrapd {
 namespace {
 
-constexpr std::array<double, 6> kLeastHeights = {3, 6, 12, 25, 50, 100};  // steps
+constexpr std::array<double, 9> kLeastHeights = {3, 6, 12, 25, 50, 100, 200, 400, 800};  // steps
 constexpr double kMostEnlarged =
     200;  // least heights: up to this length small triangles are scaled
 constexpr double kLeastLength = 1e-9;  // steps
@@ -85,11 +85,12 @@ Index snap(const Chart& chart, const std::vector<char>& held, const std::stop_to
   std::size_t flipped = flipped_faces(chart.mesh.faces, best).size();
   if (flipped > 0) {
     Disk disk = page_disk(chart, uv);
-    const MapIntent intent{.rigidity = {}, .held = held, .stop = stop, .in_place = true};
+    MapIntent intent{.rigidity = {}, .held = held, .stop = stop, .in_place = true};
     UvMap now = best;
     for (double height : kLeastHeights) {
       set_least_height(height, uv, disk);
       untangle(disk, intent, now);
+      intent.rings *= 2;
       now = rounded(now);
       const std::size_t left = flipped_faces(disk.faces, now).size();
       if (left < flipped) flipped = left, best = now;

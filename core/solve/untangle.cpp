@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/error.hpp"
 #include "core/measure/distortion.hpp"
@@ -23,13 +24,15 @@
 namespace unwrapd {
 namespace {
 
-constexpr int kFirstRings = 2;
 constexpr int kMostRings = 64;
+constexpr int kMostRounds = 4;         // from small patches to large ones
 constexpr int kMostTurning = 80;       // Newton steps under the regularised barrier
 constexpr double kEpsilonShare = 0.2;  // of the worst determinant
+constexpr double kFirstEpsilon = 0.1;  // collapsed triangles open under a large one
 constexpr double kLeastEpsilon = 1e-6;
 constexpr double kStuck = 1e-5;            // relative fall of the energy in one step
 constexpr int kMostFading = 20;            // Newton steps for each weight
+constexpr int kMostFadingWhole = 60;       // where the way may be long
 constexpr double kFadingTolerance = 1e-4;  // relative fall of the energy in one step
 constexpr std::array<double, 3> kFading = {1e-1, 1e-2, 1e-3};  // weights of the barrier
 
@@ -89,23 +92,25 @@ bool is_untangled(const BarrierMesh& mesh, const UvMap& uv) {
 bool turn_over(const BarrierMesh& patch, const MapIntent& intent, UvMap& uv) {
   const BarrierMesh mesh = fitted(patch, uv);
   Newton newton(mesh);
-  for (int k = 0; k < kMostTurning; ++k) {
+  double floor = kFirstEpsilon;
+  for (int k = 0; k < kMostTurning; ++k, floor = std::max(kLeastEpsilon, floor / 2)) {
     if (is_untangled(mesh, uv)) return true;
     throw_if_stopped(intent);
     const double worst = std::min(0.0, least_determinant(mesh, uv));
-    const double epsilon = std::max(kLeastEpsilon, -kEpsilonShare * worst);
+    const double epsilon = std::max(floor, -kEpsilonShare * worst);
     const double fall = newton.step(uv, {{0.0}, 1, epsilon});
-    if (fall == 0 || (fall < kStuck && epsilon == kLeastEpsilon)) break;
+    if (fall < kStuck && epsilon == kLeastEpsilon) break;
   }
   return is_untangled(mesh, uv);
 }
 
 /// From a map without flips to one of little energy without flips.
-void fade(const BarrierMesh& mesh, const MapIntent& intent, UvMap& uv) {
+void fade(const BarrierMesh& mesh, const MapIntent& intent, int most, UvMap& uv) {
   Newton newton(mesh);
   for (double weight : kFading) {
+    if (intent.in_place && weight < kFading.front()) break;
     throw_if_stopped(intent);
-    newton.descend(uv, {intent.rigidity, weight, 0}, kMostFading, kFadingTolerance);
+    newton.descend(uv, {intent.rigidity, weight, 0}, most, kFadingTolerance);
   }
 }
 
@@ -122,41 +127,35 @@ void put_back(const Patch& patch, const UvMap& own, UvMap& uv) {
 
 /// Lets a patch without flips find its least energy.
 void settle(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv) {
+  const bool is_whole = patch.face.size() == disk.faces.size();
   if (intent.rigidity.lambda < kConformalBelow) follow_sizes(disk, uv, patch);
   UvMap own = map_of(patch, uv);
-  fade(patch.mesh, intent, own);
+  fade(patch.mesh, intent, is_whole ? kMostFadingWhole : kMostFading, own);
   put_back(patch, own, uv);
 }
 
-/// Mends one patch; the map stays as it is when that fails.
+/// Mends one patch. Where that fails the map stays as it is, unless half of the flips are gone:
+/// then it returns true, for a map that has yet to settle.
 bool mend(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv) {
   UvMap own = map_of(patch, uv);
-  if (!turn_over(patch.mesh, intent, own)) return false;
+  const std::size_t before = flipped_faces(patch.mesh.faces, own).size();
+  const bool is_mended = turn_over(patch.mesh, intent, own);
+  if (!is_mended && flipped_faces(patch.mesh.faces, own).size() > before / 2) return false;
   put_back(patch, own, uv);
-  settle(disk, intent, patch, uv);
-  return true;
+  if (is_mended) settle(disk, intent, patch, uv);
+  return !is_mended;
 }
 
-Patch whole(const Disk& disk) {
-  const std::vector<Index> any{0};
-  return std::move(patches_around(disk, any, static_cast<int>(disk.faces.size()), {}).front());
+Patch whole(const Disk& disk, std::span<const char> held) {
+  std::vector<Index> all(disk.faces.size());
+  std::iota(all.begin(), all.end(), 0);
+  return std::move(patches_around(disk, all, 0, held).front());
 }
 
 UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
   const double area = uv_area(disk.rest, disk.faces, uv);
   for (Vec2& u : uv) u /= std::sqrt(area);
   return uv;
-}
-
-/// A new map of the whole disk, from one that has no flips by construction; false when rounding
-/// spoils it.
-bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv) {
-  start = scaled_to_unit_area(disk, std::move(start));
-  if (!flipped_faces(disk.faces, start).empty()) return false;
-  uv = std::move(start);
-  Patch patch = whole(disk);
-  settle(disk, intent, patch, uv);
-  return true;
 }
 
 UvMap tutte_without_holes(const Disk& disk) {
@@ -170,30 +169,59 @@ bool may_start_anew(const MapIntent& intent) {
          std::none_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
 }
 
-/// Patches of growing size; returns the faces that are flipped in the end.
-std::vector<Index> mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv) {
-  std::vector<Index> flipped = flipped_faces(disk.faces, uv);
+/// What rounds of patches leave.
+struct Left {
+  std::vector<Index> flipped;
+  bool is_rough = false;  ///< some patch has not settled
+};
+
+/// Patches of growing size, in the end the whole.
+void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
   bool was_whole = false;
-  for (int rings = kFirstRings; !was_whole && !flipped.empty(); rings *= 2) {
-    for (Patch& patch : patches_around(disk, flipped, rings, intent.held)) {
-      was_whole = patch.face.size() == disk.faces.size();
-      mend(disk, intent, patch, uv);
+  for (int rings = intent.rings; !was_whole && !left.flipped.empty(); rings *= 2) {
+    for (Patch& patch : patches_around(disk, left.flipped, rings, intent.held)) {
+      was_whole = was_whole || patch.face.size() == disk.faces.size();
+      if (mend(disk, intent, patch, uv)) left.is_rough = true;
     }
-    flipped = flipped_faces(disk.faces, uv);
-    if (rings > kMostRings) break;
+    left.flipped = flipped_faces(disk.faces, uv);
+    if (rings >= kMostRings) break;
   }
-  return flipped;
+}
+
+/// Rounds of patches as long as each leaves half of the flips at most.
+Left mend_in_rounds(const Disk& disk, const MapIntent& intent, UvMap& uv) {
+  Left left{flipped_faces(disk.faces, uv)};
+  for (int round = 0; round < kMostRounds && !left.flipped.empty(); ++round) {
+    const std::size_t before = left.flipped.size();
+    mend_patches(disk, intent, uv, left);
+    if (left.flipped.size() > before / 2) break;
+  }
+  return left;
 }
 
 }  // namespace
 
+bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv) {
+  start = scaled_to_unit_area(disk, std::move(start));
+  if (!flipped_faces(disk.faces, start).empty()) return false;
+  uv = std::move(start);
+  Patch patch = whole(disk, {});
+  settle(disk, intent, patch, uv);
+  return true;
+}
+
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
-  const std::vector<Index> left = mend_patches(disk, intent, uv);
-  if (left.empty()) return 0;
+  const Left left = mend_in_rounds(disk, intent, uv);
+  if (left.flipped.empty()) {
+    if (!left.is_rough) return 0;
+    Patch patch = whole(disk, intent.held);
+    settle(disk, intent, patch, uv);
+    return 0;
+  }
   if (may_start_anew(intent) && (start_anew(disk, intent, virtual_boundary_map(disk, uv), uv) ||
                                  start_anew(disk, intent, tutte_without_holes(disk), uv)))
     return 0;
-  return static_cast<Index>(left.size());
+  return static_cast<Index>(left.flipped.size());
 }
 
 }  // namespace unwrapd

@@ -16,6 +16,7 @@ struct MapIntent {
   std::vector<char> held;  ///< one a vertex, 1: it must not move; empty: none
   std::stop_token stop;
   bool in_place = false;  ///< only near the flips: never a new map of the whole disk
+  int rings = 2;          ///< how far around a flip vertices are let loose, at first
 };
 
 /// Moves the vertices near flipped or collapsed triangles (not counter-clockwise, by the exact
@@ -23,5 +24,10 @@ struct MapIntent {
 /// only where held vertices leave no way, or double precision none.
 /// Throws Error{cancelled}.
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv);
+
+/// A new map of the whole disk: start, scaled to the surface's area, then taken to little energy
+/// without a flip on the way. False, and uv as it was, where start has flips. Held vertices are not
+/// looked at. Throws Error{cancelled}.
+bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv);
 
 }  // namespace unwrapd
