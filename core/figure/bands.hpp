@@ -47,6 +47,8 @@ class Band {
   void resolve(Image& image) const;
 
  private:
+  /// Of the pixel whose first sample is at this place.
+  [[nodiscard]] Rgb mean(std::size_t first) const;
   [[nodiscard]] std::size_t size() const {
     return static_cast<std::size_t>(kRows) * static_cast<std::size_t>(columns_);
   }

@@ -3,9 +3,13 @@
 #include <string_view>
 
 namespace unwrapd {
+namespace {
+
+constexpr std::string_view kDigits = "0123456789abcdef";
+
+}  // namespace
 
 std::string hex(const Rgb& colour) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text = "#";
   for (const std::uint8_t part : colour) {
     text += kDigits[part / 16];

@@ -17,10 +17,11 @@ namespace unwrapd {
 using ScreenPoint = std::array<std::int32_t, 2>;  ///< x to the right, y down, in steps
 using ScreenTriangle = std::array<ScreenPoint, 3>;
 
-inline constexpr int kSamples = 4;                             ///< along a pixel's side
-inline constexpr int kSampleSteps = 16;                        ///< from one sample to the next
-inline constexpr int kPixelSteps = kSamples * kSampleSteps;    ///< a pixel's side
-inline constexpr double kMaxScreen = (1 << 24) / kPixelSteps;  ///< pixels; beyond it is cut off
+inline constexpr int kSamples = 4;                           ///< along a pixel's side
+inline constexpr int kSampleSteps = 16;                      ///< from one sample to the next
+inline constexpr int kPixelSteps = kSamples * kSampleSteps;  ///< a pixel's side
+inline constexpr double kMaxScreen =
+    (1 << 24) / static_cast<double>(kPixelSteps);  ///< pixels; beyond it is cut off
 
 /// A place in pixels, snapped; NaN becomes 0.
 inline ScreenPoint snapped(const Vec2& pixels) {

@@ -31,7 +31,7 @@ Rgb under(const Rgb& paint, double light, double gloss) {
   Rgb colour;
   for (std::size_t part = 0; part < 3; ++part) {
     const double value = paint[part] * light + 255 * gloss;
-    colour[part] = static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0) + 0.5);
+    colour[part] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
   }
   return colour;
 }
