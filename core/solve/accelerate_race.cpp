@@ -7,6 +7,7 @@
 #include "core/solve/accelerate_race.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -15,11 +16,17 @@
 namespace unwrapd {
 namespace {
 
-constexpr int kPatience = 40;               // iterations of the first descent on its own
-constexpr int kPatienceAroundHoles = 24;    // the same with several boundaries
-constexpr std::size_t kBout = 8;            // after so many iterations the second one is dropped
-constexpr double kFewFlips = 0.01;          // of all triangles: more of them are no accident
-constexpr double kHopelesslyBehind = 1.03;  // if its energy is so many times that of the first
+constexpr int kPatience = 40;             // iterations of the first descent on its own
+constexpr int kPatienceAroundHoles = 24;  // the same with several boundaries
+constexpr double kFewFlips = 0.01;        // of all triangles: more of them are no accident
+
+/// The second descent is dropped where its energy is more than so many times that of the first
+/// after as many iterations.
+struct Bout {
+  int iterations;
+  double most;
+};
+constexpr std::array<Bout, 3> kBouts{{{8, 1.03}, {16, 1.01}, {24, 1}}};
 
 bool has_holes(const Race& race) { return race.assembly.disk.loops.size() > 1; }
 
@@ -30,9 +37,9 @@ int patience(const Race& race) {
   return has_holes(race) ? std::min(kPatienceAroundHoles, most - 1) : std::min(kPatience, most);
 }
 
-double energy_after(const Descent& descent, std::size_t iterations) {
+double energy_after(const Descent& descent, int iterations) {
   const std::vector<double>& energy = descent.solution().energy;
-  return energy[std::min(iterations, energy.size() - 1)];
+  return energy[std::min(static_cast<std::size_t>(iterations), energy.size() - 1)];
 }
 
 /// Why to try a second start, after the first descent ended for this reason or used its patience
@@ -52,10 +59,12 @@ std::optional<SecondStart> reason_for_second(const Race& race, const Descent& fi
 /// Runs the second descent as far as the first one has come. Whether its energy is lower there.
 bool overtakes(const Race& race, Descent& second, const Descent& first) {
   const LoopWatch silent{{}, race.watch.stop};
-  const int most = patience(race), bout = std::min(static_cast<int>(kBout), most);
-  run(second, {race.options.tolerance, bout}, silent);
-  if (energy_after(second, kBout) > kHopelesslyBehind * energy_after(first, kBout)) return false;
-  run(second, {race.options.tolerance, most}, silent);
+  for (const Bout& bout : kBouts) {
+    const int end = std::min(bout.iterations, patience(race));
+    run(second, {race.options.tolerance, end}, silent);
+    if (energy_after(second, end) > bout.most * energy_after(first, end)) return false;
+  }
+  run(second, {race.options.tolerance, patience(race)}, silent);
   return second.energy() < first.energy();
 }
 

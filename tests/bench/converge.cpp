@@ -1,0 +1,181 @@
+// How ARAP's energy gets down, and from where: the figures of docs/adr/0004 and 0010.
+//   unwrapd_converge            both tables, on the paper's models, once subdivided, and other
+//   disks unwrapd_converge FILE.obj   the same for one mesh that is a disk
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/atlas/charts.hpp"
+#include "core/error.hpp"
+#include "core/solve/solve.hpp"
+#include "tests/bench/measure.hpp"
+#include "tests/core/obj_reader.hpp"
+
+namespace unwrapd::bench {
+namespace {
+
+constexpr int kMost = 2000;
+using Vectors = std::deque<std::vector<Vec2>>;
+
+double dot(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+  double sum = 0;
+  for (std::size_t v = 0; v < a.size(); ++v) sum += a[v].dot(b[v]);
+  return sum;
+}
+
+/// a + weight b
+std::vector<Vec2> sum(const std::vector<Vec2>& a, double weight, const std::vector<Vec2>& b) {
+  std::vector<Vec2> c(a);
+  for (std::size_t v = 0; v < c.size(); ++v) c[v] += weight * b[v];
+  return c;
+}
+
+struct Problem {
+  const Assembly& assembly;
+  Objective& objective;
+};
+
+/// Plain iterations from extrapolated points; the extrapolation starts anew when the energy rises
+/// (O'Donoghue, Candes 2015). Two evaluations an iteration: at the point and at the step's end.
+std::vector<double> nesterov(const Problem& p, UvMap uv) {
+  UvMap ahead = uv;
+  std::vector<Vec2> force(uv.size());
+  std::vector<double> energy{p.objective.evaluate(uv, force)};
+  double theta = 1;
+  for (int k = 0; k < kMost; ++k) {
+    p.objective.evaluate(ahead, force);
+    p.assembly.global.solve(force);
+    UvMap next = sum(ahead, 1, force);
+    const double now = p.objective.evaluate(next, force);
+    if (now > energy.back()) {
+      theta = 1, ahead = uv;
+      energy.push_back(energy.back());
+      continue;
+    }
+    const double later = (1 + std::sqrt(1 + 4 * theta * theta)) / 2;
+    ahead = sum(next, (theta - 1) / later, sum(next, -1, uv));
+    theta = later, uv = std::move(next);
+    energy.push_back(now);
+  }
+  return energy;
+}
+
+/// The plain iteration as a fixed point, depth 5 (Peng et al. 2018); the plain step where the
+/// energy would rise.
+std::vector<double> anderson(const Problem& p, UvMap uv) {
+  std::vector<Vec2> force(uv.size()), old_step, old_end;
+  std::vector<double> energy{p.objective.evaluate(uv, force)};
+  Vectors steps, ends;
+  for (int k = 0; k < kMost; ++k) {
+    p.assembly.global.solve(force);
+    const UvMap end = sum(uv, 1, force);
+    if (k > 0) steps.push_back(sum(force, -1, old_step)), ends.push_back(sum(end, -1, old_end));
+    if (steps.size() > 5) steps.pop_front(), ends.pop_front();
+    old_step = force, old_end = end;
+    const auto m = static_cast<Eigen::Index>(steps.size());
+    Eigen::MatrixXd gram(m, m);
+    Eigen::VectorXd rhs(m);
+    for (Eigen::Index i = 0; i < m; ++i) {
+      const auto& own = steps[static_cast<std::size_t>(i)];
+      rhs[i] = dot(own, force);
+      for (Eigen::Index j = 0; j < m; ++j)
+        gram(i, j) = (1 + (i == j) * 1e-12) * dot(own, steps[static_cast<std::size_t>(j)]);
+    }
+    const Eigen::VectorXd weight = gram.ldlt().solve(rhs);
+    uv = end;
+    for (Eigen::Index i = 0; i < m; ++i)
+      uv = sum(uv, -weight[i], ends[static_cast<std::size_t>(i)]);
+    double now = p.objective.evaluate(uv, force);
+    if (!(now < energy.back())) now = p.objective.evaluate(uv = end, force);
+    energy.push_back(now);
+  }
+  return energy;
+}
+
+int first_below(const std::vector<double>& energy, double bound) {
+  const auto at = std::find_if(energy.begin(), energy.end(), [&](double e) { return e <= bound; });
+  return at == energy.end() ? -1 : static_cast<int>(at - energy.begin());
+}
+
+/// Iterations from a mean-value map to 1e-3 and to 1e-5 above the lowest energy; -1: not in 2,000.
+void compare_iterations(const Disk& disk) {
+  SerialExecutor serial;
+  const Holds free;
+  const GlobalStep global(disk, free);
+  const Assembly assembly{disk, free, global};
+  Objective objective(disk, {}, free, serial);
+  const UvMap start = initial_map(disk, InitialMap::mean_value, global);
+  Descent descent(assembly, start, {}, serial);
+  run(descent, {1e-12, kMost}, {});
+  const double least = descent.energy();
+  const auto row = [&](const char* name, const std::vector<double>& energy) {
+    std::printf("    %-9s %5d %5d\n", name, first_below(energy, least * 1.001),
+                first_below(energy, least * 1.00001));
+  };
+  row("plain", local_global(assembly, start, {{}, kMost}, {}, serial).energy);
+  row("Anderson", anderson({assembly, objective}, start));
+  row("Nesterov", nesterov({assembly, objective}, start));
+  row("L-BFGS", descent.solution().energy);
+}
+
+void compare_starts(const Disk& disk) {
+  SerialExecutor serial;
+  double least = 1e300, reference = 0;
+  for (const auto& [name, start] : {std::pair{"mean_value", InitialMap::mean_value},
+                                    {"tutte", InitialMap::tutte},
+                                    {"lscm", InitialMap::lscm},
+                                    {"auto", InitialMap::automatic}}) {
+    const UnwrapOptions options{.initial = start};
+    const Stopwatch watch;
+    const Solution s = Solver(disk, options, {}, serial).run(0, {});
+    const double seconds = watch.seconds();
+    if (start == InitialMap::mean_value) reference = seconds;
+    std::printf(
+        "    %-10s energy %.6g  iterations %4d  time %.2f  above the best before %+.2f %%\n", name,
+        s.energy.back(), s.iterations, seconds / reference,
+        least < 1e300 && least > 1e-12 ? 100 * (s.energy.back() / least - 1) : 0.0);
+    least = std::min(least, s.energy.back());
+  }
+}
+
+void compare(const std::string& name, const TriMesh& mesh) try {
+  const Charts charts = make_charts(shapes::surface_of(mesh), SeamMode::keep);
+  const Chart& chart = charts.charts.front();
+  const Disk disk = make_disk(chart.mesh, chart.loops);
+  std::printf("%s: %zu faces, %zu boundaries\n", name.c_str(), disk.faces.size(),
+              disk.loops.size());
+  compare_iterations(disk);
+  compare_starts(disk);
+  std::fflush(stdout);
+} catch (const Error& e) {
+  std::printf("%s: %s\n", name.c_str(), e.what());
+}
+
+void compare_all() {
+  for (const char* folder : {"paper", "disk"}) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(test_data() / folder))
+      files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (const std::filesystem::path& file : files) {
+      compare(file.stem().string(), read_obj(file));
+      if (std::string(folder) == "paper")
+        compare(file.stem().string() + ", subdivided", shapes::subdivided(read_obj(file)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd::bench
+
+int main(int argc, char** argv) {
+  if (argc > 1)
+    unwrapd::bench::compare(argv[1], unwrapd::read_obj(argv[1]));
+  else
+    unwrapd::bench::compare_all();
+}
