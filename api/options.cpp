@@ -88,7 +88,8 @@ struct Gathering {
 
   void add_group(const std::string& name, const Json& group) {
     if (!group.is_object()) refuse(name, name + " must be an object, each option of it a member.");
-    for (const auto& [inner, value] : group.items()) add(name + "." + inner, value);
+    for (const auto& [inner, value] : group.items())
+      add(std::string(name).append(".") += inner, value);
   }
 
   void add_all(const Json& object) {
