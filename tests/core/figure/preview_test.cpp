@@ -1,8 +1,8 @@
 // The textured mesh: colours at known places, depth, seams, and that nothing breaks it.
 #include "core/figure/preview.hpp"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <limits>
 

@@ -89,6 +89,16 @@ TEST(Scan, AFanAboutAnyPointCoversTheSquareOnceAndWithoutGaps) {
   }
 }
 
+TEST(Scan, EdgesThroughSamplesBelongToOneSide) {  // centres lie at odd eighths of a pixel
+  const std::vector<Vec2> rim = {{0, 0},   {20.125, 0},  {64, 0}, {64, 41.375},
+                                 {64, 64}, {20.125, 64}, {0, 64}, {0, 41.375}};
+  Visits visits;
+  for (std::size_t i = 0; i < rim.size(); ++i)
+    visits.add(triangle({20.125, 41.375}, rim[i], rim[(i + 1) % rim.size()]));
+  EXPECT_EQ(visits.pixels(), kSide * kSide);
+  EXPECT_EQ(visits.most(), 1);
+}
+
 TEST(Scan, NothingLiesOutsideThePicture) {
   Visits visits;  // at() would throw
   visits.add(triangle({-1e9, -50}, {1e9, -50}, {30, 1e9}));
