@@ -56,27 +56,13 @@ Seeds seeds_at_flips(const Chart& chart, const std::vector<Index>& flipped) {
   return {std::vector{a}, std::vector{farthest}};
 }
 
-/// The connected components of a set of faces: number[t], or -1 outside.
+/// The connected components into which a set of faces and what is outside of it fall: one number a
+/// face.
 std::vector<Index> component_numbers(const Chart& chart, const std::vector<char>& in_set) {
-  std::vector<Index> number(in_set.size(), -1);
-  Index count = 0;
-  for (std::size_t start = 0; start < in_set.size(); ++start) {
-    if (in_set[start] == 0 || number[start] >= 0) continue;
-    std::vector<Index> open{static_cast<Index>(start)};
-    number[start] = count;
-    while (!open.empty()) {
-      const Index t = open.back();
-      open.pop_back();
-      for (Index h = 3 * t; h < 3 * t + 3; ++h) {
-        const Index twin = chart.halfedges.twin[h];
-        if (twin == kNoTwin || in_set[twin / 3] == 0 || number[twin / 3] >= 0) continue;
-        number[twin / 3] = count;
-        open.push_back(twin / 3);
-      }
-    }
-    ++count;
-  }
-  return number;
+  Halfedges cut = chart.halfedges;
+  for (std::size_t h = 0; h < cut.twin.size(); ++h)
+    if (cut.twin[h] != kNoTwin && in_set[cut.twin[h] / 3] != in_set[h / 3]) cut.twin[h] = kNoTwin;
+  return topology(corner_vertices(cut).faces, cut).component_of;
 }
 
 /// The two regions of the first overlap whole, where they do not hang together; else the two faces.

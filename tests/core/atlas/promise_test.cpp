@@ -91,11 +91,11 @@ TEST(Promise, OfInjectivitySplitsAStripThatLiesOnItself) {
 }
 
 TEST(Promise, IsKeptOnEveryRandomDisk) {
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < 14; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 rng(seed);
-    const auto owned = disk_of(shapes::random_disk(Index(2 + seed % 15), seed));
-    std::uniform_real_distribution<double> shake(-0.01 * seed, 0.01 * seed);
+    const auto owned = disk_of(shapes::random_disk(Index(2 + seed % 9), seed));
+    std::uniform_real_distribution<double> shake(-0.02 * seed, 0.02 * seed);
     UvMap uv = from_above(owned.disk);
     for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
     for (Guarantee guarantee : {Guarantee::flip_free, Guarantee::bijective})
