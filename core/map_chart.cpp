@@ -112,6 +112,7 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
                           {.rigidity = rigidity_of(disk, options, lambdas[k]),
                            .held = held_vertices(disk, hold.held.holds),
                            .stop = watch.stop()}};
+    if (options.guarantee != Guarantee::none) watch.tell(Stage::untangle);
     Kept kept = keep_promise(chart, disk, std::move(solution.uv), promise);
     maps[k] = finish_parts(disk, std::move(kept), hold, solution);
     watch.end_run();

@@ -109,16 +109,16 @@ std::vector<Layout> map_charts(const std::vector<Charts>& parts,
 
 /// Places every chart on the page; the maps become page UVs. Returns their common scale.
 double place(Layout& layout, const UnwrapOptions& options) {
-  std::vector<UvMap> islands;
-  for (std::vector<UvMap>& own : layout.islands)
-    std::move(own.begin(), own.end(), std::back_inserter(islands));
-  const std::vector<Placement> placements = pack(islands, {options.resolution, options.padding});
-  std::size_t i = 0;
+  std::vector<Outline> outlines;
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k)
+      outlines.push_back(outline_of(layout.surfaces[s].charts[k], layout.islands[s][k]));
+  const std::vector<Placement> placements = pack(outlines, {options.resolution, options.padding});
+  auto placement = placements.begin();
   for (std::vector<UvMap>& own : layout.islands)
     for (UvMap& uv : own) {
-      uv = std::move(islands[i]);
-      for (Vec2& u : uv) u = placements[i](u);
-      ++i;
+      for (Vec2& u : uv) u = (*placement)(u);
+      ++placement;
     }
   return placements.front().scale;
 }

@@ -5,9 +5,14 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <numbers>
 
 namespace unwrapd {
 namespace {
+
+constexpr int kSquareAngles = 180;        // in a quarter turn
+constexpr double kSquareGain = 1 - 1e-6;  // a turn must be worth it
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -82,6 +87,17 @@ Box smallest_box(std::span<const Vec2> points) {
   assert(!points.empty());
   const UvMap hull = convex_hull({points.begin(), points.end()});
   return box_along(points, hull.size() < 2 ? Vec2(Vec2::UnitX()) : best_direction(hull));
+}
+
+Box squarest_box(std::span<const Vec2> points) {
+  Box best = smallest_box(points);
+  const UvMap hull = convex_hull({points.begin(), points.end()});
+  for (int k = 0; k < kSquareAngles; ++k) {
+    const double angle = k * std::numbers::pi / 2 / kSquareAngles;
+    const Box box = box_along(hull, {std::cos(angle), std::sin(angle)});
+    if (box.size.maxCoeff() < best.size.maxCoeff() * kSquareGain) best = box;
+  }
+  return best;
 }
 
 }  // namespace unwrapd

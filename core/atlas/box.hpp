@@ -26,4 +26,8 @@ UvMap convex_hull(UvMap points);
 /// The bounding rectangle of least area; one side of it lies on a side of the hull.
 Box smallest_box(std::span<const Vec2> points);
 
+/// The bounding rectangle whose longer side is least, to half a degree of its angle: what a point
+/// set that has the page to itself should be turned to.
+Box squarest_box(std::span<const Vec2> points);
+
 }  // namespace unwrapd

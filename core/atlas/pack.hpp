@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/atlas/charts.hpp"
+#include "core/atlas/outline.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd {
@@ -31,7 +32,11 @@ struct PageOptions {
 /// 3D area; at least one point each) on the page, in true smallest rectangles, at least the padding
 /// apart and from the border. Deterministic; near-linear in the number of islands. Where so many
 /// islands come that padding would take more than half of the page's side, it is shrunk to that.
-std::vector<Placement> pack(std::span<const UvMap> islands, const PageOptions& page);
+std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOptions& page);
+
+/// The same by true outlines, into each other's hollows: some 1.4 times the fill for a few hundred
+/// times the work (35 ms for five islands). Many thousands of islands stay in rows.
+std::vector<Placement> pack(std::span<const Outline> islands, const PageOptions& page);
 
 /// Charts' page UVs back onto the surface's vertices: splits those that lie on a seam. A vertex's
 /// first corner keeps its number, copies are appended in the order of faces and corners. Of the

@@ -49,7 +49,7 @@ double gap(const Extent& a, const Extent& b) {
 
 /// Every pair of islands, by brute force.
 void expect_apart(const std::vector<UvMap>& islands, const PageOptions& page, double padding) {
-  const std::vector<Placement> placements = pack(islands, page);
+  const std::vector<Placement> placements = pack_in_rows(islands, page);
   ASSERT_EQ(placements.size(), islands.size());
   std::vector<Extent> boxes;
   for (std::size_t k = 0; k < islands.size(); ++k)
@@ -134,7 +134,7 @@ TEST(Pack, TrianglesOfDifferentIslandsDoNotOverlap) {
   Rng rng(4);
   std::vector<UvMap> islands;
   for (int k = 0; k < 50; ++k) islands.push_back(random_island(rng, 3));
-  const std::vector<Placement> placements = pack(islands, {});
+  const std::vector<Placement> placements = pack_in_rows(islands, {});
   const auto placed = [&](std::size_t k) {
     return std::array<Vec2, 3>{placements[k](islands[k][0]), placements[k](islands[k][1]),
                                placements[k](islands[k][2])};
@@ -152,7 +152,8 @@ TEST(Pack, TrianglesOfDifferentIslandsDoNotOverlap) {
 
 TEST(Pack, ASquareFillsThePageUpToThePadding) {
   const std::vector<UvMap> islands{{{0, 0}, {3, 3}, {0, 6}, {-3, 3}}};  // standing on a corner
-  const std::vector<Placement> placements = pack(islands, {.resolution = 100, .padding = 5});
+  const std::vector<Placement> placements =
+      pack_in_rows(islands, {.resolution = 100, .padding = 5});
   const Extent box = extent_of(islands[0], placements[0]);
   EXPECT_NEAR(box.low.x(), 0.05, 1e-6);
   EXPECT_NEAR(box.high.y(), 0.95, 1e-6);
@@ -160,7 +161,7 @@ TEST(Pack, ASquareFillsThePageUpToThePadding) {
 
 TEST(Pack, EqualSquaresFillMostOfThePage) {
   const std::vector<UvMap> islands(100, UvMap{{0, 0}, {1, 0}, {1, 1}, {0, 1}});
-  const double scale = pack(islands, {.resolution = 4096, .padding = 1}).front().scale;
+  const double scale = pack_in_rows(islands, {.resolution = 4096, .padding = 1}).front().scale;
   EXPECT_GT(100 * scale * scale, 0.98);
 }
 
@@ -169,13 +170,13 @@ TEST(Pack, PaddingShrinksWhenTooManyIslandsCome) {
   std::vector<UvMap> islands;
   for (int k = 0; k < 400; ++k) islands.push_back(random_island(rng, 3));
   expect_apart(islands, {.resolution = 64, .padding = 8}, 1.5);
-  EXPECT_GT(pack(islands, {.resolution = 64, .padding = 8}).front().scale, 0);
+  EXPECT_GT(pack_in_rows(islands, {.resolution = 64, .padding = 8}).front().scale, 0);
 }
 
 TEST(Pack, IslandsWithoutExtentArePlacedApartToo) {
   expect_apart(std::vector<UvMap>(50, UvMap{{1, 1}, {1, 1}}), {}, 2);
   expect_apart({{{0, 0}, {1, 0}}, {{0, 0}, {0, 1}}, {{2, 2}}}, {}, 2);
-  EXPECT_TRUE(pack({}, {}).empty());
+  EXPECT_TRUE(pack_in_rows({}, {}).empty());
 }
 
 TEST(Pack, ScaleOfTheIslandsDoesNotMatter) {
@@ -186,7 +187,7 @@ TEST(Pack, ScaleOfTheIslandsDoesNotMatter) {
     larger.push_back(island);
     for (Vec2& uv : larger.back()) uv *= 1024;
   }
-  const auto a = pack(islands, {}), b = pack(larger, {});
+  const auto a = pack_in_rows(islands, {}), b = pack_in_rows(larger, {});
   for (std::size_t k = 0; k < islands.size(); ++k)
     EXPECT_LT((a[k](islands[k][0]) - b[k](larger[k][0])).norm(), 1e-9);
 }

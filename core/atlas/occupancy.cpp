@@ -1,0 +1,101 @@
+// A run of n cells hits a taken one when either of two runs of 2^k <= n cells at its ends does. For
+// these the page keeps one bitmap for each k, so a run of any length costs two shifted ORs for 64
+// places at once.
+#include "core/atlas/occupancy.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace unwrapd {
+namespace {
+
+constexpr int kWordBits = 64;
+constexpr int kRowsBetweenChecks = 4;
+
+std::size_t words_for(int bits) {
+  return static_cast<std::size_t>((bits + kWordBits - 1) / kWordBits);
+}
+
+}  // namespace
+
+Occupancy::Occupancy(int side, int padding)
+    : side_(side), padding_(padding), rows_(side + 2 * padding), words_(words_for(rows_) + 1) {
+  while ((1 << levels_) <= rows_) ++levels_;
+  bits_.assign(static_cast<std::size_t>(levels_) * static_cast<std::size_t>(rows_) * words_, 0);
+}
+
+Occupancy::Word* Occupancy::row(int level, int y) {
+  return bits_.data() + (static_cast<std::size_t>(level) * static_cast<std::size_t>(rows_) +
+                         static_cast<std::size_t>(y)) *
+                            words_;
+}
+
+const Occupancy::Word* Occupancy::row(int level, int y) const {
+  return const_cast<Occupancy*>(this)->row(level, y);
+}
+
+bool Occupancy::all_refused() const {
+  return std::all_of(refused_.begin(), refused_.end(), [](Word w) { return w == ~Word{0}; });
+}
+
+/// Marks the places at which a row of the grown mask hits a taken cell.
+void Occupancy::refuse(const Rows& grown, int mask_row, int page_row) {
+  for (const Run& run : grown.row(mask_row)) {
+    const int count = run.end - run.begin;
+    const int level = std::bit_width(static_cast<unsigned>(count)) - 1;
+    const Word* taken = row(level, page_row);
+    for (const int shift : {run.begin, run.end - (1 << level)}) {
+      const auto word = static_cast<std::size_t>(shift / kWordBits);
+      const int bit = shift % kWordBits;
+      for (std::size_t i = 0; i < refused_.size() && i + word < words_; ++i) {
+        refused_[i] |= taken[i + word] >> bit;
+        if (bit > 0 && i + word + 1 < words_)
+          refused_[i] |= taken[i + word + 1] << (kWordBits - bit);
+      }
+    }
+  }
+}
+
+std::optional<int> Occupancy::first_free(const Mask& mask, int y) {
+  const int places = side_ - mask.width + 1, height = mask.grown.height();
+  if (places <= 0 || y + mask.touched.height() > side_) return std::nullopt;
+  refused_.assign(words_for(places), 0);
+  if (places % kWordBits != 0) refused_.back() = ~Word{0} << (places % kWordBits);
+  for (int k = 0; k < height; ++k) {  // from the middle outwards: the widest rows tell soonest
+    const int j = height / 2 + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
+    refuse(mask.grown, j, y + j);
+    if (k % kRowsBetweenChecks == 0 && all_refused()) return std::nullopt;
+  }
+  for (std::size_t i = 0; i < refused_.size(); ++i)
+    if (refused_[i] != ~Word{0})
+      return static_cast<int>(i) * kWordBits + std::countr_one(refused_[i]);
+  return std::nullopt;
+}
+
+/// Brings the bitmaps of longer runs up to date.
+void Occupancy::spread(int y) {
+  for (int level = 1; level < levels_; ++level) {
+    const Word* below = row(level - 1, y);
+    Word* own = row(level, y);
+    const int shift = 1 << (level - 1);
+    const auto word = static_cast<std::size_t>(shift / kWordBits);
+    const int bit = shift % kWordBits;
+    for (std::size_t i = 0; i < words_; ++i) {
+      own[i] = below[i];
+      if (i + word < words_) own[i] |= below[i + word] >> bit;
+      if (bit > 0 && i + word + 1 < words_) own[i] |= below[i + word + 1] << (kWordBits - bit);
+    }
+  }
+}
+
+void Occupancy::stamp(const Mask& mask, int x, int y) {
+  for (int j = 0; j < mask.touched.height(); ++j) {
+    Word* cells = row(0, y + padding_ + j);
+    for (const Run& run : mask.touched.row(j))
+      for (int c = x + padding_ + run.begin; c < x + padding_ + run.end; ++c)
+        cells[c / kWordBits] |= Word{1} << (c % kWordBits);
+    spread(y + padding_ + j);
+  }
+}
+
+}  // namespace unwrapd

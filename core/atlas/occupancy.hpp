@@ -1,0 +1,42 @@
+#pragma once
+// Which cells of a page are taken, in a form that answers "where in this row does it fit?" for all
+// places of the row at once.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/atlas/mask.hpp"
+
+namespace unwrapd {
+
+class Occupancy {
+ public:
+  /// side: cells of the free page; islands keep `padding` cells from each other, not from its edge.
+  Occupancy(int side, int padding);
+
+  /// The leftmost x at which the mask's lower left cell may lie on (x, y); touched cells stay on
+  /// the page. Nothing when the row has no such place.
+  [[nodiscard]] std::optional<int> first_free(const Mask& mask, int y);
+
+  /// Takes the touched cells.
+  void stamp(const Mask& mask, int x, int y);
+
+  [[nodiscard]] int side() const { return side_; }
+
+ private:
+  using Word = std::uint64_t;
+
+  [[nodiscard]] Word* row(int level, int y);
+  [[nodiscard]] const Word* row(int level, int y) const;
+  void refuse(const Rows& grown, int mask_row, int page_row);
+  [[nodiscard]] bool all_refused() const;
+  void spread(int y);
+
+  int side_, padding_, rows_, levels_ = 1;
+  std::size_t words_;
+  std::vector<Word> bits_;     // bit x of row(k, y): a cell of [x, x + 2^k) is taken
+  std::vector<Word> refused_;  // bit x: the mask cannot lie at x
+};
+
+}  // namespace unwrapd

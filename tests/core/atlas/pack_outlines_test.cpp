@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/atlas/box.hpp"
+#include "core/atlas/pack.hpp"
+
+namespace unwrapd {
+namespace {
+
+Outline polygon(const UvMap& points) {
+  Outline outline;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    outline.push_back({points[k], points[(k + 1) % points.size()]});
+  return outline;
+}
+
+Outline star(std::mt19937& rng) {
+  std::uniform_real_distribution<double> share(0.3, 1), size(-1.5, 1.5);
+  const double radius = std::exp(size(rng));
+  UvMap points;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = M_PI * k / 6, r = radius * share(rng);
+    points.emplace_back(3 + r * std::cos(angle), r * std::sin(angle) - 5);
+  }
+  return polygon(points);
+}
+
+std::vector<Outline> stars(int count, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::vector<Outline> islands;
+  for (int k = 0; k < count; ++k) islands.push_back(star(rng));
+  return islands;
+}
+
+double area(const Outline& outline) {
+  double sum = 0;
+  for (const auto& [a, b] : outline) sum += a.x() * b.y() - a.y() * b.x();
+  return sum / 2;
+}
+
+double fill(const std::vector<Outline>& islands, const std::vector<Placement>& placements) {
+  double sum = 0;
+  for (std::size_t k = 0; k < islands.size(); ++k)
+    sum += area(islands[k]) * placements[k].scale * placements[k].scale;
+  return sum;
+}
+
+double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (p - a - t * (b - a)).norm();
+}
+
+bool inside(const Outline& outline, const Vec2& p) {
+  bool odd = false;
+  for (const auto& [a, b] : outline)
+    if ((a.y() > p.y()) != (b.y() > p.y()))
+      odd ^= p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+  return odd;
+}
+
+/// Between two simple polygons, from their corners: exact where they do not overlap.
+double gap(const Outline& one, const Outline& other) {
+  double least = 1e300;
+  for (const auto& [p, q] : one)
+    for (const auto& [a, b] : other)
+      least = std::min({least, distance(p, a, b), distance(a, p, q)});
+  return inside(one, other.front()[0]) || inside(other, one.front()[0]) ? 0 : least;
+}
+
+void expect_apart(const std::vector<Outline>& islands, const PageOptions& page) {
+  const std::vector<Placement> placements = pack(islands, page);
+  std::vector<Outline> placed = islands;
+  for (std::size_t k = 0; k < placed.size(); ++k)
+    for (auto& segment : placed[k])
+      for (Vec2& p : segment) p = placements[k](p);
+  const double padding = double(page.padding) / page.resolution;
+  for (std::size_t k = 0; k < placed.size(); ++k) {
+    EXPECT_EQ(placements[k].scale, placements[0].scale);
+    EXPECT_NEAR(std::hypot(placements[k].cosine, placements[k].sine), 1, 1e-12);
+    for (const auto& [p, q] : placed[k]) {
+      EXPECT_GE(p.minCoeff(), padding - 1e-12);
+      EXPECT_LE(p.maxCoeff(), 1 - padding + 1e-12);
+    }
+    for (std::size_t j = 0; j < k; ++j) EXPECT_GE(gap(placed[j], placed[k]), padding - 1e-12);
+  }
+}
+
+TEST(PackOutlines, KeepsIslandsAndTheBorderApartByThePadding) {
+  for (int count : {1, 2, 5, 40, 150}) {
+    expect_apart(stars(count, 1), {.resolution = 1024, .padding = 2});
+    expect_apart(stars(count, 2), {.resolution = 256, .padding = 3});
+    expect_apart(stars(count, 3), {.resolution = 4096, .padding = 0});
+  }
+}
+
+TEST(PackOutlines, FillsHollowsThatRowsLeaveEmpty) {
+  for (int count : {5, 20, 100, 500}) {
+    const std::vector<Outline> islands = stars(count, 4);
+    std::vector<UvMap> points;
+    for (const Outline& island : islands) {
+      points.emplace_back();
+      for (const auto& [a, b] : island) points.back().push_back(a);
+    }
+    const double rows = fill(islands, pack_in_rows(points, {})),
+                 tight = fill(islands, pack(islands, {}));
+    EXPECT_GT(tight, 1.1 * rows) << count;
+    EXPECT_LT(tight, 1);
+  }
+}
+
+TEST(PackOutlines, LaysTheSmallInTheHollowOfTheLarge) {
+  const UvMap cup{{0, 0}, {10, 0}, {10, 10}, {9, 10}, {9, 1}, {1, 1}, {1, 10}, {0, 10}};
+  const UvMap block{{0, 0}, {7, 0}, {7, 7}, {0, 7}};
+  const std::vector<Outline> islands{polygon(cup), polygon(block)};
+  EXPECT_GT(pack(islands, {.resolution = 512, .padding = 1}).front().scale, 0.09);  // 0.1 is all
+}
+
+TEST(PackOutlines, GivesTheSamePlacementsForTheSameIslands) {
+  const auto a = pack(stars(30, 5), {}), b = pack(stars(30, 5), {});
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].offset, b[k].offset);
+    EXPECT_EQ(a[k].cosine, b[k].cosine);
+  }
+}
+
+TEST(PackOutlines, TakesIslandsWithoutExtentAndCrowdedPages) {
+  expect_apart({polygon({{0, 0}, {1, 0}}), polygon({{2, 2}, {2, 3}}), polygon({{5, 5}, {6, 6}})},
+               {});
+  const auto crowded = pack(stars(400, 6), {.resolution = 64, .padding = 8});
+  EXPECT_GT(crowded.front().scale, 0);
+  EXPECT_TRUE(pack({}, {}).empty());
+}
+
+TEST(SquarestBox, HasTheLeastLongerSideOfAllAngles) {
+  std::mt19937 rng(7);
+  for (int k = 0; k < 40; ++k) {
+    UvMap points;
+    for (const auto& [a, b] : star(rng)) points.emplace_back(3 * a.x(), a.y());
+    const Box box = squarest_box(points);
+    for (int step = 0; step < 720; ++step) {
+      const double angle = step * M_PI / 720;
+      Vec2 low = Vec2::Constant(1e300), high = -low;
+      for (const Vec2& p : points) {
+        const Vec2 q(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
+                     std::sin(angle) * p.x() + std::cos(angle) * p.y());
+        low = low.cwiseMin(q), high = high.cwiseMax(q);
+      }
+      EXPECT_LE(box.size.maxCoeff(), 1.01 * (high - low).maxCoeff());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd
