@@ -1,7 +1,7 @@
 // What holds whatever the method: an answer that is sound, or an error that says why; and by
 // default no triangle that is flipped once its UVs are rounded to what a file holds.
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "core/error.hpp"
 #include "core/unwrap.hpp"

@@ -90,7 +90,7 @@ TEST(Unwrap, CountsInItsReportWhatItAnswered) {
   }
   EXPECT_EQ(u.report.distortion.flipped, flipped);
   EXPECT_NEAR(u.report.fill, fill, 1e-6);  // UVs are rounded
-  EXPECT_GT(u.report.seam_length, 1);  // a sphere does not open without a seam
+  EXPECT_GT(u.report.seam_length, 1);      // a sphere does not open without a seam
 }
 
 TEST(Unwrap, TotalsAreTheAreaWeightedMeansOfItsCharts) {
