@@ -12,9 +12,11 @@ namespace {
 
 constexpr double kArmijo = 1e-4;
 constexpr int kMostHalvings = 40;
-constexpr double kOfTheWayToCollapse = 0.8;
+constexpr double kOfTheWayToCollapse = 0.9;
 constexpr double kLeastShift = 1e-10;  // added to the diagonal, of its mean
 constexpr double kMostShift = 1e2;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -40,10 +42,12 @@ double collapse_length(const BarrierMesh& mesh, const UvMap& uv, const UvMap& mo
   return length;
 }
 
-UvMap spread(const FreeVertices& free, const Eigen::VectorXd& x) {
+/// x: one entry an unknown, in its first coordinate.
+UvMap spread(const FreeVertices& free, std::span<const Vec2> x) {
   UvMap move(free.slot.size(), Vec2::Zero());
   for (std::size_t v = 0; v < move.size(); ++v)
-    if (free.slot[v] != kFixed) move[v] = Vec2(x[2 * free.slot[v]], x[2 * free.slot[v] + 1]);
+    if (free.slot[v] != kFixed)
+      move[v] = Vec2(x[at(2 * free.slot[v])].x(), x[at(2 * free.slot[v] + 1)].x());
   return move;
 }
 
@@ -55,27 +59,34 @@ UvMap moved(const UvMap& uv, const UvMap& move, double length) {
 
 }  // namespace
 
-bool Newton::factor(SparseMatrix hessian) {
-  if (!is_analysed_) llt_.analyzePattern(hessian);
-  is_analysed_ = true;
+std::unique_ptr<RealSystem> Newton::factor(SparseMatrix hessian) {
+  if (analysis_ == nullptr) analysis_ = analyse(hessian);
   const double mean = hessian.diagonal().sum() / static_cast<double>(hessian.rows());
   double added = 0;
   for (double shift = kLeastShift; shift <= kMostShift; shift *= 1e3) {
-    for (Index k = 0; k < hessian.rows(); ++k) hessian.coeffRef(k, k) += shift * mean - added;
+    for (Index k = 0; k < hessian.rows(); ++k)
+      hessian.valuePtr()[hessian.outerIndexPtr()[k]] += shift * mean - added;
     added = shift * mean;
-    llt_.factorize(hessian);
-    if (llt_.info() == Eigen::Success) return true;
+    if (std::unique_ptr<RealSystem> system = try_factor(analysis_, hessian)) return system;
   }
-  return false;
+  return nullptr;
 }
 
 double Newton::step(UvMap& uv, const Barrier& barrier) {
   Quadratic model = barrier_model(mesh_, uv, barrier);
-  if (!factor(std::move(model.hessian))) return 0;
-  const Eigen::VectorXd x = llt_.solve(-model.gradient);
-  const double slope = model.gradient.dot(x);
+  const std::unique_ptr<RealSystem> system = factor(std::move(model.hessian));
+  if (system == nullptr) return 0;
+  std::vector<Vec2> x(static_cast<std::size_t>(model.gradient.size()), Vec2::Zero());
+  for (std::size_t k = 0; k < x.size(); ++k) x[k].x() = -model.gradient[static_cast<Index>(k)];
+  system->solve(x);
+  double slope = 0;
+  for (std::size_t k = 0; k < x.size(); ++k)
+    slope += model.gradient[static_cast<Index>(k)] * x[k].x();
   if (!(slope < 0)) return 0;
-  const UvMap move = spread(mesh_.free, x);
+  return search(spread(mesh_.free, x), slope, barrier, uv);
+}
+
+double Newton::search(const UvMap& move, double slope, const Barrier& barrier, UvMap& uv) const {
   const double before = barrier_energy(mesh_, uv, barrier);
   double length = 1;
   if (barrier.epsilon == 0)

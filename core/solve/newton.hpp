@@ -1,8 +1,9 @@
 #pragma once
 // Projected Newton on a barrier energy, with a line search that never lets a triangle flip.
 
-#include <Eigen/SparseCholesky>
+#include <memory>
 
+#include "core/linear/engine.hpp"
 #include "core/solve/barrier.hpp"
 
 namespace unwrapd {
@@ -21,11 +22,11 @@ class Newton {
   void descend(UvMap& uv, const Barrier& barrier, int most, double tolerance);
 
  private:
-  bool factor(SparseMatrix hessian);
+  std::unique_ptr<RealSystem> factor(SparseMatrix hessian);
+  double search(const UvMap& move, double slope, const Barrier& barrier, UvMap& uv) const;
 
   const BarrierMesh& mesh_;
-  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt_;
-  bool is_analysed_ = false;
+  std::shared_ptr<const Analysis> analysis_;
 };
 
 }  // namespace unwrapd

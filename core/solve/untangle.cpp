@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/measure/distortion.hpp"
@@ -26,21 +28,39 @@ namespace {
 
 constexpr int kMostRings = 64;
 constexpr int kMostRounds = 4;         // from small patches to large ones
-constexpr int kMostTurning = 80;       // Newton steps under the regularised barrier
+constexpr int kMostTurning = 90;       // Newton steps under the regularised barrier
+constexpr int kPatience = 15;          // steps in which the flips must halve, after the first ones
+constexpr double kCrowded = 0.25;      // share of flips beyond which only the whole is worth a try
+constexpr double kMany = 0.05;         // share of flips beyond which the whole comes first
+constexpr double kFew = 0.02;          // of those flips, to be left to patches
 constexpr double kEpsilonShare = 0.2;  // of the worst determinant
 constexpr double kFirstEpsilon = 0.1;  // collapsed triangles open under a large one
 constexpr double kLeastEpsilon = 1e-6;
-constexpr double kStuck = 1e-5;            // relative fall of the energy in one step
-constexpr int kMostFading = 20;            // Newton steps for each weight
-constexpr int kMostFadingWhole = 60;       // where the way may be long
-constexpr double kFadingTolerance = 1e-4;  // relative fall of the energy in one step
-constexpr std::array<double, 3> kFading = {1e-1, 1e-2, 1e-3};  // weights of the barrier
+constexpr double kStuck = 1e-5;       // relative fall of the energy in one step
+constexpr int kMostFading = 20;       // Newton steps for each weight
+constexpr int kMostFadingWhole = 60;  // where the way may be long
+/// How the barrier fades; only its last minimum counts.
+struct Fading {
+  double weight;
+  double tolerance;  ///< relative fall of the energy in one step
+};
+constexpr std::array kFading{Fading{1e-1, 1e-2}, Fading{1e-2, 1e-3}, Fading{1e-3, 1e-4}};
 
 constexpr double kConformalBelow = 0.01;  // lambda: below, sizes are not the energy's business
 constexpr double kLeastStretch = 1e-12;
 
 void throw_if_stopped(const MapIntent& intent) {
   if (intent.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+}
+
+/// Whether every vertex may move.
+bool may_move_all(const MapIntent& intent) {
+  return !intent.in_place &&
+         std::none_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
+}
+
+bool exceeds(std::size_t count, double share, std::size_t all) {
+  return static_cast<double>(count) > share * static_cast<double>(all);
 }
 
 void scale(RestTriangle& rest, double by) {
@@ -88,29 +108,32 @@ bool is_untangled(const BarrierMesh& mesh, const UvMap& uv) {
   return least_determinant(mesh, uv) > 0 && flipped_faces(mesh.faces, uv).empty();
 }
 
-/// Turns the triangles of a patch over; false when they will not.
-bool turn_over(const BarrierMesh& patch, const MapIntent& intent, UvMap& uv) {
+/// Turns the triangles of a patch over until at most `enough` are flipped. Gives up where they do
+/// not grow fewer.
+void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t enough, UvMap& uv) {
   const BarrierMesh mesh = fitted(patch, uv);
   Newton newton(mesh);
+  std::size_t target = mesh.faces.size();
   double floor = kFirstEpsilon;
   for (int k = 0; k < kMostTurning; ++k, floor = std::max(kLeastEpsilon, floor / 2)) {
-    if (is_untangled(mesh, uv)) return true;
+    const std::size_t flips = flipped_faces(mesh.faces, uv).size();
+    const double worst = least_determinant(mesh, uv);
+    if (flips <= enough && (flips > 0 || worst > 0)) return;
+    if (k > 0 && k % kPatience == 0 && flips > std::exchange(target, flips / 2)) return;
     throw_if_stopped(intent);
-    const double worst = std::min(0.0, least_determinant(mesh, uv));
     const double epsilon = std::max(floor, -kEpsilonShare * worst);
     const double fall = newton.step(uv, {{0.0}, 1, epsilon});
-    if (fall < kStuck && epsilon == kLeastEpsilon) break;
+    if (fall < kStuck && epsilon == kLeastEpsilon) return;
   }
-  return is_untangled(mesh, uv);
 }
 
 /// From a map without flips to one of little energy without flips.
 void fade(const BarrierMesh& mesh, const MapIntent& intent, int most, UvMap& uv) {
   Newton newton(mesh);
-  for (double weight : kFading) {
-    if (intent.in_place && weight < kFading.front()) break;
+  for (const Fading& fading : kFading) {
     throw_if_stopped(intent);
-    newton.descend(uv, {intent.rigidity, weight, 0}, most, kFadingTolerance);
+    newton.descend(uv, {intent.rigidity, fading.weight, 0}, most, fading.tolerance);
+    if (intent.in_place) break;
   }
 }
 
@@ -134,23 +157,35 @@ void settle(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv) 
   put_back(patch, own, uv);
 }
 
+/// What rounds of patches leave.
+struct Left {
+  std::vector<Index> flipped;
+  bool is_rough = false;  ///< some patch has not settled
+};
+
 /// Mends one patch. Where that fails the map stays as it is, unless half of the flips are gone:
-/// then it returns true, for a map that has yet to settle.
-bool mend(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv) {
+/// then it has yet to settle.
+void mend(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv, bool& is_rough) {
   UvMap own = map_of(patch, uv);
+  const bool is_whole = patch.face.size() == disk.faces.size();
   const std::size_t before = flipped_faces(patch.mesh.faces, own).size();
-  const bool is_mended = turn_over(patch.mesh, intent, own);
-  if (!is_mended && flipped_faces(patch.mesh.faces, own).size() > before / 2) return false;
+  if (!is_whole && may_move_all(intent) && exceeds(before, kCrowded, patch.face.size())) return;
+  turn_over(patch.mesh, intent, 0, own);
+  const bool is_mended = is_untangled(patch.mesh, own);
+  if (!is_mended && flipped_faces(patch.mesh.faces, own).size() > before / 2) return;
   put_back(patch, own, uv);
   if (is_mended) settle(disk, intent, patch, uv);
-  return !is_mended;
+  is_rough = !is_mended || (is_rough && !is_whole);
 }
 
-Patch whole(const Disk& disk, std::span<const char> held) {
+/// All that may move.
+std::vector<Patch> all_patches(const Disk& disk, std::span<const char> held) {
   std::vector<Index> all(disk.faces.size());
   std::iota(all.begin(), all.end(), 0);
-  return std::move(patches_around(disk, all, 0, held).front());
+  return patches_around(disk, all, 0, held);
 }
+
+Patch whole(const Disk& disk) { return std::move(all_patches(disk, {}).front()); }
 
 UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
   const double area = uv_area(disk.rest, disk.faces, uv);
@@ -164,16 +199,19 @@ UvMap tutte_without_holes(const Disk& disk) {
   return uv;
 }
 
-bool may_start_anew(const MapIntent& intent) {
-  return !intent.in_place &&
-         std::none_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
+/// Turns over all at once where flips are many, so that few are left; a map that this does not help
+/// stays as it is.
+void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+  const std::size_t before = left.flipped.size();
+  if (!may_move_all(intent) || !exceeds(before, kMany, disk.faces.size())) return;
+  Patch patch = whole(disk);
+  const auto few = static_cast<std::size_t>(kFew * static_cast<double>(before));
+  UvMap own = map_of(patch, uv);
+  turn_over(patch.mesh, intent, few, own);
+  if (flipped_faces(patch.mesh.faces, own).size() > few) return;
+  put_back(patch, own, uv);
+  left = {flipped_faces(disk.faces, uv), true};
 }
-
-/// What rounds of patches leave.
-struct Left {
-  std::vector<Index> flipped;
-  bool is_rough = false;  ///< some patch has not settled
-};
 
 /// Patches of growing size, in the end the whole.
 void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
@@ -181,7 +219,7 @@ void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& le
   for (int rings = intent.rings; !was_whole && !left.flipped.empty(); rings *= 2) {
     for (Patch& patch : patches_around(disk, left.flipped, rings, intent.held)) {
       was_whole = was_whole || patch.face.size() == disk.faces.size();
-      if (mend(disk, intent, patch, uv)) left.is_rough = true;
+      mend(disk, intent, patch, uv, left.is_rough);
     }
     left.flipped = flipped_faces(disk.faces, uv);
     if (rings >= kMostRings) break;
@@ -189,14 +227,18 @@ void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& le
 }
 
 /// Rounds of patches as long as each leaves half of the flips at most.
-Left mend_in_rounds(const Disk& disk, const MapIntent& intent, UvMap& uv) {
-  Left left{flipped_faces(disk.faces, uv)};
+void mend_in_rounds(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
   for (int round = 0; round < kMostRounds && !left.flipped.empty(); ++round) {
     const std::size_t before = left.flipped.size();
     mend_patches(disk, intent, uv, left);
     if (left.flipped.size() > before / 2) break;
   }
-  return left;
+}
+
+/// Other maps, which have no flips to begin with.
+bool start_over(const Disk& disk, const MapIntent& intent, UvMap& uv) {
+  return may_move_all(intent) && (start_anew(disk, intent, virtual_boundary_map(disk, uv), uv) ||
+                                  start_anew(disk, intent, tutte_without_holes(disk), uv));
 }
 
 }  // namespace
@@ -205,23 +247,23 @@ bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& u
   start = scaled_to_unit_area(disk, std::move(start));
   if (!flipped_faces(disk.faces, start).empty()) return false;
   uv = std::move(start);
-  Patch patch = whole(disk, {});
+  Patch patch = whole(disk);
   settle(disk, intent, patch, uv);
   return true;
 }
 
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
-  const Left left = mend_in_rounds(disk, intent, uv);
-  if (left.flipped.empty()) {
-    if (!left.is_rough) return 0;
-    Patch patch = whole(disk, intent.held);
-    settle(disk, intent, patch, uv);
+  assert(intent.rings >= 1);
+  Left left{flipped_faces(disk.faces, uv)};
+  thin_out(disk, intent, uv, left);
+  if (exceeds(left.flipped.size(), kMany, disk.faces.size()) && start_over(disk, intent, uv))
     return 0;
-  }
-  if (may_start_anew(intent) && (start_anew(disk, intent, virtual_boundary_map(disk, uv), uv) ||
-                                 start_anew(disk, intent, tutte_without_holes(disk), uv)))
-    return 0;
-  return static_cast<Index>(left.flipped.size());
+  mend_in_rounds(disk, intent, uv, left);
+  if (!left.flipped.empty())
+    return start_over(disk, intent, uv) ? 0 : static_cast<Index>(left.flipped.size());
+  if (!left.is_rough) return 0;
+  for (Patch& patch : all_patches(disk, intent.held)) settle(disk, intent, patch, uv);
+  return 0;
 }
 
 }  // namespace unwrapd
