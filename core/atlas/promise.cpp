@@ -1,6 +1,7 @@
-// First in place (flips are untangled, or the virtual boundary of Sec. 4.4 is used), then by
-// splitting: parts keep their share of the map, so that only the seam is lost. A part that still
-// breaks the promise is split again; in the end single triangles keep any promise.
+// First in place (flips are untangled, or the virtual boundary of Sec. 4.4 is used); a chart that
+// lies on itself is mapped anew with a barrier between its boundaries. What neither helps is split:
+// parts keep their share of the map, so that only the seam is lost. A part that still breaks the
+// promise is treated in the same way; in the end single triangles keep any promise.
 #include "core/atlas/promise.hpp"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "core/error.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
+#include "core/solve/bijective.hpp"
 #include "core/solve/virtual_boundary.hpp"
 
 namespace unwrapd {
@@ -100,8 +102,18 @@ void split(const KeptPart& part, const Seeds& seeds, std::vector<KeptPart>& open
   }
 }
 
-/// The seeds of the split that a part needs; both empty where it keeps the promise.
-Seeds seeds_needed(const KeptPart& part, const Promise& promise, Mending& mending) {
+/// A map of the part in which nothing overlaps, in units of which one is `unit` of the mesh's.
+bool unfold(KeptPart& part, double unit, const std::stop_token& stop) {
+  SerialExecutor serial;
+  const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
+  if (!map_injectively(disk, stop, part.uv, serial)) return false;
+  for (Vec2& u : part.uv) u *= disk.unit / unit;
+  return overlaps_of(part.chart, part.uv).empty();
+}
+
+/// The seeds of the split that a part needs; both empty where it keeps the promise, if need be
+/// after a new map.
+Seeds seeds_needed(KeptPart& part, double unit, const Promise& promise, Mending& mending) {
   const std::vector<Index> flipped = flipped_faces(part.chart.mesh.faces, part.uv);
   if (!flipped.empty()) {
     if (part.chart.mesh.face_count() == 1) fail("a triangle has no area in the map");
@@ -111,12 +123,14 @@ Seeds seeds_needed(const KeptPart& part, const Promise& promise, Mending& mendin
   const auto pairs = overlaps_of(part.chart, part.uv);
   if (pairs.empty()) return {};
   mending.overlaps += static_cast<Index>(pairs.size());
+  if (!holds_any(promise.intent) && unfold(part, unit, promise.intent.stop)) return {};
   return seeds_at_overlaps(part.chart, pairs);
 }
 
 /// Splits until every part keeps the promise. A part that was cut off for its flips may be
 /// untangled where the whole could not.
-std::vector<KeptPart> split_as_needed(KeptPart whole, const Promise& promise, Mending& mending) {
+std::vector<KeptPart> split_as_needed(KeptPart whole, double unit, const Promise& promise,
+                                      Mending& mending) {
   std::vector<KeptPart> open, kept;
   open.push_back(std::move(whole));
   for (bool is_whole = true; !open.empty(); is_whole = false) {
@@ -129,7 +143,7 @@ std::vector<KeptPart> split_as_needed(KeptPart whole, const Promise& promise, Me
       untangle(disk, {.rigidity = promise.intent.rigidity, .held = {}, .stop = promise.intent.stop},
                part.uv);
     }
-    const Seeds seeds = seeds_needed(part, promise, mending);
+    const Seeds seeds = seeds_needed(part, unit, promise, mending);
     if (seeds[0].empty())
       kept.push_back(std::move(part));
     else if (holds_any(promise.intent))
@@ -148,17 +162,16 @@ Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise&
     kept.parts.push_back({chart, std::move(uv)});
     return kept;
   }
-  const std::size_t flips = flipped_faces(disk.faces, uv).size();
-  if (flips > 0) {
-    const double before = energy_of(disk, uv, promise.intent.rigidity);
-    const Index left = mend(disk, promise, uv, kept.mending);
-    kept.mending.flips = static_cast<Index>(flips);
-    if (left == 0) {
-      const double after = energy_of(disk, uv, promise.intent.rigidity);
-      kept.mending.energy_rise = before > 0 ? (after - before) / before : 0;
-    }
-  }
-  kept.parts = split_as_needed({chart, std::move(uv)}, promise, kept.mending);
+  const double before = energy_of(disk, uv, promise.intent.rigidity);
+  const auto rise = [&](const UvMap& now) {
+    return before > 0 ? energy_of(disk, now, promise.intent.rigidity) / before - 1 : 0;
+  };
+  kept.mending.flips = static_cast<Index>(flipped_faces(disk.faces, uv).size());
+  if (kept.mending.flips > 0 && mend(disk, promise, uv, kept.mending) == 0)
+    kept.mending.energy_rise = rise(uv);
+  kept.parts = split_as_needed({chart, std::move(uv)}, disk.unit, promise, kept.mending);
+  if (kept.mending.overlaps > 0 && kept.parts.size() == 1)
+    kept.mending.energy_rise = rise(kept.parts.front().uv);
   kept.mending.parts = static_cast<Index>(kept.parts.size());
   return kept;
 }

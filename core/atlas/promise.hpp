@@ -30,7 +30,8 @@ struct Promise {
 
 /// uv: the solved map of the chart's disk, in disk units. Afterwards no triangle of a part is
 /// flipped (flip_free), and no two of a part overlap (bijective), by exact tests; under
-/// Guarantee::none the map stays as it is. The energy that mending.energy_rise tells of is that of
+/// Guarantee::none the map stays as it is. A chart with overlaps has a new map (map_injectively()),
+/// and is split only where none is found. The energy that mending.energy_rise tells of is that of
 /// intent.rigidity. Throws Error{guarantee_failed} where held vertices leave no way, or a single
 /// triangle has no area in the map; Error{cancelled}.
 Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise& promise);

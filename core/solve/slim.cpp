@@ -25,19 +25,6 @@ constexpr double kShareOfFlip = 0.8;  // of the step at which the first triangle
 constexpr double kArmijo = 1e-4;      // of the decrease that the gradient promises
 constexpr int kMaxHalvings = 40;
 
-/// The scale s at which s^2 |J|^2 + s^-2 |J^-1|^2 is least over the disk.
-double best_scale(const Disk& disk, const UvMap& uv) {
-  double growth = 0, shrinkage = 0;
-  for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
-    const double det = j.determinant();
-    const double norm2 = 2 * (j.e * j.e + j.h * j.h + j.f * j.f + j.g * j.g);
-    growth += disk.rest[t].area * norm2;
-    shrinkage += disk.rest[t].area * norm2 / (det * det);
-  }
-  return std::sqrt(std::sqrt(shrinkage / growth));
-}
-
 struct Start {
   UvMap uv;
   double energy;

@@ -106,6 +106,17 @@ void symmetric_dirichlet_gradient(const Disk& disk, std::span<const Vec2> uv,
   });
 }
 
+double best_scale(const Disk& disk, std::span<const Vec2> uv) {
+  double growth = 0, shrinkage = 0;
+  for (std::size_t t = 0; t < disk.faces.size(); ++t) {
+    const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
+    const double det = j.determinant();
+    growth += disk.rest[t].area * norm2(j);
+    shrinkage += disk.rest[t].area * norm2(j) / (det * det);
+  }
+  return std::sqrt(std::sqrt(shrinkage / growth));
+}
+
 PairElement proxy_element(const RestTriangle& rest, const Jacobian& j) {
   const double m1 = proxy_weight(j.sigma_max());
   const double m2 = proxy_weight(j.determinant() / j.sigma_max());

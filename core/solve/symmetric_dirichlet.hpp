@@ -24,6 +24,9 @@ double symmetric_dirichlet_energy(const Disk& disk, std::span<const Vec2> uv, Ex
 void symmetric_dirichlet_gradient(const Disk& disk, std::span<const Vec2> uv,
                                   std::span<Vec2> gradient, Executor& executor);
 
+/// The scale s at which s uv has the least energy; uv must have a finite one.
+double best_scale(const Disk& disk, std::span<const Vec2> uv);
+
 /// The Hessian of the quadratic proxy of one face (Rabinovich et al. 2017, Sec. 4): the convex
 /// |W (J - R)|^2, R the nearest rotation, whose gradient is the energy's at the current J.
 PairElement proxy_element(const RestTriangle& rest, const Jacobian& j);

@@ -1,0 +1,195 @@
+// After Smith and Schaefer (2015): from an injective map downhill in the symmetric Dirichlet energy
+// plus the boundary's own barrier, by steps after which the map is still injective. Steps are
+// those of SLIM (Rabinovich et al. 2017), whose matrix takes in the barrier's curvature as blocks
+// on the diagonal: the pattern stays that of the mesh. Neither a scaffold of triangles around the
+// boundary nor collision times along the step: the exact test of the boundary alone is cheap, and a
+// map that passes it is right whatever came between.
+#include "core/solve/bijective.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/measure/overlaps.hpp"
+#include "core/solve/boundary_barrier.hpp"
+#include "core/solve/convex_map.hpp"
+#include "core/solve/fill_holes.hpp"
+#include "core/solve/symmetric_dirichlet.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr int kMostIterations = 300;
+constexpr std::size_t kWindow = 5;  // iterations, and the least share of the energy by which
+constexpr double kTolerance =
+    1e-3;  // they must lower it; 1e-4: half a percent less, twice the time
+constexpr double kShareOfFlip = 0.8;  // of the step at which the first triangle flips
+constexpr double kArmijo = 1e-4;      // of the decrease that the gradient promises
+constexpr int kMaxHalvings = 40;
+
+class Parting {
+ public:
+  Parting(const Disk& disk, const FreeVertices& free, UvMap start, Executor& executor)
+      : disk_(disk),
+        executor_(executor),
+        barrier_(disk),
+        system_(disk.faces, free),
+        uv_(std::move(start)),
+        gradient_(uv_.size()),
+        blocks_(uv_.size()),
+        step_(uv_.size(), Vec2::Zero()) {
+    energy_ = energy_of(uv_);
+  }
+
+  [[nodiscard]] const UvMap& uv() const { return uv_; }
+  [[nodiscard]] double energy() const { return energy_; }
+
+  /// False where no step lowers the energy.
+  bool iterate() { return find_step() && search_along_step(); }
+
+ private:
+  [[nodiscard]] double energy_of(const UvMap& uv) const {
+    const double own = symmetric_dirichlet_energy(disk_, uv, executor_);
+    return std::isfinite(own) ? own + contact_energy(barrier_.contacts(uv), uv) : own;
+  }
+
+  void add_contacts() {
+    const std::vector<Contact> contacts = barrier_.contacts(uv_);
+    add_contact_gradient(contacts, uv_, gradient_);
+    std::fill(blocks_.begin(), blocks_.end(), Vec3::Zero());
+    add_contact_curvature(contacts, uv_, blocks_);
+    for (std::size_t v = 0; v < blocks_.size(); ++v) {
+      if (blocks_[v].isZero(0)) continue;
+      const auto corner = static_cast<std::size_t>(disk_.corners.corner[disk_.corners.begin[v]]);
+      const std::size_t i = 2 * (corner % 3);
+      PairElement element{};
+      element[i][i] = blocks_[v][0];
+      element[i + 1][i] = blocks_[v][1];
+      element[i + 1][i + 1] = blocks_[v][2];
+      system_.add(corner / 3, element);
+    }
+  }
+
+  bool find_step() {
+    symmetric_dirichlet_gradient(disk_, uv_, gradient_, executor_);
+    system_.clear();
+    for (std::size_t t = 0; t < disk_.faces.size(); ++t)
+      system_.add(
+          t, proxy_element(disk_.rest[t], jacobian(disk_.rest[t], uv_edges(disk_.faces[t], uv_))));
+    add_contacts();
+    if (!system_.factor()) return false;
+    std::vector<Vec2> change;
+    for (std::size_t v = 1; v < uv_.size(); ++v) change.emplace_back(-gradient_[v]);
+    system_.solve(change);
+    std::copy(change.begin(), change.end(), step_.begin() + 1);
+    return true;
+  }
+
+  bool search_along_step() {
+    double slope = 0;
+    for (std::size_t v = 0; v < uv_.size(); ++v) slope += gradient_[v].dot(step_[v]);
+    double length = std::min(1.0, kShareOfFlip * step_to_flip(disk_, uv_, step_, executor_));
+    for (int k = 0; k < kMaxHalvings; ++k, length /= 2) {
+      UvMap next = uv_;
+      for (std::size_t v = 0; v < next.size(); ++v) next[v] += length * step_[v];
+      const double energy = energy_of(next);
+      if (!(energy <= energy_ + kArmijo * length * slope)) continue;
+      if (!is_plainly_injective(disk_.faces, disk_.loops, next)) continue;
+      uv_ = std::move(next);
+      energy_ = energy;
+      return true;
+    }
+    return false;
+  }
+
+  const Disk& disk_;
+  Executor& executor_;
+  BoundaryBarrier barrier_;
+  PairSystem system_;
+  UvMap uv_;
+  double energy_ = 0;
+  std::vector<Vec2> gradient_;
+  std::vector<Vec3> blocks_;
+  std::vector<Vec2> step_;
+};
+
+UvMap to_best_scale(const Disk& disk, UvMap uv) {
+  const double scale = best_scale(disk, uv);
+  for (Vec2& u : uv) u *= scale;
+  return uv;
+}
+
+/// A map to begin with; none where double precision has none.
+template <class Map>
+std::optional<UvMap> start_from(const Disk& disk, Map map) {
+  try {
+    UvMap uv = map(fill_holes(disk).disk);
+    uv.resize(disk.positions.size());
+    if (!is_plainly_injective(disk.faces, disk.loops, uv)) return std::nullopt;
+    uv = to_best_scale(disk, std::move(uv));
+    if (is_plainly_injective(disk.faces, disk.loops, uv)) return uv;
+  } catch (const Error&) {  // no such map of this mesh: there is another
+  }
+  return std::nullopt;
+}
+
+std::optional<UvMap> injective_start(const Disk& disk) {
+  std::optional<UvMap> start = start_from(disk, [](const Disk& d) { return mean_value_map(d); });
+  return start ? start : start_from(disk, [](const Disk& d) { return tutte_map(d); });
+}
+
+Vec2 middle_of(const UvMap& uv) {
+  Vec2 sum = Vec2::Zero();
+  for (const Vec2& u : uv) sum += u;
+  return sum / static_cast<double>(uv.size());
+}
+
+/// The map turned and moved to where the old one was.
+UvMap laid_along(const UvMap& old, const UvMap& uv) {
+  const Vec2 from = middle_of(uv), to = middle_of(old);
+  double cosine = 0, sine = 0;
+  for (std::size_t v = 0; v < uv.size(); ++v) {
+    const Vec2 a = uv[v] - from, b = old[v] - to;
+    cosine += a.dot(b);
+    sine += a.x() * b.y() - a.y() * b.x();
+  }
+  const double length = std::hypot(cosine, sine);
+  if (length > 0) cosine /= length, sine /= length;
+  UvMap laid;
+  laid.reserve(uv.size());
+  for (const Vec2& u : uv) {
+    const Vec2 a = u - from;
+    laid.push_back(to + Vec2(cosine * a.x() - sine * a.y(), sine * a.x() + cosine * a.y()));
+  }
+  return laid;
+}
+
+bool has_settled(const std::vector<double>& energy) {
+  return energy.size() > kWindow &&
+         energy[energy.size() - 1 - kWindow] - energy.back() <= kTolerance * energy.back();
+}
+
+}  // namespace
+
+bool map_injectively(const Disk& disk, const std::stop_token& stop, UvMap& uv, Executor& executor) {
+  std::optional<UvMap> start = injective_start(disk);
+  if (!start) return false;
+  std::vector<char> fixed(disk.positions.size(), 0);
+  fixed.front() = 1;  // translation costs nothing
+  const FreeVertices free = number_free(fixed);
+  Parting parting(disk, free, std::move(*start), executor);
+  std::vector<double> energy{parting.energy()};
+  for (int k = 0; k < kMostIterations && !has_settled(energy); ++k) {
+    if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+    if (!parting.iterate()) break;
+    energy.push_back(parting.energy());
+  }
+  UvMap laid = laid_along(uv, parting.uv());
+  const bool is_exact = is_plainly_injective(disk.faces, disk.loops, laid);  // turning rounds
+  uv = is_exact ? std::move(laid) : UvMap(parting.uv());
+  return true;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,148 @@
+// Surfaces whose isometric or ARAP map lies on itself, mapped without an overlap.
+#include "core/solve/bijective.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+#include "core/measure/distortion.hpp"
+#include "core/measure/orientation.hpp"
+#include "core/measure/overlaps.hpp"
+#include "core/solve/solve.hpp"
+#include "core/solve/symmetric_dirichlet.hpp"
+#include "tests/core/hard_shapes.hpp"
+#include "tests/core/obj_reader.hpp"
+#include "tests/core/solve/disk_of.hpp"
+#include "tests/core/two_threads.hpp"
+
+namespace unwrapd {
+namespace {
+
+using shapes::disk_of;
+using shapes::kTurn;
+using shapes::OwnedDisk;
+
+UvMap solved(const Disk& disk) {
+  SerialExecutor serial;
+  return Solver(disk, UnwrapOptions(), {}, serial).run(0, {}).uv;
+}
+
+std::size_t overlaps(const Disk& disk, const UvMap& uv) {
+  return overlapping_pairs(disk.faces, uv, 1 << 20).size();
+}
+
+/// A ramp of more than one turn around a hollow axis: nearly developable, onto a ring that covers
+/// itself.
+TriMesh ramp(Index along, Index across, double turns) {
+  return shapes::mapped_grid(along, across, shapes::Wrap::none, [&](double u, double v) {
+    const double angle = kTurn * turns * u, radius = 1 + 0.5 * (1 - v);
+    return Vec3(radius * std::cos(angle), radius * std::sin(angle), 0.4 * turns * u);
+  });
+}
+
+void expect_injective(const Disk& disk, const UvMap& uv, double most_energy) {
+  EXPECT_TRUE(flipped_faces(disk.faces, uv).empty());
+  EXPECT_EQ(overlaps(disk, uv), 0U);
+  SerialExecutor serial;
+  EXPECT_LT(symmetric_dirichlet_energy(disk, uv, serial), most_energy);
+}
+
+TEST(Bijective, PartsARampThatLiesOnItself) {
+  for (double turns : {1.2, 1.6, 2.5}) {
+    SCOPED_TRACE(turns);
+    const OwnedDisk d = disk_of(ramp(Index(60 * turns), 4, turns));
+    UvMap uv = solved(d.disk);
+    ASSERT_GT(overlaps(d.disk, uv), 0U);
+    SerialExecutor serial;
+    ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+    expect_injective(d.disk, uv, 4.5);  // 4 is isometric
+  }
+}
+
+TEST(Bijective, KeepsHolesOpen) {
+  const OwnedDisk d = disk_of(shapes::pierced_disk(12, 5));
+  UvMap uv = solved(d.disk);
+  SerialExecutor serial;
+  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+  expect_injective(d.disk, uv, 4.5);
+}
+
+TEST(Bijective, LaysAFlatSurfaceWhereItWas) {
+  const OwnedDisk d = disk_of(shapes::grid(9, 7, 1.5, 1));
+  UvMap turned;
+  for (const Vec3& p : d.disk.positions)
+    turned.emplace_back(3 + 0.6 * p.x() - 0.8 * p.y(), 0.8 * p.x() + 0.6 * p.y() - 2);
+  UvMap uv = turned;
+  SerialExecutor serial;
+  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+  for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT((uv[v] - turned[v]).norm(), 0.02) << v;
+}
+
+TEST(Bijective, GivesTheSameBytesForAnyExecutor) {
+  const OwnedDisk d = disk_of(ramp(300, 10, 1.5));  // more than one block of faces
+  const UvMap before = solved(d.disk);
+  UvMap once = before, again = before, threaded = before;
+  SerialExecutor serial;
+  TwoThreads two;
+  ASSERT_TRUE(map_injectively(d.disk, {}, once, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, again, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, threaded, two));
+  EXPECT_EQ(once, again);
+  EXPECT_EQ(once, threaded);
+}
+
+TEST(Bijective, StopsWhenAsked) {
+  const OwnedDisk d = disk_of(ramp(60, 4, 1.5));
+  UvMap uv = solved(d.disk);
+  const UvMap before = uv;
+  std::stop_source source;
+  source.request_stop();
+  SerialExecutor serial;
+  try {
+    map_injectively(d.disk, source.get_token(), uv, serial);
+    FAIL() << "went on";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::cancelled);
+  }
+  EXPECT_EQ(uv, before);
+}
+
+TEST(Bijective, LeavesTheMapWhereNoStartIsInjectiveInDoublePrecision) {
+  const OwnedDisk d = disk_of(shapes::polar_disk(5, 90, kTurn, [](double r, double phi) {
+    return Vec3(std::min(1.0, 90 * r) * std::cos(phi), std::min(1.0, 90 * r) * std::sin(phi),
+                90 * r);  // a tube of 90 rings: Tutte's shrink by a factor each
+  }));
+  UvMap uv(d.disk.positions.size(), Vec2(1, 2));
+  const UvMap before = uv;
+  SerialExecutor serial;
+  EXPECT_FALSE(map_injectively(d.disk, {}, uv, serial));
+  EXPECT_EQ(uv, before);
+}
+
+TEST(Bijective, MapsEveryHardDisk) {
+  for (const auto& [name, mesh] : shapes::hard_disks()) {
+    SCOPED_TRACE(name);
+    const OwnedDisk d = disk_of(mesh);
+    UvMap uv(d.disk.positions.size(), Vec2::Zero());
+    SerialExecutor serial;
+    if (map_injectively(d.disk, {}, uv, serial))
+      EXPECT_TRUE(is_plainly_injective(d.disk.faces, d.disk.loops, uv));
+    else
+      ADD_FAILURE() << "no start";
+  }
+}
+
+TEST(Bijective, MapsRealMeshesThatLieOnThemselves) {
+  if (test_data().empty()) GTEST_SKIP() << "no test data (UNWRAPD_TEST_DATA)";
+  for (const char* name : {"paper/Beetle_ABF.obj", "paper/Cow_dABF.obj"}) {
+    SCOPED_TRACE(name);
+    const OwnedDisk d = disk_of(read_obj(test_data() / name));
+    UvMap uv = solved(d.disk);
+    ASSERT_GT(overlaps(d.disk, uv), 0U);
+    SerialExecutor serial;
+    ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+    expect_injective(d.disk, uv, 4.6);
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd
