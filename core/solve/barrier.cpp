@@ -158,6 +158,20 @@ Index unknown(const BarrierMesh& mesh, std::size_t t, Index k) {
   return slot == kFixed ? kFixed : 2 * slot + k % 2;
 }
 
+/// visit(t, k, row, column) for every entry k of the lower triangle of face t's Hessian, by rows,
+/// that is among the unknowns; column <= row.
+template <typename Visit>
+void for_each_entry(const BarrierMesh& mesh, Visit visit) {
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    std::size_t k = 0;
+    for (Index a = 0; a < 6; ++a)
+      for (Index b = 0; b <= a; ++b, ++k) {
+        const auto [column, row] = std::minmax({unknown(mesh, t, a), unknown(mesh, t, b)});
+        if (column != kFixed) visit(t, k, row, column);
+      }
+  }
+}
+
 }  // namespace
 
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier) {
@@ -177,25 +191,41 @@ double least_determinant(const BarrierMesh& mesh, std::span<const Vec2> uv) {
   return least;
 }
 
-Quadratic barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier) {
+Quadratic barrier_pattern(const BarrierMesh& mesh) {
   const Index size = 2 * mesh.free.count;
-  Quadratic model{Eigen::VectorXd::Zero(size), SparseMatrix(size, size)};
+  Quadratic model{Eigen::VectorXd::Zero(size), SparseMatrix(size, size), {}};
   std::vector<Eigen::Triplet<double, Index>> entries;
   entries.reserve(21 * mesh.faces.size());
+  for_each_entry(mesh, [&](std::size_t, std::size_t, Index row, Index column) {
+    entries.emplace_back(row, column, 0.0);
+  });
+  model.hessian.setFromTriplets(entries.begin(), entries.end());
+  model.place.resize(mesh.faces.size());
+  for (auto& places : model.place) places.fill(kFixed);
+  for_each_entry(mesh, [&](std::size_t t, std::size_t k, Index row, Index column) {
+    const Index* rows = model.hessian.innerIndexPtr();
+    const Index* begin = rows + model.hessian.outerIndexPtr()[column];
+    const Index* end = rows + model.hessian.outerIndexPtr()[column + 1];
+    model.place[t][k] = static_cast<Index>(std::lower_bound(begin, end, row) - rows);
+  });
+  return model;
+}
+
+void fill_barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier,
+                        Quadratic& model) {
+  model.gradient.setZero();
+  double* values = model.hessian.valuePtr();
+  std::fill_n(values, model.hessian.nonZeros(), 0.0);
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
     const Element e = element(jacobian_of(mesh, t, uv), mesh.rest[t], barrier);
+    const Index* place = model.place[t].data();
     for (Index a = 0; a < 6; ++a) {
       const Index row = unknown(mesh, t, a);
-      if (row == kFixed) continue;
-      model.gradient[row] += e.gradient[a];
-      for (Index b = 0; b < 6; ++b) {
-        const Index column = unknown(mesh, t, b);
-        if (column != kFixed && column <= row) entries.emplace_back(row, column, e.hessian(a, b));
-      }
+      if (row != kFixed) model.gradient[row] += e.gradient[a];
+      for (Index b = 0; b <= a; ++b, ++place)
+        if (*place != kFixed) values[*place] += e.hessian(a, b);
     }
   }
-  model.hessian.setFromTriplets(entries.begin(), entries.end());
-  return model;
 }
 
 }  // namespace unwrapd

@@ -2,6 +2,7 @@
 // An energy that keeps triangles from flipping, or turns flipped ones back: the method's own, plus
 // a term that grows without bound as a triangle's area goes to zero.
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -35,7 +36,16 @@ double least_determinant(const BarrierMesh& mesh, std::span<const Vec2> uv);
 struct Quadratic {
   Eigen::VectorXd gradient;
   SparseMatrix hessian;
+  /// Where the lower triangle of each face's Hessian goes, by rows, among the values of hessian;
+  /// -1: nowhere.
+  std::vector<std::array<Index, 21>> place;
 };
-Quadratic barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier);
+
+/// All zeros, to be refilled as often as one likes: the pattern depends on the mesh alone.
+Quadratic barrier_pattern(const BarrierMesh& mesh);
+
+/// model: from barrier_pattern() of the same mesh.
+void fill_barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier,
+                        Quadratic& model);
 
 }  // namespace unwrapd

@@ -1,7 +1,9 @@
 // A step ends before the first triangle collapses on its way (the step rule of Smith and Schaefer,
 // "Bijective Parameterization with Free Boundaries", SIGGRAPH 2015), then is halved until the
-// energy falls as the gradient promises (Armijo). Quasi-Newton with the mesh's Laplacian would need
-// no factor for each step, but stalls where slivers meet barriers.
+// energy falls as the gradient promises (Armijo). A full step that does is doubled while the energy
+// falls on: a projected Hessian is too stiff where a flap turns over, and steps come out too short.
+// Quasi-Newton with the mesh's Laplacian would need no factor for each step, but stalls where
+// slivers meet barriers.
 #include "core/solve/newton.hpp"
 
 #include <algorithm>
@@ -57,9 +59,17 @@ UvMap moved(const UvMap& uv, const UvMap& move, double length) {
   return to;
 }
 
+/// A map some way along a step.
+struct Trial {
+  double length;
+  UvMap uv;
+  double energy;
+};
+
 }  // namespace
 
-std::unique_ptr<RealSystem> Newton::factor(SparseMatrix hessian) {
+std::unique_ptr<RealSystem> Newton::factor() {
+  SparseMatrix& hessian = model_.hessian;
   if (analysis_ == nullptr) analysis_ = analyse(hessian);
   const double mean = hessian.diagonal().sum() / static_cast<double>(hessian.rows());
   double added = 0;
@@ -73,32 +83,40 @@ std::unique_ptr<RealSystem> Newton::factor(SparseMatrix hessian) {
 }
 
 double Newton::step(UvMap& uv, const Barrier& barrier) {
-  Quadratic model = barrier_model(mesh_, uv, barrier);
-  const std::unique_ptr<RealSystem> system = factor(std::move(model.hessian));
+  fill_barrier_model(mesh_, uv, barrier, model_);
+  const std::unique_ptr<RealSystem> system = factor();
   if (system == nullptr) return 0;
-  std::vector<Vec2> x(static_cast<std::size_t>(model.gradient.size()), Vec2::Zero());
-  for (std::size_t k = 0; k < x.size(); ++k) x[k].x() = -model.gradient[static_cast<Index>(k)];
+  std::vector<Vec2> x(static_cast<std::size_t>(model_.gradient.size()), Vec2::Zero());
+  for (std::size_t k = 0; k < x.size(); ++k) x[k].x() = -model_.gradient[static_cast<Index>(k)];
   system->solve(x);
   double slope = 0;
   for (std::size_t k = 0; k < x.size(); ++k)
-    slope += model.gradient[static_cast<Index>(k)] * x[k].x();
+    slope += model_.gradient[static_cast<Index>(k)] * x[k].x();
   if (!(slope < 0)) return 0;
   return search(spread(mesh_.free, x), slope, barrier, uv);
 }
 
 double Newton::search(const UvMap& move, double slope, const Barrier& barrier, UvMap& uv) const {
   const double before = barrier_energy(mesh_, uv, barrier);
-  double length = 1;
-  if (barrier.epsilon == 0)
-    length = std::min(length, kOfTheWayToCollapse * collapse_length(mesh_, uv, move));
-  for (int k = 0; k < kMostHalvings; ++k, length /= 2) {
-    UvMap next = moved(uv, move, length);
-    const double after = barrier_energy(mesh_, next, barrier);
-    if (!(after <= before + kArmijo * length * slope)) continue;
-    uv = std::move(next);
-    return (before - after) / std::abs(before);
+  const double most =
+      barrier.epsilon == 0 ? kOfTheWayToCollapse * collapse_length(mesh_, uv, move) : 1;
+  const auto at_length = [&](double length) {
+    Trial trial{length, moved(uv, move, length), 0};
+    trial.energy = barrier_energy(mesh_, trial.uv, barrier);
+    return trial;
+  };
+  Trial best = at_length(std::min(1.0, most));
+  for (int k = 0; !(best.energy <= before + kArmijo * best.length * slope); ++k) {
+    if (k == kMostHalvings) return 0;
+    best = at_length(best.length / 2);
   }
-  return 0;
+  while (best.length >= 1 && best.length < most) {
+    Trial farther = at_length(std::min(2 * best.length, most));
+    if (!(farther.energy < best.energy)) break;
+    best = std::move(farther);
+  }
+  uv = std::move(best.uv);
+  return (before - best.energy) / std::abs(before);
 }
 
 void Newton::descend(UvMap& uv, const Barrier& barrier, int most, double tolerance) {

@@ -12,7 +12,7 @@ namespace unwrapd {
 class Newton {
  public:
   /// mesh must outlive this.
-  explicit Newton(const BarrierMesh& mesh) : mesh_(mesh) {}
+  explicit Newton(const BarrierMesh& mesh) : mesh_(mesh), model_(barrier_pattern(mesh)) {}
 
   /// One step. Returns the share by which the energy fell: 0 when it can fall no further. With
   /// epsilon 0 the triangles must be positive, and remain so.
@@ -22,10 +22,11 @@ class Newton {
   void descend(UvMap& uv, const Barrier& barrier, int most, double tolerance);
 
  private:
-  std::unique_ptr<RealSystem> factor(SparseMatrix hessian);
+  std::unique_ptr<RealSystem> factor();
   double search(const UvMap& move, double slope, const Barrier& barrier, UvMap& uv) const;
 
   const BarrierMesh& mesh_;
+  Quadratic model_;
   std::shared_ptr<const Analysis> analysis_;
 };
 

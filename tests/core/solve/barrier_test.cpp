@@ -55,6 +55,12 @@ double energy_by_svd(const Disk& disk, const UvMap& uv, double weight) {
   return energy;
 }
 
+Quadratic barrier_model(const BarrierMesh& mesh, const UvMap& uv, const Barrier& barrier) {
+  Quadratic model = barrier_pattern(mesh);
+  fill_barrier_model(mesh, uv, barrier, model);
+  return model;
+}
+
 TEST(Barrier, IsTheArapEnergyPlusTheWall) {
   const auto owned = disk_of(shapes::random_disk(6, 1));
   const UvMap uv = shaken(from_above(owned.disk), 0.01, 2);
@@ -134,6 +140,21 @@ TEST(Barrier, HessianIsNeverIndefinite) {
       EXPECT_GT(eigen.minCoeff(), -1e-9 * eigen.maxCoeff());
     }
   }
+}
+
+TEST(Barrier, ARefilledModelIsThatOfTheNewMapAlone) {
+  const auto owned = disk_of(shapes::random_disk(3, 5));
+  std::vector<char> fixed(owned.disk.positions.size(), 0);
+  fixed[3] = fixed[7] = 1;
+  const BarrierMesh mesh = loose_mesh(owned.disk, fixed);
+  const UvMap first = shaken(from_above(owned.disk), 0.4, 1);
+  const UvMap second = shaken(from_above(owned.disk), 0.4, 2);
+  const Barrier barrier{{0.2}, 0.1, 0.1};
+  Quadratic model = barrier_model(mesh, first, barrier);
+  fill_barrier_model(mesh, second, barrier, model);
+  const Quadratic fresh = barrier_model(mesh, second, barrier);
+  EXPECT_EQ(model.gradient, fresh.gradient);
+  EXPECT_EQ(Eigen::MatrixXd(model.hessian), Eigen::MatrixXd(fresh.hessian));
 }
 
 TEST(Newton, FallsToTheBottomWithoutAFlipOnTheWay) {
