@@ -103,10 +103,10 @@ void split(const KeptPart& part, const Seeds& seeds, std::vector<KeptPart>& open
 }
 
 /// A map of the part in which nothing overlaps, in units of which one is `unit` of the mesh's.
-bool unfold(KeptPart& part, double unit, const std::stop_token& stop) {
+bool unfold(KeptPart& part, double unit, const MapIntent& intent) {
   SerialExecutor serial;
   const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
-  if (!map_injectively(disk, stop, part.uv, serial)) return false;
+  if (!map_injectively(disk, intent.rigidity, intent.stop, part.uv, serial)) return false;
   for (Vec2& u : part.uv) u *= disk.unit / unit;
   return overlaps_of(part.chart, part.uv).empty();
 }
@@ -123,7 +123,7 @@ Seeds seeds_needed(KeptPart& part, double unit, const Promise& promise, Mending&
   const auto pairs = overlaps_of(part.chart, part.uv);
   if (pairs.empty()) return {};
   mending.overlaps += static_cast<Index>(pairs.size());
-  if (!holds_any(promise.intent) && unfold(part, unit, promise.intent.stop)) return {};
+  if (!holds_any(promise.intent) && unfold(part, unit, promise.intent)) return {};
   return seeds_at_overlaps(part.chart, pairs);
 }
 

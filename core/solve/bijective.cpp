@@ -3,7 +3,8 @@
 // those of SLIM (Rabinovich et al. 2017), whose matrix takes in the barrier's curvature as blocks
 // on the diagonal: the pattern stays that of the mesh. Neither a scaffold of triangles around the
 // boundary nor collision times along the step: the exact test of the boundary alone is cheap, and a
-// map that passes it is right whatever came between.
+// map that passes it is right whatever came between. The method's own energy then has the last
+// word (settle_apart()).
 #include "core/solve/bijective.hpp"
 
 #include <algorithm>
@@ -16,6 +17,8 @@
 #include "core/solve/boundary_barrier.hpp"
 #include "core/solve/convex_map.hpp"
 #include "core/solve/fill_holes.hpp"
+#include "core/solve/injective_step.hpp"
+#include "core/solve/settle_apart.hpp"
 #include "core/solve/symmetric_dirichlet.hpp"
 
 namespace unwrapd {
@@ -25,9 +28,6 @@ constexpr int kMostIterations = 300;
 constexpr std::size_t kWindow = 5;  // iterations, and the least share of the energy by which
 constexpr double kTolerance =
     1e-3;  // they must lower it; 1e-4: half a percent less, twice the time
-constexpr double kShareOfFlip = 0.8;  // of the step at which the first triangle flips
-constexpr double kArmijo = 1e-4;      // of the decrease that the gradient promises
-constexpr int kMaxHalvings = 40;
 
 class Parting {
  public:
@@ -90,18 +90,10 @@ class Parting {
   bool search_along_step() {
     double slope = 0;
     for (std::size_t v = 0; v < uv_.size(); ++v) slope += gradient_[v].dot(step_[v]);
-    double length = std::min(1.0, kShareOfFlip * step_to_flip(disk_, uv_, step_, executor_));
-    for (int k = 0; k < kMaxHalvings; ++k, length /= 2) {
-      UvMap next = uv_;
-      for (std::size_t v = 0; v < next.size(); ++v) next[v] += length * step_[v];
-      const double energy = energy_of(next);
-      if (!(energy <= energy_ + kArmijo * length * slope)) continue;
-      if (!is_plainly_injective(disk_.faces, disk_.loops, next)) continue;
-      uv_ = std::move(next);
-      energy_ = energy;
-      return true;
-    }
-    return false;
+    const auto energy = [this](const UvMap& uv) { return energy_of(uv); };
+    const std::optional<double> after = injective_step(disk_, step_, slope, energy, uv_);
+    if (after) energy_ = *after;
+    return after.has_value();
   }
 
   const Disk& disk_;
@@ -173,7 +165,8 @@ bool has_settled(const std::vector<double>& energy) {
 
 }  // namespace
 
-bool map_injectively(const Disk& disk, const std::stop_token& stop, UvMap& uv, Executor& executor) {
+bool map_injectively(const Disk& disk, const Rigidity& rigidity, const std::stop_token& stop,
+                     UvMap& uv, Executor& executor) {
   std::optional<UvMap> start = injective_start(disk);
   if (!start) return false;
   std::vector<char> fixed(disk.positions.size(), 0);
@@ -186,9 +179,11 @@ bool map_injectively(const Disk& disk, const std::stop_token& stop, UvMap& uv, E
     if (!parting.iterate()) break;
     energy.push_back(parting.energy());
   }
-  UvMap laid = laid_along(uv, parting.uv());
+  UvMap settled = parting.uv();
+  settle_apart(disk, rigidity, stop, settled);
+  UvMap laid = laid_along(uv, settled);
   const bool is_exact = is_plainly_injective(disk.faces, disk.loops, laid);  // turning rounds
-  uv = is_exact ? std::move(laid) : UvMap(parting.uv());
+  uv = std::move(is_exact ? laid : settled);
   return true;
 }
 

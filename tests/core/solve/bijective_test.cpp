@@ -53,7 +53,7 @@ TEST(Bijective, PartsARampThatLiesOnItself) {
     UvMap uv = solved(d.disk);
     ASSERT_GT(overlaps(d.disk, uv), 0U);
     SerialExecutor serial;
-    ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+    ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
     expect_injective(d.disk, uv, 4.5);  // 4 is isometric
   }
 }
@@ -62,7 +62,7 @@ TEST(Bijective, KeepsHolesOpen) {
   const OwnedDisk d = disk_of(shapes::pierced_disk(12, 5));
   UvMap uv = solved(d.disk);
   SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
   expect_injective(d.disk, uv, 4.5);
 }
 
@@ -73,7 +73,7 @@ TEST(Bijective, LaysAFlatSurfaceWhereItWas) {
     turned.emplace_back(3 + 0.6 * p.x() - 0.8 * p.y(), 0.8 * p.x() + 0.6 * p.y() - 2);
   UvMap uv = turned;
   SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
   for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT((uv[v] - turned[v]).norm(), 0.02) << v;
 }
 
@@ -83,9 +83,9 @@ TEST(Bijective, GivesTheSameBytesForAnyExecutor) {
   UvMap once = before, again = before, threaded = before;
   SerialExecutor serial;
   TwoThreads two;
-  ASSERT_TRUE(map_injectively(d.disk, {}, once, serial));
-  ASSERT_TRUE(map_injectively(d.disk, {}, again, serial));
-  ASSERT_TRUE(map_injectively(d.disk, {}, threaded, two));
+  ASSERT_TRUE(map_injectively(d.disk, {}, {}, once, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, {}, again, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, {}, threaded, two));
   EXPECT_EQ(once, again);
   EXPECT_EQ(once, threaded);
 }
@@ -98,7 +98,7 @@ TEST(Bijective, StopsWhenAsked) {
   source.request_stop();
   SerialExecutor serial;
   try {
-    map_injectively(d.disk, source.get_token(), uv, serial);
+    map_injectively(d.disk, {}, source.get_token(), uv, serial);
     FAIL() << "went on";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::cancelled);
@@ -114,7 +114,7 @@ TEST(Bijective, LeavesTheMapWhereNoStartIsInjectiveInDoublePrecision) {
   UvMap uv(d.disk.positions.size(), Vec2(1, 2));
   const UvMap before = uv;
   SerialExecutor serial;
-  EXPECT_FALSE(map_injectively(d.disk, {}, uv, serial));
+  EXPECT_FALSE(map_injectively(d.disk, {}, {}, uv, serial));
   EXPECT_EQ(uv, before);
 }
 
@@ -124,7 +124,7 @@ TEST(Bijective, MapsEveryHardDisk) {
     const OwnedDisk d = disk_of(mesh);
     UvMap uv(d.disk.positions.size(), Vec2::Zero());
     SerialExecutor serial;
-    if (map_injectively(d.disk, {}, uv, serial))
+    if (map_injectively(d.disk, {}, {}, uv, serial))
       EXPECT_TRUE(is_plainly_injective(d.disk.faces, d.disk.loops, uv));
     else
       ADD_FAILURE() << "no start";
@@ -139,7 +139,7 @@ TEST(Bijective, MapsRealMeshesThatLieOnThemselves) {
     UvMap uv = solved(d.disk);
     ASSERT_GT(overlaps(d.disk, uv), 0U);
     SerialExecutor serial;
-    ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+    ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
     expect_injective(d.disk, uv, 4.6);
   }
 }
