@@ -38,14 +38,20 @@ Chi chi_of(double d, double epsilon) {
   return {value, (1 + d / root) / 2, share * share / (2 * root)};
 }
 
+/// The scale of the similarity that fits (q, 0) best, without a root where it is known.
+double fitted_scale(double q, double lambda) {
+  if (lambda == 0) return q;
+  if (std::isinf(lambda)) return 1;
+  return fit_similarity({q, 0, 0, 0}, lambda).a;
+}
+
 /// min over r of 2 (Q - r)^2 + lambda (r^2 - 1)^2, plus 2 R^2.
 Profile fit_profile(double q, double r, double lambda) {
   const Jacobian along{q, 0, r, 0};
-  const Similarity fit = fit_similarity(along, lambda);
-  const double scale = fit.a;
+  const double scale = fitted_scale(q, lambda);
   const double stiffness = 1 / (1 + 1 / (lambda * (3 * scale * scale - 1)));
   Profile p;
-  p.value = fit_energy(along, fit, 1, lambda);
+  p.value = fit_energy(along, {scale, 0}, 1, lambda);
   p.q = 4 * (q - scale);
   p.r = 4 * r;
   p.qq = 4 * stiffness;
@@ -58,18 +64,19 @@ Profile wall_profile(double q, double r, double epsilon) {
   const double d = (q - r) * (q + r);
   const Chi chi = chi_of(d, epsilon);
   const double n = q * q + r * r + (1 + d * d) / 2;
-  const double b = n / chi.value;
+  const double part = 1 / chi.value;
+  const double b = n * part;
   Profile p;
   p.value = b - 2;
   const double chi_q = 2 * q * chi.slope, chi_r = -2 * r * chi.slope;
-  p.q = (2 * q * (1 + d) - b * chi_q) / chi.value;
-  p.r = (2 * r * (1 - d) - b * chi_r) / chi.value;
+  p.q = (2 * q * (1 + d) - b * chi_q) * part;
+  p.r = (2 * r * (1 - d) - b * chi_r) * part;
   const double chi_qq = 4 * q * q * chi.bend + 2 * chi.slope;
   const double chi_rr = 4 * r * r * chi.bend - 2 * chi.slope;
   const double chi_qr = -4 * q * r * chi.bend;
-  p.qq = (2 * (1 + d) + 4 * q * q - 2 * p.q * chi_q - b * chi_qq) / chi.value;
-  p.rr = (2 * (1 - d) + 4 * r * r - 2 * p.r * chi_r - b * chi_rr) / chi.value;
-  p.qr = (-4 * q * r - p.q * chi_r - p.r * chi_q - b * chi_qr) / chi.value;
+  p.qq = (2 * (1 + d) + 4 * q * q - 2 * p.q * chi_q - b * chi_qq) * part;
+  p.rr = (2 * (1 - d) + 4 * r * r - 2 * p.r * chi_r - b * chi_rr) * part;
+  p.qr = (-4 * q * r - p.q * chi_r - p.r * chi_q - b * chi_qr) * part;
   return p;
 }
 
