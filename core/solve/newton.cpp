@@ -119,9 +119,4 @@ double Newton::search(const UvMap& move, double slope, const Barrier& barrier, U
   return (before - best.energy) / std::abs(before);
 }
 
-void Newton::descend(UvMap& uv, const Barrier& barrier, int most, double tolerance) {
-  for (int k = 0; k < most; ++k)
-    if (step(uv, barrier) < tolerance) return;
-}
-
 }  // namespace unwrapd

@@ -18,9 +18,6 @@ class Newton {
   /// epsilon 0 the triangles must be positive, and remain so.
   double step(UvMap& uv, const Barrier& barrier);
 
-  /// Steps until one lowers the energy by less than `tolerance` of it; at most `most` of them.
-  void descend(UvMap& uv, const Barrier& barrier, int most, double tolerance);
-
  private:
   std::unique_ptr<RealSystem> factor();
   double search(const UvMap& move, double slope, const Barrier& barrier, UvMap& uv) const;

@@ -4,7 +4,9 @@
 // barrier that fades. Where that fails the patch grows, in the end to the whole chart, and at last
 // the whole chart starts anew from Tutte's map, which has no flips to begin with.
 //
-// Beginning with the whole chart would do as well, at many times the cost.
+// Where flips are many, patches around them hold each other's folds fast and fail one by one: there
+// the whole chart is turned over first, or starts anew. Where they are few that would do as well,
+// at many times the cost.
 #include "core/solve/untangle.hpp"
 
 #include <algorithm>
@@ -131,8 +133,10 @@ void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t en
 void fade(const BarrierMesh& mesh, const MapIntent& intent, int most, UvMap& uv) {
   Newton newton(mesh);
   for (const Fading& fading : kFading) {
-    throw_if_stopped(intent);
-    newton.descend(uv, {intent.rigidity, fading.weight, 0}, most, fading.tolerance);
+    for (int k = 0; k < most; ++k) {
+      throw_if_stopped(intent);
+      if (newton.step(uv, {intent.rigidity, fading.weight, 0}) < fading.tolerance) break;
+    }
     if (intent.in_place) break;
   }
 }
@@ -169,7 +173,6 @@ void mend(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv, bo
   UvMap own = map_of(patch, uv);
   const bool is_whole = patch.face.size() == disk.faces.size();
   const std::size_t before = flipped_faces(patch.mesh.faces, own).size();
-  if (!is_whole && may_move_all(intent) && exceeds(before, kCrowded, patch.face.size())) return;
   turn_over(patch.mesh, intent, 0, own);
   const bool is_mended = is_untangled(patch.mesh, own);
   if (!is_mended && flipped_faces(patch.mesh.faces, own).size() > before / 2) return;
@@ -213,12 +216,20 @@ void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) 
   left = {flipped_faces(disk.faces, uv), true};
 }
 
+/// Whether a patch holds more flips than there is hope for within its rim.
+bool is_crowded(const Patch& patch, const UvMap& uv) {
+  const std::size_t flips = flipped_faces(patch.mesh.faces, map_of(patch, uv)).size();
+  return exceeds(flips, kCrowded, patch.face.size());
+}
+
 /// Patches of growing size, in the end the whole.
 void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
   bool was_whole = false;
   for (int rings = intent.rings; !was_whole && !left.flipped.empty(); rings *= 2) {
     for (Patch& patch : patches_around(disk, left.flipped, rings, intent.held)) {
       was_whole = was_whole || patch.face.size() == disk.faces.size();
+      const bool may_grow = may_move_all(intent) && !was_whole && rings < kMostRings;
+      if (may_grow && is_crowded(patch, uv)) continue;
       mend(disk, intent, patch, uv, left.is_rough);
     }
     left.flipped = flipped_faces(disk.faces, uv);

@@ -16,7 +16,7 @@ struct MapIntent {
   std::vector<char> held;  ///< one a vertex, 1: it must not move; empty: none
   std::stop_token stop;
   bool in_place = false;  ///< only near the flips: never a new map of the whole disk
-  int rings = 2;          ///< how far around a flip vertices are let loose, at first
+  int rings = 2;          ///< how far around a flip vertices are let loose at first; >= 1
 };
 
 /// Moves the vertices near flipped or collapsed triangles (not counter-clockwise, by the exact

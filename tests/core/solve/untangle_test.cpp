@@ -81,6 +81,22 @@ TEST(Untangle, TurnsAWholeMirroredMapBack) {
   }
 }
 
+TEST(Untangle, UnfoldsAFlapHoweverMuchOfTheMapItIs) {
+  const auto owned = disk_of(shapes::grid(40, 40));
+  for (double fold : {0.1, 0.15, 0.3, 0.5, 0.8}) {  // 2 to 92 % of the faces
+    SCOPED_TRACE(fold);
+    UvMap uv = from_above(owned.disk);
+    for (Vec2& u : uv) {  // the corner beyond the diagonal u + v = 2 fold is folded over it
+      const double beyond = (2 * fold * 0.999 - u.x() - u.y()) / 2;
+      if (beyond > 0) u += 2 * beyond * Vec2(1, 1);
+    }
+    ASSERT_GT(flips(owned.disk, uv), 0U);
+    EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
+    EXPECT_EQ(flips(owned.disk, uv), 0U);
+    EXPECT_LT(arap_energy(owned.disk.rest, owned.disk.faces, uv), 1e-3);
+  }
+}
+
 TEST(Untangle, OpensAMapThatCollapsedToAPointOrALine) {
   for (const TriMesh& mesh : {shapes::random_disk(5, 2), shapes::annulus(16, 2)}) {
     const auto owned = disk_of(mesh);
