@@ -58,6 +58,18 @@ TEST(Bijective, PartsARampThatLiesOnItself) {
   }
 }
 
+TEST(Bijective, EndsWithTheEnergyThatIsAskedFor) {
+  const OwnedDisk d = disk_of(shapes::sphere_cap(24, 12, 2));
+  SerialExecutor serial;
+  UvMap rigid(d.disk.positions.size(), Vec2::Zero()), conformal = rigid;
+  ASSERT_TRUE(map_injectively(d.disk, {}, {}, rigid, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {.lambda = 0}, {}, conformal, serial));
+  const auto angle = [&](const UvMap& uv) {
+    return distortion(distortion_sums(d.disk.rest, d.disk.faces, uv)).angle - 2;
+  };
+  EXPECT_LT(angle(conformal), 0.25 * angle(rigid));
+}
+
 TEST(Bijective, KeepsHolesOpen) {
   const OwnedDisk d = disk_of(shapes::pierced_disk(12, 5));
   UvMap uv = solved(d.disk);
