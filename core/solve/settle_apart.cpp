@@ -80,12 +80,12 @@ class Settling {
     add_contact_curvature(near, uv_, blocks);
     SparseMatrix& hessian = model_.hessian;
     const double shift = kShift * hessian.diagonal().mean();
-    for (Index v = 0; v < disk_.vertex_count(); ++v) {
-      model_.gradient.segment<2>(2 * v) += gradient[static_cast<std::size_t>(v)];
-      const Vec3& block = blocks[static_cast<std::size_t>(v)];
-      hessian.coeffRef(2 * v, 2 * v) += block[0] + shift;
-      hessian.coeffRef(2 * v + 1, 2 * v) += block[1];
-      hessian.coeffRef(2 * v + 1, 2 * v + 1) += block[2] + shift;
+    for (std::size_t v = 0; v < uv_.size(); ++v) {
+      const auto x = static_cast<Eigen::Index>(2 * v), y = x + 1;
+      model_.gradient.segment<2>(x) += gradient[v];
+      hessian.coeffRef(x, x) += blocks[v][0] + shift;
+      hessian.coeffRef(y, x) += blocks[v][1];
+      hessian.coeffRef(y, y) += blocks[v][2] + shift;
     }
   }
 
