@@ -110,7 +110,7 @@ using Rows = Eigen::Matrix<double, 4, 6>;  // (e, h, f, g) by (u, v) of the thre
 
 Rows rows_of(const RestTriangle& rest) {
   Rows rows;
-  for (int i = 0; i < 3; ++i) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
     const Vec2& facing = rest.edge[static_cast<std::size_t>((i + 1) % 3)];
     const double x = facing.y() / (4 * rest.area), y = -facing.x() / (4 * rest.area);
     rows.block<4, 2>(0, 2 * i) << x, y, -y, x, x, -y, y, x;
@@ -179,6 +179,14 @@ void for_each_entry(const BarrierMesh& mesh, Visit visit) {
   }
 }
 
+void add_lower(const Eigen::Matrix<double, 6, 6>& hessian, const std::array<Index, 21>& places,
+               double* values) {
+  const Index* place = places.data();
+  for (Index a = 0; a < 6; ++a)
+    for (Index b = 0; b <= a; ++b, ++place)
+      if (*place != kFixed) values[*place] += hessian(a, b);
+}
+
 }  // namespace
 
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier) {
@@ -225,13 +233,11 @@ void fill_barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const
   std::fill_n(values, model.hessian.nonZeros(), 0.0);
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
     const Element e = element(jacobian_of(mesh, t, uv), mesh.rest[t], barrier);
-    const Index* place = model.place[t].data();
     for (Index a = 0; a < 6; ++a) {
       const Index row = unknown(mesh, t, a);
       if (row != kFixed) model.gradient[row] += e.gradient[a];
-      for (Index b = 0; b <= a; ++b, ++place)
-        if (*place != kFixed) values[*place] += e.hessian(a, b);
     }
+    add_lower(e.hessian, model.place[t], values);
   }
 }
 
