@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
+#include "core/solve/boundary_barrier.hpp"
 #include "core/solve/solve.hpp"
 #include "core/solve/symmetric_dirichlet.hpp"
 #include "tests/core/hard_shapes.hpp"
@@ -56,6 +59,27 @@ TEST(Bijective, PartsARampThatLiesOnItself) {
     ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
     expect_injective(d.disk, uv, 4.5);  // 4 is isometric
   }
+}
+
+/// The least distance of a boundary vertex from a boundary edge, in reaches of the barrier.
+double least_gap(const Disk& disk, const UvMap& uv) {
+  double least = 1;
+  for (const Contact& contact : BoundaryBarrier(disk).contacts(uv)) {
+    Contact alone = contact;
+    alone.weight = 1;
+    const double excess = std::sqrt(contact_energy(std::span(&alone, 1), uv));
+    least = std::min(least, 1 / (1 + excess));
+  }
+  return least;
+}
+
+TEST(Bijective, LeavesAGapBetweenBoundariesThatPress) {
+  const OwnedDisk d = disk_of(ramp(150, 4, 2.5));
+  UvMap uv = solved(d.disk);
+  SerialExecutor serial;
+  ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
+  EXPECT_LT(least_gap(d.disk, uv), 1);
+  EXPECT_GT(least_gap(d.disk, uv), 0.25);
 }
 
 TEST(Bijective, EndsWithTheEnergyThatIsAskedFor) {
