@@ -8,12 +8,12 @@ import { connect } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
-import test from "node:test";
+import test, { after } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-const QUICK = "iterations=2";
+const QUICK = "stop.iterations=2";
 const LONG_MS = 4000; // of work: killed long before its end, and not long to wait for
-const ENDLESS = ["iterations=10000", 100]; // a query and a size: never waited for
+const ENDLESS = ["stop.iterations=10000", 100]; // a query and a size: never waited for
 
 /** An OBJ of a bumpy square of size x size quads. */
 function grid(size) {
@@ -30,6 +30,9 @@ function grid(size) {
   return lines.join("\n") + "\n";
 }
 
+const servers = new Set();
+after(() => servers.forEach((server) => server.process.kill("SIGKILL"))); // of a test that failed
+
 class Server {
   /** Starts a server on a directory; resolves when it has told its address. */
   static async start(data, ...flags) {
@@ -39,6 +42,7 @@ class Server {
       ["--listen", "127.0.0.1:0", "--data", data, "--workers", "1", "--log-level", "off", ...flags],
       { stdio: ["ignore", "pipe", "inherit"] },
     );
+    servers.add(server);
     server.exited = once(server.process, "exit");
     const lines = createInterface({ input: server.process.stdout });
     const [line] = await once(lines, "line");
@@ -87,11 +91,11 @@ class Server {
 /** The query of a job that takes some seconds on this machine, in this build. */
 async function longQuery(t) {
   const server = await Server.start(dataDirectory(t));
-  const job = await server.finished(await server.submit("iterations=50"));
+  const job = await server.finished(await server.submit("stop.iterations=50"));
   const report = await (await fetch(`${server.url}${job.links.report}`)).json();
   await server.end("SIGTERM");
   const iterations = Math.round((50 * LONG_MS) / report.timings_ms.solve);
-  return `iterations=${Math.min(Math.max(iterations, 50), 10_000)}`;
+  return `stop.iterations=${Math.min(Math.max(iterations, 50), 10_000)}`;
 }
 
 /** A directory for servers, gone after the test. */
