@@ -40,6 +40,7 @@ enum class ErrorCode {
   // the mesh
   too_many_vertices,
   too_many_faces,
+  too_much_memory,
   no_triangles,
   zero_area,
   non_finite_position,
@@ -49,6 +50,7 @@ enum class ErrorCode {
   solver_failed,
   guarantee_failed,
   time_limit,
+  memory_limit,
   cancelled,
   poison,
   storage_failed,
