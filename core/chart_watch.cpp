@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 #include "core/measure/distortion.hpp"
 
 namespace unwrapd {
@@ -79,8 +79,6 @@ SolveWatch ChartWatch::solve_watch(const Disk& disk, const Stop& stop) const {
   return watch;
 }
 
-void ChartWatch::throw_if_cancelled() const {
-  if (progress_.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
-}
+void ChartWatch::throw_if_cancelled() const { unwrapd::throw_if_cancelled(progress_.stop); }
 
 }  // namespace unwrapd

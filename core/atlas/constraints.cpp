@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/atlas/vertex_finder.hpp"
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/mesh/counting_sort.hpp"
 
@@ -54,7 +55,8 @@ void check_range(const PositionConstraint& c, std::span<const Surface> surfaces,
     refuse("there is no vertex " + std::to_string(*c.vertex) + "; name one of the mesh's " +
                std::to_string(vertices) + ", counted from 0, or a point in space",
            i);
-  if (!std::isinf(c.weight) && !(c.weight >= kLeastWeight && c.weight <= kMostWeight))
+  if (!std::isinf(c.weight) &&
+      !(c.weight >= kMinConstraintWeight && c.weight <= kMaxConstraintWeight))
     refuse("weight must lie between 1e-9 and 1e9; leave it out to hold the vertex exactly", i);
   if (!written(c.uv).allFinite())
     refuse("uv is too large for a 32-bit float; give a place on or near the page, [0,1]", i);
@@ -84,7 +86,7 @@ std::vector<std::vector<ChartPins>> find_all(std::span<const Surface> surfaces,
   for (const Charts& part : charts) pins.emplace_back(part.charts.size());
   std::vector<std::optional<VertexFinder>> finders(surfaces.size());
   for (std::size_t i = 0; i < constraints.size(); ++i) {
-    if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+    throw_if_cancelled(stop);
     const PositionConstraint& c = constraints[i];
     check_range(c, surfaces, i);
     const auto s = static_cast<std::size_t>(c.surface);

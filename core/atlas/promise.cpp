@@ -10,6 +10,7 @@
 
 #include "core/atlas/snap.hpp"
 #include "core/atlas/split_chart.hpp"
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
@@ -136,8 +137,7 @@ std::vector<KeptPart> split_as_needed(KeptPart whole, double unit, const Promise
   for (bool is_whole = true; !open.empty(); is_whole = false) {
     KeptPart part = std::move(open.back());
     open.pop_back();
-    if (promise.intent.stop.stop_requested())
-      throw Error(ErrorCode::cancelled, "the job was cancelled");
+    throw_if_cancelled(promise.intent.stop);
     if (!is_whole && !flipped_faces(part.chart.mesh.faces, part.uv).empty()) {
       const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
       untangle(disk, {.rigidity = promise.intent.rigidity, .held = {}, .stop = promise.intent.stop},

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd {
 namespace {
@@ -94,7 +94,7 @@ FlatAngles flat_angles(const Disk& disk, const std::stop_token& stop,
   AngleNewton newton(disk, executor);
   FlatAngles flat{newton.angles(), {newton.energy()}};
   while (flat.iterations < kMaxAngleIterations && flat.stop_reason != StopReason::converged) {
-    if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+    throw_if_cancelled(stop);
     if (newton.iterate() < kTolerance) flat.stop_reason = StopReason::converged;
     flat.angles = newton.angles();
     flat.energy.push_back(newton.energy());

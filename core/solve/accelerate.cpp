@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 #include "core/measure/distortion.hpp"
 
 namespace unwrapd {
@@ -101,7 +101,7 @@ Solution Descent::finish(StopReason reason) && {
 
 StopReason run(Descent& descent, const DescentOptions& options, const LoopWatch& watch) {
   while (!descent.has_converged(options.tolerance)) {
-    if (watch.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+    throw_if_cancelled(watch.stop);
     if (descent.solution().iterations >= options.max_iterations) return StopReason::max_iterations;
     if (!descent.step()) return descent.solution().stop_reason;
     if (watch.on_iteration) watch.on_iteration(descent.solution());

@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 #include "core/measure/energy.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/solve/fill_holes.hpp"
@@ -113,16 +113,12 @@ UvMap holomorphic(const Chain& chain, UvMap harmonic, const UvMap& conjugate) {
   return harmonic;
 }
 
-void check(const LoopWatch& watch) {
-  if (watch.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
-}
-
 UvMap flatten(const Disk& disk, const SolveWatch& watch) {
-  check(watch.loop);
+  throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::factor);
   const SparseMatrix laplacian = cotan_laplacian(disk, disk.rest);
   const InnerSystem inner(disk, laplacian);
-  check(watch.loop);
+  throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::solve);
   std::vector<double> turn = curvature(disk, disk.rest);
   const std::vector<double> change = product(laplacian, flat_scales(disk, inner, turn));
@@ -132,7 +128,7 @@ UvMap flatten(const Disk& disk, const SolveWatch& watch) {
   UvMap map(disk.positions.size(), Vec2::Zero());
   for (std::size_t i = 0; i < point.size(); ++i) map[chain.vertex[i]] = point[i];
   inner.solve(map);
-  check(watch.loop);
+  throw_if_cancelled(watch.loop.stop);
   return holomorphic(chain, std::move(map), conjugates(disk, laplacian, chain, point));
 }
 

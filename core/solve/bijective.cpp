@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/measure/overlaps.hpp"
 #include "core/solve/boundary_barrier.hpp"
@@ -174,7 +175,7 @@ bool map_injectively(const Disk& disk, const Rigidity& rigidity, const std::stop
   Parting parting(disk, free, std::move(*start), executor);
   std::vector<double> energy{parting.energy()};
   for (int k = 0; k < kMostIterations && !has_settled(energy); ++k) {
-    if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+    throw_if_cancelled(stop);
     if (!parting.iterate()) break;
     energy.push_back(parting.energy());
   }

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 #include "core/solve/fill_holes.hpp"
 #include "core/solve/lay_out.hpp"
 #include "core/solve/metric.hpp"
@@ -55,20 +55,16 @@ std::vector<RestTriangle> scaled(const Disk& disk, std::span<const double> u) {
   return flat;
 }
 
-void check(const LoopWatch& watch) {
-  if (watch.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
-}
-
 }  // namespace
 
 Solution cp(const Disk& disk, const SolveWatch& watch) {
   const FilledDisk filled = fill_holes(disk);
   const std::vector<double> bent = curvature(filled.disk, filled.disk.rest);
-  check(watch.loop);
+  throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::factor);
   const InnerSystem inner(filled.disk, cotan_laplacian(filled.disk, filled.disk.rest));
   const std::vector<double> u = flat_scales(filled.disk, inner, bent);
-  check(watch.loop);
+  throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::solve);
   std::vector<RestTriangle> flat = scaled(filled.disk, u);
   const std::vector<double> left = curvature(filled.disk, flat);

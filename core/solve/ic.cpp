@@ -10,7 +10,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 #include "core/solve/circle_packing.hpp"
 #include "core/solve/fill_holes.hpp"
 #include "core/solve/lay_out.hpp"
@@ -95,21 +95,17 @@ UvMap drawn(const Disk& disk, const FilledDisk& filled, const Flow& flow) {
   return uv;
 }
 
-void check(const LoopWatch& watch) {
-  if (watch.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
-}
-
 }  // namespace
 
 Solution ic(const Disk& disk, const SolveWatch& watch) {
-  check(watch.loop);
+  throw_if_cancelled(watch.loop.stop);
   const FilledDisk filled = fill_holes(disk);
   Flow flow(filled.disk);
   if (watch.on_stage) watch.on_stage(Stage::solve);
   Solution solution{
       .uv = {}, .energy = {flow.greatest_curvature()}, .stop_reason = StopReason::max_iterations};
   while (solution.energy.back() > kFlat && solution.iterations < kMaxIterations) {
-    check(watch.loop);
+    throw_if_cancelled(watch.loop.stop);
     if (!flow.step()) break;
     ++solution.iterations;
     solution.energy.push_back(flow.greatest_curvature());

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd {
 namespace {
@@ -54,7 +54,7 @@ std::vector<FaceAngles> linear_angles(const Disk& disk, Executor& executor) {
 }
 
 Solution linabf(const Disk& disk, const SolveWatch& watch, Executor& executor) {
-  if (watch.loop.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+  throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::solve);
   LinearAngles linear = solve(disk, executor);
   Solution solution{.uv = map_of_angles(disk, linear.angles),

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 #include "core/measure/distortion.hpp"
 
 namespace unwrapd {
@@ -15,7 +15,7 @@ Solution local_global(const Assembly& assembly, UvMap start, const LocalGlobalOp
   solution.energy.push_back(objective.evaluate(solution.uv, step));
   const double least_area = kMinAreaShare * uv_area(disk.rest, disk.faces, solution.uv);
   for (int k = 0; k < options.iterations; ++k) {
-    if (watch.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+    throw_if_cancelled(watch.stop);
     UvMap next = solution.uv;
     assembly.global.solve(step);
     for (std::size_t v = 0; v < next.size(); ++v) next[v] += step[v];

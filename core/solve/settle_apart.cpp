@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 #include "core/linear/engine.hpp"
 #include "core/solve/boundary_barrier.hpp"
 #include "core/solve/injective_step.hpp"
@@ -106,7 +106,7 @@ void settle_apart(const Disk& disk, const Rigidity& rigidity, const std::stop_to
   for (const double weight : kFading) {
     double fall = 1;
     for (int k = 0; k < kMostSteps && fall >= kTolerance; ++k) {
-      if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
+      throw_if_cancelled(stop);
       fall = settling.step(weight);
     }
   }

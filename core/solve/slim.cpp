@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/solve/conformal.hpp"
 #include "core/solve/convex_map.hpp"
@@ -145,8 +146,7 @@ Solution slim(const Disk& disk, const SolveWatch& watch, Executor& executor) {
       .uv = slim.uv(), .energy = {slim.energy()}, .stop_reason = StopReason::max_iterations};
   while (solution.iterations < kMaxSlimIterations &&
          solution.stop_reason != StopReason::converged) {
-    if (watch.loop.stop.stop_requested())
-      throw Error(ErrorCode::cancelled, "the job was cancelled");
+    throw_if_cancelled(watch.loop.stop);
     if (slim.iterate() < kTolerance) solution.stop_reason = StopReason::converged;
     solution.uv = slim.uv();
     solution.energy.push_back(slim.energy());

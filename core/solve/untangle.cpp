@@ -16,7 +16,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/cancel.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/solve/convex_map.hpp"
@@ -50,10 +50,6 @@ constexpr std::array kFading{Fading{1e-1, 1e-2}, Fading{1e-2, 1e-3}, Fading{1e-3
 
 constexpr double kConformalBelow = 0.01;  // lambda: below, sizes are not the energy's business
 constexpr double kLeastStretch = 1e-12;
-
-void throw_if_stopped(const MapIntent& intent) {
-  if (intent.stop.stop_requested()) throw Error(ErrorCode::cancelled, "the job was cancelled");
-}
 
 /// Whether every vertex may move.
 bool may_move_all(const MapIntent& intent) {
@@ -122,7 +118,7 @@ void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t en
     const double worst = least_determinant(mesh, uv);
     if (flips <= enough && (flips > 0 || worst > 0)) return;
     if (k > 0 && k % kPatience == 0 && flips > std::exchange(target, flips / 2)) return;
-    throw_if_stopped(intent);
+    throw_if_cancelled(intent.stop);
     const double epsilon = std::max(floor, -kEpsilonShare * worst);
     const double fall = newton.step(uv, {{0.0}, 1, epsilon});
     if (fall < kStuck && epsilon == kLeastEpsilon) return;
@@ -134,7 +130,7 @@ void fade(const BarrierMesh& mesh, const MapIntent& intent, int most, UvMap& uv)
   Newton newton(mesh);
   for (const Fading& fading : kFading) {
     for (int k = 0; k < most; ++k) {
-      throw_if_stopped(intent);
+      throw_if_cancelled(intent.stop);
       if (newton.step(uv, {intent.rigidity, fading.weight, 0}) < fading.tolerance) break;
     }
     if (intent.in_place) break;
