@@ -26,6 +26,14 @@ enum class ErrorCode {
   queue_full,
   draining,
   too_many_streams,
+  unauthorized,
+  forbidden,
+  invalid_link,
+  idempotency_conflict,
+  rate_limited,
+  too_many_jobs,
+  quota_exceeded,
+  webhook_refused,
   // the asset's bytes
   unknown_format,
   malformed_glb,
@@ -46,6 +54,8 @@ enum class ErrorCode {
   non_finite_position,
   not_orientable,
   invalid_constraint,
+  no_texture_coordinates,
+  does_not_fit,
   // the work
   solver_failed,
   guarantee_failed,
@@ -54,6 +64,8 @@ enum class ErrorCode {
   cancelled,
   poison,
   storage_failed,
+  storage_full,
+  storage_corrupt,
   internal,
 };
 
