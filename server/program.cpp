@@ -1,0 +1,54 @@
+#include "server/program.hpp"
+
+#include <pthread.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "server/config.hpp"
+#include "server/log.hpp"
+#include "server/service.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+/// The signals that end the server, blocked in this thread and all that it starts from now on.
+sigset_t block_end_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+void run(const Config& config, const Log& log) {
+  const sigset_t signals = block_end_signals();
+  Service service(config, log);
+  const std::string address = to_text({config.listen.host, service.port()});
+  std::printf("unwrapd listening on http://%s\n", address.c_str());
+  std::fflush(stdout);
+  int signal = 0;
+  sigwait(&signals, &signal);
+  log.info("draining", {{"signal", signal}});
+  service.drain();
+  log.info("drained");
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  const CommandLine line = parse_command_line(argc, argv);
+  if (line.task == Task::leave) return line.exit_code;
+  const Log log(line.config.log_level);
+  try {
+    run(line.config, log);
+    return 0;
+  } catch (const std::exception& error) {
+    log.error("unwrapd cannot run", {{"reason", error.what()}});
+    return 1;
+  }
+}
+
+}  // namespace unwrapd::server
