@@ -84,7 +84,7 @@ JobOutcome WorkerPool::attempt(const RunningJob& job, Executor& executor) {
   } catch (const Error& error) {
     return outcome_of(error, job, limits_.max_job_seconds);
   } catch (const std::bad_alloc&) {
-    const Error error(ErrorCode::internal,
+    const Error error(ErrorCode::memory_limit,
                       "The memory of the server did not suffice; send a smaller mesh.");
     return ended(JobState::failed, error, job.record);
   } catch (const std::exception& error) {  // the owner learns nothing of our insides
