@@ -68,9 +68,9 @@ Vector vector_of(const Source& source, const char* name, const Json& value) {
 
 double weight_of(const Source& source, const Json& value) {
   const double weight = value.is_number() ? value.get<double>() : 0;
-  if (!(weight > 0 && std::isfinite(weight)))
+  if (!(weight >= kMinConstraintWeight && weight <= kMaxConstraintWeight))
     source.refuse("weight",
-                  "weight must be a finite number above 0; leave it out to hold exactly.");
+                  "weight must be a number from 1e-9 to 1e9; leave it out to hold exactly.");
   return weight;
 }
 

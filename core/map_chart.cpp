@@ -35,12 +35,6 @@ Rigidity rigidity_of(const Disk& disk, const UnwrapOptions& options, double lamb
   }
 }
 
-std::vector<char> held_vertices(const Disk& disk, const Holds& holds) {
-  std::vector<char> held(disk.positions.size(), 0);
-  for (const FixedPoint& point : holds.fixed) held[static_cast<std::size_t>(point.vertex)] = 1;
-  return held;
-}
-
 /// Scales a free map to UV area = 3D area in mesh units: all charts then share one texel density.
 /// One under position constraints goes to its place on the page.
 MappedChart finish(const Disk& disk, KeptPart part, const ChartHold& hold,
@@ -53,7 +47,7 @@ MappedChart finish(const Disk& disk, KeptPart part, const ChartHold& hold,
                 "a chart collapsed to zero area; choose another method or initial map");
   const PageFrame frame = hold.frame.value_or(PageFrame{Vec2::Zero(), disk.unit * even});
   mapped.uv = frame.to_page(std::move(part.uv), hold.page);
-  mapped.held = held_vertices(disk, hold.page);
+  mapped.held = fixed_vertices(disk.positions.size(), hold.page);
   mapped.sums = in_mesh_units(own, disk.unit, frame.scale);
   mapped.report = {.faces = part.chart.mesh.face_count(),
                    .vertices = part.chart.mesh.vertex_count(),
@@ -110,7 +104,7 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
     const Promise promise{options.guarantee,
                           options.repair,
                           {.rigidity = rigidity_of(disk, options, lambdas[k]),
-                           .held = held_vertices(disk, hold.held.holds),
+                           .held = fixed_vertices(disk.positions.size(), hold.held.holds),
                            .stop = watch.stop()}};
     if (options.guarantee != Guarantee::none) watch.tell(Stage::untangle);
     Kept kept = keep_promise(chart, disk, std::move(solution.uv), promise);

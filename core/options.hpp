@@ -59,6 +59,11 @@ struct UnwrapOptions {
 inline constexpr int kMinResolution = 16;
 inline constexpr int kMaxResolution = 16384;
 
+/// Finite weights of constraints. A vertex with weight w adds w |u - uv|^2 to the energy of its
+/// chart, both in units in which the chart's surface has area 1; energies are then of the order of
+/// 0.01 to 1. Beyond these bounds double precision would no longer see one beside the other.
+inline constexpr double kMinConstraintWeight = 1e-9, kMaxConstraintWeight = 1e9;
+
 /// Whether the method can hold vertices where a user wants them (constraints, boundary).
 inline bool can_hold(Method method) {
   return method == Method::asap || method == Method::arap || method == Method::hybrid;

@@ -12,12 +12,6 @@
 
 namespace unwrapd {
 
-/// The weights of soft constraints. A vertex on a spring of weight w adds w |u - uv|^2 to the
-/// energy of its chart, both in units in which the chart's surface has area 1; energies are then of
-/// the order of 0.01 to 1. Beyond these bounds double precision would no longer see one beside the
-/// other.
-inline constexpr double kLeastWeight = 1e-9, kMostWeight = 1e9;
-
 /// The holds of every chart, in the page's coordinates: result[s][k] for chart k of surface s. All
 /// are empty when there are no constraints; else each has at least one vertex.
 ///

@@ -36,8 +36,8 @@ struct Surface {
 
 /// A surface's answer. Faces keep their number and order; a vertex that lies on a seam is split.
 /// source[v] is the input vertex that vertex v copies; the first n entries (n = input vertices) are
-/// 0..n-1, split copies follow. uv[v] is in [0,1]^2, V pointing up; vertices that no face uses have
-/// uv (0,0).
+/// 0..n-1, split copies follow. uv[v] is in [0,1]^2, V pointing up, unless position constraints put
+/// it elsewhere; vertices that no face uses have uv (0,0).
 struct UnwrappedSurface {
   std::vector<Triangle> faces;
   std::vector<Index> source;

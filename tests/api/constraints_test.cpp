@@ -55,6 +55,8 @@ TEST(Constraints, AreRefusedWithThePlaceOfWhatIsWrong) {
       {R"({"vertex":1,"uv":[0,0],"weight":0})", "/weight"},
       {R"({"vertex":1,"uv":[0,0],"weight":-2})", "/weight"},
       {R"({"vertex":1,"uv":[0,0],"weight":"hard"})", "/weight"},
+      {R"({"vertex":1,"uv":[0,0],"weight":9.9e-10})", "/weight"},
+      {R"({"vertex":1,"uv":[0,0],"weight":1.1e9})", "/weight"},
       {R"({"vertex":1,"uv":[0,0],"mesh":-1})", "/mesh"},
       {R"({"vertex":1,"uv":[0,0],"wieght":1})", "/wieght"},
       {R"({"vertex":1,"uv":[0,0],"a/b":1})", "/a~1b"},
