@@ -1,121 +1,227 @@
+// Where the values of the options come from, who wins, and what is said of a wrong one.
 #include "server/config.hpp"
 
+#include <toml++/toml.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <limits>
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <thread>
+
+#include "server/config_row.hpp"
 
 namespace unwrapd::server {
 namespace {
 
-constexpr std::int64_t kMaxBodyBytes = std::int64_t{4} * 1024 * 1024 * 1024;
-constexpr int kMaxPort = 65535;
-constexpr int kMaxThreads = 256;
-constexpr int kMaxStreams = 4096;
-constexpr int kMaxSeconds = std::numeric_limits<std::int32_t>::max();
-constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
+constexpr int kMistake = 2;
+constexpr const char* kAbout =
+    "Gives triangle meshes their UVs, over HTTP. Every option can be given as a flag, as an "
+    "environment variable and in a TOML file: --max-queue 9, UNWRAPD_MAX_QUEUE=9, max-queue = 9; "
+    "the flag wins over the variable, the variable over the file.";
 
-/// "--max-queue" -> "UNWRAPD_MAX_QUEUE"
-std::string environment_name(const std::string& flag) {
-  std::string name = "UNWRAPD_" + flag.substr(2);
-  for (char& letter : name)
-    letter =
-        letter == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  return name;
+[[noreturn]] void wrong(const std::string& what) { throw Error(ErrorCode::invalid_option, what); }
+
+/// "max-queue" -> "UNWRAPD_MAX_QUEUE"
+std::string variable_name(std::string_view name) {
+  std::string variable = "UNWRAPD_";
+  for (const char c : name)
+    variable += c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return variable;
 }
 
-template <class Value>
-CLI::Option* add(CLI::App& app, const std::string& flag, Value& value, const std::string& what) {
-  return app.add_option(flag, value, what)->envname(environment_name(flag))->capture_default_str();
+/// Where a value was found, for errors and --print-config: "--max-queue", "UNWRAPD_MAX_QUEUE",
+/// "/etc/unwrapd.toml". Empty: it is the default.
+using Sources = std::map<std::string_view, std::string>;
+
+class Reading {
+ public:
+  Reading() : groups_(config_groups()) {
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    config_.threads = std::min(2, cores);
+    config_.workers = cores / config_.threads;
+  }
+
+  CommandLine run(int argc, const char* const* argv);
+
+ private:
+  void declare(CLI::App& app);
+  void read_file(const std::string& path);
+  void read_environment();
+  void read_flags(const CLI::App& app);
+  void finish();
+  void set(const ConfigRow& row, const std::string& text, const std::string& source);
+  const ConfigRow& find(std::string_view key, const std::string& path) const;
+  void print() const;
+
+  template <class Use>
+  void each_row(const Use& use) const {
+    for (const ConfigGroup& group : groups_)
+      for (const ConfigRow& row : group.rows) use(group, row);
+  }
+
+  std::vector<ConfigGroup> groups_;
+  Config config_;
+  Sources sources_;
+  std::string file_;
+  bool print_ = false;
+  bool healthcheck_ = false;
+};
+
+void Reading::declare(CLI::App& app) {
+  app.set_version_flag("--version", "unwrapd " UNWRAPD_VERSION);
+  app.add_option("--config", file_, "A TOML file of options")->type_name("FILE");
+  app.add_flag("--print-config", print_, "Print all options as they are, as such a file, and exit");
+  app.add_flag("--healthcheck", healthcheck_,
+               "Ask the server that runs with these options whether it is well; exit with 0 or 1");
+  each_row([&](const ConfigGroup& group, const ConfigRow& row) {
+    const std::string flag = "--" + std::string(row.heading.name);
+    CLI::Option* option =
+        row.kind == ConfigKind::on_off ? app.add_flag(flag) : app.add_option(flag);
+    option->description(std::string(row.heading.what))->group(std::string(group.title));
+    if (row.kind == ConfigKind::on_off) return;
+    option->type_name(std::string(row.heading.takes))->default_str(row.get(config_));
+  });
 }
 
-template <class Number>
-void add_number(CLI::App& app, const std::string& flag, Number& value, const std::string& what,
-                std::pair<Number, Number> range) {
-  add(app, flag, value, what)->check(CLI::Range(range.first, range.second));
+void Reading::set(const ConfigRow& row, const std::string& text, const std::string& source) {
+  try {
+    row.set(config_, text);
+  } catch (const Error& error) {
+    const std::string shown = row.heading.is_secret ? "what is given" : "\"" + text + "\"";
+    wrong(source + ": " + std::string(row.heading.name) + " takes " + error.what() + ", not " +
+          shown + ".");
+  }
+  sources_[row.heading.name] = source;
 }
 
-/// Splits "host:port" ("[::1]:8080" for IPv6). False when it is not of that form.
-bool read_address(const std::string& text, Config& config) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0) return false;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data() + colon + 1, end, config.port);
-  if (parsed.ec != std::errc() || parsed.ptr != end) return false;
-  config.host = text.substr(0, colon);
-  if (config.host.front() == '[' && config.host.back() == ']')
-    config.host = config.host.substr(1, config.host.size() - 2);
-  return config.port >= 0 && config.port <= kMaxPort;
+const ConfigRow& Reading::find(std::string_view key, const std::string& path) const {
+  const ConfigRow* found = nullptr;
+  each_row([&](const ConfigGroup&, const ConfigRow& row) {
+    if (row.heading.name == key) found = &row;
+  });
+  if (!found) wrong(path + ": there is no option \"" + std::string(key) + "\"; see --help.");
+  return *found;
 }
 
-void add_service_flags(CLI::App& app, Config& config) {
-  add(app, "--data", config.data, "Directory of jobs and results; made when missing");
-  add_number(app, "--workers", config.workers, "Jobs run at once", {1, kMaxThreads});
-  add_number(app, "--threads", config.threads, "Threads of each job", {1, kMaxThreads});
-  add_number(app, "--keep-seconds", config.keep_seconds, "How long results are kept",
-             {1, kMaxSeconds});
-  add_number(app, "--drain-seconds", config.drain_seconds,
-             "How long running jobs may go on after SIGTERM", {0, kMaxSeconds});
-  const std::map<std::string, LogLevel> levels = {{"debug", LogLevel::debug},
-                                                  {"info", LogLevel::info},
-                                                  {"warning", LogLevel::warning},
-                                                  {"error", LogLevel::error},
-                                                  {"off", LogLevel::off}};
-  app.add_option("--log-level", config.log_level, "debug, info (default), warning, error or off")
-      ->envname("UNWRAPD_LOG_LEVEL")
-      ->transform(CLI::CheckedTransformer(levels).description(""));
+/// A value of the file as a flag would give it.
+std::string text_of(const toml::node& node, const std::string& where) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_integer()) return std::to_string(number->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  const toml::array* items = node.as_array();
+  if (!items) wrong(where + " is neither text, a whole number, true, false nor an array of text.");
+  std::vector<std::string> texts;
+  for (const toml::node& item : *items) {
+    if (!item.is_string()) wrong(where + " has an item that is not text.");
+    texts.push_back(item.as_string()->get());
+  }
+  return join_list(texts);
 }
 
-void add_limit_flags(CLI::App& app, api::Limits& limits) {
-  using Counts = std::pair<std::int64_t, std::int64_t>;
-  add_number(app, "--max-body-bytes", limits.max_body_bytes, "Bytes of one request",
-             Counts{1024, kMaxBodyBytes});
-  add_number(app, "--max-vertices", limits.max_vertices, "Vertices of an asset",
-             Counts{3, kMaxCount});
-  add_number(app, "--max-faces", limits.max_faces, "Triangles of an asset", Counts{1, kMaxCount});
-  add_number(app, "--max-sync-faces", limits.max_sync_faces,
-             "Triangles of an asset sent to /v1/unwrap", Counts{1, kMaxCount});
-  add_number(app, "--max-iterations", limits.max_iterations,
-             "The options stop.iterations and stop.max_iterations", {1, 1'000'000});
-  add_number(app, "--max-constraints", limits.max_constraints, "Entries of the option constraints",
-             {0, 10'000'000});
-  add_number(app, "--max-job-seconds", limits.max_job_seconds, "Work on one job", {1, kMaxSeconds});
-  add_number(app, "--max-wait-seconds", limits.max_wait_seconds, "Prefer: wait", {0, 3600});
-  add_number(app, "--max-queue", limits.max_queue, "Jobs that wait for a worker", {1, 1'000'000});
-  add_number(app, "--max-streams", limits.max_streams, "Event streams open at once",
-             {1, kMaxStreams});
+void Reading::read_file(const std::string& path) {
+  toml::table table;
+  try {
+    table = toml::parse_file(path);
+  } catch (const toml::parse_error& error) {
+    const auto line = error.source().begin.line;
+    wrong(path + (line > 0 ? " line " + std::to_string(line) : "") + ": " +
+          std::string(error.description()) + ".");
+  }
+  for (const auto& [key, node] : table) {
+    const ConfigRow& row = find(key.str(), path);
+    set(row, text_of(node, path + ": " + std::string(key.str())), path);
+  }
+}
+
+void Reading::read_environment() {
+  each_row([&](const ConfigGroup&, const ConfigRow& row) {
+    const std::string variable = variable_name(row.heading.name);
+    const char* value = std::getenv(variable.c_str());  // NOLINT(concurrency-mt-unsafe)
+    if (value) set(row, value, variable);
+  });
+}
+
+void Reading::read_flags(const CLI::App& app) {
+  each_row([&](const ConfigGroup&, const ConfigRow& row) {
+    const std::string flag = "--" + std::string(row.heading.name);
+    const CLI::Option* option = app.get_option(flag);
+    if (option->count() > 0) set(row, option->results().back(), flag);
+  });
+}
+
+void Reading::finish() {
+  if (!sources_.contains("admin-listen")) {
+    const int port = config_.listen.port;
+    config_.admin = Address{"127.0.0.1", port == 0 ? 0 : port + 1};
+  }
+  check_together(config_);
+}
+
+/// text as TOML writes it.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string toml_value(const ConfigRow& row, const Config& config) {
+  const std::string value = row.get(config);
+  if (row.heading.is_secret) return value.empty() ? "\"\"" : "\"********\"";
+  if (row.kind == ConfigKind::text) return quoted(value);
+  if (row.kind != ConfigKind::list) return value;
+  std::string items;
+  for (const std::string& item : split_list(value))
+    items += (items.empty() ? "" : ", ") + quoted(item);
+  return "[" + items + "]";
+}
+
+void Reading::print() const {
+  std::string text;
+  for (const ConfigGroup& group : groups_) {
+    text += (text.empty() ? "# " : "\n# ") + std::string(group.title) + "\n";
+    for (const ConfigRow& row : group.rows) {
+      const auto source = sources_.find(row.heading.name);
+      const std::string from = source == sources_.end() ? "" : "  # from " + source->second;
+      text += std::string(row.heading.name) + " = " + toml_value(row, config_) + from + "\n";
+    }
+  }
+  std::fputs(text.c_str(), stdout);
+}
+
+CommandLine Reading::run(int argc, const char* const* argv) {
+  CLI::App app(kAbout, "unwrapd");
+  declare(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return {.task = Task::leave, .config = {}, .exit_code = app.exit(error) == 0 ? 0 : kMistake};
+  }
+  const char* file = std::getenv("UNWRAPD_CONFIG");  // NOLINT(concurrency-mt-unsafe)
+  if (file_.empty() && file) file_ = file;
+  if (!file_.empty()) read_file(file_);
+  read_environment();
+  read_flags(app);
+  finish();
+  if (print_) print();
+  const Task task = print_ ? Task::leave : healthcheck_ ? Task::healthcheck : Task::serve;
+  return {.task = task, .config = config_, .exit_code = 0};
 }
 
 }  // namespace
 
 CommandLine parse_command_line(int argc, const char* const* argv) {
-  Config config;
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  config.threads = std::min(2, cores);
-  config.workers = cores / config.threads;
-
-  CLI::App app(
-      "Gives triangle meshes their UVs, over HTTP. Every flag can be given as an "
-      "environment variable as well: --max-queue is UNWRAPD_MAX_QUEUE.",
-      "unwrapd");
-  app.set_version_flag("--version", "unwrapd " UNWRAPD_VERSION);
-  std::string listen = "127.0.0.1:8080";
-  add(app, "--listen", listen, "HOST:PORT; port 0 takes a free one")
-      ->check([&](const std::string& text) {
-        return read_address(text, config) ? std::string() : "--listen takes HOST:PORT";
-      });
-  add_service_flags(app, config);
-  add_limit_flags(app, config.limits);
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return {.config = std::nullopt, .exit_code = app.exit(error)};
+    return Reading().run(argc, argv);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "unwrapd: %s\n", error.what());
+    return {.task = Task::leave, .config = {}, .exit_code = kMistake};
   }
-  return {.config = config, .exit_code = 0};
 }
 
 }  // namespace unwrapd::server

@@ -1,19 +1,23 @@
 #pragma once
-// The command line of unwrapd. Every flag has an environment variable: --max-queue is
-// UNWRAPD_MAX_QUEUE; the flag wins.
+// What one server is told: a table of options (config_table.cpp), each of which is a flag, an
+// environment variable and a key of the file. --max-queue is UNWRAPD_MAX_QUEUE and max-queue; the
+// flag wins over the variable, the variable over the file, the file over the default.
 
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "api/limits.hpp"
+#include "server/address.hpp"
 #include "server/log.hpp"
 
 namespace unwrapd::server {
 
 struct Config {
-  std::string host = "127.0.0.1";
-  int port = 8080;  ///< 0: a free one
+  Address listen{"127.0.0.1", 8080};
+  /// Of the probes and metrics; without one there is none. parse_command_line() gives it the port
+  /// after that of listen, on loopback, where nothing else is asked for.
+  std::optional<Address> admin;
   std::filesystem::path data = "data";
   int workers = 1;
   int threads = 1;  ///< for each job
@@ -23,11 +27,17 @@ struct Config {
   api::Limits limits;
 };
 
-/// What the command line asks for: to serve, or (--help, --version, a mistake) to exit, when all
-/// has been printed.
+/// What the command line asks for.
+enum class Task {
+  serve,
+  healthcheck,  ///< ask the server that runs with this configuration whether it is well
+  leave,        ///< all has been said: --help, --version, --print-config, or a mistake
+};
+
 struct CommandLine {
-  std::optional<Config> config;
-  int exit_code = 0;
+  Task task = Task::leave;
+  Config config;
+  int exit_code = 0;  ///< of Task::leave; 2 after a mistake, of which stderr tells
 };
 
 CommandLine parse_command_line(int argc, const char* const* argv);

@@ -19,8 +19,8 @@ constexpr int kRequestThreads = 64;  // beside those of event streams
 
 HttpConfig http_config(const Config& config) {
   HttpConfig http;
-  http.host = config.host;
-  http.port = config.port;
+  http.host = config.listen.host;
+  http.port = config.listen.port;
   http.max_connections = config.limits.max_streams + kRequestThreads;
   http.limits.max_body_bytes = config.limits.max_body_bytes;
   return http;

@@ -113,7 +113,7 @@ void await(const std::function<bool()>& condition) {
 }
 
 RunningServer::RunningServer() {
-  config_.port = 0;
+  config_.listen.port = 0;
   config_.data = dir_.path();
   config_.workers = 2;
   config_.threads = 2;

@@ -88,7 +88,7 @@ TEST_F(Shutdown, AnAddressThatIsTakenIsAnError) {
   start();
   Config second = config_;
   second.data = dir_.path() / "second";
-  second.port = service_->port();
+  second.listen.port = service_->port();
   EXPECT_THROW(Service(second, log_), Error);
 }
 

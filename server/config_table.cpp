@@ -1,0 +1,111 @@
+// The one place where options of the server are declared: name, range and sentence of each.
+#include <limits>
+
+#include "server/config_row.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::int64_t kMaxBodyBytes = std::int64_t{4} * 1024 * 1024 * 1024;
+constexpr int kMaxThreads = 256;
+constexpr int kMaxStreams = 4096;
+constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
+constexpr std::string_view kNoAdmin = "off";
+
+Address address_of(const std::string& text) {
+  const std::optional<Address> address = parse_address(text);
+  if (!address) expected("HOST:PORT with a port from 0 to 65535");
+  return *address;
+}
+
+ConfigRow listen_row() {
+  return {.heading = {"listen", "HOST:PORT", "Where to serve; port 0 takes a free one"},
+          .kind = ConfigKind::text,
+          .set = [](Config& config, const std::string& text) { config.listen = address_of(text); },
+          .get = [](const Config& config) { return to_text(config.listen); }};
+}
+
+ConfigRow admin_row() {
+  return {.heading = {"admin-listen", "HOST:PORT",
+                      "Where to serve probes and metrics, or off; not given: 127.0.0.1 and the "
+                      "port after that of --listen"},
+          .kind = ConfigKind::text,
+          .set =
+              [](Config& config, const std::string& text) {
+                config.admin.reset();
+                if (text != kNoAdmin) config.admin = address_of(text);
+              },
+          .get =
+              [](const Config& config) {
+                return config.admin ? to_text(*config.admin) : std::string(kNoAdmin);
+              }};
+}
+
+ConfigGroup serving() { return {.title = "Serving", .rows = {listen_row(), admin_row()}}; }
+
+ConfigGroup working() {
+  return {
+      .title = "Working",
+      .rows = {
+          text({"data", "PATH", "Directory of jobs and results; made when missing"}, &Config::data),
+          number({"workers", "N", "Jobs run at once"}, {1, kMaxThreads}, &Config::workers),
+          number({"threads", "N", "Threads of each job"}, {1, kMaxThreads}, &Config::threads),
+          number({"keep-seconds", "N", "How long results are kept"}, {1, kMaxCount},
+                 &Config::keep_seconds),
+          number({"drain-seconds", "N", "How long running jobs may go on after SIGTERM"},
+                 {0, kMaxCount}, &Config::drain_seconds)}};
+}
+
+ConfigGroup telling() {
+  const Names<LogLevel> levels = {{"debug", LogLevel::debug},
+                                  {"info", LogLevel::info},
+                                  {"warning", LogLevel::warning},
+                                  {"error", LogLevel::error},
+                                  {"off", LogLevel::off}};
+  return {.title = "Telling",
+          .rows = {choice({"log-level", "LEVEL", "debug, info, warning, error or off"}, levels,
+                          &Config::log_level)}};
+}
+
+template <class Number>
+ConfigRow limit(const ConfigHeading& heading, Range range, Number api::Limits::*limit) {
+  return number(heading, range, &Config::limits, limit);
+}
+
+ConfigGroup limits() {
+  using api::Limits;
+  return {
+      .title = "Limits",
+      .rows = {
+          limit({"max-body-bytes", "N", "Bytes of one request"}, {1024, kMaxBodyBytes},
+                &Limits::max_body_bytes),
+          limit({"max-vertices", "N", "Vertices of an asset"}, {3, kMaxCount},
+                &Limits::max_vertices),
+          limit({"max-faces", "N", "Triangles of an asset"}, {1, kMaxCount}, &Limits::max_faces),
+          limit({"max-sync-faces", "N", "Triangles of an asset sent to /v1/unwrap"}, {1, kMaxCount},
+                &Limits::max_sync_faces),
+          limit({"max-iterations", "N", "The options stop.iterations and stop.max_iterations"},
+                {1, 1'000'000}, &Limits::max_iterations),
+          limit({"max-constraints", "N", "Entries of the option constraints"}, {0, 10'000'000},
+                &Limits::max_constraints),
+          limit({"max-job-seconds", "N", "Work on one job"}, {1, kMaxCount},
+                &Limits::max_job_seconds),
+          limit({"max-wait-seconds", "N", "Prefer: wait"}, {0, 3600}, &Limits::max_wait_seconds),
+          limit({"max-queue", "N", "Jobs that wait for a worker"}, {1, 1'000'000},
+                &Limits::max_queue),
+          limit({"max-streams", "N", "Event streams open at once"}, {1, kMaxStreams},
+                &Limits::max_streams)}};
+}
+
+}  // namespace
+
+std::vector<ConfigGroup> config_groups() { return {serving(), working(), telling(), limits()}; }
+
+void check_together(const Config& config) {
+  if (config.admin && config.admin->port != 0 && *config.admin == config.listen) {
+    throw Error(ErrorCode::invalid_option,
+                "--admin-listen and --listen are the same address; give them two.");
+  }
+}
+
+}  // namespace unwrapd::server
