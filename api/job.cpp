@@ -11,8 +11,8 @@ namespace {
 // Each in the order of its enumerators.
 constexpr std::array<std::string_view, 5> kStates = {"queued", "running", "succeeded", "failed",
                                                      "cancelled"};
-constexpr std::array<std::string_view, 8> kStages = {"read",     "setup",   "factor", "solve",
-                                                     "untangle", "measure", "pack",   "write"};
+constexpr std::array<std::string_view, 10> kStages = {
+    "read", "setup", "segment", "merge", "factor", "solve", "untangle", "measure", "pack", "write"};
 
 template <class Enum>
 std::optional<Enum> named(std::span<const std::string_view> names, std::string_view name) {

@@ -13,7 +13,7 @@ enum class Method { asap, arap, hybrid, abf, linabf, cp, bff, ic, slim };
 enum class InitialMap { automatic, mean_value, tutte, lscm };  ///< automatic: "auto" on the wire
 enum class Pins { diameter, spectral };
 enum class LambdaUnits { dimensionless, paper };
-enum class SeamMode { automatic, keep, none };  ///< automatic: "auto" on the wire
+enum class SeamMode { automatic, keep, none, uv0 };  ///< automatic: "auto" on the wire
 enum class Guarantee { none, flip_free, bijective };
 enum class RepairMethod { untangle, virtual_boundary };  ///< how flipped triangles are turned back
 enum class BoundaryShape { free, circle, square };
@@ -36,6 +36,20 @@ struct PositionConstraint {
       std::numeric_limits<double>::infinity();  ///< finite: in least squares, page_holds()
 };
 
+/// Edges at which the surface shall be cut open: those between consecutive vertices of a path.
+struct SeamPath {
+  Index surface = 0;            ///< which of the asset's surfaces
+  std::vector<Index> vertices;  ///< of that surface, two or more; copies at a position are one
+};
+
+/// How islands go onto the page, or onto several: page k is the square [k, k+1] x [0, 1], UDIM tile
+/// 1001 + k.
+struct Packing {
+  std::optional<double> texels_per_unit = {};  ///< of every island, > 0; empty: as many as fit
+  int max_pages = 1;                           ///< [1, kMaxPages]; no more are taken than needed
+  bool stack_identical = false;                ///< congruent islands lie on each other
+};
+
 struct UnwrapOptions {
   Method method = Method::arap;
   double lambda = 0.1;  ///< hybrid only, >= 0: 0 is ASAP, infinity is ARAP
@@ -46,6 +60,9 @@ struct UnwrapOptions {
   InitialMap initial = InitialMap::automatic;  ///< see initial_map()
   Pins pins = Pins::diameter;                  ///< ASAP only: how the conformal map is pinned
   SeamMode seams = SeamMode::automatic;        ///< which vertex copies are welded for topology
+  std::vector<SeamPath> seam_edges = {};       ///< cuts beside those of seams
+  std::optional<double> max_distortion = {};   ///< D_angle and D_area of all charts, ADR 0018
+  std::optional<int> max_charts = {};          ///< of the asset, where its topology allows
   int resolution = 1024;                       ///< side of the square page, texels, [16, 16384]
   int padding = 2;                             ///< gap between islands and to the border, texels
   Guarantee guarantee = Guarantee::flip_free;  ///< what holds of the UVs that are written
@@ -54,10 +71,17 @@ struct UnwrapOptions {
       BoundaryShape::free;  ///< ASAP, ARAP, Hybrid: where the longest loop lies
   std::vector<PositionConstraint> constraints =
       {};  ///< ASAP, ARAP, Hybrid; the page is then theirs
+  Packing packing = {};
+  bool repack_only = false;  ///< the surfaces' own UVs are packed anew, nothing is solved
 };
+
+/// The distortion up to which a surface that is no disk is taken apart when none is asked for.
+inline constexpr double kDefaultDistortion = 2.02;
+inline constexpr double kMinDistortion = 2.0001;
 
 inline constexpr int kMinResolution = 16;
 inline constexpr int kMaxResolution = 16384;
+inline constexpr int kMaxPages = 10;  ///< a row of UDIM tiles
 
 /// Finite weights of constraints. A vertex with weight w adds w |u - uv|^2 to the energy of its
 /// chart, both in units in which the chart's surface has area 1; energies are then of the order of

@@ -9,7 +9,7 @@
 
 namespace unwrapd {
 
-enum class Stage { read, setup, factor, solve, untangle, measure, pack, write };
+enum class Stage { read, setup, segment, merge, factor, solve, untangle, measure, pack, write };
 
 /// A stage begins. chart counts from 0; chart_count is 0 while the charts are not yet known.
 struct StageEvent {

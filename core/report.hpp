@@ -41,8 +41,9 @@ struct ChartReport {
   Index surface = 0;  ///< which of the surfaces the chart belongs to
   Index faces = 0;
   Index vertices = 0;
-  Index boundaries = 0;  ///< boundary loops of the chart as solved
-  double area = 0;       ///< 3D area
+  Index boundaries = 0;    ///< boundary loops of the chart as solved
+  double area = 0;         ///< 3D area
+  double seam_length = 0;  ///< 3D length of its border to other charts and to itself
   Distortion distortion = {};
   int iterations = 0;
   StopReason stop_reason = StopReason::iterations;
@@ -66,6 +67,7 @@ enum class RepairKind {
   duplicate_faces_set_aside,   ///< the same three vertices as an earlier face
   non_manifold_edges_split,    ///< more than two faces at an edge, or two of the same direction
   cut_to_disk,                 ///< closed or high-genus components opened along a cut graph
+  segmented,                   ///< components taken apart into charts, see max_distortion
 };
 
 /// One point of a lambda curve: all charts together.
@@ -88,8 +90,12 @@ struct Report {
   std::vector<std::string> notes;  ///< sentences for the user, e.g. an option without effect
   std::vector<ChartReport> charts;
   Distortion distortion = {};             ///< over all charts, area-weighted
+  double area = 0;                        ///< 3D area of all charts
   double seam_length = 0;                 ///< 3D length of edges whose UVs differ on both sides
-  double fill = 0;                        ///< UV area of the islands ÷ area of the page
+  double seam_ratio = 0;                  ///< seam_length ÷ square root of area
+  std::optional<Index> overlaps = {};     ///< of all charts, where they were counted in each
+  double fill = 0;                        ///< UV area covered by islands ÷ area of the pages
+  Index pages = 1;                        ///< that the islands take, see Packing
   double texel_density = 0;               ///< texels per mesh unit
   Guarantee guarantee = Guarantee::none;  ///< what holds of the UVs that are written
   std::vector<CurvePoint> curve = {};     ///< one for each lambda of a curve, in its order

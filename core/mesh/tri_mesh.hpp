@@ -15,6 +15,7 @@ using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Triangle = std::array<Index, 3>;  ///< vertex indices, counter-clockwise
 using UvMap = std::vector<Vec2>;        ///< one UV a vertex
+using CornerUv = std::array<Vec2, 3>;   ///< the UVs of a face's corners
 
 /// Triangles in space. Faces index positions; lengths are in the asset's own (mesh) units.
 struct TriMesh {
@@ -32,6 +33,8 @@ struct Surface {
   TriMesh mesh;
   std::vector<Index> part;  ///< part[t]: the primitive (material) that face t came from
   std::string name;         ///< JSON pointer of the mesh ("/meshes/0") or the OBJ's "obj"
+  std::vector<CornerUv> corner_uv = {};  ///< one a face: the UVs that came in, V pointing up; empty
+                                         ///< unless asked for and there. Corners without are NaN
 };
 
 /// A surface's answer. Faces keep their number and order; a vertex that lies on a seam is split.

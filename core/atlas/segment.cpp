@@ -1,0 +1,106 @@
+// Over-segment by normals, then merge with ARAP as the judge.
+//
+// The patches to begin with shall use but a part of the distortion that is allowed, so that merging
+// has something to spend: their flatness is tightened until they do. A patch that has no sound map
+// (a tube, a fold) is clustered again by itself, ever more tightly; single triangles always have
+// one, so this ends.
+#include "core/atlas/segment.hpp"
+
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "core/atlas/cluster.hpp"
+#include "core/atlas/labels.hpp"
+#include "core/cancel.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr double kFlatness = 0.06;  // mean 1 - cosine within a patch; half for each next round
+constexpr int kFlatnessRounds = 6;
+constexpr double kShareOfPatches = 0.3;  // of the budget, that patches may use before they merge
+constexpr double kRefinement = 0.3;      // of flatness, each time a patch has no sound map
+constexpr int kRefinements = 4;          // then the patch falls into its triangles
+constexpr int kSmoothingPasses = 3;
+constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
+constexpr double kCapOfOnePatch = 4;   // in shares of what is allowed of all
+
+Excess total_of(std::span<const Patch> patches) {
+  Excess total;
+  for (const Patch& patch : patches) total += patch.excess;
+  return total;
+}
+
+/// The faces of each label with a map of their own, from their projection.
+std::vector<Patch> map_patches(const Sheet& sheet, std::vector<Index>& label,
+                               const std::stop_token& stop, Executor& executor) {
+  std::vector<std::vector<Index>> faces = faces_by_label(label, renumber(label));
+  std::vector<Patch> patches(faces.size());
+  executor.for_each_block(static_cast<int>(faces.size()), [&](int block) {
+    Patch& patch = patches[static_cast<std::size_t>(block)];
+    patch.region.faces = std::move(faces[static_cast<std::size_t>(block)]);
+    patch.region.uv = projected(sheet, patch.region.faces);
+    const TrialRules rules{.most_excess = std::numeric_limits<double>::infinity(), .stop = stop};
+    const TrialResult result = try_map(sheet, {}, rules, patch.region);
+    patch.excess = result.excess;
+    patch.is_sound = result.verdict == Verdict::sound;
+    for (const Index t : patch.region.faces) patch.area += sheet.area(t);
+  });
+  throw_if_cancelled(stop);
+  return patches;
+}
+
+/// Patches without a sound map fall into smaller ones: those of `finer` labels.
+void split_unsound(const Sheet& sheet, std::span<const Patch> patches, std::span<const Index> finer,
+                   std::vector<Index>& label) {
+  const auto face_count = static_cast<Index>(label.size());
+  for (const Patch& patch : patches) {
+    if (patch.is_sound) continue;
+    for (const Index t : patch.region.faces) label[t] = face_count + finer[t];
+  }
+  separate_labels(sheet.halfedges, label);
+}
+
+std::vector<Patch> sound_patches(const Sheet& sheet, double flatness, std::vector<Index> label,
+                                 const SegmentRules& rules, Executor& executor) {
+  std::vector<Patch> patches = map_patches(sheet, label, rules.stop, executor);
+  const auto is_sound = [](const Patch& patch) { return patch.is_sound; };
+  for (int k = 0; k <= kRefinements && !std::ranges::all_of(patches, is_sound); ++k) {
+    flatness *= kRefinement;
+    std::vector<Index> finer(label.size());
+    std::iota(finer.begin(), finer.end(), 0);
+    if (k < kRefinements) finer = cluster_faces(sheet, sheet.normal, flatness, rules.stop);
+    split_unsound(sheet, patches, finer, label);
+    patches = map_patches(sheet, label, rules.stop, executor);
+  }
+  return patches;
+}
+
+std::vector<Patch> over_segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
+  const double allowed = kShareOfPatches * (rules.max_distortion - 2);
+  double flatness = kFlatness;
+  for (int round = 1;; ++round, flatness /= 2) {
+    std::vector<Index> label = cluster_faces(sheet, sheet.normal, flatness, rules.stop);
+    smooth_labels(sheet, kSmoothingPasses, kSmoothCosine, label);
+    std::vector<Patch> patches = sound_patches(sheet, flatness, label, rules, executor);
+    if (round == kFlatnessRounds || total_of(patches).worst() <= allowed) return patches;
+  }
+}
+
+}  // namespace
+
+std::vector<Region> segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
+  const double budget = rules.max_distortion - 2;
+  const MergeRules merging{.budget = budget,
+                           .cap = kCapOfOnePatch * budget,
+                           .on_progress = rules.on_progress,
+                           .stop = rules.stop};
+  std::vector<Patch> patches =
+      merge_patches(sheet, {}, over_segment(sheet, rules, executor), merging, executor);
+  std::vector<Region> regions;
+  for (Patch& patch : patches) regions.push_back(std::move(patch.region));
+  return regions;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,25 @@
+#pragma once
+// A surface of any genus taken apart into few regions that ARAP lays flat with little distortion.
+
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "core/atlas/merge.hpp"
+#include "core/atlas/sheet.hpp"
+#include "core/executor.hpp"
+
+namespace unwrapd {
+
+struct SegmentRules {
+  double max_distortion = 2.02;  ///< of all regions together, D_angle and D_area each; > 2
+  std::function<void(double)> on_progress = {};  ///< the share that is done; from this thread
+  std::stop_token stop = {};
+};
+
+/// Every face of the sheet is in exactly one region; each region is a disk (holes allowed) whose
+/// map has no flip and no overlap. Ends with single triangles in the worst case. The same for any
+/// executor, and for the sheet of a mesh that was moved or scaled. Throws Error{cancelled}.
+std::vector<Region> segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor);
+
+}  // namespace unwrapd

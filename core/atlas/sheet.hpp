@@ -1,0 +1,31 @@
+#pragma once
+// A connected surface as segmentation sees it: in units in which its area is 1, with what is asked
+// again and again of its faces and sides worked out once.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/measure/rest_triangle.hpp"
+#include "core/mesh/halfedges.hpp"
+
+namespace unwrapd {
+
+struct Sheet {
+  TriMesh mesh;                    ///< recentred, area 1
+  Halfedges halfedges;             ///< of mesh.faces; any genus, with or without boundaries
+  std::vector<RestTriangle> rest;  ///< one a face
+  std::vector<Vec3> normal;        ///< one a face, of unit length
+  std::vector<double> length;      ///< one a half-edge
+
+  [[nodiscard]] Index face_count() const { return mesh.face_count(); }
+  [[nodiscard]] double area(Index t) const { return rest[static_cast<std::size_t>(t)].area; }
+};
+
+/// mesh: connected, no face of zero area, each vertex with one fan.
+Sheet make_sheet(const TriMesh& mesh, const Halfedges& halfedges);
+
+/// The faces projected along their mean normal: a seed for the map of a nearly flat set of faces.
+std::vector<CornerUv> projected(const Sheet& sheet, std::span<const Index> faces);
+
+}  // namespace unwrapd

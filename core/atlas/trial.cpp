@@ -1,0 +1,135 @@
+// Liu et al. 2008, Sec. 4.4, cut short: rotations are all that an ARAP iteration asks of the map
+// before it, so the maps of two neighbours, laid side by side, are start enough for their union. No
+// embedding, no second factorisation, and four iterations show what converged ones would.
+#include "core/atlas/trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/measure/distortion.hpp"
+#include "core/measure/overlaps.hpp"
+#include "core/mesh/topology.hpp"
+#include "core/solve/global_step.hpp"
+#include "core/solve/objective.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// The region as a mesh of its own.
+struct Part {
+  TriMesh mesh;
+  Halfedges halfedges;
+  std::vector<BoundaryLoop> loops;
+};
+
+Halfedges glued(const Sheet& sheet, std::span<const char> open, std::span<const Index> faces) {
+  std::vector<Index> rank(sheet.mesh.faces.size(), kNoTwin);
+  for (std::size_t k = 0; k < faces.size(); ++k) rank[faces[k]] = static_cast<Index>(k);
+  Halfedges own;
+  own.twin.reserve(3 * faces.size());
+  for (const Index t : faces)
+    for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+      const Index twin = open.empty() || open[h] == 0 ? sheet.halfedges.twin[h] : kNoTwin;
+      const bool inside = twin != kNoTwin && rank[face_of(twin)] != kNoTwin;
+      own.twin.push_back(inside ? 3 * rank[face_of(twin)] + twin % 3 : kNoTwin);
+    }
+  return own;
+}
+
+Part part_of(const Sheet& sheet, std::span<const char> open, std::span<const Index> faces) {
+  Part part{{}, glued(sheet, open, faces), {}};
+  CornerVertices corners = corner_vertices(part.halfedges);
+  part.mesh = {std::vector<Vec3>(corners.count), std::move(corners.faces)};
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    for (std::size_t i = 0; i < 3; ++i)
+      part.mesh.positions[part.mesh.faces[k][i]] =
+          sheet.mesh.positions[sheet.mesh.faces[faces[k]][i]];
+  return part;
+}
+
+bool is_disk(const Part& part) {
+  const Topology shape = topology(part.mesh.faces, part.halfedges);
+  return shape.components.size() == 1 && shape.components.front().is_disk();
+}
+
+/// In the units of the sheet: what the solver reads of a part does not ask for area 1.
+Disk disk_of(const Sheet& sheet, std::span<const Index> faces, const Part& part) {
+  Disk disk{.faces = part.mesh.faces,
+            .loops = part.loops,
+            .positions = part.mesh.positions,
+            .rest = {},
+            .corners = vertex_corners(part.mesh.faces, part.mesh.vertex_count()),
+            .unit = 1};
+  disk.rest.reserve(faces.size());
+  for (const Index t : faces) disk.rest.push_back(sheet.rest[t]);
+  return disk;
+}
+
+/// The global step from the rotations of triangles that need not hold together.
+UvMap stitched(const Disk& disk, std::span<const CornerUv> seed, const GlobalStep& global) {
+  UvMap uv(disk.positions.size(), Vec2::Zero());
+  for (std::size_t t = 0; t < disk.faces.size(); ++t) {
+    const RestTriangle& rest = disk.rest[t];
+    const auto& [a, b, c] = seed[t];
+    const Similarity turn =
+        fit_similarity(jacobian(rest, {a - b, b - c, c - a}), Rigidity{}.lambda);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec2& x = rest.edge[i];
+      const Vec2 pull =
+          rest.cot[i] * Vec2(turn.a * x.x() + turn.b * x.y(), turn.a * x.y() - turn.b * x.x());
+      uv[disk.faces[t][i]] += pull;
+      uv[disk.faces[t][(i + 1) % 3]] -= pull;
+    }
+  }
+  global.solve(uv);
+  return uv;
+}
+
+UvMap arap_map(const Disk& disk, const TrialRules& rules, std::span<const CornerUv> seed) {
+  const Holds nothing;
+  const GlobalStep global(disk, nothing);
+  UvMap uv = stitched(disk, seed, global);
+  SerialExecutor serial;
+  Objective objective(disk, {}, nothing, serial);
+  std::vector<Vec2> step(uv.size());
+  for (int k = 1; k < rules.iterations && !rules.stop.stop_requested(); ++k) {
+    objective.evaluate(uv, step);
+    global.solve(step);
+    for (std::size_t v = 0; v < uv.size(); ++v) uv[v] += step[v];
+  }
+  return uv;
+}
+
+/// For UV area = 3D area.
+Excess excess_of(const DistortionSums& sums) {
+  return {sums.angle - 2 * sums.area, sums.inverse * sums.uv_area / sums.area - sums.area};
+}
+
+Verdict verdict_on(const Disk& disk, const DistortionSums& sums, const TrialRules& rules,
+                   const UvMap& uv) {
+  if (sums.flipped > 0) return Verdict::flawed;
+  if (!(excess_of(sums).worst() <= rules.most_excess)) return Verdict::distorted;
+  return is_plainly_injective(disk.faces, disk.loops, uv) ? Verdict::sound : Verdict::flawed;
+}
+
+}  // namespace
+
+TrialResult try_map(const Sheet& sheet, std::span<const char> open, const TrialRules& rules,
+                    Region& region) try {
+  Part part = part_of(sheet, open, region.faces);
+  if (!is_disk(part)) return {};
+  part.loops = boundary_loops(part.mesh, part.halfedges);
+  const Disk disk = disk_of(sheet, region.faces, part);
+  UvMap uv = arap_map(disk, rules, region.uv);
+  const DistortionSums sums = distortion_sums(disk.rest, disk.faces, uv);
+  const TrialResult result{verdict_on(disk, sums, rules, uv), excess_of(sums)};
+  const double scale = sums.uv_area > 0 ? std::sqrt(sums.area / sums.uv_area) : 1;
+  for (std::size_t t = 0; t < disk.faces.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) region.uv[t][i] = scale * uv[disk.faces[t][i]];
+  return result;
+} catch (const Error&) {  // the system was too ill-conditioned to factor
+  return {Verdict::flawed, {}};
+}
+
+}  // namespace unwrapd
