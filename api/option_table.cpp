@@ -1,13 +1,11 @@
 // The table of options. A row knows how to read and write its own field, so nothing else in the
 // project lists the options by name: to add one is to add its field and one row.
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <type_traits>
 
 #include "api/constraints.hpp"
-#include "api/options.hpp"
+#include "api/option_rows.hpp"
 
 namespace unwrapd::api {
 namespace {
@@ -24,6 +22,8 @@ constexpr std::array<std::string_view, 2> kRepairs = {"untangle", "virtual_bound
 constexpr std::array<std::string_view, 3> kBoundaries = {"free", "circle", "square"};
 constexpr std::array<std::string_view, 4> kOutputs = {"auto", "glb", "gltf", "obj"};
 
+constexpr std::array<std::string_view, 4> kCompressions = {"keep", "none", "draco", "meshopt"};
+
 constexpr std::array kEveryMethod = {Method::asap, Method::arap,   Method::hybrid,
                                      Method::abf,  Method::linabf, Method::cp,
                                      Method::bff,  Method::ic,     Method::slim};
@@ -33,73 +33,8 @@ constexpr std::array kOnlyHybrid = {Method::hybrid};
 constexpr std::array kOnlyAsap = {Method::asap};
 
 constexpr double kMaxPadding = 0.25 * kMaxResolution;  // and at most a quarter of resolution
+constexpr double kMinTexelsPerUnit = 1e-9, kMaxTexelsPerUnit = 1e12;
 constexpr double kMinTolerance = 1e-12, kMaxTolerance = 0.1;
-
-/// The field of the options that a member pointer names: of UnwrapOptions, its Stop, or JobOptions.
-template <auto kField>
-auto& field(auto& options) {
-  if constexpr (std::is_invocable_v<decltype(kField), UnwrapOptions&>) {
-    return options.unwrap.*kField;
-  } else if constexpr (std::is_invocable_v<decltype(kField), Stop&>) {
-    return options.unwrap.stop.*kField;
-  } else {
-    return options.*kField;
-  }
-}
-
-template <auto kField>
-using FieldOf = std::remove_reference_t<decltype(field<kField>(std::declval<JobOptions&>()))>;
-
-template <auto kField, const auto& kNames>
-Json get_choice(const JobOptions& options) {
-  return kNames[static_cast<std::size_t>(field<kField>(options))];
-}
-
-template <auto kField, const auto& kNames>
-void set_choice(JobOptions& options, const Json& name) {
-  const auto found = std::ranges::find(kNames, name.get_ref<const std::string&>());
-  field<kField>(options) = static_cast<FieldOf<kField>>(found - kNames.begin());
-}
-
-template <auto kField, const auto& kNames>
-constexpr OptionRow choice(std::string_view name, std::span<const Method> methods,
-                           std::string_view description) {
-  return {.name = name,
-          .type = OptionType::choice,
-          .choices = kNames,
-          .minimum = 0,
-          .maximum = {},
-          .limit = nullptr,
-          .nullable = false,
-          .description = description,
-          .methods = methods,
-          .get = get_choice<kField, kNames>,
-          .set = set_choice<kField, kNames>};
-}
-
-struct Range {
-  double minimum = 0;
-  std::optional<double> maximum = {};
-  int Limits::*limit = nullptr;
-};
-
-template <auto kField>
-constexpr OptionRow figure(std::string_view name, Range range, std::span<const Method> methods,
-                           std::string_view description) {
-  using Field = FieldOf<kField>;
-  return {.name = name,
-          .type = std::is_integral_v<Field> ? OptionType::integer : OptionType::number,
-          .choices = {},
-          .minimum = range.minimum,
-          .maximum = range.maximum,
-          .limit = range.limit,
-          .nullable = false,
-          .description = description,
-          .methods = methods,
-          .get = [](const JobOptions& options) { return Json(field<kField>(options)); },
-          .set = [](JobOptions& options,
-                    const Json& value) { field<kField>(options) = value.get<Field>(); }};
-}
 
 Json get_lambda(const JobOptions& options) {
   const UnwrapOptions& unwrap = options.unwrap;
@@ -130,7 +65,17 @@ void set_constraints(JobOptions& options, const Json& value) {
       constraints_from_json(value, std::numeric_limits<int>::max(), "/constraints");
 }
 
+Json get_texels_per_unit(const JobOptions& options) {
+  const std::optional<double> density = options.unwrap.packing.texels_per_unit;
+  return density ? Json(*density) : Json();
+}
+
+void set_texels_per_unit(JobOptions& options, const Json& value) {
+  options.unwrap.packing.texels_per_unit = value.get<double>();
+}
+
 using O = UnwrapOptions;
+using A = AssetOptions;
 
 constexpr std::array kRows = {
     choice<&O::method, kMethods>(
@@ -199,8 +144,39 @@ constexpr std::array kRows = {
                            "Side of the square texture, in texels."),
     figure<&O::padding>("padding", {0, kMaxPadding}, kEveryMethod,
                         "Texels between islands, at most a quarter of resolution."),
+    OptionRow{.name = "texels_per_unit",
+              .type = OptionType::number,
+              .choices = {},
+              .minimum = kMinTexelsPerUnit,
+              .maximum = kMaxTexelsPerUnit,
+              .limit = nullptr,
+              .nullable = true,
+              .description = "Texels that a unit of the mesh gets on every island; without it as "
+                             "many as fit.",
+              .methods = kEveryMethod,
+              .get = get_texels_per_unit,
+              .set = set_texels_per_unit},
+    figure<&Packing::max_pages>("max_pages", {1, kMaxPages}, kEveryMethod,
+                                "Pages (UDIM tiles 1001 and on, U counts them) at most."),
+    flag<&Packing::stack_identical>("stack_identical", kEveryMethod,
+                                    "Whether islands of the same shape share one place."),
+    flag<&O::repack_only>("repack_only", kEveryMethod,
+                          "Whether the islands of the UVs that are there are packed anew, and "
+                          "nothing is unwrapped."),
+    figure<&A::texcoord>("texcoord", {0, kMaxTexcoord}, kEveryMethod,
+                         "The set of texture coordinates that is written: TEXCOORD_n."),
+    names<&A::materials>("materials", kEveryMethod,
+                         "Names of the materials that are unwrapped; the rest keeps its UVs."),
+    names<&A::primitives>("primitives", kEveryMethod,
+                          "JSON pointers of the primitives that are unwrapped; the rest keeps its "
+                          "UVs."),
     choice<&JobOptions::output, kOutputs>("output", kEveryMethod,
                                           "Format of the result; auto answers as it came in."),
+    choice<&A::compression, kCompressions>(
+        "compression", kEveryMethod,
+        "Encoding of a glTF's geometry, always without loss; keep encodes as it came in."),
+    flag<&A::vertex_map>("vertex_map", kEveryMethod,
+                         "Whether the report tells which vertices were copied for seams."),
 };
 
 }  // namespace

@@ -46,6 +46,18 @@ Json json_of(const std::string& text) {
   }
 }
 
+/// "a,b" as ["a", "b"]; names with commas in them come as JSON.
+Json names_of(const std::string& text) {
+  if (text.starts_with('[')) return json_of(text);
+  Json list = Json::array();
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    list.push_back(text.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  return list;
+}
+
 /// "1" for 1, "0.5" for 0.5.
 std::string plain(double value) {
   std::array<char, 32> text{};
@@ -62,6 +74,9 @@ std::string listed(std::span<const std::string_view> names) {
 /// What a value of this option must be: "an integer between 1 and 10000".
 std::string allowed(const OptionRow& row, const Limits& limits) {
   if (row.type == OptionType::choice) return "one of " + listed(row.choices);
+  if (row.type == OptionType::flag) return "true or false";
+  if (row.type == OptionType::names)
+    return "a list of at most " + std::to_string(kMaxNames) + " strings";
   const std::string kind = row.type == OptionType::integer ? "an integer" : "a finite number";
   const std::optional<double> maximum = option_maximum(row, limits);
   std::string text = kind + (maximum ? " between " + plain(row.minimum) + " and " + plain(*maximum)
@@ -89,12 +104,21 @@ bool is_list_of(const OptionRow& row, const Json& value, const Limits& limits) {
   return std::ranges::adjacent_find(figures) == figures.end();
 }
 
+bool is_name_list(const Json& value) {
+  const auto is_name = [](const Json& entry) { return entry.is_string(); };
+  return value.is_array() && value.size() <= kMaxNames && std::ranges::all_of(value, is_name);
+}
+
 bool fits(const OptionRow& row, const Json& value, const Limits& limits) {
   switch (row.type) {
     case OptionType::choice:
       return value.is_string() &&
              std::ranges::find(row.choices, value.get_ref<const std::string&>()) !=
                  row.choices.end();
+    case OptionType::flag:
+      return value.is_boolean();
+    case OptionType::names:
+      return is_name_list(value);
     case OptionType::number:
     case OptionType::integer:
       return is_number_of(row, value, limits);
@@ -113,6 +137,10 @@ Json value_of_text(const OptionRow& row, const std::string& text) {
   switch (row.type) {
     case OptionType::choice:
       return text;
+    case OptionType::flag:
+      return text == "true" || text == "false" ? Json(text == "true") : Json(text);
+    case OptionType::names:
+      return names_of(text);
     case OptionType::integer:
       return number_of<std::int64_t>(text);
     case OptionType::number:

@@ -11,6 +11,7 @@
 
 #include "api/json.hpp"
 #include "api/limits.hpp"
+#include "core/asset_options.hpp"
 #include "core/options.hpp"
 
 namespace unwrapd::api {
@@ -19,6 +20,7 @@ enum class OutputFormat { automatic, glb, gltf, obj };  ///< automatic: "auto", 
 
 struct JobOptions {
   UnwrapOptions unwrap;
+  AssetOptions asset;
   OutputFormat output = OutputFormat::automatic;
   /// Sentences for the report: options that were given but have no effect with this method. They
   /// are no part of the resolved options: whoever keeps a job keeps them beside its options.
@@ -27,9 +29,11 @@ struct JobOptions {
 
 enum class OptionType {
   choice,
+  flag,
   number,
   integer,
   numbers,      ///< a number, or a list of different ones: "1,2" in a query
+  names,        ///< a list of strings: in a query parted by commas, or their JSON
   constraints,  ///< a list of objects (see constraints.hpp): their JSON in a query
 };
 

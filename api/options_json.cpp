@@ -42,6 +42,9 @@ std::string_view type_name(OptionType type) {
       return "number";
     case OptionType::integer:
       return "integer";
+    case OptionType::flag:
+      return "boolean";
+    case OptionType::names:
     case OptionType::constraints:
       return "array";
   }
@@ -57,15 +60,21 @@ Json bound(const OptionRow& row, double value) {
 /// The most entries of a list, where the option can be one.
 std::optional<std::size_t> most_items(const OptionRow& row, const Limits& limits) {
   if (row.type == OptionType::numbers) return kMaxNumbers;
+  if (row.type == OptionType::names) return kMaxNames;
   if (row.type == OptionType::constraints) return static_cast<std::size_t>(limits.*row.limit);
   return std::nullopt;
+}
+
+bool has_range(const OptionRow& row) {
+  return row.type == OptionType::number || row.type == OptionType::integer ||
+         row.type == OptionType::numbers;
 }
 
 Json option_json(const OptionRow& row, const Limits& limits) {
   Json json = {{"name", row.name}, {"type", type_name(row.type)}};
   if (row.type == OptionType::choice) {
     json["enum"] = row.choices;
-  } else if (row.type != OptionType::constraints) {
+  } else if (has_range(row)) {
     json["minimum"] = bound(row, row.minimum);
     if (const auto maximum = option_maximum(row, limits)) json["maximum"] = bound(row, *maximum);
   }

@@ -10,13 +10,13 @@ namespace {
 constexpr std::array<std::string_view, 5> kStopReasons = {"iterations", "direct", "collapse_guard",
                                                           "converged", "max_iterations"};
 constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "bijective"};
-constexpr std::array<std::string_view, 4> kRepairKinds = {
+constexpr std::array<std::string_view, 5> kRepairKinds = {
     "degenerate_faces_set_aside", "duplicate_faces_set_aside", "non_manifold_edges_split",
-    "cut_to_disk"};
+    "cut_to_disk", "segmented"};
 
 /// The stages of timings_ms, in the order in which a job goes through them.
-constexpr std::array kTimings = {"queue",    "read",    "setup", "factor", "solve",
-                                 "untangle", "measure", "pack",  "write",  "total"};
+constexpr std::array kTimings = {"queue", "read",     "setup",   "segment", "merge", "factor",
+                                 "solve", "untangle", "measure", "pack",    "write", "total"};
 
 Json to_json(const Distortion& distortion) {
   return {{"angle", finite(distortion.angle)},
@@ -111,6 +111,7 @@ Json to_json(const Report& report, const ReportContext& context) {
           {"curve", array_of(report.curve)},
           {"seam_length", finite(report.seam_length)},
           {"fill", finite(report.fill)},
+          {"pages", report.pages},
           {"texel_density", finite(report.texel_density)},
           {"timings_ms", timings_json(context)},
           {"solver", {{"name", "unwrapd"}, {"version", context.version}}}};

@@ -51,6 +51,7 @@ std::string value_text(const api::Json& value) {
 /// "asap|arap|hybrid", "INT >= 1", "NUMBER[,NUMBER...] >= 0", "INT in [16, 16384]".
 std::string range_text(const api::OptionRow& row) {
   if (row.type == api::OptionType::constraints) return "FILE.json";
+  if (row.type == api::OptionType::names) return "NAME[,NAME...]";
   if (row.type == api::OptionType::choice) {
     std::string text;
     for (const std::string_view choice : row.choices)
@@ -74,6 +75,12 @@ void add_option_flags(CLI::App& app, OptionTexts& options) {
     const std::string text = std::string(row.description) +
                              " Default: " + value_text(api::option_default(row, {})) + ".";
     const bool is_file = row.type == api::OptionType::constraints;
+    if (row.type == api::OptionType::flag) {
+      app.add_flag_callback(
+             flag_name(row.name), [&options, name] { options[name] = "true"; }, text)
+          ->group("Options of the unwrapping");
+      continue;
+    }
     app.add_option_function<std::string>(
            flag_name(row.name),
            [&options, name, is_file](const std::string& value) {

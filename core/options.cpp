@@ -12,6 +12,22 @@ void require(bool holds, const std::string& what, const std::string& pointer) {
   if (!holds) throw Error(ErrorCode::invalid_option, what, pointer);
 }
 
+/// Constraints say themselves where charts lie.
+void require_packing(const UnwrapOptions& options) {
+  const Packing& packing = options.packing;
+  const bool is_packed = options.constraints.empty();
+  const std::string placed = "constraints say where charts lie; leave out ";
+  require(is_packed || !options.repack_only, placed + "repack_only", "/repack_only");
+  require(is_packed || !packing.texels_per_unit, placed + "texels_per_unit", "/texels_per_unit");
+  require(is_packed || packing.max_pages == 1, placed + "max_pages", "/max_pages");
+  require(is_packed || !packing.stack_identical, placed + "stack_identical", "/stack_identical");
+  require(!packing.texels_per_unit ||
+              (*packing.texels_per_unit > 0 && std::isfinite(*packing.texels_per_unit)),
+          "texels_per_unit must be a finite number above 0", "/texels_per_unit");
+  require(packing.max_pages >= 1 && packing.max_pages <= kMaxPages,
+          "max_pages must lie between 1 and " + std::to_string(kMaxPages), "/max_pages");
+}
+
 }  // namespace
 
 void validate(const UnwrapOptions& options, int max_iterations) {
@@ -37,6 +53,9 @@ void validate(const UnwrapOptions& options, int max_iterations) {
   require(options.constraints.empty() || options.boundary == BoundaryShape::free,
           "constraints and a boundary shape exclude each other; leave one of them out",
           "/boundary");
+  require(!options.repack_only || options.boundary == BoundaryShape::free,
+          "repack_only keeps the islands as they are; leave out boundary", "/boundary");
+  require_packing(options);
   require(options.padding >= 0 && 4 * options.padding <= options.resolution,
           "padding must lie between 0 and a quarter of resolution", "/padding");
 }

@@ -43,7 +43,9 @@ std::vector<std::string> schema_of(const OptionRow& row) {
 
 std::string type_of(const OptionRow& row) {
   if (row.type == OptionType::integer) return row.nullable ? "[integer, 'null']" : "integer";
-  if (row.type == OptionType::constraints) return "array";
+  if (row.type == OptionType::constraints || row.type == OptionType::names) return "array";
+  if (row.type == OptionType::flag) return "boolean";
+  if (row.type == OptionType::number && row.nullable) return "[number, 'null']";
   return row.type == OptionType::choice ? "string" : "number";
 }
 
@@ -78,7 +80,8 @@ TEST(OptionTable, AgreesWithTheContractInTypeAndDefault) {
     const std::vector<std::string> schema = schema_of(row);
     EXPECT_EQ(scalar(schema, "type"), type_of(row)) << row.name;
     const std::string told = scalar(schema, "default"), own = text(option_default(row, {}));
-    if (row.type == OptionType::number || row.type == OptionType::numbers) {
+    const bool is_number = row.type == OptionType::number || row.type == OptionType::numbers;
+    if (is_number && own != "null") {
       EXPECT_EQ(std::stod(told), std::stod(own)) << row.name;
     } else {
       EXPECT_EQ(told, own) << row.name;
@@ -90,7 +93,12 @@ TEST(OptionTable, AgreesWithTheContractInTypeAndDefault) {
 
 TEST(OptionTable, AgreesWithTheContractInRange) {
   for (const OptionRow& row : option_table()) {
-    if (row.type == OptionType::choice || row.type == OptionType::constraints) continue;
+    if (scalar(schema_of(row), "minimum").empty()) {
+      EXPECT_TRUE(row.type == OptionType::choice || row.type == OptionType::flag ||
+                  row.type == OptionType::names || row.type == OptionType::constraints)
+          << row.name;
+      continue;
+    }
     const std::vector<std::string> schema = schema_of(row);
     EXPECT_EQ(std::stod(scalar(schema, "minimum")), row.minimum) << row.name;
     const std::optional<double> maximum = option_maximum(row, Limits{});
@@ -105,6 +113,11 @@ TEST(OptionTable, AgreesWithTheContractInTheLengthOfLists) {
   std::vector<std::string> constraints = options;
   constraints.emplace_back("constraints");
   EXPECT_EQ(scalar(constraints, "maxItems"), std::to_string(Limits{}.max_constraints));
+  for (const char* list : {"materials", "primitives"}) {
+    std::vector<std::string> names = options;
+    names.emplace_back(list);
+    EXPECT_EQ(scalar(names, "maxItems"), std::to_string(kMaxNames));
+  }
   const std::vector<std::string> lambdas = section({"components", "schemas", "Lambdas", "oneOf"});
   EXPECT_THAT(lambdas, testing::Contains("          maxItems: " + std::to_string(kMaxNumbers)));
 }

@@ -24,13 +24,13 @@ const MAY_INCLUDE = {
 const PLAIN = ["core/error.hpp", "core/options.hpp", "core/report.hpp", "core/progress.hpp", "core/executor.hpp", "core/cancel.hpp"];
 const PLAIN_FOR = {
   "core/mesh": ["core/error.hpp"],
-  "core/asset": ["core/error.hpp"],
+  "core/asset": ["core/error.hpp", "core/asset_options.hpp"],
   "core/measure": PLAIN,
   "core/linear": PLAIN,
   "core/solve": PLAIN,
   "core/atlas": PLAIN,
   "core/figure": PLAIN,
-  api: ["core/error.hpp", "core/options.hpp", "core/report.hpp", "core/progress.hpp", "core/mesh/tri_mesh.hpp"],
+  api: ["core/error.hpp", "core/options.hpp", "core/asset_options.hpp", "core/report.hpp", "core/progress.hpp", "core/mesh/tri_mesh.hpp"],
   client: [],
 };
 
@@ -40,6 +40,7 @@ const ONLY_IN = [
   { header: /^nlohmann\//, files: /^(core\/asset|api|server|client|tests)\// },
   { header: /^(thread|chrono|iostream|mutex|atomic|future)$/, files: /^(?!core\/)/ },
   { header: /^spdlog\//, files: /^server\// },
+  { header: /^toml\+\+\//, files: /^server\/config\.cpp$/ },
   { header: /^CLI\//, files: /^(server|client)\// },
   { header: /^png\.h$/, files: /^(server\/png_file\.cpp$|tests\/server\/)/ },
   { header: /^sqlite3\.h$/, files: /^(server|tests\/server)\// },

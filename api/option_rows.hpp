@@ -1,0 +1,122 @@
+#pragma once
+// Rows of the option table for options that are a plain field: made from the field's address, so
+// that a row cannot read one field and write another.
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "api/options.hpp"
+
+namespace unwrapd::api {
+
+/// The field of the options that a member pointer names: of UnwrapOptions, its Stop or
+/// Packing, of AssetOptions, or of JobOptions.
+template <auto kField>
+auto& field(auto& options) {
+  if constexpr (std::is_invocable_v<decltype(kField), UnwrapOptions&>) {
+    return options.unwrap.*kField;
+  } else if constexpr (std::is_invocable_v<decltype(kField), Stop&>) {
+    return options.unwrap.stop.*kField;
+  } else if constexpr (std::is_invocable_v<decltype(kField), Packing&>) {
+    return options.unwrap.packing.*kField;
+  } else if constexpr (std::is_invocable_v<decltype(kField), AssetOptions&>) {
+    return options.asset.*kField;
+  } else {
+    return options.*kField;
+  }
+}
+
+template <auto kField>
+using FieldOf = std::remove_reference_t<decltype(field<kField>(std::declval<JobOptions&>()))>;
+
+template <auto kField, const auto& kNames>
+Json get_choice(const JobOptions& options) {
+  return kNames[static_cast<std::size_t>(field<kField>(options))];
+}
+
+template <auto kField, const auto& kNames>
+void set_choice(JobOptions& options, const Json& name) {
+  const auto found = std::ranges::find(kNames, name.get_ref<const std::string&>());
+  field<kField>(options) = static_cast<FieldOf<kField>>(found - kNames.begin());
+}
+
+template <auto kField, const auto& kNames>
+constexpr OptionRow choice(std::string_view name, std::span<const Method> methods,
+                           std::string_view description) {
+  return {.name = name,
+          .type = OptionType::choice,
+          .choices = kNames,
+          .minimum = 0,
+          .maximum = {},
+          .limit = nullptr,
+          .nullable = false,
+          .description = description,
+          .methods = methods,
+          .get = get_choice<kField, kNames>,
+          .set = set_choice<kField, kNames>};
+}
+
+struct Range {
+  double minimum = 0;
+  std::optional<double> maximum = {};
+  int Limits::*limit = nullptr;
+};
+
+template <auto kField>
+constexpr OptionRow figure(std::string_view name, Range range, std::span<const Method> methods,
+                           std::string_view description) {
+  using Field = FieldOf<kField>;
+  return {.name = name,
+          .type = std::is_integral_v<Field> ? OptionType::integer : OptionType::number,
+          .choices = {},
+          .minimum = range.minimum,
+          .maximum = range.maximum,
+          .limit = range.limit,
+          .nullable = false,
+          .description = description,
+          .methods = methods,
+          .get = [](const JobOptions& options) { return Json(field<kField>(options)); },
+          .set = [](JobOptions& options,
+                    const Json& value) { field<kField>(options) = value.get<Field>(); }};
+}
+
+template <auto kField>
+constexpr OptionRow flag(std::string_view name, std::span<const Method> methods,
+                         std::string_view description) {
+  return {.name = name,
+          .type = OptionType::flag,
+          .choices = {},
+          .minimum = 0,
+          .maximum = {},
+          .limit = nullptr,
+          .nullable = false,
+          .description = description,
+          .methods = methods,
+          .get = [](const JobOptions& options) { return Json(field<kField>(options)); },
+          .set = [](JobOptions& options,
+                    const Json& value) { field<kField>(options) = value.get<bool>(); }};
+}
+
+template <auto kField>
+constexpr OptionRow names(std::string_view name, std::span<const Method> methods,
+                          std::string_view description) {
+  return {.name = name,
+          .type = OptionType::names,
+          .choices = {},
+          .minimum = 0,
+          .maximum = {},
+          .limit = nullptr,
+          .nullable = false,
+          .description = description,
+          .methods = methods,
+          .get = [](const JobOptions& options) { return Json(field<kField>(options)); },
+          .set =
+              [](JobOptions& options, const Json& value) {
+                field<kField>(options) = value.get<std::vector<std::string>>();
+              }};
+}
+
+}  // namespace unwrapd::api

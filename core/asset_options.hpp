@@ -1,0 +1,31 @@
+#pragma once
+// What a user can ask of the document itself: which of it is unwrapped, where the texture
+// coordinates go, how the result is encoded.
+
+#include <string>
+#include <vector>
+
+namespace unwrapd {
+
+/// How the geometry of a glTF is encoded when it is written.
+enum class Compression {
+  keep,     ///< as it came in
+  none,     ///< plain accessors
+  draco,    ///< KHR_draco_mesh_compression, lossless
+  meshopt,  ///< EXT_meshopt_compression, lossless
+};
+
+inline constexpr int kMaxTexcoord = 7;
+inline constexpr std::size_t kMaxNames = 1000;  ///< entries of materials and of primitives
+
+struct AssetOptions {
+  int texcoord = 0;  ///< the set that is written, and read: TEXCOORD_n, n in [0, kMaxTexcoord]
+  Compression compression = Compression::keep;
+  bool vertex_map = false;  ///< the report tells which vertices were copied
+  /// Names of materials, and JSON pointers of primitives ("/meshes/0/primitives/1"): only these are
+  /// unwrapped, all others keep what they have. Both empty: everything is.
+  std::vector<std::string> materials = {};
+  std::vector<std::string> primitives = {};
+};
+
+}  // namespace unwrapd
