@@ -1,6 +1,6 @@
 // The statuses that need a server in a special state: tiny limits, a full queue, results that
 // expire, a server that drains. Each state is a server of its own.
-import {failure} from './cases.mjs';
+import {failure} from './cases/shared.mjs';
 import {openStream} from './http.mjs';
 import * as meshes from './meshes.mjs';
 import {kOutcomes} from './run.mjs';

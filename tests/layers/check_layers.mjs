@@ -50,7 +50,7 @@ const ONLY_IN = [
 ];
 
 const MAX_LINES = [
-  { files: /\.(cpp|hpp)$/, lines: 300 },
+  { files: /\.(cpp|hpp|mjs|sh)$/, lines: 300 },
   { files: /^CMakeLists\.txt$/, lines: 60 },
   { files: /^README\.md$/, lines: 100 },
   { files: /^docs\/adr\/.*\.md$/, lines: 40 },

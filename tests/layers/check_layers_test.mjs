@@ -53,6 +53,7 @@ test("a library is seen by its own folder only", () => {
 test("files stay short", () => {
   assert.deepEqual(check("core/a.cpp", "\n".repeat(300)), []);
   assert.equal(check("core/a.cpp", "\n".repeat(301)).length, 1);
+  assert.equal(check("tests/contract/a.mjs", "\n".repeat(301)).length, 1);
   assert.equal(check("CMakeLists.txt", "\n".repeat(61)).length, 1);
   assert.equal(check("README.md", "\n".repeat(101)).length, 1);
 });

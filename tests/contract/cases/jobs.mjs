@@ -1,0 +1,91 @@
+// A job from its submission to its removal: its state, its events, its result and its failures.
+import * as meshes from '../meshes.mjs';
+import {kOutcomes} from '../run.mjs';
+import {parseEvents} from '../spec.mjs';
+import {pictures} from './pictures.mjs';
+import {failure, kGlb, kRepresentations, kWait, validGltf} from './shared.mjs';
+
+export async function lifeOfAJob(run, base) {
+  const created = await run.call(base, 'createJob',
+                                 {headers: kGlb, body: meshes.glb(), status: 202});
+  const job = created.headers.location?.split('/').pop();
+  const watched = await run.call(base, 'watchJob', {job, status: 200});
+  const events = parseEvents(watched.body.toString());
+  run.expectEqual('the last event', events.at(-1)?.event, 'succeeded');
+  await resume(run, base, job, events);
+  await run.call(base, 'getJob', {job, status: 200});
+  await run.call(base, 'getResult', {job, status: 200});
+  for (const type of kRepresentations) await representation(run, base, job, type);
+  await run.call(base, 'getResult', {job, headers: {Accept: 'image/png'}, status: 406});
+  await partsOfAResult(run, base, job);
+  await run.call(base, 'getReport', {job, status: 200});
+  await pictures(run, base, job);
+  await run.call(base, 'deleteJob', {job, status: 204});
+  for (const id of ['getJob', 'deleteJob', 'watchJob', ...kOutcomes]) {
+    await run.call(base, id, {job, status: 404, name: 'a removed job is gone'});
+  }
+}
+
+/** A reader that comes back gets exactly the events after the last one that it saw. */
+async function resume(run, base, job, events) {
+  const ids = events.map((event) => event.id);
+  run.expect('ids count up', ids.every((id, i) => i === 0 || id > ids[i - 1]) ? [] : [ids.join()]);
+  const middle = Math.floor(ids.length / 2);
+  const rest = await run.call(base, 'watchJob',
+                              {job, headers: {'Last-Event-ID': String(ids[middle])}, status: 200});
+  const resumed = parseEvents(rest.body.toString()).map((event) => event.id).join();
+  run.expectEqual('events after Last-Event-ID', resumed, ids.slice(middle + 1).join());
+}
+
+async function partsOfAResult(run, base, job) {
+  const whole = await run.call(base, 'getResult', {job, status: 200});
+  const {etag} = whole.headers;
+  const get = (headers, status) => run.call(base, 'getResult', {job, headers, status});
+  await get({'If-None-Match': etag}, 304);
+  await get({'If-None-Match': '"another"'}, 200);
+  const part = await get({Range: 'bytes=4-11', 'If-Range': etag}, 206);
+  run.expectEqual('the part', part.body.toString('hex'),
+                  whole.body.subarray(4, 12).toString('hex'));
+  run.expectEqual('its place', part.headers['content-range'], `bytes 4-11/${whole.body.length}`);
+  await get({Range: 'bytes=4-11', 'If-Range': '"another"'}, 200);
+  await get({Range: `bytes=${whole.body.length}-`}, 200);
+}
+
+async function representation(run, base, job, type) {
+  const answer = await run.call(base, 'getResult', {job, headers: {Accept: type}, status: 200});
+  run.expectEqual(`media type for ${type}`, answer.headers['content-type']?.split(';')[0], type);
+  if (type.startsWith('model/gltf')) await validGltf(run, type, answer.body);
+}
+
+export async function preferWait(run, base) {
+  const answer = await run.call(base, 'createJob',
+                                {headers: kWait, body: meshes.obj(), status: 200});
+  const job = JSON.parse(answer.body.toString());
+  run.expectEqual('a job that was waited for', job.state, 'succeeded');
+  const result = await run.call(base, 'getResult', {job: job.id, status: 200});
+  run.expectEqual('OBJ in, OBJ out', result.headers['content-type']?.split(';')[0], 'model/obj');
+  run.expectEqual('the OBJ has texture coordinates', /^vt /m.test(result.body.toString()), true);
+}
+
+export async function failedJobs(run, base) {
+  for (const [code, body] of Object.entries(meshes.kRefused)) {
+    await failure(run, base, {body, code, status: statusOf(code)});
+  }
+}
+
+/** What the title of each group of codes says: see api/error_table.cpp. */
+function statusOf(code) {
+  if (code.startsWith('malformed_')) return 400;
+  return code === 'unknown_format' ? 415 : 422;
+}
+
+/** A reader who comes after more events than are kept is told which ones are gone. */
+export async function gap(run, base) {
+  const query = {'stop.iterations': 5000};
+  const job = await run.json(base, 'createJob',
+                             {query, headers: kWait, body: meshes.glb(2), status: 200});
+  const answer = await run.call(base, 'watchJob', {job: job.id, status: 200});
+  const [first, second] = parseEvents(answer.body.toString());
+  run.expectEqual('what comes first', first?.event, 'gap');
+  run.expectEqual('what comes next', second?.id, first?.data.last + 1);
+}

@@ -1,0 +1,77 @@
+// The calls about the server itself, and what every path and method answers.
+import {readFileSync} from 'node:fs';
+
+import {raw, request} from '../http.mjs';
+import * as meshes from '../meshes.mjs';
+import {kOutcomes} from '../run.mjs';
+import {kGlb} from './shared.mjs';
+
+const kUnknownJob = `j_${'0'.repeat(32)}`;
+
+export async function service(run, base) {
+  for (const id of ['getMethods', 'getLimits', 'getHealth', 'getReadiness']) {
+    await run.call(base, id, {status: 200});
+  }
+  const contract = await run.call(base, 'getContract', {status: 200});
+  run.expectEqual('the contract served is the contract tested', contract.body.toString(),
+                  readFileSync(run.contract.path, 'utf8'));
+}
+
+/** HEAD is GET without the body. */
+export async function heads(run, base) {
+  for (const {id, method, path} of run.contract.operations()) {
+    if (method !== 'GET' || path.includes('{id}')) continue;
+    const get = await run.call(base, id, {status: 200});
+    const answer = await request(base, {method: 'HEAD', path});
+    run.expectEqual(`HEAD ${path}`, answer.status, get.status);
+    run.expectEqual(`its body`, answer.body.length, 0);
+    run.expectEqual(`its type`, answer.headers['content-type'], get.headers['content-type']);
+  }
+}
+
+export async function unknownJobs(run, base) {
+  for (const id of ['getJob', 'deleteJob', 'watchJob', ...kOutcomes]) {
+    for (const job of [kUnknownJob, 'j_1', 'x', '%2e%2e', 'j_%00']) {
+      await run.call(base, id, {job, status: 404, name: `unknown job ${job}`});
+    }
+  }
+}
+
+/** What 4XX stands for at every call: paths and methods that are not there, broken requests. */
+export async function anyCall(run, base) {
+  for (const path of ['/', '/v1', '/v1/jobs/', '/v1/nothing', '/openapi.yaml/x']) {
+    run.judge(`no path ${path}`, 'getMethods', await request(base, {path}), 404);
+  }
+  for (const {id, path} of run.contract.operations()) {
+    const answer = await request(base, {method: 'PATCH', path: path.replace('{id}', kUnknownJob)});
+    run.judge(`PATCH ${path}`, id, answer, 405);
+    run.expect(`Allow of ${path}`, answer.headers.allow ? [] : ['the header is missing']);
+  }
+  const long = `GET /v1/limits HTTP/1.1\r\nHost: x\r\nX-Long: ${'x'.repeat(100_000)}\r\n\r\n`;
+  run.judge('long headers', 'getLimits', await raw(base, long), 431);
+  const both = 'POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\n' +
+      'Transfer-Encoding: chunked\r\n\r\n';
+  run.judge('two lengths', 'createJob', await raw(base, both), 400);
+}
+
+export async function badBodies(run, base) {
+  for (const id of ['createJob', 'unwrap']) {
+    const {path} = run.contract.operation(id);
+    const headers = {'Content-Type': 'text/plain'};
+    await run.call(base, id, {headers, body: meshes.glb(), status: 415});
+    const answer = await raw(base, `POST ${path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n`);
+    run.judge('a body without length', id, answer, 411);
+  }
+  const {method, path} = run.contract.operation('unwrap');
+  const headers = {...kGlb, 'Transfer-Encoding': 'chunked'};
+  run.judge('a body in chunks', 'unwrap',
+            await request(base, {method, path, headers, body: meshes.glb()}), 200);
+}
+
+/** Requests that begin and do not go on. */
+export async function slowRequests(run, base) {
+  const head = 'POST /v1/jobs HTTP/1.1\r\nHost: x\r\n';
+  const starts = {'half a head': head, 'half a body': `${head}Content-Length: 100\r\n\r\nhalf`};
+  await Promise.all(Object.entries(starts).map(async ([name, text]) =>
+    run.judge(name, 'createJob', await raw(base, text), 408)));
+}
