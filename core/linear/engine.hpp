@@ -3,29 +3,41 @@
 // multifrontal method.
 
 #include <memory>
+#include <vector>
 
+#include "core/linear/analysis.hpp"
 #include "core/linear/factor.hpp"
-#include "core/linear/supernodal.hpp"
 
 namespace unwrapd {
 
-/// What depends on the pattern of a matrix alone. One analysis serves any number of factors, of any
-/// number of matrices with that pattern. Immutable: threads may share it.
-struct Analysis {
-  Supernodes nodes;
-  /// Column k of the reordered matrix: entry_begin[k] .. entry_begin[k+1]-1 of the two lists.
-  std::vector<Index> entry_begin;
-  std::vector<Index> entry_row;          ///< in the new order, not above the diagonal
-  std::vector<Index> entry_source;       ///< where among the matrix's values
-  std::vector<std::size_t> panel_begin;  ///< of each supernode, and the end of the last
-  std::size_t pending_size = 0;          ///< the most that updates ever occupy at once
+class Factor final : public RealSystem {
+ public:
+  /// A factor without numbers: refill() comes first.
+  explicit Factor(std::shared_ptr<const Analysis> analysis);
+
+  /// Factors the matrix, of the pattern analysed, in the memory of the one before. False when it is
+  /// not positive definite in double precision: nothing may be solved then until the next one is.
+  [[nodiscard]] bool refill(const SparseMatrix& lower);
+
+  void solve(std::span<Vec2> b) const override;
+
+  /// One right-hand side of a matrix of pairs (analyse_pairs()): b[v] has the unknowns 2v, 2v + 1.
+  /// Thread-safe.
+  void solve_pairs(std::span<Vec2> b) const;
+
+ private:
+  struct Workspace;
+  void forward(std::size_t s, const Workspace& work, std::span<Vec2> x) const;
+  void backward(std::size_t s, const Workspace& work, std::span<Vec2> x) const;
+  [[nodiscard]] std::size_t tallest() const;
+  [[nodiscard]] const double* panel(std::size_t s) const;
+
+  std::shared_ptr<const Analysis> analysis_;
+  std::unique_ptr<double[]> panels_;
 };
 
-/// lower: the lower triangle, compressed.
-std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower);
-
 /// Nothing when the matrix, of the pattern analysed, is not positive definite in double precision.
-std::unique_ptr<RealSystem> try_factor(std::shared_ptr<const Analysis> analysis,
-                                       const SparseMatrix& lower);
+std::unique_ptr<Factor> try_factor(std::shared_ptr<const Analysis> analysis,
+                                   const SparseMatrix& lower);
 
 }  // namespace unwrapd

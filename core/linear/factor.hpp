@@ -37,4 +37,8 @@ std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower);
 /// As factor(), but nothing where that throws.
 std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower);
 
+/// The real matrix of the real and imaginary parts, rows 2v and 2v + 1: a block [a -b; b a] for
+/// each entry a + b i; the lower triangle of what lower is the lower triangle of.
+SparseMatrix as_pairs(const ComplexMatrix& lower);
+
 }  // namespace unwrapd

@@ -35,7 +35,7 @@ PairSystem::PairSystem(std::span<const Triangle> faces, const FreeVertices& slot
   build_pattern(faces);
   target_.reserve(faces.size());
   for (const Triangle& face : faces) target_.push_back(targets(face));
-  llt_.analyzePattern(lower_);
+  factor_.emplace(analyse_pairs(lower_));
 }
 
 PairSystem::FaceTargets PairSystem::targets(const Triangle& face) const {
@@ -91,23 +91,15 @@ void PairSystem::raise_diagonal(double share) {
     lower_.valuePtr()[lower_.outerIndexPtr()[j]] *= 1 + share;
 }
 
-bool PairSystem::try_factor() {
-  llt_.factorize(lower_);
-  return llt_.info() == Eigen::Success;
-}
-
 bool PairSystem::factor() {
-  if (try_factor()) return true;
+  if (factor_->refill(lower_)) return true;
   for (double share : kRaises) {
     raise_diagonal(share);
-    if (try_factor()) return true;
+    if (factor_->refill(lower_)) return true;
   }
   return false;
 }
 
-void PairSystem::solve(std::vector<Vec2>& b) const {
-  Eigen::Map<Eigen::VectorXd> flat(b.front().data(), static_cast<Eigen::Index>(2 * b.size()));
-  flat = llt_.solve(flat).eval();
-}
+void PairSystem::solve(std::vector<Vec2>& b) const { factor_->solve_pairs(b); }
 
 }  // namespace unwrapd

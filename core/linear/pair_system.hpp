@@ -4,13 +4,13 @@
 // every new set of elements. Rejected: triplets and a fresh matrix each time, as slow as the
 // factor.
 
-#include <Eigen/SparseCholesky>
-
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/linear/eliminate.hpp"
+#include "core/linear/engine.hpp"
 #include "core/linear/sparse.hpp"
 
 namespace unwrapd {
@@ -49,13 +49,12 @@ class PairSystem {
   void build_pattern(std::span<const Triangle> faces);
   [[nodiscard]] FaceTargets targets(const Triangle& face) const;
   [[nodiscard]] Index entry(Index a, Index b) const;
-  [[nodiscard]] bool try_factor();
   void raise_diagonal(double share);
 
   const FreeVertices& slots_;
   SparseMatrix lower_;
   std::vector<FaceTargets> target_;
-  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt_;
+  std::optional<Factor> factor_;
 };
 
 }  // namespace unwrapd

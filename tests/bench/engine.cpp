@@ -1,111 +1,140 @@
-// Our engine beside Eigen's SimplicialLLT on the matrix of the global step, one thread, processor
-// time: another program's load changes it less than it changes wall time. Needs only the core.
-//   unwrapd_engine           20k, 100k, 320k and 1M faces of a sheet; Gargoyle, as it is and finer
-//   unwrapd_engine FACES     nothing above that size
-#include <Eigen/SparseCholesky>
-
+// Our engine beside Eigen's SimplicialLLT and CHOLMOD, on the matrix of ARAP's global step and on
+// those of two unknowns a vertex (LSCM, SLIM). One thread, processor time: another program's load
+// changes it less than it changes wall time. Needs only the core.
+//   unwrapd_engine [FACES [OUT.json]]   nothing above that size (2e6); the same figures as JSON
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <vector>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+#include <string>
 
-#include "core/linear/engine.hpp"
 #include "core/measure/rest_triangle.hpp"
+#include "core/solve/conformal_system.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/rivals.hpp"
 #include "tests/core/obj_reader.hpp"
+#include "tests/core/solve/disk_of.hpp"
 
 namespace unwrapd::bench {
 namespace {
 
-constexpr int kSolves = 9;
+constexpr double kShift = 1e-6;  // added to the diagonal of LSCM's matrix: definite without pins
 
-/// Milliseconds of the processor that a call takes.
-template <typename Call>
-double milliseconds(Call call) {
-  const std::clock_t start = std::clock();
-  call();
-  return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+/// Gigabytes a second that one thread reads from memory, best of five.
+double read_bandwidth() {
+  const std::vector<double> numbers(std::size_t(1) << 26, 1.0);
+  double best = 0, sum = 0;
+  for (int k = 0; k < 5; ++k) {
+    const Stopwatch watch;
+    double part[8] = {};
+    for (std::size_t i = 0; i < numbers.size(); i += 8)
+      for (std::size_t j = 0; j < 8; ++j) part[j] += numbers[i + j];
+    best = std::max(best, 8e-9 * static_cast<double>(numbers.size()) / watch.seconds());
+    sum += std::accumulate(part, part + 8, 0.0);
+  }
+  return sum > 0 ? best : 0;
 }
 
-template <typename Call>
-double median_milliseconds(Call call) {
-  std::array<double, kSolves> took{};
-  for (double& t : took) t = milliseconds(call);
-  std::sort(took.begin(), took.end());
-  return took[kSolves / 2];
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
 }
 
-struct Times {
-  double analysis, factor, solve, megabytes;
+class Table {
+ public:
+  Table() : bandwidth_(read_bandwidth()) {
+    const char* commit = std::getenv("UNWRAPD_COMMIT");
+    json_ << "{\"processor\": \"" << processor() << "\", \"commit\": \""
+          << (commit != nullptr ? commit : "") << "\", \"read_gb_per_second\": " << bandwidth_
+          << ", \"rows\": [";
+    std::printf("%s, commit %s; one thread reads %.1f GB/s\n", processor().c_str(),
+                commit != nullptr ? commit : "unknown", bandwidth_);
+    std::puts(
+        "milliseconds                   engine   analysis    factor  refactor    solve  "
+        "with 10   MB of L  solve/reading L twice");
+  }
 
-  [[nodiscard]] double ten_iterations() const { return analysis + factor + 10 * solve; }
+  void start(std::string matrix, std::size_t faces, const Times& ours) {
+    matrix_ = std::move(matrix), faces_ = faces, ours_ = ours;
+    add("ours", ours);
+  }
+
+  void add(const char* engine, const Times& t) {
+    std::printf("%-20s %8zu %-8s %9.1f %9.1f %9.1f %8.2f %8.0f %9.1f %8.2f", matrix_.c_str(),
+                faces_, engine, t.analysis, t.factor, t.refactor, t.solve, t.ten_iterations(),
+                t.megabytes, t.solve / (2 * t.megabytes / bandwidth_));
+    std::printf("  %5.2fx\n", t.ten_iterations() / ours_.ten_iterations());
+    std::fflush(stdout);
+    json_ << (is_first_ ? "\n" : ",\n") << "{\"matrix\": \"" << matrix_
+          << "\", \"faces\": " << faces_ << ", \"engine\": \"" << engine
+          << "\", \"analysis_ms\": " << t.analysis << ", \"factor_ms\": " << t.factor
+          << ", \"refactor_ms\": " << t.refactor << ", \"solve_ms\": " << t.solve
+          << ", \"megabytes\": " << t.megabytes << "}";
+    is_first_ = false;
+  }
+
+  [[nodiscard]] std::string json() const { return json_.str() + "\n]}\n"; }
+
+ private:
+  double bandwidth_;
+  std::ostringstream json_;
+  std::string matrix_;
+  std::size_t faces_ = 0;
+  Times ours_;
+  bool is_first_ = true;
 };
 
-SparseMatrix matrix_of(const TriMesh& mesh) {
+SparseMatrix arap_matrix(const Disk& disk) {
   std::vector<double> weight;
-  for (const RestTriangle& rest : flatten(mesh))
+  for (const RestTriangle& rest : disk.rest)
     weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
-  SparseMatrix lower = lower_laplacian(mesh.faces, mesh.vertex_count(), weight);
+  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight);
   lower.coeffRef(0, 0) *= 2;
   return lower;
 }
 
-Times time_ours(const SparseMatrix& lower) {
-  std::shared_ptr<const Analysis> analysis;
-  std::unique_ptr<RealSystem> system;
-  std::vector<Vec2> b(static_cast<std::size_t>(lower.cols()), Vec2(1, -1));
-  Times times{};
-  times.analysis = milliseconds([&] { analysis = analyse(lower); });
-  times.factor = milliseconds([&] { system = try_factor(analysis, lower); });
-  if (!system) std::abort();
-  times.solve = median_milliseconds([&] { system->solve(b); });
-  times.megabytes = 8e-6 * static_cast<double>(analysis->panel_begin.back()) +
-                    4e-6 * static_cast<double>(analysis->nodes.row.size());
-  return times;
+ComplexMatrix lscm_matrix(const Disk& disk) {
+  ComplexMatrix lower = conformal_matrix(disk);
+  for (Index v = 0; v < disk.vertex_count(); ++v) lower.coeffRef(v, v) += kShift;
+  lower.makeCompressed();
+  return lower;
 }
 
-Times time_eigen(const SparseMatrix& lower) {
-  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt;
-  Eigen::MatrixX2d b = Eigen::MatrixX2d::Ones(lower.cols(), 2);
-  Times times{};
-  times.analysis = milliseconds([&] { llt.analyzePattern(lower); });
-  times.factor = milliseconds([&] { llt.factorize(lower); });
-  times.solve = median_milliseconds([&] { b = llt.solve(b).eval(); });
-  times.megabytes = 12e-6 * static_cast<double>(SparseMatrix(llt.matrixL()).nonZeros());
-  return times;
+void compare(const std::string& name, const TriMesh& mesh, Table& table) {
+  const shapes::OwnedDisk owned = shapes::disk_of(mesh);
+  const std::size_t faces = mesh.faces.size();
+  const SparseMatrix arap = arap_matrix(owned.disk);
+  table.start(name + ", ARAP", faces, time_ours(arap, Unknowns::single));
+  table.add("Eigen", time_eigen(arap, Unknowns::single));
+  if (const auto times = time_cholmod(arap, Unknowns::single)) table.add("CHOLMOD", *times);
+  const ComplexMatrix lscm = lscm_matrix(owned.disk);
+  const SparseMatrix pairs = as_pairs(lscm);
+  table.start(name + ", pairs", faces, time_ours(pairs, Unknowns::pairs));
+  table.add("Eigen", time_eigen(pairs, Unknowns::pairs));
+  table.add("Eigen C", time_eigen(lscm));
+  if (const auto times = time_cholmod(pairs, Unknowns::pairs)) table.add("CHOLMOD", *times);
 }
 
-void compare(const char* name, const TriMesh& mesh) {
-  const SparseMatrix lower = matrix_of(mesh);
-  const Times a = time_ours(lower), b = time_eigen(lower);
-  const auto row = [&](const char* engine, const Times& t) {
-    std::printf("%-9s %8zu %-7s %9.1f %9.1f %8.2f %8.0f %8.1f\n", name, mesh.faces.size(), engine,
-                t.analysis, t.factor, t.solve, t.ten_iterations(), t.megabytes);
-  };
-  row("ours", a);
-  row("Eigen", b);
-  std::printf("%-26s %9.2f %9.2f %8.2f %8.2f %8.2f\n", "  ratio", b.analysis / a.analysis,
-              b.factor / a.factor, b.solve / a.solve, b.ten_iterations() / a.ten_iterations(),
-              b.megabytes / a.megabytes);
-}
-
-void show_table(double most_faces) {
-  std::puts("milliseconds      faces engine   analysis    factor    solve  with 10   MB of L");
+void compare_all(double most_faces, Table& table) {
   for (double faces : {20e3, 100e3, 320e3, 1e6})
-    if (faces <= most_faces) compare("sheet", sheet(faces));
+    if (faces <= most_faces) compare("sheet", sheet(faces), table);
   if (test_data().empty()) return;
   TriMesh mesh = read_obj(test_data() / "paper" / "Gargoyle_ABF.obj");
   for (; static_cast<double>(mesh.faces.size()) <= std::min(most_faces, 400e3);
        mesh = shapes::subdivided(mesh))
-    compare("Gargoyle", mesh);
+    compare("Gargoyle", mesh, table);
 }
 
 }  // namespace
 }  // namespace unwrapd::bench
 
 int main(int argc, char** argv) {
-  unwrapd::bench::show_table(argc > 1 ? std::strtod(argv[1], nullptr) : 2e6);
+  unwrapd::bench::Table table;
+  unwrapd::bench::compare_all(argc > 1 ? std::strtod(argv[1], nullptr) : 2e6, table);
+  if (argc > 2) std::ofstream(argv[2]) << table.json();
   return 0;
 }

@@ -1,0 +1,107 @@
+// Pairs of unknowns are ordered as one, since they are coupled with the same others: the order of
+// their vertices, its tree and its supernodes, each column taken twice.
+#include "core/linear/analysis.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <utility>
+
+namespace unwrapd {
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+std::size_t packed_size(std::size_t n) { return n * (n + 1) / 2; }
+
+/// The matrix's entries by new columns.
+void list_entries(const SparseMatrix& lower, Analysis& analysis) {
+  const std::vector<Index>& position = analysis.nodes.position;
+  const auto for_each_entry = [&](auto visit) {
+    for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j)
+      for (Index p = lower.outerIndexPtr()[j]; p < lower.outerIndexPtr()[j + 1]; ++p)
+        visit(std::minmax(position[at(j)], position[at(lower.innerIndexPtr()[p])]), p);
+  };
+  analysis.entry_begin.assign(position.size() + 1, 0);
+  for_each_entry(
+      [&](std::pair<Index, Index> ends, Index) { ++analysis.entry_begin[at(ends.first) + 1]; });
+  std::partial_sum(analysis.entry_begin.begin(), analysis.entry_begin.end(),
+                   analysis.entry_begin.begin());
+  analysis.entry_row.resize(at(analysis.entry_begin.back()));
+  analysis.entry_source.resize(analysis.entry_row.size());
+  std::vector<Index> next(analysis.entry_begin.begin(), analysis.entry_begin.end() - 1);
+  for_each_entry([&](std::pair<Index, Index> ends, Index p) {
+    const std::size_t to = at(next[at(ends.first)]++);
+    analysis.entry_row[to] = ends.second;
+    analysis.entry_source[to] = p;
+  });
+}
+
+/// Updates pile up: a supernode takes those of its children off the pile and puts its own there.
+std::size_t most_pending(const Supernodes& nodes) {
+  std::vector<std::size_t> pile;
+  std::size_t size = 0, most = 0;
+  for (std::size_t s = 0; s < nodes.count(); ++s) {
+    for (Index c = 0; c < nodes.child_count[s]; ++c) size -= pile.back(), pile.pop_back();
+    pile.push_back(packed_size(nodes.below(s).size()));
+    size += pile.back();
+    most = std::max(most, size);
+  }
+  return most;
+}
+
+/// The pattern of a matrix of pairs, one row a pair.
+Graph graph_of_pairs(const SparseMatrix& lower) {
+  assert(lower.cols() % 2 == 0);
+  std::vector<Index> begin{0}, row;
+  for (Index j = 0; j < static_cast<Index>(lower.cols()); j += 2) {
+    for (Index p = lower.outerIndexPtr()[j]; p < lower.outerIndexPtr()[j + 1]; ++p)
+      if (lower.innerIndexPtr()[p] % 2 == 0) row.push_back(lower.innerIndexPtr()[p] / 2);
+    begin.push_back(static_cast<Index>(row.size()));
+  }
+  return graph_of_lower(begin, row);
+}
+
+/// Two numbers for each: 2i and 2i + 1.
+std::vector<Index> with_twins(std::span<const Index> numbers) {
+  std::vector<Index> both;
+  both.reserve(2 * numbers.size());
+  for (Index i : numbers) both.insert(both.end(), {2 * i, 2 * i + 1});
+  return both;
+}
+
+Supernodes doubled(Supernodes nodes) {
+  nodes.order = with_twins(nodes.order);
+  nodes.position = with_twins(nodes.position);
+  nodes.row = with_twins(nodes.row);
+  for (Index& k : nodes.first) k *= 2;
+  for (std::size_t& k : nodes.row_begin) k *= 2;
+  return nodes;
+}
+
+std::shared_ptr<const Analysis> complete(Supernodes nodes, const SparseMatrix& lower) {
+  Analysis analysis;
+  analysis.nodes = std::move(nodes);
+  list_entries(lower, analysis);
+  analysis.panel_begin.assign(1, 0);
+  for (std::size_t s = 0; s < analysis.nodes.count(); ++s)
+    analysis.panel_begin.push_back(analysis.panel_begin.back() + analysis.shape(s).size());
+  analysis.pending_size = most_pending(analysis.nodes);
+  return std::make_shared<const Analysis>(std::move(analysis));
+}
+
+}  // namespace
+
+std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower) {
+  assert(lower.isCompressed());
+  const std::span begin(lower.outerIndexPtr(), static_cast<std::size_t>(lower.cols()) + 1);
+  const std::span row(lower.innerIndexPtr(), static_cast<std::size_t>(lower.nonZeros()));
+  return complete(analyse(graph_of_lower(begin, row)), lower);
+}
+
+std::shared_ptr<const Analysis> analyse_pairs(const SparseMatrix& lower) {
+  assert(lower.isCompressed());
+  return complete(doubled(analyse(graph_of_pairs(lower))), lower);
+}
+
+}  // namespace unwrapd

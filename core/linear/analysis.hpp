@@ -1,0 +1,38 @@
+#pragma once
+// What depends on the pattern of a symmetric matrix alone: its order of elimination, where its
+// factor's numbers go, how much memory they take.
+
+#include <memory>
+#include <vector>
+
+#include "core/linear/front_panel.hpp"
+#include "core/linear/sparse.hpp"
+#include "core/linear/supernodal.hpp"
+
+namespace unwrapd {
+
+/// One analysis serves any number of factors, of any number of matrices with its pattern.
+/// Immutable: threads may share it.
+struct Analysis {
+  Supernodes nodes;
+  /// Column k of the reordered matrix: entry_begin[k] .. entry_begin[k+1]-1 of the two lists.
+  std::vector<Index> entry_begin;
+  std::vector<Index> entry_row;          ///< in the new order, not above the diagonal
+  std::vector<Index> entry_source;       ///< where among the matrix's values
+  std::vector<std::size_t> panel_begin;  ///< of each supernode, and the end of the last
+  std::size_t pending_size = 0;          ///< the most that updates ever occupy at once
+
+  [[nodiscard]] PanelShape shape(std::size_t s) const {
+    return {nodes.pivots(s), nodes.below(s).size()};
+  }
+};
+
+/// lower: the lower triangle, compressed.
+std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower);
+
+/// As analyse(), of a matrix with two unknowns a vertex, rows 2v and 2v+1, whose entries come in
+/// whole blocks of two by two (of the diagonal ones the lower triangle): ordered by vertices, a
+/// quarter of the graph. Values are those of the given, not the halved, matrix.
+std::shared_ptr<const Analysis> analyse_pairs(const SparseMatrix& lower);
+
+}  // namespace unwrapd
