@@ -1,0 +1,106 @@
+// Bytes as they come from a socket, through everything that reads them before a handler does: the
+// head's check, the framing of bodies, httplib's parser, the parts of a form.
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+
+#include "core/error.hpp"
+#include "server/connection.hpp"
+#include "server/http_exchange.hpp"
+#include "server/http_head.hpp"
+#include "tests/fuzz/targets.hpp"
+
+namespace unwrapd::fuzz {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{64} * 1024;  // what a socket takes unread
+
+void head(std::string_view bytes) {
+  const std::string whole = std::string(bytes.substr(0, bytes.find("\r\n\r\n"))) + "\r\n\r\n";
+  const server::Framing framing = server::vet_head(whole);
+  promise(framing.content_length >= 0, "a length is no less than 0");
+  promise(!framing.chunked || framing.content_length == 0, "a body has one length");
+}
+
+std::vector<std::string> head_seeds() {
+  return {"GET /v1/jobs?a=b HTTP/1.1\r\nHost: x\r\nAccept: */*\r\n",
+          "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 12\r\nExpect: 100-continue\r\n",
+          "PUT / HTTP/1.0\r\nTransfer-Encoding: chunked\r\nContent-Encoding: identity\r\n"};
+}
+
+/// Reads a request whole, as the handlers of uploads do. No more can come out than went in.
+server::Response swallow(const server::Request& request, std::size_t sent) {
+  std::size_t got = 0;
+  const server::BodyReader::Sink count = [&](std::string_view piece) { got += piece.size(); };
+  try {
+    const auto type = request.headers.find("Content-Type");
+    const bool parts = type != request.headers.end() && type->second.starts_with("multipart/");
+    if (request.body != nullptr && parts)
+      request.body->read_parts([&](const server::Part& part) { got += part.name.size(); }, count);
+    else if (request.body != nullptr)
+      request.body->read(count);
+  } catch (const Error& error) {
+    return server::error_response(error);
+  }
+  promise(got <= sent, "a body is no longer than what was sent");
+  server::Response response;
+  response.status = 200;
+  response.content_type = "text/plain";
+  response.body = std::string("ok");
+  return response;
+}
+
+void connection(std::string_view bytes) {
+  bytes = bytes.substr(0, kMaxBytes);
+  std::array<int, 2> ends{};
+  promise(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) == 0, "there are sockets");
+  promise(::send(ends[0], bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()),
+          "the socket takes the bytes");
+  ::shutdown(ends[0], SHUT_WR);
+  {
+    const server::Log log(server::LogLevel::off);
+    const server::Handler answer = [&](const server::Request& request) {
+      return swallow(request, bytes.size());
+    };
+    server::Connection served(ends[1], -1, {});
+    server::Exchange exchange(served, answer, log);
+    try {
+      while (served.next_request() && exchange.answer_request(false)) {
+      }
+    } catch (const Error&) {  // the connection's refusal; its caller writes it
+    }
+  }
+  ::close(ends[0]);
+}
+
+std::vector<std::string> connection_seeds() {
+  return {"GET /v1/limits?x=%41&y HTTP/1.1\r\nHost: x\r\n\r\nGET / HTTP/1.1\r\nHost: x\r\n\r\n",
+          "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
+          "5;a=b\r\nhello\r\n0\r\nTrailer: x\r\n\r\n",
+          "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello"};
+}
+
+void multipart(std::string_view bytes) {
+  connection(
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: multipart/form-data; boundary=b\r\n"
+      "Content-Length: " +
+      std::to_string(bytes.size()) + "\r\n\r\n" + std::string(bytes));
+}
+
+std::vector<std::string> multipart_seeds() {
+  return {
+      "--b\r\nContent-Disposition: form-data; name=\"options\"\r\n\r\n{}\r\n"
+      "--b\r\nContent-Disposition: form-data; name=\"mesh\"; filename=\"m.obj\"\r\n"
+      "Content-Type: model/obj\r\n\r\nv 0 0 0\n\r\n--b--\r\n"};
+}
+
+constexpr std::array kTargets = {Target{"head", head, head_seeds},
+                                 Target{"http", connection, connection_seeds},
+                                 Target{"multipart", multipart, multipart_seeds}};
+
+}  // namespace
+
+std::span<const Target> http_targets() { return kTargets; }
+
+}  // namespace unwrapd::fuzz
