@@ -20,10 +20,12 @@ double share_done(int iterations, const Stop& stop) {
 
 }  // namespace
 
-ChartWatch::ChartWatch(const Progress& progress, Index chart_count, std::size_t face_count)
+ChartWatch::ChartWatch(const Progress& progress, Index chart_count, std::size_t face_count,
+                       double begin)
     : progress_(progress),
       chart_count_(chart_count),
-      faces_total_(static_cast<double>(std::max<std::size_t>(face_count, 1))) {}
+      faces_total_(static_cast<double>(std::max<std::size_t>(face_count, 1))),
+      begin_(begin) {}
 
 void ChartWatch::begin_chart(std::size_t faces, std::size_t lambda_count) {
   faces_now_ = static_cast<double>(faces);
@@ -45,7 +47,7 @@ void ChartWatch::end_chart() {
 double ChartWatch::fraction(double of_run) const {
   const double of_chart = (runs_done_ + of_run) / runs_;
   const double done = (faces_done_ + of_chart * faces_now_) / faces_total_;
-  return kSolveBegin + (kSolveEnd - kSolveBegin) * done;
+  return begin_ + (kSolveEnd - begin_) * done;
 }
 
 void ChartWatch::tell(Stage stage) const {

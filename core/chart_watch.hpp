@@ -8,15 +8,16 @@
 
 namespace unwrapd {
 
-/// The share of the job that lies behind us when solving begins and when it ends.
+/// The share of the job that lies behind us when solving begins, where charts need not be sought
+/// first, and when it ends.
 inline constexpr double kSolveBegin = 0.10, kSolveEnd = 0.90;
 
 /// Where the solving of charts stands: which chart, which lambda, how far. Charts weigh by their
 /// faces, the lambdas of a chart weigh alike.
 class ChartWatch {
  public:
-  /// progress must outlive the watch.
-  ChartWatch(const Progress& progress, Index chart_count, std::size_t face_count);
+  /// progress must outlive the watch. begin: the share of the job that is behind us.
+  ChartWatch(const Progress& progress, Index chart_count, std::size_t face_count, double begin);
 
   void begin_chart(std::size_t faces, std::size_t lambda_count);
   /// lambda is told with every event of the run; empty when there is but one map.
@@ -38,6 +39,7 @@ class ChartWatch {
   const Progress& progress_;
   Index chart_ = 0, chart_count_;
   double faces_total_, faces_done_ = 0, faces_now_ = 0;
+  double begin_;
   double runs_ = 1, runs_done_ = 0;
   std::optional<double> lambda_;
 };

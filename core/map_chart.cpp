@@ -1,5 +1,6 @@
 #include "core/map_chart.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -33,6 +34,17 @@ Rigidity rigidity_of(const Disk& disk, const UnwrapOptions& options, double lamb
     default:
       return {0, false};
   }
+}
+
+/// What is held, and where nothing is, the map that the chart came with to begin with.
+Held held_or_begun(const Chart& chart, const Disk& disk, const UnwrapOptions& options,
+                   const Held& held) {
+  const bool has_start = !chart.start.empty() && options.initial == InitialMap::automatic;
+  if (!held.holds.empty() || !has_start) return held;
+  Held begun{{}, chart.start};
+  const double area = uv_area(disk.rest, disk.faces, begun.start);
+  for (Vec2& u : begun.start) u /= std::sqrt(area);
+  return begun;
 }
 
 /// Scales a free map to UV area = 3D area in mesh units: all charts then share one texel density.
@@ -81,6 +93,11 @@ std::vector<MappedChart> finish_parts(const Disk& disk, Kept kept, const ChartHo
 
 }  // namespace
 
+Guarantee guarantee_of(const Chart& chart, const UnwrapOptions& options) {
+  if (options.guarantee == Guarantee::none) return Guarantee::none;
+  return std::max(options.guarantee, chart.least);
+}
+
 bool is_curve(const UnwrapOptions& options) {
   return options.method == Method::hybrid && !options.lambda_curve.empty();
 }
@@ -94,14 +111,14 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
   const Chart& chart = job.chart;
   const std::vector<double> lambdas = lambdas_of(options);
   watch.begin_chart(chart.mesh.faces.size(), lambdas.size());
-  const Disk disk = make_disk(chart.mesh, chart.loops);
+  const Disk disk = make_disk(chart.mesh, chart.loops, executor.shared_core());
   const ChartHold hold = hold_chart(disk, options, job.page, watch.stop(), executor);
-  Solver solver(disk, options, hold.held, executor);
+  Solver solver(disk, options, held_or_begun(chart, disk, options, hold.held), executor);
   std::vector<std::vector<MappedChart>> maps(lambdas.size());
   for (std::size_t k = 0; k < lambdas.size(); ++k) {
     watch.begin_run(is_curve(options) ? std::optional(lambdas[k]) : std::nullopt);
     Solution solution = solver.run(lambdas[k], watch.solve_watch(disk, options.stop));
-    const Promise promise{options.guarantee,
+    const Promise promise{guarantee_of(chart, options),
                           options.repair,
                           {.rigidity = rigidity_of(disk, options, lambdas[k]),
                            .held = fixed_vertices(disk.positions.size(), hold.held.holds),

@@ -25,6 +25,9 @@ bool is_curve(const UnwrapOptions& options);
 /// The values of lambda that are asked for: those of the curve, or one.
 std::vector<double> lambdas_of(const UnwrapOptions& options);
 
+/// What holds of a chart's map: what is asked for, or what the chart keeps anyway.
+Guarantee guarantee_of(const Chart& chart, const UnwrapOptions& options);
+
 /// A chart and its position constraints, in the page's coordinates; empty: it is packed.
 struct ChartJob {
   const Chart& chart;

@@ -28,6 +28,25 @@ void require_packing(const UnwrapOptions& options) {
           "max_pages must lie between 1 and " + std::to_string(kMaxPages), "/max_pages");
 }
 
+/// Constraints and boundary shapes are about components that stay whole.
+void require_charts(const UnwrapOptions& options) {
+  const bool whole = !options.constraints.empty() || options.boundary != BoundaryShape::free;
+  require(!options.max_distortion ||
+              (*options.max_distortion >= kMinDistortion && std::isfinite(*options.max_distortion)),
+          "max_distortion must be a number of at least 2.0001; 2 is no distortion at all",
+          "/max_distortion");
+  require(!options.max_distortion || !whole,
+          "max_distortion may take a mesh apart, which constraints and a boundary shape exclude; "
+          "leave one of them out",
+          "/max_distortion");
+  require(!options.max_charts || *options.max_charts >= 1, "max_charts must be at least 1",
+          "/max_charts");
+  for (std::size_t k = 0; k < options.seam_edges.size(); ++k)
+    require(options.seam_edges[k].vertices.size() >= 2,
+            "a path of seam_edges needs at least two vertices",
+            "/seam_edges/" + std::to_string(k) + "/vertices");
+}
+
 }  // namespace
 
 void validate(const UnwrapOptions& options, int max_iterations) {
@@ -56,6 +75,7 @@ void validate(const UnwrapOptions& options, int max_iterations) {
   require(!options.repack_only || options.boundary == BoundaryShape::free,
           "repack_only keeps the islands as they are; leave out boundary", "/boundary");
   require_packing(options);
+  require_charts(options);
   require(options.padding >= 0 && 4 * options.padding <= options.resolution,
           "padding must lie between 0 and a quarter of resolution", "/padding");
 }

@@ -11,6 +11,7 @@
 #include "core/atlas/constraints.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/atlas/promise.hpp"
+#include "core/atlas/segment_charts.hpp"
 #include "core/error.hpp"
 #include "core/map_chart.hpp"
 #include "core/measure/seam_length.hpp"
@@ -21,6 +22,7 @@ namespace {
 /// Shares of the job that are behind us when a step of core begins; reading comes before, writing
 /// after.
 constexpr double kChartsBegin = 0.05, kPackBegin = kSolveEnd, kMeasureBegin = 0.93;
+constexpr double kSegmentEnd = 0.50;  // where something is segmented
 
 /// All charts under one map: what goes on one page.
 struct Layout {
@@ -31,14 +33,47 @@ struct Layout {
   Report report;
 };
 
-std::vector<Charts> take_apart(std::span<const Surface> surfaces, SeamMode seams) {
+void announce(const Progress& progress, Stage stage, std::size_t charts, double fraction) {
+  if (progress.on_stage) progress.on_stage({stage, 0, static_cast<Index>(charts), fraction});
+}
+
+/// The charts of a job, and where their solving begins in it.
+struct Taken {
+  std::vector<Charts> parts;
+  double solve_begin = kSolveBegin;
+  std::string note;
+};
+
+/// Constraints and boundary shapes are about whole components.
+SegmentOptions segment_options(const UnwrapOptions& options) {
+  return {
+      .max_distortion = options.max_distortion,
+      .max_charts = options.max_charts,
+      .one_chart_each = !options.constraints.empty() || options.boundary != BoundaryShape::free};
+}
+
+std::vector<Charts> components(std::span<const Surface> surfaces, const UnwrapOptions& options) {
   const auto is_empty = [](const Surface& surface) { return surface.mesh.faces.empty(); };
   if (std::all_of(surfaces.begin(), surfaces.end(), is_empty))
     throw Error(ErrorCode::no_triangles, "the asset has no triangles; there is nothing to unwrap");
   std::vector<Charts> parts;
   parts.reserve(surfaces.size());
-  for (const Surface& surface : surfaces) parts.push_back(make_charts(surface, seams));
+  for (const Surface& surface : surfaces)
+    parts.push_back(components_of(
+        surface, {options.seams, options.seam_edges, static_cast<Index>(parts.size())}));
   return parts;
+}
+
+Taken take_apart(std::span<const Surface> surfaces, const UnwrapOptions& options,
+                 const Progress& progress, Executor& executor) {
+  Taken taken{components(surfaces, options), kSolveBegin, {}};
+  const auto on_progress = [&](Stage stage, double share) {
+    taken.solve_begin = kSegmentEnd;
+    announce(progress, stage, 0, kChartsBegin + (kSegmentEnd - kChartsBegin) * share);
+  };
+  taken.note =
+      segment_charts(taken.parts, segment_options(options), {on_progress, progress.stop}, executor);
+  return taken;
 }
 
 void add_input(Report& report, const Charts& part, Index surface) {
@@ -79,23 +114,23 @@ void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
   layout.held[surface].push_back(std::move(mapped.held));
 }
 
-ChartWatch chart_watch(const std::vector<Charts>& parts, const Progress& progress) {
+ChartWatch chart_watch(const Taken& taken, const Progress& progress) {
   std::size_t chart_count = 0, face_count = 0;
-  for (const Charts& part : parts) {
+  for (const Charts& part : taken.parts) {
     chart_count += part.charts.size();
     for (const Chart& chart : part.charts) face_count += chart.mesh.faces.size();
   }
   if (chart_count == 0)
     throw Error(ErrorCode::zero_area, "every triangle has zero area; there is nothing to unwrap");
-  return {progress, static_cast<Index>(chart_count), face_count};
+  return {progress, static_cast<Index>(chart_count), face_count, taken.solve_begin};
 }
 
 /// page: the position constraints of every chart of every surface.
-std::vector<Layout> map_charts(const std::vector<Charts>& parts,
-                               const std::vector<std::vector<Holds>>& page,
+std::vector<Layout> map_charts(const Taken& taken, const std::vector<std::vector<Holds>>& page,
                                const UnwrapOptions& options, const Progress& progress,
                                Executor& executor) {
-  ChartWatch watch = chart_watch(parts, progress);
+  const std::vector<Charts>& parts = taken.parts;
+  ChartWatch watch = chart_watch(taken, progress);
   std::vector<Layout> layouts = empty_layouts(parts, lambdas_of(options).size());
   for (std::size_t s = 0; s < parts.size(); ++s)
     for (std::size_t c = 0; c < parts[s].charts.size(); ++c) {
@@ -192,19 +227,15 @@ void add_curve(std::vector<Unwrapped>& maps, const std::vector<double>& lambdas)
   for (Unwrapped& map : maps) map.report.curve = curve;
 }
 
-void announce(const Progress& progress, Stage stage, std::size_t charts, double fraction) {
-  if (progress.on_stage) progress.on_stage({stage, 0, static_cast<Index>(charts), fraction});
-}
-
 }  // namespace
 
 std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const UnwrapOptions& options,
                                     const Progress& progress, Executor& executor) {
   validate(options, std::numeric_limits<int>::max());
   announce(progress, Stage::setup, 0, kChartsBegin);
-  const std::vector<Charts> parts = take_apart(surfaces, options.seams);
-  const auto page = page_holds(surfaces, parts, options.constraints, progress.stop);
-  std::vector<Layout> layouts = map_charts(parts, page, options, progress, executor);
+  const Taken taken = take_apart(surfaces, options, progress, executor);
+  const auto page = page_holds(surfaces, taken.parts, options.constraints, progress.stop);
+  std::vector<Layout> layouts = map_charts(taken, page, options, progress, executor);
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
   for (Layout& layout : layouts) {

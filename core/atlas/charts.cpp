@@ -65,18 +65,72 @@ bool is_a_few_disks(const Pieces& kept, const Pieces& welded) {
          std::all_of(components.begin(), components.end(), is_disk);
 }
 
+/// A surface with what weld() and inspect_faces() say of it.
+struct Inspected {
+  const Surface& surface;
+  std::span<const Index> first_at;
+  std::span<const Triangle> welded;
+  const FaceStates& states;
+};
+
+[[noreturn]] void refuse_path(std::size_t path, const std::string& why) {
+  throw Error(ErrorCode::invalid_option, "seam_edges: " + why,
+              "/seam_edges/" + std::to_string(path));
+}
+
+std::string text(const EdgeEnds& edge) {
+  return std::to_string(edge[0]) + " and " + std::to_string(edge[1]);
+}
+
+/// The edges of one path, in ascending order, over welded vertices.
+std::vector<EdgeEnds> edges_of(const Inspected& in, const SeamPath& path, std::size_t number) {
+  const auto count = static_cast<Index>(in.first_at.size());
+  std::vector<EdgeEnds> edges;
+  for (std::size_t k = 0; k < path.vertices.size(); ++k) {
+    const Index v = path.vertices[k];
+    if (v < 0 || v >= count)
+      refuse_path(number, "there is no vertex " + std::to_string(v) + " in a mesh of " +
+                              std::to_string(count) + "; give vertices of this mesh");
+    if (k == 0) continue;
+    const auto ends = std::minmax(in.first_at[path.vertices[k - 1]], in.first_at[v]);
+    edges.push_back({ends.first, ends.second});
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+void cut_paths(const Inspected& in, const SeamRules& seams, Halfedges& halfedges) {
+  for (std::size_t k = 0; k < seams.paths.size(); ++k) {
+    if (seams.paths[k].surface != seams.surface) continue;
+    const std::vector<EdgeEnds> edges = edges_of(in, seams.paths[k], k);
+    if (const auto missing = cut_edges(in.welded, edges, halfedges))
+      refuse_path(k, "no edge joins vertices " + text(*missing) +
+                         "; give vertices that follow each other along edges");
+  }
+}
+
+Pieces welded_pieces(const Inspected& in, const SeamRules& seams) {
+  Pairing pairing = pair_welded(in.welded, in.states);
+  if (seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty())
+    cut_at_uv_seams(in.surface, pairing.halfedges);
+  cut_paths(in, seams, pairing.halfedges);
+  return pieces_of(std::move(pairing), in.states);
+}
+
+Pieces kept_pieces(const Inspected& in, const SeamRules& seams) {
+  Pairing pairing = pair_keeping_seams(in.surface, in.welded, in.states);
+  cut_paths(in, seams, pairing.halfedges);
+  return pieces_of(std::move(pairing), in.states);
+}
+
 /// The pieces that the mode asks for, and whether vertices were welded for them.
-std::pair<Pieces, bool> choose(const Surface& surface, SeamMode seams,
-                               std::span<const Triangle> welded_faces, const FaceStates& states) {
-  const auto welded = [&] { return pieces_of(pair_welded(welded_faces, states), states); };
-  const auto kept = [&] {
-    return pieces_of(pair_keeping_seams(surface, welded_faces, states), states);
-  };
-  const bool nothing_to_weld = std::ranges::equal(welded_faces, surface.mesh.faces);
-  if (seams == SeamMode::keep || nothing_to_weld) return {kept(), false};
-  if (seams == SeamMode::none) return {welded(), true};
-  Pieces with_cuts = kept();
-  Pieces without = welded();
+std::pair<Pieces, bool> choose(const Inspected& in, const SeamRules& seams) {
+  const bool nothing_to_weld = std::ranges::equal(in.welded, in.surface.mesh.faces);
+  const bool by_uv = seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty();
+  if (seams.mode == SeamMode::none || by_uv) return {welded_pieces(in, seams), !nothing_to_weld};
+  if (seams.mode == SeamMode::keep || nothing_to_weld) return {kept_pieces(in, seams), false};
+  Pieces with_cuts = kept_pieces(in, seams);
+  Pieces without = welded_pieces(in, seams);
   const bool same = with_cuts.halfedges.twin == without.halfedges.twin;
   if (same || is_a_few_disks(with_cuts, without)) return {std::move(with_cuts), false};
   return {std::move(without), true};
@@ -121,18 +175,6 @@ Chart chart_of(const Surface& surface, const Pieces& pieces, std::span<const Ind
   return chart;
 }
 
-void cut(Chart& chart) {
-  cut_to_disk(chart.mesh, chart.halfedges);
-  const TriMesh closed = std::move(chart.mesh);
-  chart.mesh = mesh_of(chart.halfedges,
-                       [&](Index h) { return closed.positions[closed.faces[h / 3][h % 3]]; });
-}
-
-[[maybe_unused]] bool is_disk(const Chart& chart) {
-  const Topology shape = topology(chart.mesh.faces, chart.halfedges);
-  return shape.components.size() == 1 && shape.components.front().is_disk();
-}
-
 std::vector<Chart> separate(const Surface& surface, const Pieces& pieces) {
   const auto& components = pieces.topology.components;
   const auto& of = pieces.topology.component_of;
@@ -148,9 +190,7 @@ std::vector<Chart> separate(const Surface& surface, const Pieces& pieces) {
     for (std::size_t k = 0; k < source.size(); ++k) rank[source[k]] = static_cast<Index>(k);
     first += source.size();
     charts.push_back(chart_of(surface, pieces, source, rank));
-    if (!component.is_disk()) cut(charts.back());
     charts.back().loops = boundary_loops(charts.back().mesh, charts.back().halfedges);
-    assert(is_disk(charts.back()));
   }
   return charts;
 }
@@ -170,27 +210,48 @@ std::vector<Repair> repairs_of(const FaceStates& states, const Pieces& pieces) {
   const auto faces = [&](FaceState state) {
     return static_cast<Index>(std::count(states.of.begin(), states.of.end(), state));
   };
-  const auto& components = pieces.topology.components;
-  const auto cuts = std::count_if(components.begin(), components.end(),
-                                  [](const Component& c) { return !c.is_disk(); });
   std::vector<Repair> repairs{
       {RepairKind::degenerate_faces_set_aside, 0,
        faces(FaceState::collapsed) + faces(FaceState::flat)},
       {RepairKind::duplicate_faces_set_aside, 0, faces(FaceState::duplicate)},
-      {RepairKind::non_manifold_edges_split, 0, pieces.split_edges},
-      {RepairKind::cut_to_disk, 0, static_cast<Index>(cuts)}};
+      {RepairKind::non_manifold_edges_split, 0, pieces.split_edges}};
   std::erase_if(repairs, [](const Repair& repair) { return repair.count == 0; });
   return repairs;
 }
 
 }  // namespace
 
+bool is_disk(const Chart& component) {
+  const Topology shape = topology(component.mesh.faces, component.halfedges);
+  return shape.components.size() == 1 && shape.components.front().is_disk();
+}
+
+void cut(Chart& component) {
+  cut_to_disk(component.mesh, component.halfedges);
+  const TriMesh closed = std::move(component.mesh);
+  component.mesh = mesh_of(component.halfedges,
+                           [&](Index h) { return closed.positions[closed.faces[h / 3][h % 3]]; });
+  component.loops = boundary_loops(component.mesh, component.halfedges);
+}
+
 Charts make_charts(const Surface& surface, SeamMode seams) {
+  Charts charts = components_of(surface, {seams});
+  Index count = 0;
+  for (Chart& component : charts.charts) {
+    if (is_disk(component)) continue;
+    cut(component);
+    ++count;
+  }
+  if (count > 0) charts.repairs.push_back({RepairKind::cut_to_disk, 0, count});
+  return charts;
+}
+
+Charts components_of(const Surface& surface, const SeamRules& seams) {
   assert(surface.part.size() == surface.mesh.faces.size());
   const std::vector<Index> first_at = weld(surface.mesh.positions);
   const std::vector<Triangle> welded = renumbered(surface.mesh.faces, first_at);
   const FaceStates states = inspect_faces(surface.mesh, welded);
-  const auto [pieces, was_welded] = choose(surface, seams, welded, states);
+  const auto [pieces, was_welded] = choose({surface, first_at, welded, states}, seams);
   require_two_sides(surface, pieces);
   Charts charts;
   charts.charts = separate(surface, pieces);

@@ -1,7 +1,8 @@
 #pragma once
-// From a surface as it came in to charts that the solver takes: topology repaired, components
-// separated, everything that is not a disk cut to one.
+// From a surface as it came in to its connected components, topology repaired, and to charts that
+// the solver takes: everything that is not a disk cut to one, or taken apart (segment_charts.hpp).
 
+#include <span>
 #include <vector>
 
 #include "core/mesh/halfedges.hpp"
@@ -17,6 +18,8 @@ struct Chart {
   Halfedges halfedges;              ///< of mesh.faces
   std::vector<BoundaryLoop> loops;  ///< at least one, the longest first
   std::vector<Index> face_source;   ///< chart face -> face of the surface; corners keep their order
+  UvMap start = {};  ///< a map without flips or overlaps, of any scale, to begin with; empty: none
+  Guarantee least = Guarantee::none;  ///< what its map keeps unless nothing shall be guaranteed
 };
 
 /// A surface taken apart. Faces in set_aside are in no chart.
@@ -28,7 +31,25 @@ struct Charts {
   std::vector<Repair> repairs;   ///< Repair::surface is left 0 for the caller to fill in
 };
 
-/// Throws Error{not_orientable}.
+/// What opens a surface beside its boundaries.
+struct SeamRules {
+  SeamMode mode = SeamMode::automatic;   ///< uv0 is automatic for a surface without UVs
+  std::span<const SeamPath> paths = {};  ///< of all surfaces
+  Index surface = 0;                     ///< which of them this is
+};
+
+/// The components of a surface, which need not be disks: those that are none have yet to be cut or
+/// taken apart, and may be without a loop. Throws Error{not_orientable}, and Error{invalid_option}
+/// with where = "/seam_edges/<i>" where a path leaves the surface's vertices or edges.
+Charts components_of(const Surface& surface, const SeamRules& seams);
+
+/// Whether a component is a disk, holes allowed.
+bool is_disk(const Chart& component);
+
+/// Makes one disk of a component that is none: see cut_to_disk().
+void cut(Chart& component);
+
+/// The components, each that is no disk cut to one. Throws Error{not_orientable}.
 Charts make_charts(const Surface& surface, SeamMode seams);
 
 }  // namespace unwrapd

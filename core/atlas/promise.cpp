@@ -181,10 +181,10 @@ Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv)
     return {static_cast<Index>(flipped_faces(chart.mesh.faces, page_uv).size()), {}};
   if (snap(chart, promise.intent.held, promise.intent.stop, page_uv) > 0)
     fail("a triangle is too small beside the page for the precision in which UVs are written");
-  if (promise.guarantee != Guarantee::bijective) return {};
-  if (!overlaps_of(chart, page_uv).empty())
+  const auto overlaps = static_cast<Index>(overlaps_of(chart, page_uv).size());
+  if (overlaps > 0 && promise.guarantee == Guarantee::bijective)
     fail("two triangles are too near to each other for the precision in which UVs are written");
-  return {0, 0};
+  return {0, overlaps};
 }
 
 }  // namespace unwrapd

@@ -39,7 +39,7 @@ Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise&
 /// What is true of the UVs that are written.
 struct Written {
   Index flipped = 0;
-  std::optional<Index> overlaps = {};  ///< pairs of triangles; counted where none are promised
+  std::optional<Index> overlaps = {};  ///< pairs of triangles; not counted under Guarantee::none
 };
 
 /// Rounds a kept part's page UVs to what every format writes exactly, and keeps the promise there;

@@ -24,6 +24,7 @@ constexpr double kRefinement = 0.3;      // of flatness, each time a patch has n
 constexpr int kRefinements = 4;          // then the patch falls into its triangles
 constexpr int kSmoothingPasses = 3;
 constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
+constexpr double kMergeBegin = 0.3;    // share of the time
 constexpr double kCapOfOnePatch = 4;   // in shares of what is allowed of all
 
 Excess total_of(std::span<const Patch> patches) {
@@ -92,12 +93,18 @@ std::vector<Patch> over_segment(const Sheet& sheet, const SegmentRules& rules, E
 
 std::vector<Region> segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
   const double budget = rules.max_distortion - 2;
-  const MergeRules merging{.budget = budget,
-                           .cap = kCapOfOnePatch * budget,
-                           .on_progress = rules.on_progress,
-                           .stop = rules.stop};
-  std::vector<Patch> patches =
-      merge_patches(sheet, {}, over_segment(sheet, rules, executor), merging, executor);
+  const auto tell = [&](Stage stage, double share) {
+    if (rules.on_progress) rules.on_progress(stage, share);
+  };
+  tell(Stage::segment, 0);
+  std::vector<Patch> patches = over_segment(sheet, rules, executor);
+  const auto merged = [&](double share) {
+    tell(Stage::merge, kMergeBegin + (1 - kMergeBegin) * share);
+  };
+  const MergeRules merging{
+      .budget = budget, .cap = kCapOfOnePatch * budget, .on_progress = merged, .stop = rules.stop};
+  merged(0);
+  patches = merge_patches(sheet, {}, std::move(patches), merging, executor);
   std::vector<Region> regions;
   for (Patch& patch : patches) regions.push_back(std::move(patch.region));
   return regions;

@@ -8,12 +8,13 @@
 #include "core/atlas/merge.hpp"
 #include "core/atlas/sheet.hpp"
 #include "core/executor.hpp"
+#include "core/progress.hpp"
 
 namespace unwrapd {
 
 struct SegmentRules {
   double max_distortion = 2.02;  ///< of all regions together, D_angle and D_area each; > 2
-  std::function<void(double)> on_progress = {};  ///< the share that is done; from this thread
+  std::function<void(Stage, double)> on_progress = {};  ///< the share that is done
   std::stop_token stop = {};
 };
 

@@ -51,6 +51,8 @@ std::vector<int> nearer_seeds(const Chart& chart, const std::array<std::vector<I
 ChartPart part_of(const Chart& chart, const Halfedges& cut, const std::vector<Index>& faces,
                   const std::vector<Index>& rank) {
   ChartPart part;
+  part.face = faces;
+  part.chart.least = chart.least;
   for (Index t : faces) {
     part.chart.face_source.push_back(chart.face_source[t]);
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
@@ -74,14 +76,7 @@ ChartPart part_of(const Chart& chart, const Halfedges& cut, const std::vector<In
 
 }  // namespace
 
-std::vector<ChartPart> split_chart(const Chart& chart,
-                                   const std::array<std::vector<Index>, 2>& seeds) {
-  const std::vector<int> side = nearer_seeds(chart, seeds);
-  Halfedges cut = chart.halfedges;
-  for (Index& twin : cut.twin) {
-    const auto h = static_cast<Index>(&twin - cut.twin.data());
-    if (twin != kNoTwin && side[twin / 3] != side[h / 3]) twin = kNoTwin;
-  }
+std::vector<ChartPart> parts_of(const Chart& chart, const Halfedges& cut) {
   const Topology pieces = topology(corner_vertices(cut).faces, cut);
   std::vector<std::vector<Index>> faces(pieces.components.size());
   std::vector<Index> rank(chart.mesh.faces.size());
@@ -93,6 +88,17 @@ std::vector<ChartPart> split_chart(const Chart& chart,
   std::vector<ChartPart> parts;
   for (const std::vector<Index>& own : faces) parts.push_back(part_of(chart, cut, own, rank));
   return parts;
+}
+
+std::vector<ChartPart> split_chart(const Chart& chart,
+                                   const std::array<std::vector<Index>, 2>& seeds) {
+  const std::vector<int> side = nearer_seeds(chart, seeds);
+  Halfedges cut = chart.halfedges;
+  for (Index& twin : cut.twin) {
+    const auto h = static_cast<Index>(&twin - cut.twin.data());
+    if (twin != kNoTwin && side[twin / 3] != side[h / 3]) twin = kNoTwin;
+  }
+  return parts_of(chart, cut);
 }
 
 }  // namespace unwrapd

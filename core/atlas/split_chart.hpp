@@ -11,8 +11,13 @@ namespace unwrapd {
 /// A part of a chart: again a disk (holes allowed).
 struct ChartPart {
   Chart chart;
-  std::vector<Index> vertex;  ///< part vertex -> vertex of the chart that was split
+  std::vector<Index> face;    ///< part face -> face of the chart that was split
+  std::vector<Index> vertex;  ///< part vertex -> vertex of that chart
 };
+
+/// The pieces that hang together by the twins in `cut`, which are some of the chart's own (it need
+/// not be a disk): ordered by their lowest face, faces ascending, corners in their order.
+std::vector<ChartPart> parts_of(const Chart& chart, const Halfedges& cut);
 
 /// Parts the faces so that those of seeds[0] and of seeds[1] are in different parts: each face goes
 /// with the seeds that are nearer over the surface. Seeds are disjoint, none empty; where a part

@@ -21,6 +21,11 @@ void set_twins(Halfedges& halfedges, Index g, Index h) {
   if (h != kNoTwin) halfedges.twin[h] = g;
 }
 
+void open_edge(Halfedges& halfedges, Index h) {
+  const Index other = std::exchange(halfedges.twin[h], kNoTwin);
+  halfedges.twin[other] = kNoTwin;
+}
+
 /// Pairs the sides of every edge; counts what cannot be paired.
 void pair_all(std::span<const Triangle> faces, const std::vector<EdgeSide>& sides, Pairing& out) {
   for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
@@ -133,6 +138,35 @@ Pairing pair_keeping_seams(const Surface& surface, std::span<const Triangle> wel
     if (states.of[t] == FaceState::collapsed) take_out(welded, t, out.halfedges);
   if (spans_parts(surface)) glue_parts(surface, welded, states, out);
   return out;
+}
+
+std::optional<EdgeEnds> cut_edges(std::span<const Triangle> welded, std::span<const EdgeEnds> edges,
+                                  Halfedges& halfedges) {
+  std::vector<char> found(edges.size(), 0);
+  for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
+    const auto ends = std::minmax(start_of(welded, h), end_of(welded, h));
+    const EdgeEnds edge{ends.first, ends.second};
+    const auto at = std::lower_bound(edges.begin(), edges.end(), edge);
+    if (at == edges.end() || *at != edge) continue;
+    found[at - edges.begin()] = 1;
+    if (!is_open(halfedges, h)) open_edge(halfedges, h);
+  }
+  const auto missing = std::find(found.begin(), found.end(), 0);
+  if (missing == found.end()) return std::nullopt;
+  return edges[missing - found.begin()];
+}
+
+void cut_at_uv_seams(const Surface& surface, Halfedges& halfedges) {
+  const auto same = [](const Vec2& a, const Vec2& b) {
+    return a == b || (a.hasNaN() && b.hasNaN());
+  };
+  const auto at = [&](Index h) -> const Vec2& { return surface.corner_uv[h / 3][h % 3]; };
+  for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
+    const Index twin = halfedges.twin[h];
+    if (twin == kNoTwin || h > twin) continue;
+    if (!same(at(h), at(next_halfedge(twin))) || !same(at(next_halfedge(h)), at(twin)))
+      open_edge(halfedges, h);
+  }
 }
 
 void close_slits(Halfedges& halfedges) {

@@ -28,6 +28,18 @@ Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states);
 Pairing pair_keeping_seams(const Surface& surface, std::span<const Triangle> welded,
                            const FaceStates& states);
 
+/// An edge by its ends, the lower first.
+using EdgeEnds = std::array<Index, 2>;
+
+/// Opens the edges listed, ends being welded vertices; they must be in ascending order. Returns the
+/// first of them that no face has, or nothing.
+std::optional<EdgeEnds> cut_edges(std::span<const Triangle> welded, std::span<const EdgeEnds> edges,
+                                  Halfedges& halfedges);
+
+/// Opens the edges at which the UVs that the surface came with differ from one side to the other.
+/// Two corners without UVs do not differ.
+void cut_at_uv_seams(const Surface& surface, Halfedges& halfedges);
+
 /// Twins the two half-edges of every boundary loop that has no more than two: the slit that a
 /// non-manifold edge leaves when it is split inside one sheet, of no use to anyone.
 void close_slits(Halfedges& halfedges);
