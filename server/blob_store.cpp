@@ -1,11 +1,21 @@
 #include "server/blob_store.hpp"
 
-#include "server/files.hpp"
+#include <system_error>
+
+#include "core/error.hpp"
+#include "server/digests.hpp"
 
 namespace unwrapd::server {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view kBufferPrefix = "buffer_";
+
+/// What the sender brought: it stays as it came.
+bool is_input(std::string_view file) {
+  return file == kDocumentFile || file.starts_with(kBufferPrefix);
+}
 
 void remove_unfinished(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -13,47 +23,148 @@ void remove_unfinished(const fs::path& folder) {
   }
 }
 
+/// Replaces the digests of the files that are chosen.
+void note_files(const fs::path& folder, const std::function<bool(std::string_view)>& chosen) {
+  Digests digests = read_digests(folder);
+  std::erase_if(digests, [&](const auto& noted) { return chosen(noted.first); });
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    const bool is_content = name != kDigestsFile && !is_unfinished(entry.path());
+    if (is_content && chosen(name)) digests[name] = sha256_of(File::open(entry.path()));
+  }
+  write_digests(folder, digests);
+}
+
+std::int64_t bytes_below(const fs::path& folder) {
+  std::int64_t bytes = 0;
+  std::error_code gone;  // what somebody removes meanwhile counts nothing
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, gone)) {
+    const std::uintmax_t size = entry.file_size(gone);
+    if (!gone) bytes += static_cast<std::int64_t>(size);
+  }
+  return bytes;
+}
+
+[[noreturn]] void corrupt(std::string_view file) {
+  throw Error(ErrorCode::storage_corrupt,
+              "The stored file " + std::string(file) +
+                  " is damaged: its SHA-256 is not the one noted; send the job again.");
+}
+
 }  // namespace
 
 std::string result_file(std::string_view format) { return "result." + std::string(format); }
 
-BlobStore::BlobStore(const fs::path& data) : incoming_(data / "incoming"), blobs_(data / "blobs") {
+std::string buffer_file(std::size_t k) { return std::string(kBufferPrefix) + std::to_string(k); }
+
+BlobStore::BlobStore(const fs::path& data, const DiskLimits& limits)
+    : incoming_(data / "incoming"), blobs_(data / "blobs"), room_(data, limits) {
   make_directories(incoming_);
   make_directories(blobs_);
 }
 
-fs::path BlobStore::begin_upload(std::string_view job) {
-  fs::path folder = incoming_ / job;
+fs::path BlobStore::begin_upload(std::string_view upload) {
+  fs::path folder = incoming_ / upload;
   make_directories(folder);
   return folder;
 }
 
-void BlobStore::keep_upload(std::string_view job) {
-  sync_directory(incoming_ / job);
-  rename_durably(incoming_ / job, blobs_ / job);
+void BlobStore::keep_upload(std::string_view upload, std::string_view job) {
+  note_files(incoming_ / upload, is_input);
+  rename_durably(incoming_ / upload, blobs_ / job);
+  room_.give_back(upload);
+  room_.set(job, bytes_below(blobs_ / job));
 }
 
-void BlobStore::drop_upload(std::string_view job) noexcept { remove_tree(incoming_ / job); }
+void BlobStore::drop_upload(std::string_view upload) noexcept {
+  if (!fs::exists(incoming_ / upload)) return;
+  remove_tree(incoming_ / upload);
+  room_.give_back(upload);
+}
 
 fs::path BlobStore::path(std::string_view job, std::string_view file) const {
   return blobs_ / job / file;
 }
 
 void BlobStore::write(std::string_view job, std::string_view file, std::string_view bytes) {
+  room_.take(job, static_cast<std::int64_t>(bytes.size()));
   write_file(path(job, file), bytes);
 }
 
-void BlobStore::remove(std::string_view job) noexcept { remove_tree(blobs_ / job); }
+void BlobStore::remove(std::string_view job) noexcept {
+  remove_tree(blobs_ / job);
+  room_.give_back(job);
+}
 
-void BlobStore::sweep(const std::function<bool(const std::string& job)>& is_known) {
+void BlobStore::discard(std::string_view job, std::string_view file) noexcept {
+  remove_tree(path(job, file));
+  room_.set(job, bytes_below(blobs_ / job));
+}
+
+std::int64_t BlobStore::seal(std::string_view job) {
+  const std::lock_guard lock(noting_);
+  note_files(blobs_ / job, [](std::string_view file) { return !is_input(file); });
+  const std::int64_t bytes = bytes_below(blobs_ / job);
+  room_.set(job, bytes);
+  return bytes;
+}
+
+std::string BlobStore::note(std::string_view job, const std::string& file) {
+  const std::lock_guard lock(noting_);
+  Digests digests = read_digests(blobs_ / job);
+  const std::string digest = sha256_of(File::open(path(job, file)));
+  digests[file] = digest;
+  write_digests(blobs_ / job, digests);
+  return digest;
+}
+
+bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
+  try {
+    const std::lock_guard lock(noting_);
+    Digests digests = read_digests(blobs_ / job);
+    for (const auto& [file, digest] : read_digests(blobs_ / from)) {
+      if (is_input(file)) continue;
+      fs::create_hard_link(path(from, file), path(job, file));
+      digests[file] = digest;
+    }
+    write_digests(blobs_ / job, digests);
+    room_.set(job, bytes_below(blobs_ / job));
+    return digests.contains(kReportFile);
+  } catch (const std::exception&) {  // then the job is run like any other
+    return false;
+  }
+}
+
+std::shared_ptr<const File> BlobStore::open(std::string_view job, std::string_view file) const {
+  auto opened = std::make_shared<const File>(File::open(path(job, file)));
+  const Digests digests = read_digests(blobs_ / job);
+  const auto noted = digests.find(file);
+  if (noted != digests.end() && noted->second != sha256_of(*opened)) corrupt(file);
+  return opened;
+}
+
+std::string BlobStore::read(std::string_view job, std::string_view file) const {
+  const std::shared_ptr<const File> opened = open(job, file);
+  return opened->read(0, static_cast<std::size_t>(opened->size()));
+}
+
+std::string BlobStore::digest(std::string_view job, std::string_view file) const {
+  const Digests digests = read_digests(blobs_ / job);
+  const auto noted = digests.find(file);
+  return noted != digests.end() ? noted->second : sha256_of(File::open(path(job, file)));
+}
+
+void BlobStore::sweep(const std::function<bool(const std::string& job)>& keeps_files) {
   for (const fs::directory_entry& entry : fs::directory_iterator(incoming_))
     remove_tree(entry.path());
   for (const fs::directory_entry& entry : fs::directory_iterator(blobs_)) {
-    if (is_known(entry.path().filename())) {
-      remove_unfinished(entry.path());
-    } else {
+    const std::string job = entry.path().filename();
+    if (!keeps_files(job)) {
       remove_tree(entry.path());
+      continue;
     }
+    remove_unfinished(entry.path());
+    room_.set(job, bytes_below(entry.path()));
   }
 }
 

@@ -1,12 +1,19 @@
 #pragma once
-// The files of jobs: DIR/blobs/<job>/{document,buffer_N,result.*,report.json*,layout.svg,uv.bin*}.
-// An upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is written
-// under another name, synced and renamed. What a crash leaves behind is swept at the next start.
+// The files of jobs: DIR/blobs/<job>/{document,buffer_N,digests,result.*,report.json*,layout.svg,
+// uv.bin*}. An upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is
+// written under another name, synced and renamed. What a crash leaves behind is swept at the next
+// start. `digests` has the SHA-256 of each file (digests.hpp): what is read is checked against it.
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
+
+#include "server/disk_room.hpp"
+#include "server/files.hpp"
 
 namespace unwrapd::server {
 
@@ -19,27 +26,53 @@ inline constexpr std::string_view kUvFile = "uv.bin";
 /// "result.glb", "result.gltf", "result.obj" or "result.json".
 std::string result_file(std::string_view format);
 
+/// "buffer_0": the file of an upload's k-th buffer.
+std::string buffer_file(std::size_t k);
+
 class BlobStore {
  public:
   /// Creates the directories below data where they are missing.
-  explicit BlobStore(const std::filesystem::path& data);
+  explicit BlobStore(const std::filesystem::path& data, const DiskLimits& limits = {});
 
   /// A new empty folder for an upload.
-  std::filesystem::path begin_upload(std::string_view job);
-  /// The upload becomes the job's folder. Its files must be synced.
-  void keep_upload(std::string_view job);
-  void drop_upload(std::string_view job) noexcept;
+  std::filesystem::path begin_upload(std::string_view upload);
+  /// The upload, its files synced and their digests noted, becomes the job's folder.
+  void keep_upload(std::string_view upload, std::string_view job);
+  void drop_upload(std::string_view upload) noexcept;
 
   [[nodiscard]] std::filesystem::path path(std::string_view job, std::string_view file) const;
+  /// Throws Error{storage_full} when there is no room, or storage_failed.
   void write(std::string_view job, std::string_view file, std::string_view bytes);
   void remove(std::string_view job) noexcept;
+  /// Removes one file that was written only to be handed out once.
+  void discard(std::string_view job, std::string_view file) noexcept;
 
-  /// Removes unfinished uploads and files, and the folders of jobs that is_known refuses.
-  void sweep(const std::function<bool(const std::string& job)>& is_known);
+  /// Notes the digests of all results, replacing those of an attempt before. Returns the bytes of
+  /// all files of the job.
+  std::int64_t seal(std::string_view job);
+  /// Notes the digest of a file that was written after seal(), and returns it.
+  std::string note(std::string_view job, const std::string& file);
+  /// Gives a job the results of another; the bytes are shared, not copied. False when they are not
+  /// whole.
+  bool adopt(std::string_view job, std::string_view from) noexcept;
+
+  /// A file whose bytes are those that were noted. Throws Error{storage_corrupt} when they are not.
+  [[nodiscard]] std::shared_ptr<const File> open(std::string_view job, std::string_view file) const;
+  /// The same, read whole.
+  [[nodiscard]] std::string read(std::string_view job, std::string_view file) const;
+  /// The noted digest; of a file without one (of an older version), computed.
+  [[nodiscard]] std::string digest(std::string_view job, std::string_view file) const;
+
+  /// Removes unfinished uploads and files, and the folders of jobs that keeps_files refuses.
+  void sweep(const std::function<bool(const std::string& job)>& keeps_files);
+
+  DiskRoom& room() { return room_; }
 
  private:
   std::filesystem::path incoming_;
   std::filesystem::path blobs_;
+  DiskRoom room_;
+  mutable std::mutex noting_;  // one writer of `digests` at a time
 };
 
 }  // namespace unwrapd::server

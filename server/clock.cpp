@@ -13,6 +13,12 @@ std::int64_t now_ms() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(since_epoch).count();
 }
 
+std::int64_t elapsed_ms() {
+  using std::chrono::steady_clock;
+  const auto since_boot = steady_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(since_boot).count();
+}
+
 std::string rfc3339(std::int64_t epoch_ms) {
   const std::time_t seconds = epoch_ms / 1000;
   std::tm utc{};

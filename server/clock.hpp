@@ -1,5 +1,6 @@
 #pragma once
-// The only place that asks for the time of day; everything else is handed milliseconds.
+// The only place that asks for the time of day; everything else is handed milliseconds. Spans are
+// measured on a clock that nobody can set.
 
 #include <cstdint>
 #include <string>
@@ -8,6 +9,9 @@ namespace unwrapd::server {
 
 /// Milliseconds since 1970-01-01 UTC.
 std::int64_t now_ms();
+
+/// Milliseconds since some moment before this process began.
+std::int64_t elapsed_ms();
 
 /// RFC 3339 in UTC with milliseconds: "2026-01-31T23:59:58.123Z".
 std::string rfc3339(std::int64_t epoch_ms);

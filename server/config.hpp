@@ -9,6 +9,7 @@
 
 #include "api/limits.hpp"
 #include "server/address.hpp"
+#include "server/disk_room.hpp"
 #include "server/log.hpp"
 
 namespace unwrapd::server {
@@ -24,6 +25,7 @@ struct Config {
   int keep_seconds = 7 * 24 * 60 * 60;
   int drain_seconds = 30;
   LogLevel log_level = LogLevel::info;
+  DiskLimits disk;
   api::Limits limits;
 };
 

@@ -7,6 +7,7 @@ namespace unwrapd::server {
 namespace {
 
 constexpr std::int64_t kMaxBodyBytes = std::int64_t{4} * 1024 * 1024 * 1024;
+constexpr std::int64_t kMaxDiskBytes = std::int64_t{1} << 60;
 constexpr int kMaxThreads = 256;
 constexpr int kMaxStreams = 4096;
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
@@ -50,10 +51,20 @@ ConfigGroup working() {
           text({"data", "PATH", "Directory of jobs and results; made when missing"}, &Config::data),
           number({"workers", "N", "Jobs run at once"}, {1, kMaxThreads}, &Config::workers),
           number({"threads", "N", "Threads of each job"}, {1, kMaxThreads}, &Config::threads),
-          number({"keep-seconds", "N", "How long results are kept"}, {1, kMaxCount},
-                 &Config::keep_seconds),
           number({"drain-seconds", "N", "How long running jobs may go on after SIGTERM"},
                  {0, kMaxCount}, &Config::drain_seconds)}};
+}
+
+ConfigGroup storing() {
+  return {.title = "Storing",
+          .rows = {number({"keep-seconds", "N", "How long results are kept"}, {1, kMaxCount},
+                          &Config::keep_seconds),
+                   number({"max-disk-bytes", "N",
+                           "Files of all jobs; results that ended first go earlier to keep within "
+                           "it; 0: no limit"},
+                          {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::max_bytes),
+                   number({"min-free-bytes", "N", "Uploads leave so much of the disk free"},
+                          {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::min_free_bytes)}};
 }
 
 ConfigGroup telling() {
@@ -99,7 +110,9 @@ ConfigGroup limits() {
 
 }  // namespace
 
-std::vector<ConfigGroup> config_groups() { return {serving(), working(), telling(), limits()}; }
+std::vector<ConfigGroup> config_groups() {
+  return {serving(), working(), storing(), telling(), limits()};
+}
 
 void check_together(const Config& config) {
   if (config.admin && config.admin->port != 0 && *config.admin == config.listen) {

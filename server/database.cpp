@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include "core/error.hpp"
+#include "server/files.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -11,6 +12,8 @@ constexpr int kBusyTimeoutMs = 10'000;
 
 [[noreturn]] void fail(sqlite3* handle) {
   const std::string reason = handle != nullptr ? sqlite3_errmsg(handle) : "out of memory";
+  const int code = handle != nullptr ? sqlite3_errcode(handle) : SQLITE_NOMEM;
+  if (code == SQLITE_FULL) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
   throw Error(ErrorCode::storage_failed,
               "The server's job store failed (" + reason + "); try again later.");
 }
@@ -34,6 +37,15 @@ void Database::run(const char* sql) {
 }
 
 int Database::changes() const { return sqlite3_changes(handle()); }
+
+Transaction::~Transaction() {
+  if (!committed_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+void Transaction::commit() {
+  database_.run("COMMIT");
+  committed_ = true;
+}
 
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 

@@ -1,6 +1,6 @@
 #pragma once
 // SQLite with values that clean up after themselves: a connection, a statement, a transaction.
-// Every failure is Error{storage_failed}.
+// Every failure is Error{storage_failed}, or Error{storage_full} when there is no room to write.
 
 #include <cstdint>
 #include <filesystem>
@@ -30,6 +30,22 @@ class Database {
     void operator()(sqlite3* handle) const;
   };
   std::unique_ptr<sqlite3, Close> handle_;
+};
+
+/// Changes that are made together or, when it goes without commit(), not at all.
+class Transaction {
+ public:
+  explicit Transaction(Database& database) : database_(database) {
+    database.run("BEGIN IMMEDIATE");
+  }
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  ~Transaction();
+  void commit();
+
+ private:
+  Database& database_;
+  bool committed_ = false;
 };
 
 /// A prepared statement. Values are bound by position from 1; columns are read from 0.

@@ -19,6 +19,8 @@ constexpr std::string_view kPartSuffix = ".part";
 
 /// Throws with the text of errno; the path stays out of it, since users read it.
 [[noreturn]] void fail(std::string_view doing) {
+  const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
+  if (full) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
   const std::string reason = std::generic_category().message(errno);
   throw Error(ErrorCode::storage_failed,
               "The server failed to " + std::string(doing) + " (" + reason + "); try again later.");

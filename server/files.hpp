@@ -1,7 +1,7 @@
 #pragma once
 // Files as the store needs them: whole or absent. What is written here is on the disk (fsync)
 // before it has its name (rename), so that a crash at any point leaves no partial file under it.
-// Every failure is Error{storage_failed}.
+// Every failure is Error{storage_failed}, or Error{storage_full} when there is no room to write.
 
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +10,10 @@
 #include <string_view>
 
 namespace unwrapd::server {
+
+/// What Error{storage_full} says.
+inline constexpr std::string_view kStorageFull =
+    "The server's disk is full; try again later, or remove jobs that are no longer needed.";
 
 /// An open file descriptor.
 class File {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "server/caller.hpp"
 #include "server/files.hpp"
 
 namespace unwrapd::server {
@@ -51,6 +52,7 @@ struct Request {
   std::multimap<std::string, std::string> query;
   std::multimap<std::string, std::string, IgnoreCase> headers;
   std::string id;              ///< the {id} of the path, once a route has matched
+  Caller caller;               ///< who asks, once that has been found out
   BodyReader* body = nullptr;  ///< of POST, PUT and PATCH
 
   /// The first header of this name, empty when there is none.

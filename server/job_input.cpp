@@ -14,7 +14,8 @@ constexpr std::size_t kMaxBuffers = 1000;
 /// A file that grows in pieces worth a system call each.
 class GrowingFile {
  public:
-  explicit GrowingFile(const std::filesystem::path& path) : file_(File::create(path)) {}
+  GrowingFile(const std::filesystem::path& path, const TakeRoom& take)
+      : file_(File::create(path)), take_(take) {}
 
   void append(std::string_view bytes) {
     pending_.append(bytes);
@@ -27,11 +28,13 @@ class GrowingFile {
 
  private:
   void flush() {
+    take_(static_cast<std::int64_t>(pending_.size()));
     file_.append(pending_);
     pending_.clear();
   }
 
   File file_;
+  const TakeRoom& take_;
   std::string pending_;
 };
 
@@ -42,7 +45,7 @@ class GrowingFile {
 /// The parts of a form, each to its place.
 class PartWriter {
  public:
-  explicit PartWriter(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit PartWriter(const UploadFolder& folder) : folder_(folder) {}
 
   void start(const Part& part) {
     finish_file();
@@ -59,7 +62,7 @@ class PartWriter {
 
   void append(std::string_view bytes) {
     if (in_options_) return append_option_text(bytes);
-    if (in_document_) hash_.add(bytes);
+    hash_->add(bytes);
     upload_.input.bytes += static_cast<std::int64_t>(bytes.size());
     file_->append(bytes);
   }
@@ -67,7 +70,6 @@ class PartWriter {
   Upload finish() {
     finish_file();
     if (!has_document_) malformed("There is no part named \"mesh\"; send the asset in it.");
-    upload_.input.sha256 = hash_.finish();
     return std::move(upload_);
   }
 
@@ -86,7 +88,7 @@ class PartWriter {
   void start_document() {
     if (has_document_) malformed("There are two parts named \"mesh\"; send one.");
     has_document_ = true;
-    file_.emplace(folder_ / kDocumentFile);
+    open(kDocumentFile, upload_.input.sha256);
   }
 
   void start_buffer(const Part& part) {
@@ -96,18 +98,28 @@ class PartWriter {
     if (std::ranges::find(buffers, part.filename, &StoredBuffer::uri) != buffers.end())
       malformed("Two parts have the same filename; send every buffer once.");
     if (buffers.size() == kMaxBuffers) malformed("There are over 1000 buffers; send fewer.");
-    buffers.push_back({part.filename, "buffer_" + std::to_string(buffers.size())});
-    file_.emplace(folder_ / buffers.back().file);
+    buffers.push_back({.uri = part.filename, .file = buffer_file(buffers.size()), .sha256 = {}});
+    open(buffers.back().file, buffers.back().sha256);
+  }
+
+  /// The next bytes go to this file; its digest will be put there.
+  void open(std::string_view file, std::string& digest) {
+    file_.emplace(folder_.path / file, folder_.take);
+    hash_.emplace();
+    digest_ = &digest;
   }
 
   void finish_file() {
-    if (file_) file_->finish();
+    if (!file_) return;
+    file_->finish();
     file_.reset();
+    *digest_ = hash_->finish();
   }
 
-  const std::filesystem::path folder_;
+  const UploadFolder& folder_;
   Upload upload_;
-  Sha256 hash_;
+  std::optional<Sha256> hash_;
+  std::string* digest_ = nullptr;  // of the open file
   std::optional<GrowingFile> file_;
   bool in_options_ = false;
   bool in_document_ = false;
@@ -116,10 +128,10 @@ class PartWriter {
 
 }  // namespace
 
-Upload receive_asset(BodyReader& body, const std::filesystem::path& folder) {
+Upload receive_asset(BodyReader& body, const UploadFolder& folder) {
   Upload upload;
   Sha256 hash;
-  GrowingFile file(folder / kDocumentFile);
+  GrowingFile file(folder.path / kDocumentFile, folder.take);
   body.read([&](std::string_view bytes) {
     hash.add(bytes);
     upload.input.bytes += static_cast<std::int64_t>(bytes.size());
@@ -132,7 +144,7 @@ Upload receive_asset(BodyReader& body, const std::filesystem::path& folder) {
   return upload;
 }
 
-Upload receive_parts(BodyReader& body, const std::filesystem::path& folder) {
+Upload receive_parts(BodyReader& body, const UploadFolder& folder) {
   PartWriter writer(folder);
   body.read_parts([&](const Part& part) { writer.start(part); },
                   [&](std::string_view bytes) { writer.append(bytes); });
@@ -140,10 +152,10 @@ Upload receive_parts(BodyReader& body, const std::filesystem::path& folder) {
 }
 
 LoadedInput::LoadedInput(const BlobStore& blobs, const JobRecord& job)
-    : document_(read_file(blobs.path(job.id, kDocumentFile))) {
+    : document_(blobs.read(job.id, kDocumentFile)) {
   buffers_.reserve(job.input.buffers.size());
   for (const StoredBuffer& buffer : job.input.buffers)
-    buffers_.emplace_back(buffer.uri, read_file(blobs.path(job.id, buffer.file)));
+    buffers_.emplace_back(buffer.uri, blobs.read(job.id, buffer.file));
 }
 
 asset::Input LoadedInput::input() const {

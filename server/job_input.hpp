@@ -2,6 +2,7 @@
 // The bytes of a job's mesh: written as they arrive, read again when they are needed.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,15 +22,25 @@ struct Upload {
   std::optional<std::string> options;  ///< JSON text of the part `options`
 };
 
+/// Told of bytes before they are written; throws Error{storage_full} when there is no room.
+using TakeRoom = std::function<void(std::int64_t bytes)>;
+
+/// Where an upload goes.
+struct UploadFolder {
+  std::filesystem::path path;
+  TakeRoom take = [](std::int64_t) {};
+};
+
 /// The whole body is the document. Throws what BodyReader throws, and unknown_format when it is
 /// empty.
-Upload receive_asset(BodyReader& body, const std::filesystem::path& folder);
+Upload receive_asset(BodyReader& body, const UploadFolder& folder);
 
 /// Parts: options (optional), mesh, and any number whose filename is a buffer's URI. Throws
 /// malformed_request when a part is missing, given twice or without a filename.
-Upload receive_parts(BodyReader& body, const std::filesystem::path& folder);
+Upload receive_parts(BodyReader& body, const UploadFolder& folder);
 
-/// A job's input in memory; the views of input() live as long as this.
+/// A job's input in memory, checked against its digests; the views of input() live as long as this.
+/// Throws Error{storage_corrupt}.
 class LoadedInput {
  public:
   LoadedInput(const BlobStore& blobs, const JobRecord& job);

@@ -1,10 +1,10 @@
 #include "server/job_queue.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "api/error_table.hpp"
 #include "server/clock.hpp"
+#include "server/job_rows.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -12,7 +12,8 @@ namespace {
 using api::JobState;
 
 constexpr int kMaxCrashes = 3;
-constexpr double kMeanWeight = 0.2;  // of the newest job in the running mean of run times
+constexpr int kMaxAttemptsWhenFull = 20;
+constexpr std::chrono::seconds kLongestPauseWhenFull{60};
 constexpr int kDrainRetrySeconds = 5;
 
 JobOutcome ended(JobState state, const Error& why, std::string_view job) {
@@ -37,24 +38,32 @@ void RunningJob::request_stop(StopCause why) {
 
 JobQueue::JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const Log& log,
                    const QueueConfig& config)
-    : store_(store), blobs_(blobs), events_(events), log_(log), config_(config) {}
+    : store_(store),
+      blobs_(blobs),
+      events_(events),
+      log_(log),
+      config_(config),
+      retry_(config.workers, config.max_queue) {}
 
 void JobQueue::recover() {
   const std::lock_guard lock(mutex_);
-  for (const JobRecord& job : store_.all(JobState::running)) {
-    if (job.cancel_requested) {
-      give_up(job, cancelled_by_owner());
-    } else if (job.crashes + 1 >= kMaxCrashes) {
-      give_up(job, Error(ErrorCode::poison,
-                         "The server ended three times while it worked on this job; it is not "
-                         "tried again. Check the mesh, or send a smaller part of it."));
-    } else {
-      store_.requeue(job.id, true);
-      log_.warning("job found running after a crash, queued again",
-                   {{"job", job.id}, {"attempt", job.attempt}});
-    }
-  }
   for (const JobRecord& job : store_.all(JobState::queued)) wait_again(job);
+  for (const JobRecord& job : store_.all(JobState::running)) take_up(job, true);
+}
+
+void JobQueue::take_up(const JobRecord& job, bool crashed) {
+  if (job.cancel_requested) {
+    give_up(job, cancelled_by_owner());
+  } else if (crashed && job.crashes + 1 >= kMaxCrashes) {
+    give_up(job, Error(ErrorCode::poison,
+                       "The server ended three times while it worked on this job; it is not "
+                       "tried again. Check the mesh, or send a smaller part of it."));
+  } else {
+    store_.requeue(job.id, crashed);
+    wait_again(job);
+    log_.warning("job found at nobody's hands, queued again",
+                 {{"job", job.id}, {"attempt", job.attempt}});
+  }
 }
 
 void JobQueue::give_up(const JobRecord& job, const Error& why) {
@@ -65,26 +74,29 @@ void JobQueue::give_up(const JobRecord& job, const Error& why) {
 
 void JobQueue::wait_again(const JobRecord& job) {
   events_.open(job.id, job.attempt)->publish([&](std::int64_t seq) {
-    return api::queued_event(seq, waiting_);
+    return api::queued_event(seq, share_.waiting());
   });
-  ++waiting_;
+  share_.add(job.owner);
+  changed_.notify_all();
 }
 
-int JobQueue::retry_after_seconds() const {
-  return std::max(1, static_cast<int>(std::ceil(mean_job_seconds_ / config_.workers)));
-}
-
-void JobQueue::check_room_locked() const {
+void JobQueue::check_room_locked() {
+  const auto now = std::chrono::steady_clock::now();
   if (closed_) {
     throw RetryLater(ErrorCode::draining,
                      "The server is shutting down and takes no new jobs; send it again shortly.",
                      kDrainRetrySeconds);
   }
-  if (waiting_ >= config_.max_queue) {
+  if (now < paused_until_) {
+    const auto left = std::chrono::ceil<std::chrono::seconds>(paused_until_ - now);
+    throw RetryLater(ErrorCode::storage_full, std::string(kStorageFull),
+                     static_cast<int>(left.count()));
+  }
+  if (share_.waiting() >= config_.max_queue) {
     throw RetryLater(ErrorCode::queue_full,
                      "All " + std::to_string(config_.max_queue) +
                          " places in the queue are taken; send the job again after Retry-After.",
-                     retry_after_seconds());
+                     retry_.promise(now, share_.mean_seconds()));
   }
 }
 
@@ -93,33 +105,99 @@ void JobQueue::check_room() {
   check_room_locked();
 }
 
-JobRecord JobQueue::submit(JobRecord job) {
-  blobs_.keep_upload(job.id);
+void JobQueue::check_quota(const JobRecord& job, const Quota& quota) {
+  if (quota.max_jobs == 0 && quota.max_bytes == 0) return;
+  const OwnerUsage usage = store_.usage(job.owner);
+  if (quota.max_jobs > 0 && usage.live_jobs >= quota.max_jobs) {
+    throw RetryLater(ErrorCode::too_many_jobs,
+                     "This API key may have " + std::to_string(quota.max_jobs) +
+                         " jobs waiting or running; send the job again when one has ended.",
+                     retry_.promise(std::chrono::steady_clock::now(), share_.mean_seconds()));
+  }
+  if (quota.max_bytes > 0 && usage.stored_bytes + job.input.bytes > quota.max_bytes) {
+    throw Error(ErrorCode::quota_exceeded,
+                "The jobs of this API key may take " + std::to_string(quota.max_bytes) +
+                    " bytes; remove finished jobs, then send this one again.");
+  }
+}
+
+std::optional<JobRecord> JobQueue::same_name(const JobRecord& job) {
+  if (job.request_key.empty()) return std::nullopt;
+  std::optional<JobRecord> known = store_.find_request(job.owner, job.request_key);
+  if (!known) known = store_.find(job.id);
+  if (!known) return std::nullopt;
+  if (known->owner != job.owner)
+    throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
+  if (known->content_key == job.content_key) return known;
+  throw Error(ErrorCode::idempotency_conflict,
+              "This name was given to another mesh or other options; take a new name.");
+}
+
+JobRecord JobQueue::submit(Submission submission) {
+  JobRecord& job = submission.job;
+  std::unique_lock named(naming_, std::defer_lock);
+  if (!job.request_key.empty()) named.lock();
+  if (std::optional<JobRecord> known = same_name(job)) {
+    blobs_.drop_upload(submission.upload);
+    return std::move(*known);
+  }
+  blobs_.keep_upload(submission.upload, job.id);
   try {
-    enqueue(job);
+    enqueue(job, submission);
   } catch (...) {
     blobs_.remove(job.id);
     throw;
   }
-  changed_.notify_all();
   log_.info("job queued", {{"job", job.id}, {"bytes", job.input.bytes}});
-  return job;
+  return std::move(job);
 }
 
-void JobQueue::enqueue(JobRecord& job) {
+void JobQueue::enqueue(JobRecord& job, const Submission& submission) {
   const std::lock_guard lock(mutex_);
   check_room_locked();
+  check_quota(job, submission.quota);
+  job.stored_bytes = job.input.bytes;
   job.seq = store_.insert(job);
-  wait_again(job);
+  if (submission.anew || !answer_from_store(job)) wait_again(job);
+}
+
+/// The answer is the one that the same question has had; its files are shared.
+bool JobQueue::answer_from_store(const JobRecord& job) {
+  const std::optional<JobRecord> same = store_.find_same(job.owner, job.content_key);
+  if (!same || !blobs_.adopt(job.id, same->id)) return false;
+  events_.open(job.id, job.attempt);
+  JobOutcome outcome;
+  outcome.result_format = same->result_format;
+  outcome.stored_bytes = same->stored_bytes;
+  try {
+    end_job(job, std::move(outcome));
+    return true;
+  } catch (const Error&) {  // the job is stored and waits, as it would without the answer
+    return false;
+  }
+}
+
+/// False when the queue is closed.
+bool JobQueue::await_turn(std::unique_lock<std::mutex>& lock) {
+  while (!closed_) {
+    if (share_.waiting() == 0) {
+      changed_.wait(lock);
+    } else if (std::chrono::steady_clock::now() < paused_until_) {
+      changed_.wait_until(lock, paused_until_);
+    } else {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::shared_ptr<RunningJob> JobQueue::take() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return closed_ || waiting_ > 0; });
-  if (closed_) return nullptr;
-  std::optional<JobRecord> record = store_.take_oldest();
+  if (!await_turn(lock)) return nullptr;
+  const std::string owner = share_.next();
+  std::optional<JobRecord> record = store_.take(owner, elapsed_ms() + config_.lease.count());
   if (!record) throw Error(ErrorCode::internal, "The store has lost a queued job.");
-  --waiting_;
+  share_.start(owner);
   auto job = std::make_shared<RunningJob>();
   job->record = std::move(*record);
   job->feed = events_.find(job->record.id);
@@ -130,16 +208,49 @@ std::shared_ptr<RunningJob> JobQueue::take() {
   return job;
 }
 
+void JobQueue::beat() {
+  const std::lock_guard lock(mutex_);
+  const std::int64_t now = elapsed_ms();
+  for (const auto& [id, job] : running_) store_.renew(id, now + config_.lease.count());
+  for (const JobRecord& job : store_.lapsed(now)) take_up(job, false);
+}
+
+/// Whether the job, whose results found no room, waits until there is some.
+bool JobQueue::wait_for_room(const RunningJob& job, const JobOutcome& outcome) {
+  const bool full = outcome.state == JobState::failed &&
+                    api::error_from_problem(outcome.problem).code() == ErrorCode::storage_full;
+  full_in_a_row_ = full ? full_in_a_row_ + 1 : 0;
+  if (!full || closed_ || job.record.attempt >= kMaxAttemptsWhenFull) return false;
+  const std::chrono::seconds pause(std::int64_t{1} << std::min(full_in_a_row_ - 1, 6));
+  paused_until_ = std::chrono::steady_clock::now() + std::min(pause, kLongestPauseWhenFull);
+  log_.warning("the disk is full, the job waits", {{"job", job.record.id}});
+  store_.requeue(job.record.id, false);
+  wait_again(job.record);
+  return true;
+}
+
+/// The success that it is, if its files can be noted.
+JobOutcome JobQueue::sealed(const std::string& id, JobOutcome outcome) {
+  try {
+    outcome.stored_bytes = blobs_.seal(id);
+    return outcome;
+  } catch (const Error& error) {
+    return ended(JobState::failed, error, id);
+  }
+}
+
 void JobQueue::finish(const RunningJob& job, JobOutcome outcome) {
+  if (outcome.state == JobState::succeeded) outcome = sealed(job.record.id, std::move(outcome));
   const std::lock_guard lock(mutex_);
   running_.erase(job.record.id);
   changed_.notify_all();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - job.began;
+  share_.end(job.record.owner, took.count());
   if (outcome.state == JobState::cancelled && job.cause == StopCause::draining) {
     store_.requeue(job.record.id, false);
     return;
   }
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - job.began;
-  mean_job_seconds_ += kMeanWeight * (took.count() - mean_job_seconds_);
+  if (wait_for_room(job, outcome)) return;
   end_job(job.record, std::move(outcome));
 }
 
@@ -147,10 +258,11 @@ void JobQueue::end_job(const JobRecord& job, JobOutcome outcome) {
   const std::shared_ptr<JobFeed> feed = events_.find(job.id);
   outcome.last_event = feed->next_seq();
   outcome.finished_ms = now_ms();
-  if (!store_.finish(job, outcome)) return;
   JobRecord record = job;
   record.state = outcome.state;
   record.problem = outcome.problem;
+  if (!job.webhook.empty()) outcome.delivery = text_of(api::to_json(to_job(record)));
+  if (!store_.finish(job, outcome)) return;
   feed->publish([&](std::int64_t seq) { return api::final_event(seq, to_job(record)); });
   events_.retire(job.id);
   if (outcome.state != JobState::succeeded) blobs_.remove(job.id);
@@ -177,7 +289,7 @@ bool JobQueue::cancel_or_remove(const std::string& id) {
 
 void JobQueue::cancel_live(const JobRecord& job) {
   if (job.state == JobState::queued) {
-    --waiting_;
+    share_.remove(job.owner);
     end_job(job, ended(JobState::cancelled, cancelled_by_owner(), job.id));
     return;
   }

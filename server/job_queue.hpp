@@ -1,7 +1,10 @@
 #pragma once
 // The bounded queue of jobs and their life: queued -> running -> succeeded | failed | cancelled.
-// The store is the truth and the order; this class adds the waiting, the stop requests and the
-// events. A full queue refuses at once rather than let requests pile up.
+// The store is the truth; this class adds the waiting, whose turn it is (fair_share.hpp), the stop
+// requests and the events. A full queue refuses at once rather than let requests pile up.
+//
+// A job at work is on lease, which beat() prolongs. One whose end could not be stored, for a disk
+// that is full, keeps its lease until that ends, and is then run again.
 
 #include <atomic>
 #include <chrono>
@@ -10,15 +13,19 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
 
 #include "core/error.hpp"
 #include "server/blob_store.hpp"
+#include "server/caller.hpp"
 #include "server/event_feed.hpp"
+#include "server/fair_share.hpp"
 #include "server/job_store.hpp"
 #include "server/log.hpp"
+#include "server/retry_estimate.hpp"
 
 namespace unwrapd::server {
 
@@ -51,6 +58,15 @@ struct RunningJob {
 struct QueueConfig {
   int max_queue = 256;
   int workers = 1;
+  std::chrono::milliseconds lease = std::chrono::seconds(30);
+};
+
+/// A job whose upload is complete, and how it is to be taken.
+struct Submission {
+  JobRecord job;
+  std::string upload;  ///< the folder of its files, of BlobStore::begin_upload()
+  Quota quota;         ///< of its owner
+  bool anew = false;   ///< run it even when the same question has been answered
 };
 
 /// Thread-safe.
@@ -64,12 +80,17 @@ class JobQueue {
 
   /// Throws RetryLater{queue_full, draining} when a submission would be refused now.
   void check_room();
-  /// Stores a job whose upload is complete. Throws like check_room().
-  JobRecord submit(JobRecord job);
-  /// Waits for the oldest queued job; nullptr when the queue is closed.
+  /// Stores a job; one of the same name that is there already is returned instead. A question that
+  /// this owner has had answered is answered from the store. Throws like check_room(), and
+  /// idempotency_conflict, too_many_jobs, quota_exceeded, storage_full.
+  JobRecord submit(Submission submission);
+  /// Waits for the job whose turn it is; nullptr when the queue is closed.
   std::shared_ptr<RunningJob> take();
   /// Ends what take() returned. Its files are complete when it has succeeded.
   void finish(const RunningJob& job, JobOutcome outcome);
+
+  /// Prolongs the leases of the jobs at work, and queues those whose lease has ended.
+  void beat();
 
   /// Cancels a live job (true), or removes a finished one and its files (false). Throws not_found.
   bool cancel_or_remove(const std::string& id);
@@ -81,11 +102,17 @@ class JobQueue {
   [[nodiscard]] bool draining() const { return closed_; }
 
  private:
-  void check_room_locked() const;
-  [[nodiscard]] int retry_after_seconds() const;
-  void enqueue(JobRecord& job);
+  void check_room_locked();
+  void check_quota(const JobRecord& job, const Quota& quota);
+  [[nodiscard]] std::optional<JobRecord> same_name(const JobRecord& job);
+  void enqueue(JobRecord& job, const Submission& submission);
+  [[nodiscard]] bool answer_from_store(const JobRecord& job);
+  void take_up(const JobRecord& job, bool crashed);
   void give_up(const JobRecord& job, const Error& why);
   void wait_again(const JobRecord& job);
+  [[nodiscard]] bool await_turn(std::unique_lock<std::mutex>& lock);
+  [[nodiscard]] JobOutcome sealed(const std::string& id, JobOutcome outcome);
+  [[nodiscard]] bool wait_for_room(const RunningJob& job, const JobOutcome& outcome);
   void cancel_live(const JobRecord& job);
   void end_job(const JobRecord& job, JobOutcome outcome);
 
@@ -98,8 +125,11 @@ class JobQueue {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::atomic<bool> closed_ = false;
-  std::int64_t waiting_ = 0;
-  double mean_job_seconds_ = 1;
+  std::mutex naming_;  // one request with a name of its own at a time
+  FairShare share_;
+  RetryEstimate retry_;
+  std::chrono::steady_clock::time_point paused_until_{};  // while the disk is full
+  int full_in_a_row_ = 0;                                 // jobs that found the disk full
   std::map<std::string, std::shared_ptr<RunningJob>, std::less<>> running_;
 };
 

@@ -9,10 +9,14 @@
 
 namespace unwrapd::server {
 
+inline constexpr int kUsualUrgency = 3;  // RFC 9218
+inline constexpr int kMaxUrgency = 7;
+
 /// A part of an upload: the URI that the document uses for it, and its file in the job's folder.
 struct StoredBuffer {
   std::string uri;
   std::string file;
+  std::string sha256 = {};  ///< of an upload that has just come; later in the file `digests`
 };
 
 /// What was sent.
@@ -37,9 +41,15 @@ struct JobRecord {
   api::Json options;               ///< resolved
   std::vector<std::string> notes;  ///< of the options, for the report
   JobInput input;
-  std::string result_format;    ///< glb, gltf or obj, once it has succeeded
-  api::Json problem;            ///< null unless failed or cancelled
-  std::int64_t last_event = 0;  ///< sequence number of the final event
+  std::string result_format;      ///< glb, gltf or obj, once it has succeeded
+  api::Json problem;              ///< null unless failed or cancelled
+  std::int64_t last_event = 0;    ///< sequence number of the final event
+  std::string owner;              ///< id of the API key that sent it; empty without keys
+  int urgency = kUsualUrgency;    ///< 0 (first) to 7, among the jobs of its owner
+  std::string request_key;        ///< the sender's own name of the request, empty without one
+  std::string content_key;        ///< the same for the same question: mesh, options, version
+  std::int64_t stored_bytes = 0;  ///< of its files, as far as quotas count them
+  std::string webhook;            ///< called at its end, empty for none
 };
 
 /// The job as its owner sees it, without live progress.

@@ -51,8 +51,7 @@ Response delete_job(const JobServices& services, const Request& request) {
 Response sync_response(const JobServices& services, const JobRecord& job, const Request& request) {
   require_result(job);
   Response response = get_result(services.results, job, 0, request);
-  response.headers.emplace_back("Unwrapd-Report",
-                                read_file(services.blobs.path(job.id, kTotalsFile)));
+  response.headers.emplace_back("Unwrapd-Report", services.blobs.read(job.id, kTotalsFile));
   return response;
 }
 
@@ -83,6 +82,8 @@ void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
     return find_job(services.store, request.id);
   };
   routes.push_back({"POST", "/v1/jobs",
+                    [services](const Request& request) { return post_job(services, request); }});
+  routes.push_back({"PUT", "/v1/jobs/{id}",
                     [services](const Request& request) { return post_job(services, request); }});
   routes.push_back({"GET", "/v1/jobs/{id}", [services, find](const Request& request) {
                       return job_response(200, find(request), services.events);

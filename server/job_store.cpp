@@ -1,6 +1,8 @@
 #include "server/job_store.hpp"
 
 #include "core/error.hpp"
+#include "server/job_rows.hpp"
+#include "server/schema.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -8,162 +10,124 @@ namespace {
 using api::JobState;
 using api::state_name;
 
-constexpr std::int64_t kSchemaVersion = 1;
-
-constexpr const char* kSchema = R"sql(
-CREATE TABLE jobs (
-  seq INTEGER PRIMARY KEY AUTOINCREMENT,
-  id TEXT NOT NULL UNIQUE,
-  state TEXT NOT NULL,
-  created_ms INTEGER NOT NULL,
-  finished_ms INTEGER NOT NULL DEFAULT 0,
-  attempt INTEGER NOT NULL DEFAULT 0,
-  crashes INTEGER NOT NULL DEFAULT 0,
-  cancel_requested INTEGER NOT NULL DEFAULT 0,
-  synchronous INTEGER NOT NULL,
-  expired INTEGER NOT NULL DEFAULT 0,
-  options TEXT NOT NULL,
-  notes TEXT NOT NULL,
-  sha256 TEXT NOT NULL,
-  bytes INTEGER NOT NULL,
-  buffers TEXT NOT NULL,
-  result_format TEXT NOT NULL DEFAULT '',
-  problem TEXT NOT NULL DEFAULT 'null',
-  last_event INTEGER NOT NULL DEFAULT 0
-) STRICT;
-CREATE INDEX jobs_by_state ON jobs (state, seq);
-PRAGMA user_version = 1;
-)sql";
-
-constexpr std::string_view kColumns =
-    " seq, id, state, created_ms, finished_ms, attempt, crashes, cancel_requested, synchronous,"
-    " expired, options, notes, sha256, bytes, buffers, result_format, problem, last_event ";
-
-std::string select(std::string_view rest) {
-  return "SELECT" + std::string(kColumns) + "FROM jobs " + std::string(rest);
-}
-
-std::string text_of(const api::Json& json) {
-  return json.dump(-1, ' ', false, api::Json::error_handler_t::replace);
-}
-
-api::Json buffers_json(const std::vector<StoredBuffer>& buffers) {
-  api::Json json = api::Json::array();
-  for (const StoredBuffer& buffer : buffers) json.push_back({buffer.uri, buffer.file});
-  return json;
-}
-
-std::vector<StoredBuffer> buffers_of(const api::Json& json) {
-  std::vector<StoredBuffer> buffers;
-  for (const api::Json& entry : json)
-    buffers.push_back({entry.at(0).get<std::string>(), entry.at(1).get<std::string>()});
-  return buffers;
-}
-
-/// The row that a statement with kColumns stands on.
-JobRecord record_of(const Statement& row) {
-  JobRecord job;
-  int column = 0;
-  job.seq = row.number(column++);
-  job.id = row.text(column++);
-  job.state = api::state_named(row.text(column++)).value_or(JobState::failed);
-  job.created_ms = row.number(column++);
-  job.finished_ms = row.number(column++);
-  job.attempt = static_cast<int>(row.number(column++));
-  job.crashes = static_cast<int>(row.number(column++));
-  job.cancel_requested = row.number(column++) != 0;
-  job.synchronous = row.number(column++) != 0;
-  job.expired = row.number(column++) != 0;
-  job.options = api::Json::parse(row.text(column++));
-  job.notes = api::Json::parse(row.text(column++)).get<std::vector<std::string>>();
-  job.input.sha256 = row.text(column++);
-  job.input.bytes = row.number(column++);
-  job.input.buffers = buffers_of(api::Json::parse(row.text(column++)));
-  job.result_format = row.text(column++);
-  job.problem = api::Json::parse(row.text(column++));
-  job.last_event = row.number(column++);
-  return job;
+/// What a reader of a job's row finds there of its input.
+std::string insert_statement() {
+  return "INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256, bytes,"
+         " buffers, owner, urgency, request_key, content_key, stored_bytes, webhook)"
+         " VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, NULLIF(?, ''), ?, ?, ?) RETURNING seq";
 }
 
 }  // namespace
 
-JobStore::JobStore(const std::filesystem::path& path) : database_(path) { migrate(); }
+JobStore::JobStore(const std::filesystem::path& path) : database_(path) { migrate(database_); }
 
-void JobStore::migrate() {
-  Statement version(database_, "PRAGMA user_version");
-  version.step();
-  const std::int64_t found = version.number(0);
-  if (found == kSchemaVersion) return;
-  if (found != 0) {
-    throw Error(ErrorCode::storage_failed,
-                "The job store is of another version (schema " + std::to_string(found) +
-                    "): start the version that wrote it, or choose another --data directory.");
-  }
-  database_.run("BEGIN IMMEDIATE");
-  database_.run(kSchema);
-  database_.run("COMMIT");
-}
-
-std::vector<JobRecord> JobStore::rows(Statement& statement) {
-  std::vector<JobRecord> found;
-  while (statement.step()) found.push_back(record_of(statement));
-  return found;
+template <class... Values>
+std::optional<JobRecord> JobStore::first(std::string_view rest, const Values&... values) {
+  const std::lock_guard lock(mutex_);
+  Statement statement(database_, select_jobs(rest));
+  std::vector<JobRecord> found = job_rows(statement.with(values...));
+  if (found.empty()) return std::nullopt;
+  return std::move(found.front());
 }
 
 std::int64_t JobStore::insert(const JobRecord& job) {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_,
-                      "INSERT INTO jobs (id, state, created_ms, synchronous, options, notes,"
-                      " sha256, bytes, buffers) VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?)"
-                      " RETURNING seq");
+  Statement statement(database_, insert_statement());
   statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, text_of(job.options),
                  text_of(job.notes), job.input.sha256, job.input.bytes,
-                 text_of(buffers_json(job.input.buffers)));
+                 text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
+                 job.request_key, job.content_key, job.stored_bytes, job.webhook);
   statement.step();
   const std::int64_t seq = statement.number(0);
   statement.run();
   return seq;
 }
 
-std::optional<JobRecord> JobStore::find(std::string_view id) {
-  const std::lock_guard lock(mutex_);
-  Statement statement(database_, select("WHERE id = ?"));
-  statement.with(id);
-  if (!statement.step()) return std::nullopt;
-  return record_of(statement);
+std::optional<JobRecord> JobStore::find(std::string_view id) { return first("WHERE id = ?", id); }
+
+std::optional<JobRecord> JobStore::find_request(std::string_view owner,
+                                                std::string_view request_key) {
+  return first("WHERE owner = ? AND request_key = ?", owner, request_key);
+}
+
+std::optional<JobRecord> JobStore::find_same(std::string_view owner, std::string_view content_key) {
+  return first(
+      "WHERE owner = ? AND content_key = ? AND state = 'succeeded' AND expired = 0"
+      " ORDER BY seq DESC LIMIT 1",
+      owner, content_key);
 }
 
 std::vector<JobRecord> JobStore::all(JobState state) {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_, select("WHERE state = ? ORDER BY seq"));
-  statement.with(state_name(state));
-  return rows(statement);
+  Statement statement(database_, select_jobs("WHERE state = ? ORDER BY seq"));
+  return job_rows(statement.with(state_name(state)));
 }
 
-std::optional<JobRecord> JobStore::take_oldest() {
+std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
   const std::lock_guard lock(mutex_);
-  Statement statement(
-      database_,
-      "UPDATE jobs SET state = 'running', attempt = attempt + 1 WHERE seq ="
-      " (SELECT seq FROM jobs WHERE state = 'queued' ORDER BY seq LIMIT 1) RETURNING" +
-          std::string(kColumns));
-  std::vector<JobRecord> taken = rows(statement);
+  Statement statement(database_,
+                      select_jobs("WHERE (?1 OR owner = ?2) AND (?3 = '' OR state = ?3)"
+                                  " AND (?4 = 0 OR seq < ?4) ORDER BY seq DESC LIMIT ?5"));
+  const std::string state(filter.state ? state_name(*filter.state) : "");
+  return job_rows(statement.with(std::int64_t{!filter.owner}, filter.owner.value_or(""), state,
+                                 filter.before_seq, std::int64_t{filter.limit}));
+}
+
+OwnerUsage JobStore::usage(std::string_view owner) {
+  const std::lock_guard lock(mutex_);
+  Statement statement(database_,
+                      "SELECT COALESCE(SUM(state IN ('queued', 'running')), 0),"
+                      " COALESCE(SUM(stored_bytes), 0) FROM jobs WHERE owner = ?");
+  statement.with(owner).step();
+  return {.live_jobs = statement.number(0), .stored_bytes = statement.number(1)};
+}
+
+std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t lease_ms) {
+  const std::lock_guard lock(mutex_);
+  Statement statement(database_,
+                      "UPDATE jobs SET state = 'running', attempt = attempt + 1, lease_ms = ?2"
+                      " WHERE seq = (SELECT seq FROM jobs WHERE state = 'queued' AND owner = ?1"
+                      " ORDER BY urgency, seq LIMIT 1)" +
+                          returning_jobs());
+  std::vector<JobRecord> taken = job_rows(statement.with(owner, lease_ms));
   if (taken.empty()) return std::nullopt;
   return std::move(taken.front());
 }
 
-bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
+void JobStore::renew(std::string_view id, std::int64_t lease_ms) {
+  const std::lock_guard lock(mutex_);
+  Statement(database_, "UPDATE jobs SET lease_ms = ?2 WHERE id = ?1 AND state = 'running'")
+      .with(id, lease_ms)
+      .run();
+}
+
+std::vector<JobRecord> JobStore::lapsed(std::int64_t now_ms) {
   const std::lock_guard lock(mutex_);
   Statement statement(database_,
+                      select_jobs("WHERE state = 'running' AND lease_ms < ? ORDER BY seq"));
+  return job_rows(statement.with(now_ms));
+}
+
+bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
+  const std::lock_guard lock(mutex_);
+  Transaction both(database_);
+  Statement statement(database_,
                       "UPDATE jobs SET state = ?4, result_format = ?5, problem = ?6,"
-                      " last_event = ?7, finished_ms = ?8"
+                      " last_event = ?7, finished_ms = ?8, kept_since_ms = ?8, stored_bytes = ?9"
                       " WHERE id = ?1 AND attempt = ?2 AND state = ?3");
   statement
       .with(known.id, std::int64_t{known.attempt}, state_name(known.state),
             state_name(outcome.state), outcome.result_format, text_of(outcome.problem),
-            outcome.last_event, outcome.finished_ms)
+            outcome.last_event, outcome.finished_ms, outcome.stored_bytes)
       .run();
-  return database_.changes() == 1;
+  if (database_.changes() != 1) return false;
+  if (!known.webhook.empty()) {
+    Statement(database_, "INSERT INTO deliveries (job, url, body, due_ms) VALUES (?, ?, ?, ?)")
+        .with(known.id, known.webhook, outcome.delivery, outcome.finished_ms)
+        .run();
+  }
+  both.commit();
+  return true;
 }
 
 void JobStore::request_cancel(std::string_view id) {
@@ -180,12 +144,18 @@ void JobStore::requeue(std::string_view id, bool crashed) {
       .run();
 }
 
-std::vector<std::string> JobStore::finished_before(std::int64_t epoch_ms) {
+bool JobStore::keeps_files(std::string_view id) {
+  const std::optional<JobRecord> job = find(id);
+  if (!job || job->expired) return false;
+  return !api::is_final(job->state) || job->state == JobState::succeeded;
+}
+
+std::vector<std::string> JobStore::finished_before(std::int64_t epoch_ms, int limit) {
   const std::lock_guard lock(mutex_);
   Statement statement(database_,
                       "SELECT id FROM jobs WHERE state IN ('succeeded', 'failed', 'cancelled')"
-                      " AND expired = 0 AND finished_ms < ? ORDER BY seq");
-  statement.with(epoch_ms);
+                      " AND expired = 0 AND kept_since_ms < ? ORDER BY kept_since_ms, seq LIMIT ?");
+  statement.with(epoch_ms, std::int64_t{limit});
   std::vector<std::string> ids;
   while (statement.step()) ids.push_back(statement.text(0));
   return ids;
@@ -193,13 +163,22 @@ std::vector<std::string> JobStore::finished_before(std::int64_t epoch_ms) {
 
 void JobStore::set_expired(std::string_view id) {
   const std::lock_guard lock(mutex_);
-  Statement(database_, "UPDATE jobs SET expired = 1 WHERE id = ?").with(id).run();
+  Statement(database_, "UPDATE jobs SET expired = 1, stored_bytes = 0 WHERE id = ?").with(id).run();
 }
 
 void JobStore::forget_before(std::int64_t epoch_ms) {
   const std::lock_guard lock(mutex_);
-  Statement(database_, "DELETE FROM jobs WHERE expired = 1 AND finished_ms < ?")
+  Statement(database_, "DELETE FROM jobs WHERE expired = 1 AND kept_since_ms < ?")
       .with(epoch_ms)
+      .run();
+}
+
+void JobStore::shift_kept_since(std::int64_t by_ms) {
+  const std::lock_guard lock(mutex_);
+  Statement(database_,
+            "UPDATE jobs SET kept_since_ms = kept_since_ms + ? WHERE state IN"
+            " ('succeeded', 'failed', 'cancelled')")
+      .with(by_ms)
       .run();
 }
 

@@ -2,6 +2,9 @@
 // The jobs table: every change of a job's state is one transaction here, guarded by the state it
 // must come from, so that two threads (or a late worker) can never both win. SQLite was chosen over
 // files per job for these transactions, over a server process for being embedded.
+//
+// A running job is on lease to this process, on the clock of elapsed time: setting the time of day
+// neither ends a lease nor prolongs it.
 
 #include <cstdint>
 #include <filesystem>
@@ -24,9 +27,25 @@ struct JobOutcome {
   api::Json problem;
   std::int64_t last_event = 0;
   std::int64_t finished_ms = 0;
+  std::int64_t stored_bytes = 0;  ///< of the job's files, 0 when none are left
+  std::string delivery = {};      ///< body of the call to the job's webhook, where it has one
 };
 
-/// Thread-safe. Every function may throw Error{storage_failed}.
+/// Which jobs are listed: the newest first.
+struct JobFilter {
+  std::optional<std::string> owner;    ///< of one owner only
+  std::optional<api::JobState> state;  ///< in one state only
+  std::int64_t before_seq = 0;         ///< only those that came before this one; 0: from the newest
+  int limit = 50;
+};
+
+/// What an owner has here.
+struct OwnerUsage {
+  std::int64_t live_jobs = 0;  ///< queued or running
+  std::int64_t stored_bytes = 0;
+};
+
+/// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
 class JobStore {
  public:
   explicit JobStore(const std::filesystem::path& path);
@@ -34,29 +53,44 @@ class JobStore {
   /// Adds a queued job and returns its seq.
   std::int64_t insert(const JobRecord& job);
   [[nodiscard]] std::optional<JobRecord> find(std::string_view id);
+  /// The job that an owner's request of this name has made.
+  std::optional<JobRecord> find_request(std::string_view owner, std::string_view request_key);
+  /// A succeeded job of this owner that was asked the same and still has its files.
+  std::optional<JobRecord> find_same(std::string_view owner, std::string_view content_key);
   /// All jobs in this state, the oldest first.
   std::vector<JobRecord> all(api::JobState state);
+  std::vector<JobRecord> list(const JobFilter& filter);
+  OwnerUsage usage(std::string_view owner);
 
-  /// The oldest queued job, now running, its attempt counted.
-  std::optional<JobRecord> take_oldest();
-  /// Ends a job. False, and nothing is changed, when it is no longer in the state and attempt that
-  /// the caller knows it in.
+  /// The most urgent, and of those the oldest, queued job of this owner, now running and on lease
+  /// until then, its attempt counted.
+  std::optional<JobRecord> take(std::string_view owner, std::int64_t lease_ms);
+  void renew(std::string_view id, std::int64_t lease_ms);
+  /// Running jobs whose lease has ended by now.
+  std::vector<JobRecord> lapsed(std::int64_t now_ms);
+  /// Ends a job and queues the call to its webhook. False, and nothing is changed, when it is no
+  /// longer in the state and attempt that the caller knows it in.
   bool finish(const JobRecord& known, const JobOutcome& outcome);
   /// Remembers that a running job shall end, even over a crash.
   void request_cancel(std::string_view id);
   /// A running job waits again; crashed: because the server died.
   void requeue(std::string_view id, bool crashed);
 
-  /// Final jobs that ended before this time and still have their files.
-  std::vector<std::string> finished_before(std::int64_t epoch_ms);
+  /// Whether the job's files are to be kept: it is not final, or has succeeded and not expired.
+  bool keeps_files(std::string_view id);
+  /// Final jobs that ended before this time and still have their files, the oldest first.
+  std::vector<std::string> finished_before(std::int64_t epoch_ms, int limit = -1);
   void set_expired(std::string_view id);
   /// Removes the rows of expired jobs that ended before this time.
   void forget_before(std::int64_t epoch_ms);
+  /// The time of day was set: the time for which jobs are kept goes on as if it had not been.
+  void shift_kept_since(std::int64_t by_ms);
   void remove(std::string_view id);
 
  private:
-  std::vector<JobRecord> rows(Statement& statement);
-  void migrate();
+  /// The first row of `SELECT ... WHERE`, with these values bound.
+  template <class... Values>
+  std::optional<JobRecord> first(std::string_view rest, const Values&... values);
 
   std::mutex mutex_;
   Database database_;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "api/options.hpp"
 #include "core/figure/layout_image.hpp"
 #include "core/figure/layout_svg.hpp"
 #include "core/figure/preview.hpp"
@@ -52,16 +53,17 @@ StoredResult PictureStore::open(const JobRecord& job, const Picture& picture) {
   StoredResult stored{.file = std::make_shared<const File>(File::open(path)),
                       .sha256 = read_file(blobs_.path(job.id, digest))};
   if (is_kept(picture)) return stored;
-  fs::remove(path);
-  fs::remove(blobs_.path(job.id, digest));
+  blobs_.discard(job.id, name);
+  blobs_.discard(job.id, digest);
   return stored;
 }
 
 std::string PictureStore::draw(const JobRecord& job, const Picture& picture) const {
   const LoadedInput loaded(blobs_, job);
-  const asset::Asset asset = asset::read(loaded.input(), read_limits(job, limits_));
+  const asset::Asset asset = asset::read(loaded.input(), read_limits(job, limits_),
+                                         api::parse_options(job.options, limits_).asset);
   const std::vector<UnwrappedSurface> unwrapped =
-      decode_uvs(read_file(blobs_.path(job.id, picture.uv_file)));
+      decode_uvs(blobs_.read(job.id, picture.uv_file));
   switch (picture.kind) {
     case PictureKind::layout_svg:
       return layout_svg(asset.surfaces(), unwrapped, picture.colouring);

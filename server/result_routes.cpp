@@ -74,7 +74,7 @@ Response get_result(ResultStore& results, const JobRecord& job, std::size_t map,
 Response get_file(const BlobStore& blobs, const JobRecord& job, std::string_view file,
                   std::string_view type) {
   require_result(job);
-  auto opened = std::make_shared<const File>(File::open(blobs.path(job.id, file)));
+  const std::shared_ptr<const File> opened = blobs.open(job.id, file);
   Response response;
   response.content_type = type;
   response.body = FileBody{.file = opened, .offset = 0, .length = opened->size()};

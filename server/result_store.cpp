@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "api/options.hpp"
 #include "api/result.hpp"
-#include "server/identity.hpp"
 #include "server/job_input.hpp"
 #include "server/map_choice.hpp"
 #include "server/run_job.hpp"
@@ -15,14 +15,6 @@ namespace {
 asset::Format format_named(std::string_view name) {
   if (name == "glb") return asset::Format::glb;
   return name == "gltf" ? asset::Format::gltf : asset::Format::obj;
-}
-
-std::string digest_file(const std::string& file) { return file + ".sha256"; }
-
-void write_with_digest(BlobStore& blobs, std::string_view job, const std::string& file,
-                       std::string_view bytes) {
-  blobs.write(job, digest_file(file), sha256(bytes));
-  blobs.write(job, file, bytes);
 }
 
 }  // namespace
@@ -41,29 +33,39 @@ std::string_view format_name(asset::Format format) {
 
 void write_result(BlobStore& blobs, std::string_view job, std::string_view format,
                   std::string_view bytes) {
-  write_with_digest(blobs, job, result_file(format), bytes);
+  blobs.write(job, result_file(format), bytes);
 }
 
 StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::string_view format) {
   const std::string file = map_file(result_file(format), map);
-  const std::filesystem::path path = blobs_.path(job.id, file);
-  {
-    const std::lock_guard lock(making_);
-    if (!std::filesystem::exists(path))
-      write_with_digest(blobs_, job.id, file, make(job, map, format));
+  if (std::optional<StoredResult> kept = find(job, file)) return std::move(*kept);
+  const std::lock_guard lock(making_);
+  if (std::optional<StoredResult> made_meanwhile = find(job, file))
+    return std::move(*made_meanwhile);
+  blobs_.write(job.id, file, make(job, map, format));
+  const std::string digest = blobs_.note(job.id, file);
+  return {.file = blobs_.open(job.id, file), .sha256 = digest};
+}
+
+std::optional<StoredResult> ResultStore::find(const JobRecord& job, const std::string& file) const {
+  if (!std::filesystem::exists(blobs_.path(job.id, file))) return std::nullopt;
+  try {
+    return StoredResult{.file = blobs_.open(job.id, file), .sha256 = blobs_.digest(job.id, file)};
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::storage_corrupt) return std::nullopt;  // it is made again
+    throw;
   }
-  return {.file = std::make_shared<const File>(File::open(path)),
-          .sha256 = read_file(blobs_.path(job.id, digest_file(file)))};
 }
 
 std::string ResultStore::make(const JobRecord& job, std::size_t map,
                               std::string_view format) const {
   const LoadedInput loaded(blobs_, job);
-  const asset::Asset asset = asset::read(loaded.input(), read_limits(job, limits_));
+  const asset::Asset asset = asset::read(loaded.input(), read_limits(job, limits_),
+                                         api::parse_options(job.options, limits_).asset);
   const std::vector<UnwrappedSurface> surfaces =
-      decode_uvs(read_file(blobs_.path(job.id, map_file(kUvFile, map))));
+      decode_uvs(blobs_.read(job.id, map_file(kUvFile, map)));
   if (format != "json") return asset::write(asset, surfaces, format_named(format));
-  const auto report = api::Json::parse(read_file(blobs_.path(job.id, map_file(kReportFile, map))));
+  const auto report = api::Json::parse(blobs_.read(job.id, map_file(kReportFile, map)));
   return api::result_json(report, asset.surfaces(), surfaces);
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,13 +19,13 @@ namespace unwrapd::server {
 /// "glb", "gltf" or "obj".
 std::string_view format_name(asset::Format format);
 
-/// Stores a result of a job's first map and, beside it, the SHA-256 that becomes its ETag.
+/// Stores a result of a job's first map.
 void write_result(BlobStore& blobs, std::string_view job, std::string_view format,
                   std::string_view bytes);
 
 struct StoredResult {
   std::shared_ptr<const File> file;  ///< stays readable when the job is removed meanwhile
-  std::string sha256;
+  std::string sha256;                ///< becomes the ETag
 };
 
 /// Thread-safe.
@@ -33,10 +34,15 @@ class ResultStore {
   ResultStore(BlobStore& blobs, const api::Limits& limits) : blobs_(blobs), limits_(limits) {}
 
   /// The result of a succeeded job by one of its maps (see map_choice.hpp), in a format (glb, gltf,
-  /// obj, json). Throws what asset::write() throws when the asset cannot be had in it.
+  /// obj, json); one that is missing or damaged is made from the job's input and map. Throws what
+  /// asset::write() throws when the asset cannot be had in it, storage_corrupt when those are
+  /// damaged too.
   StoredResult open(const JobRecord& job, std::size_t map, std::string_view format);
 
  private:
+  /// What lies in the store and is whole.
+  [[nodiscard]] std::optional<StoredResult> find(const JobRecord& job,
+                                                 const std::string& file) const;
   std::string make(const JobRecord& job, std::size_t map, std::string_view format) const;
 
   BlobStore& blobs_;

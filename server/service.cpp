@@ -4,10 +4,12 @@
 #include <thread>
 #include <vector>
 
+#include "server/clock.hpp"
 #include "server/data_lock.hpp"
 #include "server/http_server.hpp"
 #include "server/info_routes.hpp"
 #include "server/job_routes.hpp"
+#include "server/periodic.hpp"
 #include "server/picture_routes.hpp"
 #include "server/sweeper.hpp"
 #include "server/worker_pool.hpp"
@@ -15,6 +17,7 @@
 namespace unwrapd::server {
 namespace {
 
+constexpr std::chrono::seconds kHeartbeat{10};
 constexpr int kRequestThreads = 64;  // beside those of event streams
 
 HttpConfig http_config(const Config& config) {
@@ -32,21 +35,26 @@ struct Service::Parts {
   Parts(const Config& given, const Log& log)
       : config(given),
         lock(config.data),
-        blobs(config.data),
+        blobs(config.data, config.disk),
         store(config.data / "jobs.sqlite"),
         queue(store, blobs, events, log,
               {.max_queue = config.limits.max_queue, .workers = config.workers}),
         streams(events, config.limits.max_streams),
         submissions(queue, blobs, config.limits),
         results(blobs, config.limits),
+        sweeper(store, blobs, log, std::chrono::seconds(config.keep_seconds)),
         pictures(blobs, config.limits),
         router(routes(), log),
         http(
             http_config(config), [this](const Request& request) { return router.answer(request); },
             log) {
     queue.recover();
-    blobs.sweep([&](const std::string& job) { return store.find(job).has_value(); });
-    sweeper.emplace(store, blobs, log, std::chrono::seconds(config.keep_seconds));
+    blobs.sweep([&](const std::string& job) { return store.keeps_files(job); });
+    blobs.room().on_shortage([this] { return evict_oldest(store, blobs); });
+    sweeping.emplace(
+        "sweeping", sweeper.pause(), [this] { sweeper.sweep_once(now_ms(), elapsed_ms()); }, log);
+    beating.emplace(
+        "prolonging leases", kHeartbeat, [this] { queue.beat(); }, log);
     workers.emplace(queue, blobs, config.limits, log,
                     WorkerConfig{.workers = config.workers, .threads = config.threads});
     serving = std::jthread([this] { http.serve(); });
@@ -72,10 +80,12 @@ struct Service::Parts {
   EventStreams streams;
   Submissions submissions;
   ResultStore results;
+  Sweeper sweeper;
   PictureStore pictures;
   Router router;
   HttpServer http;
-  std::optional<Sweeper> sweeper;
+  std::optional<Periodic> sweeping;
+  std::optional<Periodic> beating;
   std::optional<WorkerPool> workers;
   std::jthread serving;
 };

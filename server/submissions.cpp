@@ -4,6 +4,7 @@
 #include "server/identity.hpp"
 #include "server/job_input.hpp"
 #include "server/media_types.hpp"
+#include "server/request_headers.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -18,35 +19,60 @@ api::JobOptions form_options(const Upload& upload, const Request& request,
               "/" + request.query.begin()->first);
 }
 
+/// The same for the same question to the same version: what is asked, and of what.
+std::string content_key(const JobRecord& job) {
+  Sha256 hash;
+  const auto add = [&](const std::string& text) { hash.add(text + '\0'); };
+  add(UNWRAPD_VERSION);
+  add(job.synchronous ? "small" : "any size");
+  add(job.options.dump());
+  add(job.input.sha256);
+  for (const StoredBuffer& buffer : job.input.buffers) {
+    add(buffer.uri);
+    add(buffer.sha256);
+  }
+  return hash.finish();
+}
+
 }  // namespace
 
 JobRecord Submissions::accept(const Request& request, bool synchronous) {
   queue_.check_room();
-  const std::string id = random_job_id();
+  const std::string upload = random_job_id();
   try {
-    JobRecord job = receive(request, id);
-    job.synchronous = synchronous;
-    return queue_.submit(std::move(job));
+    Submission submission = receive(request, upload);
+    submission.job.synchronous = synchronous;
+    submission.job.content_key = content_key(submission.job);
+    return queue_.submit(std::move(submission));
   } catch (...) {
-    blobs_.drop_upload(id);
+    blobs_.drop_upload(upload);
     throw;
   }
 }
 
-JobRecord Submissions::receive(const Request& request, const std::string& id) {
+Submission Submissions::receive(const Request& request, const std::string& upload) {
   const BodyKind kind = body_kind(request.header("Content-Type"));
   const bool raw = kind == BodyKind::asset;
   api::JobOptions options = api::parse_options(request.query, limits_);  // before the body is read
-  const std::filesystem::path folder = blobs_.begin_upload(id);
-  Upload upload = raw ? receive_asset(*request.body, folder) : receive_parts(*request.body, folder);
-  if (!raw) options = form_options(upload, request, limits_);
-  JobRecord job;
-  job.id = id;
+  Submission submission{.job = {},
+                        .upload = upload,
+                        .quota = request.caller.quota,
+                        .anew = wants_new_answer(request)};
+  JobRecord& job = submission.job;
+  job.id = request.id.empty() ? upload : request.id;
+  job.request_key = request.id.empty() ? idempotency_key(request) : request.id;
+  job.owner = request.caller.owner;
+  job.urgency = urgency(request);
+  const UploadFolder folder{.path = blobs_.begin_upload(upload), .take = [&](std::int64_t bytes) {
+                              blobs_.room().take_for_upload(upload, bytes);
+                            }};
+  Upload came = raw ? receive_asset(*request.body, folder) : receive_parts(*request.body, folder);
+  if (!raw) options = form_options(came, request, limits_);
   job.created_ms = now_ms();
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);
-  job.input = std::move(upload.input);
-  return job;
+  job.input = std::move(came.input);
+  return submission;
 }
 
 }  // namespace unwrapd::server

@@ -15,12 +15,15 @@ class Submissions {
   Submissions(JobQueue& queue, BlobStore& blobs, const api::Limits& limits)
       : queue_(queue), blobs_(blobs), limits_(limits) {}
 
-  /// synchronous: the sender waits, so the mesh must be small. Throws Error: queue_full, draining,
-  /// unsupported_media_type, invalid_option, malformed_request, body_too_large, storage_failed.
+  /// synchronous: the sender waits, so the mesh must be small. Where the path has an id, it becomes
+  /// the job's; a request by Idempotency-Key or by such an id may come again and gets the same job.
+  /// Throws Error: queue_full, draining, unsupported_media_type, invalid_option, malformed_request,
+  /// body_too_large, idempotency_conflict, too_many_jobs, quota_exceeded, storage_full,
+  /// storage_failed.
   JobRecord accept(const Request& request, bool synchronous);
 
  private:
-  JobRecord receive(const Request& request, const std::string& id);
+  [[nodiscard]] Submission receive(const Request& request, const std::string& upload);
 
   JobQueue& queue_;
   BlobStore& blobs_;

@@ -1,14 +1,14 @@
 #include "server/sweeper.hpp"
 
 #include <algorithm>
-#include <exception>
-
-#include "server/clock.hpp"
+#include <cstdlib>
+#include <limits>
 
 namespace unwrapd::server {
 namespace {
 
 constexpr std::chrono::seconds kLongestPause{60};
+constexpr std::int64_t kSetByMs = 10'000;  // less is the clock's own drift
 
 }  // namespace
 
@@ -21,18 +21,27 @@ void sweep(JobStore& store, BlobStore& blobs, std::int64_t now_ms, std::chrono::
   store.forget_before(now_ms - 2 * keep_ms);
 }
 
-Sweeper::Sweeper(JobStore& store, BlobStore& blobs, const Log& log, std::chrono::seconds keep)
-    : thread_([this, &store, &blobs, &log, keep](const std::stop_token& stop) {
-        const std::chrono::seconds pause = std::min(keep, kLongestPause);
-        std::unique_lock lock(mutex_);
-        while (!stop.stop_requested()) {
-          try {
-            sweep(store, blobs, now_ms(), keep);
-          } catch (const std::exception& error) {
-            log.error("sweeping failed", {{"reason", error.what()}});
-          }
-          wake_.wait_for(lock, stop, pause, [] { return false; });
-        }
-      }) {}
+bool evict_oldest(JobStore& store, BlobStore& blobs) {
+  const auto any_time = std::numeric_limits<std::int64_t>::max();
+  for (const std::string& job : store.finished_before(any_time, 1)) {
+    store.set_expired(job);
+    blobs.remove(job);
+    return true;
+  }
+  return false;
+}
+
+std::chrono::seconds Sweeper::pause() const { return std::min(keep_, kLongestPause); }
+
+void Sweeper::sweep_once(std::int64_t now_ms, std::int64_t elapsed_ms) {
+  const std::int64_t offset_ms = now_ms - elapsed_ms;
+  const std::int64_t set_by_ms = offset_ms - offset_ms_.value_or(offset_ms);
+  if (std::abs(set_by_ms) >= kSetByMs) {
+    log_.warning("the time of day was set", {{"by_ms", set_by_ms}});
+    store_.shift_kept_since(set_by_ms);
+  }
+  offset_ms_ = offset_ms;
+  sweep(store_, blobs_, now_ms, keep_);
+}
 
 }  // namespace unwrapd::server

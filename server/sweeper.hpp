@@ -1,12 +1,11 @@
 #pragma once
 // Removes what is kept long enough: first the files of a finished job (410 from then on), and after
-// as long again the job itself (404).
+// as long again the job itself (404). Where the disk may hold only so much, the files of the job
+// that ended first go earlier.
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
-#include <thread>
+#include <optional>
 
 #include "server/blob_store.hpp"
 #include "server/job_store.hpp"
@@ -17,15 +16,26 @@ namespace unwrapd::server {
 /// One sweep at this time.
 void sweep(JobStore& store, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep);
 
-/// Sweeps again and again until it is destroyed.
+/// Gives up the files of the job that ended first; false when no finished job has any.
+bool evict_oldest(JobStore& store, BlobStore& blobs);
+
+/// Sweeps, and notices when the time of day is set: nothing is then removed too early or too late.
 class Sweeper {
  public:
-  Sweeper(JobStore& store, BlobStore& blobs, const Log& log, std::chrono::seconds keep);
+  Sweeper(JobStore& store, BlobStore& blobs, const Log& log, std::chrono::seconds keep)
+      : store_(store), blobs_(blobs), log_(log), keep_(keep) {}
+
+  /// How long to wait between two sweeps.
+  [[nodiscard]] std::chrono::seconds pause() const;
+  /// One sweep. now_ms: the time of day; elapsed_ms: on a clock that nobody sets.
+  void sweep_once(std::int64_t now_ms, std::int64_t elapsed_ms);
 
  private:
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
-  std::jthread thread_;  // last: it uses the others
+  JobStore& store_;
+  BlobStore& blobs_;
+  const Log& log_;
+  const std::chrono::seconds keep_;
+  std::optional<std::int64_t> offset_ms_;  // of the time of day over the elapsed, a sweep ago
 };
 
 }  // namespace unwrapd::server

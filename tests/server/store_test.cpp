@@ -16,6 +16,8 @@ namespace {
 
 using api::JobState;
 
+constexpr std::int64_t kLeaseMs = 5000;
+
 JobRecord some_job(const std::string& id) {
   JobRecord job;
   job.id = id;
@@ -66,19 +68,102 @@ TEST_F(Store, FindsNothingThatWasNotInserted) { EXPECT_FALSE(store_->find("j_non
 TEST_F(Store, TakesTheOldestFirstAndCountsTheAttempt) {
   store_->insert(some_job("j_1"));
   store_->insert(some_job("j_2"));
-  EXPECT_EQ(store_->take_oldest()->id, "j_1");
-  const std::optional<JobRecord> second = store_->take_oldest();
+  EXPECT_EQ(store_->take("", kLeaseMs)->id, "j_1");
+  const std::optional<JobRecord> second = store_->take("", kLeaseMs);
   EXPECT_EQ(second->id, "j_2");
   EXPECT_EQ(second->attempt, 1);
   EXPECT_EQ(second->state, JobState::running);
-  EXPECT_FALSE(store_->take_oldest());
+  EXPECT_FALSE(store_->take("", kLeaseMs));
+}
+
+TEST_F(Store, TakesTheMostUrgentOfAnOwnersOwnJobs) {
+  store_->insert(some_job("j_1"));
+  JobRecord urgent = some_job("j_2");
+  urgent.urgency = 1;
+  store_->insert(urgent);
+  JobRecord other = some_job("j_3");
+  other.owner = "k_b";
+  other.urgency = 0;
+  store_->insert(other);
+  EXPECT_EQ(store_->take("", kLeaseMs)->id, "j_2");
+  EXPECT_EQ(store_->take("", kLeaseMs)->id, "j_1");
+  EXPECT_FALSE(store_->take("", kLeaseMs));
+  EXPECT_EQ(store_->take("k_b", kLeaseMs)->id, "j_3");
+}
+
+TEST_F(Store, ARunningJobLapsesWhenItsLeaseEndsUnlessItIsRenewed) {
+  store_->insert(some_job("j_1"));
+  store_->take("", 1000);
+  EXPECT_TRUE(store_->lapsed(1000).empty());
+  ASSERT_EQ(store_->lapsed(1001).size(), 1U);
+  store_->renew("j_1", 2000);
+  EXPECT_TRUE(store_->lapsed(2000).empty());
+  store_->finish(*store_->find("j_1"), succeeded());
+  EXPECT_TRUE(store_->lapsed(9000).empty());
+}
+
+TEST_F(Store, ARequestsNameIsItsOwnersAlone) {
+  JobRecord job = some_job("j_1");
+  job.request_key = "order 7";
+  job.owner = "k_a";
+  store_->insert(job);
+  EXPECT_EQ(store_->find_request("k_a", "order 7")->id, "j_1");
+  EXPECT_FALSE(store_->find_request("k_b", "order 7"));
+  job.id = "j_2";
+  EXPECT_THROW(store_->insert(job), Error);
+  job.owner = "k_b";
+  EXPECT_NO_THROW(store_->insert(job));
+}
+
+TEST_F(Store, AnEqualQuestionIsFoundWhileItsAnswerIsKept) {
+  JobRecord job = some_job("j_1");
+  job.content_key = "c";
+  store_->insert(job);
+  EXPECT_FALSE(store_->find_same("", "c"));
+  store_->finish(*store_->take("", kLeaseMs), succeeded());
+  EXPECT_EQ(store_->find_same("", "c")->id, "j_1");
+  EXPECT_FALSE(store_->find_same("k_a", "c"));
+  store_->set_expired("j_1");
+  EXPECT_FALSE(store_->find_same("", "c"));
+}
+
+TEST_F(Store, ListsTheNewestFirstAndGoesOnAfterTheLastSeen) {
+  for (const char* id : {"j_1", "j_2", "j_3"}) store_->insert(some_job(id));
+  JobRecord other = some_job("j_4");
+  other.owner = "k_a";
+  store_->insert(other);
+  const std::vector<JobRecord> first = store_->list({.owner = "", .state = {}, .limit = 2});
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_EQ(first[0].id, "j_3");
+  const std::vector<JobRecord> rest =
+      store_->list({.owner = "", .state = {}, .before_seq = first[1].seq, .limit = 2});
+  ASSERT_EQ(rest.size(), 1U);
+  EXPECT_EQ(rest[0].id, "j_1");
+  EXPECT_EQ(store_->list({.owner = {}, .state = {}}).size(), 4U);
+  EXPECT_EQ(store_->list({.owner = {}, .state = JobState::running}).size(), 0U);
+}
+
+TEST_F(Store, CountsWhatAnOwnerHas) {
+  JobRecord job = some_job("j_1");
+  job.stored_bytes = 7;
+  store_->insert(job);
+  EXPECT_EQ(store_->usage("").live_jobs, 1);
+  EXPECT_EQ(store_->usage("").stored_bytes, 7);
+  JobOutcome outcome = succeeded();
+  outcome.stored_bytes = 50;
+  store_->finish(*store_->take("", kLeaseMs), outcome);
+  EXPECT_EQ(store_->usage("").live_jobs, 0);
+  EXPECT_EQ(store_->usage("").stored_bytes, 50);
+  store_->set_expired("j_1");
+  EXPECT_EQ(store_->usage("").stored_bytes, 0);
+  EXPECT_EQ(store_->usage("k_a").live_jobs, 0);
 }
 
 TEST_F(Store, ALateWorkerCannotEndAnotherAttempt) {
   store_->insert(some_job("j_1"));
-  const JobRecord first = *store_->take_oldest();
+  const JobRecord first = *store_->take("", kLeaseMs);
   store_->requeue("j_1", true);
-  const JobRecord second = *store_->take_oldest();
+  const JobRecord second = *store_->take("", kLeaseMs);
   EXPECT_FALSE(store_->finish(first, succeeded()));
   EXPECT_TRUE(store_->finish(second, succeeded()));
   EXPECT_FALSE(store_->finish(second, succeeded()));
@@ -92,7 +177,7 @@ TEST_F(Store, ALateWorkerCannotEndAnotherAttempt) {
 TEST_F(Store, AJobThatIsTakenIsNotCancelledAsQueued) {
   store_->insert(some_job("j_1"));
   const JobRecord queued = *store_->find("j_1");
-  store_->take_oldest();
+  store_->take("", kLeaseMs);
   JobOutcome outcome = succeeded();
   outcome.state = JobState::cancelled;
   EXPECT_FALSE(store_->finish(queued, outcome));
@@ -101,7 +186,7 @@ TEST_F(Store, AJobThatIsTakenIsNotCancelledAsQueued) {
 
 TEST_F(Store, RemembersARequestToCancelOverAReopening) {
   store_->insert(some_job("j_1"));
-  store_->take_oldest();
+  store_->take("", kLeaseMs);
   store_->request_cancel("j_1");
   reopen();
   EXPECT_TRUE(store_->find("j_1")->cancel_requested);
@@ -125,8 +210,8 @@ TEST_F(Store, FilesExpireFirstAndTheJobAfterAsLongAgain) {
   BlobStore blobs(dir_.path());
   store_->insert(some_job("j_1"));
   blobs.begin_upload("j_1");
-  blobs.keep_upload("j_1");
-  store_->finish(*store_->take_oldest(), succeeded(1000));
+  blobs.keep_upload("j_1", "j_1");
+  store_->finish(*store_->take("", kLeaseMs), succeeded(1000));
   const auto file = blobs.path("j_1", kReportFile);
   blobs.write("j_1", kReportFile, "{}");
 
@@ -144,7 +229,7 @@ TEST_F(Store, WhatACrashLeavesBehindIsSwept) {
   BlobStore blobs(dir_.path());
   for (const char* job : {"j_known", "j_orphan"}) {
     blobs.begin_upload(job);
-    blobs.keep_upload(job);
+    blobs.keep_upload(job, job);
     blobs.write(job, kDocumentFile, "v");
   }
   blobs.begin_upload("j_upload");

@@ -1,0 +1,86 @@
+#include "server/schema.hpp"
+
+#include <array>
+
+#include "core/error.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+/// Step k makes version k + 1 out of version k. Steps that were released are never edited.
+constexpr std::array<const char*, 2> kSteps = {
+    R"sql(
+CREATE TABLE jobs (
+  seq INTEGER PRIMARY KEY AUTOINCREMENT,
+  id TEXT NOT NULL UNIQUE,
+  state TEXT NOT NULL,
+  created_ms INTEGER NOT NULL,
+  finished_ms INTEGER NOT NULL DEFAULT 0,
+  attempt INTEGER NOT NULL DEFAULT 0,
+  crashes INTEGER NOT NULL DEFAULT 0,
+  cancel_requested INTEGER NOT NULL DEFAULT 0,
+  synchronous INTEGER NOT NULL,
+  expired INTEGER NOT NULL DEFAULT 0,
+  options TEXT NOT NULL,
+  notes TEXT NOT NULL,
+  sha256 TEXT NOT NULL,
+  bytes INTEGER NOT NULL,
+  buffers TEXT NOT NULL,
+  result_format TEXT NOT NULL DEFAULT '',
+  problem TEXT NOT NULL DEFAULT 'null',
+  last_event INTEGER NOT NULL DEFAULT 0
+) STRICT;
+CREATE INDEX jobs_by_state ON jobs (state, seq);
+)sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN urgency INTEGER NOT NULL DEFAULT 3;
+ALTER TABLE jobs ADD COLUMN request_key TEXT;
+ALTER TABLE jobs ADD COLUMN content_key TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN lease_ms INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN kept_since_ms INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN stored_bytes INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN webhook TEXT NOT NULL DEFAULT '';
+UPDATE jobs SET kept_since_ms = finished_ms, stored_bytes = bytes;
+DROP INDEX jobs_by_state;
+CREATE INDEX jobs_by_state ON jobs (state, owner, urgency, seq);
+CREATE INDEX jobs_by_owner ON jobs (owner, seq);
+CREATE INDEX jobs_by_content ON jobs (owner, content_key) WHERE state = 'succeeded';
+CREATE UNIQUE INDEX jobs_by_request ON jobs (owner, request_key) WHERE request_key IS NOT NULL;
+CREATE TABLE deliveries (
+  seq INTEGER PRIMARY KEY AUTOINCREMENT,
+  job TEXT NOT NULL,
+  url TEXT NOT NULL,
+  body TEXT NOT NULL,
+  tries INTEGER NOT NULL DEFAULT 0,
+  due_ms INTEGER NOT NULL
+) STRICT;
+CREATE INDEX deliveries_by_time ON deliveries (due_ms);
+)sql"};
+
+constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());
+
+std::int64_t version_of(const Database& database) {
+  Statement version(database, "PRAGMA user_version");
+  version.step();
+  return version.number(0);
+}
+
+}  // namespace
+
+void migrate(Database& database) {
+  const std::int64_t found = version_of(database);
+  if (found > kVersion || found < 0) {
+    throw Error(ErrorCode::storage_failed,
+                "The job store is of another version (schema " + std::to_string(found) +
+                    "): start the version that wrote it, or choose another --data directory.");
+  }
+  for (std::int64_t version = found; version < kVersion; ++version) {
+    Transaction step(database);
+    database.run(kSteps.at(static_cast<std::size_t>(version)));
+    database.run(("PRAGMA user_version = " + std::to_string(version + 1)).c_str());
+    step.commit();
+  }
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,14 @@
+#pragma once
+// The tables of the job store, and the way from every older version of them to this one. A step is
+// one transaction with the version's number: a crash in the middle of it leaves the old version
+// whole. There is no way back: an older unwrapd refuses a newer file rather than guess.
+
+#include "server/database.hpp"
+
+namespace unwrapd::server {
+
+/// Brings the tables to this version, from an empty file or one of any version before. Throws
+/// Error{storage_failed} when they are of a later version.
+void migrate(Database& database);
+
+}  // namespace unwrapd::server

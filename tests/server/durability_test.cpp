@@ -1,0 +1,236 @@
+// What keeps jobs over versions, damaged disks, full disks and clocks that are set; and whose job
+// is next. Each rule by itself; tests/fault kills the real server.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "server/blob_store.hpp"
+#include "server/digests.hpp"
+#include "server/fair_share.hpp"
+#include "server/identity.hpp"
+#include "server/job_store.hpp"
+#include "server/retry_estimate.hpp"
+#include "server/sweeper.hpp"
+#include "temp_dir.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+using api::JobState;
+
+/// The tables as version 0.1.0 made them, with a job that waits and one that has ended.
+constexpr const char* kVersion1 = R"sql(
+CREATE TABLE jobs (
+  seq INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, state TEXT NOT NULL,
+  created_ms INTEGER NOT NULL, finished_ms INTEGER NOT NULL DEFAULT 0,
+  attempt INTEGER NOT NULL DEFAULT 0, crashes INTEGER NOT NULL DEFAULT 0,
+  cancel_requested INTEGER NOT NULL DEFAULT 0, synchronous INTEGER NOT NULL,
+  expired INTEGER NOT NULL DEFAULT 0, options TEXT NOT NULL, notes TEXT NOT NULL,
+  sha256 TEXT NOT NULL, bytes INTEGER NOT NULL, buffers TEXT NOT NULL,
+  result_format TEXT NOT NULL DEFAULT '', problem TEXT NOT NULL DEFAULT 'null',
+  last_event INTEGER NOT NULL DEFAULT 0
+) STRICT;
+CREATE INDEX jobs_by_state ON jobs (state, seq);
+INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256, bytes, buffers)
+  VALUES ('j_1', 'queued', 5, 0, '{"method":"arap"}', '["n"]', 'ab', 7, '[["a.bin","buffer_0"]]');
+INSERT INTO jobs (id, state, created_ms, finished_ms, attempt, synchronous, options, notes, sha256,
+                  bytes, buffers, result_format)
+  VALUES ('j_2', 'succeeded', 6, 9, 1, 1, '{}', '[]', 'cd', 8, '[]', 'obj');
+PRAGMA user_version = 1;
+)sql";
+
+class Durability : public testing::Test {
+ protected:
+  std::filesystem::path path() const { return dir_.path() / "jobs.sqlite"; }
+
+  /// A job with a document and a result, sealed.
+  void add_job(BlobStore& blobs, const std::string& id) const {
+    const std::filesystem::path folder = blobs.begin_upload("u");
+    write_file(folder / kDocumentFile, "v 0 0 0");
+    blobs.keep_upload("u", id);
+    blobs.write(id, kReportFile, "{}");
+    blobs.seal(id);
+  }
+
+  static void damage(const std::filesystem::path& file) { write_file(file, "v 0 0 1"); }
+
+  TempDir dir_;
+};
+
+ErrorCode code_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  return ErrorCode::internal;
+}
+
+TEST_F(Durability, AFileOfTheFirstVersionIsBroughtToThisOne) {
+  std::filesystem::create_directories(dir_.path());
+  Database(path()).run(kVersion1);
+  for (int opening = 0; opening < 2; ++opening) {
+    JobStore store(path());
+    const JobRecord waiting = *store.find("j_1");
+    EXPECT_EQ(waiting.state, JobState::queued);
+    EXPECT_EQ(waiting.options, (api::Json{{"method", "arap"}}));
+    EXPECT_EQ(waiting.input.buffers.at(0).uri, "a.bin");
+    EXPECT_EQ(waiting.urgency, kUsualUrgency);
+    EXPECT_EQ(waiting.owner, "");
+    EXPECT_EQ(store.find("j_2")->result_format, "obj");
+    EXPECT_EQ(store.usage("").stored_bytes, 15);
+    EXPECT_TRUE(store.finished_before(9).empty());
+    EXPECT_EQ(store.finished_before(10).size(), 1U);
+  }
+  EXPECT_EQ(JobStore(path()).take("", 1)->id, "j_1");
+}
+
+TEST_F(Durability, ADamagedFileIsNeverHandedOut) {
+  BlobStore blobs(dir_.path());
+  add_job(blobs, "j_1");
+  EXPECT_EQ(blobs.read("j_1", kDocumentFile), "v 0 0 0");
+  EXPECT_EQ(blobs.digest("j_1", kReportFile), sha256("{}"));
+  damage(blobs.path("j_1", kDocumentFile));
+  damage(blobs.path("j_1", kReportFile));
+  for (const std::string_view file : {kDocumentFile, kReportFile}) {
+    EXPECT_EQ(code_of([&] { static_cast<void>(blobs.open("j_1", file)); }),
+              ErrorCode::storage_corrupt)
+        << file;
+  }
+}
+
+TEST_F(Durability, SealingDoesNotPassOverADamagedInput) {
+  BlobStore blobs(dir_.path());
+  add_job(blobs, "j_1");
+  damage(blobs.path("j_1", kDocumentFile));
+  blobs.write("j_1", kReportFile, "{\"attempt\": 2}");
+  blobs.seal("j_1");
+  EXPECT_EQ(blobs.read("j_1", kReportFile), "{\"attempt\": 2}");
+  EXPECT_EQ(code_of([&] { static_cast<void>(blobs.read("j_1", kDocumentFile)); }),
+            ErrorCode::storage_corrupt);
+}
+
+TEST_F(Durability, SharedResultsOutliveTheJobTheyCameFrom) {
+  BlobStore blobs(dir_.path());
+  add_job(blobs, "j_1");
+  write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+  blobs.keep_upload("u", "j_2");
+  EXPECT_TRUE(blobs.adopt("j_2", "j_1"));
+  blobs.remove("j_1");
+  EXPECT_EQ(blobs.read("j_2", kReportFile), "{}");
+  EXPECT_FALSE(blobs.adopt("j_2", "j_1"));
+}
+
+TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
+  BlobStore blobs(dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0});
+  std::vector<std::string> evicted;
+  EXPECT_EQ(code_of([&] { blobs.room().take_for_upload("u", 751); }), ErrorCode::storage_full);
+  blobs.room().take_for_upload("u", 750);
+  EXPECT_EQ(code_of([&] { blobs.room().take_for_upload("u", 1); }), ErrorCode::storage_full);
+  blobs.room().take("j_1", 250);
+  EXPECT_EQ(code_of([&] { blobs.room().take("j_1", 1); }), ErrorCode::storage_full);
+  blobs.room().on_shortage([&] {
+    evicted.emplace_back("u");
+    blobs.room().give_back("u");
+    return evicted.size() == 1;
+  });
+  blobs.room().take("j_2", 400);
+  EXPECT_EQ(evicted.size(), 1U);
+  EXPECT_EQ(blobs.room().used_bytes(), 650);
+  EXPECT_EQ(code_of([&] { blobs.room().take("j_2", 351); }), ErrorCode::storage_full);
+}
+
+TEST_F(Durability, UploadsLeaveTheDiskSomeRoom) {
+  const std::int64_t more_than_any_disk = std::int64_t{1} << 60;
+  BlobStore blobs(dir_.path(), {.max_bytes = 0, .min_free_bytes = more_than_any_disk});
+  EXPECT_EQ(code_of([&] { blobs.room().take_for_upload("u", 1); }), ErrorCode::storage_full);
+  EXPECT_NO_THROW(blobs.room().take("j_1", 1));
+}
+
+TEST_F(Durability, ResultsAreKeptForTheirTimeWhenTheClockIsSet) {
+  constexpr std::int64_t kDay = 86'400'000;
+  const Log log(LogLevel::off);
+  BlobStore blobs(dir_.path());
+  JobStore store(path());
+  Sweeper sweeper(store, blobs, log, std::chrono::seconds(100));
+  JobRecord job;
+  job.id = "j_1";
+  job.options = job.notes = api::Json::array();
+  store.insert(job);
+  JobOutcome outcome;
+  outcome.finished_ms = 50 * kDay;
+  store.finish(*store.take("", 1), outcome);
+  const auto kept = [&] { return !store.find("j_1")->expired; };
+  sweeper.sweep_once(50 * kDay, 7000);
+  sweeper.sweep_once(60 * kDay, 8000);
+  EXPECT_TRUE(kept()) << "ten days forward";
+  sweeper.sweep_once(40 * kDay, 9000);
+  EXPECT_TRUE(kept()) << "twenty days back";
+  sweeper.sweep_once(40 * kDay + 97'000, 106'000);
+  EXPECT_TRUE(kept()) << "99 s have passed";
+  sweeper.sweep_once(40 * kDay + 99'000, 108'000);
+  EXPECT_FALSE(kept()) << "101 s have passed";
+}
+
+TEST(FairShare, ManyJobsOfOneOwnerDoNotKeepAnotherWaiting) {
+  FairShare share;
+  for (int k = 0; k < 1000; ++k) share.add("greedy");
+  std::string order;
+  for (int k = 0; k < 5; ++k) {
+    if (k == 2) {
+      share.add("modest");
+      share.add("modest");
+    }
+    const std::string owner = share.next();
+    order += owner.front();
+    share.start(owner);
+    share.end(owner, 1.0);
+  }
+  EXPECT_EQ(order, "gggmg") << "who comes later starts level, and then takes turns";
+  EXPECT_EQ(share.waiting(), 997);
+}
+
+TEST(FairShare, LongJobsCountForMoreThanShortOnes) {
+  FairShare share;
+  for (int k = 0; k < 100; ++k) {
+    share.add("long");
+    share.add("short");
+  }
+  double seconds[2] = {};
+  for (int k = 0; k < 60; ++k) {
+    const std::string owner = share.next();
+    const double took = owner == "long" ? 5 : 1;
+    seconds[owner == "long"] += took;
+    share.start(owner);
+    share.end(owner, took);
+  }
+  EXPECT_NEAR(seconds[0], seconds[1], 5);
+}
+
+TEST(FairShare, RunningJobsCountBeforeTheyEnd) {
+  FairShare share;
+  for (int k = 0; k < 3; ++k) {
+    share.add("a");
+    share.add("b");
+  }
+  share.start(share.next());
+  EXPECT_EQ(share.next(), "b");
+  share.start(share.next());
+  EXPECT_EQ(share.waiting(), 4);
+}
+
+TEST(RetryEstimate, PromisesEachSenderAPlaceOfItsOwn) {
+  RetryEstimate retry(2, 10);
+  const RetryEstimate::Clock::time_point now{};
+  EXPECT_EQ(retry.promise(now, 6.0), 3);
+  EXPECT_EQ(retry.promise(now, 6.0), 6);
+  EXPECT_EQ(retry.promise(now + std::chrono::seconds(6), 6.0), 3);
+  for (int k = 0; k < 50; ++k) EXPECT_LE(retry.promise(now, 6.0), 30) << "the queue is no longer";
+  EXPECT_EQ(RetryEstimate(4, 10).promise(now, 0.01), 1) << "never 0";
+}
+
+}  // namespace
+}  // namespace unwrapd::server
