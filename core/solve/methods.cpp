@@ -10,15 +10,15 @@
 
 namespace unwrapd {
 
-Solution other_method(const Disk& disk, Method method, const SolveWatch& watch,
+Solution other_method(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,
                       Executor& executor) {
-  switch (method) {
+  switch (options.method) {
     case Method::abf:
       return abf(disk, watch, executor);
     case Method::linabf:
       return linabf(disk, watch, executor);
     case Method::slim:
-      return slim(disk, watch, executor);
+      return slim(disk, options.stop, watch, executor);
     case Method::bff:
       return bff(disk, watch);
     case Method::ic:

@@ -6,8 +6,10 @@
 
 namespace unwrapd {
 
-/// Solves one disk by a method other than ASAP, ARAP and Hybrid.
+/// Solves one disk by options.method, which is none of ASAP, ARAP and Hybrid. Of the options only
+/// stop counts, and that for SLIM.
 /// Throws Error{solver_failed, cancelled}.
-Solution other_method(const Disk& disk, Method method, const SolveWatch& watch, Executor& executor);
+Solution other_method(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,
+                      Executor& executor);
 
 }  // namespace unwrapd

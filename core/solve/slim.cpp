@@ -21,7 +21,6 @@
 namespace unwrapd {
 namespace {
 
-constexpr double kTolerance = 1e-6;   // of the energy, in one iteration
 constexpr double kShareOfFlip = 0.8;  // of the step at which the first triangle flips
 constexpr double kArmijo = 1e-4;      // of the decrease that the gradient promises
 constexpr int kMaxHalvings = 40;
@@ -137,22 +136,29 @@ class Slim {
   std::vector<Vec2> step_;
 };
 
-}  // namespace
-
-Solution slim(const Disk& disk, const SolveWatch& watch, Executor& executor) {
-  Slim slim(disk, best_start(disk, executor), executor);
-  if (watch.on_stage) watch.on_stage(Stage::solve);
-  Solution solution{
-      .uv = slim.uv(), .energy = {slim.energy()}, .stop_reason = StopReason::max_iterations};
-  while (solution.iterations < kMaxSlimIterations &&
-         solution.stop_reason != StopReason::converged) {
-    throw_if_cancelled(watch.loop.stop);
-    if (slim.iterate() < kTolerance) solution.stop_reason = StopReason::converged;
+/// Iterates, and tells why it ended.
+StopReason descend(Slim& slim, const Stop& stop, const LoopWatch& watch, Solution& solution) {
+  const double tolerance = stop.iterations ? 0 : stop.tolerance;
+  const int most = stop.iterations.value_or(stop.max_iterations);
+  while (solution.iterations < most) {
+    throw_if_cancelled(watch.stop);
+    const double fall = slim.iterate();
     solution.uv = slim.uv();
     solution.energy.push_back(slim.energy());
     ++solution.iterations;
-    if (watch.loop.on_iteration) watch.loop.on_iteration(solution);
+    if (watch.on_iteration) watch.on_iteration(solution);
+    if (fall <= tolerance) return StopReason::converged;
   }
+  return stop.iterations ? StopReason::iterations : StopReason::max_iterations;
+}
+
+}  // namespace
+
+Solution slim(const Disk& disk, const Stop& stop, const SolveWatch& watch, Executor& executor) {
+  Slim slim(disk, best_start(disk, executor), executor);
+  if (watch.on_stage) watch.on_stage(Stage::solve);
+  Solution solution{.uv = slim.uv(), .energy = {slim.energy()}};
+  solution.stop_reason = descend(slim, stop, watch.loop, solution);
   return solution;
 }
 

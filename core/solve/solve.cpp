@@ -83,7 +83,7 @@ Solver::Solver(const Disk& disk, const UnwrapOptions& options, Held held, Execut
       holds_(std::move(held.holds)),
       held_start_(std::move(held.start)),
       executor_(executor) {
-  assert(held_start_.size() == (holds_.empty() ? 0 : disk.positions.size()));
+  assert(held_start_.size() == disk.positions.size() || (held_start_.empty() && holds_.empty()));
 }
 
 void Solver::move(Held held) {
@@ -95,29 +95,31 @@ void Solver::move(Held held) {
 }
 
 bool Solver::is_automatic() const {
-  return options_.initial == InitialMap::automatic && holds_.empty();
+  return options_.initial == InitialMap::automatic && held_start_.empty();
 }
 
 const UvMap& Solver::start() {
-  if (!start_)
-    start_ = holds_.empty() ? initial_map(disk_, options_.initial, *global_) : held_start_;
+  if (start_) return *start_;
+  if (is_automatic()) start_ = usable_frame_map(disk_, *global_);
+  starts_from_frames_ = start_.has_value();
+  if (starts_from_frames_) return *start_;
+  const bool is_named = options_.initial != InitialMap::automatic;
+  const InitialMap kind = is_named ? options_.initial : InitialMap::lscm;
+  start_ = held_start_.empty() ? initial_map(disk_, kind, *global_) : held_start_;
   return *start_;
 }
 
-/// A conformal map to find another minimum from; none where double precision knows none. The
-/// mean-value map where flips shall not come from the start.
-const UvMap* Solver::second_start(SecondStart kind) {
-  std::optional<UvMap>& map = kind == SecondStart::flip_free ? flip_free_start_ : second_start_;
-  if (map) return &*map;
+/// A conformal map to find another minimum from; none where double precision knows none, or where
+/// the first start is that map, or was asked for.
+const UvMap* Solver::second_start() {
+  if (!starts_from_frames_) return nullptr;
+  if (second_start_) return &*second_start_;
   try {
-    if (kind == SecondStart::flip_free)
-      map = initial_map(disk_, InitialMap::mean_value, *global_);
-    else
-      map = exact_conformal_map(disk_);
+    second_start_ = exact_conformal_map(disk_);
   } catch (const Error& e) {  // the job goes on from the first start
     if (e.code() != ErrorCode::solver_failed) throw;
   }
-  return map ? &*map : nullptr;
+  return second_start_ ? &*second_start_ : nullptr;
 }
 
 UvMap Solver::conformal_under_holds() {
@@ -138,8 +140,7 @@ Solution Solver::iterate_plainly(const Race& race) {
     return local_global(race.assembly, from, {race.rigidity, iterations}, watch, executor_);
   };
   const UvMap* from = &start();
-  const UvMap* other =
-      is_automatic() && disk_.loops.size() > 1 ? second_start(SecondStart::other_minimum) : nullptr;
+  const UvMap* other = disk_.loops.size() > 1 ? second_start() : nullptr;
   const auto energy_after_trial = [&](const UvMap& map) {
     return solution(map, kTrialIterations, {{}, race.watch.stop}).energy.back();
   };
@@ -158,8 +159,7 @@ Solution Solver::iterate(const Rigidity& rigidity, const SolveWatch& watch) {
   const Assembly assembly{disk_, holds_, *global_};
   const Race race{assembly, rigidity, {stop.tolerance, stop.max_iterations}, watch.loop, executor_};
   if (stop.iterations) return iterate_plainly(race);
-  return run_race(race, first,
-                  [&](SecondStart kind) { return is_automatic() ? second_start(kind) : nullptr; });
+  return run_race(race, first, [&] { return second_start(); });
 }
 
 Solution Solver::hybrid(const Rigidity& rigidity, const SolveWatch& watch) {
@@ -182,7 +182,7 @@ Solution Solver::run(double lambda, const SolveWatch& watch) {
     case Method::hybrid:
       return hybrid(rigidity_of(disk_, lambda, options_.lambda_units), watch);
     default:
-      return other_method(disk_, options_.method, watch, executor_);
+      return other_method(disk_, options_, watch, executor_);
   }
 }
 

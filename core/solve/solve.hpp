@@ -24,8 +24,8 @@ struct SolveWatch {
 /// costs iterations only. Used by one thread at a time.
 class Solver {
  public:
-  /// disk, options and executor must outlive the solver. Under holds the iterations start from
-  /// held.start, whatever options.initial says.
+  /// disk, options and executor must outlive the solver. Under holds, and wherever there is
+  /// a held.start, the iterations start from it, whatever options.initial says.
   Solver(const Disk& disk, const UnwrapOptions& options, Held held, Executor& executor);
 
   /// Holds the same vertices, with the same weights, at other places: nothing is factored again.
@@ -37,7 +37,7 @@ class Solver {
 
  private:
   const UvMap& start();
-  const UvMap* second_start(SecondStart kind);
+  const UvMap* second_start();
   const UvMap& conformal();
   UvMap conformal_under_holds();
   [[nodiscard]] bool is_automatic() const;
@@ -50,7 +50,8 @@ class Solver {
   Holds holds_;
   UvMap held_start_;
   Executor& executor_;
-  std::optional<UvMap> start_, second_start_, flip_free_start_;
+  std::optional<UvMap> start_, second_start_;
+  bool starts_from_frames_ = false;
   std::optional<UvMap> conformal_;
   std::optional<GlobalStep> global_;
   std::optional<ConformalSystem> conformal_system_;

@@ -22,9 +22,9 @@ namespace {
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
-Solution solved(const Disk& disk, const SolveWatch& watch = {}) {
+Solution solved(const Disk& disk, const SolveWatch& watch = {}, const Stop& stop = {}) {
   SerialExecutor serial;
-  return slim(disk, watch, serial);
+  return slim(disk, stop, watch, serial);
 }
 
 double energy_of(const Disk& disk, const UvMap& uv) {
@@ -136,6 +136,47 @@ TEST(Slim, EndsWhereNoSmallChangeHelps) {
     }
 }
 
+TEST(Slim, EndsAfterAsManyIterationsAsWereAskedFor) {
+  const OwnedDisk d = disk_of(shapes::random_disk(14, 7));
+  const Solution whole = solved(d.disk);
+  ASSERT_GT(whole.iterations, 5);
+  for (int most : {1, 4}) {
+    const Solution plain = solved(d.disk, {}, {.iterations = most});
+    const Solution cut = solved(d.disk, {}, {.max_iterations = most});
+    EXPECT_EQ(plain.iterations, most);
+    EXPECT_EQ(plain.stop_reason, StopReason::iterations);
+    EXPECT_EQ(cut.iterations, most);
+    EXPECT_EQ(cut.stop_reason, StopReason::max_iterations);
+    EXPECT_EQ(plain.energy.back(), whole.energy[std::size_t(most)]);
+    EXPECT_EQ(cut.uv, plain.uv);
+  }
+  const Solution on = solved(d.disk, {}, {.iterations = whole.iterations + 1, .tolerance = 0.1});
+  EXPECT_EQ(on.iterations, whole.iterations + 1);  // no tolerance ends what was counted out
+  EXPECT_EQ(on.stop_reason, StopReason::iterations);
+}
+
+TEST(Slim, StopsTheLaterTheSmallerTheTolerance) {
+  const OwnedDisk d = disk_of(shapes::random_disk(14, 7));
+  int iterations = 0;
+  for (double tolerance : {1e-1, 1e-3, 1e-6, 1e-11}) {
+    const Solution s = solved(d.disk, {}, {.tolerance = tolerance});
+    EXPECT_EQ(s.stop_reason, StopReason::converged);
+    EXPECT_GT(s.iterations, iterations);
+    iterations = s.iterations;
+    for (int k = 1; k <= iterations; ++k) {  // the first fall that is small enough is the last
+      const double before = s.energy[std::size_t(k) - 1], now = s.energy[std::size_t(k)];
+      EXPECT_EQ(before - now <= tolerance * before, k == iterations) << tolerance << ' ' << k;
+    }
+  }
+}
+
+TEST(Slim, HasConvergedWhereNothingIsLeftToGain) {
+  const OwnedDisk d = disk_of(shapes::grid(4, 4));
+  const Solution s = solved(d.disk, {}, {.iterations = 400});
+  EXPECT_LT(s.iterations, 400);
+  EXPECT_EQ(s.stop_reason, StopReason::converged);
+}
+
 TEST(Slim, DoesNotDependOnScaleOrPlace) {
   const TriMesh mesh = shapes::random_disk(10, 3);
   const OwnedDisk d = disk_of(mesh);
@@ -153,7 +194,7 @@ TEST(Slim, DoesNotDependOnScaleOrPlace) {
 TEST(Slim, IsTheSameBytesForTwoThreads) {
   const OwnedDisk d = disk_of(shapes::random_disk(50, 9));
   TwoThreads two;
-  const Solution a = solved(d.disk), b = slim(d.disk, {}, two);
+  const Solution a = solved(d.disk), b = slim(d.disk, {}, {}, two);
   EXPECT_EQ(a.uv, b.uv);
   EXPECT_EQ(a.energy, b.energy);
 }
