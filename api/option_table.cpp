@@ -6,6 +6,7 @@
 
 #include "api/constraints.hpp"
 #include "api/option_rows.hpp"
+#include "api/seam_paths.hpp"
 
 namespace unwrapd::api {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::array<std::string_view, 9> kMethods = {"asap", "arap", "hybrid", 
 constexpr std::array<std::string_view, 2> kLambdaUnits = {"dimensionless", "paper"};
 constexpr std::array<std::string_view, 4> kInitialMaps = {"auto", "mean_value", "tutte", "lscm"};
 constexpr std::array<std::string_view, 2> kPins = {"diameter", "spectral"};
-constexpr std::array<std::string_view, 3> kSeams = {"auto", "keep", "none"};
+constexpr std::array<std::string_view, 4> kSeams = {"auto", "keep", "none", "uv0"};
 constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "bijective"};
 constexpr std::array<std::string_view, 2> kRepairs = {"untangle", "virtual_boundary"};
 constexpr std::array<std::string_view, 3> kBoundaries = {"free", "circle", "square"};
@@ -34,6 +35,7 @@ constexpr std::array kOnlyAsap = {Method::asap};
 
 constexpr double kMaxPadding = 0.25 * kMaxResolution;  // and at most a quarter of resolution
 constexpr double kMinTexelsPerUnit = 1e-9, kMaxTexelsPerUnit = 1e12;
+constexpr double kMaxDistortion = 1e6, kMaxCharts = 1e6;
 constexpr double kMinTolerance = 1e-12, kMaxTolerance = 0.1;
 
 Json get_lambda(const JobOptions& options) {
@@ -72,6 +74,30 @@ Json get_texels_per_unit(const JobOptions& options) {
 
 void set_texels_per_unit(JobOptions& options, const Json& value) {
   options.unwrap.packing.texels_per_unit = value.get<double>();
+}
+
+Json get_seam_edges(const JobOptions& options) { return to_json(options.unwrap.seam_edges); }
+
+void set_seam_edges(JobOptions& options, const Json& value) {
+  options.unwrap.seam_edges = seam_paths_from_json(value, "/seam_edges");
+}
+
+Json get_max_distortion(const JobOptions& options) {
+  const std::optional<double> bound = options.unwrap.max_distortion;
+  return bound ? Json(*bound) : Json();
+}
+
+void set_max_distortion(JobOptions& options, const Json& value) {
+  options.unwrap.max_distortion = value.get<double>();
+}
+
+Json get_max_charts(const JobOptions& options) {
+  const std::optional<int> most = options.unwrap.max_charts;
+  return most ? Json(*most) : Json();
+}
+
+void set_max_charts(JobOptions& options, const Json& value) {
+  options.unwrap.max_charts = value.get<int>();
 }
 
 using O = UnwrapOptions;
@@ -127,7 +153,7 @@ constexpr std::array kRows = {
     choice<&O::boundary, kBoundaries>("boundary", kHolding,
                                       "The shape of every chart's longest boundary."),
     OptionRow{.name = "constraints",
-              .type = OptionType::constraints,
+              .type = OptionType::objects,
               .choices = {},
               .minimum = 0,
               .maximum = {},
@@ -139,7 +165,43 @@ constexpr std::array kRows = {
               .set = set_constraints},
     choice<&O::seams, kSeams>(
         "seams", kEveryMethod,
-        "Vertices at equal positions: keep the cuts between them, weld them (none), or auto."),
+        "Where cuts lie that came in: between copies of a vertex (keep), nowhere (none), where "
+        "the UVs that came in have theirs (uv0), or auto."),
+    OptionRow{.name = "seam_edges",
+              .type = OptionType::objects,
+              .choices = {},
+              .minimum = 0,
+              .maximum = {},
+              .limit = &Limits::max_constraints,
+              .nullable = false,
+              .description = "Paths of vertices along which the mesh is cut open as well.",
+              .methods = kEveryMethod,
+              .get = get_seam_edges,
+              .set = set_seam_edges},
+    OptionRow{.name = "max_distortion",
+              .type = OptionType::number,
+              .choices = {},
+              .minimum = kMinDistortion,
+              .maximum = kMaxDistortion,
+              .limit = nullptr,
+              .nullable = true,
+              .description = "Meshes are taken apart until the angles and areas of ARAP maps are "
+                             "distorted by no more; without it disks stay whole, and all else "
+                             "has 2.02.",
+              .methods = kEveryMethod,
+              .get = get_max_distortion,
+              .set = set_max_distortion},
+    OptionRow{.name = "max_charts",
+              .type = OptionType::integer,
+              .choices = {},
+              .minimum = 1,
+              .maximum = kMaxCharts,
+              .limit = nullptr,
+              .nullable = true,
+              .description = "Charts at most, whatever the distortion, where topology allows it.",
+              .methods = kEveryMethod,
+              .get = get_max_charts,
+              .set = set_max_charts},
     figure<&O::resolution>("resolution", {kMinResolution, kMaxResolution}, kEveryMethod,
                            "Side of the square texture, in texels."),
     figure<&O::padding>("padding", {0, kMaxPadding}, kEveryMethod,

@@ -8,7 +8,6 @@
 #include <limits>
 #include <vector>
 
-#include "api/constraints.hpp"
 #include "core/error.hpp"
 
 namespace unwrapd::api {
@@ -109,6 +108,17 @@ bool is_name_list(const Json& value) {
   return value.is_array() && value.size() <= kMaxNames && std::ranges::all_of(value, is_name);
 }
 
+/// Throws what is wrong first, with its pointer.
+void check_objects(const OptionRow& row, const Json& value, const Limits& limits) {
+  const auto most = static_cast<std::size_t>(limits.*row.limit);
+  if (value.is_array() && value.size() > most)
+    throw Error(ErrorCode::invalid_option,
+                std::string(row.name) + " must have at most " + std::to_string(most) + " entries.",
+                option_pointer(row.name));
+  JobOptions unused;
+  row.set(unused, value);
+}
+
 bool fits(const OptionRow& row, const Json& value, const Limits& limits) {
   switch (row.type) {
     case OptionType::choice:
@@ -124,8 +134,8 @@ bool fits(const OptionRow& row, const Json& value, const Limits& limits) {
       return is_number_of(row, value, limits);
     case OptionType::numbers:
       return is_number_of(row, value, limits) || is_list_of(row, value, limits);
-    case OptionType::constraints:
-      static_cast<void>(constraints_from_json(value, limits.*row.limit, option_pointer(row.name)));
+    case OptionType::objects:
+      check_objects(row, value, limits);
       return true;
   }
   return false;
@@ -147,7 +157,7 @@ Json value_of_text(const OptionRow& row, const std::string& text) {
       return number_of<double>(text);
     case OptionType::numbers:
       return numbers_of(text);
-    case OptionType::constraints:
+    case OptionType::objects:
       return json_of(text);
   }
   return text;

@@ -32,9 +32,9 @@ enum class OptionType {
   flag,
   number,
   integer,
-  numbers,      ///< a number, or a list of different ones: "1,2" in a query
-  names,        ///< a list of strings: in a query parted by commas, or their JSON
-  constraints,  ///< a list of objects (see constraints.hpp): their JSON in a query
+  numbers,  ///< a number, or a list of different ones: "1,2" in a query
+  names,    ///< a list of strings: in a query parted by commas, or their JSON
+  objects,  ///< a list of objects (constraints.hpp, seam_paths.hpp): their JSON in a query
 };
 
 inline constexpr std::size_t kMaxNumbers = 32;  ///< entries of an option of type numbers

@@ -45,7 +45,7 @@ std::string_view type_name(OptionType type) {
     case OptionType::flag:
       return "boolean";
     case OptionType::names:
-    case OptionType::constraints:
+    case OptionType::objects:
       return "array";
   }
   return {};
@@ -61,7 +61,7 @@ Json bound(const OptionRow& row, double value) {
 std::optional<std::size_t> most_items(const OptionRow& row, const Limits& limits) {
   if (row.type == OptionType::numbers) return kMaxNumbers;
   if (row.type == OptionType::names) return kMaxNames;
-  if (row.type == OptionType::constraints) return static_cast<std::size_t>(limits.*row.limit);
+  if (row.type == OptionType::objects) return static_cast<std::size_t>(limits.*row.limit);
   return std::nullopt;
 }
 

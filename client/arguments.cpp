@@ -50,7 +50,7 @@ std::string value_text(const api::Json& value) {
 
 /// "asap|arap|hybrid", "INT >= 1", "NUMBER[,NUMBER...] >= 0", "INT in [16, 16384]".
 std::string range_text(const api::OptionRow& row) {
-  if (row.type == api::OptionType::constraints) return "FILE.json";
+  if (row.type == api::OptionType::objects) return "FILE.json";
   if (row.type == api::OptionType::names) return "NAME[,NAME...]";
   if (row.type == api::OptionType::choice) {
     std::string text;
@@ -74,7 +74,7 @@ void add_option_flags(CLI::App& app, OptionTexts& options) {
     const std::string name(row.name);
     const std::string text = std::string(row.description) +
                              " Default: " + value_text(api::option_default(row, {})) + ".";
-    const bool is_file = row.type == api::OptionType::constraints;
+    const bool is_file = row.type == api::OptionType::objects;
     if (row.type == api::OptionType::flag) {
       app.add_flag_callback(
              flag_name(row.name), [&options, name] { options[name] = "true"; }, text)
@@ -157,7 +157,7 @@ void check_options(const OptionTexts& options) {
     const api::OptionRow* row = api::option_at(error.where());
     std::string message = row == nullptr ? "" : flag_name(row->name) + ": ";
     message += error.what();
-    if (row != nullptr && row->type == api::OptionType::constraints)
+    if (row != nullptr && row->type == api::OptionType::objects)
       message += " (at " + error.where() + ")";
     throw Failure(ExitCode::usage, message);
   }

@@ -1,5 +1,6 @@
 #include "client/run.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <ostream>
@@ -14,10 +15,13 @@
 namespace unwrapd::client {
 namespace {
 
-/// Options travel in the query as long as they are short; constraints and buffers need parts.
+/// Options travel in the query as long as they are short; lists of objects and buffers need parts.
 api::Job submit(JobClient& client, const Arguments& arguments) {
   const auto buffers = external_buffers(arguments.file);
-  if (buffers.empty() && !arguments.options.contains("constraints"))
+  const bool is_long = std::ranges::any_of(arguments.options, [](const auto& option) {
+    return api::find_option(option.first)->type == api::OptionType::objects;
+  });
+  if (buffers.empty() && !is_long)
     return client.submit(raw_upload(arguments.file), arguments.options);
   const api::Query given(arguments.options.begin(), arguments.options.end());
   const std::string options = api::options_object(given).dump();

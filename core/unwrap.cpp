@@ -9,12 +9,15 @@
 #include <utility>
 
 #include "core/atlas/constraints.hpp"
+#include "core/atlas/outline.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/atlas/promise.hpp"
 #include "core/atlas/segment_charts.hpp"
 #include "core/error.hpp"
 #include "core/map_chart.hpp"
 #include "core/measure/seam_length.hpp"
+#include "core/place_islands.hpp"
+#include "core/repack.hpp"
 
 namespace unwrapd {
 namespace {
@@ -143,19 +146,15 @@ std::vector<Layout> map_charts(const Taken& taken, const std::vector<std::vector
 }
 
 /// Places every chart on the page; the maps become page UVs. Returns their common scale.
-double place(Layout& layout, const UnwrapOptions& options) {
+double place(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop) {
   std::vector<Outline> outlines;
+  std::vector<UvMap*> maps;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
-    for (std::size_t k = 0; k < layout.islands[s].size(); ++k)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
       outlines.push_back(outline_of(layout.surfaces[s].charts[k], layout.islands[s][k]));
-  const std::vector<Placement> placements = pack(outlines, {options.resolution, options.padding});
-  auto placement = placements.begin();
-  for (std::vector<UvMap>& own : layout.islands)
-    for (UvMap& uv : own) {
-      for (Vec2& u : uv) u = (*placement)(u);
-      ++placement;
+      maps.push_back(&layout.islands[s][k]);
     }
-  return placements.front().scale;
+  return place_islands(outlines, options, stop, maps, layout.report);
 }
 
 /// Says where constraints reach beyond the page.
@@ -172,10 +171,10 @@ void note_charts_beyond(Layout& layout) {
 }
 
 /// Charts under position constraints are on the page already.
-void lay_out_page(Layout& layout, const UnwrapOptions& options) {
-  const double scale = options.constraints.empty() ? place(layout, options) : 1;
+void lay_out_page(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop) {
+  layout.report.fill = layout.sums.uv_area;
+  const double scale = options.constraints.empty() ? place(layout, options, stop) : 1;
   const double density = std::sqrt(layout.sums.uv_area / layout.sums.area);
-  layout.report.fill = layout.sums.uv_area * scale * scale;
   layout.report.texel_density = scale * density * options.resolution;
   if (!options.constraints.empty()) note_charts_beyond(layout);
 }
@@ -197,12 +196,32 @@ void keep_on_page(Layout& layout, const UnwrapOptions& options, const std::stop_
     }
 }
 
+/// What the whole atlas comes to; overlaps only where they were counted in every chart.
+void add_totals(Report& report) {
+  report.overlaps = 0;
+  for (const ChartReport& chart : report.charts) {
+    report.area += chart.area;
+    report.seam_length += chart.seam_length / 2;  // a seam has two sides
+    if (report.overlaps && chart.overlaps)
+      *report.overlaps += *chart.overlaps;
+    else
+      report.overlaps.reset();
+  }
+  report.seam_ratio = report.seam_length / std::sqrt(report.area);
+}
+
 Unwrapped put_back(std::span<const Surface> surfaces, Layout layout) {
   Unwrapped unwrapped;
+  auto report = layout.report.charts.begin();
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     unwrapped.surfaces.push_back(assemble(surfaces[s], layout.surfaces[s], layout.islands[s]));
-    layout.report.seam_length += seam_length(surfaces[s], unwrapped.surfaces.back());
+    const std::vector<double> seams = seam_lengths(surfaces[s], unwrapped.surfaces.back());
+    for (const Chart& chart : layout.surfaces[s].charts) {
+      for (const Index t : chart.face_source) report->seam_length += seams[t];
+      ++report;
+    }
   }
+  add_totals(layout.report);
   unwrapped.report = std::move(layout.report);
   return unwrapped;
 }
@@ -232,6 +251,8 @@ void add_curve(std::vector<Unwrapped>& maps, const std::vector<double>& lambdas)
 std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const UnwrapOptions& options,
                                     const Progress& progress, Executor& executor) {
   validate(options, std::numeric_limits<int>::max());
+  if (options.repack_only)
+    return {lambdas_of(options).size(), repack(surfaces, options, progress)};
   announce(progress, Stage::setup, 0, kChartsBegin);
   const Taken taken = take_apart(surfaces, options, progress, executor);
   const auto page = page_holds(surfaces, taken.parts, options.constraints, progress.stop);
@@ -239,7 +260,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
   for (Layout& layout : layouts) {
-    lay_out_page(layout, options);
+    lay_out_page(layout, options, progress.stop);
     keep_on_page(layout, options, progress.stop);
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);

@@ -1,5 +1,7 @@
 #include "core/measure/seam_length.hpp"
 
+#include <numeric>
+
 #include "core/mesh/halfedges.hpp"
 #include "core/mesh/weld.hpp"
 
@@ -19,7 +21,7 @@ bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
 
 }  // namespace
 
-double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped) {
+std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface& unwrapped) {
   const TriMesh& mesh = surface.mesh;
   const std::vector<Triangle> welded = renumbered(mesh.faces, weld(mesh.positions));
   const Halfedges halfedges = build_halfedges(welded, mesh.vertex_count());
@@ -27,12 +29,18 @@ double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped) {
     const Triangle& face = welded[static_cast<std::size_t>(face_of(h))];
     return mesh.positions[static_cast<std::size_t>(face[static_cast<std::size_t>(h % 3)])];
   };
-  double length = 0;
+  std::vector<double> length(mesh.faces.size(), 0);
   for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
     const Index twin = halfedges.twin[static_cast<std::size_t>(h)];
-    if (h < twin && is_seam(unwrapped, h, twin)) length += (start(h) - start(twin)).norm();
+    if (twin != kNoTwin && is_seam(unwrapped, h, twin))
+      length[static_cast<std::size_t>(face_of(h))] += (start(h) - start(twin)).norm();
   }
   return length;
+}
+
+double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped) {
+  const std::vector<double> by_face = seam_lengths(surface, unwrapped);
+  return std::accumulate(by_face.begin(), by_face.end(), 0.0) / 2;
 }
 
 }  // namespace unwrapd

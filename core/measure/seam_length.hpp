@@ -1,6 +1,8 @@
 #pragma once
 // How much seam an unwrapped surface has.
 
+#include <vector>
+
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd {
@@ -9,5 +11,9 @@ namespace unwrapd {
 /// found by position, so cuts that the input came with count as well; boundaries and non-manifold
 /// edges do not.
 double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped);
+
+/// The same by face: the length of each face's own sides that are seams. Adds up to twice
+/// seam_length().
+std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface& unwrapped);
 
 }  // namespace unwrapd
