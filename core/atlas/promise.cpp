@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/atlas/part_on_page.hpp"
 #include "core/atlas/snap.hpp"
 #include "core/atlas/split_chart.hpp"
 #include "core/cancel.hpp"
@@ -91,7 +92,8 @@ std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& u
 
 [[noreturn]] void fail(const std::string& why) {
   throw Error(ErrorCode::guarantee_failed,
-              why + "; loosen the constraints, or ask for guarantee=none to have the map as it is");
+              why + "; loosen the constraints, or ask for guarantee=none to have the map as it is",
+              "/guarantee");
 }
 
 /// Splits a part in two or more and puts them on the list of those to be looked at.
@@ -182,9 +184,10 @@ Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv)
   if (snap(chart, promise.intent.held, promise.intent.stop, page_uv) > 0)
     fail("a triangle is too small beside the page for the precision in which UVs are written");
   const auto overlaps = static_cast<Index>(overlaps_of(chart, page_uv).size());
-  if (overlaps > 0 && promise.guarantee == Guarantee::bijective)
+  if (overlaps == 0 || promise.guarantee != Guarantee::bijective) return {0, overlaps};
+  if (!part_on_page(chart, promise.intent.held, page_uv))
     fail("two triangles are too near to each other for the precision in which UVs are written");
-  return {0, overlaps};
+  return {0, 0};
 }
 
 }  // namespace unwrapd

@@ -32,8 +32,8 @@ struct Promise {
 /// flipped (flip_free), and no two of a part overlap (bijective), by exact tests; under
 /// Guarantee::none the map stays as it is. A chart with overlaps has a new map (map_injectively()),
 /// and is split only where none is found. The energy that mending.energy_rise tells of is that of
-/// intent.rigidity. Throws Error{guarantee_failed} where held vertices leave no way, or a single
-/// triangle has no area in the map; Error{cancelled}.
+/// intent.rigidity. Throws Error{guarantee_failed}, where = "/guarantee", where held vertices leave
+/// no way, or a single triangle has no area in the map; Error{cancelled}.
 Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise& promise);
 
 /// What is true of the UVs that are written.
@@ -44,6 +44,7 @@ struct Written {
 
 /// Rounds a kept part's page UVs to what every format writes exactly, and keeps the promise there;
 /// vertices that promise.intent holds are only rounded. Under Guarantee::none nothing moves.
+/// Gaps that rounding closes are opened again (part_on_page()).
 /// Throws Error{guarantee_failed, cancelled}.
 Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv);
 
