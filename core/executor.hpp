@@ -1,9 +1,12 @@
 #pragma once
 // Core has no threads of its own: it splits its loops into blocks and hands them to an Executor.
+// Through it a job also reaches what it shares with others.
 
 #include <functional>
 
 namespace unwrapd {
+
+class SolverCore;
 
 class Executor {
  public:
@@ -15,6 +18,9 @@ class Executor {
   /// Calls body(block) once for every block in [0, block_count), in any order and on any thread;
   /// returns when all are done. body must not throw.
   virtual void for_each_block(int block_count, const std::function<void(int)>& body) = 0;
+
+  /// What jobs share (solver_core.hpp); null where this one is alone. Outlives the job.
+  [[nodiscard]] virtual SolverCore* shared_core() const { return nullptr; }
 };
 
 /// Runs the blocks one after another on the calling thread.

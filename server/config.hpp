@@ -11,6 +11,7 @@
 #include "server/address.hpp"
 #include "server/disk_room.hpp"
 #include "server/log.hpp"
+#include "server/solver_cache.hpp"
 
 namespace unwrapd::server {
 
@@ -26,6 +27,7 @@ struct Config {
   int drain_seconds = 30;
   LogLevel log_level = LogLevel::info;
   DiskLimits disk;
+  MemoryLimits memory;
   api::Limits limits;
 };
 

@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::int64_t kMaxBodyBytes = std::int64_t{4} * 1024 * 1024 * 1024;
 constexpr std::int64_t kMaxDiskBytes = std::int64_t{1} << 60;
+constexpr std::int64_t kMaxMemoryBytes = std::int64_t{1} << 60;
 constexpr int kMaxThreads = 256;
 constexpr int kMaxStreams = 4096;
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
@@ -51,6 +52,13 @@ ConfigGroup working() {
           text({"data", "PATH", "Directory of jobs and results; made when missing"}, &Config::data),
           number({"workers", "N", "Jobs run at once"}, {1, kMaxThreads}, &Config::workers),
           number({"threads", "N", "Threads of each job"}, {1, kMaxThreads}, &Config::threads),
+          number({"memory-limit", "N",
+                  "Bytes that one job may take: what would need more is refused; 0: its share of "
+                  "the machine"},
+                 {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::job_bytes),
+          number({"solver-cache-bytes", "N",
+                  "Factors and maps kept for further jobs on the same mesh"},
+                 {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::cache_bytes),
           number({"drain-seconds", "N", "How long running jobs may go on after SIGTERM"},
                  {0, kMaxCount}, &Config::drain_seconds)}};
 }

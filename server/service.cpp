@@ -56,7 +56,9 @@ struct Service::Parts {
     beating.emplace(
         "prolonging leases", kHeartbeat, [this] { queue.beat(); }, log);
     workers.emplace(queue, blobs, config.limits, log,
-                    WorkerConfig{.workers = config.workers, .threads = config.threads});
+                    WorkerConfig{.workers = config.workers,
+                                 .threads = config.threads,
+                                 .core = &solver_cache});
     serving = std::jthread([this] { http.serve(); });
   }
 
@@ -84,6 +86,7 @@ struct Service::Parts {
   PictureStore pictures;
   Router router;
   HttpServer http;
+  SolverCache solver_cache{config.memory, config.workers};
   std::optional<Periodic> sweeping;
   std::optional<Periodic> beating;
   std::optional<WorkerPool> workers;

@@ -2,7 +2,7 @@
 
 namespace unwrapd::server {
 
-ThreadExecutor::ThreadExecutor(int threads) {
+ThreadExecutor::ThreadExecutor(int threads, SolverCore* core) : core_(core) {
   helpers_.reserve(static_cast<std::size_t>(threads));
   for (int helper = 1; helper < threads; ++helper)
     helpers_.emplace_back([this](const std::stop_token& stop) { serve(stop); });

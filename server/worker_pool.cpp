@@ -48,11 +48,11 @@ WorkerPool::WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& lim
     : queue_(queue), blobs_(blobs), limits_(limits), log_(log) {
   threads_.reserve(static_cast<std::size_t>(config.workers));
   for (int worker = 0; worker < config.workers; ++worker)
-    threads_.emplace_back([this, threads = config.threads] { work(threads); });
+    threads_.emplace_back([this, config] { work(config); });
 }
 
-void WorkerPool::work(int threads) {
-  ThreadExecutor executor(threads);
+void WorkerPool::work(const WorkerConfig& config) {
+  ThreadExecutor executor(config.threads, config.core);
   while (true) {
     try {
       const std::shared_ptr<RunningJob> job = queue_.take();

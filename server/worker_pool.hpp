@@ -11,6 +11,7 @@
 
 #include "api/limits.hpp"
 #include "core/executor.hpp"
+#include "core/solver_core.hpp"
 #include "server/blob_store.hpp"
 #include "server/job_queue.hpp"
 #include "server/log.hpp"
@@ -30,7 +31,8 @@ class Deadline {
 
 struct WorkerConfig {
   int workers = 1;
-  int threads = 1;  ///< for each worker's job
+  int threads = 1;             ///< for each worker's job
+  SolverCore* core = nullptr;  ///< that their jobs share; outlives the pool
 };
 
 class WorkerPool {
@@ -40,7 +42,7 @@ class WorkerPool {
              const WorkerConfig& config);
 
  private:
-  void work(int threads);
+  void work(const WorkerConfig& config);
   void work_on(RunningJob& job, Executor& executor);
   JobOutcome attempt(const RunningJob& job, Executor& executor);
 

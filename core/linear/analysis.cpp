@@ -92,6 +92,23 @@ std::shared_ptr<const Analysis> complete(Supernodes nodes, const SparseMatrix& l
 
 }  // namespace
 
+std::size_t Analysis::bytes() const {
+  const std::size_t numbers = nodes.order.size() + nodes.position.size() + nodes.first.size() +
+                              nodes.child_count.size() + nodes.row.size() + entry_begin.size() +
+                              entry_row.size() + entry_source.size();
+  return sizeof(Index) * numbers +
+         sizeof(std::size_t) * (nodes.row_begin.size() + panel_begin.size());
+}
+
+std::size_t Analysis::scratch_bytes() const {
+  std::size_t front = 0;
+  for (std::size_t s = 0; s < nodes.count(); ++s) {
+    const std::size_t size = nodes.pivots(s) + nodes.below(s).size();
+    front = std::max(front, size * (size + nodes.pivots(s)));
+  }
+  return sizeof(double) * (front + pending_size);
+}
+
 std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower) {
   assert(lower.isCompressed());
   const std::span begin(lower.outerIndexPtr(), static_cast<std::size_t>(lower.cols()) + 1);

@@ -22,6 +22,13 @@ struct Analysis {
   std::vector<std::size_t> panel_begin;  ///< of each supernode, and the end of the last
   std::size_t pending_size = 0;          ///< the most that updates ever occupy at once
 
+  /// Bytes that this takes; that a factor's panels take; that finding their numbers takes beside
+  /// them, for the largest front and the updates that wait; and all of these.
+  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] std::size_t panel_bytes() const { return sizeof(double) * panel_begin.back(); }
+  [[nodiscard]] std::size_t scratch_bytes() const;
+  [[nodiscard]] std::size_t job_bytes() const { return bytes() + panel_bytes() + scratch_bytes(); }
+
   [[nodiscard]] PanelShape shape(std::size_t s) const {
     return {nodes.pivots(s), nodes.below(s).size()};
   }

@@ -21,6 +21,12 @@ class Factor final : public RealSystem {
 
   void solve(std::span<Vec2> b) const override;
 
+  /// While it is refilled, its analysis included.
+  [[nodiscard]] std::size_t job_bytes() const { return analysis_->job_bytes(); }
+
+  /// That this takes, its analysis included.
+  [[nodiscard]] std::size_t bytes() const { return analysis_->bytes() + analysis_->panel_bytes(); }
+
   /// One right-hand side of a matrix of pairs (analyse_pairs()): b[v] has the unknowns 2v, 2v + 1.
   /// Thread-safe.
   void solve_pairs(std::span<Vec2> b) const;

@@ -28,16 +28,13 @@ class PairsSystem final : public HermitianSystem {
   std::unique_ptr<Factor> factor_;
 };
 
-template <typename System>
-System definite(System system) {
-  if (!system)
-    throw Error(ErrorCode::solver_failed,
-                "the mesh's matrix is not positive definite in double precision; remove needle "
-                "and zero-area triangles and try again");
-  return system;
-}
-
 }  // namespace
+
+void refuse_indefinite() {
+  throw Error(ErrorCode::solver_failed,
+              "the mesh's matrix is not positive definite in double precision; remove needle and "
+              "zero-area triangles and try again");
+}
 
 SparseMatrix as_pairs(const ComplexMatrix& lower) {
   const auto n = static_cast<Index>(lower.cols());
@@ -70,9 +67,11 @@ std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower) {
   return definite(try_factor(lower));
 }
 
-std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower) {
+std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower, const MemoryCheck& check) {
   const SparseMatrix pairs = as_pairs(lower);
-  std::unique_ptr<Factor> system = try_factor(analyse_pairs(pairs), pairs);
+  const auto analysis = analyse_pairs(pairs);
+  if (check) check(analysis->job_bytes());
+  std::unique_ptr<Factor> system = try_factor(analysis, pairs);
   if (!system) return nullptr;
   return std::make_unique<PairsSystem>(std::move(system));
 }

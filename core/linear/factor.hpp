@@ -2,6 +2,7 @@
 // A symmetric positive definite (or Hermitian) matrix, factored once and solved many times.
 
 #include <complex>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -34,8 +35,21 @@ using HermitianSystem = PrefactoredSystem<Complex>;
 std::unique_ptr<RealSystem> factor(const SparseMatrix& lower);
 std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower);
 
+/// Told how many bytes a factor will take before they are taken; may throw.
+using MemoryCheck = std::function<void(std::size_t bytes)>;
+
 /// As factor(), but nothing where that throws.
-std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower);
+std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower,
+                                            const MemoryCheck& check = {});
+
+[[noreturn]] void refuse_indefinite();
+
+/// Throws Error{solver_failed} when there is no system: its matrix is not positive definite.
+template <typename System>
+System definite(System system) {
+  if (!system) refuse_indefinite();
+  return system;
+}
 
 /// The real matrix of the real and imaginary parts, rows 2v and 2v + 1: a block [a -b; b a] for
 /// each entry a + b i; the lower triangle of what lower is the lower triangle of.

@@ -75,6 +75,12 @@ Index PairSystem::entry(Index a, Index b) const {
   return static_cast<Index>(std::lower_bound(begin, end, row) - lower_.innerIndexPtr());
 }
 
+std::size_t PairSystem::bytes() const {
+  const auto entries = static_cast<std::size_t>(lower_.nonZeros());
+  return factor_->job_bytes() + (sizeof(double) + sizeof(Index)) * entries +
+         sizeof(FaceTargets) * target_.size();
+}
+
 void PairSystem::clear() { std::fill_n(lower_.valuePtr(), lower_.nonZeros(), 0.0); }
 
 void PairSystem::add(std::size_t t, const PairElement& element) {

@@ -25,6 +25,9 @@ class PairSystem {
   /// count > 0.
   PairSystem(std::span<const Triangle> faces, const FreeVertices& slots);
 
+  /// That factoring takes, pattern and targets included.
+  [[nodiscard]] std::size_t bytes() const;
+
   void clear();
 
   /// Adds the element of face t.

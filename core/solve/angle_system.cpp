@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/solve/kept.hpp"
 #include "core/solve/lay_out.hpp"
 
 namespace unwrapd {
@@ -125,7 +126,7 @@ PairElement AngleSystem::FaceBlock::element() const {
 
 AngleSystem::AngleSystem(const Disk& disk, Executor& executor)
     : disk_(disk), executor_(executor), rings_(make_rings(disk)) {
-  if (rings_.of.count > 0) system_.emplace(disk.faces, rings_.of);
+  if (rings_.of.count > 0) check_memory(disk, system_.emplace(disk.faces, rings_.of).bytes());
   multipliers_.assign(static_cast<std::size_t>(rings_.of.count), Vec2::Zero());
 }
 

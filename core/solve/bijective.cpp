@@ -19,6 +19,7 @@
 #include "core/solve/convex_map.hpp"
 #include "core/solve/fill_holes.hpp"
 #include "core/solve/injective_step.hpp"
+#include "core/solve/kept.hpp"
 #include "core/solve/settle_apart.hpp"
 #include "core/solve/symmetric_dirichlet.hpp"
 
@@ -40,6 +41,7 @@ class Parting {
         gradient_(uv_.size()),
         blocks_(uv_.size()),
         step_(uv_.size(), Vec2::Zero()) {
+    check_memory(disk, system_.bytes());
     energy_ = energy_of(uv_);
   }
 

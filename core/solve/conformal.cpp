@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/solve/conformal_system.hpp"
+#include "core/solve/kept.hpp"
 
 namespace unwrapd {
 namespace {
@@ -53,7 +54,8 @@ class SpectralIteration {
       ComplexMatrix shifted = conformal_matrix(disk, softening);
       for (Index v = 0; v < disk.vertex_count(); ++v)
         shifted.coeffRef(v, v) += kShift * on_boundary_[static_cast<std::size_t>(v)];
-      system_ = try_softened(shifted, softening);
+      system_ =
+          try_softened(shifted, softening, [&](std::size_t bytes) { check_memory(disk, bytes); });
     }
   }
 
@@ -110,20 +112,28 @@ UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
   return uv;
 }
 
-}  // namespace
-
-UvMap conformal_map(const Disk& disk, Pins pins) {
+UvMap pinned_or_spectral_map(const Disk& disk, Pins pins) {
   const Holds holds = pinned_at_diameter(disk);
   UvMap uv = ConformalSystem(disk, holds).solve(holds);
   if (pins == Pins::spectral) uv = SpectralIteration(disk).run(uv);
   return scaled_to_unit_area(disk, std::move(uv));
 }
 
+}  // namespace
+
+UvMap conformal_map(const Disk& disk, Pins pins) {
+  return kept_value(disk, Content("conformal map").add(disk.content).add(std::array{pins}),
+                    [&] { return pinned_or_spectral_map(disk, pins); });
+}
+
 std::optional<UvMap> exact_conformal_map(const Disk& disk) {
-  const Holds holds = pinned_at_diameter(disk);
-  const auto system = ConformalSystem::exact(disk, holds);
-  if (!system) return std::nullopt;
-  return scaled_to_unit_area(disk, system->solve(holds));
+  UvMap uv = kept_value(disk, Content("exact conformal map").add(disk.content), [&] {
+    const Holds holds = pinned_at_diameter(disk);
+    const auto system = ConformalSystem::exact(disk, holds);
+    return system ? scaled_to_unit_area(disk, system->solve(holds)) : UvMap();
+  });
+  if (uv.empty()) return std::nullopt;
+  return uv;
 }
 
 }  // namespace unwrapd

@@ -10,6 +10,8 @@
 #include <cassert>
 #include <utility>
 
+#include "core/solve/kept.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -45,8 +47,10 @@ ComplexMatrix conformal_matrix(const Disk& disk, double softening) {
   return lower;
 }
 
-std::unique_ptr<HermitianSystem> try_softened(const ComplexMatrix& lower, double softening) {
-  return softening < kMostSoftening ? try_factor(lower) : factor(lower);
+std::unique_ptr<HermitianSystem> try_softened(const ComplexMatrix& lower, double softening,
+                                              const MemoryCheck& check) {
+  std::unique_ptr<HermitianSystem> system = try_factor(lower, check);
+  return softening < kMostSoftening ? std::move(system) : definite(std::move(system));
 }
 
 double more_softening(double softening) { return std::max(100 * softening, kLeastSoftening); }
@@ -60,7 +64,9 @@ bool ConformalSystem::try_build(const Disk& disk, const Holds& holds, double sof
   if (free_.count == 0) return true;
   const std::vector<Complex> nowhere(free_.slot.size());  // only the matrix is wanted
   const auto reduced = eliminate<ComplexMatrix, Complex>(lower_, free_, nowhere);
-  system_ = may_throw ? try_softened(reduced.lower, softening) : try_factor(reduced.lower);
+  const auto check = [&](std::size_t bytes) { check_memory(disk, bytes); };
+  system_ =
+      may_throw ? try_softened(reduced.lower, softening, check) : try_factor(reduced.lower, check);
   return system_ != nullptr;
 }
 

@@ -9,6 +9,7 @@
 #include "core/linear/eliminate.hpp"
 #include "core/linear/factor.hpp"
 #include "core/solve/boundary_shape.hpp"
+#include "core/solve/kept.hpp"
 
 namespace unwrapd {
 namespace {
@@ -81,11 +82,14 @@ LinearSystem mean_value_system(const Disk& disk, const ConvexMap& map) {
 }  // namespace
 
 UvMap tutte_map(const Disk& disk) {
-  return tutte_map(disk, boundary_points(disk, BoundaryShape::circle));
+  return kept_value(disk, Content("Tutte map").add(disk.content),
+                    [&] { return tutte_map(disk, boundary_points(disk, BoundaryShape::circle)); });
 }
 
 UvMap mean_value_map(const Disk& disk) {
-  return mean_value_map(disk, boundary_points(disk, BoundaryShape::circle));
+  return kept_value(disk, Content("mean-value map").add(disk.content), [&] {
+    return mean_value_map(disk, boundary_points(disk, BoundaryShape::circle));
+  });
 }
 
 UvMap tutte_map(const Disk& disk, std::span<const FixedPoint> boundary) {

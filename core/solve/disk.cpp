@@ -6,7 +6,7 @@
 
 namespace unwrapd {
 
-Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops) {
+Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, SolverCore* core) {
   const double area = surface_area(mesh);
   if (!(area > 0) || !std::isfinite(area))
     throw Error(ErrorCode::zero_area,
@@ -20,13 +20,18 @@ Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops) {
             .positions = {},
             .rest = {},
             .corners = {},
-            .unit = std::sqrt(area)};
+            .unit = std::sqrt(area),
+            .core = core};
   TriMesh scaled{{}, mesh.faces};
   scaled.positions.reserve(mesh.positions.size());
   for (const Vec3& p : mesh.positions) scaled.positions.push_back((p - centroid) / disk.unit);
   disk.rest = flatten(scaled);
   disk.positions = std::move(scaled.positions);
   disk.corners = vertex_corners(mesh.faces, mesh.vertex_count());
+  if (core != nullptr) {
+    disk.connectivity = core->digest(Content("faces").add(disk.faces));
+    disk.content = core->digest(Content("disk").add(disk.connectivity).add(disk.positions));
+  }
   return disk;
 }
 

@@ -7,6 +7,7 @@
 #include "core/linear/sparse.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/halfedges.hpp"
+#include "core/solver_core.hpp"
 
 namespace unwrapd {
 
@@ -19,11 +20,15 @@ struct Disk {
   std::vector<RestTriangle> rest;       ///< one a face, areas add up to 1 (up to the height floor)
   VertexCorners corners;
   double unit = 1;  ///< mesh units in one disk unit of length
+  SolverCore* core =
+      nullptr;  ///< shares what depends on the disk alone with other jobs; null: none
+  Digest connectivity{}, content{};  ///< under core: of the faces; of faces and positions
 
   [[nodiscard]] Index vertex_count() const { return static_cast<Index>(positions.size()); }
 };
 
-/// mesh and loops must outlive the disk. Throws Error{zero_area}.
-Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops);
+/// mesh, loops and core must outlive the disk. Throws Error{zero_area}.
+Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops,
+               SolverCore* core = nullptr);
 
 }  // namespace unwrapd

@@ -17,6 +17,7 @@
 
 #include "core/linear/factor.hpp"
 #include "core/mesh/edges.hpp"
+#include "core/solve/kept.hpp"
 #include "core/solve/metric.hpp"
 
 namespace unwrapd {
@@ -46,8 +47,8 @@ Complex turn_across(const Disk& disk, std::span<const double> u, Index h, Index 
   return -direction(disk, h) * std::conj(direction(disk, twin)) * std::polar(1.0, weight * rise);
 }
 
-/// One rotation a face, carried breadth first from face 0.
-std::vector<Complex> rotations(const Disk& disk) {
+/// Carried breadth first from face 0.
+std::vector<Complex> carried_rotations(const Disk& disk) {
   const std::vector<double> u = log_scales(disk);
   const Halfedges edges = build_halfedges(disk.faces, disk.vertex_count());
   std::vector<Complex> rotation(disk.faces.size(), 0);
@@ -63,6 +64,12 @@ std::vector<Complex> rotations(const Disk& disk) {
       reached.push_back(face_of(twin));
     }
   return rotation;
+}
+
+/// One a face.
+std::vector<Complex> rotations(const Disk& disk) {
+  return kept_value(disk, Content("frames").add(disk.content),
+                    [&] { return carried_rotations(disk); });
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <cassert>
 #include <vector>
 
+#include "core/solve/kept.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -23,17 +25,33 @@ SparseMatrix held_matrix(const Disk& disk, const Holds& holds) {
   return lower;
 }
 
+SparseMatrix free_matrix(const Disk& disk, const Holds& holds, const FreeVertices& free) {
+  SparseMatrix lower = held_matrix(disk, holds);
+  if (holds.fixed.empty()) return lower;
+  const std::vector<Vec2> nowhere(free.slot.size(), Vec2::Zero());  // only the matrix is wanted
+  return eliminate<SparseMatrix, Vec2>(lower, free, nowhere).lower;
+}
+
+std::shared_ptr<const Factor> factored(const Disk& disk, const Holds& holds,
+                                       const FreeVertices& free) {
+  const SparseMatrix lower = free_matrix(disk, holds, free);
+  const Content pattern = Content("analysis").add(disk.connectivity).add(free.slot);
+  const auto analysis = kept(disk, pattern, [&] { return analyse(lower); });
+  check_memory(disk, analysis->job_bytes());
+  return definite(try_factor(analysis, lower));
+}
+
 }  // namespace
 
 GlobalStep::GlobalStep(const Disk& disk, const Holds& holds)
     : free_(free_vertices(disk.positions.size(), holds)) {
-  const SparseMatrix lower = held_matrix(disk, holds);
-  if (holds.fixed.empty()) {
-    system_ = factor(lower);
-  } else if (free_.count > 0) {
-    const std::vector<Vec2> nowhere(free_.slot.size(), Vec2::Zero());  // only the matrix is wanted
-    system_ = factor(eliminate<SparseMatrix, Vec2>(lower, free_, nowhere).lower);
-  }
+  if (free_.count == 0) return;
+  std::vector<Index> spring;
+  std::vector<double> weight;
+  for (const Spring& s : holds.springs) spring.push_back(s.vertex), weight.push_back(s.weight);
+  const Content content =
+      Content("global step").add(disk.content).add(free_.slot).add(spring).add(weight);
+  system_ = kept(disk, content, [&] { return factored(disk, holds, free_); });
 }
 
 void GlobalStep::solve(std::span<Vec2> force) const {

@@ -12,10 +12,11 @@
 namespace unwrapd {
 
 /// The matrix of Eq. (4), factored once: the Hessian of Objective for fixed fits. It depends on the
-/// mesh, on which vertices are held and on the springs' weights, not on where they are held.
+/// mesh, on which vertices are held and on the springs' weights, not on where they are held: jobs
+/// that share disk.core share it, and jobs on meshes of the same faces its analysis.
 class GlobalStep {
  public:
-  /// Throws Error{solver_failed}.
+  /// Throws Error{solver_failed, too_much_memory}.
   GlobalStep(const Disk& disk, const Holds& holds);
 
   /// Replaces force (Objective::evaluate()) by the change of the map A^-1 force; fixed vertices do
@@ -25,7 +26,7 @@ class GlobalStep {
 
  private:
   FreeVertices free_;
-  std::unique_ptr<RealSystem> system_;
+  std::shared_ptr<const RealSystem> system_;
 };
 
 }  // namespace unwrapd

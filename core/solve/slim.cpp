@@ -16,6 +16,7 @@
 #include "core/solve/conformal.hpp"
 #include "core/solve/convex_map.hpp"
 #include "core/solve/fill_holes.hpp"
+#include "core/solve/kept.hpp"
 #include "core/solve/symmetric_dirichlet.hpp"
 
 namespace unwrapd {
@@ -81,7 +82,9 @@ class Slim {
         uv_(std::move(start.uv)),
         energy_(start.energy),
         gradient_(uv_.size()),
-        step_(uv_.size(), Vec2::Zero()) {}
+        step_(uv_.size(), Vec2::Zero()) {
+    check_memory(disk, system_.bytes());
+  }
 
   [[nodiscard]] const UvMap& uv() const { return uv_; }
   [[nodiscard]] double energy() const { return energy_; }

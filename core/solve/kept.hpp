@@ -1,0 +1,44 @@
+#pragma once
+// What is made of a disk once for all jobs that have that disk.
+
+#include <memory>
+#include <vector>
+
+#include "core/linear/engine.hpp"
+#include "core/solve/disk.hpp"
+
+namespace unwrapd {
+
+template <typename T>
+std::size_t bytes_of(const std::vector<T>& list) {
+  return sizeof(T) * list.size();
+}
+inline std::size_t bytes_of(const Analysis& analysis) { return analysis.bytes(); }
+inline std::size_t bytes_of(const Factor& factor) { return factor.bytes(); }
+
+/// What make() gives, a std::shared_ptr<const T>, or an equal one that another job made. content:
+/// all that it is made from (disk.connectivity or disk.content, and what else counts).
+template <typename Make>
+auto kept(const Disk& disk, const Content& content, Make make) {
+  using Value = typename decltype(make())::element_type;
+  if (disk.core == nullptr) return std::shared_ptr<const Value>(make());
+  return std::static_pointer_cast<const Value>(
+      disk.core->obtain(disk.core->digest(content), [&]() -> SolverCore::Made {
+        const std::shared_ptr<const Value> value = make();
+        return {value, bytes_of(*value)};
+      }));
+}
+
+/// As kept(), of a value that make() returns, copied.
+template <typename Make>
+auto kept_value(const Disk& disk, const Content& content, Make make) {
+  using Value = decltype(make());
+  if (disk.core == nullptr) return make();
+  return Value(*kept(disk, content, [&] { return std::make_shared<const Value>(make()); }));
+}
+
+/// Throws Error{too_much_memory} when a job on this disk that keeps so many bytes needs more than
+/// it may have.
+void check_memory(const Disk& disk, std::size_t bytes);
+
+}  // namespace unwrapd

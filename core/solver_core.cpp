@@ -1,0 +1,24 @@
+#include "core/solver_core.hpp"
+
+#include <string>
+
+#include "core/error.hpp"
+
+namespace unwrapd {
+namespace {
+
+std::string megabytes(std::size_t bytes) {
+  return std::to_string((bytes + 999'999) / 1'000'000) + " MB";
+}
+
+}  // namespace
+
+void check_memory(const SolverCore& core, std::size_t bytes) {
+  if (bytes <= core.memory_limit()) return;
+  throw Error(ErrorCode::too_much_memory,
+              "The job would take about " + megabytes(bytes) +
+                  " of memory, and no job may take more than " + megabytes(core.memory_limit()) +
+                  " here; send fewer faces, or cut the mesh into charts.");
+}
+
+}  // namespace unwrapd
