@@ -18,6 +18,7 @@
 #include "core/measure/seam_length.hpp"
 #include "core/place_islands.hpp"
 #include "core/repack.hpp"
+#include "core/solver_core.hpp"
 
 namespace unwrapd {
 namespace {
@@ -65,6 +66,12 @@ std::vector<Charts> components(std::span<const Surface> surfaces, const UnwrapOp
     parts.push_back(components_of(
         surface, {options.seams, options.seam_edges, static_cast<Index>(parts.size())}));
   return parts;
+}
+
+void check_memory(std::span<const Surface> surfaces, const SolverCore* core) {
+  std::size_t faces = 0;
+  for (const Surface& surface : surfaces) faces += surface.mesh.faces.size();
+  if (core != nullptr) check_memory(*core, kJobBytesPerFace * faces);
 }
 
 Taken take_apart(std::span<const Surface> surfaces, const UnwrapOptions& options,
@@ -251,9 +258,9 @@ void add_curve(std::vector<Unwrapped>& maps, const std::vector<double>& lambdas)
 std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const UnwrapOptions& options,
                                     const Progress& progress, Executor& executor) {
   validate(options, std::numeric_limits<int>::max());
-  if (options.repack_only)
-    return {lambdas_of(options).size(), repack(surfaces, options, progress)};
+  if (options.repack_only) return {lambdas_of(options).size(), repack(surfaces, options, progress)};
   announce(progress, Stage::setup, 0, kChartsBegin);
+  check_memory(surfaces, executor.shared_core());
   const Taken taken = take_apart(surfaces, options, progress, executor);
   const auto page = page_holds(surfaces, taken.parts, options.constraints, progress.stop);
   std::vector<Layout> layouts = map_charts(taken, page, options, progress, executor);
