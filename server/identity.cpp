@@ -1,10 +1,12 @@
 #include "server/identity.hpp"
 
 #include <openssl/evp.h>
+#include <openssl/hmac.h>
 #include <openssl/rand.h>
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "core/error.hpp"
 
@@ -30,11 +32,13 @@ void check(int result) {
 
 }  // namespace
 
-std::string random_job_id() {
-  std::array<unsigned char, kIdBytes> bytes{};
-  check(RAND_bytes(bytes.data(), static_cast<int>(bytes.size())));
-  return std::string(kIdPrefix) + hex(bytes);
+std::string random_hex(std::size_t bytes) {
+  std::vector<unsigned char> random(bytes);
+  check(RAND_bytes(random.data(), static_cast<int>(random.size())));
+  return hex(random);
 }
+
+std::string random_job_id() { return std::string(kIdPrefix) + random_hex(kIdBytes); }
 
 bool is_job_id(std::string_view text) {
   if (text.size() != kIdPrefix.size() + 2 * kIdBytes || !text.starts_with(kIdPrefix)) return false;
@@ -56,6 +60,20 @@ std::string Sha256::finish() {
   unsigned int size = 0;
   check(EVP_DigestFinal_ex(context_.get(), digest.data(), &size));
   return hex(std::span(digest).first(size));
+}
+
+std::string hmac_sha256(std::string_view secret, std::string_view message) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int size = 0;
+  const auto* text = reinterpret_cast<const unsigned char*>(message.data());
+  const unsigned char* done = HMAC(EVP_sha256(), secret.data(), static_cast<int>(secret.size()),
+                                   text, message.size(), digest.data(), &size);
+  check(done != nullptr ? 1 : 0);
+  return {digest.begin(), digest.begin() + size};
+}
+
+std::string to_hex(std::string_view bytes) {
+  return hex(std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
 
 std::string sha256(std::string_view bytes) {

@@ -1,6 +1,7 @@
 #pragma once
 // Names that nobody can guess, and names that content gives itself.
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -8,6 +9,9 @@
 struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX
 
 namespace unwrapd::server {
+
+/// So many random bytes in lowercase hex.
+std::string random_hex(std::size_t bytes);
 
 /// A new job id: "j_" and 128 random bits in lowercase hex.
 std::string random_job_id();
@@ -31,5 +35,11 @@ class Sha256 {
 };
 
 std::string sha256(std::string_view bytes);
+
+/// HMAC-SHA256: 32 bytes, as they are.
+std::string hmac_sha256(std::string_view secret, std::string_view message);
+
+/// Lowercase hex.
+std::string to_hex(std::string_view bytes);
 
 }  // namespace unwrapd::server

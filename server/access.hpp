@@ -1,0 +1,63 @@
+#pragma once
+// Who may do what. Every route needs a scope; where keys are asked for, the request brings one as
+// `Authorization: Bearer unw_...`, and what its key may do, how often and how much, holds for it. A
+// link that was signed for a result (signed_link.hpp) opens that result without a key.
+
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "server/http.hpp"
+#include "server/key_store.hpp"
+#include "server/signed_link.hpp"
+
+namespace unwrapd::server {
+
+struct AccessConfig {
+  bool require_keys = false;  ///< asked for on loopback, too
+  bool insecure = false;      ///< not asked for anywhere
+};
+
+/// Whether keys are asked for: always where others than this machine can connect, unless the
+/// operator insists.
+bool asks_for_keys(const AccessConfig& config, std::string_view host);
+
+/// At most so many requests a minute, a minute's worth of them at once (token bucket).
+class RateLimit {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// 0 when the request may go on, else the whole seconds after which it may.
+  int wait_seconds(const std::string& key, std::int64_t per_minute, Clock::time_point now);
+
+ private:
+  struct Bucket {
+    double tokens = 0;
+    Clock::time_point filled{};
+  };
+  std::mutex mutex_;
+  std::map<std::string, Bucket> buckets_;
+};
+
+/// Thread-safe.
+class Access {
+ public:
+  Access(KeyStore& keys, const LinkSigner& links, bool ask)
+      : keys_(keys), links_(links), ask_(ask) {}
+
+  /// Says who asks for what this route does. Throws Error: unauthorized, forbidden, rate_limited,
+  /// invalid_link.
+  [[nodiscard]] Caller admit(const Request& request, std::string_view route);
+
+ private:
+  [[nodiscard]] ApiKey key_of(const Request& request);
+
+  KeyStore& keys_;
+  const LinkSigner& links_;
+  const bool ask_;
+  RateLimit rates_;
+};
+
+}  // namespace unwrapd::server

@@ -1,0 +1,132 @@
+#include "server/key_store.hpp"
+
+#include <openssl/crypto.h>
+
+#include "core/error.hpp"
+#include "server/clock.hpp"
+#include "server/files.hpp"
+#include "server/identity.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::string_view kPrefix = "unw_";
+constexpr std::size_t kIdDigits = 16;
+constexpr std::size_t kSecretDigits = 64;
+constexpr const char* kSchema = R"sql(
+CREATE TABLE IF NOT EXISTS keys (
+  seq INTEGER PRIMARY KEY AUTOINCREMENT,
+  id TEXT NOT NULL UNIQUE,
+  name TEXT NOT NULL,
+  sha256 TEXT NOT NULL,
+  scopes TEXT NOT NULL,
+  requests_per_minute INTEGER NOT NULL,
+  max_jobs INTEGER NOT NULL,
+  max_bytes INTEGER NOT NULL,
+  created_ms INTEGER NOT NULL
+) STRICT;
+)sql";
+constexpr std::string_view kSelect =
+    "SELECT id, name, scopes, requests_per_minute, max_jobs, max_bytes, created_ms, sha256"
+    " FROM keys ";
+constexpr int kDigestColumn = 7;
+
+std::filesystem::path file_in(const std::filesystem::path& data) {
+  make_directories(data);
+  return data / "keys.sqlite";
+}
+
+ApiKey key_of(const Statement& row) {
+  return {.id = row.text(0),
+          .name = row.text(1),
+          .scopes = parse_scopes(row.text(2)),
+          .requests_per_minute = row.number(3),
+          .quota = {.max_jobs = row.number(4), .max_bytes = row.number(5)},
+          .created_ms = row.number(6)};
+}
+
+bool same(const std::string& left, const std::string& right) {
+  return left.size() == right.size() &&
+         CRYPTO_memcmp(left.data(), right.data(), left.size()) == 0;  // in constant time
+}
+
+void set_scope(Scopes& scopes, std::string_view name) {
+  if (name == "submit") {
+    scopes.submit = true;
+  } else if (name == "read") {
+    scopes.read = true;
+  } else if (name == "admin") {
+    scopes.admin = true;
+  } else {
+    throw Error(ErrorCode::invalid_option,
+                "There is no scope \"" + std::string(name) + "\"; use submit, read or admin.");
+  }
+}
+
+}  // namespace
+
+Scopes parse_scopes(std::string_view text) {
+  Scopes scopes;
+  while (true) {
+    const std::size_t comma = text.find(',');
+    set_scope(scopes, text.substr(0, comma));
+    if (comma == std::string_view::npos) return scopes;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+std::string to_text(const Scopes& scopes) {
+  std::string text;
+  const auto add = [&](bool has, std::string_view name) {
+    if (has) text += (text.empty() ? "" : ",") + std::string(name);
+  };
+  add(scopes.submit, "submit");
+  add(scopes.read, "read");
+  add(scopes.admin, "admin");
+  return text;
+}
+
+KeyStore::KeyStore(const std::filesystem::path& data) : database_(file_in(data)) {
+  database_.run(kSchema);
+}
+
+std::string KeyStore::add(ApiKey key) {
+  const std::string digits = random_hex(kIdDigits / 2);
+  const std::string text = std::string(kPrefix) + digits + "_" + random_hex(kSecretDigits / 2);
+  const std::lock_guard lock(mutex_);
+  Statement(database_,
+            "INSERT INTO keys (id, name, sha256, scopes, requests_per_minute, max_jobs, max_bytes,"
+            " created_ms) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+      .with("k_" + digits, key.name, sha256(text), to_text(key.scopes), key.requests_per_minute,
+            key.quota.max_jobs, key.quota.max_bytes, now_ms())
+      .run();
+  return text;
+}
+
+std::optional<ApiKey> KeyStore::find(std::string_view text) {
+  const bool of_form =
+      text.starts_with(kPrefix) && text.size() == kPrefix.size() + kIdDigits + 1 + kSecretDigits;
+  if (!of_form) return std::nullopt;
+  const std::string id = "k_" + std::string(text.substr(kPrefix.size(), kIdDigits));
+  const std::lock_guard lock(mutex_);
+  Statement statement(database_, std::string(kSelect) + "WHERE id = ?");
+  if (!statement.with(id).step()) return std::nullopt;
+  if (!same(statement.text(kDigestColumn), sha256(text))) return std::nullopt;
+  return key_of(statement);
+}
+
+std::vector<ApiKey> KeyStore::all() {
+  const std::lock_guard lock(mutex_);
+  Statement statement(database_, std::string(kSelect) + "ORDER BY seq");
+  std::vector<ApiKey> keys;
+  while (statement.step()) keys.push_back(key_of(statement));
+  return keys;
+}
+
+bool KeyStore::remove(std::string_view id) {
+  const std::lock_guard lock(mutex_);
+  Statement(database_, "DELETE FROM keys WHERE id = ?").with(id).run();
+  return database_.changes() == 1;
+}
+
+}  // namespace unwrapd::server

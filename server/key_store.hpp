@@ -1,0 +1,62 @@
+#pragma once
+// API keys, in DIR/keys.sqlite: of their own, so that `unwrapd keys` may write it while the server
+// runs, and a copy of the jobs holds no keys. A key is "unw_<id>_<secret>" with 256 random bits of
+// secret; only its SHA-256 is stored. A slow hash was rejected: it makes guessing hard where there
+// are few passwords, and 2^256 secrets need no help.
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/caller.hpp"
+#include "server/database.hpp"
+
+namespace unwrapd::server {
+
+/// What a key may be used for.
+struct Scopes {
+  bool submit = false;  ///< send, cancel and remove jobs
+  bool read = false;    ///< look at jobs and fetch results
+  bool admin = false;   ///< both, and of all keys
+
+  friend bool operator==(const Scopes&, const Scopes&) = default;
+};
+
+struct ApiKey {
+  std::string id;    ///< "k_" and 16 hex digits: the owner of its jobs
+  std::string name;  ///< for people
+  Scopes scopes;
+  std::int64_t requests_per_minute = 0;  ///< 0: no limit
+  Quota quota;
+  std::int64_t created_ms = 0;
+};
+
+/// "submit,read". Throws Error{invalid_option} when a name is none of submit, read and admin.
+Scopes parse_scopes(std::string_view text);
+std::string to_text(const Scopes& scopes);
+
+/// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
+class KeyStore {
+ public:
+  /// data: the data directory, made when missing.
+  explicit KeyStore(const std::filesystem::path& data);
+
+  /// Stores a key with a new id and returns what its holder sends; it cannot be had again.
+  std::string add(ApiKey key);
+  /// The key of this text, if it is one.
+  std::optional<ApiKey> find(std::string_view text);
+  /// In the order in which they were added.
+  std::vector<ApiKey> all();
+  /// False when there is none of this id. Its jobs stay.
+  bool remove(std::string_view id);
+
+ private:
+  std::mutex mutex_;
+  Database database_;
+};
+
+}  // namespace unwrapd::server

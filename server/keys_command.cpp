@@ -1,0 +1,97 @@
+#include "server/keys_command.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+
+#include "server/clock.hpp"
+#include "server/key_store.hpp"
+#include "server/signed_link.hpp"
+#include "server/webhooks.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+struct Asked {
+  std::string data = "data";
+  ApiKey key;
+  std::string scopes = "submit,read";
+  std::string id;
+};
+
+void add_key(const Asked& asked) {
+  ApiKey key = asked.key;
+  key.scopes = parse_scopes(asked.scopes);
+  std::printf("%s\n", KeyStore(asked.data).add(key).c_str());
+  std::fprintf(stderr, "This is the key; it is not stored and cannot be shown again.\n");
+}
+
+void list_keys(const Asked& asked) {
+  for (const ApiKey& key : KeyStore(asked.data).all()) {
+    std::printf("%s  %s  scopes=%s  requests-per-minute=%lld  max-jobs=%lld  max-bytes=%lld  %s\n",
+                key.id.c_str(), rfc3339(key.created_ms).c_str(), to_text(key.scopes).c_str(),
+                static_cast<long long>(key.requests_per_minute),
+                static_cast<long long>(key.quota.max_jobs),
+                static_cast<long long>(key.quota.max_bytes), key.name.c_str());
+  }
+}
+
+void remove_key(const Asked& asked) {
+  if (!KeyStore(asked.data).remove(asked.id))
+    throw Error(ErrorCode::not_found, "There is no key " + asked.id + "; see unwrapd keys list.");
+}
+
+void tell_webhook_secret(const Asked& asked) {
+  const std::string secret = secret_in(std::filesystem::path(asked.data) / kSecretFile);
+  std::printf("%s\n", webhook_secret(secret, asked.id).c_str());
+}
+
+CLI::App* command(CLI::App& app, const std::string& name, const std::string& what, Asked& asked) {
+  CLI::App* found = app.add_subcommand(name, what);
+  found->add_option("--data", asked.data, "Directory of jobs and results")
+      ->envname("UNWRAPD_DATA")
+      ->capture_default_str();
+  return found;
+}
+
+void declare(CLI::App& app, Asked& asked) {
+  CLI::App* add = command(app, "add", "Make a key and print it", asked);
+  add->add_option("--name", asked.key.name, "What people call it")->required();
+  add->add_option("--scopes", asked.scopes, "Of submit, read and admin")->capture_default_str();
+  const auto limit = [&](const std::string& flag, std::int64_t& value, const std::string& what) {
+    add->add_option(flag, value, what + "; 0: no limit")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+  };
+  limit("--requests-per-minute", asked.key.requests_per_minute, "How often it may be used");
+  limit("--max-jobs", asked.key.quota.max_jobs, "Jobs that wait or run");
+  limit("--max-bytes", asked.key.quota.max_bytes, "Bytes of all its jobs' files");
+  add->callback([&] { add_key(asked); });
+  command(app, "list", "List the keys", asked)->callback([&] { list_keys(asked); });
+  CLI::App* remove = command(app, "remove", "Make a key useless; its jobs stay", asked);
+  remove->add_option("ID", asked.id, "Of unwrapd keys list")->required();
+  remove->callback([&] { remove_key(asked); });
+  CLI::App* secret = command(app, "webhook-secret", "Print what webhooks are signed with", asked);
+  secret->add_option("ID", asked.id, "The key's; none where keys are not asked for");
+  secret->callback([&] { tell_webhook_secret(asked); });
+}
+
+}  // namespace
+
+int run_keys_command(int argc, const char* const* argv) {
+  CLI::App app("The API keys of a data directory, also while a server runs on it.", "unwrapd keys");
+  app.require_subcommand(1);
+  Asked asked;
+  declare(app, asked);
+  try {
+    app.parse(argc - 1, argv + 1);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "unwrapd keys: %s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace unwrapd::server

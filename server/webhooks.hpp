@@ -1,0 +1,59 @@
+#pragma once
+// Calls to the webhooks of jobs that have ended. The call is a row, written in the transaction that
+// ends the job, and goes when it was answered with 2xx: neither a crash nor a receiver that is down
+// loses it. Tries go on with doubled pauses, ten in all. It is signed as Standard Webhooks has it:
+// webhook-id, webhook-timestamp, and webhook-signature, the HMAC-SHA256 of both and the body under
+// a secret of the job's owner.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/database.hpp"
+#include "server/log.hpp"
+#include "server/webhook_url.hpp"
+
+namespace unwrapd::server {
+
+/// A call that is still to be answered.
+struct Delivery {
+  std::int64_t seq = 0;
+  std::string job;
+  std::string owner;  ///< of the job, empty once that is forgotten
+  std::string url;
+  std::string body;
+  int tries = 0;
+};
+
+/// The secret under which calls for this owner are signed: "whsec_" and Base64, derived from the
+/// server's own.
+std::string webhook_secret(std::string_view server_secret, std::string_view owner);
+
+/// "v1," and the Base64 of the HMAC-SHA256 of "id.timestamp.body". Throws Error{internal} when the
+/// secret is not of the form of webhook_secret().
+std::string webhook_signature(const std::string& secret, std::string_view signed_text);
+
+/// Not for use by two threads at once.
+class Webhooks {
+ public:
+  /// store: the file of the jobs, whose tables are there already.
+  Webhooks(const std::filesystem::path& store, std::string server_secret, WebhookConfig config,
+           const Log& log);
+
+  /// Makes the calls that are due, one after another.
+  void call_due(std::int64_t now_ms);
+
+ private:
+  std::vector<Delivery> due(std::int64_t now_ms);
+  [[nodiscard]] std::string call(const Delivery& delivery, std::int64_t now_ms) const;
+  void settle(const Delivery& delivery, const std::string& failure, std::int64_t now_ms);
+
+  Database database_;
+  const std::string secret_;
+  const WebhookConfig config_;
+  const Log& log_;
+};
+
+}  // namespace unwrapd::server
