@@ -83,7 +83,7 @@ UvMap carried(const Mapped& from, const Mapped& to) {
 }
 
 /// RMS distance after the similarity that takes a to b best, in units of b's RMS radius.
-double gap_up_to_similarity(const UvMap& a, const UvMap& b) {
+double similarity_residual(const UvMap& a, const UvMap& b) {
   const double n = double(a.size());
   const Vec2 mean_a = std::accumulate(a.begin(), a.end(), Vec2(0, 0)) / n;
   const Vec2 mean_b = std::accumulate(b.begin(), b.end(), Vec2(0, 0)) / n;
@@ -115,7 +115,7 @@ TEST(Encodings, OfOneDiskGiveTheSameUvs) {
                                                                   {"quant_i16.glb", 1e-4}}) {
     SCOPED_TRACE(encoding.name);
     const Mapped other = unwrapped(folder / (std::string("demosthenes16k_") + encoding.name));
-    const double gap = gap_up_to_similarity(reference.uv, carried(reference, other));
+    const double gap = similarity_residual(reference.uv, carried(reference, other));
     std::printf("%-20s %.2e\n", encoding.name, gap);
     EXPECT_LT(gap, encoding.tolerance);
   }

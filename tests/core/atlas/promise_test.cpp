@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
 #include <set>
 
 #include "core/error.hpp"
@@ -16,12 +15,7 @@ namespace unwrapd {
 namespace {
 
 using shapes::disk_of;
-
-UvMap from_above(const Disk& disk) {
-  UvMap uv;
-  for (const Vec3& p : disk.positions) uv.emplace_back(p.x(), p.y());
-  return uv;
-}
+using shapes::from_above;
 
 UvMap solved(const Disk& disk) {
   SerialExecutor serial;
@@ -131,11 +125,8 @@ TEST(Promise, OfInjectivitySplitsWhereNoMapWithoutOverlapsIsFound) {
 TEST(Promise, IsKeptOnEveryRandomDisk) {
   for (unsigned seed = 0; seed < 14; ++seed) {
     SCOPED_TRACE(seed);
-    std::mt19937 rng(seed);
     const auto owned = disk_of(shapes::random_disk(Index(2 + seed % 9), seed));
-    std::uniform_real_distribution<double> shake(-0.02 * seed, 0.02 * seed);
-    UvMap uv = from_above(owned.disk);
-    for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
+    const UvMap uv = shapes::shaken(from_above(owned.disk), 0.02 * seed, seed);
     for (Guarantee guarantee : {Guarantee::flip_free, Guarantee::bijective})
       expect_kept(*owned.chart,
                   keep_promise(*owned.chart, owned.disk, uv, {.guarantee = guarantee}), guarantee);

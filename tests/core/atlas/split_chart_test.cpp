@@ -11,7 +11,7 @@ namespace {
 
 using shapes::disk_of;
 
-bool is_disk(const Chart& chart) {
+bool is_one_disk(const Chart& chart) {
   const Topology shape = topology(chart.mesh.faces, chart.halfedges);
   return shape.components.size() == 1 && shape.components[0].is_disk();
 }
@@ -26,7 +26,7 @@ TEST(SplitChart, KeepsEveryFaceOnceWithItsCornersInOrder) {
     ASSERT_GE(parts.size(), 2U);
     std::set<Index> seen;
     for (const ChartPart& part : parts) {
-      EXPECT_TRUE(is_disk(part.chart));
+      EXPECT_TRUE(is_one_disk(part.chart));
       EXPECT_EQ(part.chart.halfedges.twin.size(), 3 * part.chart.mesh.faces.size());
       for (std::size_t t = 0; t < part.chart.mesh.faces.size(); ++t) {
         const Index source = part.chart.face_source[t];

@@ -33,11 +33,7 @@ double common_area(std::vector<Vec2> p, const Corners& t) {
   return area;
 }
 
-UvMap from_above(const TriMesh& mesh) {
-  UvMap uv;
-  for (const Vec3& p : mesh.positions) uv.emplace_back(p.x(), p.y());
-  return uv;
-}
+UvMap from_above(const TriMesh& mesh) { return shapes::from_above(mesh.positions); }
 
 TEST(Overlap, AgreesWithTheAreaInCommon) {
   std::mt19937 rng(1);
@@ -76,10 +72,7 @@ TEST(Overlap, FindsThePairsThatBruteForceFinds) {
   std::size_t found = 0;
   for (unsigned seed = 0; seed < 10; ++seed) {
     const TriMesh mesh = shapes::random_disk(7, seed);
-    std::mt19937 rng(seed);
-    std::uniform_real_distribution<double> shake(-0.02 * seed, 0.02 * seed);
-    UvMap uv = from_above(mesh);
-    for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
+    const UvMap uv = shapes::shaken(from_above(mesh), 0.02 * seed, seed);
     const auto expected = pairs_by_brute_force(mesh, uv);
     EXPECT_EQ(overlapping_pairs(mesh.faces, uv, 1 << 20), expected);
     EXPECT_EQ(overlapping_pairs(mesh.faces, uv, 3).size(),
@@ -143,10 +136,7 @@ TEST(PlainlyInjective, NeverContradictsTheCount) {
   int proofs = 0;
   for (unsigned seed = 0; seed < 40; ++seed) {
     const TriMesh mesh = shapes::random_disk(4, seed);
-    std::mt19937 rng(seed);
-    std::uniform_real_distribution<double> shake(-0.003 * seed, 0.003 * seed);
-    UvMap uv = from_above(mesh);
-    for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
+    const UvMap uv = shapes::shaken(from_above(mesh), 0.003 * seed, seed);
     const bool none = overlapping_pairs(mesh.faces, uv, 1).empty();
     if (is_plainly_injective(mesh, uv)) {
       ++proofs;

@@ -118,7 +118,7 @@ TEST(Angles, StayBelowAHalfTurnWhereScalingWouldLeadBeyond) {
 
 TEST(AngleSystem, FindsNothingToMendInThePlane) {
   for (const TriMesh& mesh :
-       {shapes::grid(5, 4), shapes::annulus(12, 3), odd::pierced_disk(9, 1)}) {
+       {shapes::grid(5, 4), shapes::annulus(12, 3), shapes::pierced_disk(9, 1)}) {
     TriMesh plane = mesh;
     for (Vec3& p : plane.positions) p.z() = 0;
     const OwnedDisk d = disk_of(plane);
@@ -178,7 +178,7 @@ TEST(FlatAngles, MeetTheirConstraintsOnRandomDisks) {
 
 TEST(FlatAngles, MeetTheirConstraintsAroundHoles) {
   for (const TriMesh& mesh :
-       {shapes::cylinder(10, 6), odd::pierced_disk(9, 2), odd::pierced_disk(17, 3)}) {
+       {shapes::cylinder(10, 6), shapes::pierced_disk(9, 2), shapes::pierced_disk(17, 3)}) {
     const OwnedDisk d = disk_of(mesh);
     expect_flat(d.disk, flat(d.disk), std::to_string(mesh.faces.size()));
   }

@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 
 #include <cmath>
-#include <random>
 
 #include "core/solve/newton.hpp"
 #include "tests/core/solve/disk_of.hpp"
@@ -14,25 +13,14 @@ namespace unwrapd {
 namespace {
 
 using shapes::disk_of;
+using shapes::from_above;
+using shapes::shaken;
 
 constexpr double kRigid = std::numeric_limits<double>::infinity();
 
 BarrierMesh loose_mesh(const Disk& disk, std::vector<char> fixed = {}) {
   fixed.resize(disk.positions.size(), 0);
   return {{disk.faces.begin(), disk.faces.end()}, disk.rest, number_free(fixed)};
-}
-
-UvMap from_above(const Disk& disk) {
-  UvMap uv;
-  for (const Vec3& p : disk.positions) uv.emplace_back(p.x(), p.y());
-  return uv;
-}
-
-UvMap shaken(UvMap uv, double by, unsigned seed) {
-  std::mt19937 rng(seed);
-  std::uniform_real_distribution<double> shake(-by, by);
-  for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
-  return uv;
 }
 
 /// The energy of the header's formula, by the singular values of a matrix.

@@ -14,13 +14,8 @@ namespace unwrapd {
 namespace {
 
 using shapes::disk_of;
+using shapes::from_above;
 using shapes::OwnedDisk;
-
-UvMap from_above(const Disk& disk) {
-  UvMap uv;
-  for (const Vec3& p : disk.positions) uv.emplace_back(p.x(), p.y());
-  return uv;
-}
 
 /// A disk with holes, its map drawn together so that many boundaries are near each other.
 UvMap crowded(const Disk& disk, unsigned seed) {

@@ -9,6 +9,7 @@
 #include "core/solve/hold_align.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/core/obj_reader.hpp"
+#include "tests/core/solve/cancel_at.hpp"
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/solve/folded.hpp"
 #include "tests/core/solve/similarity.hpp"
@@ -133,23 +134,8 @@ TEST(Converge, StopsTheLaterTheSmallerTheTolerance) {
 
 TEST(Converge, CancelsWithinOneIteration) {
   const OwnedDisk d = disk_of(shapes::pierced_bar(3));
-  for (int last : {1, 5, 40, 41}) {  // 40 is followed by a second start, 41 by the change to it
-    std::stop_source stop;
-    SolveWatch watch;
-    watch.loop.stop = stop.get_token();
-    int seen = 0;
-    watch.loop.on_iteration = [&](const Solution& s) {
-      seen = s.iterations;
-      if (seen == last) stop.request_stop();
-    };
-    try {
-      solved(d.disk, {}, watch);
-      FAIL() << "the solver did not stop";
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ErrorCode::cancelled);
-    }
-    EXPECT_EQ(seen, last);
-  }
+  for (int last : {1, 5, 40, 41})  // 40 is followed by a second start, 41 by the change to it
+    expect_cancelled_at(last, [&](const SolveWatch& watch) { solved(d.disk, {}, watch); });
 }
 
 TEST(Converge, GivesTheSameBytesOnOneAndTwoThreads) {

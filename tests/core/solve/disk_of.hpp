@@ -24,4 +24,6 @@ inline OwnedDisk disk_of(TriMesh mesh) {
   return {std::move(chart), std::move(disk)};
 }
 
+inline UvMap from_above(const Disk& disk) { return from_above(disk.positions); }
+
 }  // namespace unwrapd::shapes

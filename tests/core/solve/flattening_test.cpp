@@ -4,31 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <thread>
 
 #include "core/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/solve/methods.hpp"
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/solve/similarity.hpp"
+#include "tests/core/two_threads.hpp"
 
 namespace unwrapd {
 namespace {
 
 using shapes::disk_of;
 using shapes::OwnedDisk;
-
-/// A real second thread: odd blocks there, even blocks here.
-class TwoThreads final : public Executor {
- public:
-  void for_each_block(int block_count, const std::function<void(int)>& body) override {
-    std::thread other([&] {
-      for (int block = 1; block < block_count; block += 2) body(block);
-    });
-    for (int block = 0; block < block_count; block += 2) body(block);
-    other.join();
-  }
-};
 
 Distortion distortion_of(const Disk& disk, const UvMap& uv) {
   return distortion(distortion_sums(disk.rest, disk.faces, uv));

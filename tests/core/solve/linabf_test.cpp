@@ -79,7 +79,7 @@ TEST(LinearAngles, AreTheDenseMinimumNormSolution) {
 }
 
 TEST(LinearAngles, AddUpToAHalfTurnInEveryTriangle) {
-  std::vector<odd::NamedMesh> meshes = odd::hard_disks();
+  std::vector<shapes::NamedMesh> meshes = odd::hard_disks();
   meshes.push_back({"a pinhole", shapes::sphere_cap(40, 30, 3.1)});  // the linear model fails there
   meshes.push_back({"a pinhole in a cube", shapes::cube(2)});
   meshes.back().mesh.faces.pop_back();

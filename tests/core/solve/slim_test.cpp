@@ -58,8 +58,8 @@ TEST(Slim, KeepsItsPromiseOnRandomDisks) {
 }
 
 TEST(Slim, KeepsItsPromiseAroundHoles) {
-  for (const TriMesh& mesh : {shapes::cylinder(12, 8), odd::pierced_disk(9, 2),
-                              odd::pierced_disk(17, 3), shapes::annulus(9, 2)}) {
+  for (const TriMesh& mesh : {shapes::cylinder(12, 8), shapes::pierced_disk(9, 2),
+                              shapes::pierced_disk(17, 3), shapes::annulus(9, 2)}) {
     const OwnedDisk d = disk_of(mesh);
     expect_promise_kept(d.disk, std::to_string(mesh.faces.size()));
   }

@@ -3,30 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <thread>
 
 #include "core/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
+#include "tests/core/solve/cancel_at.hpp"
 #include "tests/core/solve/disk_of.hpp"
+#include "tests/core/solve/similarity.hpp"
+#include "tests/core/two_threads.hpp"
 
 namespace unwrapd {
 namespace {
 
 using shapes::disk_of;
 using shapes::OwnedDisk;
-
-/// A real second thread: odd blocks there, even blocks here.
-class TwoThreads final : public Executor {
- public:
-  void for_each_block(int block_count, const std::function<void(int)>& body) override {
-    std::thread other([&] {
-      for (int block = 1; block < block_count; block += 2) body(block);
-    });
-    for (int block = 0; block < block_count; block += 2) body(block);
-    other.join();
-  }
-};
 
 Solution solved(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch = {}) {
   SerialExecutor serial;
@@ -36,25 +26,6 @@ Solution solved(const Disk& disk, const UnwrapOptions& options, const SolveWatch
 std::vector<TriMesh> curved_disks() {
   return {shapes::sphere_cap(24, 8, 1.5), shapes::random_disk(12, 3), shapes::cone(20, 6),
           shapes::annulus(20, 4), shapes::cylinder(16, 6)};
-}
-
-/// The greatest distance between corresponding points after the similarity that fits best.
-double gap_up_to_similarity(const UvMap& a, const UvMap& b) {
-  Vec2 mean_a = Vec2::Zero(), mean_b = Vec2::Zero();
-  for (std::size_t v = 0; v < a.size(); ++v)
-    mean_a += a[v] / double(a.size()), mean_b += b[v] / double(a.size());
-  double dot = 0, cross = 0, norm = 0, gap = 0;
-  for (std::size_t v = 0; v < a.size(); ++v) {
-    const Vec2 p = a[v] - mean_a, q = b[v] - mean_b;
-    dot += p.dot(q), cross += p.x() * q.y() - p.y() * q.x(), norm += p.squaredNorm();
-  }
-  const double c = dot / norm, s = cross / norm;
-  for (std::size_t v = 0; v < a.size(); ++v) {
-    const Vec2 p = a[v] - mean_a;
-    const Vec2 moved(c * p.x() - s * p.y(), s * p.x() + c * p.y());
-    gap = std::max(gap, (b[v] - mean_b - moved).norm());
-  }
-  return gap;
 }
 
 TEST(Solve, EnergyNeverRises) {
@@ -249,21 +220,8 @@ TEST(Solve, GivesTheSameBytesOnOneAndTwoThreads) {
 
 TEST(Solve, StopsWithinOneIterationOfACancel) {
   const OwnedDisk d = disk_of(shapes::random_disk(10, 12));
-  std::stop_source stop;
-  SolveWatch watch;
-  watch.loop.stop = stop.get_token();
-  int seen = 0;
-  watch.loop.on_iteration = [&](const Solution& s) {
-    seen = s.iterations;
-    if (seen == 3) stop.request_stop();
-  };
-  try {
-    solved(d.disk, {.stop = {.iterations = 1000}}, watch);
-    FAIL() << "the solver did not stop";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ErrorCode::cancelled);
-  }
-  EXPECT_EQ(seen, 3);
+  expect_cancelled_at(
+      3, [&](const SolveWatch& watch) { solved(d.disk, {.stop = {.iterations = 1000}}, watch); });
 }
 
 TEST(Solve, SurvivesNeedlesCapsAndHighValence) {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "core/error.hpp"
 #include "core/measure/energy.hpp"
 #include "core/measure/orientation.hpp"
@@ -16,12 +14,7 @@ namespace unwrapd {
 namespace {
 
 using shapes::disk_of;
-
-UvMap from_above(const Disk& disk) {
-  UvMap uv;
-  for (const Vec3& p : disk.positions) uv.emplace_back(p.x(), p.y());
-  return uv;
-}
+using shapes::from_above;
 
 std::size_t flips(const Disk& disk, const UvMap& uv) {
   return flipped_faces(disk.faces, uv).size();
@@ -59,12 +52,8 @@ TEST(Untangle, TurnsOneVertexBackAndMovesOnlyItsNeighbours) {
 TEST(Untangle, TurnsBackWhatAnyShakingFlipped) {
   for (unsigned seed = 0; seed < 30; ++seed) {
     SCOPED_TRACE(seed);
-    std::mt19937 rng(seed);
     const auto owned = disk_of(shapes::random_disk(Index(2 + seed % 12), seed));
-    const double by = 0.02 * double(1 + seed % 10);
-    std::uniform_real_distribution<double> shake(-by, by);
-    UvMap uv = from_above(owned.disk);
-    for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
+    UvMap uv = shapes::shaken(from_above(owned.disk), 0.02 * double(1 + seed % 10), seed);
     EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
     EXPECT_EQ(flips(owned.disk, uv), 0U);
   }

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "core/measure/orientation.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
@@ -11,12 +9,7 @@ namespace unwrapd {
 namespace {
 
 using shapes::disk_of;
-
-UvMap from_above(const Disk& disk) {
-  UvMap uv;
-  for (const Vec3& p : disk.positions) uv.emplace_back(p.x(), p.y());
-  return uv;
-}
+using shapes::from_above;
 
 double farthest_move(const UvMap& a, const UvMap& b) {
   double farthest = 0;
@@ -38,10 +31,7 @@ TEST(VirtualBoundary, TurnsEveryFlipBackWhateverTheMap) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
     const auto owned = disk_of(shapes::random_disk(Index(2 + seed % 10), seed));
-    std::mt19937 rng(seed);
-    std::uniform_real_distribution<double> shake(-0.02 * seed, 0.02 * seed);
-    UvMap uv = from_above(owned.disk);
-    for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
+    const UvMap uv = shapes::shaken(from_above(owned.disk), 0.02 * seed, seed);
     EXPECT_TRUE(flipped_faces(owned.disk.faces, virtual_boundary_map(owned.disk, uv)).empty());
   }
 }
