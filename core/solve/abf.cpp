@@ -5,6 +5,8 @@
 // negative: it is held above a share of 1 / min(alpha, beta)^2, so that the reduced matrix stays
 // definite and no angle is thought cheap to move by more than itself. That is also what makes full
 // steps safe far from the solution; 1 / beta^2 alone stalls on spheres with a small hole.
+// There the least of the sum lies at angles of 0. Angles below a tenth of their target therefore
+// cost log(alpha / that tenth)^2 / 2 more, where Sheffer et al. raise weights until it helps.
 #include "core/solve/abf.hpp"
 
 #include <algorithm>
@@ -20,6 +22,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kLeastCurvature = 0.25;  // of 1 / min(alpha, beta)^2
 constexpr double kMostOfTheWay = 0.9;     // to an angle of 0 or pi
+constexpr double kSlim = 0.1;             // of its target: below, an angle is held up
 constexpr double kTolerance = 1e-7;       // relative to an angle
 
 double square(double x) { return x * x; }
@@ -63,8 +66,10 @@ class AngleNewton {
     const double alpha = angles_[t][i], beta = target_[t][i];
     const Triangle& face = disk_.faces[t];
     const double bend = wheel(face, (i + 1) % 3, system_) - wheel(face, (i + 2) % 3, system_);
-    const double curvature = 1 / square(beta) + bend / square(std::sin(alpha));
-    model_.slope[t][i] = (alpha - beta) / square(beta);
+    const double depth = std::min(0.0, std::log(alpha / (kSlim * beta)));
+    const double hold = depth < 0 ? (1 - depth) / square(alpha) : 0;  // of depth^2 / 2
+    const double curvature = 1 / square(beta) + hold + bend / square(std::sin(alpha));
+    model_.slope[t][i] = (alpha - beta) / square(beta) + depth / alpha;
     model_.curvature[t][i] = std::max(curvature, kLeastCurvature / square(std::min(alpha, beta)));
   }
 

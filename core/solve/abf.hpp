@@ -21,10 +21,11 @@ struct FlatAngles {
 /// Called after every iteration.
 using AngleWatch = std::function<void(const FlatAngles&)>;
 
-/// The angles that minimise the sum of (angle / target - 1)^2 among those that lie flat. Ends when
-/// the largest relative change of an angle falls below 1e-7 (converged) or after
-/// kMaxAngleIterations: where the tip of a spike needs more than the mesh has, the least energy is
-/// at angles of 0, which are approached and not reached. Throws Error{solver_failed, cancelled}.
+/// The angles that minimise the sum of (angle / target - 1)^2 among those that lie flat, where none
+/// of them is below a tenth of its target. Smaller ones cost more, for else the least energy may
+/// lie at angles of 0 (a sphere but for a pinhole). Ends when the largest relative change of an
+/// angle falls below 1e-7 (converged) or after kMaxAngleIterations. Throws Error{solver_failed,
+/// cancelled}.
 FlatAngles flat_angles(const Disk& disk, const std::stop_token& stop,
                        const AngleWatch& on_iteration, Executor& executor);
 
