@@ -61,12 +61,17 @@ ApiKey Access::key_of(const Request& request) {
               "This server asks for an API key; send it as Authorization: Bearer KEY.");
 }
 
-Caller Access::admit(const Request& request, std::string_view route) {
-  if (is_public(route)) return {};
-  if (links_.is_signed(request)) {
-    links_.check(request, route);
-    return {};
+void Access::admit(Request& request, std::string_view route) {
+  if (is_public(route)) return;
+  if (!links_.is_signed(request)) {
+    request.caller = caller_of(request);
+    return;
   }
+  links_.check(request);
+  request.query = unsigned_query(request);
+}
+
+Caller Access::caller_of(const Request& request) {
   if (!ask_) return {};
   const ApiKey key = key_of(request);
   const int wait =

@@ -47,11 +47,12 @@ class Access {
   Access(KeyStore& keys, const LinkSigner& links, bool ask)
       : keys_(keys), links_(links), ask_(ask) {}
 
-  /// Says who asks for what this route does. Throws Error: unauthorized, forbidden, rate_limited,
-  /// invalid_link.
-  [[nodiscard]] Caller admit(const Request& request, std::string_view route);
+  /// Sets the caller of a request for what this route does, and takes off what signs its link.
+  /// Throws Error: unauthorized, forbidden, rate_limited, invalid_link.
+  void admit(Request& request, std::string_view route);
 
  private:
+  [[nodiscard]] Caller caller_of(const Request& request);
   [[nodiscard]] ApiKey key_of(const Request& request);
 
   KeyStore& keys_;

@@ -6,11 +6,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "api/limits.hpp"
+#include "server/access.hpp"
 #include "server/address.hpp"
 #include "server/disk_room.hpp"
 #include "server/log.hpp"
+#include "server/webhook_url.hpp"
 #include "server/solver_cache.hpp"
 
 namespace unwrapd::server {
@@ -27,6 +30,9 @@ struct Config {
   int drain_seconds = 30;
   LogLevel log_level = LogLevel::info;
   DiskLimits disk;
+  AccessConfig access;
+  std::vector<std::string> cors_origins;
+  WebhookConfig webhooks;
   MemoryLimits memory;
   api::Limits limits;
 };

@@ -75,6 +75,38 @@ ConfigGroup storing() {
                           {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::min_free_bytes)}};
 }
 
+/// "https://example.com", without a path, as browsers write it.
+void check_origin(const std::string& item) {
+  const std::size_t scheme = item.find("://");
+  const bool whole = scheme != std::string::npos && item.find('/', scheme + 3) == std::string::npos;
+  if (item != "*" && !whole) expected("origins like https://example.com, or *");
+}
+
+void check_host(const std::string& item) {
+  if (item.find('/') != std::string::npos || item.find(':') != std::string::npos)
+    expected("hosts like example.com or *.example.com, or *");
+}
+
+ConfigGroup admitting() {
+  return {.title = "Admitting",
+          .rows = {on_off({"require-keys", "", "Ask for API keys on loopback, too"},
+                          &Config::access, &AccessConfig::require_keys),
+                   on_off({"insecure", "",
+                           "Ask for no API keys although other machines can connect"},
+                          &Config::access, &AccessConfig::insecure),
+                   list({"cors-origins", "LIST", "Sites whose pages may call from a browser, or *"},
+                        check_origin, &Config::cors_origins),
+                   list({"webhook-hosts", "LIST",
+                         "Hosts that webhooks may call: example.com, *.example.com or *"},
+                        check_host, &Config::webhooks, &WebhookConfig::allowed_hosts),
+                   on_off({"webhook-private", "",
+                           "Let webhooks call addresses of this machine and of private networks"},
+                          &Config::webhooks, &WebhookConfig::allow_private),
+                   number({"webhook-retry-seconds", "N",
+                           "Until the second try of a webhook, doubled for each further one"},
+                          {1, 3600}, &Config::webhooks, &WebhookConfig::retry_seconds)}};
+}
+
 ConfigGroup telling() {
   const Names<LogLevel> levels = {{"debug", LogLevel::debug},
                                   {"info", LogLevel::info},
@@ -119,7 +151,7 @@ ConfigGroup limits() {
 }  // namespace
 
 std::vector<ConfigGroup> config_groups() {
-  return {serving(), working(), storing(), telling(), limits()};
+  return {serving(), working(), storing(), admitting(), telling(), limits()};
 }
 
 void check_together(const Config& config) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "server/job_link.hpp"
+#include "server/job_list.hpp"
 #include "server/map_choice.hpp"
 #include "server/media_types.hpp"
 #include "server/result_routes.hpp"
@@ -26,12 +28,19 @@ void wait_for(const EventFeed& events, const std::string& id, std::chrono::secon
   if (feed) static_cast<void>(feed->wait_finished(std::chrono::steady_clock::now() + time));
 }
 
+/// The job that a call of the same request has made.
+JobRecord stored_job(JobStore& store, const std::string& id) {
+  std::optional<JobRecord> job = store.find(id);
+  if (!job) throw Error(ErrorCode::not_found, "The job was removed meanwhile; send it again.");
+  return std::move(*job);
+}
+
 Response post_job(const JobServices& services, const Request& request) {
   const std::string id = services.submissions.accept(request, false).id;
   const std::optional<int> wait = preferred_wait(request.header("Prefer"));
   const int seconds = std::min(wait.value_or(0), services.limits.max_wait_seconds);
   if (seconds > 0) wait_for(services.events, id, std::chrono::seconds(seconds));
-  const JobRecord job = find_job(services.store, id);
+  const JobRecord job = stored_job(services.store, id);
   const bool finished = wait && api::is_final(job.state);
   Response response = job_response(finished ? 200 : 202, job, services.events);
   response.headers.emplace_back("Location", api::job_path(id));
@@ -40,8 +49,9 @@ Response post_job(const JobServices& services, const Request& request) {
 }
 
 Response delete_job(const JobServices& services, const Request& request) {
+  static_cast<void>(find_job(services.store, request));
   const bool was_live = services.queue.cancel_or_remove(request.id);
-  if (was_live) return job_response(202, find_job(services.store, request.id), services.events);
+  if (was_live) return job_response(202, stored_job(services.store, request.id), services.events);
   Response response;
   response.status = 204;
   return response;
@@ -58,7 +68,7 @@ Response sync_response(const JobServices& services, const JobRecord& job, const 
 Response post_unwrap(const JobServices& services, const Request& request) {
   const std::string id = services.submissions.accept(request, true).id;
   wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds));
-  JobRecord job = find_job(services.store, id);
+  const JobRecord job = stored_job(services.store, id);
   Response response;
   try {
     response = sync_response(services, job, request);
@@ -71,18 +81,25 @@ Response post_unwrap(const JobServices& services, const Request& request) {
 
 }  // namespace
 
-JobRecord find_job(JobStore& store, const std::string& id) {
-  std::optional<JobRecord> job = store.find(id);
-  if (!job) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
+JobRecord find_job(JobStore& store, const Request& request) {
+  std::optional<JobRecord> job = store.find(request.id);
+  const bool seen = job && (request.caller.sees_all || job->owner == request.caller.owner);
+  if (!seen) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
   return std::move(*job);
 }
 
 void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
   const auto find = [services](const Request& request) {
-    return find_job(services.store, request.id);
+    return find_job(services.store, request);
   };
   routes.push_back({"POST", "/v1/jobs",
                     [services](const Request& request) { return post_job(services, request); }});
+  routes.push_back({"GET", "/v1/jobs", [services](const Request& request) {
+                      return list_jobs(services.store, request);
+                    }});
+  routes.push_back({"GET", "/v1/jobs/{id}/link", [services, find](const Request& request) {
+                      return get_link(find(request), services.links, request);
+                    }});
   routes.push_back({"PUT", "/v1/jobs/{id}",
                     [services](const Request& request) { return post_job(services, request); }});
   routes.push_back({"GET", "/v1/jobs/{id}", [services, find](const Request& request) {

@@ -8,6 +8,7 @@
 #include "server/job_store.hpp"
 #include "server/result_store.hpp"
 #include "server/router.hpp"
+#include "server/signed_link.hpp"
 #include "server/submissions.hpp"
 
 namespace unwrapd::server {
@@ -21,11 +22,12 @@ struct JobServices {
   EventStreams& streams;
   Submissions& submissions;
   ResultStore& results;
+  const LinkSigner& links;
   const api::Limits& limits;
 };
 
-/// Throws Error{not_found}.
-JobRecord find_job(JobStore& store, const std::string& id);
+/// The job of the path. Throws Error{not_found} when there is none, or none of the caller's.
+JobRecord find_job(JobStore& store, const Request& request);
 
 /// POST /v1/jobs and everything below /v1/jobs/{id} but the pictures.
 void add_job_routes(std::vector<Route>& routes, const JobServices& services);

@@ -61,7 +61,7 @@ Picture picture_of(PictureKind kind, const std::multimap<std::string, std::strin
 void add_picture_routes(std::vector<Route>& routes, JobStore& jobs, PictureStore& pictures) {
   const auto add = [&](std::string_view path, PictureKind kind) {
     routes.push_back({"GET", path, [&jobs, &pictures, kind](const Request& request) {
-                        return get_picture(pictures, find_job(jobs, request.id), kind, request);
+                        return get_picture(pictures, find_job(jobs, request), kind, request);
                       }});
   };
   add("/v1/jobs/{id}/layout.svg", PictureKind::layout_svg);

@@ -5,8 +5,10 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <string_view>
 
 #include "server/config.hpp"
+#include "server/keys_command.hpp"
 #include "server/log.hpp"
 #include "server/service.hpp"
 
@@ -39,6 +41,7 @@ void run(const Config& config, const Log& log) {
 }  // namespace
 
 int run_program(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "keys") return run_keys_command(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);
   if (line.task == Task::leave) return line.exit_code;
   const Log log(line.config.log_level);

@@ -3,6 +3,7 @@
 #include <exception>
 #include <optional>
 
+#include "api/error_table.hpp"
 #include "server/identity.hpp"
 
 namespace unwrapd::server {
@@ -46,7 +47,7 @@ Response Router::answer(Request request) const noexcept {
   try {
     return dispatch(request);
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::internal || error.code() == ErrorCode::storage_failed)
+    if (api::error_row(error.code()).status >= 500)
       log_.error("request failed", {{"job", request.id}, {"reason", error.what()}});
     return error_response(error, request.id);
   } catch (const std::exception& error) {  // the caller learns nothing of our insides
@@ -64,6 +65,7 @@ Response Router::dispatch(Request& request) const {
     if (!id) continue;
     if (route.method == method) {
       request.id = *id;
+      if (admit_) admit_(request, route.path);
       return route.handler(request);
     }
     allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);

@@ -2,6 +2,7 @@
 // From a request to its handler, and from an error to its answer: every handler runs inside
 // answer(), the one door at which what was thrown becomes a problem document.
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,9 +19,13 @@ struct Route {
   Handler handler;
 };
 
+/// Called before the handler with the path of its route: says who asks, or throws Error.
+using Admit = std::function<void(Request& request, std::string_view route)>;
+
 class Router {
  public:
-  Router(std::vector<Route> routes, const Log& log) : routes_(std::move(routes)), log_(log) {}
+  Router(std::vector<Route> routes, const Log& log, Admit admit = {})
+      : routes_(std::move(routes)), log_(log), admit_(std::move(admit)) {}
 
   /// Never throws. HEAD is answered as GET is; the caller leaves the body out.
   [[nodiscard]] Response answer(Request request) const noexcept;
@@ -30,6 +35,7 @@ class Router {
 
   std::vector<Route> routes_;
   const Log& log_;
+  const Admit admit_;
 };
 
 }  // namespace unwrapd::server

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/clock.hpp"
+#include "server/cors.hpp"
 #include "server/data_lock.hpp"
 #include "server/http_server.hpp"
 #include "server/info_routes.hpp"
@@ -12,12 +13,15 @@
 #include "server/periodic.hpp"
 #include "server/picture_routes.hpp"
 #include "server/sweeper.hpp"
+#include "server/webhooks.hpp"
 #include "server/worker_pool.hpp"
 
 namespace unwrapd::server {
 namespace {
 
+constexpr const char* kStoreFile = "jobs.sqlite";
 constexpr std::chrono::seconds kHeartbeat{10};
+constexpr std::chrono::seconds kWebhookPause{1};
 constexpr int kRequestThreads = 64;  // beside those of event streams
 
 HttpConfig http_config(const Config& config) {
@@ -36,25 +40,29 @@ struct Service::Parts {
       : config(given),
         lock(config.data),
         blobs(config.data, config.disk),
-        store(config.data / "jobs.sqlite"),
+        store(config.data / kStoreFile),
         queue(store, blobs, events, log,
               {.max_queue = config.limits.max_queue, .workers = config.workers}),
         streams(events, config.limits.max_streams),
-        submissions(queue, blobs, config.limits),
+        submissions(queue, blobs, config.limits, config.webhooks),
+        keys(config.data),
+        secret(secret_in(config.data / kSecretFile)),
+        links(secret),
+        access(keys, links, asks_for_keys(config.access, config.listen.host)),
+        cors(config.cors_origins),
+        webhooks(config.data / kStoreFile, secret, config.webhooks, log),
         results(blobs, config.limits),
         sweeper(store, blobs, log, std::chrono::seconds(config.keep_seconds)),
         pictures(blobs, config.limits),
-        router(routes(), log),
+        router(routes(), log,
+               [this](Request& request, std::string_view route) { access.admit(request, route); }),
         http(
-            http_config(config), [this](const Request& request) { return router.answer(request); },
+            http_config(config), [this](const Request& request) { return answer(request); },
             log) {
     queue.recover();
     blobs.sweep([&](const std::string& job) { return store.keeps_files(job); });
     blobs.room().on_shortage([this] { return evict_oldest(store, blobs); });
-    sweeping.emplace(
-        "sweeping", sweeper.pause(), [this] { sweeper.sweep_once(now_ms(), elapsed_ms()); }, log);
-    beating.emplace(
-        "prolonging leases", kHeartbeat, [this] { queue.beat(); }, log);
+    start_periodic(log);
     workers.emplace(queue, blobs, config.limits, log,
                     WorkerConfig{.workers = config.workers,
                                  .threads = config.threads,
@@ -62,9 +70,25 @@ struct Service::Parts {
     serving = std::jthread([this] { http.serve(); });
   }
 
+  Response answer(const Request& request) const {
+    std::optional<Response> early = cors.preflight(request);
+    Response response = early ? std::move(*early) : router.answer(request);
+    cors.allow(request, response);
+    return response;
+  }
+
+  void start_periodic(const Log& log) {
+    sweeping.emplace(
+        "sweeping", sweeper.pause(), [this] { sweeper.sweep_once(now_ms(), elapsed_ms()); }, log);
+    beating.emplace(
+        "prolonging leases", kHeartbeat, [this] { queue.beat(); }, log);
+    calling.emplace(
+        "calling webhooks", kWebhookPause, [this] { webhooks.call_due(now_ms()); }, log);
+  }
+
   std::vector<Route> routes() {
-    const JobServices services{store,   queue,       blobs,   events,
-                               streams, submissions, results, config.limits};
+    const JobServices services{store,       queue,   blobs, events,       streams,
+                               submissions, results, links, config.limits};
     std::vector<Route> all;
     add_job_routes(all, services);
     add_unwrap_route(all, services);
@@ -81,6 +105,12 @@ struct Service::Parts {
   JobQueue queue;
   EventStreams streams;
   Submissions submissions;
+  KeyStore keys;
+  const std::string secret;
+  const LinkSigner links;
+  Access access;
+  const Cors cors;
+  Webhooks webhooks;
   ResultStore results;
   Sweeper sweeper;
   PictureStore pictures;
@@ -89,6 +119,7 @@ struct Service::Parts {
   SolverCache solver_cache{config.memory, config.workers};
   std::optional<Periodic> sweeping;
   std::optional<Periodic> beating;
+  std::optional<Periodic> calling;
   std::optional<WorkerPool> workers;
   std::jthread serving;
 };

@@ -55,7 +55,7 @@ bool LinkSigner::is_signed(const Request& request) const {
   return request.query.contains(std::string(kSignatureParameter));
 }
 
-void LinkSigner::check(const Request& request, std::string_view /*route*/) const {
+void LinkSigner::check(const Request& request) const {
   const bool reads = request.method == "GET" || request.method == "HEAD";
   if (!reads) refuse("A signed link only reads; use an API key.");
   const std::string expires = parameter(request, kExpiresParameter);

@@ -28,7 +28,7 @@ class LinkSigner {
   [[nodiscard]] std::string sign(const std::string& path, std::int64_t expires) const;
   [[nodiscard]] bool is_signed(const Request& request) const;
   /// Throws Error{invalid_link} unless the link is for this, of this server and not expired.
-  void check(const Request& request, std::string_view route) const;
+  void check(const Request& request) const;
 
  private:
   [[nodiscard]] std::string signature(const std::string& path, const std::string& expires) const;

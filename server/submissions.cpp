@@ -63,6 +63,8 @@ Submission Submissions::receive(const Request& request, const std::string& uploa
   job.request_key = request.id.empty() ? idempotency_key(request) : request.id;
   job.owner = request.caller.owner;
   job.urgency = urgency(request);
+  job.webhook = request.header("Unwrapd-Webhook");
+  if (!job.webhook.empty()) static_cast<void>(parse_webhook(job.webhook, webhooks_));
   const UploadFolder folder{.path = blobs_.begin_upload(upload), .take = [&](std::int64_t bytes) {
                               blobs_.room().take_for_upload(upload, bytes);
                             }};

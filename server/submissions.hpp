@@ -7,19 +7,21 @@
 #include "server/blob_store.hpp"
 #include "server/http.hpp"
 #include "server/job_queue.hpp"
+#include "server/webhook_url.hpp"
 
 namespace unwrapd::server {
 
 class Submissions {
  public:
-  Submissions(JobQueue& queue, BlobStore& blobs, const api::Limits& limits)
-      : queue_(queue), blobs_(blobs), limits_(limits) {}
+  Submissions(JobQueue& queue, BlobStore& blobs, const api::Limits& limits,
+              const WebhookConfig& webhooks)
+      : queue_(queue), blobs_(blobs), limits_(limits), webhooks_(webhooks) {}
 
   /// synchronous: the sender waits, so the mesh must be small. Where the path has an id, it becomes
   /// the job's; a request by Idempotency-Key or by such an id may come again and gets the same job.
   /// Throws Error: queue_full, draining, unsupported_media_type, invalid_option, malformed_request,
   /// body_too_large, idempotency_conflict, too_many_jobs, quota_exceeded, storage_full,
-  /// storage_failed.
+  /// storage_failed, webhook_refused.
   JobRecord accept(const Request& request, bool synchronous);
 
  private:
@@ -28,6 +30,7 @@ class Submissions {
   JobQueue& queue_;
   BlobStore& blobs_;
   const api::Limits& limits_;
+  const WebhookConfig& webhooks_;
 };
 
 }  // namespace unwrapd::server

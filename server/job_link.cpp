@@ -1,0 +1,44 @@
+#include "server/job_link.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "server/clock.hpp"
+#include "server/query.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::array<std::string_view, 5> kFiles = {"result", "report", "layout.svg", "layout.png",
+                                                    "preview.png"};
+constexpr std::int64_t kUsualSeconds = 3600;
+constexpr std::int64_t kMostSeconds = 7 * 24 * 3600;
+constexpr std::int64_t kMsPerSecond = 1000;
+
+}  // namespace
+
+Response get_link(const JobRecord& job, const LinkSigner& links, const Request& request) {
+  std::string file(kFiles.front());
+  std::int64_t seconds = kUsualSeconds;
+  for (const auto& [name, text] : request.query) {
+    check_once(request, name);
+    if (name == "file") {
+      file = text;
+    } else if (name == "seconds") {
+      seconds = positive_number(name, text, kMostSeconds);
+    } else {
+      refuse_unknown(name);
+    }
+  }
+  if (std::ranges::count(kFiles, file) == 0)
+    refuse_parameter("file", "A job has no such file to link to; see /openapi.yaml.");
+  const std::int64_t expires_ms = now_ms() + seconds * kMsPerSecond;
+  const std::string path = api::job_path(job.id) + "/" + file;
+  const api::Json link = {{"url", links.sign(path, expires_ms / kMsPerSecond)},
+                          {"expires", rfc3339(expires_ms)}};
+  Response response = json_response(200, link.dump());
+  response.headers.emplace_back("Cache-Control", "no-store");
+  return response;
+}
+
+}  // namespace unwrapd::server
