@@ -38,12 +38,11 @@ TEST(Examples, OfJobsAreReadAndWrittenUnchanged) {
   }
 }
 
-TEST(Examples, OfProblemsHaveTheirRowsStatusAndTitle) {
-  for (const char* name :
-       {"not_found", "invalid_option", "invalid_constraint", "guarantee_failed", "queue_full"}) {
-    const Json json = Json::parse(example("problem_" + std::string(name) + ".json"));
+TEST(Examples, OfEveryProblemHaveTheirRowsStatusAndTitle) {
+  for (const ErrorRow& row : error_table()) {
+    const Json json = Json::parse(example("problem_" + std::string(row.name) + ".json"));
     EXPECT_EQ(problem(error_from_problem(json), json.value("job", "")), json);
-    EXPECT_EQ(json.at("code"), name);
+    EXPECT_EQ(json.at("code"), row.name);
   }
 }
 

@@ -3,9 +3,11 @@
 //
 //   node contract.mjs [path of unwrapd, else UNWRAPD_BIN]
 import {readFileSync} from 'node:fs';
+import {basename} from 'node:path';
 import {fileURLToPath} from 'node:url';
 
 import * as cases from './cases.mjs';
+import {kNotProvoked} from './codes.mjs';
 import {fuzz} from './fuzz.mjs';
 import * as limits from './limits.mjs';
 import {Run} from './run.mjs';
@@ -20,6 +22,19 @@ function examples(run) {
       : parseEvents(text).flatMap((event) => run.contract.checkNamed('JobEvent', event));
     run.expect(`example ${file}`, problems);
   }
+  const shown = new Set(run.contract.examples().map(({file}) => basename(file, '.json')));
+  run.expect('every code has an example',
+             run.contract.errorCodes().filter((code) => !shown.has(`problem_${code}`)));
+}
+
+/** Every code is provoked, but for those that are named with the reason. */
+function codes(run) {
+  const {codes: provoked} = run.contract;
+  const known = run.contract.errorCodes();
+  run.expect('every code was provoked or is named',
+             known.filter((code) => !provoked.has(code) && !(code in kNotProvoked)));
+  run.expect('what is named cannot be provoked',
+             Object.keys(kNotProvoked).filter((code) => provoked.has(code) || !known.includes(code)));
 }
 
 /** Runs one group; an exception is one failure and does not stop the others. */
@@ -48,6 +63,7 @@ async function main() {
     await group(run, name, () => action(run, binary));
   }
   run.expect('every documented status was shown', run.contract.unseen());
+  codes(run);
   console.log(`${run.passed} passed, ${run.failed} failed`);
   process.exitCode = run.failed === 0 ? 0 : 1;
 }

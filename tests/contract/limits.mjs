@@ -56,6 +56,14 @@ export function tinyLimits(run, binary) {
   });
 }
 
+export function littleMemory(run, binary) {
+  const flags = ['--workers', '1', '--memory-limit', '1000', '--max-vertices', '30'];
+  return withServer(binary, flags, async ({base}) => {
+    await failure(run, base, {body: meshes.glb(8), code: 'too_many_vertices', status: 413});
+    await failure(run, base, {body: meshes.glb(2), code: 'too_much_memory', status: 413});
+  });
+}
+
 export function smallSyncLimit(run, binary) {
   return withServer(binary, ['--workers', '1', '--max-sync-faces', '20'], async ({base}) => {
     const problem = await run.json(base, 'unwrap',

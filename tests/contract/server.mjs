@@ -7,7 +7,7 @@ import readline from 'node:readline';
 
 /**
  * Starts unwrapd and resolves, once it has printed its address, to
- * {base, terminate, stop}: terminate() only sends SIGTERM, stop() also waits and cleans up.
+ * {base, data, pid, terminate, stop}: terminate() only sends SIGTERM, stop() also waits and cleans up.
  */
 export async function startServer(binary, flags = []) {
   const data = mkdtempSync(join(tmpdir(), 'unwrapd-contract-'));
@@ -25,7 +25,7 @@ export async function startServer(binary, flags = []) {
     rmSync(data, {recursive: true, force: true});
     return code;
   };
-  return {base, stop, exited, terminate: () => child.kill('SIGTERM'),
+  return {base, data, pid: child.pid, stop, exited, terminate: () => child.kill('SIGTERM'),
           log: () => Buffer.concat(log).toString()};
 }
 

@@ -18,6 +18,7 @@ export class Contract {
     addFormats(this.ajv);
     this.ajv.addSchema({...this.document, $id: 'contract'});
     this.seen = new Set();  // "getJob 200"
+    this.codes = new Set();  // of problems, wherever they stood
     this.validators = new Map();
   }
 
@@ -133,6 +134,7 @@ export class Contract {
     } catch (error) {
       return [`the body is not JSON: ${error.message}`];
     }
+    this.noteCodes(json);
     const problems = this.check(pointer, json);
     if (!answer.headers['content-type'].startsWith('application/problem+json')) return problems;
     if (json.status !== answer.status) problems.push(`the problem says status ${json.status}`);
@@ -142,6 +144,13 @@ export class Contract {
       problems.push(`the code ${json.code} is not documented for ${answer.status}: ${json.detail}`);
     }
     return problems;
+  }
+
+  /** Remembers the problems in a body: itself, or those of the jobs in it. */
+  noteCodes(value) {
+    if (value === null || typeof value !== 'object') return;
+    if (String(value.type).startsWith('urn:unwrapd:problem:')) this.codes.add(value.code);
+    Object.values(value).forEach((child) => this.noteCodes(child));
   }
 
   errorCodes() {
