@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 #include "core/atlas/labels.hpp"
@@ -18,10 +19,9 @@
 namespace unwrapd {
 namespace {
 
-constexpr std::size_t kBatch = 4;       // unions tried at once
-constexpr double kDistortionPrice = 5;  // of the whole budget, in borders of a whole patch
-constexpr double kWideShare = 0.2;      // what the wider patch's share of border counts
-constexpr double kLast = 1e99;          // the key of unions that failed before
+constexpr std::size_t kBatch = 4;   // unions tried at once
+constexpr double kWideShare = 0.2;  // what the wider patch's share of border counts
+constexpr double kLast = 1e99;      // the key of unions that failed before
 
 /// What is known of a pair of neighbours.
 struct Promise {
@@ -33,46 +33,21 @@ struct Promise {
 struct Union {
   double key = 0;
   Index a = 0, b = 0;
-  std::shared_ptr<Patch> tried = {};  ///< nothing: not yet
+  std::shared_ptr<Joined> tried = {};  ///< nothing: not yet
 
   bool operator>(const Union& other) const {
     return std::tie(key, a, b) > std::tie(other.key, other.a, other.b);
   }
 };
 
-/// One way to lay b beside a: turned and moved as their common border asks (least squares).
-struct Motion {
-  double cosine = 1, sine = 0;
-  Vec2 from = Vec2::Zero(), to = Vec2::Zero();
-
-  [[nodiscard]] Vec2 operator()(const Vec2& u) const {
-    const Vec2 x = u - from;
-    return to + Vec2(cosine * x.x() - sine * x.y(), sine * x.x() + cosine * x.y());
-  }
-};
-
-Motion motion_between(std::span<const std::array<Vec2, 2>> pairs) {
-  Motion motion;
-  for (const auto& [b, a] : pairs) {
-    motion.from += b / static_cast<double>(pairs.size());
-    motion.to += a / static_cast<double>(pairs.size());
-  }
-  double c = 0, s = 0;
-  for (const auto& [b, a] : pairs) {
-    const Vec2 x = b - motion.from, y = a - motion.to;
-    c += x.dot(y);
-    s += x.x() * y.y() - x.y() * y.x();
-  }
-  const double norm = std::hypot(c, s);
-  if (norm > 0) motion.cosine = c / norm, motion.sine = s / norm;
-  return motion;
-}
-
 class Merging {
  public:
-  Merging(const Sheet& sheet, std::span<const char> open, std::vector<Patch> patches,
-          const MergeRules& rules)
-      : sheet_(sheet), open_(open), rules_(rules), patches_(std::move(patches)) {
+  Merging(const Joiner& joiner, const Sheet& sheet, Partition from, const MergeRules& rules)
+      : joiner_(joiner),
+        sheet_(sheet),
+        rules_(rules),
+        open_(std::move(from.open)),
+        patches_(std::move(from.patches)) {
     alive_.assign(patches_.size(), 1);
     count_ = first_count_ = patches_.size();
     for (const Patch& patch : patches_) total_ += patch.excess;
@@ -95,10 +70,10 @@ class Merging {
     }
   }
 
-  [[nodiscard]] std::vector<Patch> take() {
-    std::vector<Patch> left;
+  [[nodiscard]] Partition take() {
+    Partition left{{}, std::move(open_)};
     for (std::size_t k = 0; k < patches_.size(); ++k)
-      if (alive_[k] != 0) left.push_back(std::move(patches_[k]));
+      if (alive_[k] != 0) left.patches.push_back(std::move(patches_[k]));
     return left;
   }
 
@@ -114,11 +89,10 @@ class Merging {
       const Index other = twin == kNoTwin ? -1 : owner[face_of(twin)];
       if (own < 0 || own == other) continue;
       perimeter_[own] += sheet_.length[h];
-      if (other >= 0 && is_glued(h)) borders_[own][other] += sheet_.length[h];
+      if (other >= 0 && open_[h] == 0) borders_[own][other] += sheet_.length[h];
     }
   }
 
-  [[nodiscard]] bool is_glued(Index h) const { return open_.empty() || open_[h] == 0; }
   [[nodiscard]] bool is_alive(const Union& u) const { return alive_[u.a] != 0 && alive_[u.b] != 0; }
 
   /// Lower is better.
@@ -126,7 +100,7 @@ class Merging {
     const double border = borders_[a].at(b);
     const double narrow = std::min(perimeter_[a], perimeter_[b]);
     const double wide = std::max(perimeter_[a], perimeter_[b]);
-    const double price = rules_.budget > 0 ? kDistortionPrice * rise / rules_.budget : 0;
+    const double price = rules_.budget > 0 ? rules_.price * rise / rules_.budget : 0;
     return rounded(price - border / narrow - kWideShare * border / wide);
   }
 
@@ -143,69 +117,40 @@ class Merging {
       if (is_alive(queue_.top())) batch.push_back(queue_.top());
       queue_.pop();
     }
-    std::vector<TrialResult> results(batch.size());
     executor.for_each_block(static_cast<int>(batch.size()), [&](int k) {
       Union& own = batch[static_cast<std::size_t>(k)];
-      own.tried = std::make_shared<Patch>();
-      results[static_cast<std::size_t>(k)] = attempt(own, *own.tried);
+      own.tried = std::make_shared<Joined>(
+          joiner_.join(patches_[own.a], patches_[own.b], open_, rules_.cap, rules_.stop));
     });
     throw_if_cancelled(rules_.stop);
-    for (std::size_t k = 0; k < batch.size(); ++k) judge(std::move(batch[k]), results[k]);
+    for (Union& both : batch) judge(std::move(both));
   }
 
-  /// The corners where b lies against a, each in both maps.
-  [[nodiscard]] std::vector<std::array<Vec2, 2>> common_border(const Region& a,
-                                                               const Region& b) const {
-    std::vector<Index> rank(sheet_.mesh.faces.size(), -1);
-    for (std::size_t k = 0; k < a.faces.size(); ++k) rank[a.faces[k]] = static_cast<Index>(k);
-    std::vector<std::array<Vec2, 2>> pairs;
-    for (std::size_t k = 0; k < b.faces.size(); ++k)
-      for (Index i = 0; i < 3; ++i) {
-        const Index h = 3 * b.faces[k] + i, twin = sheet_.halfedges.twin[h];
-        if (twin == kNoTwin || rank[face_of(twin)] < 0 || !is_glued(h)) continue;
-        const CornerUv& across = a.uv[rank[face_of(twin)]];
-        pairs.push_back({b.uv[k][i], across[next_halfedge(twin) % 3]});
-        pairs.push_back({b.uv[k][(i + 1) % 3], across[twin % 3]});
-      }
-    return pairs;
-  }
-
-  [[nodiscard]] TrialResult attempt(const Union& both, Patch& joined) const {
-    const Patch &a = patches_[both.a], &b = patches_[both.b];
-    const Motion beside = motion_between(common_border(a.region, b.region));
-    joined.region = a.region;
-    joined.area = a.area + b.area;
-    for (std::size_t k = 0; k < b.region.faces.size(); ++k) {
-      const auto& [p, q, r] = b.region.uv[k];
-      joined.region.faces.push_back(b.region.faces[k]);
-      joined.region.uv.push_back({beside(p), beside(q), beside(r)});
-    }
-    const double before = (a.excess + b.excess).worst();
-    const TrialRules rules{.most_excess = std::max(rules_.cap * joined.area, before),
-                           .stop = rules_.stop};
-    return try_map(sheet_, open_, rules, joined.region);
-  }
-
-  void judge(Union both, const TrialResult& result) {
+  void judge(Union both) {
     Promise& known = known_[{both.a, both.b}];
-    const Excess rise = result.excess - patches_[both.a].excess - patches_[both.b].excess;
-    known = {std::max(rise.worst(), 0.0), result.verdict != Verdict::sound,
-             result.verdict == Verdict::impossible};
-    if (result.verdict != Verdict::sound) return;
-    both.tried->excess = result.excess;
-    both.tried->is_sound = true;
+    const Joined& joined = *both.tried;
+    const Excess rise = joined.patch.excess - patches_[both.a].excess - patches_[both.b].excess;
+    known = {std::max(rise.worst(), 0.0), !joined.patch.is_sound,
+             joined.verdict == Verdict::impossible};
+    if (!joined.patch.is_sound) return;
     both.key = key(both.a, both.b, known.rise);
     queue_.push(std::move(both));
   }
 
   void accept(const Union& best) {
     const Excess after =
-        total_ + best.tried->excess - patches_[best.a].excess - patches_[best.b].excess;
+        total_ + best.tried->patch.excess - patches_[best.a].excess - patches_[best.b].excess;
     if (after.worst() > std::max(rules_.budget, total_.worst())) return;
     total_ = after;
     const auto joined = static_cast<Index>(patches_.size());
-    perimeter_.push_back(perimeter_[best.a] + perimeter_[best.b] - 2 * borders_[best.a].at(best.b));
-    patches_.push_back(std::move(*best.tried));
+    double slit = 0;
+    for (const Index h : best.tried->slit) {
+      open_[h] = 1;
+      slit += sheet_.length[h];
+    }
+    perimeter_.push_back(perimeter_[best.a] + perimeter_[best.b] - 2 * borders_[best.a].at(best.b) +
+                         slit);
+    patches_.push_back(std::move(best.tried->patch));
     alive_.push_back(1);
     borders_.push_back(joined_borders(best.a, best.b));
     for (const Index part : {best.a, best.b}) {
@@ -242,9 +187,10 @@ class Merging {
     propose(joined, other, promise);
   }
 
+  const Joiner& joiner_;
   const Sheet& sheet_;
-  std::span<const char> open_;
   const MergeRules& rules_;
+  std::vector<char> open_;
   std::vector<Patch> patches_;  ///< those that were merged are dead and empty
   std::vector<char> alive_;
   std::vector<std::map<Index, double>> borders_;  ///< lengths to each neighbour
@@ -257,10 +203,9 @@ class Merging {
 
 }  // namespace
 
-std::vector<Patch> merge_patches(const Sheet& sheet, std::span<const char> open,
-                                 std::vector<Patch> patches, const MergeRules& rules,
-                                 Executor& executor) {
-  Merging merging(sheet, open, std::move(patches), rules);
+Partition merge_patches(const Joiner& joiner, const Sheet& sheet, Partition from,
+                        const MergeRules& rules, Executor& executor) {
+  Merging merging(joiner, sheet, std::move(from), rules);
   merging.run(executor);
   return merging.take();
 }

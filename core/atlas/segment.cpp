@@ -6,6 +6,7 @@
 // one, so this ends.
 #include "core/atlas/segment.hpp"
 
+#include <array>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -24,13 +25,29 @@ constexpr double kRefinement = 0.3;      // of flatness, each time a patch has n
 constexpr int kRefinements = 4;          // then the patch falls into its triangles
 constexpr int kSmoothingPasses = 3;
 constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
-constexpr double kMergeBegin = 0.3;    // share of the time
-constexpr double kCapOfOnePatch = 4;   // in shares of what is allowed of all
+constexpr std::array kPrices = {5.0, 1.0, 20.0};  // see MergeRules
+constexpr double kCostOfAChart = 0.1;
+constexpr double kMergeBegin = 0.3;   // share of the time
+constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
 
 Excess total_of(std::span<const Patch> patches) {
   Excess total;
   for (const Patch& patch : patches) total += patch.excess;
   return total;
+}
+
+/// What a partition costs: its seams (the sheet's area is 1), and something for each chart.
+double cost_of(const Sheet& sheet, const Partition& partition) {
+  std::vector<Index> owner(sheet.mesh.faces.size());
+  for (std::size_t k = 0; k < partition.patches.size(); ++k)
+    for (const Index t : partition.patches[k].region.faces) owner[t] = static_cast<Index>(k);
+  double seam = 0;
+  for (std::size_t h = 0; h < partition.open.size(); ++h) {
+    const Index twin = sheet.halfedges.twin[h];
+    if (twin == kNoTwin) continue;
+    if (partition.open[h] != 0 || owner[face_of(twin)] != owner[h / 3]) seam += sheet.length[h] / 2;
+  }
+  return rounded(seam + kCostOfAChart * static_cast<double>(partition.patches.size()));
 }
 
 /// The faces of each label with a map of their own, from their projection.
@@ -89,25 +106,46 @@ std::vector<Patch> over_segment(const Sheet& sheet, const SegmentRules& rules, E
   }
 }
 
+/// The cheapest of several greedy merges that weigh distortion against border differently.
+Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& rules,
+                 Executor& executor) {
+  const double budget = rules.max_distortion - 2;
+  const Joiner joiner(sheet);
+  Partition best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < kPrices.size(); ++k) {
+    const auto tell = [&](double share) {
+      const double done = (static_cast<double>(k) + share) / static_cast<double>(kPrices.size());
+      if (rules.on_progress)
+        rules.on_progress(Stage::merge, kMergeBegin + (1 - kMergeBegin) * done);
+    };
+    tell(0);
+    const MergeRules merging{.budget = budget,
+                             .cap = kCapOfOnePatch * budget,
+                             .price = kPrices[k],
+                             .on_progress = tell,
+                             .stop = rules.stop};
+    Partition own = merge_patches(joiner, sheet, from, merging, executor);
+    const double cost = cost_of(sheet, own);
+    if (cost >= least) continue;
+    least = cost;
+    best = std::move(own);
+  }
+  return best;
+}
+
 }  // namespace
 
-std::vector<Region> segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
-  const double budget = rules.max_distortion - 2;
+Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
   const auto tell = [&](Stage stage, double share) {
     if (rules.on_progress) rules.on_progress(stage, share);
   };
   tell(Stage::segment, 0);
-  std::vector<Patch> patches = over_segment(sheet, rules, executor);
-  const auto merged = [&](double share) {
-    tell(Stage::merge, kMergeBegin + (1 - kMergeBegin) * share);
-  };
-  const MergeRules merging{
-      .budget = budget, .cap = kCapOfOnePatch * budget, .on_progress = merged, .stop = rules.stop};
-  merged(0);
-  patches = merge_patches(sheet, {}, std::move(patches), merging, executor);
-  std::vector<Region> regions;
-  for (Patch& patch : patches) regions.push_back(std::move(patch.region));
-  return regions;
+  Partition best{over_segment(sheet, rules, executor), std::vector<char>(sheet.length.size(), 0)};
+  best = merged(sheet, best, rules, executor);
+  Segments segments{{}, std::move(best.open)};
+  for (Patch& patch : best.patches) segments.regions.push_back(std::move(patch.region));
+  return segments;
 }
 
 }  // namespace unwrapd

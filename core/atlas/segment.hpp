@@ -18,9 +18,14 @@ struct SegmentRules {
   std::stop_token stop = {};
 };
 
+struct Segments {
+  std::vector<Region> regions;
+  std::vector<char> open;  ///< one a half-edge of the sheet, 1: a seam inside a region
+};
+
 /// Every face of the sheet is in exactly one region; each region is a disk (holes allowed) whose
 /// map has no flip and no overlap. Ends with single triangles in the worst case. The same for any
 /// executor, and for the sheet of a mesh that was moved or scaled. Throws Error{cancelled}.
-std::vector<Region> segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor);
+Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor);
 
 }  // namespace unwrapd

@@ -58,7 +58,8 @@ class Account {
 };
 
 /// The regions as charts; their maps are what solving may begin with.
-std::vector<Chart> charts_of(const Chart& component, std::span<const Region> regions) {
+std::vector<Chart> charts_of(const Chart& component, const Segments& segments) {
+  const std::vector<Region>& regions = segments.regions;
   std::vector<Index> owner(component.mesh.faces.size());
   std::vector<CornerUv> uv(owner.size());
   for (std::size_t k = 0; k < regions.size(); ++k)
@@ -68,7 +69,8 @@ std::vector<Chart> charts_of(const Chart& component, std::span<const Region> reg
     }
   Halfedges cut = component.halfedges;
   for (std::size_t h = 0; h < cut.twin.size(); ++h)
-    if (cut.twin[h] != kNoTwin && owner[face_of(cut.twin[h])] != owner[h / 3])
+    if (cut.twin[h] != kNoTwin &&
+        (segments.open[h] != 0 || owner[face_of(cut.twin[h])] != owner[h / 3]))
       cut.twin[h] = kNoTwin;
   std::vector<Chart> charts;
   for (ChartPart& part : parts_of(component, cut)) {
@@ -114,9 +116,9 @@ class Cutter {
   void take_apart(Chart component, bool whole) {
     const double bound = options_.max_distortion.value_or(kDefaultDistortion);
     const Sheet sheet = make_sheet(component.mesh, component.halfedges);
-    const std::vector<Region> regions = segment(sheet, account_.rules(bound, component), executor_);
-    segmented += !whole || regions.size() > 1 ? 1 : 0;
-    for (Chart& chart : charts_of(component, regions)) charts.push_back(std::move(chart));
+    const Segments segments = segment(sheet, account_.rules(bound, component), executor_);
+    segmented += !whole || segments.regions.size() > 1 ? 1 : 0;
+    for (Chart& chart : charts_of(component, segments)) charts.push_back(std::move(chart));
   }
 
   const SegmentOptions& options_;
