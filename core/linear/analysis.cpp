@@ -12,8 +12,6 @@ namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-std::size_t packed_size(std::size_t n) { return n * (n + 1) / 2; }
-
 /// The matrix's entries by new columns.
 void list_entries(const SparseMatrix& lower, Analysis& analysis) {
   const std::vector<Index>& position = analysis.nodes.position;
@@ -35,19 +33,6 @@ void list_entries(const SparseMatrix& lower, Analysis& analysis) {
     analysis.entry_row[to] = ends.second;
     analysis.entry_source[to] = p;
   });
-}
-
-/// Updates pile up: a supernode takes those of its children off the pile and puts its own there.
-std::size_t most_pending(const Supernodes& nodes) {
-  std::vector<std::size_t> pile;
-  std::size_t size = 0, most = 0;
-  for (std::size_t s = 0; s < nodes.count(); ++s) {
-    for (Index c = 0; c < nodes.child_count[s]; ++c) size -= pile.back(), pile.pop_back();
-    pile.push_back(packed_size(nodes.below(s).size()));
-    size += pile.back();
-    most = std::max(most, size);
-  }
-  return most;
 }
 
 /// The pattern of a matrix of pairs, one row a pair.
@@ -86,17 +71,34 @@ std::shared_ptr<const Analysis> complete(Supernodes nodes, const SparseMatrix& l
   analysis.panel_begin.assign(1, 0);
   for (std::size_t s = 0; s < analysis.nodes.count(); ++s)
     analysis.panel_begin.push_back(analysis.panel_begin.back() + analysis.shape(s).size());
-  analysis.pending_size = most_pending(analysis.nodes);
+  analysis.pending_size = most_pending(analysis.nodes, {0, analysis.nodes.count()});
+  std::vector<std::size_t> weight;
+  for (std::size_t s = 0; s < analysis.nodes.count(); ++s)
+    weight.push_back(analysis.shape(s).size());
+  analysis.branches = branches_of(analysis.nodes, weight);
   return std::make_shared<const Analysis>(std::move(analysis));
 }
 
 }  // namespace
 
+/// Updates pile up: a supernode takes those of its children off the pile and puts its own there.
+std::size_t most_pending(const Supernodes& nodes, Branch branch) {
+  std::vector<std::size_t> pile;
+  std::size_t size = 0, most = 0;
+  for (std::size_t s = branch.first; s < branch.end; ++s) {
+    for (Index c = 0; c < nodes.child_count[s]; ++c) size -= pile.back(), pile.pop_back();
+    pile.push_back(packed_size(nodes.below(s).size()));
+    size += pile.back();
+    most = std::max(most, size);
+  }
+  return most;
+}
+
 std::size_t Analysis::bytes() const {
   const std::size_t numbers = nodes.order.size() + nodes.position.size() + nodes.first.size() +
                               nodes.child_count.size() + nodes.row.size() + entry_begin.size() +
                               entry_row.size() + entry_source.size();
-  return sizeof(Index) * numbers +
+  return sizeof(Index) * (numbers + branches.shared.size()) +
          sizeof(std::size_t) * (nodes.row_begin.size() + panel_begin.size());
 }
 
@@ -106,7 +108,7 @@ std::size_t Analysis::scratch_bytes() const {
     const std::size_t size = nodes.pivots(s) + nodes.below(s).size();
     front = std::max(front, size * (size + nodes.pivots(s)));
   }
-  return sizeof(double) * (front + pending_size);
+  return 2 * sizeof(double) * (front + pending_size);  // two threads at least
 }
 
 std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/linear/branches.hpp"
 #include "core/linear/front_panel.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/linear/supernodal.hpp"
@@ -15,6 +16,7 @@ namespace unwrapd {
 /// Immutable: threads may share it.
 struct Analysis {
   Supernodes nodes;
+  Branches branches;  ///< of the supernodes, by the sizes of their panels
   /// Column k of the reordered matrix: entry_begin[k] .. entry_begin[k+1]-1 of the two lists.
   std::vector<Index> entry_begin;
   std::vector<Index> entry_row;          ///< in the new order, not above the diagonal
@@ -33,6 +35,12 @@ struct Analysis {
     return {nodes.pivots(s), nodes.below(s).size()};
   }
 };
+
+/// Numbers of an update of n rows: its lower triangle.
+constexpr std::size_t packed_size(std::size_t n) { return n * (n + 1) / 2; }
+
+/// The most numbers that the updates of a subtree ever occupy at once.
+std::size_t most_pending(const Supernodes& nodes, Branch branch);
 
 /// lower: the lower triangle, compressed.
 std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/executor.hpp"
 #include "core/linear/analysis.hpp"
 #include "core/linear/factor.hpp"
 
@@ -17,8 +18,11 @@ class Factor final : public RealSystem {
 
   /// Factors the matrix, of the pattern analysed, in the memory of the one before. False when it is
   /// not positive definite in double precision: nothing may be solved then until the next one is.
+  [[nodiscard]] bool refill(const SparseMatrix& lower, Executor& executor);
   [[nodiscard]] bool refill(const SparseMatrix& lower);
 
+  /// The same bits for any executor. Thread-safe, but for an executor that is not.
+  void solve(std::span<Vec2> b, Executor& executor) const;
   void solve(std::span<Vec2> b) const override;
 
   /// While it is refilled, its analysis included.
@@ -29,20 +33,17 @@ class Factor final : public RealSystem {
 
   /// One right-hand side of a matrix of pairs (analyse_pairs()): b[v] has the unknowns 2v, 2v + 1.
   /// Thread-safe.
+  void solve_pairs(std::span<Vec2> b, Executor& executor) const;
   void solve_pairs(std::span<Vec2> b) const;
 
  private:
-  struct Workspace;
-  void forward(std::size_t s, const Workspace& work, std::span<Vec2> x) const;
-  void backward(std::size_t s, const Workspace& work, std::span<Vec2> x) const;
-  [[nodiscard]] std::size_t tallest() const;
-  [[nodiscard]] const double* panel(std::size_t s) const;
-
   std::shared_ptr<const Analysis> analysis_;
   std::unique_ptr<double[]> panels_;
 };
 
 /// Nothing when the matrix, of the pattern analysed, is not positive definite in double precision.
+std::unique_ptr<Factor> try_factor(std::shared_ptr<const Analysis> analysis,
+                                   const SparseMatrix& lower, Executor& executor);
 std::unique_ptr<Factor> try_factor(std::shared_ptr<const Analysis> analysis,
                                    const SparseMatrix& lower);
 

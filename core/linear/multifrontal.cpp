@@ -6,6 +6,7 @@
 #include "core/linear/multifrontal.hpp"
 
 #include <algorithm>
+#include <new>
 
 #include "core/linear/front.hpp"
 
@@ -14,28 +15,43 @@ namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-std::size_t packed_size(std::size_t n) { return n * (n + 1) / 2; }
+/// What a supernode leaves to its parent.
+struct Update {
+  std::size_t supernode;
+  const double* numbers;
+  bool is_on_pile;  ///< of the factorisation that is at it
+};
 
 class Factorisation {
  public:
-  Factorisation(const Analysis& analysis, const double* values)
+  Factorisation(const Analysis& analysis, const double* values, double* panels)
       : analysis_(analysis),
         nodes_(analysis.nodes),
         values_(values),
-        local_row_(nodes_.order.size()),
-        pile_(std::make_unique_for_overwrite<double[]>(analysis.pending_size)) {}
+        panels_(panels),
+        local_row_(std::make_unique_for_overwrite<Index[]>(nodes_.order.size())) {}
+
+  /// Room for what waits at any time.
+  void reserve(std::size_t numbers) { pile_ = std::make_unique_for_overwrite<double[]>(numbers); }
 
   /// False on a bad pivot.
-  bool run(double* panels) {
-    for (std::size_t s = 0; s < nodes_.count(); ++s) {
-      front_.reset(analysis_.shape(s));
-      number_rows(s);
-      add_entries(s);
-      for (Index c = 0; c < nodes_.child_count[s]; ++c) add_update();
-      if (!front_.factor(panels + analysis_.panel_begin[s])) return false;
-      keep_update(s);
-    }
+  [[nodiscard]] bool eliminate(std::size_t s) {
+    front_.reset(analysis_.shape(s));
+    number_rows(s);
+    add_entries(s);
+    for (Index c = 0; c < nodes_.child_count[s]; ++c) add_update();
+    if (!front_.factor(panels_ + analysis_.panel_begin[s])) return false;
+    keep_update(s);
     return true;
+  }
+
+  /// As if supernode s had been eliminated here.
+  void take(std::size_t s, const double* update) { pending_.push_back({s, update, false}); }
+
+  /// A copy of what the last supernode left.
+  [[nodiscard]] std::vector<double> leave() const {
+    const double* const end = pile_.get() + top_;
+    return {pending_.back().numbers, end};
   }
 
  private:
@@ -58,12 +74,13 @@ class Factorisation {
 
   /// Adds the update on top of the pile to the front.
   void add_update() {
-    const std::span<const Index> rows = nodes_.below(pending_.back());
+    const Update update = pending_.back();
+    const std::span<const Index> rows = nodes_.below(update.supernode);
     pending_.pop_back();
-    top_ -= packed_size(rows.size());
+    if (update.is_on_pile) top_ -= packed_size(rows.size());
     rows_in_front_.resize(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) rows_in_front_[i] = local_row_[at(rows[i])];
-    const double* from = pile_.get() + top_;
+    const double* from = update.numbers;
     for (std::size_t j = 0; j < rows.size(); ++j) {
       const std::size_t column = at(rows_in_front_[j]);
       double* to = front_.diagonal(column) - column;
@@ -74,27 +91,82 @@ class Factorisation {
   void keep_update(std::size_t s) {
     const std::size_t size = nodes_.below(s).size();
     double* to = pile_.get() + top_;
+    pending_.push_back({s, to, true});
     for (std::size_t j = 0; j < size; ++j)
       to = std::copy_n(front_.diagonal(front_.update_begin() + j), size - j, to);
     top_ += packed_size(size);
-    pending_.push_back(s);
   }
 
   const Analysis& analysis_;
   const Supernodes& nodes_;
   const double* values_;
+  double* panels_;
   Front front_;
-  std::vector<Index> local_row_;      ///< where in the front a row is
-  std::vector<Index> rows_in_front_;  ///< of the update being added
-  std::vector<std::size_t> pending_;  ///< the supernodes whose updates lie on the pile
+  std::unique_ptr<Index[]> local_row_;  ///< where in the front a row is
+  std::vector<Index> rows_in_front_;    ///< of the update being added
+  std::vector<Update> pending_;         ///< in the order in which parents take them, last first
   std::unique_ptr<double[]> pile_;
   std::size_t top_ = 0;
 };
 
+/// A subtree, factored by itself: what its root leaves.
+struct Grown {
+  std::vector<double> update;
+  bool is_definite = false;
+  bool has_memory = true;
+};
+
+class Tree {
+ public:
+  Tree(const Analysis& analysis, const double* values, double* panels)
+      : analysis_(analysis), values_(values), panels_(panels) {}
+
+  bool factor(Executor& executor) {
+    const std::vector<Branch>& all = analysis_.branches.all;
+    grown_.resize(all.size());
+    executor.for_each_block(static_cast<int>(all.size()),
+                            [&](int b) { grow(all[at(b)], grown_[at(b)]); });
+    for (const Grown& grown : grown_)
+      if (!grown.has_memory) throw std::bad_alloc();
+    return std::ranges::all_of(grown_, &Grown::is_definite) && factor_trunk();
+  }
+
+ private:
+  void grow(const Branch& branch, Grown& grown) const try {
+    Factorisation work(analysis_, values_, panels_);
+    work.reserve(most_pending(analysis_.nodes, branch));
+    for (std::size_t s = branch.first; s < branch.end; ++s)
+      if (!work.eliminate(s)) return;
+    grown.update = work.leave();
+    grown.is_definite = true;
+  } catch (const std::bad_alloc&) {  // tasks do not throw
+    grown.has_memory = false;
+  }
+
+  bool factor_trunk() {
+    Factorisation work(analysis_, values_, panels_);
+    work.reserve(analysis_.pending_size);
+    bool is_definite = true;
+    analysis_.branches.for_each_of_trunk(
+        analysis_.nodes.count(),
+        [&](std::size_t s) { is_definite = is_definite && work.eliminate(s); },
+        [&](std::size_t b) {
+          work.take(analysis_.branches.all[b].root(), grown_[b].update.data());
+        });
+    return is_definite;
+  }
+
+  const Analysis& analysis_;
+  const double* values_;
+  double* panels_;
+  std::vector<Grown> grown_;
+};
+
 }  // namespace
 
-bool factor_multifrontal(const Analysis& analysis, const double* values, double* panels) {
-  return Factorisation(analysis, values).run(panels);
+bool factor_multifrontal(const Analysis& analysis, const double* values, double* panels,
+                         Executor& executor) {
+  return Tree(analysis, values, panels).factor(executor);
 }
 
 }  // namespace unwrapd

@@ -33,34 +33,38 @@ SparseMatrix free_matrix(const Disk& disk, const Holds& holds, const FreeVertice
 }
 
 std::shared_ptr<const Factor> factored(const Disk& disk, const Holds& holds,
-                                       const FreeVertices& free) {
+                                       const FreeVertices& free, Executor& executor) {
   const SparseMatrix lower = free_matrix(disk, holds, free);
   const Content pattern = Content("analysis").add(disk.connectivity).add(free.slot);
   const auto analysis = kept(disk, pattern, [&] { return analyse(lower); });
   check_memory(disk, analysis->job_bytes());
-  return definite(try_factor(analysis, lower));
+  return definite(try_factor(analysis, lower, executor));
 }
 
 }  // namespace
 
-GlobalStep::GlobalStep(const Disk& disk, const Holds& holds)
-    : free_(free_vertices(disk.positions.size(), holds)) {
+GlobalStep::GlobalStep(const Disk& disk, const Holds& holds, Executor* executor)
+    : free_(free_vertices(disk.positions.size(), holds)), executor_(executor) {
   if (free_.count == 0) return;
   std::vector<Index> spring;
   std::vector<double> weight;
   for (const Spring& s : holds.springs) spring.push_back(s.vertex), weight.push_back(s.weight);
   const Content content =
       Content("global step").add(disk.content).add(free_.slot).add(spring).add(weight);
-  system_ = kept(disk, content, [&] { return factored(disk, holds, free_); });
+  SerialExecutor serial;
+  Executor& runs = executor_ != nullptr ? *executor_ : serial;
+  system_ = kept(disk, content, [&] { return factored(disk, holds, free_, runs); });
 }
 
 void GlobalStep::solve(std::span<Vec2> force) const {
   assert(force.size() == free_.slot.size());
-  if (free_.count == static_cast<Index>(force.size())) return system_->solve(force);
+  SerialExecutor serial;
+  Executor& runs = executor_ != nullptr ? *executor_ : serial;
+  if (free_.count == static_cast<Index>(force.size())) return system_->solve(force, runs);
   std::vector<Vec2> change(static_cast<std::size_t>(free_.count));
   for (std::size_t v = 0; v < force.size(); ++v)
     if (free_.slot[v] != kFixed) change[static_cast<std::size_t>(free_.slot[v])] = force[v];
-  if (system_) system_->solve(change);
+  if (system_) system_->solve(change, runs);
   for (std::size_t v = 0; v < force.size(); ++v)
     force[v] = free_.slot[v] == kFixed ? Vec2(Vec2::Zero())
                                        : change[static_cast<std::size_t>(free_.slot[v])];

@@ -4,8 +4,9 @@
 #include <memory>
 #include <span>
 
+#include "core/executor.hpp"
 #include "core/linear/eliminate.hpp"
-#include "core/linear/factor.hpp"
+#include "core/linear/engine.hpp"
 #include "core/solve/disk.hpp"
 #include "core/solve/holds.hpp"
 
@@ -16,17 +17,19 @@ namespace unwrapd {
 /// that share disk.core share it, and jobs on meshes of the same faces its analysis.
 class GlobalStep {
  public:
-  /// Throws Error{solver_failed, too_much_memory}.
-  GlobalStep(const Disk& disk, const Holds& holds);
+  /// executor: runs the factor and all solves; null: the calling thread. Throws
+  /// Error{solver_failed, too_much_memory}.
+  GlobalStep(const Disk& disk, const Holds& holds, Executor* executor = nullptr);
 
   /// Replaces force (Objective::evaluate()) by the change of the map A^-1 force; fixed vertices do
   /// not move. Solving for the change, not for the map, keeps full precision near convergence.
-  /// Thread-safe.
+  /// The same for any executor. Thread-safe where its executor is.
   void solve(std::span<Vec2> force) const;
 
  private:
   FreeVertices free_;
-  std::shared_ptr<const RealSystem> system_;
+  std::shared_ptr<const Factor> system_;
+  Executor* executor_;
 };
 
 }  // namespace unwrapd

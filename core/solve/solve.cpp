@@ -151,7 +151,7 @@ Solution Solver::iterate_plainly(const Race& race) {
 Solution Solver::iterate(const Rigidity& rigidity, const SolveWatch& watch) {
   if (!global_) {
     tell(watch, Stage::factor);
-    global_.emplace(disk_, holds_);
+    global_.emplace(disk_, holds_, &executor_);
   }
   const UvMap& first = start();
   tell(watch, Stage::solve);

@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
-#include <random>
-#include <thread>
 
 #include "core/measure/energy.hpp"
 #include "core/solve/conformal_system.hpp"
 #include "core/solve/convex_map.hpp"
 #include "core/solve/objective.hpp"
+#include "tests/core/linear/systems.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
@@ -32,55 +31,6 @@ class Reference final : public RealSystem {
 
 std::unique_ptr<RealSystem> ours(const SparseMatrix& lower) {
   return try_factor(analyse(lower), lower);
-}
-
-/// The matrix of the global step, nothing held.
-SparseMatrix arap_matrix(const Disk& disk) {
-  std::vector<double> weight;
-  for (const RestTriangle& rest : disk.rest)
-    weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
-  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight);
-  lower.coeffRef(0, 0) *= 2;
-  return lower;
-}
-
-/// Sums to zero, as the forces on a free disk do.
-std::vector<Vec2> random_forces(const SparseMatrix& lower, unsigned seed) {
-  std::mt19937 rng(seed);
-  std::normal_distribution<double> normal;
-  std::vector<Vec2> b(std::size_t(lower.cols()));
-  Vec2 mean = Vec2::Zero();
-  for (Vec2& x : b) x = Vec2(normal(rng), normal(rng)), mean += x / double(b.size());
-  for (Vec2& x : b) x -= mean;
-  return b;
-}
-
-double norm(const std::vector<Vec2>& x) {
-  double sum = 0;
-  for (const Vec2& p : x) sum += p.squaredNorm();
-  return std::sqrt(sum);
-}
-
-double gap(std::vector<Vec2> x, const std::vector<Vec2>& y) {
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= y[i];
-  return norm(x);
-}
-
-std::vector<Vec2> solution(const RealSystem& system, std::vector<Vec2> b) {
-  system.solve(b);
-  return b;
-}
-
-/// |A x - b| over |A| |x|: the size of the change of the matrix for which x is the exact solution.
-double backward_error(const SparseMatrix& lower, const std::vector<Vec2>& x,
-                      const std::vector<Vec2>& b) {
-  const auto n = Eigen::Index(x.size());
-  const Eigen::MatrixX2d dense =
-      Eigen::Map<const Eigen::Matrix2Xd>(x.front().data(), 2, n).transpose();
-  const Eigen::MatrixX2d ax = lower.selfadjointView<Eigen::Lower>() * dense;
-  const Eigen::MatrixX2d right =
-      Eigen::Map<const Eigen::Matrix2Xd>(b.front().data(), 2, n).transpose();
-  return (ax - right).norm() / (lower.norm() * dense.norm());
 }
 
 template <typename Visit>
@@ -233,25 +183,6 @@ TEST(Engine, OrdersPairsByVerticesAndSolvesTheSame) {
   }
 }
 
-TEST(Engine, RefillsAFactorInPlace) {
-  const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(30, 10));
-  SparseMatrix lower = arap_matrix(owned.disk);
-  Factor factor(analyse(lower));
-  const std::vector<Vec2> b = random_forces(lower, 8);
-  ASSERT_TRUE(factor.refill(lower));
-  const std::vector<Vec2> first = solution(factor, b);
-  SparseMatrix other = lower;
-  other.coeffRef(7, 7) = -1;
-  EXPECT_FALSE(factor.refill(other));
-  other.coeffRef(7, 7) = 100;
-  ASSERT_TRUE(factor.refill(other));
-  EXPECT_EQ(solution(factor, b), solution(*ours(other), b));
-  const std::vector<Vec2> expected = solution(Reference(other), b);
-  EXPECT_LT(gap(solution(factor, b), expected), 1e-9 * norm(expected));
-  ASSERT_TRUE(factor.refill(lower));
-  EXPECT_EQ(solution(factor, b), first);
-}
-
 TEST(Engine, RefusesWhatIsNotDefinite) {
   const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(30, 7));
   SparseMatrix lower = arap_matrix(owned.disk);
@@ -262,19 +193,6 @@ TEST(Engine, RefusesWhatIsNotDefinite) {
     EXPECT_EQ(try_factor(analysis, changed), nullptr) << bad;
   }
   EXPECT_NE(try_factor(analysis, lower), nullptr);
-}
-
-TEST(Engine, GivesTheSameBitsAgainAndFromAnyThread) {
-  const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(50, 9));
-  const SparseMatrix lower = arap_matrix(owned.disk);
-  const auto system = ours(lower);
-  const std::vector<Vec2> b = random_forces(lower, 5);
-  const std::vector<Vec2> expected = solution(*ours(lower), b);
-  std::vector<Vec2> elsewhere;
-  std::thread other([&] { elsewhere = solution(*system, b); });
-  EXPECT_EQ(solution(*system, b), expected);
-  other.join();
-  EXPECT_EQ(elsewhere, expected);
 }
 
 TEST(Engine, SolvesWhatFallsApart) {  // several components, one of them a single vertex

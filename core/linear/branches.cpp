@@ -1,0 +1,62 @@
+// A subtree is a branch when it is a twelfth of the work at most and its parent's is more. The
+// bounds do not depend on the number of threads, nor do sums, which branches keep apart until all
+// are done: the same bits come out of any. Rejected: a branch for each thread, which leaves threads
+// idle where the tree is uneven; dynamic tasks for all supernodes, whose sums would need an order.
+#include "core/linear/branches.hpp"
+
+#include <numeric>
+
+namespace unwrapd {
+namespace {
+
+constexpr std::size_t kMostOfWork = 12;    // a branch is at most one in so many parts
+constexpr std::size_t kLeastOfWork = 512;  // and at least
+constexpr std::size_t kWorthTasks = std::size_t{1} << 18;  // weight below which all is trunk
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+constexpr std::size_t kNone = ~std::size_t{0};
+
+struct Subtrees {
+  std::vector<std::size_t> parent, first, weight;  ///< of the subtree under each supernode
+};
+
+Subtrees subtrees_of(const Supernodes& nodes, const std::vector<std::size_t>& weight) {
+  const std::size_t count = nodes.count();
+  Subtrees trees{std::vector<std::size_t>(count, kNone), std::vector<std::size_t>(count), weight};
+  std::vector<std::size_t> pending;
+  for (std::size_t s = 0; s < count; ++s) {
+    trees.first[s] = s;
+    for (Index c = 0; c < nodes.child_count[s]; ++c) {
+      const std::size_t child = pending.back();
+      pending.pop_back();
+      trees.parent[child] = s;
+      trees.first[s] = trees.first[child];
+      trees.weight[s] += trees.weight[child];
+    }
+    pending.push_back(s);
+  }
+  return trees;
+}
+
+}  // namespace
+
+Branches branches_of(const Supernodes& nodes, const std::vector<std::size_t>& weight) {
+  Branches branches;
+  branches.shared.assign(nodes.order.size(), kOwnColumn);
+  const std::size_t total = std::accumulate(weight.begin(), weight.end(), std::size_t{0});
+  if (total < kWorthTasks) return branches;
+  const Subtrees trees = subtrees_of(nodes, weight);
+  const std::size_t most = total / kMostOfWork, least = total / kLeastOfWork;
+  for (std::size_t s = 0; s < nodes.count(); ++s) {
+    const bool is_cut = trees.parent[s] == kNone || trees.weight[trees.parent[s]] > most;
+    if (trees.weight[s] < least || trees.weight[s] > most || !is_cut) continue;
+    branches.all.push_back({trees.first[s], s + 1});
+    for (Index row : nodes.below(s))
+      if (branches.shared[at(row)] == kOwnColumn)
+        branches.shared[at(row)] = static_cast<Index>(branches.shared_count++);
+  }
+  return branches;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,147 @@
+// All panels are read twice, each time in the order in which they lie: once down the columns, once
+// up. Branches go down at the same time: what one adds to columns above it, which others add to as
+// well, is kept apart until all are done. Up they only read those columns.
+#include "core/linear/solve_panels.hpp"
+
+#include <algorithm>
+
+namespace unwrapd {
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// The vectors over one panel's rows, reused from panel to panel.
+class Workspace {
+ public:
+  explicit Workspace(std::size_t height) : numbers_(4 * height) {
+    const auto part = [&](std::size_t k) { return numbers_.data() + k * height; };
+    tall = {part(0), part(1)};
+    pivots = {part(2), part(3)};
+  }
+
+  PanelVectors tall{}, pivots{};
+
+ private:
+  std::vector<double> numbers_;
+};
+
+class Sweep {
+ public:
+  Sweep(const Analysis& analysis, const double* panels, std::span<Vec2> x)
+      : analysis_(analysis), nodes_(analysis.nodes), panels_(panels), x_(x) {}
+
+  void run(Executor& executor) {
+    const Branches& branches = analysis_.branches;
+    const auto count = static_cast<int>(branches.all.size());
+    const std::size_t shared = branches.shared_count;
+    sums_.assign(branches.all.size() * shared, Vec2::Zero());
+    executor.for_each_block(count,
+                            [&](int b) { down_branch(at(b), sums_.data() + at(b) * shared); });
+    down_trunk();
+    up_trunk();
+    executor.for_each_block(count, [&](int b) { up_branch(at(b)); });
+  }
+
+ private:
+  [[nodiscard]] Workspace workspace(Branch branch) const {
+    std::size_t height = 0;
+    for (std::size_t s = branch.first; s < branch.end; ++s)
+      height = std::max(height, analysis_.shape(s).height());
+    return Workspace(height);
+  }
+
+  void down_branch(std::size_t b, Vec2* sums) const {
+    const Branch branch = analysis_.branches.all[b];
+    const Workspace work = workspace(branch);
+    const Index end = nodes_.first[branch.end];
+    for (std::size_t s = branch.first; s < branch.end; ++s) {
+      eliminate(s, work);
+      const std::span<const Index> rows = nodes_.below(s);
+      const auto outer = std::lower_bound(rows.begin(), rows.end(), end);
+      const auto own = static_cast<std::size_t>(outer - rows.begin());
+      subtract(rows.first(own), work, analysis_.shape(s).pivots);
+      for (std::size_t i = own, r = analysis_.shape(s).pivots + own; i < rows.size(); ++i, ++r)
+        sums[analysis_.branches.shared[at(rows[i])]] += Vec2(work.tall.u[r], work.tall.v[r]);
+    }
+  }
+
+  void down_trunk() const {
+    const Branches& branches = analysis_.branches;
+    for (std::size_t b = 0; b < branches.all.size(); ++b)
+      for (Index row : nodes_.below(branches.all[b].root()))
+        x_[at(row)] -= sums_[b * branches.shared_count + at(branches.shared[at(row)])];
+    const Workspace work = workspace({0, nodes_.count()});
+    branches.for_each_of_trunk(
+        nodes_.count(),
+        [&](std::size_t s) {
+          eliminate(s, work);
+          subtract(nodes_.below(s), work, analysis_.shape(s).pivots);
+        },
+        [](std::size_t) {});
+  }
+
+  void up_trunk() const {
+    const Workspace work = workspace({0, nodes_.count()});
+    const std::vector<Branch>& all = analysis_.branches.all;
+    std::size_t end = nodes_.count();
+    for (std::size_t b = all.size() + 1; b-- > 0;) {
+      const std::size_t first = b > 0 ? all[b - 1].end : 0;
+      for (std::size_t s = end; s-- > first;) substitute(s, work);
+      if (b > 0) end = all[b - 1].first;
+    }
+  }
+
+  void up_branch(std::size_t b) const {
+    const Branch branch = analysis_.branches.all[b];
+    const Workspace work = workspace(branch);
+    for (std::size_t s = branch.end; s-- > branch.first;) substitute(s, work);
+  }
+
+  /// y1 = L11^-1 b1; work.tall then has L21 y1 below the pivots.
+  void eliminate(std::size_t s, const Workspace& work) const {
+    const PanelShape shape = analysis_.shape(s);
+    const PanelVectors tall = work.tall, pivots = work.pivots;
+    Vec2* own = x_.data() + nodes_.first[s];
+    for (std::size_t k = 0; k < shape.pivots; ++k)
+      pivots.u[k] = own[k].x(), pivots.v[k] = own[k].y();
+    std::fill_n(tall.u, shape.height(), 0.0);
+    std::fill_n(tall.v, shape.height(), 0.0);
+    multiply_panel(panels_ + analysis_.panel_begin[s], shape, pivots, tall);
+    for (std::size_t k = 0; k < shape.pivots; ++k) own[k] = {tall.u[k], tall.v[k]};
+  }
+
+  /// b2 -= L21 y1
+  void subtract(std::span<const Index> rows, const Workspace& work, std::size_t r) const {
+    for (Index row : rows) x_[at(row)] -= Vec2(work.tall.u[r], work.tall.v[r]), ++r;
+  }
+
+  /// x1 = L11^-T (y1 - L21^T x2).
+  void substitute(std::size_t s, const Workspace& work) const {
+    const PanelShape shape = analysis_.shape(s);
+    const PanelVectors tall = work.tall, pivots = work.pivots;
+    Vec2* own = x_.data() + nodes_.first[s];
+    for (std::size_t k = 0; k < shape.pivots; ++k) tall.u[k] = own[k].x(), tall.v[k] = own[k].y();
+    std::size_t r = shape.pivots;
+    for (Index row : nodes_.below(s))
+      tall.u[r] = -x_[at(row)].x(), tall.v[r] = -x_[at(row)].y(), ++r;
+    std::fill(tall.u + r, tall.u + shape.height(), 0.0);
+    std::fill(tall.v + r, tall.v + shape.height(), 0.0);
+    multiply_transposed(panels_ + analysis_.panel_begin[s], shape, tall, pivots);
+    for (std::size_t k = 0; k < shape.pivots; ++k) own[k] = {pivots.u[k], pivots.v[k]};
+  }
+
+  const Analysis& analysis_;
+  const Supernodes& nodes_;
+  const double* panels_;
+  std::span<Vec2> x_;
+  std::vector<Vec2> sums_;  ///< of each branch: what it subtracts from the columns above
+};
+
+}  // namespace
+
+void solve_panels(const Analysis& analysis, const double* panels, std::span<Vec2> x,
+                  Executor& executor) {
+  Sweep(analysis, panels, x).run(executor);
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,67 @@
+// A factor again, on other threads, in the memory of another.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "core/linear/engine.hpp"
+#include "tests/core/linear/systems.hpp"
+#include "tests/core/solve/disk_of.hpp"
+#include "tests/core/two_threads.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// Last block first, each on its own thread.
+class ManyThreads final : public Executor {
+ public:
+  void for_each_block(int block_count, const std::function<void(int)>& body) override {
+    std::vector<std::jthread> threads;
+    for (int block = block_count; block-- > 0;) threads.emplace_back(body, block);
+  }
+};
+
+TEST(Engine, GivesTheSameBitsAgainAndOnAnyNumberOfThreads) {
+  const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(120, 9));
+  const SparseMatrix lower = arap_matrix(owned.disk);
+  const auto analysis = analyse(lower);
+  EXPECT_GT(analysis->branches.all.size(), 8U);
+  EXPECT_GT(analysis->branches.shared_count, 10U);
+  const std::vector<Vec2> b = random_forces(lower, 5);
+  const auto system = try_factor(analysis, lower);
+  const std::vector<Vec2> expected = solution(*system, b);
+  EXPECT_LT(backward_error(lower, expected, b), 1e-14);
+  TwoThreads two;
+  ManyThreads many;
+  for (Executor* executor : {static_cast<Executor*>(&two), static_cast<Executor*>(&many)}) {
+    std::vector<Vec2> x = b;
+    try_factor(analysis, lower, *executor)->solve(x, *executor);
+    EXPECT_EQ(x, expected);
+    SparseMatrix bad = lower;
+    bad.coeffRef(3000, 3000) = -1;
+    EXPECT_EQ(try_factor(analysis, bad, *executor), nullptr);
+  }
+  std::vector<Vec2> elsewhere;  // one factor, two callers
+  std::jthread([&] { elsewhere = solution(*system, b); }).join();
+  EXPECT_EQ(elsewhere, expected);
+}
+
+TEST(Engine, RefillsAFactorInPlace) {
+  const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(30, 10));
+  SparseMatrix lower = arap_matrix(owned.disk);
+  Factor factor(analyse(lower));
+  const std::vector<Vec2> b = random_forces(lower, 8);
+  ASSERT_TRUE(factor.refill(lower));
+  const std::vector<Vec2> first = solution(factor, b);
+  SparseMatrix other = lower;
+  other.coeffRef(7, 7) = -1;
+  EXPECT_FALSE(factor.refill(other));
+  other.coeffRef(7, 7) = 100;
+  ASSERT_TRUE(factor.refill(other));
+  EXPECT_EQ(solution(factor, b), solution(*try_factor(analyse(other), other), b));
+  EXPECT_LT(backward_error(other, solution(factor, b), b), 1e-14);
+  ASSERT_TRUE(factor.refill(lower));
+  EXPECT_EQ(solution(factor, b), first);
+}
+
+}  // namespace
+}  // namespace unwrapd
