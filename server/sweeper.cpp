@@ -8,6 +8,7 @@ namespace unwrapd::server {
 namespace {
 
 constexpr std::chrono::seconds kLongestPause{60};
+constexpr int kSweepsInTime = 8;           // while a result is kept, at least
 constexpr std::int64_t kSetByMs = 10'000;  // less is the clock's own drift
 
 }  // namespace
@@ -31,7 +32,10 @@ bool evict_oldest(JobStore& store, BlobStore& blobs) {
   return false;
 }
 
-std::chrono::seconds Sweeper::pause() const { return std::min(keep_, kLongestPause); }
+std::chrono::milliseconds Sweeper::pause() const {
+  return std::min<std::chrono::milliseconds>(std::chrono::milliseconds(keep_) / kSweepsInTime,
+                                             kLongestPause);
+}
 
 void Sweeper::sweep_once(std::int64_t now_ms, std::int64_t elapsed_ms) {
   const std::int64_t offset_ms = now_ms - elapsed_ms;

@@ -26,7 +26,7 @@ class Sweeper {
       : store_(store), blobs_(blobs), log_(log), keep_(keep) {}
 
   /// How long to wait between two sweeps.
-  [[nodiscard]] std::chrono::seconds pause() const;
+  [[nodiscard]] std::chrono::milliseconds pause() const;
   /// One sweep. now_ms: the time of day; elapsed_ms: on a clock that nobody sets.
   void sweep_once(std::int64_t now_ms, std::int64_t elapsed_ms);
 

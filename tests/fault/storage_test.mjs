@@ -1,0 +1,146 @@
+// Disks that are full or return other bytes than were written, and clocks that are set: jobs wait,
+// or say what is wrong, and what was stored stays right.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, readFileSync, rmSync, statfsSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import test from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+
+import { dataDirectory, ENDLESS, grid, QUICK, Server } from "./server.mjs";
+
+const FAKETIME = `/usr/lib/${process.arch === "arm64" ? "aarch64" : "x86_64"}-linux-gnu/faketime/libfaketime.so.1`;
+
+/** Changes one byte in the middle of a file. */
+function damage(file) {
+  const bytes = readFileSync(file);
+  bytes[bytes.length >> 1] ^= 1;
+  writeFileSync(file, bytes);
+}
+
+const problemOf = async (answer) => ({ status: answer.status, code: (await answer.json()).code });
+
+test("a damaged upload fails its job with storage_corrupt", async (t) => {
+  const data = dataDirectory(t);
+  const server = await Server.start(data);
+  const busy = await server.submit(...ENDLESS);
+  await server.iterates(busy);
+  const id = await server.submit(QUICK, 5);
+  damage(join(data, "blobs", id, "document"));
+  await fetch(`${server.url}/v1/jobs/${busy}`, { method: "DELETE" });
+  const job = await server.finished(id);
+  assert.deepEqual([job.state, job.problem.code], ["failed", "storage_corrupt"]);
+  await server.end("SIGTERM");
+});
+
+test("a damaged result is made again from the map, and refused when that is damaged too", async (t) => {
+  const data = dataDirectory(t);
+  const server = await Server.start(data);
+  const id = await server.submit(QUICK, 5);
+  const { links } = await server.finished(id);
+  const result = () => fetch(`${server.url}${links.result}`);
+  const right = await (await result()).text();
+  damage(join(data, "blobs", id, "result.obj"));
+  assert.equal(await (await result()).text(), right);
+  damage(join(data, "blobs", id, "report.json"));
+  const report = await problemOf(await fetch(`${server.url}${links.report}`));
+  assert.deepEqual(report, { status: 500, code: "storage_corrupt" });
+  damage(join(data, "blobs", id, "result.obj"));
+  damage(join(data, "blobs", id, "uv.bin"));
+  assert.deepEqual(await problemOf(await result()), { status: 500, code: "storage_corrupt" });
+  await server.end("SIGTERM");
+});
+
+/** A small file system of its own, or undefined where this user may not mount one. */
+function smallDisk(t, megabytes) {
+  const folder = dataDirectory(t);
+  try {
+    execFileSync("mount", ["-t", "tmpfs", "-o", `size=${megabytes}m`, "tmpfs", folder], { stdio: "ignore" });
+  } catch {
+    return undefined;
+  }
+  t.after(() => execFileSync("umount", ["-l", folder]));
+  return folder;
+}
+
+test("a full disk refuses with 507, and every accepted job ends well once there is room", async (t) => {
+  const disk = smallDisk(t, 8);
+  if (!disk) return t.skip("this user may not mount a file system");
+  const data = join(disk, "data");
+  const ballast = join(disk, "ballast");
+  const server = await Server.start(data, "--min-free-bytes", "0");
+  const first = await server.finished(await server.submit(QUICK, 40));
+  const right = await (await fetch(`${server.url}${first.links.result}`)).text();
+  const { bavail, bsize } = statfsSync(disk);
+  writeFileSync(ballast, Buffer.alloc(bavail * bsize - 700_000));
+
+  const ids = [];
+  const refusals = new Set();
+  for (let k = 0; k < 60; ++k) {
+    const answer = await fetch(`${server.url}/v1/jobs?${QUICK}`, {
+      method: "POST",
+      headers: { "Content-Type": "model/obj", "Cache-Control": "no-cache", "Idempotency-Key": `full-${k}` },
+      body: grid(40),
+    });
+    const body = await answer.json();
+    if (answer.status === 202) ids.push(body.id);
+    else refusals.add(`${answer.status} ${body.code}`);
+  }
+  assert.deepEqual([...refusals], ["507 storage_full"]);
+  assert.ok(ids.length > 0, "some jobs were accepted before the disk was full");
+  rmSync(ballast);
+  for (const id of ids) {
+    const job = await server.finished(id);
+    assert.equal(job.state, "succeeded", JSON.stringify(job));
+    assert.equal(await (await fetch(`${server.url}${job.links.result}`)).text(), right);
+  }
+  await server.end("SIGTERM");
+  const again = await Server.start(data, "--min-free-bytes", "0");
+  for (const id of [first.id, ...ids]) assert.equal((await again.job(id)).state, "succeeded");
+  await again.end("SIGTERM");
+});
+
+test("the disk quota gives up the results that ended first, and refuses what can never fit", async (t) => {
+  const server = await Server.start(dataDirectory(t), "--max-disk-bytes", "2000000");
+  const ids = [];
+  for (let k = 0; k < 8; ++k) {
+    const headers = { "Content-Type": "model/obj", "Cache-Control": "no-cache" };
+    const answer = await fetch(`${server.url}/v1/jobs?${QUICK}`, { method: "POST", headers, body: grid(50) });
+    assert.equal(answer.status, 202);
+    ids.push((await server.finished((await answer.json()).id)).id);
+  }
+  const status = async (id) => (await fetch(`${server.url}/v1/jobs/${id}/result`)).status;
+  assert.equal(await status(ids[0]), 410);
+  assert.equal(await status(ids[7]), 200);
+  const tooLarge = await fetch(`${server.url}/v1/jobs`, {
+    method: "POST",
+    headers: { "Content-Type": "model/obj" },
+    body: grid(250),
+  });
+  assert.deepEqual(await problemOf(tooLarge), { status: 507, code: "storage_full" });
+  await server.end("SIGTERM");
+});
+
+test("a clock that is set ten days ahead takes no result away and stops no job", async (t) => {
+  if (!existsSync(FAKETIME)) return t.skip("libfaketime is not installed");
+  const clock = join(dataDirectory(t), "clock");
+  writeFileSync(clock, "+0");
+  const env = {
+    LD_PRELOAD: FAKETIME,
+    FAKETIME_TIMESTAMP_FILE: clock,
+    FAKETIME_NO_CACHE: "1",
+    FAKETIME_DONT_FAKE_MONOTONIC: "1",
+  };
+  const server = await Server.startIn(env, dataDirectory(t), "--keep-seconds", "40", "--log-level", "warning");
+  const before = await server.finished(await server.submit(QUICK, 5));
+  const running = await server.submit("stop.iterations=400", 30);
+  for (const [set, by] of [["+10d", 1], ["-20d", -1]]) {
+    writeFileSync(clock, set);
+    const heard = () => server.log.split("the time of day was set").length - 1;
+    for (const already = heard(); heard() === already; ) await sleep(20);
+    assert.equal(Math.sign(JSON.parse(server.log.trim().split("\n").at(-1)).by_ms), by);
+    assert.equal((await fetch(`${server.url}${before.links.result}`)).status, 200);
+  }
+  assert.equal((await server.finished(running)).state, "succeeded");
+  await server.end("SIGTERM");
+});
