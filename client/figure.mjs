@@ -11,7 +11,8 @@ import { basename, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
 
-/** Weights of Eq. (5) from almost conformal to almost rigid. */
+/** Weights of Eq. (5) from almost conformal to almost rigid, for a mesh of area 1. In other units
+ * they grow with the area, as the first term of Eq. (5) does: see inUnitsOf(). */
 const LAMBDAS = [1e-4, 1e-3, 1e-2, 0.1];
 
 /** The other methods, in the order and with the names of Table 1; then later ones. */
@@ -30,13 +31,25 @@ export function plan(methods, optionNames) {
   const raw = optionNames.includes("guarantee") ? { guarantee: "none" } : {};
   const map = (title, options) => ({ title, options: { ...options, ...raw } });
   const hybrids = LAMBDAS.map((lambda) =>
-    map(`λ = ${lambda}`, { method: "hybrid", lambda: String(lambda), "lambda-units": "paper" }));
+    map(`λ = ${lambda}`, { method: "hybrid", lambda, "lambda-units": "paper" }));
   return [
     [...(has("asap") ? [map("ASAP (λ = 0)", { method: "asap" })] : []),
      ...(has("hybrid") ? hybrids : []),
      ...(has("arap") ? [map("ARAP (λ = ∞)", { method: "arap" })] : [])],
     Object.keys(OTHERS).filter(has).map((name) => map(OTHERS[name], { method: name })),
   ];
+}
+
+/** The area of the surface that a report tells of, in the mesh's own units. */
+export function areaOf(report) {
+  return report.charts.reduce((sum, chart) => sum + chart.area, 0);
+}
+
+/** The options with lambda in the units of a mesh of this area. */
+export function inUnitsOf(area, options) {
+  if (options.lambda === undefined) return options;
+  if (!(area > 0)) throw new Error("the mesh's area is not known: there is no conformal map of it");
+  return { ...options, lambda: String(options.lambda * area) };
 }
 
 /** D as the paper prints it; a map so distorted that digits mean nothing is given as a power. */
@@ -95,7 +108,7 @@ export function page(name, rows) {
 <meta name="viewport" content="width=device-width"><style>${STYLE}
 </style></head><body>
 <h1>${escapeText(name)}${faces}</h1>
-<p>Effect of λ in the hybrid energy (5), compared with other methods. Numbers in brackets: angular
+<p>Effect of λ in the hybrid energy (5), the mesh scaled to area 1, compared with other methods. Numbers in brackets: angular
 and area distortion, [D<sub>angle</sub>, D<sub>area</sub>]; both are at best 2. Each map is shown as
 a checkerboard on the mesh and as the page it comes from, coloured by stretch.</p>
 ${sections}
@@ -107,10 +120,10 @@ ${bar}
 const run = promisify(execFile);
 
 /** One job by the client, with its pictures as base64; a refusal becomes the map's problem. */
-async function solve({ title, options }, { unwrap, server, mesh, folder }) {
+async function solve({ title, options }, { unwrap, server, mesh, folder, area }) {
   const at = (file) => join(folder, file);
-  const flags = Object.entries(options).flatMap(([name, value]) => [`--${name}`, value]);
   try {
+    const flags = Object.entries(inUnitsOf(area, options)).flatMap(([name, value]) => [`--${name}`, value]);
     await run(unwrap, [mesh, "--server", server, "--quiet", "-o", at("result"), "--report",
       at("report.json"), "--layout", at("layout.png"), "--preview", at("preview.png"), ...flags]);
   } catch (error) {
@@ -134,11 +147,13 @@ async function main([server, unwrap, mesh, out]) {
   const folder = mkdtempSync(join(tmpdir(), "figure-"));
   try {
     const rows = [];
+    let area;
     for (const row of plan(known.methods, known.options)) {
       rows.push([]);
       for (const map of row) {
-        const solved = await solve(map, { unwrap, server, mesh, folder });
+        const solved = await solve(map, { unwrap, server, mesh, folder, area });
         rows.at(-1).push(solved);
+        if (solved.report) area ??= areaOf(solved.report);
         console.log(`   ${map.title}: ${solved.problem ?? caption(solved.report.distortion)}`);
       }
     }
