@@ -123,7 +123,8 @@ const run = promisify(execFile);
 async function solve({ title, options }, { unwrap, server, mesh, folder, area }) {
   const at = (file) => join(folder, file);
   try {
-    const flags = Object.entries(inUnitsOf(area, options)).flatMap(([name, value]) => [`--${name}`, value]);
+    const given = Object.entries(inUnitsOf(area, options));
+    const flags = given.flatMap(([name, value]) => [`--${name}`, value]);
     await run(unwrap, [mesh, "--server", server, "--quiet", "-o", at("result"), "--report",
       at("report.json"), "--layout", at("layout.png"), "--preview", at("preview.png"), ...flags]);
   } catch (error) {
