@@ -122,7 +122,8 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
                           options.repair,
                           {.rigidity = rigidity_of(disk, options, lambdas[k]),
                            .held = fixed_vertices(disk.positions.size(), hold.held.holds),
-                           .stop = watch.stop()}};
+                           .stop = watch.stop(),
+                           .springs = hold.held.holds.springs}};
     if (options.guarantee != Guarantee::none) watch.tell(Stage::untangle);
     Kept kept = keep_promise(chart, disk, std::move(solution.uv), promise);
     maps[k] = finish_parts(disk, std::move(kept), hold, solution);

@@ -179,6 +179,19 @@ void for_each_entry(const BarrierMesh& mesh, Visit visit) {
   }
 }
 
+/// The diagonal comes first in every column.
+void add_springs(const BarrierMesh& mesh, std::span<const Vec2> uv, Quadratic& model) {
+  for (const Spring& spring : mesh.springs) {
+    const Index slot = mesh.free.slot[static_cast<std::size_t>(spring.vertex)];
+    if (slot == kFixed) continue;
+    const Vec2 away = uv[static_cast<std::size_t>(spring.vertex)] - spring.at;
+    for (Index k = 0; k < 2; ++k) {
+      model.gradient[2 * slot + k] += 2 * spring.weight * away[k];
+      model.hessian.valuePtr()[model.hessian.outerIndexPtr()[2 * slot + k]] += 2 * spring.weight;
+    }
+  }
+}
+
 void add_lower(const Eigen::Matrix<double, 6, 6>& hessian, const std::array<Index, 21>& places,
                double* values) {
   const Index* place = places.data();
@@ -190,7 +203,7 @@ void add_lower(const Eigen::Matrix<double, 6, 6>& hessian, const std::array<Inde
 }  // namespace
 
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier) {
-  double energy = 0;
+  double energy = spring_energy(mesh.springs, uv);
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
     const Jacobian j = jacobian_of(mesh, t, uv);
     if (barrier.epsilon == 0 && !is_positive(j, mesh.faces[t], uv)) return kFar;
@@ -239,6 +252,7 @@ void fill_barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const
     }
     add_lower(e.hessian, model.place[t], values);
   }
+  add_springs(mesh, uv, model);
 }
 
 }  // namespace unwrapd

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "core/linear/eliminate.hpp"
+#include "core/solve/holds.hpp"
 #include "core/solve/local_step.hpp"
 
 namespace unwrapd {
 
 /// E = sum A_t [ fit(J_t) + weight (|J_t|^2 / 2 + (1 + det^2 J_t) / 2) / chi(det J_t) - 2 weight ]
-/// with chi(d) = (d + sqrt(epsilon^2 + d^2)) / 2. fit: the method's energy, Eq. (5).
+/// with chi(d) = (d + sqrt(epsilon^2 + d^2)) / 2, and w |u_v - at|^2 for every spring. fit: the
+/// method's energy, Eq. (5).
 struct Barrier {
   Rigidity rigidity;
   double weight = 1;
@@ -24,6 +26,7 @@ struct BarrierMesh {
   std::vector<Triangle> faces;
   std::vector<RestTriangle> rest;  ///< one a face: the shape and size that it should have
   FreeVertices free;               ///< one slot a vertex
+  std::vector<Spring> springs = {};
 };
 
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier);

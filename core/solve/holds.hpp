@@ -63,12 +63,15 @@ inline bool is_moved(const Holds& a, const Holds& b) {
 }
 
 /// What the springs add to the energy of the map uv.
-inline double spring_energy(const Holds& holds, std::span<const Vec2> uv) {
+inline double spring_energy(std::span<const Spring> springs, std::span<const Vec2> uv) {
   double energy = 0;
-  for (const Spring& spring : holds.springs)
+  for (const Spring& spring : springs)
     energy +=
         spring.weight * (uv[static_cast<std::size_t>(spring.vertex)] - spring.at).squaredNorm();
   return energy;
+}
+inline double spring_energy(const Holds& holds, std::span<const Vec2> uv) {
+  return spring_energy(holds.springs, uv);
 }
 
 }  // namespace unwrapd

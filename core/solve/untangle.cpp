@@ -13,6 +13,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -21,6 +22,7 @@
 #include "core/measure/orientation.hpp"
 #include "core/solve/convex_map.hpp"
 #include "core/solve/fill_holes.hpp"
+#include "core/solve/hold_align.hpp"
 #include "core/solve/newton.hpp"
 #include "core/solve/patch.hpp"
 #include "core/solve/virtual_boundary.hpp"
@@ -41,6 +43,7 @@ constexpr double kLeastEpsilon = 1e-6;
 constexpr double kStuck = 1e-5;       // relative fall of the energy in one step
 constexpr int kMostFading = 20;       // Newton steps for each weight
 constexpr int kMostFadingWhole = 60;  // where the way may be long
+constexpr double kWhole = 3;          // tolerances then: a step costs ten iterations of the solve
 /// How the barrier fades; only its last minimum counts.
 struct Fading {
   double weight;
@@ -96,6 +99,7 @@ BarrierMesh fitted(const BarrierMesh& mesh, const UvMap& uv) {
     room += mesh.rest[t].area * jacobian(mesh.rest[t], uv_edges(mesh.faces[t], uv)).determinant();
   }
   BarrierMesh fit = mesh;
+  fit.springs.clear();  // they come when nothing is flipped
   const bool has_rim = mesh.free.count < static_cast<Index>(mesh.free.slot.size());
   if (has_rim && room > 0)
     for (RestTriangle& rest : fit.rest) scale(rest, std::sqrt(room / wanted));
@@ -126,12 +130,13 @@ void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t en
 }
 
 /// From a map without flips to one of little energy without flips.
-void fade(const BarrierMesh& mesh, const MapIntent& intent, int most, UvMap& uv) {
+void fade(const BarrierMesh& mesh, const MapIntent& intent, bool is_whole, UvMap& uv) {
   Newton newton(mesh);
   for (const Fading& fading : kFading) {
-    for (int k = 0; k < most; ++k) {
+    const double tolerance = is_whole ? kWhole * fading.tolerance : fading.tolerance;
+    for (int k = 0; k < (is_whole ? kMostFadingWhole : kMostFading); ++k) {
       throw_if_cancelled(intent.stop);
-      if (newton.step(uv, {intent.rigidity, fading.weight, 0}) < fading.tolerance) break;
+      if (newton.step(uv, {intent.rigidity, fading.weight, 0}) < tolerance) break;
     }
     if (intent.in_place) break;
   }
@@ -148,12 +153,26 @@ void put_back(const Patch& patch, const UvMap& own, UvMap& uv) {
   for (std::size_t v = 0; v < own.size(); ++v) uv[patch.vertex[v]] = own[v];
 }
 
+/// The springs at vertices of the patch, by its own numbers.
+std::vector<Spring> springs_at(const Patch& patch, const std::vector<Spring>& springs) {
+  std::vector<Spring> own;
+  if (springs.empty()) return own;
+  std::map<Index, Index> number;
+  for (std::size_t v = 0; v < patch.vertex.size(); ++v)
+    number[patch.vertex[v]] = static_cast<Index>(v);
+  for (const Spring& spring : springs)
+    if (const auto at = number.find(spring.vertex); at != number.end())
+      own.push_back({at->second, spring.at, spring.weight});
+  return own;
+}
+
 /// Lets a patch without flips find its least energy.
 void settle(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv) {
   const bool is_whole = patch.face.size() == disk.faces.size();
   if (intent.rigidity.lambda < kConformalBelow) follow_sizes(disk, uv, patch);
+  patch.mesh.springs = springs_at(patch, intent.springs);
   UvMap own = map_of(patch, uv);
-  fade(patch.mesh, intent, is_whole ? kMostFadingWhole : kMostFading, own);
+  fade(patch.mesh, intent, is_whole, own);
   put_back(patch, own, uv);
 }
 
@@ -186,10 +205,11 @@ std::vector<Patch> all_patches(const Disk& disk, std::span<const char> held) {
 
 Patch whole(const Disk& disk) { return std::move(all_patches(disk, {}).front()); }
 
-UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
+/// A new map at the surface's size or, where there are springs, where they draw it.
+UvMap at_its_place(const Disk& disk, const MapIntent& intent, UvMap uv) {
   const double area = uv_area(disk.rest, disk.faces, uv);
   for (Vec2& u : uv) u /= std::sqrt(area);
-  return uv;
+  return intent.springs.empty() ? uv : held_start(std::move(uv), {{}, intent.springs});
 }
 
 UvMap tutte_without_holes(const Disk& disk) {
@@ -251,7 +271,7 @@ bool start_over(const Disk& disk, const MapIntent& intent, UvMap& uv) {
 }  // namespace
 
 bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv) {
-  start = scaled_to_unit_area(disk, std::move(start));
+  start = at_its_place(disk, intent, std::move(start));
   if (!flipped_faces(disk.faces, start).empty()) return false;
   uv = std::move(start);
   Patch patch = whole(disk);

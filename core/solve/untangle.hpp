@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/solve/disk.hpp"
+#include "core/solve/holds.hpp"
 #include "core/solve/local_step.hpp"
 
 namespace unwrapd {
@@ -17,6 +18,7 @@ struct MapIntent {
   std::stop_token stop;
   bool in_place = false;  ///< only near the flips: never a new map of the whole disk
   int rings = 2;          ///< how far around a flip vertices are let loose at first; >= 1
+  std::vector<Spring> springs = {};  ///< what draws vertices to places, weighed like rigidity
 };
 
 /// Moves the vertices near flipped or collapsed triangles (not counter-clockwise, by the exact
@@ -25,9 +27,9 @@ struct MapIntent {
 /// Throws Error{cancelled}.
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv);
 
-/// A new map of the whole disk: start, scaled to the surface's area, then taken to little energy
-/// without a flip on the way. False, and uv as it was, where start has flips. Held vertices are not
-/// looked at. Throws Error{cancelled}.
+/// A new map of the whole disk: start, scaled to the surface's area or, where there are springs,
+/// taken to where they draw it; then taken to little energy without a flip on the way. False, and
+/// uv as it was, where start has flips. Held vertices are not looked at. Throws Error{cancelled}.
 bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv);
 
 }  // namespace unwrapd
