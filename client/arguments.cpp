@@ -28,6 +28,8 @@ constexpr const char* kFooter = R"(Examples:
   unwrap chair.glb --json --quiet | jq .distortion
   unwrap --sample shell.glb                        a mesh to try all this with
 
+UNWRAP_API_KEY in the environment is sent to servers that ask for an API key.
+
 Exit codes:
     0  done
     1  the server refused or failed the job: its problem is printed on stderr

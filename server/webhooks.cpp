@@ -27,14 +27,14 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-/// Of 32 bytes, which end in one '='.
 std::string from_base64(std::string_view text) {
   std::string bytes(text.size() / 4 * 3, '\0');
   const auto* from = reinterpret_cast<const unsigned char*>(text.data());
   const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()), from,
                                    static_cast<int>(text.size()));
   if (size < 1) throw Error(ErrorCode::internal, "The secret of webhooks cannot be read.");
-  bytes.resize(static_cast<std::size_t>(size) - 1);
+  const auto padding = std::ranges::count(text, '=');
+  bytes.resize(static_cast<std::size_t>(size - padding));
   return bytes;
 }
 

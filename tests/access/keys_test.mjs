@@ -1,0 +1,159 @@
+// The real server with API keys: who has none, or one of too little, is told so; nobody sees the
+// jobs of another; and no key comes into the log.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import test from "node:test";
+
+import { dataDirectory, ENDLESS, grid, QUICK, Server } from "../fault/server.mjs";
+
+/** A new key's text. */
+function addKey(data, name, ...flags) {
+  const args = ["keys", "add", "--data", data, "--name", name, ...flags];
+  return execFileSync(process.env.UNWRAPD, args, { stdio: ["ignore", "pipe", "ignore"] })
+    .toString()
+    .trim();
+}
+
+/** What the holder of a key (or of none) does at a server. */
+class Holder {
+  constructor(server, key) {
+    this.server = server;
+    this.headers = key ? { Authorization: `Bearer ${key}` } : {};
+  }
+  fetch(path, options = {}) {
+    const headers = { ...this.headers, ...options.headers };
+    return fetch(`${this.server.url}${path}`, { ...options, headers });
+  }
+  post(query = QUICK, size = 3, more = {}) {
+    const headers = { "Content-Type": "model/obj", "Cache-Control": "no-cache", ...more };
+    return this.fetch(`/v1/jobs?${query}`, { method: "POST", headers, body: grid(size) });
+  }
+  async submit(query, size, more) {
+    const answer = await this.post(query, size, more);
+    const job = await answer.json();
+    assert.ok(answer.ok, JSON.stringify(job));
+    return job.id;
+  }
+  async done(query, size) {
+    return this.submit(query, size, { Prefer: "wait=60" });
+  }
+  async ids() {
+    return (await (await this.fetch("/v1/jobs?limit=200")).json()).jobs.map(({ id }) => id);
+  }
+  async state(id) {
+    return (await (await this.fetch(`/v1/jobs/${id}`)).json()).state;
+  }
+}
+
+async function refused(answer, status, code) {
+  const problem = await answer.json();
+  assert.deepEqual([answer.status, problem.code], [status, code], problem.detail);
+  return answer.headers;
+}
+
+test("without a key there are the contract and the probes, and nothing else", async (t) => {
+  const data = dataDirectory(t);
+  const server = await Server.start(data, "--require-keys");
+  const nobody = new Holder(server);
+  for (const path of ["/healthz", "/readyz", "/v1/limits", "/v1/methods", "/openapi.yaml"])
+    assert.equal((await nobody.fetch(path)).status, 200, path);
+  const job = `/v1/jobs/j_${"0".repeat(32)}`;
+  for (const path of ["/v1/jobs", job, `${job}/result`, `${job}/events`, `${job}/link`]) {
+    const headers = await refused(await nobody.fetch(path), 401, "unauthorized");
+    assert.equal(headers.get("WWW-Authenticate"), "Bearer");
+  }
+  await refused(await nobody.post(), 401, "unauthorized");
+  await refused(await nobody.fetch(job, { method: "DELETE" }), 401, "unauthorized");
+  await refused(await new Holder(server, "unw_nonsense").post(), 401, "unauthorized");
+  await server.end("SIGTERM");
+});
+
+test("a key sees its own jobs alone; admin sees all; a removed key sees nothing", async (t) => {
+  const data = dataDirectory(t);
+  const keys = ["a", "b"].map((name) => addKey(data, name));
+  const adminKey = addKey(data, "boss", "--scopes", "admin");
+  const server = await Server.start(data, "--require-keys", "--log-level", "debug");
+  const [a, b] = keys.map((key) => new Holder(server, key));
+  const admin = new Holder(server, adminKey);
+  const job = await a.done();
+  const other = await b.done();
+  assert.deepEqual(await a.ids(), [job]);
+  assert.deepEqual(await b.ids(), [other]);
+  assert.deepEqual(await admin.ids(), [other, job]);
+  for (const file of ["", "/result", "/report", "/events", "/layout.svg", "/preview.png", "/link"]) {
+    await refused(await b.fetch(`/v1/jobs/${job}${file}`), 404, "not_found");
+    assert.equal((await a.fetch(`/v1/jobs/${job}${file}`)).status, 200, file);
+    assert.equal((await admin.fetch(`/v1/jobs/${job}${file}`)).status, 200, file);
+  }
+  await refused(await b.fetch(`/v1/jobs/${job}`, { method: "DELETE" }), 404, "not_found");
+  const put = { method: "PUT", headers: { "Content-Type": "model/obj" }, body: grid(2) };
+  await refused(await b.fetch(`/v1/jobs/${job}`, put), 404, "not_found");
+  assert.equal(await a.state(job), "succeeded");
+
+  const { url } = await (await a.fetch(`/v1/jobs/${job}/link`)).json();
+  const result = await (await a.fetch(`/v1/jobs/${job}/result`)).text();
+  assert.equal(await (await fetch(server.url + url)).text(), result, "a link needs no key");
+  await refused(await fetch(server.url + url.replace("/result", "/report")), 403, "invalid_link");
+
+  const list = execFileSync(process.env.UNWRAPD, ["keys", "list", "--data", data]).toString();
+  const id = list.split("\n").find((line) => line.endsWith(" a")).split(" ")[0];
+  execFileSync(process.env.UNWRAPD, ["keys", "remove", id, "--data", data]);
+  await refused(await a.fetch(`/v1/jobs/${job}`), 401, "unauthorized");
+  const signature = url.split("signature=")[1];
+  await server.end("SIGTERM");
+  assert.ok(server.log.length > 0);
+  for (const secret of [...keys, adminKey, signature])
+    for (const text of [server.log, list]) assert.ok(!text.includes(secret.slice(-40)), "a secret");
+});
+
+test("scopes, rates and quotas are kept, each by its code", async (t) => {
+  const data = dataDirectory(t);
+  const add = (...flags) => addKey(data, flags.join(" "), ...flags);
+  const keys = {
+    submit: add("--scopes", "submit"),
+    read: add("--scopes", "read"),
+    rare: add("--requests-per-minute", "2"),
+    one: add("--max-jobs", "1"),
+    small: add("--max-bytes", "9000"),
+  };
+  const server = await Server.start(data, "--require-keys");
+  const as = (name) => new Holder(server, keys[name]);
+  const id = await as("submit").submit();
+  await refused(await as("submit").fetch(`/v1/jobs/${id}`), 403, "forbidden");
+  await refused(await as("read").post(), 403, "forbidden");
+  for (let k = 0; k < 2; ++k) assert.equal((await as("rare").fetch("/v1/jobs")).status, 200);
+  const rate = await refused(await as("rare").fetch("/v1/jobs"), 429, "rate_limited");
+  assert.ok(Number(rate.get("Retry-After")) >= 1 && Number(rate.get("Retry-After")) <= 30);
+  const live = await as("one").submit(...ENDLESS);
+  const busy = await refused(await as("one").post(), 429, "too_many_jobs");
+  assert.ok(Number(busy.get("Retry-After")) >= 1);
+  await as("one").fetch(`/v1/jobs/${live}`, { method: "DELETE" });
+  const kept = await as("small").done(QUICK, 5);
+  await refused(await as("small").post(QUICK, 12), 507, "quota_exceeded");
+  await as("small").fetch(`/v1/jobs/${kept}`, { method: "DELETE" });
+  assert.equal((await as("small").post(QUICK, 5)).status, 202);
+  await server.end("SIGTERM");
+});
+
+test("keys take turns, and a key's own jobs go by their priority", async (t) => {
+  const data = dataDirectory(t);
+  const [greedy, modest] = ["greedy", "modest"].map((name) => addKey(data, name));
+  const server = await Server.start(data, "--require-keys");
+  const many = new Holder(server, greedy);
+  const few = new Holder(server, modest);
+  const blocker = await many.submit(...ENDLESS);
+  const queued = [];
+  for (let k = 0; k < 20; ++k) queued.push(await many.submit(QUICK, 20));
+  const late = await few.submit(QUICK, 8);
+  const urgent = await many.submit(QUICK, 8, { Priority: "u=0" });
+  await many.fetch(`/v1/jobs/${blocker}`, { method: "DELETE" });
+  for (;;) {
+    if ((await few.state(late)) !== "queued") break;
+  }
+  const states = await Promise.all(queued.map((id) => many.state(id)));
+  const waiting = states.filter((state) => state === "queued").length;
+  assert.ok(waiting >= 10, `${waiting} of the greedy key's 20 jobs wait when the modest key's runs`);
+  while ((await many.state(urgent)) !== "succeeded") await new Promise((done) => setTimeout(done, 5));
+  assert.equal(await many.state(queued.at(-1)), "queued", "the urgent job overtook its own queue");
+  await server.end("SIGTERM");
+});

@@ -1,0 +1,90 @@
+// Webhooks of the real server at a receiver on this machine: signed, tried again, over a kill -9, and
+// never sent to addresses that are not public unless the operator says so.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { createHmac } from "node:crypto";
+import { once } from "node:events";
+import { createServer } from "node:http";
+import test from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+
+import { dataDirectory, grid, QUICK, Server } from "../fault/server.mjs";
+
+const ALLOWED = ["--webhook-hosts", "localhost", "--webhook-private", "--webhook-retry-seconds", "1"];
+
+/** A receiver that answers by `status`, and what it got. */
+async function receiver(t) {
+  const calls = [];
+  const hook = { calls, status: 200 };
+  const http = createServer(async (request, answer) => {
+    const pieces = [];
+    for await (const piece of request) pieces.push(piece);
+    calls.push({ headers: request.headers, url: request.url, body: Buffer.concat(pieces).toString() });
+    answer.writeHead(hook.status, hook.status === 302 ? { Location: "/elsewhere" } : {}).end();
+  });
+  http.listen(0, "127.0.0.1");
+  await once(http, "listening");
+  t.after(() => http.close());
+  hook.url = `http://localhost:${http.address().port}/done?a=b`;
+  hook.called = async (times) => {
+    while (calls.length < times) await sleep(10);
+  };
+  return hook;
+}
+
+function submit(server, url, query = QUICK) {
+  const headers = { "Content-Type": "model/obj", "Unwrapd-Webhook": url };
+  return fetch(`${server.url}/v1/jobs?${query}`, { method: "POST", headers, body: grid(3) });
+}
+
+/** Checks a call by the specification, not by our code. */
+function assertSigned(call, secret) {
+  const key = Buffer.from(secret.replace("whsec_", ""), "base64");
+  const text = `${call.headers["webhook-id"]}.${call.headers["webhook-timestamp"]}.${call.body}`;
+  const expected = `v1,${createHmac("sha256", key).update(text).digest("base64")}`;
+  assert.equal(call.headers["webhook-signature"], expected);
+}
+
+test("a webhook is called, signed, until it answers, over a kill -9", async (t) => {
+  const data = dataDirectory(t);
+  const hook = await receiver(t);
+  hook.status = 500;
+  const first = await Server.start(data, ...ALLOWED);
+  const { id } = await (await submit(first, hook.url)).json();
+  await hook.called(1);
+  await first.end("SIGKILL");
+  hook.status = 302; // a redirect is no answer, and is not followed
+  const second = await Server.start(data, ...ALLOWED, "--log-level", "info");
+  const before = hook.calls.length;
+  await hook.called(before + 1);
+  hook.status = 204;
+  while (!second.log.includes("webhook called")) await sleep(10);
+  const secret = execFileSync(process.env.UNWRAPD, ["keys", "webhook-secret", "--data", data]).toString().trim();
+  for (const call of hook.calls) {
+    assertSigned(call, secret);
+    assert.equal(call.url, "/done?a=b");
+    assert.equal(call.headers["webhook-id"], id);
+    assert.deepEqual(JSON.parse(call.body), await second.job(id));
+  }
+  await second.end("SIGTERM");
+  assert.ok(!second.log.includes(secret.slice(6)) && !second.log.includes("done?a=b"));
+});
+
+test("hosts that are not allowed are refused at once", async (t) => {
+  const server = await Server.start(dataDirectory(t), ...ALLOWED);
+  for (const url of ["http://127.0.0.1/", "http://example.com/", "file:///etc/passwd", "http://u@localhost/"]) {
+    const answer = await submit(server, url);
+    assert.deepEqual([answer.status, (await answer.json()).code], [422, "webhook_refused"], url);
+  }
+  await server.end("SIGTERM");
+});
+
+test("an address of this machine is never called unless that is allowed", async (t) => {
+  const hook = await receiver(t);
+  const server = await Server.start(dataDirectory(t), "--webhook-hosts", "*", "--log-level", "info");
+  for (const url of [hook.url, hook.url.replace("localhost", "127.0.0.1")])
+    assert.equal((await submit(server, url)).status, 202);
+  while (server.log.split("not public").length < 3) await sleep(10);
+  assert.equal(hook.calls.length, 0);
+  await server.end("SIGTERM");
+});

@@ -1,0 +1,242 @@
+// Who may do what: keys, rates, links, and where a webhook may go. tests/access asks the real
+// server.
+#include "server/access.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "server/cors.hpp"
+#include "server/webhook_url.hpp"
+#include "server/webhooks.hpp"
+#include "temp_dir.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+ErrorCode code_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  return ErrorCode::internal;
+}
+
+Request request_of(const std::string& method, const std::string& path) {
+  Request request;
+  request.method = method;
+  request.path = path;
+  return request;
+}
+
+TEST(AsksForKeys, WhereOthersCanConnectUnlessTheOperatorInsists) {
+  for (const char* host : {"127.0.0.1", "127.9.9.9", "::1", "localhost"}) {
+    EXPECT_FALSE(asks_for_keys({}, host)) << host;
+    EXPECT_TRUE(asks_for_keys({.require_keys = true}, host)) << host;
+  }
+  for (const char* host : {"0.0.0.0", "::", "10.0.0.1", "example.com"}) {
+    EXPECT_TRUE(asks_for_keys({}, host)) << host;
+    EXPECT_FALSE(asks_for_keys({.insecure = true}, host)) << host;
+  }
+}
+
+class Keys : public testing::Test {
+ protected:
+  /// The caller of a request with this key.
+  Caller admit(const std::string& text, const std::string& method = "GET") {
+    Request request = request_of(method, "/v1/jobs");
+    if (!text.empty()) request.headers.emplace("Authorization", "Bearer " + text);
+    access_.admit(request, "/v1/jobs");
+    return request.caller;
+  }
+
+  std::string add(const std::string& name, const Scopes& scopes) {
+    ApiKey key;
+    key.name = name;
+    key.scopes = scopes;
+    return keys_.add(key);
+  }
+
+  TempDir dir_;
+  KeyStore keys_{dir_.path()};
+  LinkSigner links_{"secret"};
+  Access access_{keys_, links_, true};
+};
+
+TEST_F(Keys, AreStoredAsADigestAlone) {
+  const std::string text = add("ci", {.submit = true});
+  ASSERT_EQ(keys_.all().size(), 1U);
+  EXPECT_EQ(keys_.all()[0].name, "ci");
+  EXPECT_EQ(keys_.find(text)->id, keys_.all()[0].id);
+  const std::string secret = text.substr(text.rfind('_') + 1);
+  for (const auto& entry : std::filesystem::directory_iterator(dir_.path()))
+    EXPECT_EQ(read_file(entry.path()).find(secret), std::string::npos) << entry.path();
+}
+
+TEST_F(Keys, AreRefusedWithAnyCharacterChangedAndOnceRemoved) {
+  const std::string text = add("ci", {.read = true});
+  EXPECT_EQ(admit(text).owner, keys_.all()[0].id);
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    std::string other = text;
+    other[at] = other[at] == 'a' ? 'b' : 'a';
+    EXPECT_EQ(code_of([&] { admit(other); }), ErrorCode::unauthorized) << at;
+  }
+  EXPECT_EQ(code_of([&] { admit(""); }), ErrorCode::unauthorized);
+  EXPECT_TRUE(keys_.remove(keys_.all()[0].id));
+  EXPECT_EQ(code_of([&] { admit(text); }), ErrorCode::unauthorized);
+}
+
+TEST_F(Keys, DoWhatTheirScopesSayAndNoMore) {
+  const std::string submit = add("s", {.submit = true});
+  const std::string read = add("r", {.read = true});
+  const std::string admin = add("a", {.admin = true});
+  EXPECT_EQ(code_of([&] { admit(submit, "GET"); }), ErrorCode::forbidden);
+  for (const char* method : {"POST", "PUT", "DELETE"})
+    EXPECT_EQ(code_of([&] { admit(read, method); }), ErrorCode::forbidden) << method;
+  EXPECT_FALSE(admit(submit, "POST").sees_all);
+  EXPECT_FALSE(admit(read, "HEAD").sees_all);
+  EXPECT_TRUE(admit(admin, "DELETE").sees_all);
+  EXPECT_EQ(to_text(parse_scopes("read,submit")), "submit,read");
+  EXPECT_EQ(code_of([] { parse_scopes("root"); }), ErrorCode::invalid_option);
+}
+
+TEST(RateLimit, LetsAMinutesWorthThroughAndThenOneByOne) {
+  RateLimit rates;
+  const RateLimit::Clock::time_point start{};
+  for (int k = 0; k < 30; ++k) EXPECT_EQ(rates.wait_seconds("a", 30, start), 0);
+  EXPECT_EQ(rates.wait_seconds("a", 30, start), 2);
+  EXPECT_EQ(rates.wait_seconds("b", 30, start), 0);
+  EXPECT_EQ(rates.wait_seconds("a", 30, start + std::chrono::seconds(2)), 0);
+  EXPECT_EQ(rates.wait_seconds("a", 30, start + std::chrono::seconds(2)), 2);
+  EXPECT_EQ(rates.wait_seconds("a", 0, start), 0);
+}
+
+/// The request that opens a link.
+Request opening(const std::string& link) {
+  Request request = request_of("GET", link.substr(0, link.find('?')));
+  const std::size_t expires = link.find("expires=") + 8;
+  const std::size_t end = link.find('&');
+  request.query = {{"expires", link.substr(expires, end - expires)},
+                   {"signature", link.substr(link.find("signature=") + 10)},
+                   {"lambda", "1"}};
+  return request;
+}
+
+TEST_F(Keys, ALinkOpensItsOwnFileUntilItExpires) {
+  constexpr std::int64_t kFarAway = 1'000'000'000'000;
+  const std::string link = links_.sign("/v1/jobs/j_1/result", kFarAway);
+  Request request = opening(link);
+  access_.admit(request, "/v1/jobs/{id}/result");
+  EXPECT_TRUE(request.caller.sees_all);
+  EXPECT_EQ(request.query.size(), 1U) << "the handler does not see what signs the link";
+  std::vector<Request> refused(4, opening(link));
+  refused[0].path = "/v1/jobs/j_2/result";
+  refused[1].method = "DELETE";
+  refused[2].query.erase("expires");
+  refused[3] = opening(links_.sign("/v1/jobs/j_1/result", 1'000'000'000));
+  refused.push_back(opening(LinkSigner("another secret").sign("/v1/jobs/j_1/result", kFarAway)));
+  for (Request& each : refused) {
+    EXPECT_EQ(code_of([&] { access_.admit(each, "/v1/jobs/{id}/result"); }),
+              ErrorCode::invalid_link);
+  }
+}
+
+TEST(Webhook, OnlyPublicAddressesAreCalled) {
+  for (const char* address : {"127.0.0.1",
+                              "10.1.2.3",
+                              "172.16.0.1",
+                              "172.31.255.255",
+                              "192.168.1.1",
+                              "169.254.169.254",
+                              "100.64.0.1",
+                              "0.0.0.0",
+                              "224.0.0.1",
+                              "255.255.255.255",
+                              "192.0.2.1",
+                              "198.18.0.1",
+                              "::1",
+                              "::",
+                              "fe80::1",
+                              "fc00::1",
+                              "fd12::1",
+                              "ff02::1",
+                              "::ffff:127.0.0.1",
+                              "::ffff:8.8.8.8",
+                              "2001:db8::1",
+                              "2002:7f00:1::",
+                              "64:ff9b::7f00:1",
+                              "2001::1",
+                              "fe80::1%eth0",
+                              "nonsense"})
+    EXPECT_FALSE(is_public_address(address)) << address;
+  for (const char* address : {"8.8.8.8", "172.15.0.1", "172.32.0.1", "100.63.0.1", "100.128.0.1",
+                              "2606:4700:4700::1111", "2a00:1450::1"})
+    EXPECT_TRUE(is_public_address(address)) << address;
+}
+
+TEST(Webhook, NamesThatResolveToThisMachineAreRefusedUnlessAllowed) {
+  WebhookConfig config{.allowed_hosts = {"*"}};
+  const WebhookUrl url = parse_webhook("http://localhost:81/x", config);
+  EXPECT_EQ(code_of([&] { resolve_webhook(url, config); }), ErrorCode::webhook_refused);
+  config.allow_private = true;
+  EXPECT_FALSE(resolve_webhook(url, config).empty());
+}
+
+TEST(Webhook, AddressesAreTakenApart) {
+  const WebhookConfig any{.allowed_hosts = {"*"}};
+  const WebhookUrl url = parse_webhook("https://Example.com:8443/a/b?c=d", any);
+  EXPECT_TRUE(url.is_https);
+  EXPECT_EQ(url.host, "example.com");
+  EXPECT_EQ(url.port, 8443);
+  EXPECT_EQ(url.target, "/a/b?c=d");
+  EXPECT_EQ(parse_webhook("http://a.b", any).port, 80);
+  EXPECT_EQ(parse_webhook("http://a.b?x", any).target, "/?x");
+  EXPECT_EQ(parse_webhook("http://[::1]:8080/", any).host, "::1");
+  for (const char* text : {"", "ftp://a.b/", "https://", "https://user@a.b/", "https://a.b:0/",
+                           "https://a.b:99999/", "https://a.b:/", "https://a b/", "https://a.b/#x",
+                           "https://a.b/\r\nX: y", "//a.b/", "https://a.b\\c/"})
+    EXPECT_EQ(code_of([&] { parse_webhook(text, any); }), ErrorCode::webhook_refused) << text;
+}
+
+TEST(Webhook, GoOnlyToHostsThatAreAllowed) {
+  const WebhookConfig config{.allowed_hosts = {"a.example", "*.b.example"}};
+  for (const char* text : {"https://a.example/", "https://x.b.example/", "https://x.y.b.example/"})
+    EXPECT_NO_THROW(parse_webhook(text, config)) << text;
+  for (const char* text : {"https://x.a.example/", "https://b.example/", "https://xb.example/",
+                           "https://a.example.org/", "https://other/"})
+    EXPECT_EQ(code_of([&] { parse_webhook(text, config); }), ErrorCode::webhook_refused) << text;
+  EXPECT_EQ(code_of([] { parse_webhook("https://a.example/", {}); }), ErrorCode::webhook_refused);
+}
+
+TEST(Webhook, AreSignedAsStandardWebhooksHasIt) {  // the example of that specification
+  EXPECT_EQ(webhook_signature("whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw",
+                              "msg_p5jXN8AQM9LWM0D4loKWxJek.1614265330.{\"test\": 2432232314}"),
+            "v1,g0hM9SsE+OTPJTGt/tmIKtSyZlE3uFJELVlNIOLJ1OE=");
+  EXPECT_NE(webhook_secret("s", "k_a"), webhook_secret("s", "k_b"));
+  EXPECT_NO_THROW(webhook_signature(webhook_secret("s", "k_a"), "text"));
+}
+
+TEST(Cors, LetsOnlyPagesOfListedSitesIn) {
+  const Cors cors({"https://a.example"});
+  const auto allowed = [&](const std::string& origin) {
+    Request request = request_of("OPTIONS", "/v1/jobs");
+    request.headers.emplace("Origin", origin);
+    request.headers.emplace("Access-Control-Request-Method", "POST");
+    Response response;
+    cors.allow(request, response);
+    bool told = false;
+    for (const auto& [name, value] : response.headers) told |= value == origin;
+    EXPECT_EQ(told, cors.preflight(request).has_value()) << origin;
+    return told;
+  };
+  EXPECT_TRUE(allowed("https://a.example"));
+  EXPECT_FALSE(allowed("https://a.example.org"));
+  EXPECT_FALSE(allowed("http://a.example"));
+  EXPECT_FALSE(allowed("null"));
+}
+
+}  // namespace
+}  // namespace unwrapd::server
