@@ -142,6 +142,8 @@ std::vector<Layout> map_charts(const Taken& taken, const std::vector<std::vector
   const std::vector<Charts>& parts = taken.parts;
   ChartWatch watch = chart_watch(taken, progress);
   std::vector<Layout> layouts = empty_layouts(parts, lambdas_of(options).size());
+  if (!taken.note.empty())
+    for (Layout& layout : layouts) layout.report.notes.push_back(taken.note);
   for (std::size_t s = 0; s < parts.size(); ++s)
     for (std::size_t c = 0; c < parts[s].charts.size(); ++c) {
       auto maps = map_chart({parts[s].charts[c], page[s][c]}, options, watch, executor);

@@ -6,6 +6,7 @@
 // one, so this ends.
 #include "core/atlas/segment.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <numeric>
@@ -25,7 +26,10 @@ constexpr double kRefinement = 0.3;      // of flatness, each time a patch has n
 constexpr int kRefinements = 4;          // then the patch falls into its triangles
 constexpr int kSmoothingPasses = 3;
 constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
-constexpr std::array kPrices = {5.0, 1.0, 20.0};  // see MergeRules
+constexpr std::array kPrices = {5.0, 1.0, 20.0, 2.0, 0.3, 10.0, 0.1, 40.0};  // see MergeRules
+constexpr std::size_t kFacesOfSearch = 80'000;  // that are merged in all, anew for each price
+constexpr double kMargin = 0.97;  // of what is allowed: solving on may shift some between the two
+constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a number of regions
 constexpr double kCostOfAChart = 0.1;
 constexpr double kMergeBegin = 0.3;   // share of the time
 constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
@@ -109,13 +113,15 @@ std::vector<Patch> over_segment(const Sheet& sheet, const SegmentRules& rules, E
 /// The cheapest of several greedy merges that weigh distortion against border differently.
 Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& rules,
                  Executor& executor) {
-  const double budget = rules.max_distortion - 2;
+  const double budget = kMargin * (rules.max_distortion - 2);
+  const std::size_t tries =
+      std::clamp(kFacesOfSearch / sheet.mesh.faces.size(), std::size_t{1}, kPrices.size());
   const Joiner joiner(sheet);
   Partition best;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < kPrices.size(); ++k) {
+  for (std::size_t k = 0; k < tries; ++k) {
     const auto tell = [&](double share) {
-      const double done = (static_cast<double>(k) + share) / static_cast<double>(kPrices.size());
+      const double done = (static_cast<double>(k) + share) / static_cast<double>(tries);
       if (rules.on_progress)
         rules.on_progress(Stage::merge, kMergeBegin + (1 - kMergeBegin) * done);
     };
@@ -143,6 +149,15 @@ Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& execut
   tell(Stage::segment, 0);
   Partition best{over_segment(sheet, rules, executor), std::vector<char>(sheet.length.size(), 0)};
   best = merged(sheet, best, rules, executor);
+  if (best.patches.size() > static_cast<std::size_t>(rules.most_regions)) {
+    const MergeRules merging{.budget = kAnyExcess,
+                             .cap = kAnyExcess,
+                             .price = kFarPrice * kAnyExcess,
+                             .enough = rules.most_regions,
+                             .on_progress = {},
+                             .stop = rules.stop};
+    best = merge_patches(Joiner(sheet), sheet, std::move(best), merging, executor);
+  }
   Segments segments{{}, std::move(best.open)};
   for (Patch& patch : best.patches) segments.regions.push_back(std::move(patch.region));
   return segments;

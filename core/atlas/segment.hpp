@@ -2,6 +2,7 @@
 // A surface of any genus taken apart into few regions that ARAP lays flat with little distortion.
 
 #include <functional>
+#include <limits>
 #include <stop_token>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace unwrapd {
 
 struct SegmentRules {
   double max_distortion = 2.02;  ///< of all regions together, D_angle and D_area each; > 2
-  std::function<void(Stage, double)> on_progress = {};  ///< the share that is done
+  Index most_regions = std::numeric_limits<Index>::max();  ///< however distorted, if maps allow it
+  std::function<void(Stage, double)> on_progress = {};     ///< the share that is done
   std::stop_token stop = {};
 };
 

@@ -5,7 +5,11 @@
 // the disk's area.
 #include "core/atlas/segment_charts.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "core/atlas/segment.hpp"
@@ -88,35 +92,34 @@ void note(Charts& surface, RepairKind kind, Index count) {
   if (count > 0) surface.repairs.push_back({kind, 0, count});
 }
 
-/// What is done with a surface's components, one after another.
+/// What is done with components, one after another.
 class Cutter {
  public:
   Cutter(const SegmentOptions& options, const Account& account, Executor& executor)
       : options_(options), account_(account), executor_(executor) {}
 
-  void add(Chart component) {
-    const bool whole = is_disk(component);
-    if (whole && options_.one_chart_each) {
-      charts.push_back(std::move(component));
-    } else if (whole && !options_.max_distortion && openness(component) >= kLeastOpenness) {
-      charts.push_back(std::move(component));
-    } else if (options_.one_chart_each) {
+  /// most: charts that it shall become at most.
+  void add(Chart component, Index most) {
+    const bool whole = is_disk(component), one_chart = options_.one_chart_each || most == 1;
+    const bool is_left = !options_.max_distortion && openness(component) >= kLeastOpenness;
+    if (!one_chart && !(whole && is_left)) return take_apart(component, whole, most);
+    if (!whole) {
       cut(component);
       ++cuts;
-      charts.push_back(std::move(component));
-    } else {
-      take_apart(std::move(component), whole);
     }
+    charts.push_back(std::move(component));
   }
 
   std::vector<Chart> charts;
   Index cuts = 0, segmented = 0;
 
  private:
-  void take_apart(Chart component, bool whole) {
-    const double bound = options_.max_distortion.value_or(kDefaultDistortion);
+  void take_apart(const Chart& component, bool whole, Index most) {
+    SegmentRules rules =
+        account_.rules(options_.max_distortion.value_or(kDefaultDistortion), component);
+    rules.most_regions = most;
     const Sheet sheet = make_sheet(component.mesh, component.halfedges);
-    const Segments segments = segment(sheet, account_.rules(bound, component), executor_);
+    const Segments segments = segment(sheet, rules, executor_);
     segmented += !whole || segments.regions.size() > 1 ? 1 : 0;
     for (Chart& chart : charts_of(component, segments)) charts.push_back(std::move(chart));
   }
@@ -126,23 +129,64 @@ class Cutter {
   Executor& executor_;
 };
 
-}  // namespace
+/// How many charts each component may become, in the order of surfaces and components.
+using Quotas = std::vector<Index>;
 
-std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& options,
-                           const SegmentWatch& watch, Executor& executor) {
+/// Returns how many each became.
+Quotas cut_all(std::vector<Charts>& surfaces, const Quotas& most, const SegmentOptions& options,
+               const SegmentWatch& watch, Executor& executor) {
   Account account(surfaces, watch);
+  Quotas became;
   for (Charts& surface : surfaces) {
     Cutter cutter(options, account, executor);
     for (Chart& component : std::exchange(surface.charts, {})) {
-      const std::size_t faces = component.mesh.faces.size();
-      cutter.add(std::move(component));
+      const std::size_t faces = component.mesh.faces.size(), before = cutter.charts.size();
+      cutter.add(std::move(component), most[became.size()]);
+      became.push_back(static_cast<Index>(cutter.charts.size() - before));
       account.finish(faces);
     }
     surface.charts = std::move(cutter.charts);
     note(surface, RepairKind::cut_to_disk, cutter.cuts);
     note(surface, RepairKind::segmented, cutter.segmented);
   }
-  return {};
+  return became;
+}
+
+/// One chart for each component; what is left of `most` goes by how many they would like.
+Quotas shared_out(Quotas wanted, Index total, Index most) {
+  const auto count = static_cast<Index>(wanted.size());
+  const std::int64_t spare = std::max(most - count, 0);
+  for (Index& own : wanted)
+    own = 1 + static_cast<Index>(spare * (own - 1) / std::max(total - count, 1));
+  return wanted;
+}
+
+std::string more_than_asked(Index charts, Index components) {
+  return "More charts than max_charts are needed: " + std::to_string(charts) +
+         ", for the mesh has " + std::to_string(components) +
+         " pieces, and no two charts that are left have a common map without overlaps.";
+}
+
+}  // namespace
+
+std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& options,
+                           const SegmentWatch& watch, Executor& executor) {
+  Index components = 0;
+  for (const Charts& surface : surfaces) components += static_cast<Index>(surface.charts.size());
+  const bool is_limited = options.max_charts.has_value();
+  const Index most = options.max_charts.value_or(std::numeric_limits<Index>::max());
+  const Quotas first(static_cast<std::size_t>(components),
+                     is_limited ? std::max<Index>(most - components + 1, 1) : most);
+  const std::vector<Charts> whole = is_limited ? surfaces : std::vector<Charts>();
+  Quotas became = cut_all(surfaces, first, options, watch, executor);
+  Index total = std::accumulate(became.begin(), became.end(), Index(0));
+  if (total > most && components > 1) {
+    surfaces = whole;
+    became = cut_all(surfaces, shared_out(std::move(became), total, most), options,
+                     {{}, watch.stop}, executor);
+    total = std::accumulate(became.begin(), became.end(), Index(0));
+  }
+  return total > most ? more_than_asked(total, components) : std::string();
 }
 
 }  // namespace unwrapd
