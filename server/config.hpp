@@ -28,6 +28,7 @@ struct Config {
   int threads = 1;  ///< for each job
   int keep_seconds = 7 * 24 * 60 * 60;
   int drain_seconds = 30;
+  bool isolate = false;  ///< each job in a process of its own (job_process.hpp)
   LogLevel log_level = LogLevel::info;
   DiskLimits disk;
   AccessConfig access;

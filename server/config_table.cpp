@@ -59,6 +59,10 @@ ConfigGroup working() {
           number({"solver-cache-bytes", "N",
                   "Factors and maps kept for further jobs on the same mesh"},
                  {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::cache_bytes),
+          on_off({"isolate", "BOOL",
+                  "Each job in a process of its own, without files or network: a crash costs that "
+                  "job alone"},
+                 &Config::isolate),
           number({"drain-seconds", "N", "How long running jobs may go on after SIGTERM"},
                  {0, kMaxCount}, &Config::drain_seconds)}};
 }
@@ -88,23 +92,23 @@ void check_host(const std::string& item) {
 }
 
 ConfigGroup admitting() {
-  return {.title = "Admitting",
-          .rows = {on_off({"require-keys", "", "Ask for API keys on loopback, too"},
-                          &Config::access, &AccessConfig::require_keys),
-                   on_off({"insecure", "",
-                           "Ask for no API keys although other machines can connect"},
-                          &Config::access, &AccessConfig::insecure),
-                   list({"cors-origins", "LIST", "Sites whose pages may call from a browser, or *"},
-                        check_origin, &Config::cors_origins),
-                   list({"webhook-hosts", "LIST",
-                         "Hosts that webhooks may call: example.com, *.example.com or *"},
-                        check_host, &Config::webhooks, &WebhookConfig::allowed_hosts),
-                   on_off({"webhook-private", "",
-                           "Let webhooks call addresses of this machine and of private networks"},
-                          &Config::webhooks, &WebhookConfig::allow_private),
-                   number({"webhook-retry-seconds", "N",
-                           "Until the second try of a webhook, doubled for each further one"},
-                          {1, 3600}, &Config::webhooks, &WebhookConfig::retry_seconds)}};
+  return {
+      .title = "Admitting",
+      .rows = {on_off({"require-keys", "", "Ask for API keys on loopback, too"}, &Config::access,
+                      &AccessConfig::require_keys),
+               on_off({"insecure", "", "Ask for no API keys although other machines can connect"},
+                      &Config::access, &AccessConfig::insecure),
+               list({"cors-origins", "LIST", "Sites whose pages may call from a browser, or *"},
+                    check_origin, &Config::cors_origins),
+               list({"webhook-hosts", "LIST",
+                     "Hosts that webhooks may call: example.com, *.example.com or *"},
+                    check_host, &Config::webhooks, &WebhookConfig::allowed_hosts),
+               on_off({"webhook-private", "",
+                       "Let webhooks call addresses of this machine and of private networks"},
+                      &Config::webhooks, &WebhookConfig::allow_private),
+               number({"webhook-retry-seconds", "N",
+                       "Until the second try of a webhook, doubled for each further one"},
+                      {1, 3600}, &Config::webhooks, &WebhookConfig::retry_seconds)}};
 }
 
 ConfigGroup telling() {

@@ -25,7 +25,7 @@ sigset_t block_end_signals() {
   return signals;
 }
 
-void run(const Config& config, const Log& log) {
+void serve(const Config& config, const Log& log) {
   const sigset_t signals = block_end_signals();
   Service service(config, log);
   const std::string address = to_text({config.listen.host, service.port()});
@@ -40,13 +40,14 @@ void run(const Config& config, const Log& log) {
 
 }  // namespace
 
-int run_program(int argc, char** argv) {
+int run_program(int argc, char** argv, const JobRunner& run) {
+  if (is_job_worker(argc, argv)) return run_job_worker(run);
   if (argc > 1 && std::string_view(argv[1]) == "keys") return run_keys_command(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);
   if (line.task == Task::leave) return line.exit_code;
   const Log log(line.config.log_level);
   try {
-    run(line.config, log);
+    serve(line.config, log);
     return 0;
   } catch (const std::exception& error) {
     log.error("unwrapd cannot run", {{"reason", error.what()}});

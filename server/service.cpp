@@ -57,8 +57,7 @@ struct Service::Parts {
         router(routes(), log,
                [this](Request& request, std::string_view route) { access.admit(request, route); }),
         http(
-            http_config(config), [this](const Request& request) { return answer(request); },
-            log) {
+            http_config(config), [this](const Request& request) { return answer(request); }, log) {
     queue.recover();
     blobs.sweep([&](const std::string& job) { return store.keeps_files(job); });
     blobs.room().on_shortage([this] { return evict_oldest(store, blobs); });
@@ -66,7 +65,8 @@ struct Service::Parts {
     workers.emplace(queue, blobs, config.limits, log,
                     WorkerConfig{.workers = config.workers,
                                  .threads = config.threads,
-                                 .core = &solver_cache});
+                                 .core = &solver_cache,
+                                 .isolation = isolation()});
     serving = std::jthread([this] { http.serve(); });
   }
 
@@ -84,6 +84,14 @@ struct Service::Parts {
         "prolonging leases", kHeartbeat, [this] { queue.beat(); }, log);
     calling.emplace(
         "calling webhooks", kWebhookPause, [this] { webhooks.call_due(now_ms()); }, log);
+  }
+
+  Isolation isolation() const {
+    Isolation isolation{.on = config.isolate};
+    isolation.threads = config.threads;
+    isolation.memory_bytes = static_cast<std::int64_t>(solver_cache.memory_limit());
+    if (isolation.on) check_isolation(isolation);
+    return isolation;
   }
 
   std::vector<Route> routes() {

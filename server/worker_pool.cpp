@@ -1,10 +1,13 @@
 #include "server/worker_pool.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <new>
 
 #include "api/error_table.hpp"
+#include "server/feed_output.hpp"
+#include "server/job_input.hpp"
 #include "server/run_job.hpp"
 #include "server/thread_executor.hpp"
 
@@ -14,6 +17,7 @@ namespace {
 using api::JobState;
 
 constexpr std::chrono::seconds kPauseAfterFailure{1};
+constexpr int kMaxCrashes = 3;
 
 JobOutcome ended(JobState state, const Error& why, const JobRecord& job) {
   return {.state = state,
@@ -34,6 +38,12 @@ JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds
   return ended(JobState::failed, late, job.record);
 }
 
+Error too_many_crashes() {
+  return {ErrorCode::poison,
+          "The worker process ended three times while it worked on this job; it is not tried "
+          "again. Check the mesh, or send a smaller part of it."};
+}
+
 }  // namespace
 
 Deadline::Deadline(std::chrono::seconds time, std::function<void()> late)
@@ -45,7 +55,7 @@ Deadline::Deadline(std::chrono::seconds time, std::function<void()> late)
 
 WorkerPool::WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
                        const WorkerConfig& config)
-    : queue_(queue), blobs_(blobs), limits_(limits), log_(log) {
+    : queue_(queue), blobs_(blobs), limits_(limits), log_(log), isolation_(config.isolation) {
   threads_.reserve(static_cast<std::size_t>(config.workers));
   for (int worker = 0; worker < config.workers; ++worker)
     threads_.emplace_back([this, config] { work(config); });
@@ -76,10 +86,35 @@ void WorkerPool::work_on(RunningJob& job, Executor& executor) {
   queue_.finish(job, std::move(outcome));
 }
 
+std::string WorkerPool::run(const RunningJob& job, Executor& executor) {
+  const LoadedInput loaded(blobs_, job.record);
+  FeedOutput output(job, blobs_);
+  const auto queue_ms = static_cast<double>(job.started_ms - job.record.created_ms);
+  const JobTask task{.record = job.record,
+                     .queue_ms = std::max(0.0, queue_ms),
+                     .began = job.began,
+                     .stop = job.stop.get_token()};
+  if (!isolation_.on) return run_job(task, loaded.input(), output, limits_, executor);
+  return run_job_isolated(task, loaded.input(), output, limits_, isolation_);
+}
+
+/// Again after a crash, which may have been an accident: the memory of the machine, an operator.
+std::string WorkerPool::run_patiently(const RunningJob& job, Executor& executor) {
+  for (int crashes = 1;; ++crashes) {
+    try {
+      return run(job, executor);
+    } catch (const WorkerCrashed& crash) {
+      log_.warning("a worker process ended",
+                   {{"job", job.record.id}, {"how", crash.what()}, {"crashes", crashes}});
+    }
+    if (crashes == kMaxCrashes) throw too_many_crashes();
+  }
+}
+
 JobOutcome WorkerPool::attempt(const RunningJob& job, Executor& executor) {
   try {
     JobOutcome outcome;
-    outcome.result_format = run_job(job, blobs_, limits_, executor);
+    outcome.result_format = run_patiently(job, executor);
     return outcome;
   } catch (const Error& error) {
     return outcome_of(error, job, limits_.max_job_seconds);

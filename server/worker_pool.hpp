@@ -6,6 +6,7 @@
 #include <functional>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "core/executor.hpp"
 #include "core/solver_core.hpp"
 #include "server/blob_store.hpp"
+#include "server/job_process.hpp"
 #include "server/job_queue.hpp"
 #include "server/log.hpp"
 
@@ -33,6 +35,7 @@ struct WorkerConfig {
   int workers = 1;
   int threads = 1;             ///< for each worker's job
   SolverCore* core = nullptr;  ///< that their jobs share; outlives the pool
+  Isolation isolation = {};
 };
 
 class WorkerPool {
@@ -45,11 +48,14 @@ class WorkerPool {
   void work(const WorkerConfig& config);
   void work_on(RunningJob& job, Executor& executor);
   JobOutcome attempt(const RunningJob& job, Executor& executor);
+  std::string run_patiently(const RunningJob& job, Executor& executor);
+  std::string run(const RunningJob& job, Executor& executor);
 
   JobQueue& queue_;
   BlobStore& blobs_;
   const api::Limits& limits_;
   const Log& log_;
+  const Isolation isolation_;
   std::vector<std::jthread> threads_;
 };
 

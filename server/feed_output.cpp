@@ -1,0 +1,35 @@
+#include "server/feed_output.hpp"
+
+#include "api/events.hpp"
+#include "server/result_store.hpp"
+
+namespace unwrapd::server {
+
+void FeedOutput::stage(const StageEvent& event) {
+  job_.feed->set_progress({.stage = event.stage,
+                           .fraction = event.fraction,
+                           .chart = event.chart,
+                           .iteration = 0,
+                           .energy = 0});
+  job_.feed->publish([&](std::int64_t seq) { return api::stage_event(seq, event); });
+}
+
+void FeedOutput::iteration(const IterationEvent& event, double elapsed_ms) {
+  job_.feed->set_progress({.stage = Stage::solve,
+                           .fraction = event.fraction,
+                           .chart = event.chart,
+                           .iteration = event.iteration,
+                           .energy = event.energy});
+  job_.feed->publish(
+      [&](std::int64_t seq) { return api::iteration_event(seq, event, elapsed_ms); });
+}
+
+void FeedOutput::result(std::string_view format, std::string_view bytes) {
+  write_result(blobs_, job_.record.id, format, bytes);
+}
+
+void FeedOutput::file(std::string_view name, std::string_view bytes) {
+  blobs_.write(job_.record.id, name, bytes);
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,179 @@
+#include "server/job_worker.hpp"
+
+#include <pthread.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <new>
+#include <string_view>
+#include <thread>
+
+#include "api/error_table.hpp"
+#include "server/byte_pack.hpp"
+#include "server/job_frames.hpp"
+#include "server/sandbox.hpp"
+#include "server/solver_cache.hpp"
+#include "server/thread_executor.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr int kSocket = STDIN_FILENO;
+constexpr std::int64_t kAnyBytes = std::int64_t{1} << 40;  // the server is trusted
+constexpr std::int64_t kCacheShare = 4;  // of the memory, for what the charts of a job share
+
+[[noreturn]] void gone() { throw Error(ErrorCode::internal, "The server is gone."); }
+
+void send_all(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::send(kSocket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) gone();
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
+}
+
+bool receive_all(char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t got = ::recv(kSocket, data, size, 0);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) gone();
+    data += got;
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+/// Everything of a job goes to the server.
+class SocketOutput final : public JobOutput {
+ public:
+  void stage(const StageEvent& event) override {
+    send_frame(send_all, FrameKind::stage, {}, pack(event));
+  }
+  void iteration(const IterationEvent& event, double elapsed_ms) override {
+    send_frame(send_all, FrameKind::iteration, {}, pack(event, elapsed_ms));
+  }
+  void result(std::string_view format, std::string_view bytes) override {
+    send_frame(send_all, FrameKind::result, format, bytes);
+  }
+  void file(std::string_view name, std::string_view bytes) override {
+    send_frame(send_all, FrameKind::file, name, bytes);
+  }
+};
+
+/// A job as it has come over the socket.
+struct ReceivedJob {
+  WorkerTask task;
+  JobRecord record;
+  std::string document;
+  std::vector<std::pair<std::string, std::string>> buffers;
+
+  [[nodiscard]] asset::Input input() const {
+    asset::Input input{.document = document, .buffers = {}};
+    for (const auto& [uri, bytes] : buffers) input.buffers[uri] = bytes;
+    return input;
+  }
+};
+
+void unpack_task(std::string_view bytes, ReceivedJob& job) {
+  ByteUnpacker from(bytes);
+  job.task = from.next<WorkerTask>();
+  job.record.synchronous = from.next<std::uint8_t>() != 0;
+  job.record.input.bytes = from.next<std::int64_t>();
+  job.record.input.sha256 = from.next_text();
+  job.record.options = api::Json::parse(from.next_text());
+  while (!from.empty()) job.record.notes.emplace_back(from.next_text());
+}
+
+ReceivedJob receive_job() {
+  ReceivedJob job;
+  for (Frame frame; receive_frame(receive_all, kAnyBytes, frame);) {
+    if (frame.kind == FrameKind::begin) return job;
+    if (frame.kind == FrameKind::task) unpack_task(frame.bytes, job);
+    if (frame.kind == FrameKind::document) job.document = std::move(frame.bytes);
+    if (frame.kind == FrameKind::buffer)
+      job.buffers.emplace_back(std::move(frame.name), std::move(frame.bytes));
+  }
+  gone();
+}
+
+/// SIGTERM asks the job to stop. The thread waits for it as long as the process lives.
+std::stop_source stop_at_sigterm() {
+  std::stop_source stop;
+  std::thread([stop]() mutable {
+    sigset_t term;
+    sigemptyset(&term);
+    sigaddset(&term, SIGTERM);
+    int signal = 0;
+    sigwait(&term, &signal);
+    stop.request_stop();
+  }).detach();
+  return stop;
+}
+
+void fail_with(ErrorCode code, std::string_view message, std::string_view where) {
+  BytePacker text;
+  text.add_text(message).add_text(where);
+  send_frame(send_all, FrameKind::failed, api::error_row(code).name, text.take());
+}
+
+void work(const JobRunner& run) {
+  const ReceivedJob job = receive_job();
+  const std::stop_source stop = stop_at_sigterm();
+  const std::int64_t memory = job.task.memory_bytes;
+  SolverCache core({.cache_bytes = memory / kCacheShare, .job_bytes = memory}, 1);
+  ThreadExecutor executor(job.task.threads, &core);
+  SocketOutput output;
+  const auto elapsed = std::chrono::duration<double, std::milli>(job.task.elapsed_ms);
+  const JobTask task{
+      .record = job.record,
+      .queue_ms = job.task.queue_ms,
+      .began = std::chrono::steady_clock::now() -
+               std::chrono::duration_cast<std::chrono::steady_clock::duration>(elapsed),
+      .stop = stop.get_token()};
+  const std::string format = run(task, job.input(), output, job.task.limits, executor);
+  send_frame(send_all, FrameKind::done, format, {});
+}
+
+/// They come before anything else: nothing may be read without them.
+SandboxLimits sandbox_limits() {
+  SandboxLimits limits;
+  if (!receive_all(reinterpret_cast<char*>(&limits), sizeof limits)) gone();
+  return limits;
+}
+
+}  // namespace
+
+bool is_job_worker(int argc, const char* const* argv) {
+  return argc == 2 && std::string_view(argv[1]) == kWorkerFlag;
+}
+
+std::string pack_task(const WorkerTask& task, const JobRecord& job) {
+  BytePacker pack;
+  pack.add(task).add(std::uint8_t{job.synchronous}).add(job.input.bytes);
+  pack.add_text(job.input.sha256).add_text(job.options.dump());
+  for (const std::string& note : job.notes) pack.add_text(note);
+  return pack.take();
+}
+
+int run_job_worker(const JobRunner& run) {
+  try {
+    enter_sandbox(sandbox_limits());
+    send_frame(send_all, FrameKind::ready, {}, {});
+    work(run);
+  } catch (const Error& error) {
+    fail_with(error.code(), error.what(), error.where());
+  } catch (const std::bad_alloc&) {
+    fail_with(ErrorCode::memory_limit,
+              "The job needed more memory than this server gives to one; send a smaller mesh.", {});
+  } catch (const std::exception&) {  // the owner learns nothing of our insides
+    fail_with(ErrorCode::internal, "The server made a mistake.", {});
+  }
+  std::_Exit(EXIT_SUCCESS);  // nothing is left to be done, and a thread still waits for a signal
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,34 @@
+#pragma once
+// The worker process's side of --isolate: unwrapd started again with --job-worker as its only
+// argument and a socket as its standard input. One job, then it ends.
+
+#include <functional>
+#include <string>
+
+#include "server/run_job.hpp"
+
+namespace unwrapd::server {
+
+inline constexpr const char* kWorkerFlag = "--job-worker";
+
+/// What a worker does with a job; run_job(), but in tests.
+using JobRunner = std::function<std::string(const JobTask&, const asset::Input&, JobOutput&,
+                                            const api::Limits&, Executor&)>;
+
+[[nodiscard]] bool is_job_worker(int argc, const char* const* argv);
+
+/// Locks the process in, takes the job, does it. Returns the exit code.
+int run_job_worker(const JobRunner& run);
+
+/// What the server tells its worker of a job.
+struct WorkerTask {
+  api::Limits limits;
+  int threads = 1;
+  std::int64_t memory_bytes = 0;
+  double queue_ms = 0;
+  double elapsed_ms = 0;  ///< since the job began
+};
+
+std::string pack_task(const WorkerTask& task, const JobRecord& job);
+
+}  // namespace unwrapd::server

@@ -1,0 +1,120 @@
+// --isolate: whatever a worker process does, one job pays for it, and nothing else. UNWRAPD names the
+// server of misbehaving_main.cpp.
+import assert from 'node:assert/strict';
+import {existsSync, readFileSync, readdirSync} from 'node:fs';
+import {join} from 'node:path';
+import test, {after, before} from 'node:test';
+import {setTimeout as sleep} from 'node:timers/promises';
+
+import {request} from '../contract/http.mjs';
+import * as meshes from '../contract/meshes.mjs';
+import {startServer} from '../contract/server.mjs';
+import {parseEvents} from '../contract/spec.mjs';
+
+const kObj = {'Content-Type': 'model/obj'};
+
+let isolated;
+let plain;
+before(async () => {
+  [isolated, plain] = await Promise.all([
+    startServer(process.env.UNWRAPD, ['--isolate', 'true', '--workers', '2', '--threads', '2',
+                                       '--memory-limit', '500000000']),
+    startServer(process.env.UNWRAPD, ['--workers', '1', '--threads', '2']),
+  ]);
+});
+after(() => Promise.all([isolated.stop(), plain.stop()]));
+
+/** Sends an OBJ as a job and returns the job once it is final. */
+async function done(server, body, query = '') {
+  const headers = {...kObj, Prefer: 'wait=60'};
+  const answer = await request(server.base, {method: 'POST', path: `/v1/jobs${query}`, headers, body});
+  assert.equal(answer.status, 200, answer.body.toString());
+  return JSON.parse(answer.body.toString());
+}
+
+const doing = (what) => Buffer.concat([Buffer.from(`# do ${what}\n`), meshes.obj()]);
+
+async function get(server, path, headers) {
+  const answer = await request(server.base, {path, headers});
+  assert.equal(answer.status, 200, `${path}: ${answer.body}`);
+  return answer.body;
+}
+
+/** The processes that a process has started and that are still there. */
+function children(pid) {
+  return readdirSync(`/proc/${pid}/task`).flatMap((thread) =>
+    readFileSync(`/proc/${pid}/task/${thread}/children`, 'utf8').split(' ').filter(Boolean));
+}
+
+test('a job in a process of its own gives the same answer', async () => {
+  const query = '?method=hybrid&lambda=1,0.01&output=glb';
+  const [one, other] = await Promise.all(
+    [isolated, plain].map((server) => done(server, meshes.obj(12), query)));
+  assert.equal(one.state, 'succeeded');
+  for (const path of ['result', 'result?lambda=0.01', 'layout.svg']) {
+    assert.deepEqual(await get(isolated, `/v1/jobs/${one.id}/${path}`),
+                     await get(plain, `/v1/jobs/${other.id}/${path}`), path);
+  }
+  const figures = async (server, {id}) => {
+    const report = JSON.parse(await get(server, `/v1/jobs/${id}/report`));
+    return {...report, timings_ms: Object.keys(report.timings_ms)};
+  };
+  assert.deepEqual(await figures(isolated, one), await figures(plain, other));
+  const events = async (server, {id}) =>
+    parseEvents((await get(server, `/v1/jobs/${id}/events`)).toString())
+      .filter(({event}) => event === 'stage' || event === 'iteration')
+      .map(({event, data}) => ({event, ...data, ms: 0}));
+  assert.deepEqual(await events(isolated, one), await events(plain, other));
+});
+
+test('what is wrong with a mesh is told as ever', async () => {
+  const bad = Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n');
+  const [one, other] = await Promise.all([isolated, plain].map((server) => done(server, bad)));
+  assert.equal(one.problem.code, 'malformed_obj');
+  assert.deepEqual({...one.problem, job: ''}, {...other.problem, job: ''});
+});
+
+const kCrashes = ['segv', 'abort', 'leave', 'connect', 'fork', 'exec', 'traverse', 'overwrite'];
+
+for (const what of kCrashes) {
+  test(`a worker that does ${what} costs its job alone`, async () => {
+    const [bad, good] = await Promise.all([done(isolated, doing(what)), done(isolated, meshes.obj())]);
+    assert.deepEqual([bad.state, bad.problem.code], ['failed', 'poison']);
+    assert.equal(good.state, 'succeeded');
+    await get(isolated, '/v1/methods');
+    assert.equal(existsSync(join(isolated.data, 'blobs', 'escaped')), false);
+    assert.equal(isolated.log().match(/a worker process ended/g).length % 3, 0);
+  });
+}
+
+test('a worker that sends no frames of ours fails its job', async () => {
+  const job = await done(isolated, doing('chatter'));
+  assert.deepEqual([job.state, job.problem.code], ['failed', 'internal']);
+});
+
+test('a worker has bounded memory', async () => {
+  const job = await done(isolated, doing('memory'));
+  assert.deepEqual([job.state, job.problem.code], ['failed', 'memory_limit']);
+});
+
+for (const what of ['open', 'inherit', 'environment']) {
+  test(`a worker finds nothing to ${what}`, async () => {
+    const job = await done(isolated, doing(what));
+    assert.equal(job.problem.detail, 'It is closed.');
+  });
+}
+
+test('a worker that does not stop when it is asked to is killed', async () => {
+  const {body} = await request(isolated.base,
+                               {method: 'POST', path: '/v1/jobs', headers: kObj, body: doing('hang')});
+  const {id} = JSON.parse(body.toString());
+  const state = async () => JSON.parse(await get(isolated, `/v1/jobs/${id}`)).state;
+  while ((await state()) === 'queued') await sleep(5);
+  assert.equal((await request(isolated.base, {method: 'DELETE', path: `/v1/jobs/${id}`})).status, 202);
+  while ((await state()) === 'running') await sleep(50);
+  assert.equal(await state(), 'cancelled');
+});
+
+test('no process is left when no job is', async () => {
+  while (children(isolated.pid).length > 0) await sleep(20);
+});

@@ -1,0 +1,65 @@
+// unwrapd whose worker process does what a bug, or a stranger who has found one, would do: the
+// first line of an OBJ, "# do WHAT", says which.
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "server/program.hpp"
+
+namespace {
+
+using unwrapd::Error;
+using unwrapd::ErrorCode;
+namespace server = unwrapd::server;
+
+void eat_memory() {
+  std::vector<std::string> eaten;
+  while (true) eaten.emplace_back(std::size_t{64} << 20, 'x');
+}
+
+[[noreturn]] void tell(bool is_open) {
+  throw Error(ErrorCode::solver_failed, is_open ? "It is open." : "It is closed.");
+}
+
+using Deed = std::function<void(server::JobOutput&)>;
+
+const std::map<std::string, Deed> kDeeds = {
+    {"segv", [](auto&) { std::raise(SIGSEGV); }},
+    {"abort", [](auto&) { std::abort(); }},
+    {"leave", [](auto&) { std::_Exit(3); }},
+    {"memory", [](auto&) { eat_memory(); }},
+    {"hang",
+     [](auto&) {
+       while (true) ::usleep(1000);
+     }},
+    {"connect", [](auto&) { ::socket(AF_INET, SOCK_STREAM, 0); }},
+    {"fork", [](auto&) { ::fork(); }},
+    {"exec", [](auto&) { ::execl("/bin/true", "true", nullptr); }},
+    {"open", [](auto&) { tell(::open("/etc/hostname", O_RDONLY) >= 0); }},
+    {"inherit", [](auto&) { tell(::lseek(3, 0, SEEK_CUR) >= 0 || errno != EBADF); }},
+    {"environment", [](auto&) { tell(::getenv("PATH") != nullptr); }},
+    {"chatter", [](auto&) { static_cast<void>(::write(STDIN_FILENO, "no frame of ours", 16)); }},
+    {"traverse", [](auto& output) { output.file("../../escaped", "x"); }},
+    {"overwrite", [](auto& output) { output.file("document", "x"); }},
+};
+
+std::string run(const server::JobTask& task, const unwrapd::asset::Input& input,
+                server::JobOutput& output, const unwrapd::api::Limits& limits,
+                unwrapd::Executor& executor) {
+  for (const auto& [name, deed] : kDeeds)
+    if (input.document.starts_with("# do " + name + "\n")) deed(output);
+  return server::run_job(task, input, output, limits, executor);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return server::run_program(argc, argv, run); }
