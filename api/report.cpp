@@ -70,6 +70,10 @@ Json to_json(const ChartReport& chart) {
           {"energy", std::move(energy)}};
 }
 
+Json to_json(const VertexMap& map) {
+  return {{"where", map.where}, {"kept", map.kept}, {"copies", map.copies}};
+}
+
 Json notes_json(const Report& report, const ReportContext& context) {
   Json notes = report.notes;
   for (const std::string& note : context.notes) notes.push_back(note);
@@ -103,22 +107,24 @@ Json totals_json(const Report& report) {
 }
 
 Json to_json(const Report& report, const ReportContext& context) {
-  return {{"input", to_json(report.input, context)},
-          {"repairs", array_of(report.repairs)},
-          {"notes", notes_json(report, context)},
-          {"charts", array_of(report.charts)},
-          {"distortion", to_json(report.distortion)},
-          {"guarantee", kGuarantees[static_cast<std::size_t>(report.guarantee)]},
-          {"curve", array_of(report.curve)},
-          {"area", finite(report.area)},
-          {"seam_length", finite(report.seam_length)},
-          {"seam_ratio", finite(report.seam_ratio)},
-          {"overlaps", report.overlaps ? Json(*report.overlaps) : Json()},
-          {"fill", finite(report.fill)},
-          {"pages", report.pages},
-          {"texel_density", finite(report.texel_density)},
-          {"timings_ms", timings_json(context)},
-          {"solver", {{"name", "unwrapd"}, {"version", context.version}}}};
+  Json json = {{"input", to_json(report.input, context)},
+               {"repairs", array_of(report.repairs)},
+               {"notes", notes_json(report, context)},
+               {"charts", array_of(report.charts)},
+               {"distortion", to_json(report.distortion)},
+               {"guarantee", kGuarantees[static_cast<std::size_t>(report.guarantee)]},
+               {"curve", array_of(report.curve)},
+               {"area", finite(report.area)},
+               {"seam_length", finite(report.seam_length)},
+               {"seam_ratio", finite(report.seam_ratio)},
+               {"overlaps", report.overlaps ? Json(*report.overlaps) : Json()},
+               {"fill", finite(report.fill)},
+               {"pages", report.pages},
+               {"texel_density", finite(report.texel_density)},
+               {"timings_ms", timings_json(context)},
+               {"solver", {{"name", "unwrapd"}, {"version", context.version}}}};
+  if (context.vertex_maps) json["vertex_map"] = array_of(*context.vertex_maps);
+  return json;
 }
 
 }  // namespace unwrapd::api

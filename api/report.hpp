@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "api/json.hpp"
+#include "core/asset_options.hpp"
 #include "core/report.hpp"
 
 namespace unwrapd::api {
@@ -20,6 +22,7 @@ struct ReportContext {
   /// total.
   std::map<std::string, double> timings_ms = {};
   std::vector<std::string> notes = {};  ///< beside core's own (see JobOptions::notes)
+  std::optional<std::vector<VertexMap>> vertex_maps = {};  ///< where the report shall have them
 };
 
 /// The report, every figure finite: an infinite one is given as the largest double.

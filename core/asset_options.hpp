@@ -2,6 +2,7 @@
 // What a user can ask of the document itself: which of it is unwrapped, where the texture
 // coordinates go, how the result is encoded.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,14 @@ struct AssetOptions {
   /// unwrapped, all others keep what they have. Both empty: everything is.
   std::vector<std::string> materials = {};
   std::vector<std::string> primitives = {};
+};
+
+/// Which vertices of a primitive, or of an OBJ's mesh, are copies: 0 .. kept - 1 are what they were
+/// in the input; kept + k is a copy of the input's vertex copies[k].
+struct VertexMap {
+  std::string where;  ///< JSON pointer of the primitive or mesh, or "obj"
+  std::int64_t kept = 0;
+  std::vector<std::int32_t> copies = {};
 };
 
 }  // namespace unwrapd

@@ -7,6 +7,7 @@
 
 #include "core/asset/base64.hpp"
 #include "core/asset/bytes.hpp"
+#include "core/asset/compress.hpp"
 #include "core/asset/container.hpp"
 #include "core/asset/patch.hpp"
 #include "core/asset/references.hpp"
@@ -34,6 +35,25 @@ std::vector<char> used_views(Json& document, std::size_t count) {
     if (view < count) used[view] = 1;
   });
   return used;
+}
+
+/// Takes out the accessors that only what was replaced had used, and renumbers the others.
+void drop_dead_accessors(const Gltf& gltf, Json& document) {
+  const auto list = document.find("accessors");
+  if (list == document.end()) return;
+  const std::vector<std::size_t> before = count_accessor_references(gltf.json, list->size());
+  const std::vector<std::size_t> now = count_accessor_references(document, list->size());
+  std::vector<std::size_t> renumbered(list->size());
+  Json kept = Json::array();
+  for (std::size_t i = 0; i < renumbered.size(); ++i) {
+    renumbered[i] = kept.size();
+    if (now[i] > 0 || before[i] == 0) kept.push_back(std::move((*list)[i]));
+  }
+  *list = std::move(kept);
+  for_each_accessor_reference(document, [&](Json& index) {
+    const auto accessor = index.get<std::size_t>();
+    if (accessor < renumbered.size()) index = renumbered[accessor];
+  });
 }
 
 /// Takes out the views that only what was replaced had used, and renumbers the others.
@@ -150,24 +170,33 @@ std::string finish(Json& document, const std::vector<std::string_view>& buffers,
 
 }  // namespace
 
-std::string assemble(const Gltf& gltf, PatchedDocument patched, Format format) {
+std::string assemble(const Gltf& gltf, PatchedDocument patched, Format format, bool with_meshopt) {
   Json& document = patched.json;
   std::vector<std::string_view> buffers(gltf.buffers.begin(), gltf.buffers.end());
   if (!can_join(document["buffers"])) {
+    if (with_meshopt)
+      throw Error(ErrorCode::invalid_option,
+                  "the asset's buffers carry extras or extensions, so they cannot be compressed; "
+                  "ask for compression none",
+                  "/compression");
     document["buffers"].push_back(Json::object());
     buffers.push_back(patched.added);
     return finish(document, buffers, gltf.other_chunks, format);
   }
   const std::size_t views_before = view_count(document);
-  if (!gltf.has_foreign_references) drop_dead_views(gltf, document);
+  if (!gltf.has_foreign_references) {
+    drop_dead_accessors(gltf, document);
+    drop_dead_views(gltf, document);
+  }
   const bool has_dead_bytes = gltf.has_dead_bytes || view_count(document) < views_before;
   buffers.push_back(patched.added);
   std::vector<Run> runs = has_dead_bytes ? used_runs(document) : whole_buffers(buffers);
-  const std::string bytes = joined(buffers, runs);
+  std::string bytes = joined(buffers, runs);
   move_views(document, runs);
   Json& list = document["buffers"];
   while (list.size() > 1) list.erase(list.size() - 1);
   if (list.empty()) list.push_back(Json::object());
+  if (with_meshopt) compress_views(document, bytes);
   return finish(document, {bytes}, gltf.other_chunks, format);
 }
 

@@ -1,8 +1,10 @@
 #include "core/asset/asset.hpp"
 
 #include <cassert>
+#include <limits>
 #include <utility>
 
+#include "core/asset/compress.hpp"
 #include "core/asset/convert.hpp"
 #include "core/asset/document.hpp"
 #include "core/asset/patch.hpp"
@@ -20,14 +22,69 @@ Format Asset::format() const { return document_->format; }
 
 std::span<const Surface> Asset::surfaces() const { return document_->surfaces; }
 
-Asset read(const Input& input, const ReadLimits& limits) {
+namespace {
+
+constexpr ReadLimits kNoLimits = {.max_vertices = std::numeric_limits<Index>::max(),
+                                  .max_faces = std::numeric_limits<Index>::max()};
+
+/// An OBJ has one set of texture coordinates, and its materials and objects are one mesh.
+void check_for_obj(const AssetOptions& options) {
+  const auto refuse = [](const char* option, const std::string& why) {
+    throw Error(ErrorCode::invalid_option, why, option);
+  };
+  if (options.texcoord != 0)
+    refuse("/texcoord",
+           "an OBJ has one set of texture coordinates; leave texcoord out, or send a glTF");
+  if (!options.materials.empty())
+    refuse("/materials", "an OBJ is unwrapped whole; leave materials out, or send a glTF");
+  if (!options.primitives.empty())
+    refuse("/primitives", "an OBJ has no primitives; leave them out, or send a glTF");
+}
+
+/// A plain GLB compressed: Draco needs the document as it will be.
+std::string compressed(const std::string& plain, Format output, Compression compression) {
+  std::vector<Surface> surfaces;
+  const Gltf again = read_gltf({plain, {}}, Format::glb, kNoLimits, {}, surfaces);
+  if (compression == Compression::draco) return assemble(again, draco_compressed(again), output);
+  return assemble(again, {again.json, {}}, output, true);
+}
+
+bool is_compressed(Compression compression) {
+  return compression == Compression::draco || compression == Compression::meshopt;
+}
+
+std::string write_from_gltf(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped,
+                            Format output, Compression wanted) {
+  const Compression compression = wanted == Compression::keep ? gltf.came_as : wanted;
+  PatchedDocument patched = patch(gltf, unwrapped);
+  if (compression != Compression::draco)
+    return assemble(gltf, std::move(patched), output, compression == Compression::meshopt);
+  return compressed(assemble(gltf, std::move(patched), Format::glb), output, compression);
+}
+
+std::string write_from_obj(const Document& document, const UnwrappedSurface& unwrapped,
+                           Format output) {
+  const Obj& obj = std::get<Obj>(document.source);
+  if (output == Format::obj) return write_obj(obj, unwrapped);
+  const Compression compression = document.options.compression;
+  if (!is_compressed(compression))
+    return obj_as_gltf(obj, document.surfaces.front(), unwrapped, output);
+  return compressed(obj_as_gltf(obj, document.surfaces.front(), unwrapped, Format::glb), output,
+                    compression);
+}
+
+}  // namespace
+
+Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& options) {
   auto document = std::make_unique<Document>();
+  document->options = options;
   document->format = recognise(input.document);
   if (document->format == Format::obj) {
+    check_for_obj(options);
     document->surfaces.resize(1);
     document->source = read_obj(input.document, limits, document->surfaces.front());
   } else {
-    document->source = read_gltf(input, document->format, limits, document->surfaces);
+    document->source = read_gltf(input, document->format, limits, options, document->surfaces);
   }
   return Asset(std::move(document));
 }
@@ -35,13 +92,36 @@ Asset read(const Input& input, const ReadLimits& limits) {
 std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrapped, Format output) {
   const Document& document = asset.document();
   assert(unwrapped.size() == document.surfaces.size());
-  if (const Obj* obj = std::get_if<Obj>(&document.source))
-    return output == Format::obj
-               ? write_obj(*obj, unwrapped.front())
-               : obj_as_gltf(*obj, document.surfaces.front(), unwrapped.front(), output);
+  if (std::holds_alternative<Obj>(document.source))
+    return write_from_obj(document, unwrapped.front(), output);
   const Gltf& gltf = std::get<Gltf>(document.source);
-  return output == Format::obj ? gltf_as_obj(gltf, document.surfaces, unwrapped)
-                               : assemble(gltf, patch(gltf, unwrapped), output);
+  return output == Format::obj
+             ? gltf_as_obj(gltf, document.surfaces, unwrapped)
+             : write_from_gltf(gltf, unwrapped, output, document.options.compression);
+}
+
+std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const UnwrappedSurface> unwrapped,
+                                   Format output) {
+  const Document& document = asset.document();
+  if (const Obj* obj = std::get_if<Obj>(&document.source)) {
+    const Surface& surface = document.surfaces.front();
+    if (output == Format::obj) return {{surface.name, surface.mesh.vertex_count(), {}}};
+    return {{surface.name, 0, sources_in_gltf(*obj, surface, unwrapped.front())}};
+  }
+  const Gltf& gltf = std::get<Gltf>(document.source);
+  if (output != Format::obj) return vertex_maps_of_patch(gltf, unwrapped);
+  std::vector<VertexMap> maps;
+  for (std::size_t s = 0; s < document.surfaces.size(); ++s)
+    maps.push_back({document.surfaces[s].name, 0, gltf.vertices[s]});
+  return maps;
+}
+
+std::vector<std::string> side_effects(const Asset& asset, Format output) {
+  if (output == Format::obj && is_compressed(asset.document().options.compression))
+    return {"An OBJ cannot be compressed; the option compression has no effect."};
+  const Gltf* gltf = std::get_if<Gltf>(&asset.document().source);
+  if (gltf == nullptr || output == Format::obj) return {};
+  return side_effects_of_patch(*gltf);
 }
 
 }  // namespace unwrapd::asset

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/asset_options.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd::asset {
@@ -42,18 +43,35 @@ class Asset {
   [[nodiscard]] Format format() const;  ///< as it came in
   [[nodiscard]] std::span<const Surface> surfaces() const;
   [[nodiscard]] const Document& document() const { return *document_; }
+  [[nodiscard]] Document& document() { return *document_; }
 
  private:
   std::unique_ptr<Document> document_;
 };
 
-/// Recognises the format by content. Throws Error with a JSON pointer or a file position:
-/// unknown_format, malformed_*, missing_buffer, external_uri, unsupported_extension,
-/// too_many_vertices, too_many_faces, no_triangles, non_finite_position.
-Asset read(const Input& input, const ReadLimits& limits);
+/// Recognises the format by content. The surfaces are those that the options select; write() then
+/// does what they ask for. Throws Error with a JSON pointer or a file position: unknown_format,
+/// malformed_*, missing_buffer, external_uri, unsupported_extension, too_many_vertices,
+/// too_many_faces, no_triangles, non_finite_position; invalid_option where the asset has none of
+/// what an option names.
+Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& options = {});
+
+/// Fills Surface::corner_uv from the set of texture coordinates that the options name, as the
+/// textures show it: scaled by their KHR_texture_transform.
+void read_uvs(Asset& asset);
 
 /// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data
-/// URIs). unwrapped has one entry for each of asset.surfaces().
+/// URIs). unwrapped has one entry for each of asset.surfaces(). Tangents that belonged to replaced
+/// texture coordinates are left out: a reader makes new ones.
 std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrapped, Format output);
+
+/// Where the vertices come from that write() writes: one entry for each primitive that is
+/// unwrapped, or in an OBJ for each mesh.
+std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const UnwrappedSurface> unwrapped,
+                                   Format output);
+
+/// Sentences about what write() changes besides: tangents left out, transforms of textures reset,
+/// sets of texture coordinates filled in.
+std::vector<std::string> side_effects(const Asset& asset, Format output);
 
 }  // namespace unwrapd::asset

@@ -13,6 +13,10 @@ namespace unwrapd::asset {
 std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
                         Format output);
 
+/// For each vertex of that glTF, which of the OBJ's it copies.
+std::vector<Index> sources_in_gltf(const Obj& obj, const Surface& surface,
+                                   const UnwrappedSurface& unwrapped);
+
 /// One object ("o") for each mesh, in the mesh's own space.
 std::string gltf_as_obj(const Gltf& gltf, std::span<const Surface> surfaces,
                         std::span<const UnwrappedSurface> unwrapped);

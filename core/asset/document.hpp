@@ -12,6 +12,7 @@ namespace unwrapd::asset {
 
 struct Document {
   Format format = Format::glb;
+  AssetOptions options;
   std::vector<Surface> surfaces;
   std::variant<Gltf, Obj> source;
 };

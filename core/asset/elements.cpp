@@ -63,15 +63,21 @@ std::size_t Elements::unsigned_at(std::size_t element) const {
   return bytes == nullptr ? 0 : load_unsigned(bytes, component_bytes(accessor_->type));
 }
 
+double Elements::component(const char* bytes, std::size_t k) const {
+  const double value = component_at(bytes + k * component_bytes(accessor_->type), accessor_->type);
+  return accessor_->normalized ? normalized(value, accessor_->type) : value;
+}
+
 Vec3 Elements::vec3_at(std::size_t element) const {
   const char* bytes = at(element);
   if (bytes == nullptr) return Vec3::Zero();
-  const std::size_t step = component_bytes(accessor_->type);
-  const auto at_axis = [&](std::size_t k) {
-    const double value = component_at(bytes + k * step, accessor_->type);
-    return accessor_->normalized ? normalized(value, accessor_->type) : value;
-  };
-  return {at_axis(0), at_axis(1), at_axis(2)};
+  return {component(bytes, 0), component(bytes, 1), component(bytes, 2)};
+}
+
+Vec2 Elements::vec2_at(std::size_t element) const {
+  const char* bytes = at(element);
+  if (bytes == nullptr) return Vec2::Zero();
+  return {component(bytes, 0), component(bytes, 1)};
 }
 
 }  // namespace unwrapd::asset

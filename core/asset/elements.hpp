@@ -19,8 +19,11 @@ class Elements {
 
   [[nodiscard]] std::size_t unsigned_at(std::size_t element) const;  ///< of an unsigned scalar
   [[nodiscard]] Vec3 vec3_at(std::size_t element) const;  ///< normalised if the accessor says so
+  [[nodiscard]] Vec2 vec2_at(std::size_t element) const;  ///< likewise
 
  private:
+  [[nodiscard]] double component(const char* bytes, std::size_t k) const;
+
   const Gltf* gltf_;
   const Accessor* accessor_;
   std::unordered_map<std::size_t, const char*> replaced_;

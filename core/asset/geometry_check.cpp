@@ -53,10 +53,10 @@ std::size_t face_bound(const Gltf& gltf, const Primitive& primitive) {
 }
 
 /// The accessors whose elements belong to the primitive's vertices, but for the UVs we replace.
-std::vector<std::size_t> vertex_accessors(const Primitive& primitive) {
+std::vector<std::size_t> vertex_accessors(const Gltf& gltf, const Primitive& primitive) {
   std::vector<std::size_t> accessors = primitive.targets;
   for (const auto& [semantic, accessor] : primitive.attributes)
-    if (semantic != "TEXCOORD_0") accessors.push_back(accessor);
+    if (semantic != gltf.texcoord) accessors.push_back(accessor);
   std::sort(accessors.begin(), accessors.end());
   accessors.erase(std::unique(accessors.begin(), accessors.end()), accessors.end());
   return accessors;
@@ -134,7 +134,7 @@ void check_geometry(Gltf& gltf, const ReadLimits& limits) {
       check_indices(gltf.accessors[*primitive.indices], accessor_place(*primitive.indices));
     check_equal_counts(gltf, primitive);
     account.add_geometry(primitive);
-    const std::vector<std::size_t> accessors = vertex_accessors(primitive);
+    const std::vector<std::size_t> accessors = vertex_accessors(gltf, primitive);
     const auto [pool, is_new] = pools.try_emplace(accessors, pools.size());
     if (is_new) account.add_pool(primitive, accessors);
     primitive.pool = pool->second;

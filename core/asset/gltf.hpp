@@ -60,9 +60,10 @@ struct Primitive {
   std::optional<std::size_t> indices;
   std::size_t position = 0;  ///< accessor of POSITION, when has_triangles
   Mode mode = Mode::triangles;
-  bool has_triangles = false;  ///< a triangle mode, and POSITION is there
-  std::size_t piece = 0;       ///< when has_triangles: where its faces are
-  std::size_t pool = 0;        ///< when has_triangles: the vertices that it shares with others
+  bool has_triangles = false;  ///< a triangle mode, POSITION is there, and it is selected
+  std::optional<std::size_t> material;
+  std::size_t piece = 0;  ///< when has_triangles: where its faces are
+  std::size_t pool = 0;   ///< when has_triangles: the vertices that it shares with others
 };
 
 /// The faces of one or more primitives of the same geometry: a run of one surface's faces.
@@ -75,6 +76,8 @@ struct Piece {
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct Gltf {
   Json json;
+  std::string texcoord = "TEXCOORD_0";  ///< the attribute that is replaced
+  Compression came_as = Compression::none;
   std::vector<std::string> buffers;  ///< one for each of the document's, cut to its byteLength
   std::string other_chunks;          ///< of a GLB, as they came, after JSON and BIN
   std::vector<View> views;

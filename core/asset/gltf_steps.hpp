@@ -41,8 +41,15 @@ void decode_draco(Gltf& gltf, const std::vector<DracoSource>& sources, const Rea
 /// Types and counts of what makes up the triangles; nothing larger than limits gets past.
 void check_geometry(Gltf& gltf, const ReadLimits& limits);
 
+/// Leaves has_triangles to the primitives that the options select. Throws Error{invalid_option}
+/// for a name that nothing has.
+void select_primitives(Gltf& gltf, const AssetOptions& options);
+
 /// One surface for each mesh that has triangles of its own; fills pieces, vertices and pools.
 std::vector<Surface> build_surfaces(Gltf& gltf, const ReadLimits& limits);
+
+/// Fills corner_uv from the attribute gltf.texcoord; surfaces without it stay without.
+void read_gltf_uvs(const Gltf& gltf, std::vector<Surface>& surfaces);
 
 bool uses_extension(const Json& document, std::string_view name);
 

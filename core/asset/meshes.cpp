@@ -61,7 +61,7 @@ Primitive read_primitive(const Gltf& gltf, const Node& node) {
   if (const auto indices = node.find("indices"))
     primitive.indices = indices->index(gltf.accessors.size(), "accessors");
   if (const auto material = node.find("material"))
-    static_cast<void>(material->index(list_size(gltf, "materials"), "materials"));
+    primitive.material = material->index(list_size(gltf, "materials"), "materials");
   if (const auto targets = node.find("targets")) read_targets(gltf, *targets, primitive);
   for (const auto& [name, accessor] : primitive.attributes) {
     if (name != "POSITION") continue;

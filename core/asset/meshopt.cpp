@@ -174,6 +174,7 @@ void decode_meshopt(Gltf& gltf) {
     bytes += decoded;
   }
   if (bytes.empty()) return;
+  gltf.came_as = Compression::meshopt;
   add_buffer(gltf, std::move(bytes));
   for (const std::string_view name : kNames) forget_extension(gltf.json, name);
   drop_fallback_buffers(gltf);

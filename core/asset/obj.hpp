@@ -26,11 +26,12 @@ struct ObjElement {
   }
 };
 
-inline constexpr Index kNoNormal = -1;
+inline constexpr Index kNoNormal = -1, kNoTexcoord = -1;
 
 struct ObjCorner {
   Index vertex = 0;
   Index normal = kNoNormal;
+  Index texcoord = kNoTexcoord;  ///< as given: may name a vt that does not exist
 };
 
 struct Obj {

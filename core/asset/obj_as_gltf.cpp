@@ -25,6 +25,7 @@ struct Vertices {
   std::vector<Float3> positions;
   std::vector<Float3> normals;  ///< empty unless every corner has one
   std::vector<std::array<float, 2>> uv;
+  std::vector<Index> sources;                   ///< in the OBJ
   std::map<Index, std::vector<Index>> corners;  ///< [part]: three to a face
 };
 
@@ -58,6 +59,7 @@ class Combiner {
         numbers_.try_emplace(key, static_cast<Index>(vertices_.positions.size()));
     if (!is_new) return found->second;
     const Index source = unwrapped_.source[as_size(vertex)];
+    vertices_.sources.push_back(source);
     vertices_.positions.push_back(as_floats(surface_.mesh.positions[as_size(source)]));
     const Vec2& uv = unwrapped_.uv[as_size(vertex)];
     vertices_.uv.push_back({static_cast<float>(uv.x()), static_cast<float>(1 - uv.y())});
@@ -88,6 +90,11 @@ Json vec3_accessor(const std::vector<Float3>& values, NewViews& views) {
 }
 
 }  // namespace
+
+std::vector<Index> sources_in_gltf(const Obj& obj, const Surface& surface,
+                                   const UnwrappedSurface& unwrapped) {
+  return Combiner(obj, surface, unwrapped).run().sources;
+}
 
 std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
                         Format output) {

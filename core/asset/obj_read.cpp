@@ -152,7 +152,7 @@ class ObjReader {
     obj_.elements.push_back(element);
   }
 
-  /// v, v/vt, v//vn or v/vt/vn. The vt is read for its syntax only: it will be another one.
+  /// v, v/vt, v//vn or v/vt/vn.
   [[nodiscard]] ObjCorner read_corner(std::string_view word) const {
     ObjCorner corner;
     std::string_view rest = word;
@@ -162,7 +162,7 @@ class ObjReader {
       corner.normal = read_index(rest, obj_.normals.size());
     } else if (rest.starts_with('/')) {
       rest.remove_prefix(1);
-      if (!rest.empty()) read_index(rest, texcoord_count_);
+      if (!rest.empty()) corner.texcoord = read_index(rest, texcoord_count_);
       if (rest.size() > 1 && rest.front() == '/') {
         rest.remove_prefix(1);
         corner.normal = read_index(rest, obj_.normals.size());

@@ -8,19 +8,31 @@
 #include <set>
 
 #include "core/asset/grow.hpp"
+#include "core/asset/materials.hpp"
 #include "core/asset/references.hpp"
 #include "core/asset/split.hpp"
 
 namespace unwrapd::asset {
 namespace {
 
-constexpr std::string_view kTexcoord = "TEXCOORD_0";
-
 /// The primitives that share a pool's vertices, and which pieces are theirs, in order of first use.
 struct Pool {
   std::vector<std::size_t> primitives;
   std::vector<std::size_t> pieces;
 };
+
+/// The lower sets of texture coordinates that the primitive lacks: a document must not skip any.
+std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primitive) {
+  std::vector<std::string> missing;
+  for (int n = 0; n <= kMaxTexcoord; ++n) {
+    const std::string set = "TEXCOORD_" + std::to_string(n);
+    if (set == gltf.texcoord) break;
+    const auto is_set = [&](const auto& item) { return item.first == set; };
+    if (std::none_of(primitive.attributes.begin(), primitive.attributes.end(), is_set))
+      missing.push_back(set);
+  }
+  return missing;
+}
 
 std::vector<Pool> pools_of(const Gltf& gltf) {
   std::vector<Pool> pools(gltf.pool_count);
@@ -45,13 +57,18 @@ class Patcher {
         references_(count_accessor_references(gltf.json, gltf.accessors.size())) {}
 
   void patch_pool(const Pool& pool, const Split& split) {
+    drop_tangents(pool);
     if (!split.copies.empty()) grow_attributes(pool, split);
     for (const auto& [piece, users] : users_of(pool, split))
       set_indices(users, split.corners.at(piece));
     set_texcoords(pool, split);
   }
 
-  PatchedDocument finish() { return std::move(patched_); }
+  PatchedDocument finish() {
+    for (const std::size_t material : materials_to_reset(gltf_))
+      reset_transforms(patched_.json["materials"][material], gltf_.texcoord);
+    return std::move(patched_);
+  }
 
  private:
   using Uses = std::map<std::size_t, std::size_t>;  // accessor, how often
@@ -78,12 +95,18 @@ class Patcher {
     return accessors.size() - 1;
   }
 
+  /// Whether an attribute is carried over: neither replaced nor dropped.
+  [[nodiscard]] bool is_kept(const Primitive& primitive, const std::string& semantic) const {
+    return semantic != gltf_.texcoord &&
+           !(semantic == "TANGENT" && loses_tangents(gltf_, primitive));
+  }
+
   Uses vertex_uses(const Pool& pool) const {
     Uses uses;
     for (const std::size_t i : pool.primitives) {
       const Primitive& primitive = gltf_.primitives[i];
       for (const auto& [semantic, accessor] : primitive.attributes)
-        if (semantic != kTexcoord) ++uses[accessor];
+        if (is_kept(primitive, semantic)) ++uses[accessor];
       for (const std::size_t accessor : primitive.targets) ++uses[accessor];
     }
     return uses;
@@ -137,7 +160,7 @@ class Patcher {
     Uses uses;
     for (const std::size_t i : pool.primitives)
       for (const auto& [semantic, accessor] : gltf_.primitives[i].attributes)
-        if (semantic == kTexcoord) ++uses[accessor];
+        if (semantic == gltf_.texcoord) ++uses[accessor];
     return uses;
   }
 
@@ -148,8 +171,20 @@ class Patcher {
     Json accessor = texcoord_accessor(gltf_, old, split.uv, views_);
     const std::size_t now = old ? put_accessor(*old, uses.begin()->second, std::move(accessor))
                                 : add_accessor(std::move(accessor));
-    for (const std::size_t i : pool.primitives)
-      json_of(i)["attributes"][std::string(kTexcoord)] = now;
+    for (const std::size_t i : pool.primitives) {
+      Json& attributes = json_of(i)["attributes"];
+      attributes[gltf_.texcoord] = now;
+      for (const std::string& set : missing_sets(gltf_, gltf_.primitives[i])) attributes[set] = now;
+    }
+  }
+
+  void drop_tangents(const Pool& pool) {
+    for (const std::size_t i : pool.primitives) {
+      if (!loses_tangents(gltf_, gltf_.primitives[i])) continue;
+      json_of(i)["attributes"].erase("TANGENT");
+      if (!json_of(i).contains("targets")) continue;
+      for (Json& target : json_of(i)["targets"]) target.erase("TANGENT");
+    }
   }
 
   const Gltf& gltf_;
@@ -158,12 +193,56 @@ class Patcher {
   std::vector<std::size_t> references_;
 };
 
+std::string counted(std::size_t count, const char* thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
 }  // namespace
+
+std::vector<std::string> side_effects_of_patch(const Gltf& gltf) {
+  std::size_t without_tangents = 0, with_lower_sets = 0;
+  for (const Primitive& primitive : gltf.primitives) {
+    if (!primitive.has_triangles) continue;
+    without_tangents += loses_tangents(gltf, primitive) ? 1 : 0;
+    with_lower_sets += missing_sets(gltf, primitive).empty() ? 0 : 1;
+  }
+  const std::size_t reset = materials_to_reset(gltf).size();
+  std::vector<std::string> notes;
+  if (without_tangents > 0)
+    notes.push_back("The tangents of " + counted(without_tangents, "primitive") +
+                    " belonged to the replaced texture coordinates and are left out; readers make "
+                    "new ones.");
+  if (reset > 0)
+    notes.push_back("The KHR_texture_transform of " + counted(reset, "material") +
+                    " is reset for " + gltf.texcoord +
+                    ", whose new coordinates lie on the page as they are.");
+  if (with_lower_sets > 0)
+    notes.push_back(counted(with_lower_sets, "primitive") + " lacked texture coordinates below " +
+                    gltf.texcoord + "; glTF allows no gap, so these sets are the same.");
+  return notes;
+}
+
+std::vector<VertexMap> vertex_maps_of_patch(const Gltf& gltf,
+                                            std::span<const UnwrappedSurface> unwrapped) {
+  std::vector<VertexMap> maps;
+  Splitter splitter(gltf, unwrapped);
+  for (const Pool& pool : pools_of(gltf)) {
+    if (pool.primitives.empty()) continue;
+    const std::size_t count =
+        gltf.accessors[gltf.primitives[pool.primitives.front()].position].count;
+    const Split split = splitter.split(pool.pieces, count);
+    for (const std::size_t i : pool.primitives)
+      maps.push_back({primitive_place(gltf.primitives[i]).pointer(),
+                      static_cast<std::int64_t>(count), split.copies});
+  }
+  return maps;
+}
 
 PatchedDocument patch(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped) {
   Patcher patcher(gltf);
   Splitter splitter(gltf, unwrapped);
   for (const Pool& pool : pools_of(gltf)) {
+    if (pool.primitives.empty()) continue;
     const Primitive& first = gltf.primitives[pool.primitives.front()];
     patcher.patch_pool(pool, splitter.split(pool.pieces, gltf.accessors[first.position].count));
   }

@@ -6,8 +6,9 @@
 namespace unwrapd::asset {
 
 Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
-               std::vector<Surface>& surfaces) {
+               const AssetOptions& options, std::vector<Surface>& surfaces) {
   Gltf gltf;
+  gltf.texcoord = "TEXCOORD_" + std::to_string(options.texcoord);
   const GlbChunks chunks =
       format == Format::glb ? split_glb(input.document) : GlbChunks{input.document, {}, {}};
   gltf.json = parse_json(chunks.json);
@@ -19,11 +20,13 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
   read_accessors(gltf);
   if (const std::vector<DracoSource> sources = read_meshes(gltf); !sources.empty()) {
     decode_draco(gltf, sources, limits);
+    gltf.came_as = Compression::draco;
     read_views(gltf);
     read_accessors(gltf);
     static_cast<void>(read_meshes(gltf));
   }
   check_nodes(gltf);
+  select_primitives(gltf, options);
   check_geometry(gltf, limits);
   surfaces = build_surfaces(gltf, limits);
   return gltf;

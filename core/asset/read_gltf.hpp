@@ -7,8 +7,9 @@
 
 namespace unwrapd::asset {
 
-/// Reads a GLB or .gltf and its geometry. The document comes out uncompressed.
+/// Reads a GLB or .gltf and the geometry that the options select. The document comes out
+/// uncompressed.
 Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
-               std::vector<Surface>& surfaces);
+               const AssetOptions& options, std::vector<Surface>& surfaces);
 
 }  // namespace unwrapd::asset

@@ -22,40 +22,46 @@ void visit_index(Value* index, const Visit& visit) {
   if (index != nullptr && index->is_number()) visit(*index);
 }
 
-template <class Visit>
-void visit_primitive(const Json& primitive, const Visit& visit) {
-  const auto visit_value = [&](const Json& value) { visit_index(&value, visit); };
+template <class Value, class Visit>
+void visit_primitive(Value& primitive, const Visit& visit) {
+  const auto visit_value = [&](auto& value) { visit_index(&value, visit); };
   for_each(member(primitive, "attributes"), visit_value);
   visit_index(member(primitive, "indices"), visit);
-  for_each(member(primitive, "targets"),
-           [&](const Json& target) { for_each(&target, visit_value); });
+  for_each(member(primitive, "targets"), [&](auto& target) { for_each(&target, visit_value); });
 }
 
-template <class Visit>
-void for_each_accessor_reference(const Json& document, const Visit& visit) {
-  for_each(member(document, "meshes"), [&](const Json& mesh) {
-    for_each(member(mesh, "primitives"),
-             [&](const Json& primitive) { visit_primitive(primitive, visit); });
-  });
-  for_each(member(document, "animations"), [&](const Json& animation) {
-    for_each(member(animation, "samplers"), [&](const Json& sampler) {
+template <class Value, class Visit>
+void visit_primitives(Value& document, const Visit& visit) {
+  for_each(member(document, "meshes"),
+           [&](auto& mesh) { for_each(member(mesh, "primitives"), visit); });
+}
+
+template <class Value, class Visit>
+void visit_accessors(Value& document, const Visit& visit) {
+  visit_primitives(document, [&](auto& primitive) { visit_primitive(primitive, visit); });
+  for_each(member(document, "animations"), [&](auto& animation) {
+    for_each(member(animation, "samplers"), [&](auto& sampler) {
       visit_index(member(sampler, "input"), visit);
       visit_index(member(sampler, "output"), visit);
     });
   });
   for_each(member(document, "skins"),
-           [&](const Json& skin) { visit_index(member(skin, "inverseBindMatrices"), visit); });
+           [&](auto& skin) { visit_index(member(skin, "inverseBindMatrices"), visit); });
 }
 
 }  // namespace
 
 std::vector<std::size_t> count_accessor_references(const Json& document, std::size_t count) {
   std::vector<std::size_t> references(count);
-  for_each_accessor_reference(document, [&](const Json& index) {
+  visit_accessors(document, [&](const Json& index) {
     const double value = index.get<double>();
     if (value >= 0 && value < static_cast<double>(count)) ++references[index.get<std::size_t>()];
   });
   return references;
+}
+
+void for_each_accessor_reference(Json& document, const std::function<void(Json&)>& visit) {
+  visit_accessors(document, visit);
 }
 
 void for_each_view_reference(Json& document, const std::function<void(Json&)>& visit) {
@@ -65,6 +71,12 @@ void for_each_view_reference(Json& document, const std::function<void(Json&)>& v
     if (sparse == nullptr) return;
     for (const char* part : {"indices", "values"})
       if (Json* node = member(*sparse, part)) visit_index(member(*node, "bufferView"), visit);
+  });
+  visit_primitives(document, [&](Json& primitive) {
+    Json* extensions = member(primitive, "extensions");
+    Json* draco =
+        extensions == nullptr ? nullptr : member(*extensions, "KHR_draco_mesh_compression");
+    if (draco != nullptr) visit_index(member(*draco, "bufferView"), visit);
   });
   for_each(member(document, "images"),
            [&](Json& image) { visit_index(member(image, "bufferView"), visit); });

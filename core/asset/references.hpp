@@ -13,7 +13,11 @@ namespace unwrapd::asset {
 /// animations, skins. References out of range are passed over.
 std::vector<std::size_t> count_accessor_references(const Json& document, std::size_t count);
 
-/// Calls visit with every number that names a buffer view: of accessors, sparse parts, images.
+/// Calls visit with every number that names an accessor.
+void for_each_accessor_reference(Json& document, const std::function<void(Json&)>& visit);
+
+/// Calls visit with every number that names a buffer view: of accessors, sparse parts, images,
+/// Draco's bitstreams.
 void for_each_view_reference(Json& document, const std::function<void(Json&)>& visit);
 
 }  // namespace unwrapd::asset

@@ -68,26 +68,27 @@ void append_row(std::vector<Run>& runs, Rows& rows) {
 
 /// reach[d]: the widest |dx| at |dy| = d at which a point of one cell can lie nearer than the
 /// padding to one of the other; cells apart by (dx, dy) leave (|dx| - 1, |dy| - 1) between them.
-std::vector<int> disk_rows(int padding) {
+std::vector<int> disk_rows(double padding) {
   std::vector<int> reach;
-  for (int d = 0; d <= padding; ++d) {
+  for (int d = 0; d <= margin_of(padding); ++d) {
     const double dy = std::max(0, d - 1);
-    const double dx = std::sqrt(static_cast<double>(padding) * padding - dy * dy);
+    const double dx = std::sqrt(std::max(padding * padding - dy * dy, 0.0));
     reach.push_back(static_cast<int>(std::ceil(dx)));  // |dx| - 1 < dx
   }
   return reach;
 }
 
-Rows grow(const Rows& touched, int padding) {
+Rows grow(const Rows& touched, double padding) {
   const std::vector<int> reach = disk_rows(padding);
+  const int margin = margin_of(padding);
   Rows grown;
   std::vector<Run> runs;
-  for (int y = -padding; y < touched.height() + padding; ++y) {
+  for (int y = -margin; y < touched.height() + margin; ++y) {
     runs.clear();
-    for (int s = std::max(0, y - padding); s <= std::min(touched.height() - 1, y + padding); ++s) {
+    for (int s = std::max(0, y - margin); s <= std::min(touched.height() - 1, y + margin); ++s) {
       const int wide = reach[static_cast<std::size_t>(std::abs(s - y))];
       for (const Run& run : touched.row(s))
-        runs.push_back({run.begin + padding - wide, run.end + padding + wide});
+        runs.push_back({run.begin + margin - wide, run.end + margin + wide});
     }
     append_row(runs, grown);
   }
@@ -96,8 +97,11 @@ Rows grow(const Rows& touched, int padding) {
 
 }  // namespace
 
-Mask make_mask(const Outline& outline, const Turn& turn, int padding) {
+int margin_of(double padding) { return static_cast<int>(std::ceil(padding)); }
+
+Mask make_mask(const Outline& outline, const Turn& turn, double padding) {
   Mask mask;
+  mask.margin = margin_of(padding);
   Vec2 low = Vec2::Constant(1e300), high = -low;
   for (const auto& [a, b] : outline) {
     low = low.cwiseMin(turn(a));

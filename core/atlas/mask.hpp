@@ -41,15 +41,18 @@ struct Turn {
 struct Mask {
   Vec2 low = Vec2::Zero();  ///< the turned island's lower left corner: it comes to lie on (0, 0)
   int width = 0;
-  Rows touched;  ///< cells that the island's closure touches, holes left free
+  int margin = 0;  ///< cells by which grown reaches beyond touched on every side
+  Rows touched;    ///< cells that the island's closure touches, holes left free
   /// Touched cells and all that lie nearer than the padding to one; cell (x, y) of the island is
-  /// (x + padding, y + padding) here.
+  /// (x + margin, y + margin) here.
   Rows grown;
 };
 
+/// How far a padding (cells, >= 0) reaches, in whole cells.
+int margin_of(double padding);
+
 /// padding: cells, >= 0: two islands whose grown and touched cells share none are at least so far
-/// apart. Points whose winding
-/// number is not zero are inside.
-Mask make_mask(const Outline& outline, const Turn& turn, int padding);
+/// apart. Points whose winding number is not zero are inside.
+Mask make_mask(const Outline& outline, const Turn& turn, double padding);
 
 }  // namespace unwrapd

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kWordBits = 64;
 constexpr int kRowsBetweenChecks = 4;
+constexpr std::size_t kRunWork = 8;  // what a run costs beside its words, in words
 
 std::size_t words_for(int bits) {
   return static_cast<std::size_t>((bits + kWordBits - 1) / kWordBits);
@@ -18,16 +19,17 @@ std::size_t words_for(int bits) {
 
 }  // namespace
 
-Occupancy::Occupancy(int side, int padding)
-    : side_(side), padding_(padding), rows_(side + 2 * padding), words_(words_for(rows_) + 1) {
-  while ((1 << levels_) <= rows_) ++levels_;
-  bits_.assign(static_cast<std::size_t>(levels_) * static_cast<std::size_t>(rows_) * words_, 0);
+Occupancy::Occupancy(int width, int height, int margin, int longest_run)
+    : width_(width), height_(height), margin_(margin), words_(words_for(width + 2 * margin) + 2) {
+  while ((1 << levels_) <= std::min(longest_run, width + 2 * margin)) ++levels_;
+  const auto rows = static_cast<std::size_t>(height + 2 * margin);
+  bits_.assign(static_cast<std::size_t>(levels_) * rows * words_, 0);
 }
 
 Occupancy::Word* Occupancy::row(int level, int y) {
-  return bits_.data() + (static_cast<std::size_t>(level) * static_cast<std::size_t>(rows_) +
-                         static_cast<std::size_t>(y)) *
-                            words_;
+  const auto rows = static_cast<std::size_t>(height_ + 2 * margin_);
+  return bits_.data() +
+         (static_cast<std::size_t>(level) * rows + static_cast<std::size_t>(y)) * words_;
 }
 
 const Occupancy::Word* Occupancy::row(int level, int y) const {
@@ -40,25 +42,23 @@ bool Occupancy::all_refused() const {
 
 /// Marks the places at which a row of the grown mask hits a taken cell.
 void Occupancy::refuse(const Rows& grown, int mask_row, int page_row) {
+  Word* const refused = refused_.data();
+  const std::size_t count = refused_.size();
   for (const Run& run : grown.row(mask_row)) {
-    const int count = run.end - run.begin;
-    const int level = std::bit_width(static_cast<unsigned>(count)) - 1;
-    const Word* taken = row(level, page_row);
+    const int level = std::bit_width(static_cast<unsigned>(run.end - run.begin)) - 1;
+    work_ += static_cast<std::int64_t>(2 * count + kRunWork);
     for (const int shift : {run.begin, run.end - (1 << level)}) {
-      const auto word = static_cast<std::size_t>(shift / kWordBits);
+      const Word* taken = row(level, page_row) + shift / kWordBits;
       const int bit = shift % kWordBits;
-      for (std::size_t i = 0; i < refused_.size() && i + word < words_; ++i) {
-        refused_[i] |= taken[i + word] >> bit;
-        if (bit > 0 && i + word + 1 < words_)
-          refused_[i] |= taken[i + word + 1] << (kWordBits - bit);
-      }
+      for (std::size_t i = 0; i < count; ++i)  // in two steps: a shift by 64 is none
+        refused[i] |= taken[i] >> bit | taken[i + 1] << 1 << (kWordBits - 1 - bit);
     }
   }
 }
 
 std::optional<int> Occupancy::first_free(const Mask& mask, int y) {
-  const int places = side_ - mask.width + 1, height = mask.grown.height();
-  if (places <= 0 || y + mask.touched.height() > side_) return std::nullopt;
+  const int places = width_ - mask.width + 1, height = mask.grown.height();
+  if (places <= 0 || y + mask.touched.height() > height_) return std::nullopt;
   refused_.assign(words_for(places), 0);
   if (places % kWordBits != 0) refused_.back() = ~Word{0} << (places % kWordBits);
   for (int k = 0; k < height; ++k) {  // from the middle outwards: the widest rows tell soonest
@@ -72,29 +72,34 @@ std::optional<int> Occupancy::first_free(const Mask& mask, int y) {
   return std::nullopt;
 }
 
-/// Brings the bitmaps of longer runs up to date.
-void Occupancy::spread(int y) {
+/// Brings the bitmaps of longer runs up to date after cells [begin, end) of a row have changed.
+void Occupancy::spread(int y, int begin, int end) {
+  const auto last = static_cast<std::size_t>((end - 1) / kWordBits);
   for (int level = 1; level < levels_; ++level) {
     const Word* below = row(level - 1, y);
     Word* own = row(level, y);
     const int shift = 1 << (level - 1);
     const auto word = static_cast<std::size_t>(shift / kWordBits);
     const int bit = shift % kWordBits;
-    for (std::size_t i = 0; i < words_; ++i) {
+    const auto first = static_cast<std::size_t>(std::max(0, begin - 2 * shift) / kWordBits);
+    for (std::size_t i = first; i <= last; ++i) {
       own[i] = below[i];
       if (i + word < words_) own[i] |= below[i + word] >> bit;
       if (bit > 0 && i + word + 1 < words_) own[i] |= below[i + word + 1] << (kWordBits - bit);
     }
+    work_ += static_cast<std::int64_t>(last + 1 - first);
   }
 }
 
 void Occupancy::stamp(const Mask& mask, int x, int y) {
   for (int j = 0; j < mask.touched.height(); ++j) {
-    Word* cells = row(0, y + padding_ + j);
-    for (const Run& run : mask.touched.row(j))
-      for (int c = x + padding_ + run.begin; c < x + padding_ + run.end; ++c)
+    Word* cells = row(0, y + margin_ + j);
+    const std::span<const Run> runs = mask.touched.row(j);
+    for (const Run& run : runs)
+      for (int c = x + margin_ + run.begin; c < x + margin_ + run.end; ++c)
         cells[c / kWordBits] |= Word{1} << (c % kWordBits);
-    spread(y + padding_ + j);
+    if (!runs.empty())
+      spread(y + margin_ + j, x + margin_ + runs.front().begin, x + margin_ + runs.back().end);
   }
 }
 

@@ -12,8 +12,9 @@ namespace unwrapd {
 
 class Occupancy {
  public:
-  /// side: cells of the free page; islands keep `padding` cells from each other, not from its edge.
-  Occupancy(int side, int padding);
+  /// width, height: cells of the free page; islands keep their margin from each other, not from its
+  /// edge. margin: of all masks; longest_run: of their grown rows, at most.
+  Occupancy(int width, int height, int margin, int longest_run);
 
   /// The leftmost x at which the mask's lower left cell may lie on (x, y); touched cells stay on
   /// the page. Nothing when the row has no such place.
@@ -22,7 +23,9 @@ class Occupancy {
   /// Takes the touched cells.
   void stamp(const Mask& mask, int x, int y);
 
-  [[nodiscard]] int side() const { return side_; }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] std::int64_t work() const { return work_; }  ///< words looked at so far
 
  private:
   using Word = std::uint64_t;
@@ -31,10 +34,11 @@ class Occupancy {
   [[nodiscard]] const Word* row(int level, int y) const;
   void refuse(const Rows& grown, int mask_row, int page_row);
   [[nodiscard]] bool all_refused() const;
-  void spread(int y);
+  void spread(int y, int begin, int end);
 
-  int side_, padding_, rows_, levels_ = 1;
+  int width_, height_, margin_, levels_ = 1;
   std::size_t words_;
+  std::int64_t work_ = 0;
   std::vector<Word> bits_;     // bit x of row(k, y): a cell of [x, x + 2^k) is taken
   std::vector<Word> refused_;  // bit x: the mask cannot lie at x
 };

@@ -1,226 +1,213 @@
-// Bottom-left placement on a bitmap of the page, for ever larger scales: each island, the largest
-// first, takes the lowest free place of several turns. An island that finds none goes to the front
-// of the order, and the page is tried again: those that are hard to place settle first.
-// Orders and turns are found on a coarse bitmap; a fine one then only has to find the scale.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <numeric>
-#include <optional>
-
-#include "core/atlas/box.hpp"
-#include "core/atlas/occupancy.hpp"
+// Islands are packed on the cells of a coarse grid first, where a search among orders and turns is
+// cheap, then with what was found on a fine one. In both they keep their scale and the page
+// shrinks; the cells' size in texels, and with it the padding in cells, follows from its side.
 #include "core/atlas/pack.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/atlas/pack_search.hpp"
+#include "core/atlas/stacks.hpp"
+#include "core/error.hpp"
 
 namespace unwrapd {
 namespace {
 
-constexpr int kCoarseCells = 128, kFineCells = 512;  // a side of the bitmap
-constexpr double kCellsPerIsland = 12;               // along a side of the coarse one, at least
-constexpr double kPaddingsPerIsland = 64;            // squares of padding on the page, at least
-constexpr std::size_t kMostIslands = 4'000;          // beyond: rows will do
-constexpr std::size_t kFewIslands = 64;              // for which many turns are tried
-constexpr int kManyTurns = 8, kFewTurns = 4;
-constexpr int kRetries = 6;                              // with another order, at one scale
-constexpr double kCoarseStep = 1.04, kFineStep = 1.015;  // between one scale and the next
-constexpr double kCoarseSlack = 0.9;  // coarse cells waste some of what rows can do
-constexpr int kRefinements = 3;       // bisections once a scale does not fit
+constexpr int kCoarseCells = 160, kFineCells = 1024, kMostCells = 4096;  // a side of a grid
+constexpr double kCoarsePerIsland = 16, kFinePerIsland = 30;             // cells along a side
+constexpr std::size_t kSearched = 400;  // islands at most that are searched on a coarse grid
+constexpr double kUsualFill = 0.7;      // of the first guess of a page's side
+constexpr double kSpareSide = 1.01;     // of a page, for which the padding is wide enough
+constexpr std::int64_t kCoarseWork = 250'000'000, kFineWork = 80'000'000;  // words
 
-struct Spot {
-  int x = 0, y = 0;
-  int turn = 0;
-};
-
-/// The page in cells.
-struct Grid {
-  int side = 0;
-  int padding = 0;
-  double cell = 0;    ///< page units
-  double border = 0;  ///< of the first cell, page units
-};
-
-Grid grid_of(const PageOptions& page, int side) {
-  const double texel = 1.0 / page.resolution, border = page.padding * texel;
-  const double cell = (1 - 2 * border) / side;
-  return {side, static_cast<int>(std::ceil(border / cell)), cell, border};
+int turns_for(std::size_t islands) {
+  if (islands <= 16) return 24;
+  return islands <= 100 ? 8 : 4;
 }
 
-/// Size classes: islands of one class that came late find no lower place than the one before.
-class Hints {
+int cells_for(std::size_t islands, double per_island, int least) {
+  const double wanted = per_island * std::sqrt(static_cast<double>(islands));
+  return static_cast<int>(std::clamp<double>(wanted, least, kMostCells));
+}
+
+int fine_cells(std::size_t islands) { return cells_for(islands, kFinePerIsland, kFineCells); }
+
+double box_area(const Arranger& arranger) {
+  double area = 0;
+  for (std::size_t k = 0; k < arranger.size(); ++k) area += arranger.box(k).size.prod();
+  return area;
+}
+
+/// How the padding and the cells of a page of `side` cells relate.
+struct Grid {
+  double border = 0;  ///< page units
+
+  [[nodiscard]] double cell(int side) const { return (1 - 2 * border) / side; }
+  [[nodiscard]] double padding(double side) const { return border * side / (1 - 2 * border); }
+};
+
+class Packer {
  public:
-  int& of(const Mask& mask) {
-    return lowest_[class_of(mask.width)][class_of(mask.touched.height())];
+  Packer(std::span<const Outline> outlines, const PageOptions& page, const std::stop_token& stop)
+      : arranger_(outlines, turns_for(outlines.size())),
+        page_(page),
+        padding_(kept_padding(page, outlines.size())),
+        grid_{padding_ / page.resolution},
+        stop_(stop) {}
+
+  /// As large as fits on the pages that are allowed.
+  Packed largest() {
+    std::vector<Arrangement> starts = usual_arrangements(arranger_);
+    const std::size_t n = arranger_.size();
+    const bool is_searched = n <= kSearched;
+    const int coarse = is_searched ? cells_for(n, kCoarsePerIsland, kCoarseCells) : fine_cells(n);
+    if (!is_searched) starts.resize(1);
+    const double loose = std::sqrt(kUsualFill * page_.packing.max_pages / box_area(arranger_));
+    const Found found = on_grid(starts, coarse, coarse * loose, is_searched ? kCoarseWork : 0);
+    const int fine = fine_cells(n);
+    return placed(on_grid_exactly({found.arrangement}, fine, fine * coarse * loose / found.side));
+  }
+
+  /// At the density that is asked for, on as few pages as can be had.
+  Packed at_density(double texels_per_unit) {
+    const int side = fine_cells(arranger_.size());
+    const double page_per_unit = texels_per_unit / page_.resolution;
+    if (is_too_large(page_per_unit))
+      refuse(
+          "An island at this density is larger than a page; lower texels_per_unit, or raise "
+          "resolution.");
+    arranger_.set_scale(page_per_unit / grid_.cell(side), grid_.padding(side));
+    Budget budget{kFineWork, stop_};
+    const Found found = fewest_pages(arranger_, usual_arrangements(arranger_),
+                                     {side, side, page_.packing.max_pages}, budget);
+    if (found.side == 0)
+      refuse(
+          "The islands at this density do not fit on the pages; raise max_pages or resolution, or "
+          "lower texels_per_unit.");
+    return placed(found);
   }
 
  private:
-  static std::size_t class_of(int cells) {
-    return static_cast<std::size_t>(4 * std::log2(static_cast<double>(cells) + 1));
-  }
-  std::array<std::array<int, 48>, 48> lowest_{};
-};
-
-class Fitting {
- public:
-  Fitting(std::span<const Outline> outlines, const Grid& grid)
-      : outlines_(outlines),
-        grid_(grid),
-        turns_(outlines.size() <= kFewIslands ? kManyTurns : kFewTurns) {
-    for (const Outline& outline : outlines) {
-      UvMap points;
-      for (const auto& [a, b] : outline) points.push_back(a);
-      boxes_.push_back(smallest_box(points));
-    }
-    order_.resize(outlines.size());
-    std::iota(order_.begin(), order_.end(), 0);
-    std::stable_sort(order_.begin(), order_.end(), [&](Index a, Index b) {
-      return boxes_[static_cast<std::size_t>(a)].size.maxCoeff() >
-             boxes_[static_cast<std::size_t>(b)].size.maxCoeff();
-    });
+  [[noreturn]] static void refuse(const std::string& message) {
+    throw Error(ErrorCode::does_not_fit, message, "/texels_per_unit");
   }
 
-  /// On a finer grid, with the order found so far and the turns of the last scale that was kept.
-  void refine(const Grid& grid) {
-    grid_ = grid;
-    turns_are_fixed_ = true;
-  }
-
-  /// Tries a scale (page units for one unit of the islands) with several orders; keeps it if it
-  /// fits.
-  bool try_scale(double scale) {
-    masks_.assign(outlines_.size() * static_cast<std::size_t>(turns_), std::nullopt);
-    scale_ = scale / grid_.cell;
-    std::vector<Index> order = order_;
-    for (int k = 0; k < kRetries; ++k) {
-      const std::optional<Index> homeless = place_all(order);
-      if (!homeless) return keep(std::move(order));
-      const auto at = std::find(order.begin(), order.end(), *homeless);
-      if (at == order.begin()) return false;
-      std::rotate(order.begin(), at, at + 1);
+  /// Looked at before any island is turned into cells, which would be too many. A square of the
+  /// smallest box's shorter side lies in it; an island never fits where not even that does.
+  [[nodiscard]] bool is_too_large(double page_per_unit) const {
+    for (std::size_t k = 0; k < arranger_.size(); ++k) {
+      const Vec2 size = page_per_unit * arranger_.box(k).size;
+      if (size.minCoeff() > 1 || size.maxCoeff() > std::sqrt(2.0)) return true;
     }
     return false;
   }
 
-  /// Those of the last scale that was kept; empty when none was.
-  [[nodiscard]] const std::vector<Placement>& placements() const { return placements_; }
+  /// A search at this scale, with the padding of pages of `expected` cells.
+  Found on_grid(const std::vector<Arrangement>& starts, double expected, double cells_per_unit,
+                std::int64_t work) {
+    arranger_.set_scale(cells_per_unit, grid_.padding(expected));
+    Budget budget{work, stop_};
+    return page_.packing.max_pages == 1
+               ? smallest_page(arranger_, starts, static_cast<int>(expected), budget)
+               : smallest_pages(arranger_, starts, page_.packing.max_pages, budget);
+  }
 
- private:
-  bool keep(std::vector<Index> order) {
-    order_ = std::move(order);
-    kept_ = spots_;
-    placements_.clear();
-    for (std::size_t k = 0; k < outlines_.size(); ++k) {
-      const Turn turn = turn_of(static_cast<Index>(k), spots_[k].turn);
-      const Mask& mask = mask_of(static_cast<Index>(k), spots_[k].turn);
-      const Vec2 moved = Vec2(spots_[k].x, spots_[k].y) - mask.low;
-      placements_.push_back({turn.cosine, turn.sine, grid_.cell * turn.scale,
-                             Vec2(Vec2::Constant(grid_.border) + grid_.cell * moved)});
+  /// The same where the padding must be kept: should pages come out larger than expected, it is
+  /// made wider and all is done again.
+  Found on_grid_exactly(const std::vector<Arrangement>& starts, double expected,
+                        double cells_per_unit) {
+    for (double spare = kSpareSide;; spare *= kSpareSide) {
+      Found found = on_grid(starts, spare * expected, cells_per_unit, kFineWork);
+      if (found.side <= spare * expected) return found;
+      expected = found.side;
     }
-    return true;
   }
 
-  Turn turn_of(Index island, int turn) const {
-    const Box& box = boxes_[static_cast<std::size_t>(island)];
-    const double angle = 2 * std::numbers::pi * turn / turns_ + std::atan2(box.sine, box.cosine);
-    return {std::cos(angle), std::sin(angle), scale_};
-  }
-
-  const Mask& mask_of(Index island, int turn) {
-    auto& mask = masks_[static_cast<std::size_t>(island * turns_ + turn)];
-    if (!mask)
-      mask = make_mask(outlines_[static_cast<std::size_t>(island)], turn_of(island, turn),
-                       grid_.padding);
-    return *mask;
-  }
-
-  /// The first island that finds no place.
-  std::optional<Index> place_all(const std::vector<Index>& order) {
-    Occupancy page(grid_.side, grid_.padding);
-    Hints hints;
-    spots_.assign(outlines_.size(), {});
-    for (Index island : order)
-      if (!place(island, page, hints)) return island;
-    return std::nullopt;
-  }
-
-  bool place(Index island, Occupancy& page, Hints& hints) {
-    int lowest_top = page.side() + 1;
-    Spot best;
-    for (int turn = 0; turn < turns_; ++turn) {
-      if (turns_are_fixed_ && turn != kept_[static_cast<std::size_t>(island)].turn) continue;
-      const Mask& mask = mask_of(island, turn);
-      int& hint = hints.of(mask);
-      for (int y = hint; y + mask.touched.height() < lowest_top; ++y)
-        if (const std::optional<int> x = page.first_free(mask, y)) {
-          lowest_top = y + mask.touched.height();
-          best = {*x, y, turn};
-          if (outlines_.size() > kFewIslands) hint = y;
-          break;
-        }
+  Packed placed(const Found& found) {
+    const double cell = grid_.cell(found.side);
+    Packed packed{{}, static_cast<Index>(found.pages), padding_, {}};
+    for (std::size_t k = 0; k < found.spots.size(); ++k) {
+      const Spot& spot = found.spots[k];
+      const Turn turn = arranger_.turn_of(k, spot.turn);
+      const Vec2 moved = Vec2(spot.x, spot.y) - arranger_.mask_of(k, spot.turn).low;
+      packed.placements.push_back(
+          {turn.cosine, turn.sine, cell * turn.scale,
+           Vec2(Vec2::Constant(grid_.border) + cell * moved + Vec2(spot.page, 0))});
     }
-    if (lowest_top > page.side()) return false;
-    spots_[static_cast<std::size_t>(island)] = best;
-    page.stamp(mask_of(island, best.turn), best.x, best.y);
-    return true;
+    return packed;
   }
 
-  std::span<const Outline> outlines_;
+  Arranger arranger_;
+  PageOptions page_;
+  double padding_;
   Grid grid_;
-  int turns_;
-  double scale_ = 1;
-  bool turns_are_fixed_ = false;
-  std::vector<Box> boxes_;
-  std::vector<Index> order_;
-  std::vector<std::optional<Mask>> masks_;
-  std::vector<Spot> spots_, kept_;
-  std::vector<Placement> placements_;
+  std::stop_token stop_;
 };
 
-/// Raises the scale in steps from one that may fit, then halves the last step. The largest that
-/// fits, or `scale` where none does.
-double largest_scale(Fitting& fitting, double scale, double step) {
-  double too_large = scale * step;
-  while (fitting.try_scale(too_large)) {
-    scale = too_large;
-    too_large *= step;
-  }
-  for (int k = 0; k < kRefinements; ++k) {
-    const double middle = std::sqrt(scale * too_large);
-    (fitting.try_scale(middle) ? scale : too_large) = middle;
-  }
-  return scale;
+std::vector<UvMap> points_of(std::span<const Outline> islands) {
+  std::vector<UvMap> points(islands.size());
+  for (std::size_t k = 0; k < islands.size(); ++k)
+    for (const auto& [a, b] : islands[k]) points[k].push_back(a);
+  return points;
 }
 
-/// Placements of a scale larger than `least`; empty when none is found.
-std::vector<Placement> fitted(std::span<const Outline> outlines, const PageOptions& page,
-                              double least) {
-  const auto coarse_side = std::clamp(
-      static_cast<int>(kCellsPerIsland * std::sqrt(static_cast<double>(outlines.size()))),
-      kCoarseCells, kFineCells);
-  Fitting fitting(outlines, grid_of(page, coarse_side));
-  const double coarse = largest_scale(fitting, kCoarseSlack * least, kCoarseStep);
-  if (fitting.placements().empty()) return {};
-  fitting.refine(grid_of(page, kFineCells));
-  largest_scale(fitting, coarse, kFineStep);
-  if (fitting.placements().front().scale <= least) return {};
-  return fitting.placements();
+bool has_extent(std::span<const UvMap> points) {
+  return std::any_of(points.begin(), points.end(),
+                     [](const UvMap& own) { return smallest_box(own).size.prod() > 0; });
+}
+
+Packed pack_apart(std::span<const Outline> islands, const PageOptions& page,
+                  const std::stop_token& stop) {
+  if (page.packing.texels_per_unit)
+    return Packer(islands, page, stop).at_density(*page.packing.texels_per_unit);
+  const std::vector<UvMap> points = points_of(islands);
+  Packed rows{pack_in_rows(points, page), 1, kept_padding(page, islands.size()), {}};
+  if (islands.size() < 2 || !has_extent(points)) return rows;
+  Packed tight = Packer(islands, page, stop).largest();
+  return tight.placements.front().scale > rows.placements.front().scale ? tight : rows;
+}
+
+Placement on_top(const Placement& first, const SameShape& same) {
+  return {first.cosine * same.cosine - first.sine * same.sine,
+          first.sine * same.cosine + first.cosine * same.sine, first.scale, first(same.offset)};
+}
+
+/// One island of each shape is packed, with the outlines of all that come to lie on it.
+Packed pack_stacked(std::span<const Outline> islands, const PageOptions& page,
+                    const std::stop_token& stop) {
+  const std::vector<SameShape> same = same_shapes(islands, stop);
+  std::vector<Outline> shapes;
+  std::vector<std::size_t> shape_of(islands.size());
+  for (std::size_t k = 0; k < islands.size(); ++k)
+    if (same[k].as == static_cast<Index>(k)) {
+      shape_of[k] = shapes.size();
+      shapes.push_back(islands[k]);
+    }
+  for (std::size_t k = 0; k < islands.size(); ++k) {
+    const auto first = static_cast<std::size_t>(same[k].as);
+    if (first == k) continue;
+    shape_of[k] = shape_of[first];
+    for (const auto& [a, b] : islands[k]) shapes[shape_of[k]].push_back({same[k](a), same[k](b)});
+  }
+  Packed packed = pack_apart(shapes, page, stop);
+  std::vector<Placement> placements(islands.size());
+  packed.is_stacked.assign(islands.size(), 0);
+  for (std::size_t k = 0; k < islands.size(); ++k) {
+    placements[k] = on_top(packed.placements[shape_of[k]], same[k]);
+    packed.is_stacked[k] = same[k].as == static_cast<Index>(k) ? 0 : 1;
+  }
+  packed.placements = std::move(placements);
+  return packed;
 }
 
 }  // namespace
 
-std::vector<Placement> pack(std::span<const Outline> islands, const PageOptions& page) {
-  std::vector<UvMap> points;
-  points.reserve(islands.size());
-  for (const Outline& outline : islands) {
-    points.emplace_back();
-    for (const auto& [a, b] : outline) points.back().push_back(a);
-  }
-  std::vector<Placement> rows = pack_in_rows(points, page);
-  const auto room = static_cast<double>(page.resolution) / std::max(page.padding, 1);
-  const bool is_crowded = room * room < kPaddingsPerIsland * static_cast<double>(islands.size());
-  if (islands.size() < 2 || islands.size() > kMostIslands || is_crowded) return rows;
-  std::vector<Placement> tight = fitted(islands, page, rows.front().scale);
-  return tight.empty() ? rows : tight;
+Packed pack(std::span<const Outline> islands, const PageOptions& page,
+            const std::stop_token& stop) {
+  if (islands.empty()) return {};
+  return page.packing.stack_identical ? pack_stacked(islands, page, stop)
+                                      : pack_apart(islands, page, stop);
 }
 
 }  // namespace unwrapd

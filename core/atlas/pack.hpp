@@ -1,17 +1,19 @@
 #pragma once
-// Islands side by side on one square page, at one texel density, never overlapping.
+// Islands side by side on square pages, at one texel density, never overlapping.
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/atlas/charts.hpp"
 #include "core/atlas/outline.hpp"
 #include "core/mesh/tri_mesh.hpp"
+#include "core/options.hpp"
 
 namespace unwrapd {
 
 /// Where an island goes: uv_page = scale * (rotation * uv) + offset. No mirroring: rotation is
-/// proper. scale is common to all islands of a page.
+/// proper. scale is common to all islands. Page k is the square [k, k+1] x [0, 1].
 struct Placement {
   double cosine = 1;
   double sine = 0;
@@ -25,7 +27,15 @@ struct Placement {
 
 struct PageOptions {
   int resolution = 1024;  ///< texels a side
-  int padding = 2;        ///< texels between islands and to the page's border
+  int padding = 2;        ///< texels between islands and to a page's border
+  Packing packing = {};
+};
+
+struct Packed {
+  std::vector<Placement> placements;
+  Index pages = 1;
+  double padding = 0;  ///< texels that are kept: fewer than asked for where islands crowd
+  std::vector<char> is_stacked = {};  ///< [island]: lies on another; empty: none does
 };
 
 /// Places the islands (each a UV map at the density it shall keep relative to the others: UV area =
@@ -34,9 +44,15 @@ struct PageOptions {
 /// islands come that padding would take more than half of the page's side, it is shrunk to that.
 std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOptions& page);
 
-/// The same by true outlines, into each other's hollows: some 1.4 times the fill for a few hundred
-/// times the work (35 ms for five islands). Many thousands of islands stay in rows.
-std::vector<Placement> pack(std::span<const Outline> islands, const PageOptions& page);
+/// The padding that so many islands leave, texels: see pack_in_rows().
+double kept_padding(const PageOptions& page, std::size_t island_count);
+
+/// The same by true outlines, into each other's hollows and holes: as large as fits, or at
+/// packing.texels_per_unit. Identical islands share a place where packing asks for it. The same
+/// bytes on every machine: the search has a budget of work, not of time.
+/// Throws Error{does_not_fit} when a given density needs more pages than allowed; Error{cancelled}.
+Packed pack(std::span<const Outline> islands, const PageOptions& page,
+            const std::stop_token& stop = {});
 
 /// Charts' page UVs back onto the surface's vertices: splits those that lie on a seam. A vertex's
 /// first corner keeps its number, copies are appended in the order of faces and corners. Of the

@@ -26,11 +26,8 @@ struct Page {
   double padding = 0;
 };
 
-/// Halves of the page at most go to padding: more would leave the islands no room.
 Page page_of(const PageOptions& options, std::size_t island_count) {
-  const double gaps = std::ceil(std::sqrt(static_cast<double>(island_count))) + 1;
-  const double padding =
-      std::min(std::max<double>(options.padding, kLeastPadding), options.resolution / (2 * gaps));
+  const double padding = std::max(kept_padding(options, island_count), kLeastPadding);
   return {options.resolution - padding, padding};
 }
 
@@ -107,6 +104,12 @@ std::vector<Box> oriented(std::vector<Box> boxes, bool standing) {
 }
 
 }  // namespace
+
+/// Half of the page at most goes to padding: more would leave the islands no room.
+double kept_padding(const PageOptions& page, std::size_t island_count) {
+  const double gaps = std::ceil(std::sqrt(static_cast<double>(island_count))) + 1;
+  return std::min<double>(page.padding, page.resolution / (2 * gaps));
+}
 
 std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOptions& options) {
   assert(options.resolution > 0 && options.padding >= 0);

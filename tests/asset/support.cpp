@@ -147,7 +147,9 @@ Json json_of(const std::string& file) {
   return Json::parse(file.substr(20, length));
 }
 
-Asset read_file(const std::string& document) { return read({document, {}}, {}); }
+Asset read_file(const std::string& document, const AssetOptions& options) {
+  return read({document, {}}, {}, options);
+}
 
 Error error_of(const std::string& document, const ReadLimits& limits) {
   try {

@@ -48,7 +48,10 @@ Builder grid(int n);
 std::string glb_of(const std::string& json, const std::string& bin);
 Json json_of(const std::string& file);  ///< of a GLB or .gltf
 
-Asset read_file(const std::string& document);
+/// Answers of what is read so are plain, whatever came in: the second reader decodes nothing.
+inline const AssetOptions kPlain = {.compression = Compression::none};
+
+Asset read_file(const std::string& document, const AssetOptions& options = kPlain);
 
 /// The error that reading ends with; fails the test when there is none.
 Error error_of(const std::string& document, const ReadLimits& limits = {});

@@ -95,7 +95,7 @@ TEST(Mask, GrowsByWhatIsNearerThanThePaddingBruteForce) {
 TEST(Occupancy, FindsTheLeftmostFreePlaceBruteForce) {
   std::mt19937 rng(3);
   const int side = 100, padding = 2;
-  Occupancy page(side, padding);
+  Occupancy page(side, side, padding, side);
   std::vector<char> taken(std::size_t(side * side), 0);
   const auto fits = [&](const Mask& mask, int x, int y) {
     for (int v = -padding; v < mask.touched.height() + padding; ++v)

@@ -1,0 +1,190 @@
+// A bitstream for each geometry: Draco's sequential method keeps the order of vertices and faces,
+// and without quantisation their values. Edgebreaker would be smaller but renumbers both. Accessors
+// that something else needs as well keep their bytes beside it.
+#include <draco/compression/expert_encode.h>
+#include <draco/mesh/mesh.h>
+
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "core/asset/as_size.hpp"
+#include "core/asset/compress.hpp"
+#include "core/asset/elements.hpp"
+#include "core/asset/gltf_steps.hpp"
+#include "core/asset/grow.hpp"
+#include "core/asset/references.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+constexpr const char* kExtension = "KHR_draco_mesh_compression";
+constexpr int kCompressionLevel = 7;  // of 10; what Draco's own tools take
+
+draco::DataType data_type(ComponentType type) {
+  switch (type) {
+    case ComponentType::i8:
+      return draco::DT_INT8;
+    case ComponentType::u8:
+      return draco::DT_UINT8;
+    case ComponentType::i16:
+      return draco::DT_INT16;
+    case ComponentType::u16:
+      return draco::DT_UINT16;
+    case ComponentType::u32:
+      return draco::DT_UINT32;
+    case ComponentType::f32:
+      break;
+  }
+  return draco::DT_FLOAT32;
+}
+
+draco::GeometryAttribute::Type kind_of(const std::string& semantic) {
+  if (semantic == "POSITION") return draco::GeometryAttribute::POSITION;
+  if (semantic == "NORMAL") return draco::GeometryAttribute::NORMAL;
+  if (semantic.starts_with("TEXCOORD_")) return draco::GeometryAttribute::TEX_COORD;
+  if (semantic.starts_with("COLOR_")) return draco::GeometryAttribute::COLOR;
+  return draco::GeometryAttribute::GENERIC;
+}
+
+bool is_plain(const Accessor& accessor) {
+  return accessor.element_bytes == accessor.components * component_bytes(accessor.type);
+}
+
+/// Adds the accessor's elements, a value for each point.
+void add_attribute(const Gltf& gltf, const std::string& semantic, std::size_t number,
+                   draco::Mesh& mesh) {
+  const Accessor& accessor = gltf.accessors[number];
+  draco::GeometryAttribute header;
+  header.Init(kind_of(semantic), nullptr, static_cast<std::int8_t>(accessor.components),
+              data_type(accessor.type), accessor.normalized,
+              static_cast<std::int64_t>(accessor.element_bytes), 0);
+  const int id = mesh.AddAttribute(header, true, static_cast<std::uint32_t>(accessor.count));
+  const Elements elements(gltf, number);
+  const std::string zeros(accessor.element_bytes, '\0');
+  for (std::size_t i = 0; i < accessor.count; ++i) {
+    const char* bytes = elements.at(i);
+    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(static_cast<std::uint32_t>(i)),
+                                          bytes == nullptr ? zeros.data() : bytes);
+  }
+}
+
+std::vector<Index> corners_of(const Gltf& gltf, const Primitive& primitive) {
+  const std::size_t count = gltf.accessors[primitive.indices.value_or(primitive.position)].count;
+  std::vector<Index> corners(count);
+  if (!primitive.indices) {
+    for (std::size_t i = 0; i < count; ++i) corners[i] = static_cast<Index>(i);
+    return corners;
+  }
+  const Elements indices(gltf, *primitive.indices);
+  for (std::size_t i = 0; i < count; ++i) corners[i] = static_cast<Index>(indices.unsigned_at(i));
+  return corners;
+}
+
+/// A bitstream, or nothing where Draco cannot say what the primitive says.
+std::string bitstream_of(const Gltf& gltf, const Primitive& primitive) {
+  draco::Mesh mesh;
+  mesh.set_num_points(static_cast<std::uint32_t>(gltf.accessors[primitive.position].count));
+  for (const auto& [semantic, accessor] : primitive.attributes)
+    add_attribute(gltf, semantic, accessor, mesh);
+  const std::vector<Index> corners = corners_of(gltf, primitive);
+  for (std::size_t c = 0; c + 2 < corners.size(); c += 3)
+    mesh.AddFace({draco::PointIndex(static_cast<std::uint32_t>(corners[c])),
+                  draco::PointIndex(static_cast<std::uint32_t>(corners[c + 1])),
+                  draco::PointIndex(static_cast<std::uint32_t>(corners[c + 2]))});
+  draco::ExpertEncoder encoder(mesh);
+  encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
+  encoder.SetSpeedOptions(10 - kCompressionLevel, 10 - kCompressionLevel);
+  draco::EncoderBuffer buffer;
+  if (!encoder.EncodeToBuffer(&buffer).ok()) return {};
+  return {buffer.data(), buffer.size()};
+}
+
+class DracoPacker {
+ public:
+  explicit DracoPacker(const Gltf& gltf)
+      : gltf_(gltf),
+        patched_{gltf.json, {}},
+        views_(patched_, gltf.buffers.size()),
+        left_(count_accessor_references(gltf.json, gltf.accessors.size())) {}
+
+  void pack(const Primitive& primitive) {
+    if (!can_be_packed(primitive)) return;
+    const Key key{primitive.attributes, primitive.indices};
+    auto found = done_.find(key);
+    if (found == done_.end()) {
+      const std::string bytes = bitstream_of(gltf_, primitive);
+      if (bytes.empty()) return;
+      found = done_.emplace(key, Done{views_.add(bytes, 0, 0), indices_of(primitive)}).first;
+    }
+    Json& json = patched_.json["meshes"][primitive.mesh]["primitives"][primitive.number];
+    Json ids = Json::object();
+    for (const auto& [semantic, accessor] : primitive.attributes) {
+      ids[semantic] = ids.size();
+      --left_[accessor];
+    }
+    if (primitive.indices) --left_[*primitive.indices];
+    json["indices"] = found->second.indices;
+    json["extensions"][kExtension] = {{"bufferView", found->second.view}, {"attributes", ids}};
+  }
+
+  PatchedDocument finish() {
+    if (done_.empty()) return std::move(patched_);
+    for (const auto& [key, done] : done_) {
+      for (const auto& [semantic, accessor] : key.first) forget_bytes(accessor);
+      if (key.second) forget_bytes(*key.second);
+    }
+    for (const char* list : {"extensionsUsed", "extensionsRequired"})
+      patched_.json[list].push_back(kExtension);
+    return std::move(patched_);
+  }
+
+ private:
+  using Key =
+      std::pair<std::vector<std::pair<std::string, std::size_t>>, std::optional<std::size_t>>;
+  struct Done {
+    std::size_t view = 0;
+    std::size_t indices = 0;
+  };
+
+  bool can_be_packed(const Primitive& primitive) const {
+    if (primitive.mode != Mode::triangles || !primitive.has_triangles) return false;
+    const std::size_t corners =
+        gltf_.accessors[primitive.indices.value_or(primitive.position)].count;
+    for (const auto& [semantic, accessor] : primitive.attributes)
+      if (!is_plain(gltf_.accessors[accessor])) return false;
+    return corners >= 3 && corners % 3 == 0;
+  }
+
+  /// The accessor of the indices; Draco always has some.
+  std::size_t indices_of(const Primitive& primitive) {
+    if (primitive.indices) return *primitive.indices;
+    const std::size_t count = gltf_.accessors[primitive.position].count;
+    Json& accessors = patched_.json["accessors"];
+    accessors.push_back(
+        {{"componentType", ComponentType::u32}, {"count", count}, {"type", "SCALAR"}});
+    return accessors.size() - 1;
+  }
+
+  void forget_bytes(std::size_t accessor) {
+    if (left_[accessor] > 0) return;
+    for (const char* part : {"bufferView", "byteOffset", "sparse"})
+      patched_.json["accessors"][accessor].erase(part);
+  }
+
+  const Gltf& gltf_;
+  PatchedDocument patched_;
+  NewViews views_;
+  std::vector<std::size_t> left_;  ///< references to accessors that are not packed
+  std::map<Key, Done> done_;
+};
+
+}  // namespace
+
+PatchedDocument draco_compressed(const Gltf& gltf) {
+  DracoPacker packer(gltf);
+  for (const Primitive& primitive : gltf.primitives) packer.pack(primitive);
+  return packer.finish();
+}
+
+}  // namespace unwrapd::asset

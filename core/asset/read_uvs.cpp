@@ -1,0 +1,93 @@
+// The texture coordinates that an asset came with, corner by corner: primitives that share a
+// surface's vertices need not share these, and an OBJ's vertices have no coordinates of their own.
+#include <charconv>
+#include <limits>
+
+#include "core/asset/as_size.hpp"
+#include "core/asset/document.hpp"
+#include "core/asset/elements.hpp"
+#include "core/asset/gltf_steps.hpp"
+#include "core/asset/materials.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+const CornerUv kNoUv = {Vec2(kNone, kNone), Vec2(kNone, kNone), Vec2(kNone, kNone)};
+
+/// The accessor of the primitive's texture coordinates, where they are of a kind that glTF knows.
+std::optional<std::size_t> uv_accessor(const Gltf& gltf, const Primitive& primitive) {
+  for (const auto& [semantic, accessor] : primitive.attributes)
+    if (semantic == gltf.texcoord && gltf.accessors[accessor].components == 2) return accessor;
+  return std::nullopt;
+}
+
+Vec2 upwards(const Vec2& uv) { return uv.allFinite() ? Vec2(uv.x(), 1 - uv.y()) : kNoUv[0]; }
+
+void read_piece(const Gltf& gltf, const Primitive& primitive, std::size_t accessor,
+                Surface& surface) {
+  const Piece& piece = gltf.pieces[primitive.piece];
+  const std::vector<Index>& number = gltf.vertices[piece.surface];
+  const Elements uv(gltf, accessor);
+  const Vec2 scale = texture_scale(gltf, primitive);
+  surface.corner_uv.resize(surface.mesh.faces.size(), kNoUv);
+  for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      surface.corner_uv[t][i] = upwards(
+          scale.cwiseProduct(uv.vec2_at(as_size(number[as_size(surface.mesh.faces[t][i])]))));
+}
+
+/// A vt statement's two numbers; none where they are not to be read.
+Vec2 read_vt(std::string_view line) {
+  Vec2 uv(kNone, 0);
+  std::size_t at = line.find("vt") + 2;
+  for (int k = 0; k < 2; ++k) {
+    at = line.find_first_not_of(" \t", at);
+    if (at == std::string_view::npos) break;
+    if (line[at] == '+') ++at;
+    const auto [end, error] = std::from_chars(line.data() + at, line.data() + line.size(), uv[k]);
+    if (error != std::errc()) return kNoUv[0];
+    at = static_cast<std::size_t>(end - line.data());
+  }
+  return uv.allFinite() ? uv : kNoUv[0];
+}
+
+void read_obj_uvs(const Obj& obj, Surface& surface) {
+  std::vector<Vec2> vt;
+  vt.reserve(obj.texcoord_lines.size());
+  for (const auto& [begin, end] : obj.texcoord_lines)
+    vt.push_back(read_vt(std::string_view(obj.text).substr(begin, end - begin)));
+  if (vt.empty()) return;
+  surface.corner_uv.assign(surface.mesh.faces.size(), kNoUv);
+  for (const ObjElement& element : obj.elements)
+    for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const ObjCorner& corner =
+            obj.corners[element.first_corner + as_size(obj.face_corners[t][i])];
+        if (corner.texcoord >= 0 && as_size(corner.texcoord) < vt.size())
+          surface.corner_uv[t][i] = vt[as_size(corner.texcoord)];
+      }
+}
+
+}  // namespace
+
+void read_gltf_uvs(const Gltf& gltf, std::vector<Surface>& surfaces) {
+  std::vector<char> is_read(gltf.pieces.size(), 0);
+  for (const Primitive& primitive : gltf.primitives) {
+    if (!primitive.has_triangles || is_read[primitive.piece] != 0) continue;
+    const auto accessor = uv_accessor(gltf, primitive);
+    if (!accessor) continue;
+    is_read[primitive.piece] = 1;
+    read_piece(gltf, primitive, *accessor, surfaces[gltf.pieces[primitive.piece].surface]);
+  }
+}
+
+void read_uvs(Asset& asset) {
+  Document& document = asset.document();
+  if (const Obj* obj = std::get_if<Obj>(&document.source))
+    read_obj_uvs(*obj, document.surfaces.front());
+  else
+    read_gltf_uvs(std::get<Gltf>(document.source), document.surfaces);
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,132 @@
+// Bottom-left placement (Baker, Coffman, Rivest 1980) of cell masks: the lowest row that has a free
+// place, in it the leftmost. Rows are looked at from below, so that holes are filled by whatever
+// fits into them; with many islands a size class begins where its last one lay, as those below have
+// refused its like already.
+#include "core/atlas/arrange.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/cancel.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr std::size_t kFewIslands = 64;  // that look at every row
+constexpr std::size_t kClasses = 60;     // of sizes, four to a doubling
+
+std::size_t class_of(int cells) {
+  return std::min(kClasses - 1, static_cast<std::size_t>(4 * std::log2(cells + 1.0)));
+}
+
+Box box_of(const Outline& outline) {
+  UvMap points;
+  points.reserve(outline.size());
+  for (const auto& [a, b] : outline) points.push_back(a);
+  return smallest_box(points);
+}
+
+}  // namespace
+
+/// A page as it fills.
+struct Arranger::Page {
+  Occupancy cells;
+  std::array<std::array<int, kClasses>, kClasses> lowest{};  ///< row, by width and height
+
+  int& lowest_of(const Mask& mask) {
+    return lowest[class_of(mask.width)][class_of(mask.touched.height())];
+  }
+};
+
+Arranger::Arranger(std::span<const Outline> outlines, int turns)
+    : outlines_(outlines), turns_(turns) {
+  boxes_.reserve(outlines.size());
+  for (const Outline& outline : outlines) boxes_.push_back(box_of(outline));
+}
+
+void Arranger::set_scale(double cells_per_unit, double padding) {
+  scale_ = cells_per_unit;
+  padding_ = padding;
+  masks_.assign(outlines_.size() * static_cast<std::size_t>(turns_), std::nullopt);
+}
+
+Turn Arranger::turn_of(std::size_t island, int turn) const {
+  const Box& box = boxes_[island];
+  const double angle = 2 * std::numbers::pi * turn / turns_ + std::atan2(box.sine, box.cosine);
+  return {std::cos(angle), std::sin(angle), scale_};
+}
+
+const Mask& Arranger::mask_of(std::size_t island, int turn) {
+  auto& mask = masks_[island * static_cast<std::size_t>(turns_) + static_cast<std::size_t>(turn)];
+  if (!mask) mask = make_mask(outlines_[island], turn_of(island, turn), padding_);
+  return *mask;
+}
+
+int Arranger::least_side() {
+  int side = 1;
+  for (std::size_t k = 0; k < size(); ++k) {
+    int own = std::numeric_limits<int>::max();
+    for (int turn = 0; turn < turns_; ++turn) {
+      const Mask& mask = mask_of(k, turn);
+      own = std::min(own, std::max(mask.width, mask.touched.height()));
+    }
+    side = std::max(side, own);
+  }
+  return side;
+}
+
+bool Arranger::lay_one(std::size_t island, int turn, std::vector<Page>& pages, Spot& spot) {
+  const bool any = turn == kAnyTurn;
+  for (std::size_t p = 0; p < pages.size(); ++p) {
+    Page& page = pages[p];
+    int lowest_top = page.cells.height() + 1;
+    for (int t = any ? 0 : turn; t <= (any ? turns_ - 1 : turn); ++t) {
+      const Mask& mask = mask_of(island, t);
+      const bool few = size() <= kFewIslands;
+      for (int y = few ? 0 : page.lowest_of(mask); y + mask.touched.height() < lowest_top; ++y) {
+        const std::optional<int> x = page.cells.first_free(mask, y);
+        if (!x) continue;
+        lowest_top = y + mask.touched.height();
+        spot = {*x, y, t, static_cast<int>(p)};
+        if (!few) page.lowest_of(mask) = y;
+      }
+    }
+    if (lowest_top > page.cells.height()) continue;
+    page.cells.stamp(mask_of(island, spot.turn), spot.x, spot.y);
+    return true;
+  }
+  return false;
+}
+
+Laid Arranger::lay(const Arrangement& arrangement, const Sheet& sheet, Budget& budget) {
+  const int margin = margin_of(padding_);
+  double longest = 1;
+  for (const Box& box : boxes_) longest = std::max(longest, box.size.norm() * scale_);
+  const int run = static_cast<int>(std::min<double>(longest + 2, sheet.width)) + 2 * margin;
+  std::vector<Page> pages(1, {Occupancy(sheet.width, sheet.height, margin, run)});
+  Laid laid{.spots = std::vector<Spot>(size())};
+  for (const Index k : arrangement.order) {
+    throw_if_cancelled(budget.stop);
+    const auto island = static_cast<std::size_t>(k);
+    const std::int64_t before = pages.back().cells.work();
+    Spot& spot = laid.spots[island];
+    bool found = lay_one(island, arrangement.turn[island], pages, spot);
+    if (!found && static_cast<int>(pages.size()) < sheet.pages) {
+      pages.push_back({Occupancy(sheet.width, sheet.height, margin, run)});
+      found = lay_one(island, arrangement.turn[island], pages, spot);
+    }
+    budget.words -= std::max<std::int64_t>(0, pages.back().cells.work() - before);
+    if (!found) return laid;
+    ++laid.placed;
+    const int top = spot.y + mask_of(island, spot.turn).touched.height();
+    if (spot.page == 0) laid.top = std::max(laid.top, top);
+    laid.pages = std::max(laid.pages, spot.page + 1);
+  }
+  laid.is_complete = true;
+  return laid;
+}
+
+}  // namespace unwrapd

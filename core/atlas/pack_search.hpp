@@ -1,0 +1,34 @@
+#pragma once
+// Which arrangement of islands needs the smallest pages.
+
+#include <vector>
+
+#include "core/atlas/arrange.hpp"
+
+namespace unwrapd {
+
+/// Islands on square pages of `side` cells.
+struct Found {
+  Arrangement arrangement;  ///< every turn decided
+  std::vector<Spot> spots;
+  int side = 0;  ///< 0: nothing was found
+  int pages = 1;
+};
+
+/// Arrangements to begin with: the largest first, by several measures; every turn open.
+std::vector<Arrangement> usual_arrangements(const Arranger& arranger);
+
+/// Looks for the smallest page that holds all, beginning at a width in cells, until it has found
+/// nothing better within the budget. The arranger's scale stays what it is: the page shrinks.
+Found smallest_page(Arranger& arranger, const std::vector<Arrangement>& starts, int width,
+                    Budget& budget);
+
+/// The same for several pages of one side.
+Found smallest_pages(Arranger& arranger, const std::vector<Arrangement>& starts, int page_count,
+                     Budget& budget);
+
+/// On pages of this side, as few as can be had of at most page_count; side 0 when they do not do.
+Found fewest_pages(Arranger& arranger, const std::vector<Arrangement>& starts, const Sheet& sheet,
+                   Budget& budget);
+
+}  // namespace unwrapd
