@@ -158,6 +158,8 @@ void Reading::finish() {
     config_.admin = Address{"127.0.0.1", port == 0 ? 0 : port + 1};
   }
   check_together(config_);
+  if (healthcheck_ && (!config_.admin || config_.admin->port == 0))
+    wrong("--healthcheck needs an --admin-listen with a port; give the server one.");
 }
 
 /// text as TOML writes it.

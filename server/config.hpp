@@ -13,13 +13,25 @@
 #include "server/address.hpp"
 #include "server/disk_room.hpp"
 #include "server/log.hpp"
-#include "server/webhook_url.hpp"
 #include "server/solver_cache.hpp"
+#include "server/webhook_url.hpp"
 
 namespace unwrapd::server {
 
+/// What clients may take of the HTTP edge, and how it is reached.
+struct EdgeConfig {
+  int max_requests = 64;       ///< answered at once, event streams not counted
+  int max_connections = 4096;  ///< open at once
+  int max_idle_connections = 1024;
+  int max_connections_per_address = 256;  ///< 0: no limit
+  std::vector<std::string> trusted_proxies;
+  std::filesystem::path tls_cert;  ///< empty: plain HTTP
+  std::filesystem::path tls_key;
+};
+
 struct Config {
   Address listen{"127.0.0.1", 8080};
+  EdgeConfig edge;
   /// Of the probes and metrics; without one there is none. parse_command_line() gives it the port
   /// after that of listen, on loopback, where nothing else is asked for.
   std::optional<Address> admin;
@@ -30,6 +42,7 @@ struct Config {
   int drain_seconds = 30;
   bool isolate = false;  ///< each job in a process of its own (job_process.hpp)
   LogLevel log_level = LogLevel::info;
+  LogFormat log_format = LogFormat::json;
   DiskLimits disk;
   AccessConfig access;
   std::vector<std::string> cors_origins;

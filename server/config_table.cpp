@@ -1,6 +1,7 @@
 // The one place where options of the server are declared: name, range and sentence of each.
 #include <limits>
 
+#include "server/addresses.hpp"
 #include "server/config_row.hpp"
 
 namespace unwrapd::server {
@@ -44,6 +45,32 @@ ConfigRow admin_row() {
 }
 
 ConfigGroup serving() { return {.title = "Serving", .rows = {listen_row(), admin_row()}}; }
+
+void check_range(const std::string& item) { const AddressSet set({item}); }
+
+ConfigGroup edge() {
+  using E = EdgeConfig;
+  const auto edge = &Config::edge;
+  return {.title = "Edge",
+          .rows = {
+              number({"max-connections", "N", "Connections open at once; more are turned away"},
+                     {16, 1'000'000}, edge, &E::max_connections),
+              number({"max-idle-connections", "N",
+                      "Of those, ones that send nothing; one more drives out the longest"},
+                     {1, 1'000'000}, edge, &E::max_idle_connections),
+              number({"max-connections-per-address", "N",
+                      "Of one client, an IPv6 one by its /64; loopback and trusted proxies are not "
+                      "counted; 0: no limit"},
+                     {0, 1'000'000}, edge, &E::max_connections_per_address),
+              number({"max-requests", "N", "Requests answered at once, event streams not counted"},
+                     {1, 4096}, edge, &E::max_requests),
+              list({"trusted-proxies", "RANGES",
+                    "Addresses and ranges (10.0.0.0/8,::1) whose X-Forwarded-For is believed"},
+                   check_range, edge, &E::trusted_proxies),
+              text({"tls-cert", "PATH", "PEM file of the certificate and its chain; HTTPS then"},
+                   edge, &E::tls_cert),
+              text({"tls-key", "PATH", "PEM file of its key"}, edge, &E::tls_key)}};
+}
 
 ConfigGroup working() {
   return {
@@ -117,9 +144,11 @@ ConfigGroup telling() {
                                   {"warning", LogLevel::warning},
                                   {"error", LogLevel::error},
                                   {"off", LogLevel::off}};
+  const Names<LogFormat> formats = {{"json", LogFormat::json}, {"text", LogFormat::text}};
   return {.title = "Telling",
           .rows = {choice({"log-level", "LEVEL", "debug, info, warning, error or off"}, levels,
-                          &Config::log_level)}};
+                          &Config::log_level),
+                   choice({"log-format", "FORMAT", "json or text"}, formats, &Config::log_format)}};
 }
 
 template <class Number>
@@ -155,10 +184,12 @@ ConfigGroup limits() {
 }  // namespace
 
 std::vector<ConfigGroup> config_groups() {
-  return {serving(), working(), storing(), admitting(), telling(), limits()};
+  return {serving(), edge(), working(), storing(), admitting(), telling(), limits()};
 }
 
 void check_together(const Config& config) {
+  if (config.edge.tls_cert.empty() != config.edge.tls_key.empty())
+    throw Error(ErrorCode::invalid_option, "--tls-cert and --tls-key go together; give both.");
   if (config.admin && config.admin->port != 0 && *config.admin == config.listen) {
     throw Error(ErrorCode::invalid_option,
                 "--admin-listen and --listen are the same address; give them two.");

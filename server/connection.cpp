@@ -2,7 +2,6 @@
 
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -22,7 +21,8 @@ constexpr std::chrono::seconds kLingerTime{10};
 constexpr milliseconds kLingerSilence{2'000};
 constexpr std::chrono::seconds kRateGrace{20};
 
-/// The ready events of descriptor, 0 when none came in time or stop (>= 0) became readable.
+/// The ready events of descriptor, 0 when none came in time or stop (>= 0)
+/// became readable.
 short wait_for(int descriptor, short events, int stop, milliseconds patience) {
   std::array<pollfd, 2> polled = {pollfd{descriptor, events, 0}, pollfd{stop, POLLIN, 0}};
   const Clock::time_point until = Clock::now() + patience;
@@ -35,33 +35,55 @@ short wait_for(int descriptor, short events, int stop, milliseconds patience) {
   }
 }
 
-}  // namespace
-
-Connection::Connection(int socket, int stop, const ConnectionLimits& limits)
-    : socket_(socket), stop_(stop), limits_(limits) {}
-
-Connection::~Connection() {
-  linger();
-  ::close(socket_);
+/// Nothing, or what follows a semicolon, without the control characters that
+/// others may take for the end of the line.
+bool is_chunk_extension(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return text.empty();
+  const bool plain = std::ranges::none_of(
+      text, [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; });
+  return text[first] == ';' && plain;
 }
 
+}  // namespace
+
+Connection::Connection(Client client, int stop, const ConnectionLimits& limits)
+    : client_(std::move(client)), stop_(stop), limits_(limits) {}
+
+Connection::~Connection() {
+  if (client_.transport) linger();
+}
+
+Client Connection::release() {
+  buffer_.erase(0, used_);
+  return std::move(client_);
+}
+
+bool Connection::has_next() const { return buffer_.find("\r\n\r\n", used_) != std::string::npos; }
+
+/// Raw bytes, be they TLS or not: nobody reads them.
 void Connection::linger() const {
-  ::shutdown(socket_, SHUT_WR);
+  client_.transport->end();
   const Clock::time_point until = Clock::now() + kLingerTime;
   std::array<char, kReadBytes> waste;
   while (!body_done_ && Clock::now() < until) {
-    if (wait_for(socket_, POLLIN, stop_, kLingerSilence) == 0) return;
-    if (::recv(socket_, waste.data(), waste.size(), 0) <= 0) return;
+    if (wait_for(socket(), POLLIN, stop_, kLingerSilence) == 0) return;
+    if (::recv(socket(), waste.data(), waste.size(), 0) <= 0) return;
   }
 }
 
 /// Appends what the client sends next to buffer_. False when nothing comes.
 bool Connection::fill(milliseconds patience) {
-  if (wait_for(socket_, POLLIN, -1, patience) == 0) return false;
+  const Clock::time_point until = Clock::now() + patience;
   const std::size_t size = buffer_.size();
   buffer_.resize(size + kReadBytes);
-  const ssize_t got = ::recv(socket_, buffer_.data() + size, kReadBytes, 0);
-  buffer_.resize(size + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  std::int64_t got = client_.transport->receive(buffer_.data() + size, kReadBytes);
+  while (got == Transport::kAgain) {
+    const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
+    if (wait_for(socket(), client_.transport->awaits(POLLIN), -1, left) == 0) break;
+    got = client_.transport->receive(buffer_.data() + size, kReadBytes);
+  }
+  buffer_.resize(size + static_cast<std::size_t>(std::max<std::int64_t>(got, 0)));
   return got > 0;
 }
 
@@ -69,7 +91,7 @@ bool Connection::next_request() {
   buffer_.erase(0, used_);
   used_ = 0;
   head_end_ = 0;
-  if (buffer_.empty() && wait_for(socket_, POLLIN, stop_, limits_.idle) == 0) return false;
+  if (buffer_.empty() && wait_for(socket(), POLLIN, stop_, limits_.idle) == 0) return false;
   const Clock::time_point until = Clock::now() + limits_.head;
   std::size_t end = buffer_.find("\r\n\r\n");
   while (end == std::string::npos) {
@@ -90,6 +112,7 @@ bool Connection::next_request() {
   body_done_ = !framing_.has_body();
   chunk_open_ = false;
   body_bytes_ = 0;
+  sent_bytes_ = 0;
   body_began_ = Clock::now();
   failure_.reset();
   return true;
@@ -130,7 +153,8 @@ void Connection::count_body(std::int64_t bytes) {
   if (!framing_.chunked && left_ == 0) body_done_ = true;
 }
 
-/// Reads up to the first byte of the next chunk. False at the end of the body, or on failure.
+/// Reads up to the first byte of the next chunk. False at the end of the body,
+/// or on failure.
 bool Connection::begin_chunk() {
   if (chunk_open_ && read_line() != "") {
     fail(ErrorCode::malformed_request, "A chunk is longer than it says; check the client.");
@@ -141,7 +165,7 @@ bool Connection::begin_chunk() {
   std::uint32_t size = 0;
   const auto parsed = std::from_chars(line->data(), line->data() + line->size(), size, 16);
   const std::string_view rest(parsed.ptr, line->data() + line->size());
-  if (parsed.ec != std::errc() || !(rest.empty() || rest.front() == ';' || rest.front() == ' ')) {
+  if (parsed.ec != std::errc() || !is_chunk_extension(rest)) {
     fail(ErrorCode::malformed_request,
          "The size of a chunk is not a hex number; check the client.");
     return false;
@@ -200,17 +224,21 @@ std::int64_t Connection::fail(ErrorCode code, const std::string& message) {
 }
 
 bool Connection::is_writable() const {
-  const short events = wait_for(socket_, POLLOUT | POLLRDHUP, -1, limits_.write);
+  const short events = wait_for(socket(), POLLOUT | POLLRDHUP, -1, limits_.write);
   return (events & POLLOUT) != 0 && (events & (POLLERR | POLLHUP | POLLRDHUP)) == 0;
 }
 
 std::int64_t Connection::write(std::string_view bytes) {
-  if ((wait_for(socket_, POLLOUT, -1, limits_.write) & POLLOUT) == 0) return -1;
-  ssize_t sent = 0;
-  do {
-    sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-  } while (sent < 0 && errno == EINTR);
-  return sent < 0 && errno == EAGAIN ? 0 : sent;
+  std::int64_t sent = client_.transport->send(bytes);
+  if (sent == Transport::kAgain) {
+    const short awaits = client_.transport->awaits(POLLOUT);
+    if ((wait_for(socket(), awaits, -1, limits_.write) & awaits) == 0) return -1;
+    sent = client_.transport->send(bytes);
+  }
+  if (sent == Transport::kAgain) return 0;
+  if (sent < 0) return -1;
+  sent_bytes_ += sent;
+  return sent;
 }
 
 }  // namespace unwrapd::server

@@ -1,7 +1,8 @@
 #pragma once
-// One client's socket: bytes in and out, each wait bounded. A Connection reads the head of a
-// request, then its body without the framing: whoever reads the body meets its end and its limit,
-// not chunk sizes. The body is counted here, so that chunked bodies keep the limit as well.
+// One client's socket: bytes in and out, each wait bounded. A Connection reads
+// the head of a request, then its body without the framing: whoever reads the
+// body meets its end and its limit, not chunk sizes. The body is counted here,
+// so that chunked bodies keep the limit as well.
 
 #include <chrono>
 #include <cstdint>
@@ -11,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "server/http_head.hpp"
+#include "server/transport.hpp"
 
 namespace unwrapd::server {
 
@@ -25,17 +27,26 @@ struct ConnectionLimits {
 
 class Connection {
  public:
-  /// stop: a descriptor that becomes readable when the server stops; it ends idle waits.
-  Connection(int socket, int stop, const ConnectionLimits& limits);
+  /// stop: a descriptor that becomes readable when the server stops; it ends
+  /// idle waits.
+  Connection(Client client, int stop, const ConnectionLimits& limits);
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
-  /// Closes; a body that was not read is discarded for a while, so that the answer still arrives.
+  /// Closes; a body that was not read is discarded for a while, so that the
+  /// answer still arrives.
   ~Connection();
 
-  /// Waits for the next request and vets its head, which read() then returns first. False when
-  /// the client has gone or nothing came in time. Throws what vet_head() throws.
+  /// Waits for the next request and vets its head, which read() then returns
+  /// first. False when the client has gone or nothing came in time. Throws what
+  /// vet_head() throws.
   bool next_request();
-  /// Bytes of the head, then of the body; 0 at the end of the body, -1 on failure().
+  /// Whether the head of another request is here already.
+  [[nodiscard]] bool has_next() const;
+  /// Gives the client up, with what it has sent beyond the last request;
+  /// nothing else may follow.
+  [[nodiscard]] Client release();
+  /// Bytes of the head, then of the body; 0 at the end of the body, -1 on
+  /// failure().
   std::int64_t read(char* data, std::size_t size);
   /// -1 when the client has gone or does not read.
   std::int64_t write(std::string_view bytes);
@@ -45,7 +56,13 @@ class Connection {
   [[nodiscard]] bool is_readable() const { return !body_done_; }
   [[nodiscard]] bool body_done() const { return body_done_; }
   [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
-  [[nodiscard]] int socket() const { return socket_; }
+  [[nodiscard]] int socket() const { return client_.transport->socket(); }
+  /// Its address.
+  [[nodiscard]] const std::string& client() const { return client_.address; }
+  /// Bytes of the current request's body, without framing.
+  [[nodiscard]] std::int64_t body_bytes() const { return body_bytes_; }
+  /// Bytes sent since the current request's head was vetted.
+  [[nodiscard]] std::int64_t sent_bytes() const { return sent_bytes_; }
 
  private:
   bool fill(std::chrono::milliseconds patience);
@@ -59,10 +76,10 @@ class Connection {
   std::int64_t fail(ErrorCode code, const std::string& message);
   void linger() const;
 
-  const int socket_;
+  Client client_;
   const int stop_;
   const ConnectionLimits limits_;
-  std::string buffer_;  // received, from used_ on not yet handed out
+  std::string& buffer_ = client_.received;  // received, from used_ on not yet handed out
   std::size_t used_ = 0;
   std::size_t head_end_ = 0;  // of the current request, in buffer_
   Framing framing_;
@@ -70,6 +87,7 @@ class Connection {
   bool chunk_open_ = false;
   bool body_done_ = true;
   std::int64_t body_bytes_ = 0;
+  std::int64_t sent_bytes_ = 0;
   std::chrono::steady_clock::time_point body_began_;
   std::optional<Error> failure_;
 };

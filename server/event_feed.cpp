@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "server/trace.hpp"
+
 namespace unwrapd::server {
 namespace {
 
@@ -11,11 +13,20 @@ constexpr std::size_t kMaxReadingBytes = std::size_t{64} * 1024;
 
 }  // namespace
 
+JobFeed::JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics)
+    : base_(base),
+      trace_(current_trace().empty() ? new_trace_id() : current_trace()),
+      newest_(base),
+      capacity_(capacity) {
+  if (metrics) watch_.emplace(*metrics);
+}
+
 void JobFeed::publish(const std::function<api::Event(std::int64_t seq)>& make) {
   {
     const std::lock_guard lock(mutex_);
     if (over()) return;
     const api::Event event = make(newest_ + 1);
+    if (watch_) watch_->see(event);
     ring_.push_back({event.seq, api::sse_frame(event)});
     newest_ = event.seq;
     if (ring_.size() > capacity_) ring_.pop_front();
@@ -79,7 +90,7 @@ bool JobFeed::wait_finished(std::chrono::steady_clock::time_point until) const {
 
 std::shared_ptr<JobFeed> EventFeed::open(const std::string& job, int attempt) {
   const std::lock_guard lock(mutex_);
-  auto feed = std::make_shared<JobFeed>(attempt * kSeqsPerAttempt, ring_);
+  auto feed = std::make_shared<JobFeed>(attempt * kSeqsPerAttempt, ring_, metrics_);
   feeds_[job] = feed;
   return feed;
 }

@@ -18,6 +18,7 @@
 #include <string_view>
 
 #include "api/events.hpp"
+#include "server/job_watch.hpp"
 
 namespace unwrapd::server {
 
@@ -31,8 +32,11 @@ struct Reading {
 /// The events of one job. Thread-safe.
 class JobFeed {
  public:
-  JobFeed(std::int64_t base, std::size_t capacity)
-      : base_(base), newest_(base), capacity_(capacity) {}
+  /// Works for the trace of the thread that makes it, or for one of its own.
+  JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics = nullptr);
+
+  /// The trace id that the job's log lines tell.
+  [[nodiscard]] const std::string& trace() const { return trace_; }
 
   /// Appends the event that make(seq) returns; a final event finishes the feed.
   void publish(const std::function<api::Event(std::int64_t seq)>& make);
@@ -58,12 +62,14 @@ class JobFeed {
   [[nodiscard]] bool over() const { return finished_ || ended_; }
 
   const std::int64_t base_;
+  const std::string trace_;
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   std::int64_t newest_;
   const std::size_t capacity_;
   std::deque<Frame> ring_;
   std::optional<api::JobProgress> progress_;
+  std::optional<JobWatch> watch_;
   bool finished_ = false;
   bool ended_ = false;
 };
@@ -71,9 +77,11 @@ class JobFeed {
 /// All feeds: of the live jobs and, for readers who come late, of the last finished ones.
 class EventFeed {
  public:
-  /// ring: events kept of a job; kept_finished: finished feeds kept.
-  explicit EventFeed(std::size_t ring = 1024, std::size_t kept_finished = 64)
-      : ring_(ring), kept_finished_(kept_finished) {}
+  /// ring: events kept of a job; kept_finished: finished feeds kept; metrics: told of all events,
+  /// must outlive all feeds.
+  explicit EventFeed(std::size_t ring = 1024, std::size_t kept_finished = 64,
+                     Metrics* metrics = nullptr)
+      : ring_(ring), kept_finished_(kept_finished), metrics_(metrics) {}
 
   /// The feed of a job that waits for its next attempt; attempt: those begun before.
   std::shared_ptr<JobFeed> open(const std::string& job, int attempt);
@@ -86,6 +94,7 @@ class EventFeed {
  private:
   const std::size_t ring_;
   const std::size_t kept_finished_;
+  Metrics* const metrics_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<JobFeed>, std::less<>> feeds_;
   std::list<std::string> finished_;

@@ -22,6 +22,8 @@ class EventStreams {
   /// made from the record. Throws RetryLater{too_many_streams}, Error{malformed_request}.
   Response open(const JobRecord& job, const std::string& last_event_id);
 
+  [[nodiscard]] int open_count() const { return *open_; }
+
  private:
   std::shared_ptr<void> take_place();
 

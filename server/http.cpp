@@ -38,6 +38,7 @@ Response error_response(const Error& error, std::string_view job) {
       json_response(api::error_row(error.code()).status,
                     problem.dump(-1, ' ', false, api::Json::error_handler_t::replace));
   response.content_type = "application/problem+json";
+  response.problem = api::error_row(error.code()).name;
   if (error.code() == ErrorCode::unauthorized)
     response.headers.emplace_back("WWW-Authenticate", "Bearer");
   if (const auto* later = dynamic_cast<const RetryLater*>(&error))

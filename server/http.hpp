@@ -53,6 +53,7 @@ struct Request {
   std::multimap<std::string, std::string, IgnoreCase> headers;
   std::string id;              ///< the {id} of the path, once a route has matched
   Caller caller;               ///< who asks, once that has been found out
+  std::string client;          ///< the address of who asks
   BodyReader* body = nullptr;  ///< of POST, PUT and PATCH
 
   /// The first header of this name, empty when there is none.
@@ -76,9 +77,25 @@ struct Response {
   std::string content_type;
   std::vector<std::pair<std::string, std::string>> headers;
   std::variant<std::string, FileBody, StreamBody> body;
+  std::string_view route;    ///< the path of the route that answered, "" for none
+  std::string_view problem;  ///< the code of an error, else ""
 };
 
 using Handler = std::function<Response(const Request&)>;
+
+/// A request and its answer when all is said, for the log and the metrics.
+struct Exchanged {
+  std::string method;  ///< "" when the request could not be read
+  std::string path;
+  std::string client;
+  std::string_view route;
+  std::string_view problem;
+  int status = 0;
+  std::int64_t received_bytes = 0;  ///< of the body
+  std::int64_t sent_bytes = 0;
+  double seconds = 0;
+};
+using Observer = std::function<void(const Exchanged&)>;
 
 /// An answer with a JSON body.
 Response json_response(int status, std::string_view json);

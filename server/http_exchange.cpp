@@ -3,7 +3,11 @@
 #include <httplib.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
+#include <optional>
+
+#include "server/trace.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -75,6 +79,14 @@ Request to_request(const httplib::Request& from, BodyReader* body) {
   return request;
 }
 
+/// The values of all X-Forwarded-For, as if they were one field.
+std::string forwarded_for(const Request& request) {
+  std::string all;
+  const auto [first, last] = request.headers.equal_range("X-Forwarded-For");
+  for (auto at = first; at != last; ++at) all += (all.empty() ? "" : ",") + at->second;
+  return all;
+}
+
 void set_file(const FileBody& file, const std::string& type, httplib::Response& out) {
   if (file.length == 0) return out.set_content(std::string(), type);
   out.set_content_provider(
@@ -99,7 +111,7 @@ void set_stream(const StreamBody& stream, const std::string& type, httplib::Resp
   });
 }
 
-void send(const Response& response, httplib::Response& out) {
+void put(const Response& response, httplib::Response& out) {
   out.status = response.status;
   for (const auto& [name, value] : response.headers) out.set_header(name.c_str(), value);
   if (const auto* text = std::get_if<std::string>(&response.body)) {
@@ -121,23 +133,24 @@ bool takes_body(const httplib::Request& request) {
 
 class Exchange::Http final : public httplib::Server {
  public:
-  Http(Connection& connection, const server::Handler& answer, const Log& log)
-      : connection_(connection), answer_(answer), log_(log) {
+  Http(Connection& connection, const HttpUses& uses, const Log& log)
+      : connection_(connection), uses_(uses), log_(log) {
     svr_sock_ = connection.socket();  // httplib writes only while it has one
     const auto with_body = [this](const httplib::Request& request, httplib::Response& response,
                                   const httplib::ContentReader& reader) {
       HttplibBody body(reader);
-      send(answer_(to_request(request, &body)), response);
+      answer(request, &body, response);
     };
     Post(".*", with_body);
     Put(".*", with_body);
     Patch(".*", with_body);
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       if (takes_body(request)) return HandlerResponse::Unhandled;
-      send(answer_(to_request(request, nullptr)), response);
+      answer(request, nullptr, response);
       return HandlerResponse::Handled;
     });
-    set_error_handler(HandlerWithResponse(fill_error));
+    set_error_handler(HandlerWithResponse(
+        [this](const auto&, httplib::Response& response) { return fill_error(response); }));
     set_exception_handler([this](const auto&, httplib::Response& response, const auto&) {
       log_.error("exception at the HTTP edge");
       send(error_response(Error(ErrorCode::internal, "The server made a mistake.")), response);
@@ -147,15 +160,43 @@ class Exchange::Http final : public httplib::Server {
   }
 
   bool answer_request(bool last) {
+    const auto began = std::chrono::steady_clock::now();
     last_ = last;
+    done_ = {};
     bool closed = false;
     ConnectionStream stream(connection_);
     const bool written = process_request(stream, false, closed, unframe);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+    done_.seconds = took.count();
+    done_.received_bytes = connection_.body_bytes();
+    done_.sent_bytes = connection_.sent_bytes();
+    uses_.observe(done_);
+    trace_.reset();
     return written && !closed && !last_;
   }
 
  private:
-  /// The stream has no framing any more, and ranges and encodings are not httplib's business.
+  void answer(const httplib::Request& from, BodyReader* body, httplib::Response& out) {
+    Request request = to_request(from, body);
+    request.client =
+        client_behind(connection_.client(), forwarded_for(request), uses_.trusted_proxies);
+    const Trace trace = continue_trace(request.header("traceparent"));
+    trace_.emplace(trace.id);
+    done_.method = request.method;
+    done_.path = request.path;
+    done_.client = request.client;
+    send(uses_.answer(request), out);
+    out.set_header("traceparent", to_traceparent(trace));
+  }
+
+  void send(const Response& response, httplib::Response& out) {
+    done_.route = response.route;
+    done_.problem = response.problem;
+    put(response, out);
+  }
+
+  /// The stream has no framing any more, and ranges and encodings are not
+  /// httplib's business.
   static void unframe(httplib::Request& request) {
     for (const char* name : {"Content-Length", "Transfer-Encoding", "Accept-Encoding"})
       request.headers.erase(name);
@@ -163,8 +204,7 @@ class Exchange::Http final : public httplib::Server {
   }
 
   /// Gives a body to the errors that httplib itself answers with.
-  static HandlerResponse fill_error(const httplib::Request& /*request*/,
-                                    httplib::Response& response) {
+  HandlerResponse fill_error(httplib::Response& response) {
     if (!response.body.empty()) return HandlerResponse::Unhandled;
     send(error_response(Error(ErrorCode::malformed_request,
                               "The request cannot be read as HTTP; check the client.")),
@@ -180,17 +220,20 @@ class Exchange::Http final : public httplib::Server {
       response.headers.erase("Connection");
       response.set_header("Connection", "close");
     }
+    done_.status = response.status;
     if (response.status == 204 || response.status == 304) response.headers.erase("Content-Length");
   }
 
   Connection& connection_;
-  const server::Handler& answer_;
+  const HttpUses& uses_;
   const Log& log_;
   bool last_ = false;
+  Exchanged done_;
+  std::optional<TraceScope> trace_;
 };
 
-Exchange::Exchange(Connection& connection, const Handler& answer, const Log& log)
-    : http_(std::make_unique<Http>(connection, answer, log)) {}
+Exchange::Exchange(Connection& connection, const HttpUses& uses, const Log& log)
+    : http_(std::make_unique<Http>(connection, uses, log)) {}
 
 Exchange::~Exchange() = default;
 

@@ -20,6 +20,7 @@ struct Counts {
   int hosts = 0;
   int lengths = 0;
   int codings = 0;
+  bool version_1_0 = false;
 };
 
 [[noreturn]] void malformed(const std::string& what) {
@@ -65,13 +66,17 @@ std::string_view vet_request_line(std::string_view line) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');
   if (first == last || !is_token(line.substr(0, first)) || line.at(first + 1) != '/')
-    malformed("The request line is not of the form \"GET /path HTTP/1.1\"; check the client.");
+    malformed(
+        "The request line is not of the form \"GET /path HTTP/1.1\"; "
+        "check the client.");
   const std::string_view target = line.substr(first + 1, last - first - 1);
   const std::string_view version = line.substr(last + 1);
   if (target.size() > kMaxTargetBytes)
     throw Error(ErrorCode::headers_too_large, "The address is longer than 8 KiB; shorten it.");
   if (target.find(' ') != std::string_view::npos || std::ranges::any_of(target, is_control))
-    malformed("The address contains a space or a control character; percent-encode it.");
+    malformed(
+        "The address contains a space or a control character; "
+        "percent-encode it.");
   if (version != "HTTP/1.1" && version != "HTTP/1.0")
     malformed("The protocol is neither HTTP/1.1 nor HTTP/1.0; use one of them.");
   return line.substr(0, first);
@@ -100,9 +105,14 @@ void vet_counts(const Counts& counts, std::string_view method) {
   if (counts.hosts > 1) malformed("There is more than one Host header; send one.");
   if (counts.lengths + counts.codings > 1)
     malformed("The length of the body is told more than once; tell it once.");
+  if (counts.version_1_0 && counts.codings > 0)
+    malformed(
+        "HTTP/1.0 has no Transfer-Encoding; use HTTP/1.1, or send "
+        "Content-Length.");
   if (needs_length(method) && counts.lengths + counts.codings == 0) {
     throw Error(ErrorCode::length_required,
-                "The length of the body is not told; send Content-Length, or send it chunked.");
+                "The length of the body is not told; send Content-Length, or "
+                "send it chunked.");
   }
 }
 
@@ -113,6 +123,7 @@ Framing vet_head(std::string_view head) {
   const std::string_view method = vet_request_line(head.substr(0, end));
   Framing framing;
   Counts counts;
+  counts.version_1_0 = head.substr(0, end).ends_with("1.0");
   while (true) {
     head.remove_prefix(end + kLineEnd.size());
     end = head.find(kLineEnd);

@@ -1,55 +1,83 @@
 #pragma once
-// The HTTP edge: connections in, Requests to one answer function, Responses out. cpp-httplib
-// parses and writes (http_exchange.hpp); accepting, waiting, framing and limits are ours
-// (connection.hpp), since the packaged version keeps its limits for bodies of known length only.
+// The HTTP edge: connections in, Requests to one answer function, Responses
+// out. Who has no complete head waits in the parking lot (parking.hpp), without
+// a thread; a request is answered by a thread of its own. cpp-httplib parses
+// and writes (http_exchange.hpp); accepting, waiting, framing and limits are
+// ours, since the packaged version keeps its limits for bodies of known length
+// only.
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <deque>
+#include <filesystem>
 #include <mutex>
+#include <optional>
+#include <set>
 #include <string>
-#include <thread>
-#include <vector>
 
+#include "server/address.hpp"
+#include "server/addresses.hpp"
 #include "server/connection.hpp"
 #include "server/http.hpp"
+#include "server/http_exchange.hpp"
 #include "server/listener.hpp"
 #include "server/log.hpp"
+#include "server/parking.hpp"
+#include "server/tls.hpp"
 
 namespace unwrapd::server {
 
 struct HttpConfig {
-  std::string host = "127.0.0.1";
-  int port = 8080;            ///< 0: a free one
-  int max_connections = 320;  ///< served at once, a thread each; more wait
+  Address address{"127.0.0.1", 8080};     ///< port 0: a free one
+  int max_requests = 320;                 ///< answered at once, a thread each; more wait
+  int max_connections = 4096;             ///< open at once; more are turned away
+  int max_connections_per_address = 0;    ///< not of loopback nor trusted proxies; 0: no limit
+  std::filesystem::path tls_certificate;  ///< empty: plain HTTP
+  std::filesystem::path tls_key;
+  std::chrono::milliseconds last_answers{10'000};  ///< for what is being answered at the end
+  ParkingRules parking;
   ConnectionLimits limits;
 };
 
 class HttpServer {
  public:
-  /// Listens at once, and answers when serve() runs. answer is called from many threads and must
-  /// not throw. Throws Error when the address cannot be had.
-  HttpServer(const HttpConfig& config, Handler answer, const Log& log);
+  /// Listens at once, and answers when serve() runs. Throws Error when the
+  /// address cannot be had, or the certificate cannot be used.
+  HttpServer(const HttpConfig& config, HttpUses uses, const Log& log);
 
   [[nodiscard]] int port() const { return listener_.port(); }
-  /// Serves until stop(), then until the requests at hand are answered.
+  /// Serves until stop(), then until the requests at hand are answered or
+  /// `last_answers` is over.
   void serve();
   void stop();
 
+  [[nodiscard]] int parked() const { return parking_.count(); }
+  [[nodiscard]] int open() const { return places_.taken(); }
+
  private:
+  std::optional<Client> let_in();
+  void turn_away(Client& client, const Error& error) const;
+  void make_ready(Client client);
   void work();
-  void serve_connection(int client);
-  void serve_requests(Connection& connection);
+  void end_late();
+  void serve_client(Client client);
+  bool serve_requests(Connection& connection);
+  void refuse(Connection& connection, const Error& error) const;
+  void observe_refusal(const std::string& client, const Error& error, std::int64_t sent) const;
 
   const HttpConfig config_;
-  const Handler answer_;
+  const HttpUses uses_;
   const Log& log_;
+  const std::optional<TlsContext> tls_;
   const Listener listener_;
+  Places places_;
+  Parking parking_;
   std::mutex mutex_;
   std::condition_variable arrived_;
-  std::deque<int> clients_;  // accepted, not yet served
-  std::atomic<std::size_t> waiting_ = 0;
+  std::condition_variable left_;
+  std::deque<Client> ready_;
+  std::set<int> served_;  // sockets
   std::atomic<bool> stopping_ = false;
 };
 

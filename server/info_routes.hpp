@@ -1,14 +1,13 @@
 #pragma once
-// What the server says of itself: methods, limits, the contract, and whether it is well.
+// What the server says of itself to everybody: methods, limits, the contract.
 
 #include <vector>
 
 #include "api/limits.hpp"
-#include "server/job_queue.hpp"
 #include "server/router.hpp"
 
 namespace unwrapd::server {
 
-void add_info_routes(std::vector<Route>& routes, JobQueue& queue, const api::Limits& limits);
+void add_info_routes(std::vector<Route>& routes, const api::Limits& limits);
 
 }  // namespace unwrapd::server

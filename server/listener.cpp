@@ -3,7 +3,6 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -49,6 +48,17 @@ void set(int socket, int level, int option) {
   ::setsockopt(socket, level, option, &on, sizeof on);
 }
 
+/// An IPv4 address that came in over IPv6 is told as the former.
+std::string numeric_host(const sockaddr_storage& address, socklen_t size) {
+  std::array<char, NI_MAXHOST> host{};
+  const int failed = ::getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host.data(),
+                                   host.size(), nullptr, 0, NI_NUMERICHOST);
+  if (failed != 0) return {};
+  constexpr std::string_view mapped = "::ffff:";
+  const std::string_view text(host.data());
+  return std::string(text.starts_with(mapped) ? text.substr(mapped.size()) : text);
+}
+
 /// A socket that listens on this address, -1 when that fails.
 int listen_on(const addrinfo& address) {
   const int socket = ::socket(address.ai_family, address.ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK,
@@ -87,22 +97,22 @@ int Listener::port() const {
   return ntohs(address.ss_family == AF_INET6 ? v6->sin6_port : v4->sin_port);
 }
 
-int Listener::accept() const {
-  std::array<pollfd, 2> polled = {pollfd{socket_, POLLIN, 0}, pollfd{stop_, POLLIN, 0}};
-  while (true) {
-    ::poll(polled.data(), polled.size(), -1);
-    if (polled[1].revents != 0) return -1;
-    const int client = ::accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC);
-    if (client >= 0) {
-      set(client, IPPROTO_TCP, TCP_NODELAY);
-      return client;
-    }
+std::optional<Accepted> Listener::accept() const {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  const int client = ::accept4(socket_, reinterpret_cast<sockaddr*>(&address), &size,
+                               SOCK_CLOEXEC | SOCK_NONBLOCK);
+  if (client < 0) {
     if (errno == EMFILE || errno == ENFILE) std::this_thread::sleep_for(kOutOfDescriptors);
+    return std::nullopt;
   }
+  set(client, IPPROTO_TCP, TCP_NODELAY);
+  return Accepted{.socket = client, .address = numeric_host(address, size)};
 }
 
 void Listener::stop() const {
-  ::shutdown(socket_, SHUT_RDWR);  // who connects from now on is refused, not left waiting
+  ::shutdown(socket_,
+             SHUT_RDWR);  // who connects from now on is refused, not left waiting
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = ::write(stop_, &one, sizeof one);
 }

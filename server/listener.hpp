@@ -1,13 +1,22 @@
 #pragma once
-// A listening TCP socket, and the descriptor by which everything that waits learns of the end.
+// A listening TCP socket, and the descriptor by which everything that waits
+// learns of the end.
 
+#include <optional>
 #include <string>
 
 namespace unwrapd::server {
 
+/// A client at the door.
+struct Accepted {
+  int socket = -1;      ///< does not block
+  std::string address;  ///< numeric, without the port; empty when it has none
+};
+
 class Listener {
  public:
-  /// host: a name or address; port 0 takes a free one. Throws Error{internal} saying why not.
+  /// host: a name or address; port 0 takes a free one. Throws Error{internal}
+  /// saying why not.
   Listener(const std::string& host, int port);
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
@@ -18,8 +27,8 @@ class Listener {
   /// Readable once stop() was called.
   [[nodiscard]] int stop_descriptor() const { return stop_; }
 
-  /// The next client's socket; -1 after stop().
-  [[nodiscard]] int accept() const;
+  /// The next that waits at the door; nothing when there is none.
+  [[nodiscard]] std::optional<Accepted> accept() const;
   /// Async-signal-safe.
   void stop() const;
 

@@ -1,6 +1,7 @@
 #pragma once
-// Structured logs: one JSON object a line on stderr. The line is built by the JSON library, so that
-// whatever a user sends is escaped; spdlog keeps lines whole between threads.
+// Structured logs on stderr: a line is one JSON object, or the same as text for the eye. What it
+// says is written by the JSON library, so that whatever a user sends is escaped; spdlog keeps lines
+// whole between threads. A line of a thread that works for a request tells its trace.
 
 #include <memory>
 #include <string_view>
@@ -14,12 +15,14 @@ class logger;
 namespace unwrapd::server {
 
 enum class LogLevel { debug, info, warning, error, off };
+enum class LogFormat { json, text };
 
 class Log {
  public:
-  explicit Log(LogLevel least);
+  explicit Log(LogLevel least, LogFormat format = LogFormat::json);
 
-  /// {"time": ..., "level": ..., "event": event, ...fields}; fields is an object or null.
+  /// {"time": ..., "level": ..., "event": event, "trace": ..., ...fields}, or
+  /// time LEVEL event trace=... field=...; fields is an object or null.
   void write(LogLevel level, std::string_view event, const api::Json& fields = nullptr) const;
 
   void debug(std::string_view event, const api::Json& fields = nullptr) const {
@@ -37,6 +40,7 @@ class Log {
 
  private:
   LogLevel least_;
+  LogFormat format_;
   std::shared_ptr<spdlog::logger> lines_;
 };
 

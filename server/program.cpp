@@ -1,6 +1,7 @@
 #include "server/program.hpp"
 
 #include <pthread.h>
+#include <sys/resource.h>
 
 #include <csignal>
 #include <cstdio>
@@ -8,12 +9,21 @@
 #include <string_view>
 
 #include "server/config.hpp"
+#include "server/http_probe.hpp"
 #include "server/keys_command.hpp"
 #include "server/log.hpp"
 #include "server/service.hpp"
 
 namespace unwrapd::server {
 namespace {
+
+/// As many files as the kernel lets us have: the default is less than --max-connections.
+void allow_open_files() {
+  rlimit files{};
+  ::getrlimit(RLIMIT_NOFILE, &files);
+  files.rlim_cur = files.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &files);
+}
 
 /// The signals that end the server, blocked in this thread and all that it starts from now on.
 sigset_t block_end_signals() {
@@ -26,10 +36,16 @@ sigset_t block_end_signals() {
 }
 
 void serve(const Config& config, const Log& log) {
+  allow_open_files();
   const sigset_t signals = block_end_signals();
   Service service(config, log);
   const std::string address = to_text({config.listen.host, service.port()});
-  std::printf("unwrapd listening on http://%s\n", address.c_str());
+  const char* scheme = config.edge.tls_cert.empty() ? "http" : "https";
+  std::printf("unwrapd listening on %s://%s\n", scheme, address.c_str());
+  if (service.admin_port()) {
+    const std::string admin = to_text({config.admin->host, *service.admin_port()});
+    std::printf("unwrapd tells of itself on http://%s\n", admin.c_str());
+  }
   std::fflush(stdout);
   int signal = 0;
   sigwait(&signals, &signal);
@@ -45,7 +61,8 @@ int run_program(int argc, char** argv, const JobRunner& run) {
   if (argc > 1 && std::string_view(argv[1]) == "keys") return run_keys_command(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);
   if (line.task == Task::leave) return line.exit_code;
-  const Log log(line.config.log_level);
+  if (line.task == Task::healthcheck) return probe(*line.config.admin);
+  const Log log(line.config.log_level, line.config.log_format);
   try {
     serve(line.config, log);
     return 0;

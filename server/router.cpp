@@ -44,8 +44,15 @@ Response not_allowed(const std::string& allowed) {
 }  // namespace
 
 Response Router::answer(Request request) const noexcept {
+  std::string_view route;
+  Response response = guarded(request, route);
+  response.route = route;
+  return response;
+}
+
+Response Router::guarded(Request& request, std::string_view& route) const noexcept {
   try {
-    return dispatch(request);
+    return dispatch(request, route);
   } catch (const Error& error) {
     if (api::error_row(error.code()).status >= 500)
       log_.error("request failed", {{"job", request.id}, {"reason", error.what()}});
@@ -56,13 +63,14 @@ Response Router::answer(Request request) const noexcept {
   }
 }
 
-Response Router::dispatch(Request& request) const {
+Response Router::dispatch(Request& request, std::string_view& matched) const {
   const std::string_view method =
       request.method == "HEAD" ? "GET" : std::string_view(request.method);
   std::string allowed;
   for (const Route& route : routes_) {
     const std::optional<std::string> id = match(route.path, request.path);
     if (!id) continue;
+    matched = route.path;
     if (route.method == method) {
       request.id = *id;
       if (admit_) admit_(request, route.path);

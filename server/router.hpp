@@ -31,7 +31,8 @@ class Router {
   [[nodiscard]] Response answer(Request request) const noexcept;
 
  private:
-  [[nodiscard]] Response dispatch(Request& request) const;
+  [[nodiscard]] Response guarded(Request& request, std::string_view& route) const noexcept;
+  [[nodiscard]] Response dispatch(Request& request, std::string_view& matched) const;
 
   std::vector<Route> routes_;
   const Log& log_;

@@ -4,6 +4,8 @@
 #include <thread>
 #include <vector>
 
+#include "server/access_log.hpp"
+#include "server/admin_routes.hpp"
 #include "server/clock.hpp"
 #include "server/cors.hpp"
 #include "server/data_lock.hpp"
@@ -22,14 +24,30 @@ namespace {
 constexpr const char* kStoreFile = "jobs.sqlite";
 constexpr std::chrono::seconds kHeartbeat{10};
 constexpr std::chrono::seconds kWebhookPause{1};
-constexpr int kRequestThreads = 64;  // beside those of event streams
+constexpr int kAdminThreads = 4;
+constexpr int kAdminConnections = 64;
+constexpr std::size_t kEventsKept = 1024;  // of each job
+constexpr std::size_t kFeedsKept = 64;     // of finished jobs
 
 HttpConfig http_config(const Config& config) {
+  const EdgeConfig& edge = config.edge;
   HttpConfig http;
-  http.host = config.listen.host;
-  http.port = config.listen.port;
-  http.max_connections = config.limits.max_streams + kRequestThreads;
+  http.address = config.listen;
+  http.max_requests = config.limits.max_streams + edge.max_requests;
+  http.max_connections = edge.max_connections;
+  http.max_connections_per_address = edge.max_connections_per_address;
+  http.parking.max_idle = edge.max_idle_connections;
+  http.tls_certificate = edge.tls_cert;
+  http.tls_key = edge.tls_key;
   http.limits.max_body_bytes = config.limits.max_body_bytes;
+  return http;
+}
+
+HttpConfig admin_config(const Address& address) {
+  HttpConfig http;
+  http.address = address;
+  http.max_requests = kAdminThreads;
+  http.max_connections = kAdminConnections;
   return http;
 }
 
@@ -56,8 +74,14 @@ struct Service::Parts {
         pictures(blobs, config.limits),
         router(routes(), log,
                [this](Request& request, std::string_view route) { access.admit(request, route); }),
-        http(
-            http_config(config), [this](const Request& request) { return answer(request); }, log) {
+        http(http_config(config),
+             uses([this](const Request& request) { return answer(request); }, log), log),
+        admin_router(admin_routes(queue, metrics), log) {
+    if (config.admin) {
+      const auto told = [this](const Request& request) { return admin_router.answer(request); };
+      admin.emplace(admin_config(*config.admin), uses(told, log), log);
+    }
+    tell_state();
     queue.recover();
     blobs.sweep([&](const std::string& job) { return store.keeps_files(job); });
     blobs.room().on_shortage([this] { return evict_oldest(store, blobs); });
@@ -68,6 +92,13 @@ struct Service::Parts {
                                  .core = &solver_cache,
                                  .isolation = isolation()});
     serving = std::jthread([this] { http.serve(); });
+    if (admin) serving_admin = std::jthread([this] { admin->serve(); });
+  }
+
+  HttpUses uses(Handler answer_one, const Log& log) {
+    return {.answer = std::move(answer_one),
+            .observe = [&](const Exchanged& done) { tell_exchange(done, log, metrics); },
+            .trusted_proxies = AddressSet(config.edge.trusted_proxies)};
   }
 
   Response answer(const Request& request) const {
@@ -86,6 +117,27 @@ struct Service::Parts {
         "calling webhooks", kWebhookPause, [this] { webhooks.call_due(now_ms()); }, log);
   }
 
+  void tell_state() {
+    tell_process(metrics);
+    metrics.tell(Metric::connections, {{"state", "parked"}}, [&] { return http.parked(); });
+    metrics.tell(Metric::connections, {{"state", "served"}},
+                 [&] { return http.open() - http.parked(); });
+    metrics.tell(Metric::event_streams, {}, [&] { return streams.open_count(); });
+    metrics.tell(Metric::cache_requests, {{"cache", "solver"}, {"outcome", "hit"}},
+                 [&] { return static_cast<double>(solver_cache.counters().hits); });
+    metrics.tell(Metric::cache_requests, {{"cache", "solver"}, {"outcome", "miss"}},
+                 [&] { return static_cast<double>(solver_cache.counters().misses); });
+  }
+
+  /// The probes answer until the last request is.
+  void stop() {
+    http.stop();
+    serving.join();
+    if (!admin) return;
+    admin->stop();
+    serving_admin.join();
+  }
+
   Isolation isolation() const {
     Isolation isolation{.on = config.isolate};
     isolation.threads = config.threads;
@@ -101,7 +153,8 @@ struct Service::Parts {
     add_job_routes(all, services);
     add_unwrap_route(all, services);
     add_picture_routes(all, store, pictures);
-    add_info_routes(all, queue, config.limits);
+    add_info_routes(all, config.limits);
+    add_probe_routes(all, queue);
     return all;
   }
 
@@ -109,7 +162,8 @@ struct Service::Parts {
   DataLock lock;
   BlobStore blobs;
   JobStore store;
-  EventFeed events;
+  Metrics metrics;
+  EventFeed events{kEventsKept, kFeedsKept, &metrics};
   JobQueue queue;
   EventStreams streams;
   Submissions submissions;
@@ -124,12 +178,15 @@ struct Service::Parts {
   PictureStore pictures;
   Router router;
   HttpServer http;
+  Router admin_router;
+  std::optional<HttpServer> admin;
   SolverCache solver_cache{config.memory, config.workers};
   std::optional<Periodic> sweeping;
   std::optional<Periodic> beating;
   std::optional<Periodic> calling;
   std::optional<WorkerPool> workers;
   std::jthread serving;
+  std::jthread serving_admin;
 };
 
 Service::Service(const Config& config, const Log& log)
@@ -139,16 +196,20 @@ Service::~Service() {
   if (!parts_->serving.joinable()) return;
   parts_->queue.drain(std::chrono::seconds(0));
   parts_->events.end_all();
-  parts_->http.stop();
+  parts_->stop();
 }
 
 int Service::port() const { return parts_->http.port(); }
 
+std::optional<int> Service::admin_port() const {
+  if (!parts_->admin) return std::nullopt;
+  return parts_->admin->port();
+}
+
 void Service::drain() {
   parts_->queue.drain(std::chrono::seconds(parts_->config.drain_seconds));
   parts_->events.end_all();
-  parts_->http.stop();
-  parts_->serving.join();
+  parts_->stop();
 }
 
 }  // namespace unwrapd::server

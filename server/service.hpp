@@ -3,6 +3,7 @@
 // need each other. main() adds the command line and the signals.
 
 #include <memory>
+#include <optional>
 
 #include "server/config.hpp"
 #include "server/log.hpp"
@@ -18,6 +19,8 @@ class Service {
   ~Service();
 
   [[nodiscard]] int port() const;
+  /// Nothing without an admin port.
+  [[nodiscard]] std::optional<int> admin_port() const;
   /// New jobs are refused, running ones get drain_seconds, then their place in the queue; event
   /// streams end; then nothing is served any more. Call once.
   void drain();

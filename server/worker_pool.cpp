@@ -10,6 +10,7 @@
 #include "server/job_input.hpp"
 #include "server/run_job.hpp"
 #include "server/thread_executor.hpp"
+#include "server/trace.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -76,6 +77,7 @@ void WorkerPool::work(const WorkerConfig& config) {
 }
 
 void WorkerPool::work_on(RunningJob& job, Executor& executor) {
+  const TraceScope trace(job.feed->trace());
   log_.info("job started", {{"job", job.record.id}, {"attempt", job.record.attempt}});
   JobOutcome outcome;
   {

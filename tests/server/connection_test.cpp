@@ -28,7 +28,9 @@ class ConnectionTest : public testing::Test {
     sockets_[0] = -1;
   }
   Connection& connection() {
-    if (!connection_) connection_ = std::make_unique<Connection>(sockets_[1], -1, limits_);
+    if (!connection_)
+      connection_ = std::make_unique<Connection>(
+          Client{.transport = std::make_unique<Transport>(sockets_[1])}, -1, limits_);
     return *connection_;
   }
   ErrorCode refusal() {

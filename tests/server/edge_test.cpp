@@ -1,14 +1,13 @@
-// The HTTP edge, spoken to in raw bytes: framing, limits, and that no request harms the next.
+// The HTTP edge, spoken to in raw bytes: framing, limits, and that no request
+// harms the next.
 #include "running_server.hpp"
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <random>
+
+#include "raw_client.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -17,43 +16,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-
-/// A client that sends what it is told to, right or wrong.
-class RawClient {
- public:
-  explicit RawClient(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  }
-  RawClient(const RawClient&) = delete;
-  RawClient& operator=(const RawClient&) = delete;
-  ~RawClient() { ::close(socket_); }
-
-  void send(std::string_view bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-      if (sent <= 0) return;
-      bytes.remove_prefix(static_cast<std::size_t>(sent));
-    }
-  }
-  /// Everything until the server closes, which it does when nothing more is sent.
-  std::string finish() const {
-    ::shutdown(socket_, SHUT_WR);
-    std::string all;
-    std::array<char, 4096> piece;
-    while (true) {
-      const ssize_t got = ::recv(socket_, piece.data(), piece.size(), 0);
-      if (got <= 0) return all;
-      all.append(piece.data(), static_cast<std::size_t>(got));
-    }
-  }
-
- private:
-  int socket_;
-};
 
 class Edge : public RunningServer {
  protected:
@@ -138,9 +100,11 @@ TEST_F(Edge, RefusalsAreProblemsAndCloseTheConnection) {
       {"\x16\x03\x01\r\n\r\n", "HTTP/1.1 400"},
       {"GET / HTTP/3.0\r\nHost: x\r\n\r\n", "HTTP/1.1 400"},
       {"POST /v1/jobs HTTP/1.1\r\nHost: x\r\n\r\n", "HTTP/1.1 411"},
-      {"POST /v1/jobs HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\nab",
+      {"POST /v1/jobs HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: "
+       "2\r\n\r\nab",
        "HTTP/1.1 400"},
-      {"POST /v1/jobs HTTP/1.1\r\nContent-Encoding: gzip\r\nContent-Length: 1\r\n\r\na",
+      {"POST /v1/jobs HTTP/1.1\r\nContent-Encoding: gzip\r\nContent-Length: "
+       "1\r\n\r\na",
        "HTTP/1.1 415"},
       {"BREW /healthz HTTP/1.1\r\nHost: x\r\n\r\n", "HTTP/1.1 400"},
   }};

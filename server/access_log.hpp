@@ -1,0 +1,13 @@
+#pragma once
+// What is told of every request once it is answered: a line in the log, and the counts. The line
+// has the path without the query, which may hold what is not for logs.
+
+#include "server/http.hpp"
+#include "server/log.hpp"
+#include "server/metrics.hpp"
+
+namespace unwrapd::server {
+
+void tell_exchange(const Exchanged& done, const Log& log, Metrics& metrics);
+
+}  // namespace unwrapd::server

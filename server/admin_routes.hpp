@@ -1,0 +1,20 @@
+#pragma once
+// The admin port: what those who run the server ask, and nobody else should. Probes and metrics
+// have an address of their own, so that they answer when the service itself is full, and need no
+// key.
+
+#include <vector>
+
+#include "server/job_queue.hpp"
+#include "server/metrics.hpp"
+#include "server/router.hpp"
+
+namespace unwrapd::server {
+
+/// GET /healthz, /readyz, /metrics, /version.
+std::vector<Route> admin_routes(const JobQueue& queue, const Metrics& metrics);
+
+/// The first two alone, which the service's own port has as well.
+void add_probe_routes(std::vector<Route>& routes, const JobQueue& queue);
+
+}  // namespace unwrapd::server

@@ -1,0 +1,81 @@
+#pragma once
+// Connections that have no complete request yet wait here, all in one thread:
+// an idle one costs a few hundred bytes, a slow one its bytes so far, and
+// neither a thread. What has a complete head (or too long a one) goes to those
+// who answer.
+//
+// Each has a deadline: `idle` while it has sent nothing, `head` from its first
+// byte to the empty line, however steadily it drips (slow loris). Epoll is
+// level triggered: a client that is not read to the end now is told of again.
+// Rejected: a thread a connection, which 64 slow clients used up.
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <vector>
+
+#include "core/error.hpp"
+#include "server/listener.hpp"
+#include "server/transport.hpp"
+
+namespace unwrapd::server {
+
+struct ParkingRules {
+  std::chrono::milliseconds idle{15'000};  ///< without a byte of a request
+  std::chrono::milliseconds head{10'000};  ///< from the first byte to the empty line
+  int max_idle = 1024;                     ///< without a byte; one more drives out the longest
+};
+
+class Parking {
+ public:
+  struct Uses {
+    std::function<std::optional<Client>()> accept;  ///< the next that waits to be let in, if any
+    std::function<void(Client)> ready;              ///< has sent a head, or more than one may have
+    std::function<void(Client&, const Error&)> refuse;
+  };
+
+  Parking(const Listener& listener, Uses uses, const ParkingRules& rules);
+  Parking(const Parking&) = delete;
+  Parking& operator=(const Parking&) = delete;
+  ~Parking();
+
+  /// Until the listener is stopped; then all that are parked are closed.
+  void run();
+  /// Takes a client back, from any thread, to wait for its next request.
+  void park(Client client);
+  [[nodiscard]] int count() const { return count_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Parked {
+    Client client;
+    Clock::time_point until;
+    short awaits;
+    bool complete;  // has a whole head
+  };
+  using Lot = std::map<int, Parked>;  // by socket
+
+  void watch(int descriptor, short events, int operation) const;
+  void let_in();
+  void take_back();
+  void admit(Client client);
+  void look_at(Lot::iterator at);
+  bool receive(Parked& parked);
+  Client remove(Lot::iterator at);
+  void drive_out_longest_idle();
+  void expire();
+
+  const Listener& listener_;
+  const Uses uses_;
+  const ParkingRules rules_;
+  int epoll_ = -1;
+  int wake_ = -1;
+  Lot lot_;
+  std::atomic<int> count_ = 0;
+  std::mutex mutex_;
+  std::vector<Client> returned_;
+};
+
+}  // namespace unwrapd::server

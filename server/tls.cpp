@@ -1,0 +1,99 @@
+#include "server/tls.hpp"
+
+#include <openssl/err.h>
+#include <openssl/ssl.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/error.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+struct FreeSsl {
+  void operator()(SSL* ssl) const { SSL_free(ssl); }
+};
+using Session = std::unique_ptr<SSL, FreeSsl>;
+
+int clamped(std::size_t size) {
+  return static_cast<int>(std::min<std::size_t>(size, std::numeric_limits<int>::max()));
+}
+
+class TlsTransport final : public Transport {
+ public:
+  TlsTransport(int socket, Session session) : Transport(socket), session_(std::move(session)) {
+    SSL_set_fd(session_.get(), socket);
+    SSL_set_accept_state(session_.get());
+  }
+
+  std::int64_t receive(char* data, std::size_t size) override {
+    ERR_clear_error();
+    return result_of(SSL_read(session_.get(), data, clamped(size)));
+  }
+  std::int64_t send(std::string_view bytes) override {
+    ERR_clear_error();
+    return result_of(SSL_write(session_.get(), bytes.data(), clamped(bytes.size())));
+  }
+  [[nodiscard]] short awaits(short wanted) const override {
+    if (wants_ == SSL_ERROR_WANT_READ) return POLLIN;
+    return wants_ == SSL_ERROR_WANT_WRITE ? POLLOUT : wanted;
+  }
+  void end() override {
+    ERR_clear_error();
+    if (!broken_ && SSL_is_init_finished(session_.get())) SSL_shutdown(session_.get());
+    Transport::end();
+  }
+
+ private:
+  std::int64_t result_of(int count) {
+    wants_ = count > 0 ? SSL_ERROR_NONE : SSL_get_error(session_.get(), count);
+    if (count > 0) return count;
+    if (wants_ == SSL_ERROR_ZERO_RETURN) return 0;
+    if (wants_ == SSL_ERROR_WANT_READ || wants_ == SSL_ERROR_WANT_WRITE) return kAgain;
+    broken_ = true;
+    return kBroken;
+  }
+
+  Session session_;
+  int wants_ = SSL_ERROR_NONE;
+  bool broken_ = false;
+};
+
+[[noreturn]] void unusable(const std::filesystem::path& file, const std::string& option) {
+  std::string reason = "no reason is known";
+  if (const unsigned long code = ERR_peek_last_error()) {
+    const char* text = ERR_reason_error_string(code);
+    if (text) reason = text;
+  }
+  throw Error(ErrorCode::internal, "The file " + file.string() + " of " + option +
+                                       " cannot be used (" + reason + "); give a PEM file.");
+}
+
+}  // namespace
+
+void TlsContext::Free::operator()(ssl_ctx_st* context) const { SSL_CTX_free(context); }
+
+TlsContext::TlsContext(const std::filesystem::path& certificate, const std::filesystem::path& key)
+    : context_(SSL_CTX_new(TLS_server_method())) {
+  SSL_CTX* context = context_.get();
+  ERR_clear_error();
+  SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
+  SSL_CTX_set_options(context, SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION |
+                                   SSL_OP_CIPHER_SERVER_PREFERENCE | SSL_OP_IGNORE_UNEXPECTED_EOF);
+  SSL_CTX_set_mode(context, SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER |
+                                SSL_MODE_RELEASE_BUFFERS);
+  if (SSL_CTX_use_certificate_chain_file(context, certificate.c_str()) != 1)
+    unusable(certificate, "--tls-cert");
+  if (SSL_CTX_use_PrivateKey_file(context, key.c_str(), SSL_FILETYPE_PEM) != 1 ||
+      SSL_CTX_check_private_key(context) != 1)
+    unusable(key, "--tls-key");
+}
+
+std::unique_ptr<Transport> TlsContext::accept(int socket) const {
+  return std::make_unique<TlsTransport>(socket, Session(SSL_new(context_.get())));
+}
+
+}  // namespace unwrapd::server

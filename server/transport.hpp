@@ -1,0 +1,45 @@
+#pragma once
+// The bytes of one client, plain or inside TLS. Nothing here ever waits: who
+// gets kAgain waits for awaits() and asks again.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace unwrapd::server {
+
+class Transport {
+ public:
+  static constexpr std::int64_t kAgain = -1;
+  static constexpr std::int64_t kBroken = -2;
+
+  /// Owns socket, which must not block.
+  explicit Transport(int socket) : socket_(socket) {}
+  Transport(const Transport&) = delete;
+  Transport& operator=(const Transport&) = delete;
+  virtual ~Transport();
+
+  /// The number of bytes, 0 at the end, kAgain or kBroken.
+  virtual std::int64_t receive(char* data, std::size_t size);
+  virtual std::int64_t send(std::string_view bytes);
+  /// What poll() shall wait for after kAgain: POLLIN or POLLOUT.
+  [[nodiscard]] virtual short awaits(short wanted) const { return wanted; }
+  /// Tells the client that nothing more will come.
+  virtual void end();
+
+  [[nodiscard]] int socket() const { return socket_; }
+
+ private:
+  const int socket_;
+};
+
+/// A client on its way through the server.
+struct Client {
+  std::unique_ptr<Transport> transport;
+  std::string address = {};          ///< numeric, without the port
+  std::string received = {};         ///< and not yet used
+  std::shared_ptr<void> place = {};  ///< among the connections that may be open
+};
+
+}  // namespace unwrapd::server
