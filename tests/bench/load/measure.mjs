@@ -1,0 +1,70 @@
+// What the parts of the load test share: quantiles, the memory of a process, probes while it works.
+import {readFileSync} from 'node:fs';
+import {setTimeout as sleep} from 'node:timers/promises';
+
+import {request} from '../../contract/http.mjs';
+import * as meshes from '../../contract/meshes.mjs';
+
+export const kGlb = {'Content-Type': 'model/gltf-binary'};
+
+export function quantile(values, q) {
+  const sorted = [...values].sort((a, b) => a - b);
+  return sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))] ?? NaN;
+}
+
+export const round = (value, digits = 1) => Number(value.toFixed(digits));
+
+/** Of a process: private memory that is resident, kB. */
+export function anonymousKb(pid) {
+  return Number(/^RssAnon:\s+(\d+) kB/m.exec(readFileSync(`/proc/${pid}/status`, 'utf8'))[1]);
+}
+
+/** Milliseconds that a call takes; rejects unless its status is the one expected. */
+export async function timed(base, call, status = 200) {
+  const begin = performance.now();
+  const answer = await request(base, call);
+  if (answer.status !== status) throw new Error(`${call.path}: ${answer.status} ${answer.body}`);
+  return {ms: performance.now() - begin, answer};
+}
+
+/** Asks for /healthz 20 times a second until stop() is called, which resolves to the times, ms. */
+export function probe(base) {
+  const times = [];
+  let stopped = false;
+  const loop = (async () => {
+    while (!stopped) {
+      times.push((await timed(base, {path: '/healthz'})).ms);
+      await sleep(50);
+    }
+  })();
+  return async () => {
+    stopped = true;
+    await loop;
+    return times;
+  };
+}
+
+export async function submit(base, body, query = '', headers = {}) {
+  const call = {method: 'POST', path: `/v1/jobs${query}`, headers: {...kGlb, ...headers}, body};
+  const {ms, answer} = await timed(base, call, headers.Prefer ? 200 : 202);
+  return {ms, job: JSON.parse(answer.body.toString())};
+}
+
+/** A mesh of whose plain iterations some ten are done in a second, on this machine as it is. */
+export async function meshOfTenIterationsASecond(base) {
+  const size = 60;
+  const query = '?stop.iterations=40&guarantee=none';
+  const {job} = await submit(base, meshes.glb(size), query, {Prefer: 'wait=60'});
+  const {answer} = await timed(base, {path: `/v1/jobs/${job.id}/report`});
+  const {timings_ms} = JSON.parse(answer.body.toString());
+  const faces = (2 * size * size * 100) / (timings_ms.solve / 40);
+  return meshes.glb(Math.max(20, Math.min(600, Math.round(Math.sqrt(faces / 2)))));
+}
+
+/** One line of a table, and whether what was asked for holds. limit undefined: only told. */
+export function figure(name, value, unit, limit) {
+  const holds = limit === undefined || value <= limit;
+  const asked = limit === undefined ? '' : `  (asked: ${limit} ${unit}) ${holds ? 'ok' : 'MISSED'}`;
+  console.log(`  ${name.padEnd(44)}${String(value).padStart(10)} ${unit}${asked}`);
+  return {name, value, unit, ...(limit === undefined ? {} : {limit, holds})};
+}

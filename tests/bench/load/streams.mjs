@@ -1,0 +1,66 @@
+// 500 readers of events beside busy workers: how soon the first byte comes, what a reader costs, and
+// whether the probes still answer.
+import http from 'node:http';
+import {setTimeout as sleep} from 'node:timers/promises';
+
+import {startServer} from '../../contract/server.mjs';
+import {anonymousKb, figure, meshOfTenIterationsASecond, probe, quantile, round, submit} from './measure.mjs';
+
+const kStreams = 500;
+const kWatchSeconds = 15;
+
+/** Opens a stream; resolves at its first byte. */
+function follow(base, job) {
+  const begin = performance.now();
+  const stream = {firstByteMs: NaN, events: 0};
+  return new Promise((resolve, reject) => {
+    const call = http.get(new URL(`/v1/jobs/${job}/events`, base), {agent: false}, (answer) => {
+      if (answer.statusCode !== 200) return reject(new Error(`a stream got ${answer.statusCode}`));
+      answer.on('error', () => {});
+      answer.on('data', (piece) => {
+        if (Number.isNaN(stream.firstByteMs)) {
+          stream.firstByteMs = performance.now() - begin;
+          resolve(stream);
+        }
+        stream.events += piece.toString().split('\nevent:').length - 1;
+      });
+    });
+    call.on('error', reject);
+    stream.close = () => call.destroy();
+  });
+}
+
+export async function streams(binary) {
+  console.log(`${kStreams} event streams beside busy workers`);
+  const server = await startServer(binary, ['--workers', '2', '--threads', '1', '--max-streams',
+                                            '1000', '--log-level', 'warning']);
+  const mesh = await meshOfTenIterationsASecond(server.base);
+  const jobs = [];
+  for (let i = 0; i < 2; ++i) {
+    jobs.push((await submit(server.base, mesh, '?stop.iterations=10000&guarantee=none')).job.id);
+  }
+  await sleep(2000);
+  const before = anonymousKb(server.pid);
+  const stopProbe = probe(server.base);
+  const open = [];
+  for (let i = 0; i < kStreams; i += 25) {
+    open.push(...await Promise.all(
+      Array.from({length: 25}, (_, k) => follow(server.base, jobs[(i + k) % 2]))));
+  }
+  const seen = open.map(({events}) => events);
+  await sleep(1000 * kWatchSeconds);
+  const rates = open.map(({events}, i) => (events - seen[i]) / kWatchSeconds);
+  const perStream = (anonymousKb(server.pid) - before) / kStreams;
+  const probes = await stopProbe();
+  const firstBytes = open.map(({firstByteMs}) => firstByteMs);
+  const figures = [
+    figure('events a second and stream, median', round(quantile(rates, 0.5)), '/s'),
+    figure('first byte, median', round(quantile(firstBytes, 0.5)), 'ms'),
+    figure('first byte, p99', round(quantile(firstBytes, 0.99)), 'ms', 250),
+    figure('/healthz, p99', round(quantile(probes, 0.99)), 'ms', 50),
+    figure('memory a stream', round(perStream), 'kB', 40),
+  ];
+  open.forEach(({close}) => close());
+  await server.stop();
+  return figures;
+}
