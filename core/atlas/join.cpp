@@ -54,7 +54,13 @@ std::vector<Index> ranks(const Sheet& sheet, const Region& region) {
   return rank;
 }
 
-/// Both regions, b where the half-edges of b on their border say.
+Index root_of(std::vector<Index>& into, Index k) {
+  while (into[k] != k) k = into[k] = into[into[k]];
+  return k;
+}
+
+}  // namespace
+
 Region beside(const Sheet& sheet, const Region& a, const Region& b, std::span<const Index> border) {
   const std::vector<Index> in_a = ranks(sheet, a), in_b = ranks(sheet, b);
   std::vector<std::array<Vec2, 2>> pairs;
@@ -70,13 +76,6 @@ Region beside(const Sheet& sheet, const Region& a, const Region& b, std::span<co
   for (const auto& [p, q, r] : b.uv) both.uv.push_back({motion(p), motion(q), motion(r)});
   return both;
 }
-
-Index root_of(std::vector<Index>& into, Index k) {
-  while (into[k] != k) k = into[k] = into[into[k]];
-  return k;
-}
-
-}  // namespace
 
 Joiner::Joiner(const Sheet& sheet) : sheet_(sheet) {
   std::vector<double> defect(sheet.mesh.positions.size(), 2 * std::numbers::pi);

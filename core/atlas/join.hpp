@@ -21,6 +21,9 @@ struct Joined {
   std::vector<Index> slit;  ///< half-edges of the common border that must stay open, both sides
 };
 
+/// The faces and maps of both, b turned and moved to where its half-edges `border` lie in a.
+Region beside(const Sheet& sheet, const Region& a, const Region& b, std::span<const Index> border);
+
 /// What joining regions needs of the sheet, worked out once.
 class Joiner {
  public:

@@ -14,6 +14,7 @@
 
 #include "core/atlas/cluster.hpp"
 #include "core/atlas/labels.hpp"
+#include "core/atlas/straighten.hpp"
 #include "core/cancel.hpp"
 
 namespace unwrapd {
@@ -117,6 +118,7 @@ Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& 
   const std::size_t tries =
       std::clamp(kFacesOfSearch / sheet.mesh.faces.size(), std::size_t{1}, kPrices.size());
   const Joiner joiner(sheet);
+  const MergeRules bounds{.budget = budget, .cap = kCapOfOnePatch * budget, .stop = rules.stop};
   Partition best;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < tries; ++k) {
@@ -126,17 +128,18 @@ Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& 
         rules.on_progress(Stage::merge, kMergeBegin + (1 - kMergeBegin) * done);
     };
     tell(0);
-    const MergeRules merging{.budget = budget,
-                             .cap = kCapOfOnePatch * budget,
-                             .price = kPrices[k],
-                             .on_progress = tell,
-                             .stop = rules.stop};
+    MergeRules merging = bounds;
+    merging.price = kPrices[k];
+    merging.on_progress = tell;
     Partition own = merge_patches(joiner, sheet, from, merging, executor);
     const double cost = cost_of(sheet, own);
     if (cost >= least) continue;
     least = cost;
     best = std::move(own);
   }
+  straighten(sheet, bounds, best);
+  best = merge_patches(joiner, sheet, std::move(best), bounds, executor);  // what now fits together
+  straighten(sheet, bounds, best);
   return best;
 }
 
