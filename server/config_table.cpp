@@ -86,7 +86,7 @@ ConfigGroup working() {
           number({"solver-cache-bytes", "N",
                   "Factors and maps kept for further jobs on the same mesh"},
                  {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::cache_bytes),
-          on_off({"isolate", "BOOL",
+          on_off({"isolate", "",
                   "Each job in a process of its own, without files or network: a crash costs that "
                   "job alone"},
                  &Config::isolate),

@@ -12,7 +12,7 @@ import {streams} from './load/streams.mjs';
 const [binary, out, seconds = '60', only] = process.argv.slice(2);
 const parts = {streams, idle, queue, soak: (program) => soak(program, Number(seconds)),
                isolated_soak: (program) =>
-                 soak(program, Number(seconds) / 4, ['--isolate', 'true'])};
+                 soak(program, Number(seconds) / 4, ['--isolate'])};
 const figures = {};
 for (const [name, part] of Object.entries(parts)) {
   if (only && only !== name) continue;

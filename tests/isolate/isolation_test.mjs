@@ -17,7 +17,7 @@ let isolated;
 let plain;
 before(async () => {
   [isolated, plain] = await Promise.all([
-    startServer(process.env.UNWRAPD, ['--isolate', 'true', '--workers', '2', '--threads', '2',
+    startServer(process.env.UNWRAPD, ['--isolate', '--workers', '2', '--threads', '2',
                                        '--memory-limit', '500000000']),
     startServer(process.env.UNWRAPD, ['--workers', '1', '--threads', '2']),
   ]);
