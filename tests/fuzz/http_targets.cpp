@@ -14,7 +14,7 @@
 namespace unwrapd::fuzz {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{64} * 1024;  // what a socket takes unread
+constexpr std::int64_t kMaxBytes = std::int64_t{64} * 1024;  // what a socket takes unread
 
 void head(std::string_view bytes) {
   const std::string whole = std::string(bytes.substr(0, bytes.find("\r\n\r\n"))) + "\r\n\r\n";
@@ -52,19 +52,21 @@ server::Response swallow(const server::Request& request, std::size_t sent) {
 }
 
 void connection(std::string_view bytes) {
-  bytes = bytes.substr(0, kMaxBytes);
+  bytes = bytes.substr(0, static_cast<std::size_t>(kMaxBytes));
   std::array<int, 2> ends{};
-  promise(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) == 0, "there are sockets");
+  promise(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends.data()) == 0,
+          "there are sockets");
   promise(::send(ends[0], bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()),
           "the socket takes the bytes");
   ::shutdown(ends[0], SHUT_WR);
   {
     const server::Log log(server::LogLevel::off);
-    const server::Handler answer = [&](const server::Request& request) {
-      return swallow(request, bytes.size());
-    };
-    server::Connection served(ends[1], -1, {});
-    server::Exchange exchange(served, answer, log);
+    const server::HttpUses uses{
+        .answer = [&](const server::Request& request) { return swallow(request, bytes.size()); },
+        .observe = [](const server::Exchanged& /*done*/) {}};
+    server::Connection served({.transport = std::make_unique<server::Transport>(ends[1])}, -1,
+                              {.max_body_bytes = kMaxBytes});
+    server::Exchange exchange(served, uses, log);
     try {
       while (served.next_request() && exchange.answer_request(false)) {
       }
