@@ -1,5 +1,8 @@
 // Panels are read once in each direction, and reading them is what a solve costs: blocks of four
-// columns share every load and store of the vectors.
+// columns share every load and store of the vectors. The way up reads every number before the one
+// read last, from the end of the last panel to the start of the first: processors foresee a walk
+// backwards as well as one forwards, but not panels read forwards one before the other (up to 2.5
+// times slower, and asking for them ahead by instructions did not help).
 #include "core/linear/front_panel.hpp"
 
 namespace unwrapd {
@@ -34,7 +37,8 @@ void add_block(const double* block, std::size_t length, PanelVectors x, PanelVec
 template <std::size_t kWidth>
 void dot_block(const double* block, std::size_t length, PanelVectors y, PanelVectors x) {
   Duo u[kWidth] = {}, v[kWidth] = {};
-  for (std::size_t r = 0; r < length; r += kDuo) {
+  for (std::size_t r = length; r > 0;) {
+    r -= kDuo;
     const Duo yu = duo(y.u + r), yv = duo(y.v + r);
     for (std::size_t k = 0; k < kWidth; ++k) {
       const Duo p = duo(block + r * kWidth + k * kDuo);
@@ -77,10 +81,12 @@ void multiply_panel(const double* panel, PanelShape shape, PanelVectors x, Panel
 }
 
 void multiply_transposed(const double* panel, PanelShape shape, PanelVectors y, PanelVectors x) {
-  for (std::size_t k = 0; k < shape.pivots; k += kPack)
+  for (std::size_t k = padded(shape.pivots, kPack); k > 0;) {
+    k -= kPack;
     at_block(panel, shape, k, [&]<std::size_t kWidth>(const double* block, std::size_t length) {
       dot_block<kWidth>(block, length, from(y, k), from(x, k));
     });
+  }
 }
 
 }  // namespace unwrapd
