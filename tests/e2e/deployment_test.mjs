@@ -1,0 +1,99 @@
+// What lies in docker/ is right: by the schemas of Kubernetes, in itself, and in the eyes of the
+// server whose options it sets. UNWRAPD names the binary.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import test, { after } from "node:test";
+import yaml from "js-yaml";
+
+const folder = join(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../../docker");
+const read = (name) => readFileSync(join(folder, name), "utf8");
+const objects = yaml.loadAll(read("kubernetes/unwrapd.yaml"));
+const of = (kind) => objects.find((object) => object.kind === kind);
+const scratch = mkdtempSync(join(tmpdir(), "unwrapd_deployment_"));
+after(() => rmSync(scratch, { recursive: true }));
+
+/** The options as the server sees them; fails when it would not start with them. */
+function accepted(flags, environment = {}) {
+  const told = spawnSync(process.env.UNWRAPD, [...flags, "--print-config"], {
+    env: { PATH: process.env.PATH, ...environment },
+    encoding: "utf8",
+  });
+  assert.equal(told.status, 0, told.stderr);
+  return told.stdout;
+}
+
+test("the objects are as Kubernetes' schemas ask", async () => {
+  const kinds = objects.map((object) => object.kind);
+  assert.deepEqual(kinds.sort(), ["ConfigMap", "Deployment", "NetworkPolicy", "PersistentVolumeClaim", "Service"]);
+  for (const object of objects) {
+    const group = await import(`kubernetes-models/${object.apiVersion}`);
+    new group[object.kind](object).validate();
+  }
+});
+
+test("the objects name each other rightly", () => {
+  const pod = of("Deployment").spec.template;
+  const [container] = pod.spec.containers;
+  const ports = container.ports.map((port) => port.name);
+  const labels = Object.entries(pod.metadata.labels).flat();
+  for (const selector of [of("Deployment").spec.selector.matchLabels, of("Service").spec.selector,
+    of("NetworkPolicy").spec.podSelector.matchLabels])
+    for (const word of Object.entries(selector).flat()) assert.ok(labels.includes(word), word);
+  for (const probe of [container.startupProbe, container.livenessProbe, container.readinessProbe])
+    assert.ok(ports.includes(probe.httpGet.port));
+  for (const port of [...of("Service").spec.ports.map((one) => one.targetPort),
+    ...of("NetworkPolicy").spec.ingress.flatMap((rule) => rule.ports.map((one) => one.port))])
+    assert.ok(ports.includes(port), port);
+  const [data, config] = pod.spec.volumes;
+  assert.equal(data.persistentVolumeClaim.claimName, of("PersistentVolumeClaim").metadata.name);
+  assert.equal(config.configMap.name, of("ConfigMap").metadata.name);
+  assert.deepEqual(container.volumeMounts.map((mount) => mount.name), [data.name, config.name]);
+});
+
+test("the pod runs as the image does: no root, nothing writable, no capability", () => {
+  const { spec } = of("Deployment").spec.template;
+  const { securityContext } = spec.containers[0];
+  assert.equal(spec.securityContext.runAsUser, 10001);
+  assert.match(read("Dockerfile"), /^USER 10001:10001$/m);
+  assert.equal(securityContext.readOnlyRootFilesystem, true);
+  assert.equal(securityContext.allowPrivilegeEscalation, false);
+  assert.deepEqual(securityContext.capabilities.drop, ["ALL"]);
+  assert.equal(of("Deployment").spec.replicas, 1); // one writer of one database
+});
+
+test("the server takes the options of the ConfigMap, and is given time to drain", () => {
+  const file = join(scratch, "unwrapd.toml");
+  writeFileSync(file, of("ConfigMap").data["unwrapd.toml"]);
+  const told = accepted(["--config", file]);
+  const drain = Number(/^drain-seconds = (\d+)/m.exec(told)[1]);
+  assert.ok(of("Deployment").spec.template.spec.terminationGracePeriodSeconds > drain);
+  assert.match(told, /^listen = "0.0.0.0:8080"/m);
+});
+
+test("the server takes the options of the compose file, and is given time to drain", () => {
+  const { unwrapd } = yaml.load(read("compose.yaml")).services;
+  const image = Object.fromEntries(
+    [...read("Dockerfile").matchAll(/(UNWRAPD_\w+)=(\S+)/g)].map(([, name, value]) => [name, value]));
+  const told = accepted([], { ...image, ...unwrapd.environment });
+  const drain = Number(/^drain-seconds = (\d+)/m.exec(told)[1]);
+  assert.ok(parseInt(unwrapd.stop_grace_period) > drain);
+  for (const port of unwrapd.ports) assert.match(port, /^127\.0\.0\.1:/); // as long as it is insecure
+});
+
+test("the image is built with the packages that ./dev builds with", () => {
+  const dev = readFileSync(join(folder, "../dev"), "utf8");
+  const packages = /^build_packages=\(([^)]*)\)/m.exec(dev)[1].split(/\s+/);
+  const only = ["ccache", "libgtest-dev", "libgmock-dev"]; // of tests and of who builds often
+  for (const one of packages.filter((name) => name && !only.includes(name)))
+    assert.match(read("Dockerfile"), new RegExp(`[ \n]${one.replaceAll("+", "\\+")}[ \n]`), one);
+});
+
+test("nginx takes the proxy's configuration", (context) => {
+  const found = spawnSync("nginx", ["-v"]);
+  if (found.error) return context.skip("nginx is not installed");
+  const checked = spawnSync("nginx", ["-t", "-c", join(folder, "nginx.conf")], { encoding: "utf8" });
+  assert.equal(checked.status, 0, checked.stderr);
+});

@@ -1,0 +1,116 @@
+// The image as it is meant to run: another user, nothing writable but the volume, no capability,
+// little memory. A job is stopped by SIGTERM in its middle and ends well at the next start.
+// UNWRAPD_ENGINE names docker or podman, UNWRAPD_IMAGE the image.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { randomBytes } from "node:crypto";
+import { existsSync } from "node:fs";
+import { createServer } from "node:net";
+import test, { after } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+
+const { UNWRAPD_ENGINE: engine, UNWRAPD_IMAGE: image } = process.env;
+const name = `unwrapd-test-${randomBytes(4).toString("hex")}`;
+const MAX_ADDED_MB = 150;
+// Podman's own health checks are timers of systemd, and its limits may be above a sandbox's: without
+// systemd neither can be had, and the check is run by hand below all the same.
+const bare = engine === "podman" && !existsSync("/run/systemd/system");
+const sandbox = bare ? ["--no-healthcheck", "--ulimit", "nofile=1024:1024", "--ulimit", "nproc=1024:1024"] : [];
+
+const run = (...args) => execFileSync(engine, args, { encoding: "utf8" }).trim();
+
+/** Two neighbouring ports that nobody has now. */
+async function freePorts() {
+  const listen = (port) =>
+    new Promise((resolve, reject) => {
+      const server = createServer().once("error", reject);
+      server.listen(port, "127.0.0.1", () => resolve(server));
+    });
+  for (;;) {
+    const first = await listen(0);
+    const { port } = first.address();
+    const second = await listen(port + 1).catch(() => undefined);
+    [first, second].forEach((server) => server?.close());
+    if (second) return port;
+  }
+}
+
+function grid(size) {
+  const lines = [];
+  for (let y = 0; y <= size; y++)
+    for (let x = 0; x <= size; x++)
+      lines.push(`v ${x / size} ${y / size} ${0.3 * Math.sin((5 * x) / size) * Math.cos((4 * y) / size)}`);
+  const at = (x, y) => y * (size + 1) + x + 1;
+  for (let y = 0; y < size; y++)
+    for (let x = 0; x < size; x++)
+      lines.push(`f ${at(x, y)} ${at(x + 1, y)} ${at(x + 1, y + 1)}`, `f ${at(x, y)} ${at(x + 1, y + 1)} ${at(x, y + 1)}`);
+  return lines.join("\n") + "\n";
+}
+
+let url, admin;
+const job = async (id) => (await fetch(`${url}/v1/jobs/${id}`)).json();
+
+async function until(what, condition) {
+  for (const giveUp = Date.now() + 180_000; Date.now() < giveUp; await sleep(20)) {
+    const found = await condition().catch(() => undefined);
+    if (found) return found;
+  }
+  assert.fail(`${what}: awaited in vain\n${run("logs", name)}`);
+}
+
+async function submit(query, size) {
+  const answer = await fetch(`${url}/v1/jobs?${query}`, {
+    method: "POST",
+    headers: { "Content-Type": "model/obj" },
+    body: grid(size),
+  });
+  assert.equal(answer.status, 202, await answer.clone().text());
+  return (await answer.json()).id;
+}
+
+after(() => {
+  run("rm", "--force", name);
+  run("volume", "rm", "--force", name);
+});
+
+test("the image is small, labelled, and of a user who is not root", () => {
+  const [told] = JSON.parse(run("inspect", "--type", "image", image));
+  assert.equal(told.Config.User, "10001:10001");
+  assert.match(told.Config.Labels["org.opencontainers.image.version"], /^\d+\.\d+\.\d+$/);
+  assert.deepEqual(told.Config.Healthcheck?.Test ?? told.HealthCheck?.Test, ["CMD", "unwrapd", "--healthcheck"]);
+  const sizes = run("history", "--human=false", "--format", "{{.Size}}", image).split("\n").map(Number);
+  const added = (sizes.reduce((sum, size) => sum + size, 0) - sizes.at(-1)) / 1e6; // the last is Debian's
+  console.log(`the image adds ${added.toFixed(1)} MB to its base`);
+  assert.ok(added <= MAX_ADDED_MB, `${added} MB over the base`);
+});
+
+test("hardened, it serves, drains at SIGTERM, and goes on where it was", async () => {
+  const port = await freePorts();
+  [url, admin] = [`http://127.0.0.1:${port}`, `http://127.0.0.1:${port + 1}`];
+  run("run", "--detach", "--name", name, "--network", "host", "--user", "10001:10001", "--read-only",
+    "--cap-drop", "ALL", "--security-opt", "no-new-privileges", "--memory", "512m", "--volume", `${name}:/data`,
+    ...sandbox, image, "--listen", `127.0.0.1:${port}`, "--drain-seconds", "0", "--workers", "1");
+  await until("the server", async () => (await fetch(`${admin}/readyz`)).ok);
+  assert.equal(run("exec", name, "unwrapd", "--healthcheck"), "");
+
+  const small = await submit("method=arap", 20);
+  await until("a small job", async () => (await job(small)).state === "succeeded");
+  const obj = await (await fetch(`${url}/v1/jobs/${small}/result`)).text();
+  assert.equal(obj.match(/^vt /gm).length, 21 * 21);
+
+  const long = await submit("stop.iterations=800", 70);
+  await until("an iteration", async () => (await job(long)).progress?.iteration > 0);
+  run("stop", "--time", "30", name);
+  const [stopped] = JSON.parse(run("inspect", "--type", "container", name));
+  assert.equal(stopped.State.ExitCode, 0, run("logs", name));
+  run("start", name);
+  await until("the next start", async () => (await fetch(`${admin}/readyz`)).ok);
+  const ended = await until("the job", async () => {
+    const told = await job(long);
+    return ["succeeded", "failed", "cancelled"].includes(told.state) && told;
+  });
+  assert.equal(ended.state, "succeeded", JSON.stringify(ended));
+  assert.equal(ended.attempt, 2);
+  assert.equal((await job(small)).state, "succeeded");
+  run("stop", "--time", "30", name);
+});
