@@ -22,11 +22,11 @@ std::size_t class_of(int cells) {
   return std::min(kClasses - 1, static_cast<std::size_t>(4 * std::log2(cells + 1.0)));
 }
 
-Box box_of(const Outline& outline) {
+UvMap points_of(const Outline& outline) {
   UvMap points;
   points.reserve(outline.size());
   for (const auto& [a, b] : outline) points.push_back(a);
-  return smallest_box(points);
+  return points;
 }
 
 }  // namespace
@@ -44,7 +44,13 @@ struct Arranger::Page {
 Arranger::Arranger(std::span<const Outline> outlines, int turns)
     : outlines_(outlines), turns_(turns) {
   boxes_.reserve(outlines.size());
-  for (const Outline& outline : outlines) boxes_.push_back(box_of(outline));
+  for (const Outline& outline : outlines) boxes_.push_back(smallest_box(points_of(outline)));
+  const auto longest = std::max_element(
+      boxes_.begin(), boxes_.end(),
+      [](const Box& a, const Box& b) { return a.size.maxCoeff() < b.size.maxCoeff(); });
+  if (!boxes_.empty())
+    *longest =
+        squarest_box(points_of(outlines[static_cast<std::size_t>(longest - boxes_.begin())]));
 }
 
 void Arranger::set_scale(double cells_per_unit, double padding) {
