@@ -25,6 +25,8 @@ class Factor final : public RealSystem {
   void solve(std::span<Vec2> b, Executor& executor) const;
   void solve(std::span<Vec2> b) const override;
 
+  [[nodiscard]] const std::shared_ptr<const Analysis>& analysis() const { return analysis_; }
+
   /// While it is refilled, its analysis included.
   [[nodiscard]] std::size_t job_bytes() const { return analysis_->job_bytes(); }
 

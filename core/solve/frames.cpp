@@ -23,10 +23,30 @@
 namespace unwrapd {
 namespace {
 
+/// L with the rows and columns of the boundary those of the identity: the pattern of the global
+/// step's matrix, whose analysis then serves for both.
+SparseMatrix with_held_boundary(const Disk& disk, std::span<const char> on_boundary) {
+  SparseMatrix lower = cotan_laplacian(disk, disk.rest);
+  for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j)
+    for (SparseMatrix::InnerIterator it(lower, j); it; ++it)
+      if (on_boundary[static_cast<std::size_t>(it.row())] != 0 ||
+          on_boundary[static_cast<std::size_t>(j)] != 0)
+        it.valueRef() = it.row() == j ? 1 : 0;
+  return lower;
+}
+
 /// u, one a vertex.
-std::vector<double> log_scales(const Disk& disk) {
-  const InnerSystem inner(disk, cotan_laplacian(disk, disk.rest));
-  return flat_scales(disk, inner, curvature(disk, disk.rest));
+std::vector<double> log_scales(const Disk& disk, const GlobalStep& global) {
+  const std::vector<char> on_boundary = boundary_vertices(disk);
+  const std::vector<double> k = curvature(disk, disk.rest);
+  std::vector<Vec2> x(k.size(), Vec2::Zero());
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (on_boundary[v] == 0) x[v].x() = -k[v];
+  global.solve_alike(with_held_boundary(disk, on_boundary), x);
+  std::vector<double> u;
+  u.reserve(x.size());
+  for (const Vec2& value : x) u.push_back(value.x());
+  return u;
 }
 
 /// The direction of half-edge h in its rest triangle.
@@ -48,8 +68,8 @@ Complex turn_across(const Disk& disk, std::span<const double> u, Index h, Index 
 }
 
 /// Carried breadth first from face 0.
-std::vector<Complex> carried_rotations(const Disk& disk) {
-  const std::vector<double> u = log_scales(disk);
+std::vector<Complex> carried_rotations(const Disk& disk, const GlobalStep& global) {
+  const std::vector<double> u = log_scales(disk, global);
   const Halfedges edges = build_halfedges(disk.faces, disk.vertex_count());
   std::vector<Complex> rotation(disk.faces.size(), 0);
   std::vector<Index> reached{0};
@@ -67,15 +87,15 @@ std::vector<Complex> carried_rotations(const Disk& disk) {
 }
 
 /// One a face.
-std::vector<Complex> rotations(const Disk& disk) {
+std::vector<Complex> rotations(const Disk& disk, const GlobalStep& global) {
   return kept_value(disk, Content("frames").add(disk.content),
-                    [&] { return carried_rotations(disk); });
+                    [&] { return carried_rotations(disk, global); });
 }
 
 }  // namespace
 
 UvMap frame_map(const Disk& disk, const GlobalStep& global) {
-  const std::vector<Complex> rotation = rotations(disk);
+  const std::vector<Complex> rotation = rotations(disk, global);
   UvMap uv(disk.positions.size(), Vec2::Zero());  // the right-hand side of Eq. (4), then its map
   for (std::size_t t = 0; t < disk.faces.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) {

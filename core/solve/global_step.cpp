@@ -70,4 +70,11 @@ void GlobalStep::solve(std::span<Vec2> force) const {
                                        : change[static_cast<std::size_t>(free_.slot[v])];
 }
 
+void GlobalStep::solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const {
+  assert(free_.count == static_cast<Index>(b.size()));
+  SerialExecutor serial;
+  Executor& runs = executor_ != nullptr ? *executor_ : serial;
+  definite(try_factor(system_->analysis(), lower, runs))->solve(b, runs);
+}
+
 }  // namespace unwrapd

@@ -26,6 +26,10 @@ class GlobalStep {
   /// The same for any executor. Thread-safe where its executor is.
   void solve(std::span<Vec2> force) const;
 
+  /// Replaces b by the solution for another positive definite matrix of the same pattern, of which
+  /// the lower triangle is given; nothing is held. Throws Error{solver_failed}.
+  void solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const;
+
  private:
   FreeVertices free_;
   std::shared_ptr<const Factor> system_;
