@@ -29,6 +29,7 @@ constexpr std::array kEveryMethod = {Method::asap, Method::arap,   Method::hybri
                                      Method::abf,  Method::linabf, Method::cp,
                                      Method::bff,  Method::ic,     Method::slim};
 constexpr std::array kLocalGlobal = {Method::arap, Method::hybrid};
+constexpr std::array kStoppable = {Method::arap, Method::hybrid, Method::slim};
 constexpr std::array kHolding = {Method::asap, Method::arap, Method::hybrid};
 constexpr std::array kOnlyHybrid = {Method::hybrid};
 constexpr std::array kOnlyAsap = {Method::asap};
@@ -130,14 +131,15 @@ constexpr std::array kRows = {
               .limit = &Limits::max_iterations,
               .nullable = true,
               .description = "So many plain iterations of every chart, as in the paper; without "
-                             "it accelerated ones, until they converge.",
-              .methods = kLocalGlobal,
+                             "it accelerated ones, until they converge. Those of slim are alike.",
+              .methods = kStoppable,
               .get = get_iterations,
               .set = set_iterations},
-    figure<&Stop::tolerance>("stop.tolerance", {kMinTolerance, kMaxTolerance}, kLocalGlobal,
+    figure<&Stop::tolerance>("stop.tolerance", {kMinTolerance, kMaxTolerance}, kStoppable,
                              "Converged is when the energy falls by less than this share."),
     figure<&Stop::max_iterations>("stop.max_iterations", {1, {}, &Limits::max_iterations},
-                                  kLocalGlobal, "Accelerated iterations of a chart, at most."),
+                                  kStoppable,
+                                  "Iterations of a chart that stop by tolerance, at most."),
     choice<&O::initial, kInitialMaps>(
         "initial", kLocalGlobal,
         "The map to start from; auto takes the one that promises the least energy."),

@@ -18,7 +18,7 @@ enum class Guarantee { none, flip_free, bijective };
 enum class RepairMethod { untangle, virtual_boundary };  ///< how flipped triangles are turned back
 enum class BoundaryShape { free, circle, square };
 
-/// When the iterations of ARAP and Hybrid end.
+/// When the iterations of ARAP, Hybrid and SLIM end.
 struct Stop {
   std::optional<int> iterations =
       {};                    ///< given: so many plain ones, as in the paper (Sec. 4.4); >= 1
