@@ -5,6 +5,7 @@
 #include "api/error_table.hpp"
 #include "server/clock.hpp"
 #include "server/job_rows.hpp"
+#include "server/queue_errors.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -14,7 +15,6 @@ using api::JobState;
 constexpr int kMaxCrashes = 3;
 constexpr int kMaxAttemptsWhenFull = 20;
 constexpr std::chrono::seconds kLongestPauseWhenFull{60};
-constexpr int kDrainRetrySeconds = 5;
 
 JobOutcome ended(JobState state, const Error& why, std::string_view job) {
   return {.state = state,
@@ -22,10 +22,6 @@ JobOutcome ended(JobState state, const Error& why, std::string_view job) {
           .problem = api::problem(why, job),
           .last_event = 0,
           .finished_ms = 0};
-}
-
-Error cancelled_by_owner() {
-  return {ErrorCode::cancelled, "The job was cancelled; send it again to have it done."};
 }
 
 }  // namespace
@@ -55,9 +51,7 @@ void JobQueue::take_up(const JobRecord& job, bool crashed) {
   if (job.cancel_requested) {
     give_up(job, cancelled_by_owner());
   } else if (crashed && job.crashes + 1 >= kMaxCrashes) {
-    give_up(job, Error(ErrorCode::poison,
-                       "The server ended three times while it worked on this job; it is not "
-                       "tried again. Check the mesh, or send a smaller part of it."));
+    give_up(job, poison());
   } else {
     store_.requeue(job.id, crashed);
     wait_again(job);
@@ -82,22 +76,13 @@ void JobQueue::wait_again(const JobRecord& job) {
 
 void JobQueue::check_room_locked() {
   const auto now = std::chrono::steady_clock::now();
-  if (closed_) {
-    throw RetryLater(ErrorCode::draining,
-                     "The server is shutting down and takes no new jobs; send it again shortly.",
-                     kDrainRetrySeconds);
-  }
+  if (closed_) throw server::draining();
   if (now < paused_until_) {
     const auto left = std::chrono::ceil<std::chrono::seconds>(paused_until_ - now);
-    throw RetryLater(ErrorCode::storage_full, std::string(kStorageFull),
-                     static_cast<int>(left.count()));
+    throw no_room(static_cast<int>(left.count()));
   }
-  if (share_.waiting() >= config_.max_queue) {
-    throw RetryLater(ErrorCode::queue_full,
-                     "All " + std::to_string(config_.max_queue) +
-                         " places in the queue are taken; send the job again after Retry-After.",
-                     retry_.promise(now, share_.mean_seconds()));
-  }
+  if (share_.waiting() >= config_.max_queue)
+    throw queue_full(config_.max_queue, retry_.promise(now, share_.mean_seconds()));
 }
 
 void JobQueue::check_room() {
@@ -109,16 +94,11 @@ void JobQueue::check_quota(const JobRecord& job, const Quota& quota) {
   if (quota.max_jobs == 0 && quota.max_bytes == 0) return;
   const OwnerUsage usage = store_.usage(job.owner);
   if (quota.max_jobs > 0 && usage.live_jobs >= quota.max_jobs) {
-    throw RetryLater(ErrorCode::too_many_jobs,
-                     "This API key may have " + std::to_string(quota.max_jobs) +
-                         " jobs waiting or running; send the job again when one has ended.",
-                     retry_.promise(std::chrono::steady_clock::now(), share_.mean_seconds()));
+    const auto now = std::chrono::steady_clock::now();
+    throw too_many_jobs(quota.max_jobs, retry_.promise(now, share_.mean_seconds()));
   }
-  if (quota.max_bytes > 0 && usage.stored_bytes + job.input.bytes > quota.max_bytes) {
-    throw Error(ErrorCode::quota_exceeded,
-                "The jobs of this API key may take " + std::to_string(quota.max_bytes) +
-                    " bytes; remove finished jobs, then send this one again.");
-  }
+  if (quota.max_bytes > 0 && usage.stored_bytes + job.input.bytes > quota.max_bytes)
+    throw quota_exceeded(quota.max_bytes);
 }
 
 std::optional<JobRecord> JobQueue::same_name(const JobRecord& job) {
@@ -126,11 +106,9 @@ std::optional<JobRecord> JobQueue::same_name(const JobRecord& job) {
   std::optional<JobRecord> known = store_.find_request(job.owner, job.request_key);
   if (!known) known = store_.find(job.id);
   if (!known) return std::nullopt;
-  if (known->owner != job.owner)
-    throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
+  if (known->owner != job.owner) throw unknown_job();
   if (known->content_key == job.content_key) return known;
-  throw Error(ErrorCode::idempotency_conflict,
-              "This name was given to another mesh or other options; take a new name.");
+  throw another_question();
 }
 
 JobRecord JobQueue::submit(Submission submission) {
@@ -275,7 +253,7 @@ void JobQueue::end_job(const JobRecord& job, JobOutcome outcome) {
 bool JobQueue::cancel_or_remove(const std::string& id) {
   const std::lock_guard lock(mutex_);
   const std::optional<JobRecord> job = store_.find(id);
-  if (!job) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
+  if (!job) throw unknown_job();
   if (!api::is_final(job->state)) {
     cancel_live(*job);
     return true;

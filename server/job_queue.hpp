@@ -26,19 +26,9 @@
 #include "server/job_store.hpp"
 #include "server/log.hpp"
 #include "server/retry_estimate.hpp"
+#include "server/retry_later.hpp"
 
 namespace unwrapd::server {
-
-/// Refused for now: the answer carries Retry-After.
-class RetryLater : public Error {
- public:
-  RetryLater(ErrorCode code, const std::string& message, int seconds)
-      : Error(code, message), seconds_(seconds) {}
-  [[nodiscard]] int seconds() const { return seconds_; }
-
- private:
-  int seconds_;
-};
 
 enum class StopCause { none, cancelled, time_limit, draining };
 

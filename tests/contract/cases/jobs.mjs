@@ -5,9 +5,11 @@ import {parseEvents} from '../spec.mjs';
 import {pictures} from './pictures.mjs';
 import {failure, kGlb, kRepresentations, kWait, validGltf} from './shared.mjs';
 
+const kAnew = {...kGlb, 'Cache-Control': 'no-cache'};  // not answered from the store
+
 export async function lifeOfAJob(run, base) {
   const created = await run.call(base, 'createJob',
-                                 {headers: kGlb, body: meshes.glb(), status: 202});
+                                 {headers: kAnew, body: meshes.glb(), status: 202});
   const job = created.headers.location?.split('/').pop();
   const watched = await run.call(base, 'watchJob', {job, status: 200});
   const events = parseEvents(watched.body.toString());
