@@ -144,8 +144,8 @@ std::optional<EdgeEnds> cut_edges(std::span<const Triangle> welded, std::span<co
                                   Halfedges& halfedges) {
   std::vector<char> found(edges.size(), 0);
   for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
-    const auto ends = std::minmax(start_of(welded, h), end_of(welded, h));
-    const EdgeEnds edge{ends.first, ends.second};
+    const Index a = start_of(welded, h), b = end_of(welded, h);
+    const EdgeEnds edge{std::min(a, b), std::max(a, b)};
     const auto at = std::lower_bound(edges.begin(), edges.end(), edge);
     if (at == edges.end() || *at != edge) continue;
     found[at - edges.begin()] = 1;
