@@ -128,7 +128,7 @@ void compare_iterations(const Disk& disk) {
 }
 
 /// What one job took: processor time, the least of a few runs, and how often the executor was asked
-/// to sweep over the mesh, some four times an iteration: that does not depend on the machine.
+/// to sweep over the mesh, the same few times every iteration: that does not depend on the machine.
 struct Cost {
   double seconds = 1e300;
   int sweeps = 0;
