@@ -153,7 +153,8 @@ class DracoPacker {
         gltf_.accessors[primitive.indices.value_or(primitive.position)].count;
     for (const auto& [semantic, accessor] : primitive.attributes)
       if (!is_plain(gltf_.accessors[accessor])) return false;
-    return corners >= 3 && corners % 3 == 0;
+    const std::size_t vertices = gltf_.accessors[primitive.position].count;
+    return corners % 3 == 0 && vertices > 0 && vertices <= corners;  // more are refused by readers
   }
 
   /// The accessor of the indices; Draco always has some.
