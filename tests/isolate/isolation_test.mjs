@@ -18,7 +18,7 @@ let plain;
 before(async () => {
   [isolated, plain] = await Promise.all([
     startServer(process.env.UNWRAPD, ['--isolate', '--workers', '2', '--threads', '2',
-                                       '--memory-limit', '500000000']),
+                                       '--memory-limit', '200000000']),
     startServer(process.env.UNWRAPD, ['--workers', '1', '--threads', '2']),
   ]);
 });
@@ -98,7 +98,7 @@ test('a worker has bounded memory', async () => {
 });
 
 for (const what of ['open', 'inherit', 'environment']) {
-  test(`a worker finds nothing to ${what}`, async () => {
+  test(`a worker finds nothing: ${what}`, async () => {
     const job = await done(isolated, doing(what));
     assert.equal(job.problem.detail, 'It is closed.');
   });
