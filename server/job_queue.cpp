@@ -67,9 +67,9 @@ void JobQueue::give_up(const JobRecord& job, const Error& why) {
 }
 
 void JobQueue::wait_again(const JobRecord& job) {
-  events_.open(job.id, job.attempt)->publish([&](std::int64_t seq) {
-    return api::queued_event(seq, share_.waiting());
-  });
+  std::shared_ptr<JobFeed> feed = events_.find(job.id);  // with its readers, if it ran already
+  if (!feed) feed = events_.open(job.id, job.attempt);
+  feed->publish([&](std::int64_t seq) { return api::queued_event(seq, share_.waiting()); });
   share_.add(job.owner);
   changed_.notify_all();
 }
