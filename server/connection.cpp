@@ -184,6 +184,10 @@ bool Connection::end_trailers() {
       body_done_ = true;
       return false;
     }
+    if (line->find(':') == std::string::npos) {
+      fail(ErrorCode::malformed_request, "A trailer field has no colon; check the client.");
+      return false;
+    }
   }
   fail(ErrorCode::headers_too_large, "The body has too many trailer fields; send none.");
   return false;

@@ -146,7 +146,7 @@ TEST_F(Edge, KnownPathsTellTheirMethodsAndUnknownOnesAreNotFound) {
                            "/v1/jobs/../../etc/passwd", "/healthz/", "//healthz"})
     expect_problem(client().Get(path), 404, "not_found");
   const std::array<std::pair<const char*, const char*>, 3> known = {
-      {{"/v1/jobs", "POST"}, {"/healthz", "GET, HEAD"}, {"/v1/unwrap", "POST"}}};
+      {{"/v1/jobs", "POST, GET, HEAD"}, {"/healthz", "GET, HEAD"}, {"/v1/unwrap", "POST"}}};
   for (const auto& [path, allowed] : known) {
     const auto answer = client().Delete(path);
     expect_problem(answer, 405, "method_not_allowed");
