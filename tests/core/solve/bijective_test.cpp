@@ -10,6 +10,7 @@
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
 #include "core/solve/boundary_barrier.hpp"
+#include "core/solve/injective_step.hpp"
 #include "core/solve/solve.hpp"
 #include "core/solve/symmetric_dirichlet.hpp"
 #include "tests/core/hard_shapes.hpp"
@@ -178,6 +179,23 @@ TEST(Bijective, MapsRealMeshesThatLieOnThemselves) {
     ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
     expect_injective(d.disk, uv, 4.6);
   }
+}
+
+TEST(InjectiveStep, EndsFourFifthsOfTheWayToTheFirstFlip) {
+  const OwnedDisk d = disk_of(shapes::grid(1, 1));
+  const UvMap start = shapes::from_above(d.disk);
+  std::vector<Vec2> step(start.size(), Vec2::Zero());
+  step[0] = 3 * (start.back() - start.front());  // the farther the better, until it flips
+  const auto energy = [&](const UvMap& uv) {
+    const bool is_flipped = !flipped_faces(d.disk.faces, uv).empty();
+    return is_flipped ? std::numeric_limits<double>::infinity() : -uv[0].dot(step[0]);
+  };
+  SerialExecutor serial;
+  const double flip = step_to_flip(d.disk, start, step, serial);
+  ASSERT_LT(flip, 1);
+  UvMap uv = start;
+  ASSERT_TRUE(injective_step(d.disk, step, -step[0].squaredNorm(), energy, uv));
+  EXPECT_LT((uv[0] - start[0] - 0.8 * flip * step[0]).norm(), 1e-12);
 }
 
 }  // namespace

@@ -122,6 +122,23 @@ TEST(Slim, IsIsometricOnDevelopableDisks) {
   }
 }
 
+TEST(Slim, GoesFourFifthsOfTheWayToTheFirstFlipAndNoFarther) {
+  double nearest = std::numeric_limits<double>::infinity();  // the flip, in units of a step
+  for (const auto& shape : odd::hard_disks()) {
+    const OwnedDisk d = disk_of(shape.mesh);
+    UvMap before;
+    const auto look = [&](const Solution& s) {
+      UvMap step = s.uv;
+      for (std::size_t v = 0; v < before.size(); ++v) step[v] -= before[v];
+      SerialExecutor serial;
+      if (!before.empty()) nearest = std::min(nearest, step_to_flip(d.disk, before, step, serial));
+      before = s.uv;
+    };
+    solved(d.disk, {.on_stage = {}, .loop = {look, {}}});
+  }
+  EXPECT_NEAR(nearest, 1 / 0.8, 1e-6);
+}
+
 TEST(Slim, EndsWhereNoSmallChangeHelps) {
   const OwnedDisk d = disk_of(shapes::random_disk(8, 7));
   const Solution s = solved(d.disk);

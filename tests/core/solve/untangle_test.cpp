@@ -112,6 +112,21 @@ TEST(Untangle, NeverMovesHeldVertices) {
     EXPECT_TRUE(intent.held[k] == 0 || uv[k] == before[k]) << k;
 }
 
+TEST(Untangle, TurnsTrianglesBackWithinARimMuchTooSmallForThem) {
+  const auto owned = disk_of(shapes::grid(12, 12));
+  UvMap uv = from_above(owned.disk);
+  for (Vec2& u : uv) u *= 1e-4;
+  MapIntent intent{.rigidity = {}, .held = std::vector<char>(uv.size(), 1), .stop = {}};
+  for (std::size_t row = 4; row < 9; ++row)
+    for (std::size_t column = 4; column < 9; ++column) {
+      intent.held[13 * row + column] = 0;
+      uv[13 * row + column] = uv[13 * 6 + 6] + 0.3 * (uv[13 * column + row] - uv[13 * 6 + 6]);
+    }
+  ASSERT_GT(flips(owned.disk, uv), 15U);  // mirrored within the rim
+  EXPECT_EQ(untangle(owned.disk, intent, uv), 0);
+  EXPECT_EQ(flips(owned.disk, uv), 0U);
+}
+
 TEST(Untangle, SaysSoWhereHeldVerticesLeaveNoWay) {
   const auto owned = disk_of(shapes::grid(2, 2));
   UvMap uv = from_above(owned.disk);
@@ -176,6 +191,18 @@ TEST(Patches, LetRingsLooseAndHoldTheRim) {
         EXPECT_EQ(patch.vertex[std::size_t(patch.mesh.faces[k][i])],
                   owned.disk.faces[std::size_t(patch.face[k])][i]);
   }
+}
+
+TEST(Patches, AreTheWholeWhereMostOfItWouldBeLoose) {
+  const auto owned = disk_of(shapes::grid(12, 12));
+  const Index face = 2 * (6 * 12 + 6);
+  const auto small = patches_around(owned.disk, std::vector{face}, 3, {});
+  const auto large = patches_around(owned.disk, std::vector{face}, 5, {});
+  ASSERT_EQ(small.size(), 1U);
+  ASSERT_EQ(large.size(), 1U);
+  EXPECT_LT(small[0].face.size(), owned.disk.faces.size() / 2);
+  EXPECT_EQ(large[0].face.size(), owned.disk.faces.size());
+  EXPECT_EQ(large[0].mesh.free.count, owned.disk.vertex_count());
 }
 
 TEST(Patches, ThatDoNotTouchAreApart) {
