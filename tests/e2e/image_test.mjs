@@ -4,8 +4,10 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { randomBytes } from "node:crypto";
-import { existsSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import test, { after } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
@@ -15,7 +17,12 @@ const MAX_ADDED_MB = 150;
 // Podman's own health checks are timers of systemd, and its limits may be above a sandbox's: without
 // systemd neither can be had, and the check is run by hand below all the same.
 const bare = engine === "podman" && !existsSync("/run/systemd/system");
-const sandbox = bare ? ["--no-healthcheck", "--ulimit", "nofile=1024:1024", "--ulimit", "nproc=1024:1024"] : [];
+const scratch = mkdtempSync(join(tmpdir(), "unwrapd_image_"));
+if (bare) {
+  process.env.CONTAINERS_CONF = join(scratch, "containers.conf");
+  writeFileSync(process.env.CONTAINERS_CONF, '[containers]\ndefault_ulimits = ["nofile=1024:1024", "nproc=1024:1024"]\n');
+}
+const sandbox = bare ? ["--no-healthcheck"] : [];
 
 const run = (...args) => execFileSync(engine, args, { encoding: "utf8" }).trim();
 
@@ -77,6 +84,7 @@ async function submit(query, size) {
 after(() => {
   run("rm", "--force", name);
   run("volume", "rm", "--force", name);
+  rmSync(scratch, { recursive: true });
 });
 
 test("the image is small, labelled, and of a user who is not root", () => {
@@ -119,4 +127,21 @@ test("hardened, it serves, drains at SIGTERM, and goes on where it was", async (
   assert.equal(ended.attempt, 2);
   assert.equal((await job(small)).state, "succeeded");
   run("stop", "--time", "30", name);
+});
+
+test("podman plays the Kubernetes objects", async (context) => {
+  if (engine !== "podman") return context.skip("only podman can play them");
+  const file = join(scratch, "kube.yaml");
+  const objects = readFileSync(new URL("../../docker/kubernetes/unwrapd.yaml", import.meta.url), "utf8");
+  const here = { "unwrapd-data": `${name}-data`, "unwrapd-config": `${name}-config`, "name: unwrapd\n": `name: ${name}\n` };
+  writeFileSync(file, Object.entries(here).reduce((text, [from, to]) => text.replaceAll(from, to), objects)
+    .replace("image: unwrapd:latest", `image: ${image}`));
+  try {
+    run("play", "kube", file);
+    await until("the pod", async () => run("exec", `${name}-pod-0-${name}`, "unwrapd", "--healthcheck",
+      "--admin-listen", "127.0.0.1:8081") === "");
+  } finally {
+    run("play", "kube", "--down", file);
+    run("volume", "rm", "--force", `${name}-data`, `${name}-config`);
+  }
 });
