@@ -127,6 +127,32 @@ TEST_F(Jobs, AnAssetThatCannotBeReadFailsItsJobWithAProblem) {
   expect_problem(get(job.at("id"), "result"), 400, "malformed_glb");
 }
 
+TEST_F(Jobs, AGuaranteeThatCannotBeKeptFailsItsJobAndLeavesNothing) {
+  start();
+  const auto posted = [&](const std::string& guarantee) {  // a cell pinned as seen from behind
+    const std::string options = R"({"guarantee": ")" + guarantee + R"(", "constraints": [
+        {"vertex": 0, "uv": [0.8, 0.2]}, {"vertex": 1, "uv": [0.2, 0.2]},
+        {"vertex": 5, "uv": [0.8, 0.8]}, {"vertex": 6, "uv": [0.2, 0.8]}]})";
+    const httplib::MultipartFormDataItems parts = {{"options", options, "", "application/json"},
+                                                   {"mesh", grid_obj(4), "grid.obj", "model/obj"}};
+    return api::Json::parse(client().Post("/v1/jobs", {{"Prefer", "wait=60"}}, parts)->body);
+  };
+  for (const char* guarantee : {"flip_free", "bijective"}) {
+    const api::Json job = posted(guarantee);
+    ASSERT_EQ(job.at("state"), "failed") << job;
+    EXPECT_EQ(job.at("problem").at("code"), "guarantee_failed");
+    EXPECT_EQ(job.at("problem").at("status"), 422);
+    EXPECT_EQ(job.at("problem").at("pointer"), "/guarantee");
+    EXPECT_THAT(job.at("problem").at("detail"), HasSubstr("guarantee=none"));
+    for (const char* what : {"result", "report", "layout.svg", "layout.png", "preview.png"})
+      expect_problem(get(job.at("id"), what), 422, "guarantee_failed");
+  }
+  const api::Json job = posted("none");
+  EXPECT_EQ(job.at("state"), "succeeded");
+  const auto report = api::Json::parse(get(job.at("id"), "report")->body);
+  EXPECT_GE(report.at("distortion").at("flipped"), 2);
+}
+
 TEST_F(Jobs, ARunningJobIsCancelledWithinAnIteration) {
   start();
   const std::string id = submit_endless();
