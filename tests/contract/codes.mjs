@@ -13,7 +13,6 @@ export const kNotProvoked = {
   storage_full: 'by a full disk: tests/fault',
   storage_corrupt: 'by a file that was changed behind the server: tests/fault',
   internal: 'by a mistake of ours, which would be mended',
-  idempotency_conflict: 'by one name for two requests: tests/server',
   // access, which is off in this test
   unauthorized: 'by a server that asks for keys: tests/server',
   forbidden: 'by a key without the scope: tests/server',

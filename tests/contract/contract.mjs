@@ -9,6 +9,7 @@ import {fileURLToPath} from 'node:url';
 import * as cases from './cases.mjs';
 import {kNotProvoked} from './codes.mjs';
 import {fuzz} from './fuzz.mjs';
+import {calls} from './fuzz_calls.mjs';
 import * as limits from './limits.mjs';
 import {Run} from './run.mjs';
 import {startServer} from './server.mjs';
@@ -55,7 +56,7 @@ async function main() {
   const run = new Run(new Contract(fileURLToPath(contract)));
   await group(run, 'examples', () => examples(run));
   const server = await startServer(binary);
-  for (const [name, action] of Object.entries({...cases, fuzz})) {
+  for (const [name, action] of Object.entries({...cases, calls, fuzz})) {
     await group(run, name, () => action(run, server.base));
   }
   run.expectEqual('exit code after SIGTERM', await server.stop(), 0);

@@ -43,12 +43,20 @@ const kConstraint = fc.tuple(
              mesh: fc.integer({min: 0, max: 1})}, {requiredKeys: ['uv']}))
   .map(([which, what]) => ({...which, ...what}));
 
+const kLists = {materials: ['a'], primitives: ['/meshes/0/primitives/0'], seam_edges: [{vertices: [0, 1]}]};
+
+const has = (schema, type) => [schema.type].flat().includes(type);
+
 function validValue(name, schema) {
   if (schema.enum) return fc.constantFrom(...schema.enum);
   if (name === 'lambda') return fc.oneof(kLambda, fc.uniqueArray(kLambda, {minLength: 1, maxLength: 4}));
   if (name === 'stop') return kStop;
   if (name === 'constraints') return fc.array(kConstraint, {maxLength: 3});
-  return fc.integer({min: schema.minimum, max: name === 'resolution' ? 4096 : schema.maximum});
+  if (name in kLists) return fc.constantFrom([], kLists[name]);
+  if (has(schema, 'boolean')) return fc.boolean();
+  const bounds = {min: schema.minimum, max: Math.min(schema.maximum, name === 'resolution' ? 4096 : 1e6)};
+  const number = has(schema, 'integer') ? fc.integer(bounds) : fc.double({...bounds, noNaN: true});
+  return has(schema, 'null') ? fc.option(number) : number;
 }
 
 const anyValue = fc.oneof(
@@ -79,9 +87,14 @@ function someOptions(properties) {
 
 /** What the schema cannot say: which options go together. */
 function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary = 'free',
-                     constraints = []}) {
-  const held = ['asap', 'arap', 'hybrid'].includes(method) && boundary === 'free';
-  return 4 * padding <= resolution && (constraints.length === 0 || held);
+                     constraints = [], repack_only = false, texels_per_unit = null, max_pages = 1,
+                     stack_identical = false, max_distortion = null}) {
+  const free = boundary === 'free';
+  const unpacked = !repack_only && texels_per_unit === null && max_pages === 1 && !stack_identical;
+  const held = ['asap', 'arap', 'hybrid'].includes(method) && free && unpacked;
+  const loose = constraints.length === 0;
+  return 4 * padding <= resolution && (loose || held) && (free || !repack_only) &&
+      (max_distortion === null || (loose && free));
 }
 
 function expectVerdict(answer, allowed) {
@@ -112,8 +125,9 @@ async function jsonOptions(run, base) {
 
 /** The value that the text of a query stands for, as the schema sees it. */
 function queryValue(schema, text) {
+  if (has(schema, 'boolean')) return {true: true, false: false}[text] ?? text;
   const isNumber = schema.type !== 'string';
-  const pattern = String(schema.type).startsWith('integer') ? /^-?\d+$/ : /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
+  const pattern = has(schema, 'integer') ? /^-?\d+$/ : /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
   return isNumber && pattern.test(text) ? Number(text) : text;
 }
 
@@ -121,13 +135,22 @@ function queryValue(schema, text) {
 function queryPairs(options) {
   const isGroup = ([name, value]) =>
     name === 'stop' && value !== null && typeof value === 'object' && !Array.isArray(value);
-  const text = (name, value) => name === 'constraints' ? JSON.stringify(value) : String(value);
+  const isJson = (name, value) =>
+    name === 'constraints' || (name in kLists && typeof value === 'object');
+  const text = (name, value) => isJson(name, value) ? JSON.stringify(value) : String(value);
   return Object.entries(options).flatMap(([name, value]) => isGroup([name, value])
     ? Object.entries(value).filter(([, v]) => v !== null).map(([m, v]) => [`stop.${m}`, String(v)])
     : [[name, text(name, value)]]);
 }
 
-function constraintsOf(text) {
+/** Names parted by commas, or as JSON. */
+function namesOf(text) {
+  if (text.startsWith('[')) return jsonOf(text);
+  const names = text.split(',');
+  return names.at(-1) === '' ? names.slice(0, -1) : names;
+}
+
+function jsonOf(text) {
   try {
     return JSON.parse(text);
   } catch {
@@ -145,8 +168,10 @@ function meantBy(pairs, {Options, Stop, Lambda}) {
     } else if (name === 'lambda') {
       const numbers = text.split(',').map((part) => queryValue(Lambda, part));
       meant.lambda = numbers.length > 1 ? numbers : numbers[0];
-    } else if (name === 'constraints') {
-      meant.constraints = constraintsOf(text);
+    } else if (['materials', 'primitives'].includes(name)) {
+      meant[name] = namesOf(text);
+    } else if (['constraints', 'seam_edges'].includes(name)) {
+      meant[name] = jsonOf(text);
     } else {
       meant[name] = queryValue(Options.properties[name] ?? {}, text);
     }
@@ -210,7 +235,8 @@ async function paths(run, base) {
   const ids = fc.oneof(fc.string({minLength: 1, maxLength: 40}),
                        fc.constantFrom('..', '.', '%00', '%'),
                        fc.stringMatching(/^j_[0-9a-f]{32}$/));
-  const operations = run.contract.operations().filter(({path}) => path.includes('{id}'));
+  const operations = run.contract.operations().filter(
+    ({path, method}) => path.includes('{id}') && method !== 'PUT');  // a PUT makes the job
   const property = fc.asyncProperty(fc.constantFrom(...operations), ids, async (operation, id) => {
     const segment = encodeURIComponent(id).replaceAll('.', '%2e');
     const path = operation.path.replace('{id}', segment);

@@ -14,7 +14,7 @@ export async function jobsByName(run, base) {
   const again = JSON.parse((await put(kWait, meshes.glb(6), 200)).body.toString());
   run.expectEqual('the id of a job that was put', again.id, job);
   await put(kGlb, meshes.glb(7), 409);
-  const named = {...kWait, 'Idempotency-Key': job};
+  const named = {...kWait, 'Idempotency-Key': newId()};
   const first = await run.json(base, 'createJob', {headers: named, body: meshes.glb(3), status: 200});
   const same = await run.json(base, 'createJob', {headers: named, body: meshes.glb(3), status: 200});
   run.expectEqual('the job of a repeated request', same.id, first.id);
