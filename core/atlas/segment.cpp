@@ -28,7 +28,7 @@ constexpr int kRefinements = 4;          // then the patch falls into its triang
 constexpr int kSmoothingPasses = 3;
 constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
 constexpr std::array kPrices = {5.0, 1.0, 20.0, 2.0, 0.3, 10.0, 0.1, 40.0};  // see MergeRules
-constexpr std::size_t kFacesOfSearch = 80'000;  // that are merged in all, anew for each price
+constexpr std::size_t kFacesOfSearch = 60'000;  // that are merged in all, anew for each price
 constexpr double kMargin = 0.97;  // of what is allowed: solving on may shift some between the two
 constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a number of regions
 constexpr double kCostOfAChart = 0.1;
