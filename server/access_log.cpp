@@ -18,7 +18,7 @@ void count(const Exchanged& done, Metrics& metrics) {
 
 }  // namespace
 
-void tell_exchange(const Exchanged& done, const Log& log, Metrics& metrics) {
+void tell_exchange(const Exchanged& done, const Log& log, LogLevel level, Metrics& metrics) {
   count(done, metrics);
   api::Json line = {{"method", done.method},
                     {"path", done.path},
@@ -28,7 +28,7 @@ void tell_exchange(const Exchanged& done, const Log& log, Metrics& metrics) {
                     {"sent", done.sent_bytes},
                     {"ms", std::round(done.seconds * 1e6) / 1e3}};
   if (!done.problem.empty()) line["problem"] = done.problem;
-  log.info("request", line);
+  log.write(level, "request", line);
 }
 
 }  // namespace unwrapd::server

@@ -8,6 +8,7 @@
 
 namespace unwrapd::server {
 
-void tell_exchange(const Exchanged& done, const Log& log, Metrics& metrics);
+/// level: of the line.
+void tell_exchange(const Exchanged& done, const Log& log, LogLevel level, Metrics& metrics);
 
 }  // namespace unwrapd::server

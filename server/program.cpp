@@ -18,11 +18,13 @@ namespace unwrapd::server {
 namespace {
 
 /// As many files as the kernel lets us have: the default is less than --max-connections.
-void allow_open_files() {
+void allow_open_files(int connections, const Log& log) {
   rlimit files{};
   ::getrlimit(RLIMIT_NOFILE, &files);
   files.rlim_cur = files.rlim_max;
   ::setrlimit(RLIMIT_NOFILE, &files);
+  if (files.rlim_max < static_cast<rlim_t>(connections))
+    log.warning("fewer files may be open than --max-connections", {{"files", files.rlim_max}});
 }
 
 /// The signals that end the server, blocked in this thread and all that it starts from now on.
@@ -36,7 +38,7 @@ sigset_t block_end_signals() {
 }
 
 void serve(const Config& config, const Log& log) {
-  allow_open_files();
+  allow_open_files(config.edge.max_connections, log);
   const sigset_t signals = block_end_signals();
   Service service(config, log);
   const std::string address = to_text({config.listen.host, service.port()});

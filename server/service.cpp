@@ -75,11 +75,12 @@ struct Service::Parts {
         router(routes(), log,
                [this](Request& request, std::string_view route) { access.admit(request, route); }),
         http(http_config(config),
-             uses([this](const Request& request) { return answer(request); }, log), log),
+             uses([this](const Request& request) { return answer(request); }, log, LogLevel::info),
+             log),
         admin_router(admin_routes(queue, metrics), log) {
     if (config.admin) {
       const auto told = [this](const Request& request) { return admin_router.answer(request); };
-      admin.emplace(admin_config(*config.admin), uses(told, log), log);
+      admin.emplace(admin_config(*config.admin), uses(told, log, LogLevel::debug), log);
     }
     tell_state();
     queue.recover();
@@ -95,9 +96,10 @@ struct Service::Parts {
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
   }
 
-  HttpUses uses(Handler answer_one, const Log& log) {
+  HttpUses uses(Handler answer_one, const Log& log, LogLevel level) {
     return {.answer = std::move(answer_one),
-            .observe = [&](const Exchanged& done) { tell_exchange(done, log, metrics); },
+            .observe = [this, &log,
+                        level](const Exchanged& done) { tell_exchange(done, log, level, metrics); },
             .trusted_proxies = AddressSet(config.edge.trusted_proxies)};
   }
 
