@@ -11,6 +11,7 @@
 #include "core/solve/convex_map.hpp"
 #include "core/solve/fill_holes.hpp"
 #include "core/solve/injective_step.hpp"
+#include "core/solve/solve.hpp"
 #include "tests/core/hard_shapes.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
@@ -63,6 +64,16 @@ TEST(SettleApart, MakesAFlatSurfaceFlat) {
   UvMap uv = start_of(d.disk);
   settle_apart(d.disk, {}, {}, uv);
   EXPECT_LT(energy_of(d.disk, uv, kInfinity), 1e-6);
+}
+
+TEST(SettleApart, EndsNearTheLeastEnergyWhereNothingPresses) {  // the barriers have faded
+  const OwnedDisk d = disk_of(shapes::sphere_cap(24, 10, 2));
+  UvMap settled = start_of(d.disk);
+  settle_apart(d.disk, {}, {}, settled);
+  SerialExecutor serial;
+  const UvMap least = Solver(d.disk, UnwrapOptions(), {}, serial).run(0, {}).uv;
+  ASSERT_TRUE(is_injective(d.disk, least));
+  EXPECT_LT(energy_of(d.disk, settled, kInfinity), 1.0005 * energy_of(d.disk, least, kInfinity));
 }
 
 TEST(SettleApart, StopsWhenAsked) {
