@@ -19,11 +19,17 @@ constexpr double kCoarsePerIsland = 16, kFinePerIsland = 30;             // cell
 constexpr std::size_t kSearched = 400;  // islands at most that are searched on a coarse grid
 constexpr double kUsualFill = 0.7;      // of the first guess of a page's side
 constexpr double kSpareSide = 1.01;     // of a page, for which the padding is wide enough
-constexpr std::int64_t kCoarseWork = 250'000'000, kFineWork = 80'000'000;  // words
+constexpr std::int64_t kCoarseWork = 20'000'000, kFineWork = 6'000'000;  // words an island
+constexpr std::size_t kMostShares = 12;                                  // of that work
 
 int turns_for(std::size_t islands) {
   if (islands <= 16) return 24;
   return islands <= 100 ? 8 : 4;
+}
+
+/// Few islands have few orders and turns to try.
+std::int64_t work_for(std::int64_t an_island, std::size_t islands) {
+  return an_island * static_cast<std::int64_t>(std::min(islands, kMostShares));
 }
 
 int cells_for(std::size_t islands, double per_island, int least) {
@@ -64,7 +70,8 @@ class Packer {
     const int coarse = is_searched ? cells_for(n, kCoarsePerIsland, kCoarseCells) : fine_cells(n);
     if (!is_searched) starts.resize(1);
     const double loose = std::sqrt(kUsualFill * page_.packing.max_pages / box_area(arranger_));
-    const Found found = on_grid(starts, coarse, coarse * loose, is_searched ? kCoarseWork : 0);
+    const Found found =
+        on_grid(starts, coarse, coarse * loose, is_searched ? work_for(kCoarseWork, n) : 0);
     const int fine = fine_cells(n);
     return placed(on_grid_exactly({found.arrangement}, fine, fine * coarse * loose / found.side));
   }
@@ -78,7 +85,7 @@ class Packer {
           "An island at this density is larger than a page; lower texels_per_unit, or raise "
           "resolution.");
     arranger_.set_scale(page_per_unit / grid_.cell(side), grid_.padding(side));
-    Budget budget{kFineWork, stop_};
+    Budget budget{work_for(kFineWork, arranger_.size()), stop_};
     const Found found = fewest_pages(arranger_, usual_arrangements(arranger_),
                                      {side, side, page_.packing.max_pages}, budget);
     if (found.side == 0)
@@ -118,7 +125,8 @@ class Packer {
   Found on_grid_exactly(const std::vector<Arrangement>& starts, double expected,
                         double cells_per_unit) {
     for (double spare = kSpareSide;; spare *= kSpareSide) {
-      Found found = on_grid(starts, spare * expected, cells_per_unit, kFineWork);
+      Found found =
+          on_grid(starts, spare * expected, cells_per_unit, work_for(kFineWork, arranger_.size()));
       if (found.side <= spare * expected) return found;
       expected = found.side;
     }
