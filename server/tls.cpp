@@ -39,7 +39,8 @@ class TlsTransport final : public Transport {
   }
   [[nodiscard]] short awaits(short wanted) const override {
     if (wants_ == SSL_ERROR_WANT_READ) return POLLIN;
-    return wants_ == SSL_ERROR_WANT_WRITE ? POLLOUT : wanted;
+    if (wants_ == SSL_ERROR_WANT_WRITE) return POLLOUT;
+    return wanted;
   }
   void end() override {
     ERR_clear_error();
