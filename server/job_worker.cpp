@@ -66,6 +66,7 @@ class SocketOutput final : public JobOutput {
 };
 
 /// A job as it has come over the socket.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct ReceivedJob {
   WorkerTask task;
   JobRecord record;
