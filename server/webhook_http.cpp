@@ -33,6 +33,7 @@ std::string post(Client& client, const WebhookCall& call) {
   };
   const Deadline slow(kWholeTime, [&] { client.stop(); });
   const httplib::Result result = client.send(request);
+  if (result) status = result->status;  // of an answer that can have no body, such as 204
   if (status >= 200 && status < 300) return {};
   if (status != 0) return "status " + std::to_string(status);
   return "no answer: " + httplib::to_string(result.error());

@@ -2,7 +2,8 @@
 // or say what is wrong, and what was stored stays right.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, readFileSync, rmSync, statfsSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmdirSync, rmSync, statfsSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
@@ -53,13 +54,16 @@ test("a damaged result is made again from the map, and refused when that is dama
 
 /** A small file system of its own, or undefined where this user may not mount one. */
 function smallDisk(t, megabytes) {
-  const folder = dataDirectory(t);
+  const folder = mkdtempSync(join(tmpdir(), "unwrapd-disk-"));
+  const remove = () => rmdirSync(folder);
   try {
     execFileSync("mount", ["-t", "tmpfs", "-o", `size=${megabytes}m`, "tmpfs", folder], { stdio: "ignore" });
   } catch {
+    remove();
     return undefined;
   }
   t.after(() => execFileSync("umount", ["-l", folder]));
+  t.after(remove);
   return folder;
 }
 
