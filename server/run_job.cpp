@@ -57,16 +57,35 @@ api::ReportContext context_of(const JobTask& task, StageClock& clock) {
           .notes = task.record.notes};
 }
 
+/// What a job has made.
+struct Made {
+  const asset::Asset& asset;
+  asset::Format format;
+  const std::vector<Unwrapped>& maps;
+};
+
+/// A map's report, with what writing the asset adds to it.
+api::Json report_json(const Made& made, const Unwrapped& map, api::ReportContext context,
+                      bool with_vertex_maps) {
+  for (std::string& note : asset::side_effects(made.asset, made.format))
+    context.notes.push_back(std::move(note));
+  if (with_vertex_maps)
+    context.vertex_maps = asset::vertex_maps(made.asset, map.surfaces, made.format);
+  return api::to_json(map.report, context);
+}
+
 /// What every map of a job needs to be answered with: the rest is made when somebody asks.
-void write_maps(const JobTask& task, JobOutput& output, const std::vector<Unwrapped>& maps,
-                StageClock& clock) {
+void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageClock& clock,
+                bool with_vertex_maps) {
+  const std::vector<Unwrapped>& maps = made.maps;
   for (std::size_t map = 0; map < maps.size(); ++map)
     output.file(map_file(kUvFile, map), encode_uvs(maps[map].surfaces));
   check_stop(task);
   output.file(kTotalsFile, api::totals_json(maps.front().report).dump());
   const api::ReportContext context = context_of(task, clock);
   for (std::size_t map = 0; map < maps.size(); ++map)
-    output.file(map_file(kReportFile, map), api::to_json(maps[map].report, context).dump());
+    output.file(map_file(kReportFile, map),
+                report_json(made, maps[map], context, with_vertex_maps).dump());
 }
 
 }  // namespace
@@ -82,10 +101,11 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   StageClock clock(task.began);
   const Progress progress = progress_of(task, output, clock);
   progress.on_stage({.stage = Stage::read, .chart = 0, .chart_count = 0, .fraction = 0});
-  const asset::Asset asset = asset::read(input, read_limits(record, limits));
+  const api::JobOptions options = api::parse_options(record.options, limits);
+  asset::Asset asset = asset::read(input, read_limits(record, limits), options.asset);
+  if (options.unwrap.repack_only || options.unwrap.seams == SeamMode::uv0) asset::read_uvs(asset);
   check_stop(task);
 
-  const api::JobOptions options = api::parse_options(record.options, limits);
   const std::vector<Unwrapped> maps =
       unwrap_curve(asset.surfaces(), options.unwrap, progress, executor);
 
@@ -96,7 +116,7 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   const std::vector<UnwrappedSurface>& first = maps.front().surfaces;
   output.result(name, asset::write(asset, first, format));
   output.file(kLayoutFile, layout_svg(asset.surfaces(), first));
-  write_maps(task, output, maps, clock);
+  write_maps(task, output, {asset, format, maps}, clock, options.asset.vertex_map);
   return name;
 }
 
