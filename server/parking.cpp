@@ -46,21 +46,21 @@ void Parking::run() {
   for (const int descriptor : {listener_.socket(), listener_.stop_descriptor(), wake_})
     watch(descriptor, POLLIN, EPOLL_CTL_ADD);
   std::array<epoll_event, kMostEvents> events;
-  bool stopped = false;
-  while (!stopped) {
+  while (!stopped_) {
     const int count = ::epoll_wait(epoll_, events.data(), kMostEvents, lot_.empty() ? -1 : kTickMs);
-    for (int i = 0; i < count; ++i) {
-      const int descriptor = events[static_cast<std::size_t>(i)].data.fd;
-      stopped = stopped || descriptor == listener_.stop_descriptor();
-      if (descriptor == listener_.socket()) let_in();
-      if (descriptor == wake_) take_back();
-      const auto at = lot_.find(descriptor);
-      if (at != lot_.end()) look_at(at);
-    }
+    for (int i = 0; i < count; ++i) attend(events[static_cast<std::size_t>(i)].data.fd);
     expire();
   }
   lot_.clear();
   count_ = 0;
+}
+
+void Parking::attend(int descriptor) {
+  if (descriptor == listener_.stop_descriptor()) stopped_ = true;
+  if (descriptor == listener_.socket()) let_in();
+  if (descriptor == wake_) take_back();
+  const auto at = lot_.find(descriptor);
+  if (at != lot_.end()) look_at(at);
 }
 
 void Parking::let_in() {
@@ -152,17 +152,18 @@ void Parking::drive_out_longest_idle() {
   if (idle > rules_.max_idle) remove(longest);
 }
 
+void Parking::close_late(Lot::iterator at) {
+  Client late = remove(at);
+  if (late.received.empty()) return;
+  uses_.refuse(late, Error(ErrorCode::request_timeout,
+                           "The header did not arrive in time; send it faster."));
+}
+
 void Parking::expire() {
   const auto now = Clock::now();
   for (auto at = lot_.begin(); at != lot_.end();) {
     const auto next = std::next(at);
-    if (at->second.until <= now) {
-      Client late = remove(at);
-      if (!late.received.empty()) {
-        uses_.refuse(late, Error(ErrorCode::request_timeout,
-                                 "The header did not arrive in time; send it faster."));
-      }
-    }
+    if (at->second.until <= now) close_late(at);
     at = next;
   }
 }

@@ -65,6 +65,8 @@ class Parking {
   bool receive(Parked& parked);
   Client remove(Lot::iterator at);
   void drive_out_longest_idle();
+  void attend(int descriptor);
+  void close_late(Lot::iterator at);
   void expire();
 
   const Listener& listener_;
@@ -73,6 +75,7 @@ class Parking {
   int epoll_ = -1;
   int wake_ = -1;
   Lot lot_;
+  bool stopped_ = false;
   std::atomic<int> count_ = 0;
   std::mutex mutex_;
   std::vector<Client> returned_;
