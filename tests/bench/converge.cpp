@@ -17,6 +17,7 @@
 #include "core/error.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/core/counting_executor.hpp"
 #include "tests/core/obj_reader.hpp"
 
 namespace unwrapd::bench {
@@ -131,15 +132,6 @@ void compare_iterations(const Disk& disk) {
 /// to sweep over the mesh, the same few times every iteration: that does not depend on the machine.
 struct Cost {
   double seconds = 1e300;
-  int sweeps = 0;
-};
-
-class CountingExecutor final : public Executor {
- public:
-  void for_each_block(int block_count, const std::function<void(int)>& body) override {
-    ++sweeps;
-    for (int block = 0; block < block_count; ++block) body(block);
-  }
   int sweeps = 0;
 };
 

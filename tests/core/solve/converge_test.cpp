@@ -8,6 +8,7 @@
 #include "core/solve/frames.hpp"
 #include "core/solve/hold_align.hpp"
 #include "core/solve/solve.hpp"
+#include "tests/core/counting_executor.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/cancel_at.hpp"
 #include "tests/core/solve/disk_of.hpp"
@@ -213,16 +214,6 @@ TEST(Starts, ASecondStartFindsALowerMinimum) {
     expect_never_rises(s.energy);
   }
 }
-
-/// Counts sweeps over the mesh, of which every iteration makes the same few.
-class CountingExecutor final : public Executor {
- public:
-  void for_each_block(int block_count, const std::function<void(int)>& body) override {
-    ++sweeps;
-    for (int block = 0; block < block_count; ++block) body(block);
-  }
-  int sweeps = 0;
-};
 
 int sweeps_of(const Disk& disk, const UnwrapOptions& options) {
   CountingExecutor executor;
