@@ -122,14 +122,16 @@ bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
   try {
     const std::lock_guard lock(noting_);
     Digests digests = read_digests(blobs_ / job);
-    for (const auto& [file, digest] : read_digests(blobs_ / from)) {
+    const Digests theirs = read_digests(blobs_ / from);
+    if (!theirs.contains(kReportFile)) return false;
+    for (const auto& [file, digest] : theirs) {
       if (is_input(file)) continue;
       fs::create_hard_link(path(from, file), path(job, file));
       digests[file] = digest;
     }
     write_digests(blobs_ / job, digests);
     room_.set(job, bytes_below(blobs_ / job));
-    return digests.contains(kReportFile);
+    return true;
   } catch (const std::exception&) {  // then the job is run like any other
     return false;
   }
