@@ -1,4 +1,5 @@
 // The second reader of glTF: as short and as slow as can be, straight from the specification.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -184,6 +185,13 @@ std::array<Vec3, 3> points_of(const Face& face) {
   return points;
 }
 
+namespace {
+
+/// "TANGENT", or "0/TANGENT" of a morph target.
+bool is_tangent(const std::string& semantic) { return semantic.ends_with("TANGENT"); }
+
+}  // namespace
+
 void expect_same_but_uv(const std::vector<ReadPrimitive>& input,
                         const std::vector<ReadPrimitive>& answer) {
   ASSERT_EQ(input.size(), answer.size());
@@ -194,16 +202,18 @@ void expect_same_but_uv(const std::vector<ReadPrimitive>& input,
       const Face& after = answer[i].faces[t];
       const std::array<Vec3, 3> points = points_of(before);
       ASSERT_TRUE(after.contains("TEXCOORD_0")) << "primitive " << i;
-      ASSERT_FALSE(after.contains("TANGENT")) << "of the UVs that were replaced";
-      ASSERT_EQ(after.size(),
-                before.size() + (before.contains("TEXCOORD_0") ? 0 : 1) - before.count("TANGENT"));
+      const auto tangents = std::count_if(before.begin(), before.end(),
+                                          [](const auto& item) { return is_tangent(item.first); });
+      ASSERT_EQ(after.size() + static_cast<std::size_t>(tangents),
+                before.size() + (before.contains("TEXCOORD_0") ? 0 : 1))
+          << "tangents of replaced UVs are left out, and nothing else";
       for (int k = 0; k < 3; ++k) {
         const std::vector<double>& uv = after.at("TEXCOORD_0")[static_cast<std::size_t>(k)];
         ASSERT_NEAR(uv[0], uv_of(points, k)[0], 1e-6) << "primitive " << i << ", face " << t;
         ASSERT_NEAR(1 - uv[1], uv_of(points, k)[1], 1e-6) << "primitive " << i << ", face " << t;
       }
       for (const auto& [semantic, values] : before) {
-        if (semantic == "TEXCOORD_0" || semantic == "TANGENT") continue;
+        if (semantic == "TEXCOORD_0" || is_tangent(semantic)) continue;
         ASSERT_TRUE(after.contains(semantic)) << semantic;
         ASSERT_EQ(after.at(semantic), values)
             << semantic << " of primitive " << i << ", face " << t;
