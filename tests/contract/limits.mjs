@@ -1,6 +1,6 @@
 // The statuses that need a server in a special state: tiny limits, a full queue, results that
 // expire, a server that drains. Each state is a server of its own.
-import {failure} from './cases/shared.mjs';
+import {failure, kSubmissions, newId} from './cases/shared.mjs';
 import {openStream} from './http.mjs';
 import * as meshes from './meshes.mjs';
 import {kOutcomes} from './run.mjs';
@@ -46,12 +46,14 @@ export function tinyLimits(run, binary) {
   const flags = ['--workers', '1', '--max-body-bytes', '4000', '--max-faces', '20'];
   return withServer(binary, flags, async ({base}) => {
     await failure(run, base, {body: meshes.glb(4), code: 'too_many_faces', status: 413});
-    for (const id of ['createJob', 'unwrap']) {
-      const problem = await run.json(base, id, {headers: kGlb, body: meshes.glb(20), status: 413});
+    for (const id of kSubmissions) {
+      const job = newId();
+      const problem = await run.json(base, id,
+                                     {job, headers: kGlb, body: meshes.glb(20), status: 413});
       run.expectEqual(`${id} of a long body`, problem.code, 'body_too_large');
       const headers = {...kGlb, 'Transfer-Encoding': 'chunked'};
       await run.call(base, id,
-                     {headers, body: meshes.glb(20), status: 413, name: 'long, in chunks'});
+                     {job, headers, body: meshes.glb(20), status: 413, name: 'long, in chunks'});
     }
   });
 }
@@ -81,7 +83,9 @@ export function fullQueue(run, binary) {
     await running(run, base, first);
     const second = idOf(await slowJob(run, base, 202));
     await slowJob(run, base, 429);
-    await run.call(base, 'unwrap', {headers: kGlb, body: meshes.glb(), status: 429});
+    for (const id of kSubmissions) {
+      await run.call(base, id, {job: newId(), headers: kGlb, body: meshes.glb(), status: 429});
+    }
     await unfinished(run, base, first);
     await unfinished(run, base, second);
     await cancelled(run, base, second);
@@ -151,7 +155,9 @@ export function draining(run, binary) {
                                    ({status}) => status === 503);
     run.expectEqual('readiness while draining', ready.status, 503);
     await slowJob(run, base, 503);
-    await run.call(base, 'unwrap', {headers: kGlb, body: meshes.glb(), status: 503});
+    for (const id of kSubmissions) {
+      await run.call(base, id, {job: newId(), headers: kGlb, body: meshes.glb(), status: 503});
+    }
     await run.call(base, 'getHealth', {status: 200});
     await run.call(base, 'deleteJob', {job, status: 202});
   });

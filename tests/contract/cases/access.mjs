@@ -1,10 +1,6 @@
 // Jobs by name, lists of jobs and links to their files, at a server that asks for no keys.
-import {randomBytes} from 'node:crypto';
-
 import * as meshes from '../meshes.mjs';
-import {kGlb, kWait} from './shared.mjs';
-
-const newId = () => `j_${randomBytes(16).toString('hex')}`;
+import {kGlb, kWait, newId} from './shared.mjs';
 
 export async function jobsByName(run, base) {
   const job = newId();

@@ -4,7 +4,7 @@ import {readFileSync} from 'node:fs';
 import {raw, request} from '../http.mjs';
 import * as meshes from '../meshes.mjs';
 import {kOutcomes} from '../run.mjs';
-import {kGlb} from './shared.mjs';
+import {kGlb, kSubmissions, newId} from './shared.mjs';
 
 const kUnknownJob = `j_${'0'.repeat(32)}`;
 
@@ -55,12 +55,17 @@ export async function anyCall(run, base) {
 }
 
 export async function badBodies(run, base) {
-  for (const id of ['createJob', 'unwrap']) {
-    const {path} = run.contract.operation(id);
+  for (const id of kSubmissions) {
+    const operation = run.contract.operation(id);
     const headers = {'Content-Type': 'text/plain'};
-    await run.call(base, id, {headers, body: meshes.glb(), status: 415});
-    const answer = await raw(base, `POST ${path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n`);
+    await run.call(base, id, {job: newId(), headers, body: meshes.glb(), status: 415});
+    const line = `${operation.method} ${operation.path.replace('{id}', newId())} HTTP/1.1`;
+    const answer = await raw(base, `${line}\r\nHost: x\r\nConnection: close\r\n\r\n`);
     run.judge('a body without length', id, answer, 411);
+    const form = {'Content-Type': 'multipart/form-data; boundary=x'};
+    await run.call(base, id, {job: newId(), headers: form, body: meshes.glb(), status: 400});
+    await run.call(base, id, {job: newId(), headers: kGlb, body: meshes.glb(), status: 422,
+                              query: {method: 'none'}});
   }
   const {method, path} = run.contract.operation('unwrap');
   const headers = {...kGlb, 'Transfer-Encoding': 'chunked'};

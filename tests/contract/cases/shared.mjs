@@ -1,4 +1,5 @@
 // What several groups of cases send and judge.
+import {randomBytes} from 'node:crypto';
 import validator from 'gltf-validator';
 
 import {kOutcomes} from '../run.mjs';
@@ -8,6 +9,12 @@ export const kGlb = {'Content-Type': 'model/gltf-binary'};
 export const kWait = {...kGlb, Prefer: 'wait=30'};
 export const kRepresentations =
     ['model/gltf-binary', 'model/gltf+json', 'model/obj', 'application/json'];
+
+/** Of a job that is not there. */
+export const newId = () => `j_${randomBytes(16).toString('hex')}`;
+
+/** The calls that make jobs. */
+export const kSubmissions = ['createJob', 'putJob', 'unwrap'];
 
 export async function validGltf(run, name, bytes) {
   const report = await validator.validateBytes(new Uint8Array(bytes));
