@@ -20,7 +20,8 @@ std::string plain_refusal(const Error& error) {
   const Response response = error_response(error);
   const auto& body = std::get<std::string>(response.body);
   std::string text = "HTTP/1.1 " + std::to_string(response.status) + " Refused\r\n";
-  for (const auto& [name, value] : response.headers) text += name + ": " + value + "\r\n";
+  for (const auto& [name, value] : response.headers)
+    text.append(name).append(": ").append(value).append("\r\n");
   return text + "Content-Type: " + response.content_type +
          "\r\nContent-Length: " + std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" +
          body;
