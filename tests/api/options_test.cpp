@@ -67,7 +67,9 @@ Json random_constraints(std::mt19937& rng) {
 
 /// A random value that the row allows.
 Json random_value(const OptionRow& row, std::mt19937& rng) {
-  if (row.type == OptionType::constraints) return random_constraints(rng);
+  if (row.name == "constraints") return random_constraints(rng);
+  if (row.type == OptionType::objects || row.type == OptionType::names) return Json::array();
+  if (row.type == OptionType::flag) return rng() % 2 == 0;
   if (row.type == OptionType::choice) {
     const double index = random_share(rng) * static_cast<double>(row.choices.size());
     return row.choices[static_cast<std::size_t>(index)];
