@@ -135,7 +135,7 @@ test("a clock that is set ten days ahead takes no result away and stops no job",
     FAKETIME_NO_CACHE: "1",
     FAKETIME_DONT_FAKE_MONOTONIC: "1",
   };
-  const server = await Server.startIn(env, dataDirectory(t), "--keep-seconds", "40", "--log-level", "warning");
+  const server = await Server.startIn(env, dataDirectory(t), "--keep-seconds", "24", "--log-level", "warning");
   const before = await server.finished(await server.submit(QUICK, 5));
   const running = await server.submit("stop.iterations=400", 30);
   for (const [set, by] of [["+10d", 1], ["-20d", -1]]) {
