@@ -84,24 +84,29 @@ int Arranger::least_side() {
   return side;
 }
 
+bool Arranger::lower(std::size_t island, int turn, Page& page, Spot& spot, int& lowest_top) {
+  const Mask& mask = mask_of(island, turn);
+  const bool few = size() <= kFewIslands;
+  for (int y = few ? 0 : page.lowest_of(mask); y + mask.touched.height() < lowest_top; ++y) {
+    const std::optional<int> x = page.cells.first_free(mask, y);
+    if (!x) continue;
+    lowest_top = y + mask.touched.height();
+    spot = {*x, y, turn, spot.page};
+    if (!few) page.lowest_of(mask) = y;
+    return true;
+  }
+  return false;
+}
+
 bool Arranger::lay_one(std::size_t island, int turn, std::vector<Page>& pages, Spot& spot) {
-  const bool any = turn == kAnyTurn;
+  const int first = turn == kAnyTurn ? 0 : turn, last = turn == kAnyTurn ? turns_ - 1 : turn;
   for (std::size_t p = 0; p < pages.size(); ++p) {
-    Page& page = pages[p];
-    int lowest_top = page.cells.height() + 1;
-    for (int t = any ? 0 : turn; t <= (any ? turns_ - 1 : turn); ++t) {
-      const Mask& mask = mask_of(island, t);
-      const bool few = size() <= kFewIslands;
-      for (int y = few ? 0 : page.lowest_of(mask); y + mask.touched.height() < lowest_top; ++y) {
-        const std::optional<int> x = page.cells.first_free(mask, y);
-        if (!x) continue;
-        lowest_top = y + mask.touched.height();
-        spot = {*x, y, t, static_cast<int>(p)};
-        if (!few) page.lowest_of(mask) = y;
-      }
-    }
-    if (lowest_top > page.cells.height()) continue;
-    page.cells.stamp(mask_of(island, spot.turn), spot.x, spot.y);
+    spot.page = static_cast<int>(p);
+    int lowest_top = pages[p].cells.height() + 1;
+    bool found = false;
+    for (int t = first; t <= last; ++t) found |= lower(island, t, pages[p], spot, lowest_top);
+    if (!found) continue;
+    pages[p].cells.stamp(mask_of(island, spot.turn), spot.x, spot.y);
     return true;
   }
   return false;

@@ -74,6 +74,8 @@ class Arranger {
 
  private:
   struct Page;
+  /// The lowest free place of one turn, if its top comes to lie below lowest_top.
+  bool lower(std::size_t island, int turn, Page& page, Spot& spot, int& lowest_top);
   bool lay_one(std::size_t island, int turn, std::vector<Page>& pages, Spot& spot);
 
   std::span<const Outline> outlines_;
