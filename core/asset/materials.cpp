@@ -38,6 +38,16 @@ bool moves(const Json& transform) {
          transform.contains("scale");
 }
 
+/// Whether a texture of the material moves the coordinates of this set.
+bool is_moved(Json material, std::string_view texcoord) {
+  bool moved = false;
+  for_each_texture(material, [&](Json& texture) {
+    const Json* transform = transform_of(texture);
+    moved |= transform != nullptr && moves(*transform) && set_name(texture) == texcoord;
+  });
+  return moved;
+}
+
 Json material_json(const Gltf& gltf, const Primitive& primitive) {
   return primitive.material ? gltf.json.at("materials").at(*primitive.material) : Json::object();
 }
@@ -96,13 +106,7 @@ std::vector<std::size_t> materials_to_reset(const Gltf& gltf) {
   std::vector<std::size_t> materials;
   for (std::size_t i = 0; i < list->size(); ++i) {
     if (is_on[i] == 0 || is_kept[i] != 0) continue;
-    Json material = list->at(i);
-    bool is_moved = false;
-    for_each_texture(material, [&](Json& texture) {
-      const Json* transform = transform_of(texture);
-      is_moved |= transform != nullptr && moves(*transform) && set_name(texture) == gltf.texcoord;
-    });
-    if (is_moved) materials.push_back(i);
+    if (is_moved(list->at(i), gltf.texcoord)) materials.push_back(i);
   }
   return materials;
 }

@@ -72,9 +72,10 @@ bool lies_on(const Loop& from, const Loop& to, const Motion& motion, double tole
 /// Fills motion and is true when all loops of `from` come to lie on those of `to`.
 bool match(const Shape& from, const Shape& to, Motion& motion) {
   const double tolerance = kTolerance * to.length / 4;
-  if (from.loops.size() != to.loops.size()) return false;
-  for (std::size_t k = 0; k < to.loops.size(); ++k)
-    if (from.loops[k].size() != to.loops[k].size()) return false;
+  const auto equal_size = [](const Loop& a, const Loop& b) { return a.size() == b.size(); };
+  if (!std::equal(from.loops.begin(), from.loops.end(), to.loops.begin(), to.loops.end(),
+                  equal_size))
+    return false;
   const auto others_lie = [&] {
     for (std::size_t k = 1; k < to.loops.size(); ++k)
       if (!lies_on(from.loops[k], to.loops[k], motion, tolerance)) return false;
