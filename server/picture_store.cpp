@@ -62,8 +62,7 @@ std::string PictureStore::draw(const JobRecord& job, const Picture& picture) con
   const LoadedInput loaded(blobs_, job);
   const asset::Asset asset = asset::read(loaded.input(), read_limits(job, limits_),
                                          api::parse_options(job.options, limits_).asset);
-  const std::vector<UnwrappedSurface> unwrapped =
-      decode_uvs(blobs_.read(job.id, picture.uv_file));
+  const std::vector<UnwrappedSurface> unwrapped = decode_uvs(blobs_.read(job.id, picture.uv_file));
   switch (picture.kind) {
     case PictureKind::layout_svg:
       return layout_svg(asset.surfaces(), unwrapped, picture.colouring);

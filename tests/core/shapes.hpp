@@ -25,21 +25,6 @@ inline void add_quad(std::vector<Triangle>& faces, Index a, Index b, Index c, In
   faces.push_back({a, c, d});
 }
 
-/// The map that drops the third coordinate.
-inline UvMap from_above(const std::vector<Vec3>& positions) {
-  UvMap uv;
-  for (const Vec3& p : positions) uv.emplace_back(p.x(), p.y());
-  return uv;
-}
-
-/// The map with every coordinate moved by a random amount of at most `by`.
-inline UvMap shaken(UvMap uv, double by, unsigned seed) {
-  std::mt19937 rng(seed);
-  std::uniform_real_distribution<double> shake(-by, by);
-  for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
-  return uv;
-}
-
 enum class Wrap { none, first, both };  ///< which directions of a grid are closed
 
 /// A grid of columns x rows quads; point(u, v) with u, v in [0, 1] gives the positions.

@@ -2,6 +2,7 @@
 // A mesh that is one disk, ready for the solver, for tests.
 
 #include <memory>
+#include <random>
 #include <utility>
 
 #include "core/atlas/charts.hpp"
@@ -22,6 +23,21 @@ inline OwnedDisk disk_of(TriMesh mesh) {
   auto chart = std::make_unique<Chart>(std::move(charts.charts.front()));
   Disk disk = make_disk(chart->mesh, chart->loops);
   return {std::move(chart), std::move(disk)};
+}
+
+/// The map that drops the third coordinate.
+inline UvMap from_above(const std::vector<Vec3>& positions) {
+  UvMap uv;
+  for (const Vec3& p : positions) uv.emplace_back(p.x(), p.y());
+  return uv;
+}
+
+/// The map with every coordinate moved by a random amount of at most `by`.
+inline UvMap shaken(UvMap uv, double by, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::uniform_real_distribution<double> shake(-by, by);
+  for (Vec2& u : uv) u += Vec2(shake(rng), shake(rng));
+  return uv;
 }
 
 inline UvMap from_above(const Disk& disk) { return from_above(disk.positions); }
