@@ -1,4 +1,5 @@
-// The codes that no request of this test provokes, and why; where another test does, which one.
+// The codes that no request of this test provokes for certain (what is random may), and why; where
+// another test does, which one.
 
 export const kNotProvoked = {
   // the work
