@@ -3,7 +3,7 @@
 // different minima were only seen where descents are long, and those show soon: after sixteen
 // iterations the energy still falls by half a percent or more in eight. There a second descent of
 // as many tells the lower minimum, and costs at most half of what one start does. A lead of less
-// than kLead is chance. Measured on 80 charts (docs/adr/0004). Rejected: both starts on every mesh,
+// than kLead is chance. Measured as docs/adr/0004 tells. Rejected: both starts on every mesh,
 // or wherever there are holes or flips, which doubles the cost of those that need neither; a longer
 // race, which chooses no better; to drop a second descent that is far behind after eight
 // iterations, where the best of them still are.
