@@ -112,7 +112,7 @@ bool Arranger::lay_one(std::size_t island, int turn, std::vector<Page>& pages, S
   return false;
 }
 
-Laid Arranger::lay(const Arrangement& arrangement, const Sheet& sheet, Budget& budget) {
+Laid Arranger::lay(const Arrangement& arrangement, const PageCells& sheet, Budget& budget) {
   const int margin = margin_of(padding_);
   double longest = 1;
   for (const Box& box : boxes_) longest = std::max(longest, box.size.norm() * scale_);

@@ -27,7 +27,7 @@ struct Spot {
 };
 
 /// The pages in cells. height: islands that would reach beyond it find no place.
-struct Sheet {
+struct PageCells {
   int width = 0;
   int height = 0;
   int pages = 1;
@@ -60,7 +60,7 @@ class Arranger {
 
   /// Each island, in order, at the lowest free place of its turns, then the leftmost, on the first
   /// page that has one. Stops at the first that finds none. Throws Error{cancelled}.
-  Laid lay(const Arrangement& arrangement, const Sheet& sheet, Budget& budget);
+  Laid lay(const Arrangement& arrangement, const PageCells& sheet, Budget& budget);
 
   [[nodiscard]] std::size_t size() const { return outlines_.size(); }
   [[nodiscard]] int turns() const { return turns_; }

@@ -124,8 +124,8 @@ std::vector<Index> Joiner::slit_of(std::span<const Index> border) const {
   return slit;
 }
 
-Joined Joiner::join(const Patch& a, const Patch& b, std::span<const char> open, double cap,
-                    const std::stop_token& stop) const {
+Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<const char> open,
+                    double cap, const std::stop_token& stop) const {
   const std::vector<Index> common = border(a.region, b.region, open);
   const double area = a.area + b.area;
   const TrialRules rules{.most_excess = std::max(cap * area, (a.excess + b.excess).worst()),

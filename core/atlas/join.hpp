@@ -8,7 +8,7 @@
 namespace unwrapd {
 
 /// A region with the map that it has so far.
-struct Patch {
+struct MappedRegion {
   Region region;
   Excess excess;          ///< of that map
   double area = 0;        ///< of the sheet's 1
@@ -16,7 +16,7 @@ struct Patch {
 };
 
 struct Joined {
-  Patch patch;  ///< of both; sound where verdict says so
+  MappedRegion patch;  ///< of both; sound where verdict says so
   Verdict verdict = Verdict::impossible;
   std::vector<Index> slit;  ///< half-edges of the common border that must stay open, both sides
 };
@@ -34,7 +34,8 @@ class Joiner {
   /// that has no sound map, only the longest stretch of the border is glued: stretches end at
   /// vertices that are far from flat. cap: most excess over area, where joining adds some.
   /// open: one a half-edge of the sheet, 1: not glued. A stop request ends it early.
-  [[nodiscard]] Joined join(const Patch& a, const Patch& b, std::span<const char> open, double cap,
+  [[nodiscard]] Joined join(const MappedRegion& a, const MappedRegion& b,
+                            std::span<const char> open, double cap,
                             const std::stop_token& stop) const;
 
  private:

@@ -50,7 +50,7 @@ class Merging {
         patches_(std::move(from.patches)) {
     alive_.assign(patches_.size(), 1);
     count_ = first_count_ = patches_.size();
-    for (const Patch& patch : patches_) total_ += patch.excess;
+    for (const MappedRegion& patch : patches_) total_ += patch.excess;
     measure_borders();
   }
 
@@ -191,7 +191,7 @@ class Merging {
   const Sheet& sheet_;
   const MergeRules& rules_;
   std::vector<char> open_;
-  std::vector<Patch> patches_;  ///< those that were merged are dead and empty
+  std::vector<MappedRegion> patches_;  ///< those that were merged are dead and empty
   std::vector<char> alive_;
   std::vector<std::map<Index, double>> borders_;  ///< lengths to each neighbour
   std::vector<double> perimeter_;

@@ -21,7 +21,7 @@ struct MergeRules {
 
 /// Regions, and the half-edges inside of them that are seams all the same.
 struct Partition {
-  std::vector<Patch> patches;
+  std::vector<MappedRegion> patches;
   std::vector<char> open;  ///< one a half-edge of the sheet, 1: not glued
 };
 

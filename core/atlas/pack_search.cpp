@@ -123,7 +123,7 @@ class Strip {
 };
 
 /// The first island without a place comes first, and all are laid again.
-Found with_retries(Arranger& arranger, Arrangement arrangement, const Sheet& sheet,
+Found with_retries(Arranger& arranger, Arrangement arrangement, const PageCells& sheet,
                    Budget& budget) {
   for (int k = 0; k < kRetries; ++k) {
     const Laid laid = arranger.lay(arrangement, sheet, budget);
@@ -194,8 +194,8 @@ Found smallest_pages(Arranger& arranger, const std::vector<Arrangement>& starts,
   return best;
 }
 
-Found fewest_pages(Arranger& arranger, const std::vector<Arrangement>& starts, const Sheet& sheet,
-                   Budget& budget) {
+Found fewest_pages(Arranger& arranger, const std::vector<Arrangement>& starts,
+                   const PageCells& sheet, Budget& budget) {
   Found best;
   for (const Arrangement& start : starts) {
     Found found = with_retries(arranger, start, sheet, budget);

@@ -28,7 +28,7 @@ Found smallest_pages(Arranger& arranger, const std::vector<Arrangement>& starts,
                      Budget& budget);
 
 /// On pages of this side, as few as can be had of at most page_count; side 0 when they do not do.
-Found fewest_pages(Arranger& arranger, const std::vector<Arrangement>& starts, const Sheet& sheet,
-                   Budget& budget);
+Found fewest_pages(Arranger& arranger, const std::vector<Arrangement>& starts,
+                   const PageCells& sheet, Budget& budget);
 
 }  // namespace unwrapd

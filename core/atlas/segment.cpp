@@ -35,9 +35,9 @@ constexpr double kCostOfAChart = 0.1;
 constexpr double kMergeBegin = 0.3;   // share of the time
 constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
 
-Excess total_of(std::span<const Patch> patches) {
+Excess total_of(std::span<const MappedRegion> patches) {
   Excess total;
-  for (const Patch& patch : patches) total += patch.excess;
+  for (const MappedRegion& patch : patches) total += patch.excess;
   return total;
 }
 
@@ -56,12 +56,12 @@ double cost_of(const Sheet& sheet, const Partition& partition) {
 }
 
 /// The faces of each label with a map of their own, from their projection.
-std::vector<Patch> map_patches(const Sheet& sheet, std::vector<Index>& label,
-                               const std::stop_token& stop, Executor& executor) {
+std::vector<MappedRegion> map_patches(const Sheet& sheet, std::vector<Index>& label,
+                                      const std::stop_token& stop, Executor& executor) {
   std::vector<std::vector<Index>> faces = faces_by_label(label, renumber(label));
-  std::vector<Patch> patches(faces.size());
+  std::vector<MappedRegion> patches(faces.size());
   executor.for_each_block(static_cast<int>(faces.size()), [&](int block) {
-    Patch& patch = patches[static_cast<std::size_t>(block)];
+    MappedRegion& patch = patches[static_cast<std::size_t>(block)];
     patch.region.faces = std::move(faces[static_cast<std::size_t>(block)]);
     patch.region.uv = projected(sheet, patch.region.faces);
     const TrialRules rules{.most_excess = std::numeric_limits<double>::infinity(), .stop = stop};
@@ -75,20 +75,21 @@ std::vector<Patch> map_patches(const Sheet& sheet, std::vector<Index>& label,
 }
 
 /// Patches without a sound map fall into smaller ones: those of `finer` labels.
-void split_unsound(const Sheet& sheet, std::span<const Patch> patches, std::span<const Index> finer,
-                   std::vector<Index>& label) {
+void split_unsound(const Sheet& sheet, std::span<const MappedRegion> patches,
+                   std::span<const Index> finer, std::vector<Index>& label) {
   const auto face_count = static_cast<Index>(label.size());
-  for (const Patch& patch : patches) {
+  for (const MappedRegion& patch : patches) {
     if (patch.is_sound) continue;
     for (const Index t : patch.region.faces) label[t] = face_count + finer[t];
   }
   separate_labels(sheet.halfedges, label);
 }
 
-std::vector<Patch> sound_patches(const Sheet& sheet, double flatness, std::vector<Index> label,
-                                 const SegmentRules& rules, Executor& executor) {
-  std::vector<Patch> patches = map_patches(sheet, label, rules.stop, executor);
-  const auto is_sound = [](const Patch& patch) { return patch.is_sound; };
+std::vector<MappedRegion> sound_patches(const Sheet& sheet, double flatness,
+                                        std::vector<Index> label, const SegmentRules& rules,
+                                        Executor& executor) {
+  std::vector<MappedRegion> patches = map_patches(sheet, label, rules.stop, executor);
+  const auto is_sound = [](const MappedRegion& patch) { return patch.is_sound; };
   for (int k = 0; k <= kRefinements && !std::ranges::all_of(patches, is_sound); ++k) {
     flatness *= kRefinement;
     std::vector<Index> finer(label.size());
@@ -100,13 +101,14 @@ std::vector<Patch> sound_patches(const Sheet& sheet, double flatness, std::vecto
   return patches;
 }
 
-std::vector<Patch> over_segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
+std::vector<MappedRegion> over_segment(const Sheet& sheet, const SegmentRules& rules,
+                                       Executor& executor) {
   const double allowed = kShareOfPatches * (rules.max_distortion - 2);
   double flatness = kFlatness;
   for (int round = 1;; ++round, flatness /= 2) {
     std::vector<Index> label = cluster_faces(sheet, sheet.normal, flatness, rules.stop);
     smooth_labels(sheet, kSmoothingPasses, kSmoothCosine, label);
-    std::vector<Patch> patches = sound_patches(sheet, flatness, label, rules, executor);
+    std::vector<MappedRegion> patches = sound_patches(sheet, flatness, label, rules, executor);
     if (round == kFlatnessRounds || total_of(patches).worst() <= allowed) return patches;
   }
 }
@@ -162,7 +164,7 @@ Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& execut
     best = merge_patches(Joiner(sheet), sheet, std::move(best), merging, executor);
   }
   Segments segments{{}, std::move(best.open)};
-  for (Patch& patch : best.patches) segments.regions.push_back(std::move(patch.region));
+  for (MappedRegion& patch : best.patches) segments.regions.push_back(std::move(patch.region));
   return segments;
 }
 

@@ -28,7 +28,7 @@ class Straightening {
         rules_(rules),
         partition_(partition),
         corners_(vertex_corners(sheet.mesh.faces, sheet.mesh.vertex_count())) {
-    for (const Patch& patch : partition.patches) total_ += patch.excess;
+    for (const MappedRegion& patch : partition.patches) total_ += patch.excess;
     mark();
   }
 
@@ -172,7 +172,7 @@ class Straightening {
     const Chain path = shortest_path(chain, kWorthwhile * length(chain));
     if (path.empty()) return;
     const Index a = owner_[face_of(chain.front())], b = owner_[face_of(twin(chain.front()))];
-    Patch &old_a = partition_.patches[a], &old_b = partition_.patches[b];
+    MappedRegion &old_a = partition_.patches[a], &old_b = partition_.patches[b];
     auto sides = parted(chain, path);
     const std::size_t count = old_a.region.faces.size() + old_b.region.faces.size();
     if (sides[0].empty() || sides[0].size() + sides[1].size() != count) return;
@@ -180,8 +180,8 @@ class Straightening {
     for (const Index h : chain) seen_from_b.push_back(twin(h));
     const Region both = beside(sheet_, old_a.region, old_b.region, seen_from_b);
     const double most = (old_a.excess + old_b.excess).worst();
-    Patch new_a = mapped(std::move(sides[0]), both, most);
-    Patch new_b = mapped(std::move(sides[1]), both, most);
+    MappedRegion new_a = mapped(std::move(sides[0]), both, most);
+    MappedRegion new_b = mapped(std::move(sides[1]), both, most);
     const Excess after = total_ + new_a.excess + new_b.excess - old_a.excess - old_b.excess;
     const bool fits = after.worst() <= std::max(rules_.budget, total_.worst());
     if (!new_a.is_sound || !new_b.is_sound || !fits) return;
@@ -192,10 +192,11 @@ class Straightening {
   }
 
   /// A patch of some of the faces of a region, from its map. most: excess it may have at any rate.
-  [[nodiscard]] Patch mapped(std::vector<Index> faces, const Region& both, double most) const {
+  [[nodiscard]] MappedRegion mapped(std::vector<Index> faces, const Region& both,
+                                    double most) const {
     std::vector<Index> rank(owner_.size(), -1);
     for (std::size_t k = 0; k < both.faces.size(); ++k) rank[both.faces[k]] = static_cast<Index>(k);
-    Patch patch;
+    MappedRegion patch;
     for (const Index t : faces) {
       patch.region.uv.push_back(both.uv[rank[t]]);
       patch.area += sheet_.area(t);
