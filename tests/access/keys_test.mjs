@@ -143,7 +143,7 @@ test("keys take turns, and a key's own jobs go by their priority", async (t) => 
   const few = new Holder(server, modest);
   const blocker = await many.submit(...ENDLESS);
   const queued = [];
-  for (let k = 0; k < 20; ++k) queued.push(await many.submit(QUICK, 20));
+  for (let k = 0; k < 20; ++k) queued.push(await many.submit(QUICK, 100)); // some time each
   const late = await few.submit(QUICK, 8);
   const urgent = await many.submit(QUICK, 8, { Priority: "u=0" });
   await many.fetch(`/v1/jobs/${blocker}`, { method: "DELETE" });

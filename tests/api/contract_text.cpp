@@ -74,7 +74,7 @@ std::string scalar(const std::vector<std::string>& path, const std::string& key)
 std::vector<std::string> list(const std::vector<std::string>& path, const std::string& key) {
   std::vector<std::string> items;
   const std::string line = scalar(path, key);
-  if (!line.empty()) {
+  if (!line.empty() && line.front() != '&') {  // an anchor names what follows
     for (const std::string& item : split(line.substr(1, line.size() - 2), ',')) {
       items.push_back(trimmed(item));
     }

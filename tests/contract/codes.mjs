@@ -4,7 +4,6 @@
 export const kNotProvoked = {
   // the work
   solver_failed: 'no mesh is known whose system cannot be factored; repair and guards come first',
-  guarantee_failed: 'by constraints that cannot be kept: tests/pipeline',
   no_texture_coordinates: 'by packing anew what has no UVs: tests/pipeline',
   does_not_fit: 'by more texels than the pages have: tests/pipeline',
   memory_limit: 'by a worker process that takes all: tests/isolate',
