@@ -18,7 +18,7 @@ double FairShare::service(const Account& account) const {
 double FairShare::least_service() const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [owner, account] : accounts_) {
-    if (!account.idle()) least = std::min(least, service(account));
+    if (!account.idle()) least = std::min(least, account.served_seconds);
   }
   return least;
 }
