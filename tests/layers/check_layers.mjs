@@ -116,16 +116,46 @@ export function check(path, text) {
   return breaches;
 }
 
+/** The types that a header defines, with their namespaces: "unwrapd::asset::Document". */
+function typesOf(text) {
+  let space = "";
+  const types = [];
+  for (const line of text.split("\n")) {
+    space = line.match(/^namespace ([\w:]+) \{/)?.[1] ?? space;
+    const type = line.match(/^(?:struct|class|enum class) (\w+)\b[^;]*$/)?.[1];
+    if (type) types.push(`${space}::${type}`);
+  }
+  return types;
+}
+
+/**
+ * Types that two headers define under one name: the linker keeps one copy of their functions for
+ * both, without a word.
+ */
+export function twins(headers) {
+  const firstIn = new Map();
+  const breaches = [];
+  for (const { path, text } of headers)
+    for (const type of typesOf(text)) {
+      if (firstIn.has(type)) breaches.push(`${path}: ${type} is defined in ${firstIn.get(type)}, too`);
+      else firstIn.set(type, path);
+    }
+  return breaches;
+}
+
 /** All breaches of a checkout. */
 export function checkTree(root) {
   const breaches = [];
+  const headers = [];
   let count = 0;
   for (const path of files(root)) {
     if (!SOURCE.test(path)) continue;
     count += 1;
-    breaches.push(...check(path, readFileSync(join(root, path), "utf8")));
+    const text = readFileSync(join(root, path), "utf8");
+    breaches.push(...check(path, text));
+    if (/^(core|api|server|client)\/.*\.hpp$/.test(path)) headers.push({ path, text });
   }
-  return { breaches, count };
+  return { breaches: [...breaches, ...twins(headers)], count };
 }
 
 const self = fileURLToPath(import.meta.url);

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { check } from "./check_layers.mjs";
+import { check, twins } from "./check_layers.mjs";
 
 const including = (path, header) => check(path, `#include ${header}\n`);
 const refuses = (path, header) => assert.notDeepEqual(including(path, header), [], `${path} ${header}`);
@@ -62,4 +62,13 @@ test("left-overs and private paths are found", () => {
   assert.equal(check("core/a.cpp", "// TODO: later\n").length, 1);
   assert.equal(check("README.md", "see /home/x\n").length, 1);
   assert.equal(check("tests/package-lock.json", '"resolved": "https://"\n').length, 1);
+});
+
+test("no two headers define a type of one name", () => {
+  const a = { path: "core/a.hpp", text: "namespace unwrapd {\nstruct Patch {\n" };
+  const b = { path: "core/b.hpp", text: "namespace unwrapd {\nclass Patch final {\n" };
+  const other = { path: "core/c.hpp", text: "namespace unwrapd::asset {\nstruct Patch {\n" };
+  const named = { path: "core/d.hpp", text: "namespace unwrapd {\nstruct Patch;\n" };
+  assert.deepEqual(twins([a, other, named]), []);
+  assert.deepEqual(twins([a, b]), ["core/b.hpp: unwrapd::Patch is defined in core/a.hpp, too"]);
 });
