@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "error_of.hpp"
+#include "random_constraints.hpp"
 
 namespace unwrapd::api {
 namespace {
@@ -39,30 +40,11 @@ std::string object_text(const std::string& name, const std::string& value) {
   return "{\"" + name.substr(0, dot) + "\":" + object_text(name.substr(dot + 1), value) + "}";
 }
 
-double random_share(std::mt19937& rng) { return std::uniform_real_distribution<>(0, 1)(rng); }
-
 Json random_number(const OptionRow& row, std::mt19937& rng) {
   const double maximum = row.name == "padding" ? 4 : option_maximum(row, kLimits).value_or(1e6);
   const double value = row.minimum + random_share(rng) * (maximum - row.minimum);
   if (row.type == OptionType::integer) return static_cast<std::int64_t>(value);
   return value;
-}
-
-Json random_constraints(std::mt19937& rng) {
-  Json list = Json::array();
-  while (random_share(rng) < 0.7) {
-    Json one = Json::object();
-    if (random_share(rng) < 0.5) {
-      one["vertex"] = rng() % 1000;
-    } else {
-      one["at"] = {random_share(rng), -random_share(rng), 1e6 * random_share(rng)};
-    }
-    one["uv"] = {random_share(rng), 2 * random_share(rng)};
-    one["weight"] = random_share(rng) < 0.5 ? Json() : Json(1e-3 + random_share(rng));
-    one["mesh"] = rng() % 3;
-    list.push_back(one);
-  }
-  return list;
 }
 
 /// A random value that the row allows.
