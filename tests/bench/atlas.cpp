@@ -1,0 +1,124 @@
+// The atlas of each mesh in a table, measured on what is written, beside what others make of those
+// that are well known.
+//   unwrapd_atlas [--default] FILE|FOLDER...   .obj, .glb, .gltf; --default: disks stay one chart
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/asset/asset.hpp"
+#include "core/error.hpp"
+#include "core/unwrap.hpp"
+#include "tests/bench/peers.hpp"
+#include "tests/bench/written_atlas.hpp"
+
+namespace unwrapd::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<Surface> read_surfaces(const fs::path& path) {
+  asset::Input input;
+  const std::string document = read_file(path);
+  input.document = document;
+  std::vector<std::string> buffers;
+  if (path.extension() == ".gltf")
+    for (const auto& entry : fs::directory_iterator(path.parent_path()))
+      if (entry.is_regular_file() && entry.path() != path) {
+        buffers.push_back(entry.path().filename().string());
+        buffers.push_back(read_file(entry.path()));
+      }
+  for (std::size_t k = 0; k + 1 < buffers.size(); k += 2)
+    input.buffers[buffers[k]] = buffers[k + 1];
+  const asset::Asset asset = asset::read(input, {});
+  return {asset.surfaces().begin(), asset.surfaces().end()};
+}
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+void print_peer(const char* name, const PeerFigures& peer, const WrittenAtlas& own, double seam) {
+  if (peer.charts == 0) return;
+  std::printf(" | %s %d/%.4g/%.3f %.3gs: charts x%.2f seam x%.2f", name, peer.charts, peer.seam,
+              peer.fill, peer.seconds, double(own.charts) / peer.charts, seam / peer.seam);
+}
+
+void print_row(const fs::path& path, const Unwrapped& unwrapped, const WrittenAtlas& own,
+               double seconds) {
+  const Report& report = unwrapped.report;
+  std::printf("%-22.22s %7d %6d %7.3f %7.4f %7.4f %5.3f %5d %7lld %6.2f %8d %7.2f",
+              path.stem().string().c_str(), report.input.faces, own.charts, report.seam_ratio,
+              own.angle, own.area, own.fill, own.flips,
+              static_cast<long long>(own.overlapping_texels), own.gap, own.mirrored, seconds);
+  const auto peers = std::ranges::find(kPeers, path.stem().string(), &PeerRow::mesh);
+  if (peers != kPeers.end()) {
+    print_peer("xatlas", peers->xatlas, own, report.seam_ratio);
+    print_peer("UVAtlas", peers->uvatlas, own, report.seam_ratio);
+  }
+  std::puts("");
+}
+
+void show(const fs::path& path, const UnwrapOptions& options) try {
+  const std::vector<Surface> surfaces = read_surfaces(path);
+  SerialExecutor serial;
+  const double begin = cpu_seconds();
+  const Unwrapped unwrapped = unwrap(surfaces, options, {}, serial);
+  const double seconds = cpu_seconds() - begin;
+  const std::vector<WrittenFace> faces = written_faces(surfaces, unwrapped.surfaces);
+  const WrittenRules rules{.resolution = options.resolution, .most_gap = 2.0 * options.padding};
+  print_row(path, unwrapped, measure_written(faces, rules), seconds);
+} catch (const Error& e) {
+  std::printf("%-22.22s refused: %s\n", path.stem().string().c_str(), e.what());
+}
+
+std::vector<fs::path> meshes_in(const fs::path& path) {
+  if (!fs::is_directory(path)) return {path};
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::recursive_directory_iterator(path)) {
+    const std::string ending = entry.path().extension().string();
+    if (ending == ".obj" || ending == ".glb" || ending == ".gltf") found.push_back(entry.path());
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+int show_all(const std::vector<std::string>& paths, const UnwrapOptions& options) {
+  std::printf(
+      "D <= 2.02, %d texels, padding %d; CPU seconds of one thread. xatlas, UVAtlas: charts/"
+      "seam/fill and seconds as\nmeasured once elsewhere, not run here; then ours in shares "
+      "of theirs. gap: texels, at least. overlap: texels of 4096.\n",
+      options.resolution, options.padding);
+  std::printf("%-22s %7s %6s %7s %7s %7s %5s %5s %7s %6s %8s %7s\n", "mesh", "faces", "charts",
+              "seam", "D_angle", "D_area", "fill", "flips", "overlap", "gap", "mirrored",
+              "seconds");
+  for (const std::string& path : paths)
+    for (const fs::path& mesh : meshes_in(path)) {
+      show(mesh, options);
+      std::fflush(stdout);
+    }
+  return 0;
+}
+
+}  // namespace
+}  // namespace unwrapd::bench
+
+int main(int argc, char** argv) {
+  std::vector<std::string> paths(argv + 1, argv + argc);
+  unwrapd::UnwrapOptions options{.max_distortion = unwrapd::kDefaultDistortion};
+  if (std::erase(paths, "--default") > 0) options.max_distortion.reset();
+  for (const std::string& path : paths)
+    if (!std::filesystem::exists(path)) {
+      std::fprintf(stderr, "unwrapd_atlas: there is no %s\n", path.c_str());
+      return 2;
+    }
+  return unwrapd::bench::show_all(paths, options);
+}
