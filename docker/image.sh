@@ -2,6 +2,7 @@
 # Builds the container image with whichever of docker, podman and buildah works here, and tries it,
 # hardened. Called by ./dev image [build | test].
 #   UNWRAPD_IMAGE   its name (unwrapd:latest)
+#   UNWRAPD_JOBS    compilers at a time (as many as there are cores)
 #   UNWRAPD_DEBIAN  the base image (debian:bookworm-slim), for machines that cannot pull one
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -30,7 +31,7 @@ build() {
   version=$(sed -nE 's/^project\(unwrapd VERSION ([0-9.]+).*/\1/p' CMakeLists.txt)
   revision=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
   local arguments=(-f docker/Dockerfile -t "$image" --network host
-    --build-arg "DEBIAN=$debian" --build-arg "JOBS=$(nproc)"
+    --build-arg "DEBIAN=$debian" --build-arg "JOBS=${UNWRAPD_JOBS:-$(nproc)}"
     --build-arg "VERSION=$version" --build-arg "REVISION=$revision")
   # HEALTHCHECK is of docker's format; images are not looked for where there is one already.
   [[ $with == docker ]] || arguments+=(--format docker --ignorefile docker/Dockerfile.dockerignore)
