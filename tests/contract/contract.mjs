@@ -7,10 +7,11 @@ import {basename} from 'node:path';
 import {fileURLToPath} from 'node:url';
 
 import * as cases from './cases.mjs';
-import {kNotProvoked} from './codes.mjs';
+import {kProvokedElsewhere} from './codes.mjs';
 import {fuzz} from './fuzz.mjs';
 import {calls} from './fuzz_calls.mjs';
 import * as limits from './limits.mjs';
+import * as refusals from './refusals.mjs';
 import {Run} from './run.mjs';
 import {startServer} from './server.mjs';
 import {Contract, parseEvents} from './spec.mjs';
@@ -28,13 +29,18 @@ function examples(run) {
              run.contract.errorCodes().filter((code) => !shown.has(`problem_${code}`)));
 }
 
-/** Every code is provoked, but for those that are named with the reason. */
+/** Every code is provoked, here or by the test that is named. */
 function codes(run) {
   const {codes: provoked} = run.contract;
   const known = run.contract.errorCodes();
+  const elsewhere = Object.entries(kProvokedElsewhere);
   run.expect('every code was provoked or is named',
-             known.filter((code) => !provoked.has(code) && !(code in kNotProvoked)));
-  run.expect('only codes are named', Object.keys(kNotProvoked).filter((code) => !known.includes(code)));
+             known.filter((code) => !provoked.has(code) && !(code in kProvokedElsewhere)));
+  run.expect('only codes are named', elsewhere.map(([code]) => code).filter((code) => !known.includes(code)));
+  const asks = (code, file) => new RegExp(`['"]${code}['"]`).test(
+      readFileSync(new URL(`../../${file}`, import.meta.url), 'utf8'));
+  run.expect('the tests that are named ask for them',
+             elsewhere.filter(([code, file]) => !asks(code, file)).map(([code]) => code));
 }
 
 /** Runs one group; an exception is one failure and does not stop the others. */
@@ -59,7 +65,7 @@ async function main() {
     await group(run, name, () => action(run, server.base));
   }
   run.expectEqual('exit code after SIGTERM', await server.stop(), 0);
-  for (const [name, action] of Object.entries(limits)) {
+  for (const [name, action] of Object.entries({...limits, ...refusals})) {
     await group(run, name, () => action(run, binary));
   }
   run.expect('every documented status was shown', run.contract.unseen());

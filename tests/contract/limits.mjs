@@ -4,7 +4,7 @@ import {failure, kSubmissions, newId} from './cases/shared.mjs';
 import {openStream} from './http.mjs';
 import * as meshes from './meshes.mjs';
 import {kOutcomes} from './run.mjs';
-import {startServer} from './server.mjs';
+import {withServer} from './server.mjs';
 
 const kGlb = {'Content-Type': 'model/gltf-binary'};
 const kSlow = {'stop.iterations': 10_000};  // minutes of work, unless it is cancelled
@@ -18,15 +18,6 @@ async function eventually(ask, done) {
     const answer = await ask();
     if (done(answer) || Date.now() > end) return answer;
     await new Promise((resolve) => setTimeout(resolve, 50));
-  }
-}
-
-async function withServer(binary, flags, use) {
-  const server = await startServer(binary, flags);
-  try {
-    await use(server);
-  } finally {
-    await server.stop();
   }
 }
 

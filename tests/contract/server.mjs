@@ -29,6 +29,16 @@ export async function startServer(binary, flags = []) {
           log: () => Buffer.concat(log).toString()};
 }
 
+/** Starts unwrapd, uses it, and stops it whatever came of that. */
+export async function withServer(binary, flags, use) {
+  const server = await startServer(binary, flags);
+  try {
+    await use(server);
+  } finally {
+    await server.stop();
+  }
+}
+
 async function address(child, exited, log) {
   const lines = readline.createInterface({input: child.stdout});
   const first = new Promise((resolve) => lines.once('line', resolve));

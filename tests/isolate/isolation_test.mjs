@@ -100,7 +100,7 @@ test('a worker has bounded memory', async () => {
 for (const what of ['open', 'inherit', 'environment']) {
   test(`a worker finds nothing: ${what}`, async () => {
     const job = await done(isolated, doing(what));
-    assert.equal(job.problem.detail, 'It is closed.');
+    assert.deepEqual([job.problem.code, job.problem.detail], ['solver_failed', 'It is closed.']);
   });
 }
 

@@ -69,9 +69,18 @@ export async function preferWait(run, base) {
   run.expectEqual('the OBJ has texture coordinates', /^vt /m.test(result.body.toString()), true);
 }
 
+/** Options that a mesh without UVs cannot be done with. */
+const kRefusedWith = {
+  no_texture_coordinates: {repack_only: true},
+  does_not_fit: {texels_per_unit: 1e5, resolution: 64},
+};
+
 export async function failedJobs(run, base) {
   for (const [code, body] of Object.entries(meshes.kRefused)) {
     await failure(run, base, {body, code, status: statusOf(code)});
+  }
+  for (const [code, query] of Object.entries(kRefusedWith)) {
+    await failure(run, base, {body: meshes.obj(), query, code, status: 422});
   }
 }
 

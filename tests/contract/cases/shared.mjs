@@ -23,12 +23,12 @@ export async function validGltf(run, name, bytes) {
 }
 
 /** Both ways to send an asset that cannot be done, and what its job answers afterwards. */
-export async function failure(run, base, {body, code, status}) {
+export async function failure(run, base, {body, query, code, status}) {
   const type = {'Content-Type': 'application/octet-stream'};
-  const direct = await run.json(base, 'unwrap', {headers: type, body, status});
+  const direct = await run.json(base, 'unwrap', {query, headers: type, body, status});
   run.expectEqual(`unwrap's code at ${status}`, direct.code, code);
   const created = await run.json(base, 'createJob',
-                                 {headers: {...type, Prefer: 'wait=30'}, body, status: 200});
+                                 {query, headers: {...type, Prefer: 'wait=30'}, body, status: 200});
   run.expectEqual(`a job of ${code}`, created.state, 'failed');
   run.expectEqual(`its problem`, created.problem?.code, code);
   for (const id of kOutcomes) {
