@@ -1,92 +1,154 @@
 // Panels are read once in each direction, and reading them is what a solve costs: blocks of four
-// columns share every load and store of the vectors. The way up reads every number before the one
-// read last, from the end of the last panel to the start of the first: processors foresee a walk
-// backwards as well as one forwards, but not panels read forwards one before the other (up to 2.5
-// times slower, and asking for them ahead by instructions did not help).
+// columns share every load and store of the vectors, and a register of four numbers holds two rows
+// of both right-hand sides. The way up reads every number before the one read last, from the end of
+// the last panel to the start of the first: processors foresee a walk backwards as well as one
+// forwards, but not panels read forwards one before the other (up to 2.5 times slower, and asking
+// for them ahead by instructions did not help).
 #include "core/linear/front_panel.hpp"
 
 namespace unwrapd {
 namespace {
 
-/// Two numbers in one register of the x86-64 baseline.
+/// Two numbers in one register of the x86-64 baseline; four in one of AVX2.
 using Duo = double __attribute__((vector_size(16), aligned(8), may_alias));
+using Quad = double __attribute__((vector_size(32), aligned(8), may_alias));
 
-const Duo& duo(const double* x) { return *reinterpret_cast<const Duo*>(x); }
-Duo& duo(double* x) { return *reinterpret_cast<Duo*>(x); }
+/// Two numbers of a panel, for each right-hand side.
+[[gnu::always_inline]] inline void spread(const double* from, Duo& to) {
+  to = *reinterpret_cast<const Duo*>(from);
+}
+[[gnu::always_inline]] inline void spread(const double* from, Quad& to) {
+  const Duo two = *reinterpret_cast<const Duo*>(from);
+  to = __builtin_shufflevector(two, two, 0, 1, 0, 1);
+}
 
-/// A block of kWidth columns of `length` rows each.
-template <std::size_t kWidth>
-void add_block(const double* block, std::size_t length, PanelVectors x, PanelVectors sum) {
-  Duo xu[kWidth], xv[kWidth];
-  for (std::size_t k = 0; k < kWidth; ++k) {
-    xu[k] = Duo{x.u[k], x.u[k]};
-    xv[k] = Duo{x.v[k], x.v[k]};
+struct Baseline {
+  using Lanes = Duo;
+};
+struct Avx2 {
+  using Lanes = Quad;
+};
+
+/// Registers::Lanes: the vector of doubles of one register. No result depends on its length.
+template <typename Registers>
+class Kernels {
+ public:
+  [[gnu::always_inline]] static void multiply(const double* panel, PanelShape shape, const Vec2* x,
+                                              PanelRows sum) {
+    for (std::size_t k = 0; k < shape.pivots; k += kPack)
+      at_block(
+          panel, shape, k,
+          [&]<std::size_t kWidth>(const double* block, std::size_t length) __attribute__((
+              always_inline)) { add_block<kWidth>(block, length, x + k, sum + row_entry(k)); });
   }
-  for (std::size_t r = 0; r < length; r += kDuo) {
-    Duo u = duo(sum.u + r), v = duo(sum.v + r);
-    for (std::size_t k = 0; k < kWidth; ++k) {
-      const Duo p = duo(block + r * kWidth + k * kDuo);
-      u += p * xu[k];
-      v += p * xv[k];
+
+  [[gnu::always_inline]] static void multiply_transposed(const double* panel, PanelShape shape,
+                                                         const double* y, Vec2* x) {
+    for (std::size_t k = padded(shape.pivots, kPack); k > 0;) {
+      k -= kPack;
+      at_block(
+          panel, shape, k,
+          [&]<std::size_t kWidth>(const double* block, std::size_t length) __attribute__((
+              always_inline)) { dot_block<kWidth>(block, length, y + row_entry(k), x + k); });
     }
-    duo(sum.u + r) = u;
-    duo(sum.v + r) = v;
   }
-}
 
-template <std::size_t kWidth>
-void dot_block(const double* block, std::size_t length, PanelVectors y, PanelVectors x) {
-  Duo u[kWidth] = {}, v[kWidth] = {};
-  for (std::size_t r = length; r > 0;) {
-    r -= kDuo;
-    const Duo yu = duo(y.u + r), yv = duo(y.v + r);
+ private:
+  using Lanes = typename Registers::Lanes;
+  static constexpr std::size_t kLanes = sizeof(Lanes) / sizeof(double);
+  static constexpr std::size_t kTwoRows = 2 * kDuo;  ///< numbers of two rows, both right-hand sides
+  static constexpr std::size_t kParts = kTwoRows / kLanes;
+
+  [[gnu::always_inline]] static Lanes& lanes(double* x) { return *reinterpret_cast<Lanes*>(x); }
+  [[gnu::always_inline]] static const Lanes& lanes(const double* x) {
+    return *reinterpret_cast<const Lanes*>(x);
+  }
+
+  /// A block of kWidth columns of `length` rows each.
+  template <std::size_t kWidth>
+  [[gnu::always_inline]] static void add_block(const double* block, std::size_t length,
+                                               const Vec2* x, PanelRows sum) {
+    Lanes weight[kWidth][kParts];
     for (std::size_t k = 0; k < kWidth; ++k) {
-      const Duo p = duo(block + r * kWidth + k * kDuo);
-      u[k] += p * yu;
-      v[k] += p * yv;
+      const double both[kTwoRows] = {x[k].x(), x[k].x(), x[k].y(), x[k].y()};
+      for (std::size_t p = 0; p < kParts; ++p) weight[k][p] = lanes(both + p * kLanes);
+    }
+    for (std::size_t r = 0; r < length; r += kDuo, sum += kTwoRows) {
+      Lanes total[kParts];
+      for (std::size_t p = 0; p < kParts; ++p) total[p] = lanes(sum + p * kLanes);
+      for (std::size_t k = 0; k < kWidth; ++k) {
+        Lanes entry;
+        spread(block + r * kWidth + k * kDuo, entry);
+        for (std::size_t p = 0; p < kParts; ++p) total[p] += entry * weight[k][p];
+      }
+      for (std::size_t p = 0; p < kParts; ++p) lanes(sum + p * kLanes) = total[p];
     }
   }
-  for (std::size_t k = 0; k < kWidth; ++k) {
-    x.u[k] = u[k][0] + u[k][1];
-    x.v[k] = v[k][0] + v[k][1];
+
+  template <std::size_t kWidth>
+  [[gnu::always_inline]] static void dot_block(const double* block, std::size_t length,
+                                               const double* y, Vec2* x) {
+    Lanes total[kWidth][kParts] = {};
+    for (std::size_t r = length; r > 0;) {
+      r -= kDuo;
+      for (std::size_t k = 0; k < kWidth; ++k) {
+        Lanes entry;
+        spread(block + r * kWidth + k * kDuo, entry);
+        for (std::size_t p = 0; p < kParts; ++p)
+          total[k][p] += entry * lanes(y + row_entry(r) + p * kLanes);
+      }
+    }
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      double both[kTwoRows];
+      for (std::size_t p = 0; p < kParts; ++p) lanes(both + p * kLanes) = total[k][p];
+      x[k] = Vec2(both[0] + both[1], both[2] + both[3]);
+    }
   }
+
+  /// Calls visit<width>(first entry, rows) for the block of columns that starts with column k.
+  template <typename Visit>
+  [[gnu::always_inline]] static void at_block(const double* panel, PanelShape shape, std::size_t k,
+                                              Visit visit) {
+    const std::size_t length = shape.height() - k;
+    const double* block = panel + shape.block_begin(k);
+    switch (shape.width(k)) {
+      case 1:
+        return visit.template operator()<1>(block, length);
+      case 2:
+        return visit.template operator()<2>(block, length);
+      case 3:
+        return visit.template operator()<3>(block, length);
+      default:
+        return visit.template operator()<kPack>(block, length);
+    }
+  }
+};
+
+void multiply_baseline(const double* panel, PanelShape shape, const Vec2* x, PanelRows sum) {
+  Kernels<Baseline>::multiply(panel, shape, x, sum);
 }
 
-/// Calls visit<width>(first column, first entry, rows) for a block of columns.
-template <typename Visit>
-void at_block(const double* panel, PanelShape shape, std::size_t k, Visit visit) {
-  const std::size_t length = shape.height() - k;
-  const double* block = panel + shape.block_begin(k);
-  switch (shape.width(k)) {
-    case 1:
-      return visit.template operator()<1>(block, length);
-    case 2:
-      return visit.template operator()<2>(block, length);
-    case 3:
-      return visit.template operator()<3>(block, length);
-    default:
-      return visit.template operator()<kPack>(block, length);
-  }
+void transposed_baseline(const double* panel, PanelShape shape, const double* y, Vec2* x) {
+  Kernels<Baseline>::multiply_transposed(panel, shape, y, x);
 }
 
-PanelVectors from(PanelVectors x, std::size_t k) { return {x.u + k, x.v + k}; }
+[[gnu::target("avx2")]] void multiply_avx2(const double* panel, PanelShape shape, const Vec2* x,
+                                           PanelRows sum) {
+  Kernels<Avx2>::multiply(panel, shape, x, sum);
+}
+
+[[gnu::target("avx2")]] void transposed_avx2(const double* panel, PanelShape shape, const double* y,
+                                             Vec2* x) {
+  Kernels<Avx2>::multiply_transposed(panel, shape, y, x);
+}
 
 }  // namespace
 
-void multiply_panel(const double* panel, PanelShape shape, PanelVectors x, PanelVectors sum) {
-  for (std::size_t k = 0; k < shape.pivots; k += kPack)
-    at_block(panel, shape, k, [&]<std::size_t kWidth>(const double* block, std::size_t length) {
-      add_block<kWidth>(block, length, from(x, k), from(sum, k));
-    });
-}
+PanelKernels baseline_panel_kernels() { return {multiply_baseline, transposed_baseline}; }
 
-void multiply_transposed(const double* panel, PanelShape shape, PanelVectors y, PanelVectors x) {
-  for (std::size_t k = padded(shape.pivots, kPack); k > 0;) {
-    k -= kPack;
-    at_block(panel, shape, k, [&]<std::size_t kWidth>(const double* block, std::size_t length) {
-      dot_block<kWidth>(block, length, from(y, k), from(x, k));
-    });
-  }
+PanelKernels panel_kernels() {
+  static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
+  return has_avx2 ? PanelKernels{multiply_avx2, transposed_avx2} : baseline_panel_kernels();
 }
 
 }  // namespace unwrapd

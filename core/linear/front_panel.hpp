@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/mesh/tri_mesh.hpp"
+
 namespace unwrapd {
 
 inline constexpr std::size_t kPack = 4;  ///< columns that are worked on at once
@@ -39,16 +41,23 @@ struct PanelShape {
   }
 };
 
-/// Two right-hand sides over the rows of one panel, height() entries each.
-struct PanelVectors {
-  double* u;
-  double* v;
+/// Two right-hand sides u and v over the rows of one panel: 2 * height() numbers, for every two
+/// rows u of both and then v of both.
+using PanelRows = double*;
+
+/// Where u of row r is; v is kDuo after it.
+constexpr std::size_t row_entry(std::size_t r) { return 2 * (r / kDuo * kDuo) + r % kDuo; }
+
+/// Products of a panel with two right-hand sides. The same bits on any processor.
+struct PanelKernels {
+  /// sum += panel * x: one x a pivot.
+  void (*multiply)(const double* panel, PanelShape shape, const Vec2* x, PanelRows sum);
+  /// x = panel^T * y
+  void (*multiply_transposed)(const double* panel, PanelShape shape, const double* y, Vec2* x);
 };
 
-/// sum += panel * x: x has pivots entries, sum height(). They do not overlap.
-void multiply_panel(const double* panel, PanelShape shape, PanelVectors x, PanelVectors sum);
-
-/// x = panel^T * y: y has height() entries, x pivots. They do not overlap.
-void multiply_transposed(const double* panel, PanelShape shape, PanelVectors y, PanelVectors x);
+/// With the registers of this processor; with those of the x86-64 baseline.
+PanelKernels panel_kernels();
+PanelKernels baseline_panel_kernels();
 
 }  // namespace unwrapd

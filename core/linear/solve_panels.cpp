@@ -10,19 +10,23 @@ namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// The vectors over one panel's rows, reused from panel to panel.
+/// Both right-hand sides over one panel's rows, reused from panel to panel.
 class Workspace {
  public:
-  explicit Workspace(std::size_t height) : numbers_(4 * height) {
-    const auto part = [&](std::size_t k) { return numbers_.data() + k * height; };
-    tall = {part(0), part(1)};
-    pivots = {part(2), part(3)};
-  }
+  explicit Workspace(std::size_t height) : rows_(2 * height) {}
 
-  PanelVectors tall{}, pivots{};
+  [[nodiscard]] PanelRows rows() { return rows_.data(); }
+  [[nodiscard]] Vec2 row(std::size_t r) const {
+    return {rows_[row_entry(r)], rows_[row_entry(r) + kDuo]};
+  }
+  void set_row(std::size_t r, const Vec2& x) {
+    rows_[row_entry(r)] = x.x();
+    rows_[row_entry(r) + kDuo] = x.y();
+  }
+  void clear(std::size_t height) { std::fill_n(rows_.data(), 2 * height, 0.0); }
 
  private:
-  std::vector<double> numbers_;
+  std::vector<double> rows_;
 };
 
 class Sweep {
@@ -52,7 +56,7 @@ class Sweep {
 
   void down_branch(std::size_t b, Vec2* sums) const {
     const Branch branch = analysis_.branches.all[b];
-    const Workspace work = workspace(branch);
+    Workspace work = workspace(branch);
     const Index end = nodes_.first[branch.end];
     for (std::size_t s = branch.first; s < branch.end; ++s) {
       eliminate(s, work);
@@ -61,7 +65,7 @@ class Sweep {
       const auto own = static_cast<std::size_t>(outer - rows.begin());
       subtract(rows.first(own), work, analysis_.shape(s).pivots);
       for (std::size_t i = own, r = analysis_.shape(s).pivots + own; i < rows.size(); ++i, ++r)
-        sums[analysis_.branches.shared[at(rows[i])]] += Vec2(work.tall.u[r], work.tall.v[r]);
+        sums[analysis_.branches.shared[at(rows[i])]] += work.row(r);
     }
   }
 
@@ -70,7 +74,7 @@ class Sweep {
     for (std::size_t b = 0; b < branches.all.size(); ++b)
       for (Index row : nodes_.below(branches.all[b].root()))
         x_[at(row)] -= sums_[b * branches.shared_count + at(branches.shared[at(row)])];
-    const Workspace work = workspace({0, nodes_.count()});
+    Workspace work = workspace({0, nodes_.count()});
     branches.for_each_of_trunk(
         nodes_.count(),
         [&](std::size_t s) {
@@ -81,7 +85,7 @@ class Sweep {
   }
 
   void up_trunk() const {
-    const Workspace work = workspace({0, nodes_.count()});
+    Workspace work = workspace({0, nodes_.count()});
     const std::vector<Branch>& all = analysis_.branches.all;
     std::size_t end = nodes_.count();
     for (std::size_t b = all.size() + 1; b-- > 0;) {
@@ -93,46 +97,39 @@ class Sweep {
 
   void up_branch(std::size_t b) const {
     const Branch branch = analysis_.branches.all[b];
-    const Workspace work = workspace(branch);
+    Workspace work = workspace(branch);
     for (std::size_t s = branch.end; s-- > branch.first;) substitute(s, work);
   }
 
-  /// y1 = L11^-1 b1; work.tall then has L21 y1 below the pivots.
-  void eliminate(std::size_t s, const Workspace& work) const {
+  /// y1 = L11^-1 b1; work then has L21 y1 below the pivots.
+  void eliminate(std::size_t s, Workspace& work) const {
     const PanelShape shape = analysis_.shape(s);
-    const PanelVectors tall = work.tall, pivots = work.pivots;
     Vec2* own = x_.data() + nodes_.first[s];
-    for (std::size_t k = 0; k < shape.pivots; ++k)
-      pivots.u[k] = own[k].x(), pivots.v[k] = own[k].y();
-    std::fill_n(tall.u, shape.height(), 0.0);
-    std::fill_n(tall.v, shape.height(), 0.0);
-    multiply_panel(panels_ + analysis_.panel_begin[s], shape, pivots, tall);
-    for (std::size_t k = 0; k < shape.pivots; ++k) own[k] = {tall.u[k], tall.v[k]};
+    work.clear(shape.height());
+    kernels_.multiply(panels_ + analysis_.panel_begin[s], shape, own, work.rows());
+    for (std::size_t k = 0; k < shape.pivots; ++k) own[k] = work.row(k);
   }
 
   /// b2 -= L21 y1
   void subtract(std::span<const Index> rows, const Workspace& work, std::size_t r) const {
-    for (Index row : rows) x_[at(row)] -= Vec2(work.tall.u[r], work.tall.v[r]), ++r;
+    for (Index row : rows) x_[at(row)] -= work.row(r++);
   }
 
   /// x1 = L11^-T (y1 - L21^T x2).
-  void substitute(std::size_t s, const Workspace& work) const {
+  void substitute(std::size_t s, Workspace& work) const {
     const PanelShape shape = analysis_.shape(s);
-    const PanelVectors tall = work.tall, pivots = work.pivots;
     Vec2* own = x_.data() + nodes_.first[s];
-    for (std::size_t k = 0; k < shape.pivots; ++k) tall.u[k] = own[k].x(), tall.v[k] = own[k].y();
+    for (std::size_t k = 0; k < shape.pivots; ++k) work.set_row(k, own[k]);
     std::size_t r = shape.pivots;
-    for (Index row : nodes_.below(s))
-      tall.u[r] = -x_[at(row)].x(), tall.v[r] = -x_[at(row)].y(), ++r;
-    std::fill(tall.u + r, tall.u + shape.height(), 0.0);
-    std::fill(tall.v + r, tall.v + shape.height(), 0.0);
-    multiply_transposed(panels_ + analysis_.panel_begin[s], shape, tall, pivots);
-    for (std::size_t k = 0; k < shape.pivots; ++k) own[k] = {pivots.u[k], pivots.v[k]};
+    for (Index row : nodes_.below(s)) work.set_row(r++, -x_[at(row)]);
+    if (r < shape.height()) work.set_row(r, Vec2::Zero());
+    kernels_.multiply_transposed(panels_ + analysis_.panel_begin[s], shape, work.rows(), own);
   }
 
   const Analysis& analysis_;
   const Supernodes& nodes_;
   const double* panels_;
+  const PanelKernels kernels_ = panel_kernels();
   std::span<Vec2> x_;
   std::vector<Vec2> sums_;  ///< of each branch: what it subtracts from the columns above
 };

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "core/cancel.hpp"
-#include "core/measure/distortion.hpp"
 
 namespace unwrapd {
 namespace {
@@ -24,7 +23,6 @@ constexpr int kHalvings = 3;
 Descent::Descent(const Assembly& assembly, UvMap start, const Rigidity& rigidity,
                  Executor& executor)
     : global_(assembly.global),
-      disk_(assembly.disk),
       objective_(assembly.disk, rigidity, assembly.holds, executor),
       memory_(executor),
       solution_{.uv = std::move(start), .energy = {}},
@@ -34,18 +32,16 @@ Descent::Descent(const Assembly& assembly, UvMap start, const Rigidity& rigidity
                        &direction_, &force_at_trial_})
     vector->resize(n);
   solution_.energy.push_back(objective_.evaluate(solution_.uv, now_.force));
-  if (std::isfinite(rigidity.lambda))
-    least_area_ = kMinAreaShare * uv_area(disk_.rest, disk_.faces, solution_.uv);
+  if (std::isfinite(rigidity.lambda)) least_area_ = kMinAreaShare * objective_.uv_area();
 }
 
 double Descent::try_step(double length, std::span<const Vec2> direction) {
   for (std::size_t v = 0; v < trial_.size(); ++v)
     trial_[v] = solution_.uv[v] + length * direction[v];
-  if (least_area_ > 0 && uv_area(disk_.rest, disk_.faces, trial_) < least_area_) {
-    solution_.stop_reason = StopReason::collapse_guard;
-    return std::numeric_limits<double>::infinity();
-  }
-  return objective_.evaluate(trial_, force_at_trial_);
+  const double energy = objective_.evaluate(trial_, force_at_trial_);
+  if (!(objective_.uv_area() < least_area_)) return energy;
+  solution_.stop_reason = StopReason::collapse_guard;
+  return std::numeric_limits<double>::infinity();
 }
 
 bool Descent::advance(double slope, std::span<const Vec2> direction) {

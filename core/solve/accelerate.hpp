@@ -43,7 +43,6 @@ class Descent {
   double try_step(double length, std::span<const Vec2> direction);
 
   const GlobalStep& global_;
-  const Disk& disk_;
   Objective objective_;
   StepMemory memory_;
   Solution solution_;

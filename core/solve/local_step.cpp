@@ -7,21 +7,79 @@
 // by C2 of Eq. (B3), which vanishes at quarter turns:
 //   g(r) = w r^3 + (1 - 2w) r - (1 - w) Q,   w = lambda / (1 + lambda),   Q = |(e, h)|.
 // w = 0 is ASAP (r = Q) and w = 1 is ARAP (r = 1).
+// local_step() fits four triangles at once (fit_abreast.hpp).
 #include "core/solve/local_step.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
+#include "core/solve/fit_abreast.hpp"
+
 namespace unwrapd {
 namespace {
 
-constexpr int kMaxNewtonSteps = 64;         // median 6; the triple root at w = 1/2 takes 47
-constexpr double kNewtonTolerance = 1e-15;  // relative to r
-constexpr std::size_t kBlock = 4096;  // faces a block: fixed, so sums do not depend on threads
+constexpr std::size_t kBlock = 1024;  // groups a block: fixed, so sums do not depend on threads
 
-/// The positive root of g. g is convex there and g(max(1, Q)) >= 0: Newton descends to the root.
+FaceGroup group_of(std::span<const RestTriangle> rest, std::span<const Triangle> faces) {
+  FaceGroup group{};
+  for (std::size_t k = 0; k < kFacesAbreast; ++k) {
+    const std::size_t t = std::min(k, faces.size() - 1);
+    const Vec2 first = -rest[t].edge[0], second = rest[t].edge[2];
+    const double length = first.norm(), height = 2 * rest[t].area / length;
+    for (std::size_t i = 0; i < 3; ++i) group.corner[i][k] = faces[t][i];
+    group.across[k] = 1 / length;
+    group.shear[k] = -first.dot(second) / (length * length * height);
+    group.up[k] = 1 / height;
+    group.area[k] = k == t ? rest[t].area : 0;
+  }
+  return group;
+}
+
+/// What one thread fits at once.
+struct FitBlock {
+  std::span<const FaceGroup> groups;
+  std::span<const Vec2> uv;
+  Rigidity rigidity;
+  Vec2* residual;
+};
+
+template <typename Registers>
+[[gnu::always_inline]] inline LocalSums fit_block(const FitBlock& block) {
+  FitAbreast<Registers> fit(block.uv, block.rigidity);
+  for (std::size_t g = 0; g < block.groups.size(); ++g)
+    fit.add(block.groups[g], block.residual + 3 * kFacesAbreast * g);
+  return fit.sums();
+}
+
+LocalSums fit_block_on_baseline(const FitBlock& block) { return fit_block<TwoLanes>(block); }
+
+[[gnu::target("avx2")]] LocalSums fit_block_avx2(const FitBlock& block) {
+  return fit_block<FourLanes>(block);
+}
+
+using FitBlocks = LocalSums (*)(const FitBlock& block);
+
+LocalSums fit_all(const FitBlock& all, FitBlocks fit, Executor& executor) {
+  const std::size_t count = all.groups.size();
+  std::vector<LocalSums> sums((count + kBlock - 1) / kBlock);
+  executor.for_each_block(static_cast<int>(sums.size()), [&](int b) {
+    const std::size_t first = static_cast<std::size_t>(b) * kBlock;
+    const std::size_t size = std::min(kBlock, count - first);
+    sums[static_cast<std::size_t>(b)] = fit({all.groups.subspan(first, size), all.uv, all.rigidity,
+                                             all.residual + 3 * kFacesAbreast * first});
+  });
+  LocalSums total;
+  for (const LocalSums& own : sums) total.energy += own.energy, total.uv_area += own.uv_area;
+  return total;
+}
+
+}  // namespace
+
+/// g is convex there and g(max(1, Q)) >= 0: Newton descends to the root.
 double hybrid_scale(double lambda, double q) {
+  constexpr int kMaxNewtonSteps = 64;         // median 6; the triple root at w = 1/2 takes 47
+  constexpr double kNewtonTolerance = 1e-15;  // relative to r
   if (std::isinf(lambda)) return 1;
   const double w = lambda / (1 + lambda), v = 1 / (1 + lambda);  // v: 1 - w without its rounding
   double r = std::max(1.0, q);
@@ -34,22 +92,6 @@ double hybrid_scale(double lambda, double q) {
   }
   return r;
 }
-
-/// L x
-Vec2 apply(const Similarity& l, const Vec2& x) {
-  return {l.a * x.x() + l.b * x.y(), -l.b * x.x() + l.a * x.y()};
-}
-
-void write_residual(const RestTriangle& rest, const UvEdges& u, const Similarity& fit,
-                    Vec2* residual) {
-  std::array<Vec2, 3> d;
-  for (std::size_t i = 0; i < 3; ++i) d[i] = rest.cot[i] * (apply(fit, rest.edge[i]) - u[i]);
-  residual[0] = d[0] - d[2];
-  residual[1] = d[1] - d[0];
-  residual[2] = d[2] - d[1];
-}
-
-}  // namespace
 
 Similarity fit_similarity(const Jacobian& j, double lambda) {
   assert(lambda >= 0);
@@ -66,28 +108,30 @@ double fit_energy(const Jacobian& j, const Similarity& fit, double area, double 
   return area * (misfit + (std::isinf(lambda) ? 0 : lambda * excess * excess));
 }
 
-double local_step(const Triangulation& mesh, std::span<const Vec2> uv, const Rigidity& rigidity,
-                  std::span<Vec2> residual, Executor& executor) {
-  const std::size_t count = mesh.faces.size();
-  assert(mesh.rest.size() == count && residual.size() == 3 * count);
-  std::vector<double> energy((count + kBlock - 1) / kBlock, 0.0);
-  executor.for_each_block(static_cast<int>(energy.size()), [&](int block) {
-    const auto b = static_cast<std::size_t>(block);
-    double sum = 0;
-    for (std::size_t t = b * kBlock; t < std::min(count, (b + 1) * kBlock); ++t) {
-      const RestTriangle& rest = mesh.rest[t];
-      const UvEdges u = uv_edges(mesh.faces[t], uv);
-      const Jacobian j = jacobian(rest, u);
-      const double lambda = rigidity.at(rest.area);
-      const Similarity fit = fit_similarity(j, lambda);
-      sum += fit_energy(j, fit, rest.area, lambda);
-      write_residual(rest, u, fit, &residual[3 * t]);
-    }
-    energy[b] = sum;
-  });
-  double total = 0;
-  for (double e : energy) total += e;
-  return total;
+std::vector<FaceGroup> face_groups(std::span<const RestTriangle> rest,
+                                   std::span<const Triangle> faces) {
+  assert(rest.size() == faces.size());
+  std::vector<FaceGroup> groups;
+  groups.reserve((faces.size() + kFacesAbreast - 1) / kFacesAbreast);
+  for (std::size_t t = 0; t < faces.size(); t += kFacesAbreast) {
+    const std::size_t count = std::min(kFacesAbreast, faces.size() - t);
+    groups.push_back(group_of(rest.subspan(t, count), faces.subspan(t, count)));
+  }
+  return groups;
+}
+
+LocalSums local_step(std::span<const FaceGroup> groups, std::span<const Vec2> uv,
+                     const Rigidity& rigidity, std::span<Vec2> residual, Executor& executor) {
+  assert(residual.size() == 3 * kFacesAbreast * groups.size());
+  static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
+  return fit_all({groups, uv, rigidity, residual.data()},
+                 has_avx2 ? fit_block_avx2 : fit_block_on_baseline, executor);
+}
+
+LocalSums local_step_on_baseline(std::span<const FaceGroup> groups, std::span<const Vec2> uv,
+                                 const Rigidity& rigidity, std::span<Vec2> residual,
+                                 Executor& executor) {
+  return fit_all({groups, uv, rigidity, residual.data()}, fit_block_on_baseline, executor);
 }
 
 }  // namespace unwrapd

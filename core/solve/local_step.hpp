@@ -1,6 +1,7 @@
 #pragma once
 // The local step: each triangle takes the similarity that fits its image best (Secs. 4.1, 5).
 
+#include <array>
 #include <limits>
 #include <span>
 #include <vector>
@@ -25,22 +26,48 @@ struct Similarity {
   double a = 1, b = 0;
 };
 
+/// The scale of the best similarity for a Jacobian whose own is q: the positive root of
+/// lambda r (r^2 - 1) + r - q; 1 where lambda is infinite.
+double hybrid_scale(double lambda, double q);
+
 /// The minimiser of A_t |J - L|^2 + A_t lambda (a^2 + b^2 - 1)^2 over all similarities L.
 Similarity fit_similarity(const Jacobian& j, double lambda);
 
 /// A_t |J - L|^2 + A_t lambda (a^2 + b^2 - 1)^2 for the fitted L.
 double fit_energy(const Jacobian& j, const Similarity& fit, double area, double lambda);
 
-/// Rest triangles and the faces that they belong to, in step.
-struct Triangulation {
-  std::span<const RestTriangle> rest;
-  std::span<const Triangle> faces;
+inline constexpr std::size_t kFacesAbreast = 4;
+
+/// Four faces side by side, as the local step reads them. Each triangle lies with corner 0 at the
+/// origin and corner 1 on the x axis: [x^1 x^2]^-1 = [across shear; 0 up]. The last group is filled
+/// up with copies of its last face, of area 0.
+struct FaceGroup {
+  template <typename T>
+  using Each = std::array<T, kFacesAbreast>;
+
+  std::array<Each<Index>, 3> corner;
+  Each<double> across, shear, up, area;
 };
 
-/// Fits every triangle. Returns the energy of uv; residual[3t+i] becomes the share of corner i of
-/// face t in the right-hand side of Eq. (4) minus its left-hand side.
-/// residual has 3 entries a face. The sum is the same for any executor.
-double local_step(const Triangulation& mesh, std::span<const Vec2> uv, const Rigidity& rigidity,
-                  std::span<Vec2> residual, Executor& executor);
+/// In the order of the faces: rest has one entry a face.
+std::vector<FaceGroup> face_groups(std::span<const RestTriangle> rest,
+                                   std::span<const Triangle> faces);
+
+/// Of a map.
+struct LocalSums {
+  double energy = 0;   ///< under the best fits
+  double uv_area = 0;  ///< sum of A_t |det J_t|
+};
+
+/// Fits every triangle. residual[3t+i] becomes the share of corner i of face t in the right-hand
+/// side of Eq. (4) minus its left-hand side; 3 * kFacesAbreast entries a group. The same bits for
+/// any executor and on any processor.
+LocalSums local_step(std::span<const FaceGroup> groups, std::span<const Vec2> uv,
+                     const Rigidity& rigidity, std::span<Vec2> residual, Executor& executor);
+
+/// The same with the registers of the x86-64 baseline, whatever the processor has.
+LocalSums local_step_on_baseline(std::span<const FaceGroup> groups, std::span<const Vec2> uv,
+                                 const Rigidity& rigidity, std::span<Vec2> residual,
+                                 Executor& executor);
 
 }  // namespace unwrapd

@@ -31,7 +31,8 @@ Objective::Objective(const Disk& disk, const Rigidity& rigidity, const Holds& ho
       rigidity_(rigidity),
       holds_(holds),
       executor_(executor),
-      residual_(3 * disk.faces.size()) {}
+      groups_(face_groups(disk.rest, disk.faces)),
+      residual_(3 * kFacesAbreast * groups_.size()) {}
 
 double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const {
   double energy = 0;
@@ -46,12 +47,13 @@ double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) 
 
 double Objective::evaluate(std::span<const Vec2> uv, std::span<Vec2> force) {
   assert(uv.size() == disk_.positions.size() && force.size() == uv.size());
-  const double fits = local_step({disk_.rest, disk_.faces}, uv, rigidity_, residual_, executor_);
+  const LocalSums fits = local_step(groups_, uv, rigidity_, residual_, executor_);
+  uv_area_ = fits.uv_area;
   gather(disk_.corners, residual_, force, executor_);
   const double springs = pull_springs(uv, force);
   for (const FixedPoint& point : holds_.fixed)
     force[static_cast<std::size_t>(point.vertex)].setZero();
-  return fits + springs;
+  return fits.energy + springs;
 }
 
 }  // namespace unwrapd

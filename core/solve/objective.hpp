@@ -22,6 +22,9 @@ class Objective {
   /// have one entry a vertex. The same for any executor.
   double evaluate(std::span<const Vec2> uv, std::span<Vec2> force);
 
+  /// The area that the images of the map evaluated last cover, counted with multiplicity.
+  [[nodiscard]] double uv_area() const { return uv_area_; }
+
  private:
   double pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const;
 
@@ -29,7 +32,9 @@ class Objective {
   Rigidity rigidity_;
   const Holds& holds_;
   Executor& executor_;
-  std::vector<Vec2> residual_;  // one a corner
+  std::vector<FaceGroup> groups_;
+  std::vector<Vec2> residual_;  // one a corner, those that fill up the last group included
+  double uv_area_ = 0;
 };
 
 }  // namespace unwrapd

@@ -121,29 +121,60 @@ TEST(Panel, StoresEveryEntryOnce) {
   }
 }
 
+struct PanelCase {
+  PanelShape shape;
+  std::vector<double> panel, rows;  // of both right-hand sides, as PanelRows
+  std::vector<Vec2> x;
+};
+
+PanelCase random_case(PanelShape shape, std::mt19937& rng) {
+  std::normal_distribution<double> normal;
+  PanelCase c{
+      shape, std::vector<double>(shape.size()), std::vector<double>(2 * shape.height()), {}};
+  for (double& number : c.panel) number = normal(rng);
+  for (double& number : c.rows) number = normal(rng);
+  for (std::size_t k = 0; k < shape.pivots; ++k) c.x.emplace_back(normal(rng), normal(rng));
+  return c;
+}
+
+Eigen::MatrixX2d dense_rows(const std::vector<double>& rows) {
+  Eigen::MatrixX2d dense(Eigen::Index(rows.size() / 2), 2);
+  for (std::size_t r = 0; r < rows.size() / 2; ++r)
+    dense.row(Eigen::Index(r)) << rows[row_entry(r)], rows[row_entry(r) + kDuo];
+  return dense;
+}
+
+Eigen::MatrixX2d dense_pivots(const std::vector<Vec2>& x) {
+  Eigen::MatrixX2d dense(Eigen::Index(x.size()), 2);
+  for (std::size_t k = 0; k < x.size(); ++k) dense.row(Eigen::Index(k)) = x[k].transpose();
+  return dense;
+}
+
 TEST(Panel, MultipliesLikeTheDenseMatrix) {
   std::mt19937 rng(3);
-  std::normal_distribution<double> normal;
-  const auto random = [&](std::size_t n) {
-    return Eigen::VectorXd(
-        Eigen::VectorXd::NullaryExpr(Eigen::Index(n), [&] { return normal(rng); }));
-  };
   for (const PanelShape& shape : shapes_of_fronts()) {
-    std::vector<double> panel(shape.size());
-    for (double& x : panel) x = normal(rng);
-    const Eigen::MatrixXd dense = unpacked(panel, shape);
+    PanelCase c = random_case(shape, rng);
+    const Eigen::MatrixXd dense = unpacked(c.panel, shape);
+    const Eigen::MatrixX2d sum = dense_rows(c.rows) + dense * dense_pivots(c.x);
+    panel_kernels().multiply(c.panel.data(), shape, c.x.data(), c.rows.data());
+    EXPECT_LT((dense_rows(c.rows) - sum).norm(), 1e-11 * (1 + sum.norm()));
+    const Eigen::MatrixX2d back = dense.transpose() * sum;
+    panel_kernels().multiply_transposed(c.panel.data(), shape, c.rows.data(), c.x.data());
+    EXPECT_LT((dense_pivots(c.x) - back).norm(), 1e-10 * (1 + back.norm()));
+  }
+}
 
-    Eigen::VectorXd x[2] = {random(shape.pivots), random(shape.pivots)};
-    Eigen::VectorXd sum[2] = {random(shape.height()), random(shape.height())};
-    const Eigen::VectorXd expected[2] = {sum[0] + dense * x[0], sum[1] + dense * x[1]};
-    multiply_panel(panel.data(), shape, {x[0].data(), x[1].data()}, {sum[0].data(), sum[1].data()});
-    const Eigen::VectorXd back[2] = {dense.transpose() * sum[0], dense.transpose() * sum[1]};
-    multiply_transposed(panel.data(), shape, {sum[0].data(), sum[1].data()},
-                        {x[0].data(), x[1].data()});
-    for (int i : {0, 1}) {
-      EXPECT_LT((sum[i] - expected[i]).norm(), 1e-11 * (1 + expected[i].norm()));
-      EXPECT_LT((x[i] - back[i]).norm(), 1e-10 * (1 + back[i].norm()));
+TEST(Panel, MultipliesToTheSameBitsOnTheBaseline) {
+  std::mt19937 rng(4);
+  for (const PanelShape& shape : shapes_of_fronts()) {
+    PanelCase wide = random_case(shape, rng), narrow = wide;
+    for (auto [kernels, c] :
+         {std::pair{panel_kernels(), &wide}, std::pair{baseline_panel_kernels(), &narrow}}) {
+      kernels.multiply(c->panel.data(), shape, c->x.data(), c->rows.data());
+      kernels.multiply_transposed(c->panel.data(), shape, c->rows.data(), c->x.data());
     }
+    EXPECT_EQ(wide.rows, narrow.rows);
+    EXPECT_EQ(wide.x, narrow.x);
   }
 }
 

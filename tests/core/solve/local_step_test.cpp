@@ -105,20 +105,69 @@ TEST(LocalStep, ResidualIsMinusTheGradientOfTheEnergy) {  // Eq. (4), by finite 
   for (const Vec3& p : mesh.positions) uv.emplace_back(1.2 * p.x() + 0.3 * p.y(), p.y() - p.z());
   SerialExecutor serial;
   for (const Rigidity& rigidity : {Rigidity{}, Rigidity{0.4, false}, Rigidity{0.01, true}}) {
-    std::vector<Vec2> residual(3 * rest.size()), scratch(3 * rest.size());
+    const std::vector<FaceGroup> groups = face_groups(rest, mesh.faces);
+    std::vector<Vec2> residual(12 * groups.size()), scratch(residual.size());
     const auto energy_of = [&](const UvMap& map) {
-      return local_step({rest, mesh.faces}, map, rigidity, scratch, serial);
+      return local_step(groups, map, rigidity, scratch, serial).energy;
     };
-    local_step({rest, mesh.faces}, uv, rigidity, residual, serial);
+    local_step(groups, uv, rigidity, residual, serial);
     for (std::size_t v = 0; v < uv.size(); v += 3)
       for (int k : {0, 1}) {
         double sum = 0;
-        for (std::size_t c = 0; c < residual.size(); ++c)
+        for (std::size_t c = 0; c < 3 * rest.size(); ++c)
           if (std::size_t(mesh.faces[c / 3][c % 3]) == v) sum += residual[c][k];
         UvMap up = uv, down = uv;
         up[v][k] += 1e-6, down[v][k] -= 1e-6;
         EXPECT_NEAR(sum, -(energy_of(up) - energy_of(down)) / 2e-6, 1e-7);
       }
+  }
+}
+
+/// Folded over, and one face collapsed to a point.
+UvMap folded_map(const TriMesh& mesh) {
+  UvMap uv;
+  for (const Vec3& p : mesh.positions) uv.emplace_back(p.x() * p.x(), p.y() - 2 * p.z() * p.x());
+  for (Index v : mesh.faces[5]) uv[std::size_t(v)] = Vec2(0.3, 0.2);
+  return uv;
+}
+
+TEST(LocalStep, AddsUpTheFitsOfAllFacesWhateverTheirNumber) {  // groups are filled up
+  const TriMesh disk = shapes::random_disk(4, 6);
+  const std::vector<RestTriangle> all = flatten(disk);
+  const UvMap uv = folded_map(disk);
+  SerialExecutor serial;
+  for (std::size_t count = 6; count < 12; ++count)
+    for (const Rigidity& rigidity : {Rigidity{}, Rigidity{0.4, false}, Rigidity{0.01, true}}) {
+      const std::span rest = std::span(all).first(count);
+      const std::span faces = std::span<const Triangle>(disk.faces).first(count);
+      double energy = 0, area = 0;
+      for (std::size_t t = 0; t < count; ++t) {
+        const Jacobian j = jacobian(rest[t], uv_edges(faces[t], uv));
+        const double lambda = rigidity.at(rest[t].area);
+        energy += fit_energy(j, fit_similarity(j, lambda), rest[t].area, lambda);
+        area += rest[t].area * std::abs(j.determinant());
+      }
+      const std::vector<FaceGroup> groups = face_groups(rest, faces);
+      std::vector<Vec2> residual(12 * groups.size());
+      const LocalSums sums = local_step(groups, uv, rigidity, residual, serial);
+      EXPECT_NEAR(sums.energy, energy, 1e-13 * energy);
+      EXPECT_NEAR(sums.uv_area, area, 1e-13 * area);
+      for (std::size_t c = 3 * count; c < residual.size(); ++c) EXPECT_EQ(residual[c].norm(), 0);
+    }
+}
+
+TEST(LocalStep, GivesTheSameBitsOnTheBaseline) {
+  const TriMesh mesh = shapes::random_disk(9, 7);
+  const std::vector<FaceGroup> groups = face_groups(flatten(mesh), mesh.faces);
+  const UvMap uv = folded_map(mesh);
+  SerialExecutor serial;
+  for (const Rigidity& rigidity : {Rigidity{}, Rigidity{0.4, false}, Rigidity{0.01, true}}) {
+    std::vector<Vec2> wide(12 * groups.size()), narrow(wide.size());
+    const LocalSums a = local_step(groups, uv, rigidity, wide, serial);
+    const LocalSums b = local_step_on_baseline(groups, uv, rigidity, narrow, serial);
+    EXPECT_EQ(a.energy, b.energy);
+    EXPECT_EQ(a.uv_area, b.uv_area);
+    EXPECT_EQ(wide, narrow);
   }
 }
 
