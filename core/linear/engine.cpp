@@ -14,8 +14,7 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 Factor::Factor(std::shared_ptr<const Analysis> analysis)
-    : analysis_(std::move(analysis)),
-      panels_(std::make_unique_for_overwrite<double[]>(analysis_->panel_begin.back())) {}
+    : analysis_(std::move(analysis)), panels_(large_array(analysis_->panel_begin.back())) {}
 
 bool Factor::refill(const SparseMatrix& lower, Executor& executor) {
   assert(lower.isCompressed() && analysis_->entry_row.size() == at(Index(lower.nonZeros())));

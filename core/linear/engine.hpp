@@ -8,6 +8,7 @@
 #include "core/executor.hpp"
 #include "core/linear/analysis.hpp"
 #include "core/linear/factor.hpp"
+#include "core/linear/large_array.hpp"
 
 namespace unwrapd {
 
@@ -40,7 +41,7 @@ class Factor final : public RealSystem {
 
  private:
   std::shared_ptr<const Analysis> analysis_;
-  std::unique_ptr<double[]> panels_;
+  LargeArray panels_;
 };
 
 /// Nothing when the matrix, of the pattern analysed, is not positive definite in double precision.

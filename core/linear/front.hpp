@@ -3,9 +3,9 @@
 // children and the matrix add to them, and the update that it leaves to its parent.
 
 #include <cstddef>
-#include <memory>
 
 #include "core/linear/front_panel.hpp"
+#include "core/linear/large_array.hpp"
 
 namespace unwrapd {
 
@@ -14,12 +14,12 @@ class Scratch {
  public:
   /// Room for n numbers; what was there before is lost.
   double* room(std::size_t n) {
-    if (n > size_) memory_ = std::make_unique_for_overwrite<double[]>(size_ = n + n / 2);
+    if (n > size_) memory_ = large_array(size_ = n + n / 2);
     return memory_.get();
   }
 
  private:
-  std::unique_ptr<double[]> memory_;
+  LargeArray memory_;
   std::size_t size_ = 0;
 };
 

@@ -32,7 +32,7 @@ class Factorisation {
         local_row_(std::make_unique_for_overwrite<Index[]>(nodes_.order.size())) {}
 
   /// Room for what waits at any time.
-  void reserve(std::size_t numbers) { pile_ = std::make_unique_for_overwrite<double[]>(numbers); }
+  void reserve(std::size_t numbers) { pile_ = large_array(numbers); }
 
   /// False on a bad pivot.
   [[nodiscard]] bool eliminate(std::size_t s) {
@@ -105,7 +105,7 @@ class Factorisation {
   std::unique_ptr<Index[]> local_row_;  ///< where in the front a row is
   std::vector<Index> rows_in_front_;    ///< of the update being added
   std::vector<Update> pending_;         ///< in the order in which parents take them, last first
-  std::unique_ptr<double[]> pile_;
+  LargeArray pile_;
   std::size_t top_ = 0;
 };
 

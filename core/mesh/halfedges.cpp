@@ -1,7 +1,8 @@
 // Twins by sorting half-edges, and the walk along boundaries.
 //
-// All half-edges are sorted by (lower end, higher end) with two counting sorts; those on one edge
-// are then neighbours. A hash map of edges is the usual way: slower, and its time depends on input.
+// All half-edges are sorted by lower end with a counting sort, the few of each by their higher end;
+// those on one edge are then neighbours. A hash map of edges is the usual way: slower, and its time
+// depends on input.
 #include "core/mesh/halfedges.hpp"
 
 #include <algorithm>
@@ -19,6 +20,14 @@ constexpr std::size_t kMaxSidesThatPair = 4;  // a double-sided sheet's inner ed
 
 bool can_be_twins(std::span<const Triangle> faces, Index g, Index h) {
   return start_of(faces, g) == end_of(faces, h) && apex_of(faces, g) != apex_of(faces, h);
+}
+
+/// What pair_edge() comes to on most edges.
+int pair_two(std::span<const Triangle> faces, Index g, Index h, Halfedges& out) {
+  if (!can_be_twins(faces, g, h)) return 0;
+  out.twin[g] = h;
+  out.twin[h] = g;
+  return 1;
 }
 
 /// The only half-edge among sides that h can be twinned with, kNoTwin when none or several.
@@ -39,6 +48,19 @@ Index next_on_boundary(const Halfedges& halfedges, Index h) {
   return g;
 }
 
+/// Stable. A vertex has about three sides of which it is the low end; one may have all there are.
+void sort_by_high(std::span<EdgeSide> sides) {
+  constexpr std::size_t kFew = 16;
+  const auto is_lower = [](const EdgeSide& a, const EdgeSide& b) { return a.high < b.high; };
+  if (sides.size() > kFew) {
+    std::stable_sort(sides.begin(), sides.end(), is_lower);
+    return;
+  }
+  for (std::size_t k = 1; k < sides.size(); ++k)
+    for (std::size_t i = k; i > 0 && is_lower(sides[i], sides[i - 1]); --i)
+      std::swap(sides[i], sides[i - 1]);
+}
+
 double length(const TriMesh& mesh, const BoundaryLoop& loop) {
   double sum = 0;
   for (Index h : loop)
@@ -49,11 +71,17 @@ double length(const TriMesh& mesh, const BoundaryLoop& loop) {
 }  // namespace
 
 void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count) {
-  counting_sort(sides, vertex_count, [](const EdgeSide& side) { return side.high; });
   counting_sort(sides, vertex_count, [](const EdgeSide& side) { return side.low; });
+  for (auto first = sides.begin(); first != sides.end();) {
+    const auto last = std::find_if(first, sides.end(),
+                                   [&](const EdgeSide& side) { return side.low != first->low; });
+    sort_by_high(std::span(first, last));
+    first = last;
+  }
 }
 
 int pair_edge(std::span<const Triangle> faces, std::span<const EdgeSide> sides, Halfedges& out) {
+  if (sides.size() == 2) return pair_two(faces, sides[0].halfedge, sides[1].halfedge, out);
   if (sides.size() > kMaxSidesThatPair) return 0;
   int pairs = 0;
   for (const EdgeSide& side : sides) {
