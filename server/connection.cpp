@@ -19,7 +19,6 @@ constexpr std::size_t kMaxChunkLine = 256;  // a chunk's size with its extension
 constexpr int kMaxTrailers = 32;
 constexpr std::chrono::seconds kLingerTime{10};
 constexpr milliseconds kLingerSilence{2'000};
-constexpr std::chrono::seconds kRateGrace{20};
 
 /// The ready events of descriptor, 0 when none came in time or stop (>= 0)
 /// became readable.
@@ -113,6 +112,7 @@ bool Connection::next_request() {
   chunk_open_ = false;
   body_bytes_ = 0;
   sent_bytes_ = 0;
+  kept_waiting_ = {};
   body_began_ = Clock::now();
   failure_.reset();
   return true;
@@ -216,7 +216,7 @@ bool Connection::fill_body() {
   head_end_ = 0;
   const std::chrono::duration<double> elapsed = Clock::now() - body_began_;
   const double expected = elapsed.count() * static_cast<double>(limits_.min_bytes_per_second);
-  const bool slow = elapsed > kRateGrace && static_cast<double>(body_bytes_) < expected;
+  const bool slow = elapsed > limits_.rate_grace && static_cast<double>(body_bytes_) < expected;
   if (!slow && fill(limits_.read)) return true;
   fail(ErrorCode::request_timeout, "The body did not arrive in time; send it faster.");
   return false;
@@ -227,8 +227,20 @@ std::int64_t Connection::fail(ErrorCode code, const std::string& message) {
   return -1;
 }
 
-bool Connection::is_writable() const {
-  const short events = wait_for(socket(), POLLOUT | POLLRDHUP, -1, limits_.write);
+/// The ready ones of these events; 0 when the client takes nothing in time, or all in all too
+/// slowly: a byte now and then must not hold a thread. An event stream is not slow while there are
+/// no events.
+short Connection::wait_to_send(short events) {
+  const double expected = kept_waiting_.count() * static_cast<double>(limits_.min_bytes_per_second);
+  if (kept_waiting_ > limits_.rate_grace && static_cast<double>(sent_bytes_) < expected) return 0;
+  const Clock::time_point began = Clock::now();
+  const short ready = wait_for(socket(), events, -1, limits_.write);
+  kept_waiting_ += Clock::now() - began;
+  return ready;
+}
+
+bool Connection::is_writable() {
+  const short events = wait_to_send(POLLOUT | POLLRDHUP);
   return (events & POLLOUT) != 0 && (events & (POLLERR | POLLHUP | POLLRDHUP)) == 0;
 }
 
@@ -236,7 +248,7 @@ std::int64_t Connection::write(std::string_view bytes) {
   std::int64_t sent = client_.transport->send(bytes);
   if (sent == Transport::kAgain) {
     const short awaits = client_.transport->awaits(POLLOUT);
-    if ((wait_for(socket(), awaits, -1, limits_.write) & awaits) == 0) return -1;
+    if ((wait_to_send(awaits) & awaits) == 0) return -1;
     sent = client_.transport->send(bytes);
   }
   if (sent == Transport::kAgain) return 0;

@@ -22,7 +22,8 @@ struct ConnectionLimits {
   std::chrono::milliseconds head{10'000};    ///< from its first byte to the empty line
   std::chrono::milliseconds read{20'000};    ///< for the next bytes of a body
   std::chrono::milliseconds write{20'000};   ///< for the client to take more bytes
-  std::int64_t min_bytes_per_second = 1024;  ///< of a body, after its first 20 s
+  std::int64_t min_bytes_per_second = 1024;  ///< of a body, and of an answer while we wait for it
+  std::chrono::milliseconds rate_grace{20'000};  ///< until that counts
 };
 
 class Connection {
@@ -51,7 +52,7 @@ class Connection {
   /// -1 when the client has gone or does not read.
   std::int64_t write(std::string_view bytes);
   /// Whether the client takes bytes now or in time, and is still there.
-  [[nodiscard]] bool is_writable() const;
+  [[nodiscard]] bool is_writable();
 
   [[nodiscard]] bool is_readable() const { return !body_done_; }
   [[nodiscard]] bool body_done() const { return body_done_; }
@@ -74,6 +75,7 @@ class Connection {
   bool fill_body();
   void count_body(std::int64_t bytes);
   std::int64_t fail(ErrorCode code, const std::string& message);
+  short wait_to_send(short events);
   void linger() const;
 
   Client client_;
@@ -89,6 +91,7 @@ class Connection {
   std::int64_t body_bytes_ = 0;
   std::int64_t sent_bytes_ = 0;
   std::chrono::steady_clock::time_point body_began_;
+  std::chrono::duration<double> kept_waiting_{};  // by the client, while it took the answer
   std::optional<Error> failure_;
 };
 

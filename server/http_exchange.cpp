@@ -133,9 +133,7 @@ bool takes_body(const httplib::Request& request) {
 
 class Exchange::Http final : public httplib::Server {
  public:
-  Http(Connection& connection, const HttpUses& uses, const Log& log)
-      : connection_(connection), uses_(uses), log_(log) {
-    svr_sock_ = connection.socket();  // httplib writes only while it has one
+  Http(const HttpUses& uses, const Log& log) : uses_(uses), log_(log) {
     const auto with_body = [this](const httplib::Request& request, httplib::Response& response,
                                   const httplib::ContentReader& reader) {
       HttplibBody body(reader);
@@ -159,17 +157,19 @@ class Exchange::Http final : public httplib::Server {
         [this](const auto&, httplib::Response& response) { finish(response); });
   }
 
-  bool answer_request(bool last) {
+  bool answer_request(Connection& connection, bool last) {
     const auto began = std::chrono::steady_clock::now();
+    connection_ = &connection;
+    svr_sock_ = connection.socket();  // httplib writes only while it has one
     last_ = last;
     done_ = {};
     bool closed = false;
-    ConnectionStream stream(connection_);
+    ConnectionStream stream(connection);
     const bool written = process_request(stream, false, closed, unframe);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
     done_.seconds = took.count();
-    done_.received_bytes = connection_.body_bytes();
-    done_.sent_bytes = connection_.sent_bytes();
+    done_.received_bytes = connection.body_bytes();
+    done_.sent_bytes = connection.sent_bytes();
     uses_.observe(done_);
     trace_.reset();
     return written && !closed && !last_;
@@ -179,7 +179,7 @@ class Exchange::Http final : public httplib::Server {
   void answer(const httplib::Request& from, BodyReader* body, httplib::Response& out) {
     Request request = to_request(from, body);
     request.client =
-        client_behind(connection_.client(), forwarded_for(request), uses_.trusted_proxies);
+        client_behind(connection_->client(), forwarded_for(request), uses_.trusted_proxies);
     const Trace trace = continue_trace(request.header("traceparent"));
     trace_.emplace(trace.id);
     done_.method = request.method;
@@ -214,7 +214,7 @@ class Exchange::Http final : public httplib::Server {
 
   /// Corrects what httplib has added to the header fields.
   void finish(httplib::Response& response) {
-    if (!connection_.body_done()) last_ = true;
+    if (!connection_->body_done()) last_ = true;
     if (last_) {
       response.headers.erase("Keep-Alive");
       response.headers.erase("Connection");
@@ -224,19 +224,21 @@ class Exchange::Http final : public httplib::Server {
     if (response.status == 204 || response.status == 304) response.headers.erase("Content-Length");
   }
 
-  Connection& connection_;
   const HttpUses& uses_;
   const Log& log_;
+  Connection* connection_ = nullptr;  // of the request that is being answered
   bool last_ = false;
   Exchanged done_;
   std::optional<TraceScope> trace_;
 };
 
-Exchange::Exchange(Connection& connection, const HttpUses& uses, const Log& log)
-    : http_(std::make_unique<Http>(connection, uses, log)) {}
+Exchange::Exchange(const HttpUses& uses, const Log& log)
+    : http_(std::make_unique<Http>(uses, log)) {}
 
 Exchange::~Exchange() = default;
 
-bool Exchange::answer_request(bool last) { return http_->answer_request(last); }
+bool Exchange::answer_request(Connection& connection, bool last) {
+  return http_->answer_request(connection, last);
+}
 
 }  // namespace unwrapd::server

@@ -1,9 +1,10 @@
 #pragma once
-// The only place that knows cpp-httplib: requests of one connection are parsed,
-// handed to the answer function as plain values, and their answers written.
-// httplib is used without its sockets and its threads, both of which are ours
-// (connection.hpp, http_server.hpp); one small object of it a connection spares
-// every handler a look-up of which connection it serves.
+// The only place that knows cpp-httplib: requests are parsed, handed to the
+// answer function as plain values, and their answers written. httplib is used
+// without its sockets and its threads, both of which are ours (connection.hpp,
+// http_server.hpp); one object of it for each thread that answers spares every
+// handler a look-up of which connection it serves. Rejected: one for each
+// connection, whose routes (regular expressions) cost more than most requests.
 
 #include <memory>
 
@@ -21,15 +22,16 @@ struct HttpUses {
   AddressSet trusted_proxies = {};  ///< whose X-Forwarded-For is believed
 };
 
+/// Not for use by two threads at once.
 class Exchange {
  public:
-  /// All three must outlive it.
-  Exchange(Connection& connection, const HttpUses& uses, const Log& log);
+  /// Both must outlive it.
+  Exchange(const HttpUses& uses, const Log& log);
   ~Exchange();
 
   /// Answers the request whose head the connection has just vetted; last: no
   /// other may follow. True when another may.
-  bool answer_request(bool last);
+  bool answer_request(Connection& connection, bool last);
 
  private:
   class Http;

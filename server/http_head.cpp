@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::string_view kLineEnd = "\r\n";
 constexpr std::string_view kTokenSymbols = "!#$%&'*+-.^_`|~";
+constexpr std::string_view kHostSymbols = "-._~%!$&'()*+,;=:[]";  // RFC 3986, 3.2.2 and 3.2.3
 constexpr std::size_t kMaxLengthDigits = 18;
 
 struct Counts {
@@ -31,12 +32,15 @@ bool same(std::string_view left, std::string_view right) {
   return !IgnoreCase()(left, right) && !IgnoreCase()(right, left);
 }
 
-bool is_token(std::string_view text) {
-  return !text.empty() && std::ranges::all_of(text, [](char c) {
+/// Whether text is of letters, digits and these symbols.
+bool is_made_of(std::string_view text, std::string_view symbols) {
+  return std::ranges::all_of(text, [&](char c) {
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    return letter || kTokenSymbols.find(c) != std::string_view::npos;
+    return letter || symbols.find(c) != std::string_view::npos;
   });
 }
+
+bool is_token(std::string_view text) { return !text.empty() && is_made_of(text, kTokenSymbols); }
 
 bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; }
 
@@ -85,7 +89,11 @@ std::string_view vet_request_line(std::string_view line) {
 void vet_field(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
   if (!is_token(name) || std::ranges::any_of(value, is_control))
     malformed("A header field is not of the form \"Name: value\"; check the client.");
-  if (same(name, "host")) ++counts.hosts;
+  if (same(name, "host")) {
+    ++counts.hosts;
+    if (!is_made_of(value, kHostSymbols))
+      malformed("The Host header is no host; check the client.");
+  }
   if (same(name, "content-length")) {
     ++counts.lengths;
     framing.content_length = length_of(value);
@@ -103,6 +111,8 @@ void vet_field(std::string_view name, std::string_view value, Framing& framing, 
 
 void vet_counts(const Counts& counts, std::string_view method) {
   if (counts.hosts > 1) malformed("There is more than one Host header; send one.");
+  if (counts.hosts == 0 && !counts.version_1_0)
+    malformed("There is no Host header, which HTTP/1.1 asks for; send one.");
   if (counts.lengths + counts.codings > 1)
     malformed("The length of the body is told more than once; tell it once.");
   if (counts.version_1_0 && counts.codings > 0)

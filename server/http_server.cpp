@@ -3,9 +3,8 @@
 #include <sys/socket.h>
 
 #include <exception>
-#include <thread>
+#include <system_error>
 #include <utility>
-#include <vector>
 
 #include "api/error_table.hpp"
 #include "server/job_queue.hpp"
@@ -14,6 +13,7 @@ namespace unwrapd::server {
 namespace {
 
 constexpr int kRetrySeconds = 5;
+constexpr int kGreeters = 2;  // they only compute: one for each core of a small machine
 
 /// A refusal before httplib has seen the request.
 std::string plain_refusal(const Error& error) {
@@ -60,9 +60,13 @@ HttpServer::HttpServer(const HttpConfig& config, HttpUses uses, const Log& log)
       places_(config.max_connections, config.max_connections_per_address),
       parking_(listener_,
                {.accept = [this] { return let_in(); },
+                .greet = [this](Client client) { greeters_->greet(std::move(client)); },
                 .ready = [this](Client client) { make_ready(std::move(client)); },
                 .refuse = [this](Client& client, const Error& why) { turn_away(client, why); }},
-               config.parking) {}
+               config.parking) {
+  if (tls_)
+    greeters_.emplace(kGreeters, [this](Client client) { parking_.park(std::move(client)); });
+}
 
 std::optional<Client> HttpServer::let_in() {
   std::optional<Accepted> at_door = listener_.accept();
@@ -92,23 +96,42 @@ void HttpServer::turn_away(Client& client, const Error& error) const {
   observe_refusal(client.address, error, std::max<std::int64_t>(sent, 0));
 }
 
+/// For the thread that became idle last, whose stack and memory are warm; a new one if there is
+/// none. Rejected: to wake any, which goes round all of them and made each keep its own memory.
 void HttpServer::make_ready(Client client) {
   const std::lock_guard lock(mutex_);
   ready_.push_back(std::move(client));
-  arrived_.notify_one();
+  if (!idle_.empty()) {
+    wake(*idle_.back());
+    idle_.pop_back();
+  } else if (threads_.size() < static_cast<std::size_t>(config_.max_requests)) {
+    begin_thread();
+  }
+}
+
+void HttpServer::wake(Idle& idle) {
+  idle.is_woken = true;
+  idle.wake.notify_one();
+}
+
+void HttpServer::begin_thread() {
+  try {
+    threads_.emplace_back([this] { work(); });
+  } catch (const std::system_error& error) {  // those that there are go on
+    log_.error("no further thread", {{"threads", threads_.size()}, {"reason", error.what()}});
+  }
 }
 
 void HttpServer::serve() {
-  std::vector<std::jthread> threads;
-  threads.reserve(static_cast<std::size_t>(config_.max_requests));
-  for (int i = 0; i < config_.max_requests; ++i) threads.emplace_back([this] { work(); });
   parking_.run();
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
+    for (Idle* idle : idle_) wake(*idle);
+    idle_.clear();
   }
-  arrived_.notify_all();
   end_late();
+  threads_.clear();
 }
 
 /// Who is not done in time is cut off: an upload must not hold up the end.
@@ -121,25 +144,32 @@ void HttpServer::end_late() {
   ready_.clear();
 }
 
-void HttpServer::work() {
-  while (true) {
-    std::unique_lock lock(mutex_);
-    arrived_.wait(lock, [&] { return stopping_ || !ready_.empty(); });
-    if (ready_.empty()) return;
-    Client client = std::move(ready_.front());
-    ready_.pop_front();
-    const int socket = client.transport->socket();
-    served_.insert(socket);
-    lock.unlock();
-    serve_client(std::move(client));
+/// The next client to serve; nothing at the end.
+std::optional<Client> HttpServer::next_client() {
+  Idle self;
+  std::unique_lock lock(mutex_);
+  while (ready_.empty() && !stopping_) {
+    self.is_woken = false;
+    idle_.push_back(&self);
+    self.wake.wait(lock, [&] { return self.is_woken; });
   }
+  if (ready_.empty()) return std::nullopt;
+  std::optional<Client> client = std::move(ready_.front());
+  ready_.pop_front();
+  served_.insert(client->transport->socket());
+  return client;
 }
 
-void HttpServer::serve_client(Client client) {
+void HttpServer::work() {
+  Exchange exchange(uses_, log_);
+  while (std::optional<Client> client = next_client()) serve_client(std::move(*client), exchange);
+}
+
+void HttpServer::serve_client(Client client, Exchange& exchange) {
   Connection connection(std::move(client), listener_.stop_descriptor(), config_.limits);
   bool again = false;
   try {
-    again = serve_requests(connection);
+    again = serve_requests(connection, exchange);
   } catch (const std::exception& error) {
     log_.error("a connection failed", {{"reason", error.what()}});
   }
@@ -152,11 +182,10 @@ void HttpServer::serve_client(Client client) {
 }
 
 /// True when the client may send another request.
-bool HttpServer::serve_requests(Connection& connection) {
-  Exchange exchange(connection, uses_, log_);
+bool HttpServer::serve_requests(Connection& connection, Exchange& exchange) {
   try {
     while (connection.next_request()) {
-      if (!exchange.answer_request(stopping_)) return false;
+      if (!exchange.answer_request(connection, stopping_)) return false;
       if (!connection.has_next()) return !stopping_;
     }
   } catch (const Error& error) {

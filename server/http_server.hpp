@@ -15,10 +15,13 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "server/address.hpp"
 #include "server/addresses.hpp"
 #include "server/connection.hpp"
+#include "server/greeters.hpp"
 #include "server/http.hpp"
 #include "server/http_exchange.hpp"
 #include "server/listener.hpp"
@@ -30,7 +33,7 @@ namespace unwrapd::server {
 
 struct HttpConfig {
   Address address{"127.0.0.1", 8080};     ///< port 0: a free one
-  int max_requests = 320;                 ///< answered at once, a thread each; more wait
+  int max_requests = 320;                 ///< answered at once, a thread each; others wait
   int max_connections = 4096;             ///< open at once; more are turned away
   int max_connections_per_address = 0;    ///< not of loopback nor trusted proxies; 0: no limit
   std::filesystem::path tls_certificate;  ///< empty: plain HTTP
@@ -56,13 +59,22 @@ class HttpServer {
   [[nodiscard]] int open() const { return places_.taken(); }
 
  private:
+  /// A thread that waits for a client.
+  struct Idle {
+    std::condition_variable wake;
+    bool is_woken = false;
+  };
+
   std::optional<Client> let_in();
   void turn_away(Client& client, const Error& error) const;
   void make_ready(Client client);
+  static void wake(Idle& idle);
+  void begin_thread();
+  std::optional<Client> next_client();
   void work();
   void end_late();
-  void serve_client(Client client);
-  bool serve_requests(Connection& connection);
+  void serve_client(Client client, Exchange& exchange);
+  bool serve_requests(Connection& connection, Exchange& exchange);
   void refuse(Connection& connection, const Error& error) const;
   void observe_refusal(const std::string& client, const Error& error, std::int64_t sent) const;
 
@@ -73,12 +85,14 @@ class HttpServer {
   const Listener listener_;
   Places places_;
   Parking parking_;
+  std::optional<Greeters> greeters_;  // with TLS only
   std::mutex mutex_;
-  std::condition_variable arrived_;
   std::condition_variable left_;
   std::deque<Client> ready_;
-  std::set<int> served_;  // sockets
+  std::vector<Idle*> idle_;  // the last to become so at the back
+  std::set<int> served_;     // sockets
   std::atomic<bool> stopping_ = false;
+  std::vector<std::jthread> threads_;  // last: they use the others
 };
 
 }  // namespace unwrapd::server

@@ -14,7 +14,7 @@
 namespace unwrapd::server {
 namespace {
 
-constexpr int kTickMs = 100;  // how late a deadline may be noticed
+constexpr int kTickMs = 100;  // how late a deadline may be noticed; not sooner: it looks at all
 constexpr int kMostEvents = 256;
 constexpr int kAcceptsInARow = 64;
 constexpr std::size_t kReadBytes = std::size_t{4} * 1024;
@@ -27,7 +27,10 @@ Parking::Parking(const Listener& listener, Uses uses, const ParkingRules& rules)
       uses_(std::move(uses)),
       rules_(rules),
       epoll_(::epoll_create1(EPOLL_CLOEXEC)),
-      wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+      wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  for (const int descriptor : {listener_.socket(), listener_.stop_descriptor(), wake_})
+    watch(descriptor, POLLIN, EPOLL_CTL_ADD);
+}
 
 Parking::~Parking() {
   ::close(wake_);
@@ -43,16 +46,21 @@ void Parking::watch(int descriptor, short events, int operation) const {
 }
 
 void Parking::run() {
-  for (const int descriptor : {listener_.socket(), listener_.stop_descriptor(), wake_})
-    watch(descriptor, POLLIN, EPOLL_CTL_ADD);
-  std::array<epoll_event, kMostEvents> events;
   while (!stopped_) {
-    const int count = ::epoll_wait(epoll_, events.data(), kMostEvents, lot_.empty() ? -1 : kTickMs);
-    for (int i = 0; i < count; ++i) attend(events[static_cast<std::size_t>(i)].data.fd);
-    expire();
+    turn(lot_.empty() ? -1 : kTickMs);
+    const auto now = Clock::now();
+    if (now < next_expiry_) continue;
+    next_expiry_ = now + std::chrono::milliseconds(kTickMs);
+    expire(now);
   }
   lot_.clear();
   count_ = 0;
+}
+
+void Parking::turn(int patience_ms) {
+  std::array<epoll_event, kMostEvents> events;
+  const int count = ::epoll_wait(epoll_, events.data(), kMostEvents, patience_ms);
+  for (int i = 0; i < count; ++i) attend(events[static_cast<std::size_t>(i)].data.fd);
 }
 
 void Parking::attend(int descriptor) {
@@ -60,7 +68,11 @@ void Parking::attend(int descriptor) {
   if (descriptor == listener_.socket()) let_in();
   if (descriptor == wake_) take_back();
   const auto at = lot_.find(descriptor);
-  if (at != lot_.end()) look_at(at);
+  if (at == lot_.end()) return;
+  if (at->second.client.transport->is_open()) return look_at(at);
+  if (at->second.until <= Clock::now()) return close_late(at);  // it may never be here for expire()
+  at->second.client.until = at->second.until;
+  uses_.greet(remove(at));
 }
 
 void Parking::let_in() {
@@ -95,12 +107,15 @@ void Parking::admit(Client client) {
   const int socket = client.transport->socket();
   const bool began = !client.received.empty();
   const bool complete = client.received.find(kHeadEnd) != std::string::npos;
-  const auto until = Clock::now() + (began ? rules_.head : rules_.idle);
+  const auto until = client.until.value_or(Clock::now() + (began ? rules_.head : rules_.idle));
+  client.until.reset();
+  const short awaits = client.transport->awaits(POLLIN);
+  const bool is_open = client.transport->is_open();
   const auto at =
-      lot_.insert_or_assign(socket, Parked{std::move(client), until, POLLIN, complete}).first;
+      lot_.insert_or_assign(socket, Parked{std::move(client), until, awaits, complete}).first;
   count_ = static_cast<int>(lot_.size());
-  watch(socket, POLLIN, EPOLL_CTL_ADD);
-  look_at(at);  // TLS may hold bytes that the socket no longer tells of
+  watch(socket, awaits, EPOLL_CTL_ADD);
+  if (is_open) look_at(at);  // TLS may hold bytes that the socket no longer tells of
   if (count_ > rules_.max_idle) drive_out_longest_idle();
 }
 
@@ -159,8 +174,7 @@ void Parking::close_late(Lot::iterator at) {
                            "The header did not arrive in time; send it faster."));
 }
 
-void Parking::expire() {
-  const auto now = Clock::now();
+void Parking::expire(Clock::time_point now) {
   for (auto at = lot_.begin(); at != lot_.end();) {
     const auto next = std::next(at);
     if (at->second.until <= now) close_late(at);

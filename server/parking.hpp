@@ -32,9 +32,11 @@ class Parking {
  public:
   struct Uses {
     std::function<std::optional<Client>()> accept;  ///< the next that waits to be let in, if any
+    std::function<void(Client)> greet;              ///< has sent a part of its handshake
     std::function<void(Client)> ready;              ///< has sent a head, or more than one may have
     std::function<void(Client&, const Error&)> refuse;
   };
+  using Clock = std::chrono::steady_clock;
 
   Parking(const Listener& listener, Uses uses, const ParkingRules& rules);
   Parking(const Parking&) = delete;
@@ -43,12 +45,16 @@ class Parking {
 
   /// Until the listener is stopped; then all that are parked are closed.
   void run();
-  /// Takes a client back, from any thread, to wait for its next request.
+  /// One wait of at most so long (-1: as long as it takes), and what comes of it.
+  void turn(int patience_ms);
+  /// Closes those whose time is over at this moment.
+  void expire(Clock::time_point now);
+  /// Takes a client back, from any thread, to wait for its next request, or for the next step of
+  /// its handshake.
   void park(Client client);
   [[nodiscard]] int count() const { return count_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
   struct Parked {
     Client client;
     Clock::time_point until;
@@ -67,7 +73,6 @@ class Parking {
   void drive_out_longest_idle();
   void attend(int descriptor);
   void close_late(Lot::iterator at);
-  void expire();
 
   const Listener& listener_;
   const Uses uses_;
@@ -75,6 +80,7 @@ class Parking {
   int epoll_ = -1;
   int wake_ = -1;
   Lot lot_;
+  Clock::time_point next_expiry_{};
   bool stopped_ = false;
   std::atomic<int> count_ = 0;
   std::mutex mutex_;

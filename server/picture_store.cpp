@@ -47,7 +47,10 @@ StoredResult PictureStore::open(const JobRecord& job, const Picture& picture) {
   const std::string name = file_name(picture), digest = name + ".sha256";
   const fs::path path = blobs_.path(job.id, name);
   const std::lock_guard lock(drawing_);
-  if (!fs::exists(path)) blobs_.write(job.id, name, draw(job, picture));
+  if (fs::exists(path))
+    ++counts_.hits;
+  else
+    draw_into_store(job, picture, name);
   if (!fs::exists(blobs_.path(job.id, digest)))
     blobs_.write(job.id, digest, sha256(read_file(path)));
   StoredResult stored{.file = std::make_shared<const File>(File::open(path)),
@@ -56,6 +59,13 @@ StoredResult PictureStore::open(const JobRecord& job, const Picture& picture) {
   blobs_.discard(job.id, name);
   blobs_.discard(job.id, digest);
   return stored;
+}
+
+void PictureStore::draw_into_store(const JobRecord& job, const Picture& picture,
+                                   const std::string& name) {
+  const std::string bytes = draw(job, picture);
+  counts_.made(bytes);
+  blobs_.write(job.id, name, bytes);
 }
 
 std::string PictureStore::draw(const JobRecord& job, const Picture& picture) const {

@@ -29,12 +29,15 @@ class PictureStore {
   /// The picture of a succeeded job. Those whose size is a power of two are kept with the job, so
   /// that whoever asks for every size fills no disk.
   StoredResult open(const JobRecord& job, const Picture& picture);
+  [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
   std::string draw(const JobRecord& job, const Picture& picture) const;
+  void draw_into_store(const JobRecord& job, const Picture& picture, const std::string& name);
 
   BlobStore& blobs_;
   const api::Limits& limits_;
+  FileCounts counts_;
   std::mutex drawing_;  // one at a time, as for results in other formats
 };
 

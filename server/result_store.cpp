@@ -38,11 +38,19 @@ void write_result(BlobStore& blobs, std::string_view job, std::string_view forma
 
 StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::string_view format) {
   const std::string file = map_file(result_file(format), map);
-  if (std::optional<StoredResult> kept = find(job, file)) return std::move(*kept);
-  const std::lock_guard lock(making_);
-  if (std::optional<StoredResult> made_meanwhile = find(job, file))
-    return std::move(*made_meanwhile);
-  blobs_.write(job.id, file, make(job, map, format));
+  std::optional<StoredResult> kept = find(job, file);
+  std::unique_lock lock(making_, std::defer_lock);
+  if (!kept) {
+    lock.lock();
+    kept = find(job, file);  // made meanwhile
+  }
+  if (kept) {
+    ++counts_.hits;
+    return std::move(*kept);
+  }
+  const std::string bytes = make(job, map, format);
+  counts_.made(bytes);
+  blobs_.write(job.id, file, bytes);
   const std::string digest = blobs_.note(job.id, file);
   return {.file = blobs_.open(job.id, file), .sha256 = digest};
 }

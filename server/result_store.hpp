@@ -11,6 +11,7 @@
 #include "api/limits.hpp"
 #include "core/asset/asset.hpp"
 #include "server/blob_store.hpp"
+#include "server/file_counts.hpp"
 #include "server/files.hpp"
 #include "server/job_record.hpp"
 
@@ -38,6 +39,7 @@ class ResultStore {
   /// asset::write() throws when the asset cannot be had in it, storage_corrupt when those are
   /// damaged too.
   StoredResult open(const JobRecord& job, std::size_t map, std::string_view format);
+  [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
   /// What lies in the store and is whole.
@@ -47,6 +49,7 @@ class ResultStore {
 
   BlobStore& blobs_;
   const api::Limits& limits_;
+  FileCounts counts_;
   std::mutex making_;  // one at a time: decoding is worth a worker's time and memory
 };
 

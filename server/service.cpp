@@ -125,10 +125,27 @@ struct Service::Parts {
     metrics.tell(Metric::connections, {{"state", "served"}},
                  [&] { return http.open() - http.parked(); });
     metrics.tell(Metric::event_streams, {}, [&] { return streams.open_count(); });
-    metrics.tell(Metric::cache_requests, {{"cache", "solver"}, {"outcome", "hit"}},
-                 [&] { return static_cast<double>(solver_cache.counters().hits); });
-    metrics.tell(Metric::cache_requests, {{"cache", "solver"}, {"outcome", "miss"}},
-                 [&] { return static_cast<double>(solver_cache.counters().misses); });
+    metrics.tell(Metric::stored_bytes, {}, [&] { return blobs.room().used_bytes(); });
+    tell_caches();
+  }
+
+  void tell_caches() {
+    const auto tell_asked = [&](std::string_view cache, auto hits, auto misses) {
+      metrics.tell(Metric::cache_requests, {{"cache", cache}, {"outcome", "hit"}}, hits);
+      metrics.tell(Metric::cache_requests, {{"cache", cache}, {"outcome", "miss"}}, misses);
+    };
+    const auto tell_files = [&](std::string_view cache, const FileCounts& of) {
+      tell_asked(
+          cache, [&of] { return of.hits.load(); }, [&of] { return of.misses.load(); });
+      metrics.tell(Metric::made_bytes, {{"cache", cache}}, [&of] { return of.bytes.load(); });
+    };
+    tell_asked(
+        "solver", [&] { return solver_cache.counters().hits; },
+        [&] { return solver_cache.counters().misses; });
+    metrics.tell(Metric::cache_bytes, {{"cache", "solver"}},
+                 [&] { return solver_cache.counters().bytes; });
+    tell_files("result", results.counts());
+    tell_files("picture", pictures.counts());
   }
 
   /// The probes answer until the last request is.

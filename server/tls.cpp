@@ -29,6 +29,12 @@ class TlsTransport final : public Transport {
     SSL_set_accept_state(session_.get());
   }
 
+  [[nodiscard]] bool is_open() const override { return SSL_is_init_finished(session_.get()) == 1; }
+  bool greet() override {
+    ERR_clear_error();
+    const std::int64_t done = result_of(SSL_do_handshake(session_.get()));
+    return done > 0 || done == kAgain;
+  }
   std::int64_t receive(char* data, std::size_t size) override {
     ERR_clear_error();
     return result_of(SSL_read(session_.get(), data, clamped(size)));

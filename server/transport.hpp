@@ -2,8 +2,10 @@
 // The bytes of one client, plain or inside TLS. Nothing here ever waits: who
 // gets kAgain waits for awaits() and asks again.
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,6 +25,10 @@ class Transport {
   /// The number of bytes, 0 at the end, kAgain or kBroken.
   virtual std::int64_t receive(char* data, std::size_t size);
   virtual std::int64_t send(std::string_view bytes);
+  /// Whether bytes of requests can come; else greet() is to be called when awaits(POLLIN) is ready.
+  [[nodiscard]] virtual bool is_open() const { return true; }
+  /// A step of the handshake, as far as it goes without waiting; false when it has failed.
+  virtual bool greet() { return true; }
   /// What poll() shall wait for after kAgain: POLLIN or POLLOUT.
   [[nodiscard]] virtual short awaits(short wanted) const { return wanted; }
   /// Tells the client that nothing more will come.
@@ -40,6 +46,8 @@ struct Client {
   std::string address = {};          ///< numeric, without the port
   std::string received = {};         ///< and not yet used
   std::shared_ptr<void> place = {};  ///< among the connections that may be open
+  /// When the first byte of a request must be there, set from the first step of a handshake on.
+  std::optional<std::chrono::steady_clock::time_point> until = {};
 };
 
 }  // namespace unwrapd::server

@@ -14,7 +14,7 @@ constexpr std::chrono::seconds kWholeTime{15};
 
 /// A Client or an SSLClient.
 template <class Client>
-std::string post(Client& client, const WebhookCall& call) {
+std::string post(Client& client, const WebhookCall& call, const std::stop_token& stop) {
   client.set_hostname_addr_map({{call.url.host, call.address}});
   client.set_connection_timeout(kConnectTime);
   client.set_read_timeout(kWholeTime);
@@ -32,6 +32,7 @@ std::string post(Client& client, const WebhookCall& call) {
     return false;  // the body is not read: it may have no end
   };
   const Deadline slow(kWholeTime, [&] { client.stop(); });
+  const std::stop_callback cut(stop, [&] { client.stop(); });
   const httplib::Result result = client.send(request);
   if (result) status = result->status;  // of an answer that can have no body, such as 204
   if (status >= 200 && status < 300) return {};
@@ -41,13 +42,13 @@ std::string post(Client& client, const WebhookCall& call) {
 
 }  // namespace
 
-std::string post_webhook(const WebhookCall& call) {
+std::string post_webhook(const WebhookCall& call, const std::stop_token& stop) {
   if (call.url.is_https) {
     httplib::SSLClient client(call.url.host, call.url.port);
-    return post(client, call);
+    return post(client, call, stop);
   }
   httplib::ClientImpl client(call.url.host, call.url.port);
-  return post(client, call);
+  return post(client, call, stop);
 }
 
 }  // namespace unwrapd::server

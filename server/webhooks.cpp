@@ -6,6 +6,7 @@
 #include <array>
 
 #include "core/error.hpp"
+#include "server/clock.hpp"
 #include "server/identity.hpp"
 #include "server/webhook_http.hpp"
 
@@ -14,7 +15,8 @@ namespace {
 
 constexpr std::string_view kSecretPrefix = "whsec_";
 constexpr int kMaxTries = 10;
-constexpr int kDueAtOnce = 50;
+constexpr int kAtOnce = 8;
+constexpr int kPerHost = 2;
 constexpr std::int64_t kMsPerSecond = 1000;
 constexpr std::int64_t kLongestPauseMs = 3'600'000;
 
@@ -38,6 +40,16 @@ std::string from_base64(std::string_view text) {
   return bytes;
 }
 
+/// Of a URL: what is between "//" and the port, path or query, in small letters.
+std::string host_of(const std::string& url) {
+  const std::size_t slashes = url.find("//");
+  std::string host = url.substr(slashes == std::string::npos ? 0 : slashes + 2);
+  host.resize(std::min(host.find_first_of(":/?#"), host.size()));
+  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  std::ranges::transform(host, host.begin(), small);
+  return host;
+}
+
 }  // namespace
 
 std::string webhook_secret(std::string_view server_secret, std::string_view owner) {
@@ -52,31 +64,42 @@ std::string webhook_signature(const std::string& secret, std::string_view signed
 
 Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret,
                    WebhookConfig config, const Log& log)
-    : database_(store), secret_(std::move(server_secret)), config_(std::move(config)), log_(log) {}
+    : secret_(std::move(server_secret)),
+      config_(std::move(config)),
+      log_(log),
+      database_(store),
+      pool_(kAtOnce, kPerHost, [this] { go_on(); }) {}
 
-std::vector<Delivery> Webhooks::due(std::int64_t now_ms) {
+/// Without those that are being made.
+std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
   Statement statement(database_,
-                      "SELECT d.seq, d.job, COALESCE(j.owner, ''), d.url, d.body, d.tries"
-                      " FROM deliveries d LEFT JOIN jobs j ON j.id = d.job"
-                      " WHERE d.due_ms <= ? ORDER BY d.due_ms LIMIT ?");
-  statement.with(now_ms, std::int64_t{kDueAtOnce});
-  std::vector<Delivery> found;
-  while (statement.step()) {
-    found.push_back({.seq = statement.number(0),
-                     .job = statement.text(1),
-                     .owner = statement.text(2),
-                     .url = statement.text(3),
-                     .body = statement.text(4),
-                     .tries = static_cast<int>(statement.number(5))});
-  }
+                      "SELECT seq, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
+  statement.with(now_ms);
+  std::vector<Due> found;
+  while (statement.step())
+    if (!being_made_.contains(statement.number(0)))
+      found.push_back({.seq = statement.number(0), .url = statement.text(1)});
   return found;
 }
 
-std::string Webhooks::call(const Delivery& delivery, std::int64_t now_ms) const {
+Delivery Webhooks::load(std::int64_t seq) {
+  Statement statement(database_,
+                      "SELECT d.job, COALESCE(j.owner, ''), d.url, d.body, d.tries"
+                      " FROM deliveries d LEFT JOIN jobs j ON j.id = d.job WHERE d.seq = ?");
+  statement.with(seq).step();
+  return {.seq = seq,
+          .job = statement.text(0),
+          .owner = statement.text(1),
+          .url = statement.text(2),
+          .body = statement.text(3),
+          .tries = static_cast<int>(statement.number(4))};
+}
+
+std::string Webhooks::call(const Delivery& delivery, const std::stop_token& stop) const {
   try {
     const WebhookUrl url = parse_webhook(delivery.url, config_);
     const std::string address = resolve_webhook(url, config_).front();
-    const std::string timestamp = std::to_string(now_ms / kMsPerSecond);
+    const std::string timestamp = std::to_string(now_ms() / kMsPerSecond);
     const std::string signed_text = delivery.job + "." + timestamp + "." + delivery.body;
     return post_webhook(
         {.url = url,
@@ -85,7 +108,8 @@ std::string Webhooks::call(const Delivery& delivery, std::int64_t now_ms) const 
                      {"webhook-timestamp", timestamp},
                      {"webhook-signature",
                       webhook_signature(webhook_secret(secret_, delivery.owner), signed_text)}},
-         .body = delivery.body});
+         .body = delivery.body},
+        stop);
   } catch (const Error& error) {
     return error.what();
   }
@@ -110,8 +134,44 @@ void Webhooks::settle(const Delivery& delivery, const std::string& failure, std:
   }
 }
 
+/// What cannot be settled is called again: once too often rather than never.
+void Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
+  const std::string failure = call(delivery, stop);
+  const std::lock_guard lock(mutex_);
+  being_made_.erase(delivery.seq);
+  if (stop.stop_requested() && !failure.empty()) return;  // cut off by us
+  try {
+    settle(delivery, failure, now_ms());
+  } catch (const Error& error) {
+    log_.error("a webhook's call was not noted", {{"reason", error.what()}});
+  }
+}
+
+void Webhooks::begin(const Due& due) {
+  const std::string host = host_of(due.url);
+  if (!pool_.has_room(host)) return;
+  Delivery delivery = load(due.seq);
+  being_made_.insert(due.seq);
+  pool_.begin(host, [this, delivery = std::move(delivery)](const std::stop_token& stop) {
+    make(delivery, stop);
+  });
+}
+
 void Webhooks::call_due(std::int64_t now_ms) {
-  for (const Delivery& delivery : due(now_ms)) settle(delivery, call(delivery, now_ms), now_ms);
+  const std::lock_guard lock(mutex_);
+  if (pool_.is_full()) return;
+  for (const Due& next : due(now_ms)) {
+    begin(next);
+    if (pool_.is_full()) return;
+  }
+}
+
+void Webhooks::go_on() {
+  try {
+    call_due(now_ms());
+  } catch (const Error& error) {
+    log_.error("calling webhooks failed", {{"reason", error.what()}});
+  }
 }
 
 }  // namespace unwrapd::server

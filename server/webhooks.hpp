@@ -3,16 +3,20 @@
 // ends the job, and goes when it was answered with 2xx: neither a crash nor a receiver that is down
 // loses it. Tries go on with doubled pauses, ten in all. It is signed as Standard Webhooks has it:
 // webhook-id, webhook-timestamp, and webhook-signature, the HMAC-SHA256 of both and the body under
-// a secret of the job's owner.
+// a secret of the job's owner. Eight calls at once, two to one host (webhook_pool.hpp).
 
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
+#include <set>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "server/database.hpp"
 #include "server/log.hpp"
+#include "server/webhook_pool.hpp"
 #include "server/webhook_url.hpp"
 
 namespace unwrapd::server {
@@ -35,25 +39,39 @@ std::string webhook_secret(std::string_view server_secret, std::string_view owne
 /// secret is not of the form of webhook_secret().
 std::string webhook_signature(const std::string& secret, std::string_view signed_text);
 
-/// Not for use by two threads at once.
+/// Thread-safe. The end cuts off the calls that are being made; they are made again at the next
+/// start.
 class Webhooks {
  public:
   /// store: the file of the jobs, whose tables are there already.
   Webhooks(const std::filesystem::path& store, std::string server_secret, WebhookConfig config,
            const Log& log);
 
-  /// Makes the calls that are due, one after another.
+  /// Begins the calls that are due, the longest due first, as far as there is room; the others
+  /// follow when there is.
   void call_due(std::int64_t now_ms);
 
  private:
-  std::vector<Delivery> due(std::int64_t now_ms);
-  [[nodiscard]] std::string call(const Delivery& delivery, std::int64_t now_ms) const;
-  void settle(const Delivery& delivery, const std::string& failure, std::int64_t now_ms);
+  struct Due {
+    std::int64_t seq;
+    std::string url;
+  };
 
-  Database database_;
+  std::vector<Due> due(std::int64_t now_ms);
+  Delivery load(std::int64_t seq);
+  void begin(const Due& due);
+  void make(const Delivery& delivery, const std::stop_token& stop);
+  [[nodiscard]] std::string call(const Delivery& delivery, const std::stop_token& stop) const;
+  void settle(const Delivery& delivery, const std::string& failure, std::int64_t now_ms);
+  void go_on();
+
   const std::string secret_;
   const WebhookConfig config_;
   const Log& log_;
+  std::mutex mutex_;  // of the next two
+  Database database_;
+  std::set<std::int64_t> being_made_;  // seq
+  WebhookPool pool_;                   // last: its threads use the others
 };
 
 }  // namespace unwrapd::server

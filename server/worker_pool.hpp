@@ -1,5 +1,6 @@
 #pragma once
-// The threads that do the work: each takes the oldest job and runs it, one after another.
+// The threads that do the work: each takes the oldest job and runs it, one after another. They are
+// nice to the threads that answer, which would otherwise wait for their turns on a full machine.
 
 #include <chrono>
 #include <condition_variable>

@@ -12,15 +12,17 @@ import { dataDirectory, grid, QUICK, Server } from "../fault/server.mjs";
 
 const ALLOWED = ["--webhook-hosts", "localhost", "--webhook-private", "--webhook-retry-seconds", "1"];
 
-/** A receiver that answers by `status`, and what it got. */
+/** A receiver that answers by `status`, or never without one; what it got, and how much at once. */
 async function receiver(t) {
   const calls = [];
-  const hook = { calls, status: 200 };
+  const hook = { calls, status: 200, open: 0, most: 0 };
   const http = createServer(async (request, answer) => {
+    hook.most = Math.max(hook.most, ++hook.open);
+    answer.on("close", () => hook.open--);
     const pieces = [];
     for await (const piece of request) pieces.push(piece);
     calls.push({ headers: request.headers, url: request.url, body: Buffer.concat(pieces).toString() });
-    answer.writeHead(hook.status, hook.status === 302 ? { Location: "/elsewhere" } : {}).end();
+    if (hook.status) answer.writeHead(hook.status, hook.status === 302 ? { Location: "/elsewhere" } : {}).end();
   });
   http.listen(0, "127.0.0.1");
   await once(http, "listening");
@@ -87,4 +89,27 @@ test("an address of this machine is never called unless that is allowed", async 
   while (server.log.split("not public").length < 3) await sleep(10);
   assert.equal(hook.calls.length, 0);
   await server.end("SIGTERM");
+});
+
+test("a receiver that hangs delays its own calls only, and not the end", async (t) => {
+  const data = dataDirectory(t);
+  const hanging = await receiver(t);
+  hanging.status = undefined;
+  const prompt = await receiver(t);
+  const flags = ["--webhook-hosts", "localhost,127.0.0.1", "--webhook-private"];
+  const first = await Server.start(data, ...flags);
+  for (let i = 2; i < 7; i++)
+    assert.equal((await submit(first, hanging.url, `stop.iterations=${i}`)).status, 202);
+  await hanging.called(2);
+  assert.equal((await submit(first, prompt.url.replace("localhost", "127.0.0.1"))).status, 202);
+  await prompt.called(1);
+  assert.equal(hanging.most, 2);
+  assert.deepEqual(await first.end("SIGTERM"), [0, null]);
+  const stuck = hanging.calls.length;
+  hanging.status = 200;
+  const second = await Server.start(data, ...flags); // what was cut off is called again
+  await hanging.called(stuck + 5);
+  const ids = hanging.calls.map((call) => call.headers["webhook-id"]);
+  assert.equal(new Set(ids).size, 5);
+  await second.end("SIGTERM");
 });

@@ -66,9 +66,9 @@ void connection(std::string_view bytes) {
         .observe = [](const server::Exchanged& /*done*/) {}};
     server::Connection served({.transport = std::make_unique<server::Transport>(ends[1])}, -1,
                               {.max_body_bytes = kMaxBytes});
-    server::Exchange exchange(served, uses, log);
+    server::Exchange exchange(uses, log);
     try {
-      while (served.next_request() && exchange.answer_request(false)) {
+      while (served.next_request() && exchange.answer_request(served, false)) {
       }
     } catch (const Error&) {  // the connection's refusal; its caller writes it
     }
@@ -97,12 +97,13 @@ std::vector<std::string> multipart_seeds() {
       "Content-Type: model/obj\r\n\r\nv 0 0 0\n\r\n--b--\r\n"};
 }
 
-constexpr std::array kTargets = {Target{"head", head, head_seeds},
-                                 Target{"http", connection, connection_seeds},
-                                 Target{"multipart", multipart, multipart_seeds}};
-
 }  // namespace
 
-std::span<const Target> http_targets() { return kTargets; }
+std::span<const Target> http_targets() {
+  static const std::array targets = {
+      Target{"head", head, head_seeds}, Target{"http", connection, connection_seeds},
+      Target{"multipart", multipart, multipart_seeds}, parking_target()};
+  return targets;
+}
 
 }  // namespace unwrapd::fuzz

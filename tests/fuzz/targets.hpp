@@ -18,7 +18,8 @@ struct Target {
 
 std::span<const Target> asset_targets();  ///< gltf, obj, draco, meshopt
 std::span<const Target> api_targets();    ///< options, query, constraints
-std::span<const Target> http_targets();   ///< head, http, multipart
+std::span<const Target> http_targets();   ///< head, http, multipart, parking
+Target parking_target();
 
 /// Ends the program, saying what was promised, when it does not hold.
 void promise(bool holds, const char* what);

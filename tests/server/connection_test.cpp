@@ -8,6 +8,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <thread>
 
 namespace unwrapd::server {
 namespace {
@@ -57,15 +58,15 @@ class ConnectionTest : public testing::Test {
   std::unique_ptr<Connection> connection_;
 };
 
-const std::string kHead = "POST / HTTP/1.1\r\nContent-Length: 5\r\n\r\n";
+const std::string kHead = "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\n";
 
 TEST_F(ConnectionTest, HandsOutTheHeadAndThenTheBody) {
-  send(kHead + "helloGET / HTTP/1.1\r\n\r\n");
+  send(kHead + "helloGET / HTTP/1.1\r\nHost: x\r\n\r\n");
   ASSERT_TRUE(connection().next_request());
   EXPECT_EQ(read_all(), kHead + "hello");
   EXPECT_TRUE(connection().body_done());
   ASSERT_TRUE(connection().next_request());
-  EXPECT_EQ(read_all(), "GET / HTTP/1.1\r\n\r\n");
+  EXPECT_EQ(read_all(), "GET / HTTP/1.1\r\nHost: x\r\n\r\n");
 }
 
 TEST_F(ConnectionTest, HalfAHeadIsATimeout) {
@@ -93,8 +94,39 @@ TEST_F(ConnectionTest, HalfABodyIsATimeout) {
   hang_up();
 }
 
+TEST_F(ConnectionTest, ABodyThatDripsKeepsALeastRate) {
+  limits_.max_body_bytes = 1'000'000;
+  limits_.rate_grace = milliseconds(50);
+  limits_.min_bytes_per_second = 100'000'000;
+  send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 1000000\r\n\r\n");
+  ASSERT_TRUE(connection().next_request());
+  std::array<char, 512> piece;
+  for (std::int64_t got = 1; got > 0; got = connection().read(piece.data(), piece.size()))
+    send("x");  // in time each
+  EXPECT_EQ(connection().failure()->code(), ErrorCode::request_timeout);
+  hang_up();
+}
+
+TEST_F(ConnectionTest, AnAnswerThatIsTakenInDripsKeepsALeastRate) {
+  limits_.rate_grace = milliseconds(50);
+  limits_.min_bytes_per_second = 100'000'000;
+  send("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+  ASSERT_TRUE(connection().next_request());
+  std::jthread drip([&](const std::stop_token& stop) {
+    std::array<char, 5000> piece;
+    for (; !stop.stop_requested(); std::this_thread::sleep_for(milliseconds(5)))
+      ::recv(sockets_[0], piece.data(), piece.size(), MSG_DONTWAIT);
+  });
+  const std::string bytes(100'000, 'x');
+  int writes = 0;
+  while (writes < 1000 && connection().write(bytes) >= 0) ++writes;
+  EXPECT_LT(writes, 1000);
+  drip = {};
+  hang_up();
+}
+
 TEST_F(ConnectionTest, ManySmallChunksKeepTheLimitToo) {
-  send("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n");
+  send("POST / HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n");
   for (int k = 0; k < 101; ++k) send("1\r\nx\r\n");
   ASSERT_TRUE(connection().next_request());
   const std::string all = read_all();

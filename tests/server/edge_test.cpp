@@ -96,24 +96,26 @@ TEST_F(Edge, ABodyThatEndsEarlyMakesNoJob) {
 
 TEST_F(Edge, RefusalsAreProblemsAndCloseTheConnection) {
   start();
-  const std::array<std::pair<const char*, const char*>, 6> cases = {{
+  const std::array<std::pair<const char*, const char*>, 7> cases = {{
       {"\x16\x03\x01\r\n\r\n", "HTTP/1.1 400"},
       {"GET / HTTP/3.0\r\nHost: x\r\n\r\n", "HTTP/1.1 400"},
+      {"GET /healthz HTTP/1.1\r\n\r\n", "HTTP/1.1 400"},
       {"POST /v1/jobs HTTP/1.1\r\nHost: x\r\n\r\n", "HTTP/1.1 411"},
-      {"POST /v1/jobs HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: "
+      {"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\nContent-Length: "
        "2\r\n\r\nab",
        "HTTP/1.1 400"},
-      {"POST /v1/jobs HTTP/1.1\r\nContent-Encoding: gzip\r\nContent-Length: "
+      {"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Encoding: gzip\r\nContent-Length: "
        "1\r\n\r\na",
        "HTTP/1.1 415"},
       {"BREW /healthz HTTP/1.1\r\nHost: x\r\n\r\n", "HTTP/1.1 400"},
   }};
   for (const auto& [request, status] : cases) {
-    const std::string answer = exchange(std::string(request) + "GET /healthz HTTP/1.1\r\n\r\n");
+    const std::string answer =
+        exchange(std::string(request) + "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
     EXPECT_THAT(answer, AllOf(StartsWith(status), HasSubstr("application/problem+json")))
         << request;
   }
-  EXPECT_THAT(exchange("GET / HTTP/1.1\r\nX: " + std::string(40'000, 'a')),
+  EXPECT_THAT(exchange("GET / HTTP/1.1\r\nHost: x\r\nX: " + std::string(40'000, 'a')),
               StartsWith("HTTP/1.1 431"));
 }
 

@@ -51,6 +51,17 @@ TEST(HttpHead, AsksForALengthWhereThereMustBeABody) {
   EXPECT_EQ(refusal(head("DELETE /v1/jobs/x HTTP/1.1")), std::nullopt);
 }
 
+TEST(HttpHead, AsksForOneHostWhichOldClientsNeedNotName) {
+  const auto with = [](const std::string& fields) { return refusal("GET / " + fields + "\r\n"); };
+  EXPECT_EQ(with("HTTP/1.1\r\n"), ErrorCode::malformed_request);
+  EXPECT_EQ(with("HTTP/1.0\r\n"), std::nullopt);
+  for (const char* host : {"", "x", "a-b.example:8080", "[::1]:80"})
+    EXPECT_EQ(with("HTTP/1.1\r\nhost: " + std::string(host) + "\r\n"), std::nullopt) << host;
+  for (const char* host : {"a b", "x/y", "u@x", "x\ty", "x\r\nHost: x"})
+    EXPECT_EQ(with("HTTP/1.1\r\nHost: " + std::string(host) + "\r\n"), ErrorCode::malformed_request)
+        << host;
+}
+
 TEST(HttpHead, RefusesCompressedBodies) {
   EXPECT_EQ(refusal(head(kPost, "Content-Length: 5\r\nContent-Encoding: gzip\r\n")),
             ErrorCode::unsupported_media_type);

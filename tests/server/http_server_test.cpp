@@ -134,7 +134,7 @@ TEST_F(HttpServerTest, AThousandIdleAndTwoHundredSlowClientsTakeNoThreadFromOthe
   std::vector<std::unique_ptr<RawClient>> waiting;
   for (int i = 0; i < 1200; ++i) {
     waiting.push_back(connect());
-    if (i % 6 == 0) waiting.back()->send("GET / HTTP/1.1\r\nX-Slow: ");
+    if (i % 6 == 0) waiting.back()->send("GET / HTTP/1.1\r\nHost: x\r\nX-Slow: ");
   }
   await([&] { return server_->parked() == 1200; });
   EXPECT_THAT(get(), StartsWith("HTTP/1.1 200"));
@@ -148,7 +148,7 @@ TEST_F(HttpServerTest, AHeadThatDripsIsRefusedWhenItsTimeIsOver) {
   start();
   const auto slow = connect();
   std::jthread drip([&](const std::stop_token& stop) {
-    slow->send("GET / HTTP/1.1\r\nX: ");
+    slow->send("GET / HTTP/1.1\r\nHost: x\r\nX: ");
     for (; !stop.stop_requested(); std::this_thread::sleep_for(milliseconds(10))) slow->send("x");
   });
   EXPECT_THAT(slow->read_to_end(), AllOf(StartsWith("HTTP/1.1 408"), HasSubstr("request_timeout")));
@@ -170,7 +170,7 @@ TEST_F(HttpServerTest, OneIdleClientTooManyDrivesOutTheLongest) {
   await([&] { return server_->parked() == 2; });
   const auto third = connect();
   EXPECT_EQ(first->read_to_end(), "");
-  third->send("GET / HTTP/1.1\r\n\r\n");
+  third->send("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
   EXPECT_THAT(third->finish(), StartsWith("HTTP/1.1 200"));
 }
 
@@ -218,7 +218,7 @@ TEST_F(HttpServerTest, AnUploadThatDoesNotEndDoesNotHoldUpTheEnd) {
   };
   start();
   const auto client = connect();
-  client->send("POST / HTTP/1.1\r\nContent-Length: 1000\r\n\r\nabc");
+  client->send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\nabc");
   reading.get_future().wait();
   stop();
   EXPECT_FALSE(serving_.joinable());
@@ -263,7 +263,7 @@ TEST_F(HttpServerTest, TlsCarriesRequestsBodiesAndTheDeadlines) {
     EXPECT_EQ(answer->body, large);
   }
   const auto plain = connect();
-  plain->send("GET / HTTP/1.1\r\n\r\n");
+  plain->send("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
   EXPECT_THAT(plain->read_to_end(), testing::Not(HasSubstr("200")));
   EXPECT_EQ(connect()->read_to_end(), "");  // never begins its handshake
 }

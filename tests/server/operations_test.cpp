@@ -2,6 +2,7 @@
 #include "running_server.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -138,6 +139,53 @@ TEST_F(Operations, MetricsTellWhatHasHappened) {
   EXPECT_EQ(metric("unwrapd_requests_total" + refused), 1);
   EXPECT_GT(metric("unwrapd_sent_bytes_total"), 1000);
   EXPECT_GT(metric("process_resident_memory_bytes"), 1e6);
+}
+
+/// How many threads of this process are so nice, or nicer.
+int nice_threads(int least) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {
+    const int thread = std::stoi(entry.path().filename());
+    if (::getpriority(PRIO_PROCESS, static_cast<id_t>(thread)) >= least) ++count;
+  }
+  return count;
+}
+
+TEST_F(Operations, ThreadsThatWorkAreNiceToThoseThatAnswer) {
+  const int own = ::getpriority(PRIO_PROCESS, 0);
+  const int others = nice_threads(own + 1);
+  config_.workers = 2;
+  config_.threads = 3;
+  start();
+  await_state(submit(), "succeeded");
+  await([&] { return nice_threads(own + 1) == others + 6; });
+}
+
+TEST_F(Operations, CachesTellWhatTheyWereAskedForAndWhatTheyMade) {
+  start();
+  const std::string id = submit();
+  await_state(id, "succeeded");
+  const auto count = [&](const std::string& cache, const std::string& outcome) {
+    return metric("unwrapd_cache_requests_total{cache=\"" + cache + "\",outcome=\"" + outcome +
+                  "\"}");
+  };
+  const auto made = [&](const std::string& cache) {
+    return metric("unwrapd_cache_made_bytes_total{cache=\"" + cache + "\"}");
+  };
+  EXPECT_EQ(made("result") + made("picture"), 0);
+  const std::size_t glb = get(id, "result", {{"Accept", "model/gltf-binary"}})->body.size();
+  EXPECT_EQ(made("result"), glb);
+  get(id, "result", {{"Accept", "model/gltf-binary"}});
+  EXPECT_EQ(std::pair(count("result", "hit"), count("result", "miss")), std::pair(1.0, 1.0));
+  const std::size_t png = get(id, "layout.png?size=64")->body.size();
+  get(id, "layout.png?size=64");
+  EXPECT_EQ(std::pair(count("picture", "hit"), count("picture", "miss")), std::pair(1.0, 1.0));
+  EXPECT_EQ(made("picture"), png);
+  EXPECT_GT(metric("unwrapd_cache_bytes{cache=\"solver\"}"), 0);
+  const double stored = metric("unwrapd_stored_bytes");
+  EXPECT_GT(stored, static_cast<double>(glb + png));
+  client().Delete("/v1/jobs/" + id);
+  EXPECT_EQ(metric("unwrapd_stored_bytes"), 0);
 }
 
 TEST_F(Operations, PromtoolFindsTheMetricsWellFormed) {

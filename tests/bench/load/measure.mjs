@@ -1,6 +1,7 @@
 // What the parts of the load test share: quantiles, the memory of a process, probes while it works.
+import {once} from 'node:events';
 import {readFileSync} from 'node:fs';
-import {setTimeout as sleep} from 'node:timers/promises';
+import {Worker} from 'node:worker_threads';
 
 import {request} from '../../contract/http.mjs';
 import * as meshes from '../../contract/meshes.mjs';
@@ -29,18 +30,12 @@ export async function timed(base, call, status = 200) {
 
 /** Asks for /healthz 20 times a second until stop() is called, which resolves to the times, ms. */
 export function probe(base) {
-  const times = [];
-  let stopped = false;
-  const loop = (async () => {
-    while (!stopped) {
-      times.push((await timed(base, {path: '/healthz'})).ms);
-      await sleep(50);
-    }
-  })();
+  const prober = new Worker(new URL('./probe.mjs', import.meta.url), {workerData: base});
+  const times = once(prober, 'message');  // rejects with what is thrown there
+  times.catch(() => {});                  // before anybody asks
   return async () => {
-    stopped = true;
-    await loop;
-    return times;
+    prober.postMessage('stop');
+    return (await times)[0];
   };
 }
 

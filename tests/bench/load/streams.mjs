@@ -4,7 +4,9 @@ import http from 'node:http';
 import {setTimeout as sleep} from 'node:timers/promises';
 
 import {startServer} from '../../contract/server.mjs';
-import {anonymousKb, figure, meshOfTenIterationsASecond, probe, quantile, round, submit} from './measure.mjs';
+import {
+  anonymousKb, figure, meshOfTenIterationsASecond, probe, quantile, round, submit, timed,
+} from './measure.mjs';
 
 const kStreams = 500;
 const kWatchSeconds = 15;
@@ -30,6 +32,14 @@ function follow(base, job) {
   });
 }
 
+async function iterates(base, job) {
+  for (;;) {
+    const {answer} = await timed(base, {path: `/v1/jobs/${job}`});
+    if (JSON.parse(answer.body.toString()).progress?.iteration > 3) return;
+    await sleep(50);
+  }
+}
+
 export async function streams(binary) {
   console.log(`${kStreams} event streams beside busy workers`);
   const server = await startServer(binary, ['--workers', '2', '--threads', '1', '--max-streams',
@@ -39,7 +49,7 @@ export async function streams(binary) {
   for (let i = 0; i < 2; ++i) {
     jobs.push((await submit(server.base, mesh, '?stop.iterations=10000&guarantee=none')).job.id);
   }
-  await sleep(2000);
+  for (const job of jobs) await iterates(server.base, job);  // its memory is taken
   const before = anonymousKb(server.pid);
   const stopProbe = probe(server.base);
   const open = [];
