@@ -18,7 +18,7 @@ struct Chart {
   Halfedges halfedges;              ///< of mesh.faces
   std::vector<BoundaryLoop> loops;  ///< at least one, the longest first
   std::vector<Index> face_source;   ///< chart face -> face of the surface; corners keep their order
-  UvMap start = {};  ///< a map without flips or overlaps, of any scale, to begin with; empty: none
+  UvMap start = {};  ///< a map of any scale to begin with, nearly free of flips; empty: none
   Guarantee least = Guarantee::none;  ///< what its map keeps unless nothing shall be guaranteed
 };
 

@@ -21,7 +21,8 @@
 namespace unwrapd {
 namespace {
 
-constexpr std::size_t kMostPairs = 1 << 20;  // of overlapping triangles, counted in one chart
+constexpr std::size_t kMostPairs = 1 << 20;   // of overlapping triangles, counted in one chart
+constexpr Index kMostFacesUnfolded = 50'000;  // a new map of more takes minutes
 
 double energy_of(const Disk& disk, const UvMap& uv, const Rigidity& rigidity) {
   double energy = 0;
@@ -126,7 +127,8 @@ Seeds seeds_needed(KeptPart& part, double unit, const Promise& promise, Mending&
   const auto pairs = overlaps_of(part.chart, part.uv);
   if (pairs.empty()) return {};
   mending.overlaps += static_cast<Index>(pairs.size());
-  if (!holds_any(promise.intent) && unfold(part, unit, promise.intent)) return {};
+  const bool is_small = part.chart.mesh.face_count() <= kMostFacesUnfolded;
+  if (is_small && !holds_any(promise.intent) && unfold(part, unit, promise.intent)) return {};
   return seeds_at_overlaps(part.chart, pairs);
 }
 

@@ -12,8 +12,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/atlas/segment.hpp"
-#include "core/atlas/split_chart.hpp"
+#include "core/atlas/region_charts.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/edges.hpp"
 
@@ -21,6 +20,7 @@ namespace unwrapd {
 namespace {
 
 constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
+constexpr Index kMostFacesSegmented = 36'000, kFacesOfCoarse = 24'000;
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const Chart& component) {
@@ -61,33 +61,6 @@ class Account {
   double total_ = 0, done_ = 0;
 };
 
-/// The regions as charts; their maps are what solving may begin with.
-std::vector<Chart> charts_of(const Chart& component, const Segments& segments) {
-  const std::vector<Region>& regions = segments.regions;
-  std::vector<Index> owner(component.mesh.faces.size());
-  std::vector<CornerUv> uv(owner.size());
-  for (std::size_t k = 0; k < regions.size(); ++k)
-    for (std::size_t i = 0; i < regions[k].faces.size(); ++i) {
-      owner[regions[k].faces[i]] = static_cast<Index>(k);
-      uv[regions[k].faces[i]] = regions[k].uv[i];
-    }
-  Halfedges cut = component.halfedges;
-  for (std::size_t h = 0; h < cut.twin.size(); ++h)
-    if (cut.twin[h] != kNoTwin &&
-        (segments.open[h] != 0 || owner[face_of(cut.twin[h])] != owner[h / 3]))
-      cut.twin[h] = kNoTwin;
-  std::vector<Chart> charts;
-  for (ChartPart& part : parts_of(component, cut)) {
-    part.chart.start.resize(part.vertex.size());
-    for (std::size_t t = 0; t < part.face.size(); ++t)
-      for (std::size_t i = 0; i < 3; ++i)
-        part.chart.start[part.chart.mesh.faces[t][i]] = uv[part.face[t]][i];
-    part.chart.least = Guarantee::bijective;
-    charts.push_back(std::move(part.chart));
-  }
-  return charts;
-}
-
 void note(Charts& surface, RepairKind kind, Index count) {
   if (count > 0) surface.repairs.push_back({kind, 0, count});
 }
@@ -118,10 +91,22 @@ class Cutter {
     SegmentRules rules =
         account_.rules(options_.max_distortion.value_or(kDefaultDistortion), component);
     rules.most_regions = most;
+    std::vector<Chart> parts = component.mesh.face_count() > kMostFacesSegmented
+                                   ? parts_of_large(component, rules)
+                                   : parts_of_small(component, rules);
+    segmented += !whole || parts.size() > 1 ? 1 : 0;
+    for (Chart& part : parts) charts.push_back(std::move(part));
+  }
+
+  std::vector<Chart> parts_of_small(const Chart& component, const SegmentRules& rules) {
     const Sheet sheet = make_sheet(component.mesh, component.halfedges);
-    const Segments segments = segment(sheet, rules, executor_);
-    segmented += !whole || segments.regions.size() > 1 ? 1 : 0;
-    for (Chart& chart : charts_of(component, segments)) charts.push_back(std::move(chart));
+    return region_charts(component, segment(sheet, rules, executor_));
+  }
+
+  std::vector<Chart> parts_of_large(const Chart& component, const SegmentRules& rules) {
+    const Coarse coarse = coarsen(component.mesh, component.halfedges, kFacesOfCoarse, rules.stop);
+    const Sheet sheet = make_sheet(coarse.mesh, coarse.halfedges);
+    return region_charts(component, coarse, segment(sheet, rules, executor_), rules.stop);
   }
 
   const SegmentOptions& options_;
