@@ -1,4 +1,5 @@
 // Jobs by name, lists of jobs and links to their files, at a server that asks for no keys.
+import {request} from '../http.mjs';
 import * as meshes from '../meshes.mjs';
 import {kGlb, kWait, newId} from './shared.mjs';
 
@@ -32,15 +33,19 @@ export async function lists(run, base) {
   }
 }
 
+/** What a link can be to, and the operation that answers it. */
+const kLinked = {result: 'getResult', report: 'getReport', 'layout.svg': 'getLayout',
+                 'layout.png': 'getLayoutPng', 'preview.png': 'getPreview'};
+
 export async function links(run, base) {
   const {id: job} = await run.json(base, 'createJob', {headers: kWait, body: meshes.glb(), status: 200});
-  for (const file of ['result', 'report', 'layout.svg', 'layout.png', 'preview.png']) {
+  for (const [file, id] of Object.entries(kLinked)) {
     const {url} = await run.json(base, 'getLink', {job, query: {file, seconds: 60}, status: 200});
     const open = (link) => fetch(base + link);
     run.expectEqual(`a link to ${file}`, (await open(url)).status, 200);
     const changed = url.replace(/.$/, (digit) => (digit === '0' ? '1' : '0'));
-    const refused = await open(changed);
-    run.expectEqual('a link with another signature', (await refused.json()).code, 'invalid_link');
+    const refused = run.judge('a link with another signature', id, await request(base, {path: changed}), 403);
+    run.expectEqual('its code', JSON.parse(refused.body.toString()).code, 'invalid_link');
   }
   await run.call(base, 'getLink', {job, query: {seconds: 0}, status: 422});
   await run.call(base, 'getLink', {job, query: {file: 'document'}, status: 422});
