@@ -17,6 +17,8 @@ enum class FrameKind : std::uint8_t {
   task,       ///< to the worker: what to do; bytes of pack_task()
   document,   ///< to the worker: the asset
   buffer,     ///< to the worker: a buffer, by its URI
+  uvs,        ///< to the worker: of a map to be rendered
+  report,     ///< to the worker: of that map
   begin,      ///< to the worker: that was all
   ready,      ///< from here on from the worker: it has locked itself in
   stage,      ///< bytes of pack()
@@ -24,6 +26,7 @@ enum class FrameKind : std::uint8_t {
   result,     ///< the answer's asset, by its format
   file,       ///< a further file, by its name
   done,       ///< the end; the name is the result's format
+  rendered,   ///< the end; bytes of the file that was asked for
   failed,     ///< the end; the name is the error's code
 };
 

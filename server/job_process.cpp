@@ -94,6 +94,14 @@ class Conversation {
     }
   }
 
+  /// The one file that comes, or none.
+  std::string listen_for_file() {
+    const Frame frame = next();
+    if (frame.kind == FrameKind::failed) rethrow(frame);
+    if (frame.kind != FrameKind::rendered) misbehaved();
+    return frame.bytes;
+  }
+
  private:
   Frame next() {
     Frame frame;
@@ -123,12 +131,9 @@ void send_limits(WorkerProcess& worker, const SandboxLimits& limits) {
   worker.send(bytes.add(limits).take());
 }
 
-void send_job(Conversation& worker, const JobTask& task, const asset::Input& input,
-              const WorkerTask& shape) {
-  worker.send(FrameKind::task, {}, pack_task(shape, task.record));
+void send_asset(Conversation& worker, const asset::Input& input) {
   worker.send(FrameKind::document, {}, input.document);
   for (const auto& [uri, bytes] : input.buffers) worker.send(FrameKind::buffer, uri, bytes);
-  worker.send(FrameKind::begin, {}, {});
 }
 
 class NoOutput final : public JobOutput {
@@ -153,6 +158,15 @@ void check_isolation(const Isolation& isolation) {
   }
 }
 
+bool can_isolate(const Isolation& isolation) {
+  try {
+    check_isolation(isolation);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
                              const api::Limits& limits, const Isolation& isolation) {
   const std::chrono::duration<double, std::milli> elapsed =
@@ -161,13 +175,35 @@ std::string run_job_isolated(const JobTask& task, const asset::Input& input, Job
   send_limits(worker, sandbox_limits(limits, isolation));
   Conversation conversation(worker, output, isolation.memory_bytes);
   conversation.await_ready();
-  send_job(conversation, task, input,
-           {.limits = limits,
-            .threads = isolation.threads,
-            .memory_bytes = isolation.memory_bytes,
-            .queue_ms = task.queue_ms,
-            .elapsed_ms = elapsed.count()});
+  const WorkerTask shape{.limits = limits,
+                         .threads = isolation.threads,
+                         .memory_bytes = isolation.memory_bytes,
+                         .queue_ms = task.queue_ms,
+                         .elapsed_ms = elapsed.count()};
+  conversation.send(FrameKind::task, {}, pack_task(shape, task.record));
+  send_asset(conversation, input);
+  conversation.send(FrameKind::begin, {}, {});
   return conversation.listen();
+}
+
+std::string render_isolated(const Rendering& rendering, const RenderingInput& input,
+                            const std::stop_token& stop, const api::Limits& limits,
+                            const Isolation& isolation) {
+  WorkerProcess worker(isolation.program, stop);
+  send_limits(worker, sandbox_limits(limits, isolation));
+  NoOutput none;
+  Conversation conversation(worker, none, isolation.memory_bytes);
+  conversation.await_ready();
+  const WorkerTask shape{.limits = limits,
+                         .threads = isolation.threads,
+                         .memory_bytes = isolation.memory_bytes,
+                         .rendering = rendering};
+  conversation.send(FrameKind::task, {}, pack_task(shape, input.record));
+  send_asset(conversation, input.asset);
+  conversation.send(FrameKind::uvs, {}, input.uvs);
+  conversation.send(FrameKind::report, {}, input.report);
+  conversation.send(FrameKind::begin, {}, {});
+  return conversation.listen_for_file();
 }
 
 }  // namespace unwrapd::server

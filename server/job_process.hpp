@@ -1,16 +1,19 @@
 #pragma once
-// --isolate: a job is read, unwrapped and written in a process of its own that has no files, no
-// network and bounded memory (sandbox.hpp), so that a crash, whoever brought it about, costs this
-// job and nothing else. Rejected: a process kept for many jobs (a crash would leave the next one a
-// stranger's memory), fork without exec (of a program with threads).
+// --isolate: a job is read, unwrapped and written, and what is made of it later, in a process of
+// its own that has no files, no network and bounded memory (sandbox.hpp), so that a crash, whoever
+// brought it about, costs this job or request and nothing else. Rejected: a process kept for many
+// jobs (a crash would leave the next one a stranger's memory), fork without exec (of a program with
+// threads).
 
 #include <cstdint>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 
 #include "api/limits.hpp"
 #include "core/asset/asset.hpp"
 #include "server/job_output.hpp"
+#include "server/rendering.hpp"
 #include "server/run_job.hpp"
 
 namespace unwrapd::server {
@@ -22,17 +25,27 @@ class WorkerCrashed : public std::runtime_error {
 };
 
 struct Isolation {
-  bool on = false;
+  bool on = false;                                    ///< for all jobs
+  bool possible = false;                              ///< for those that may have ended a server
   std::int64_t memory_bytes = std::int64_t{4} << 30;  ///< of a job
   int threads = 1;                                    ///< of a job
-  std::string program = "/proc/self/exe";             ///< what --job-worker starts
+  std::string program = {};                           ///< what --job-worker starts
 };
 
 /// Throws Error{internal} when no worker process can be started and locked in on this machine.
 void check_isolation(const Isolation& isolation);
 
+/// Whether check_isolation() throws nothing.
+bool can_isolate(const Isolation& isolation);
+
 /// run_job() in a process of its own. Throws what that throws, and WorkerCrashed.
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
                              const api::Limits& limits, const Isolation& isolation);
+
+/// render() in a process of its own. Throws what that throws, and WorkerCrashed; Error{cancelled}
+/// once it was stopped.
+std::string render_isolated(const Rendering& rendering, const RenderingInput& input,
+                            const std::stop_token& stop, const api::Limits& limits,
+                            const Isolation& isolation);
 
 }  // namespace unwrapd::server

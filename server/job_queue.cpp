@@ -41,19 +41,22 @@ JobQueue::JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const L
       config_(config),
       retry_(config.workers, config.max_queue) {}
 
-void JobQueue::recover() {
+void JobQueue::recover(bool tried_apart) {
   const std::lock_guard lock(mutex_);
   for (const JobRecord& job : store_.all(JobState::queued)) wait_again(job);
-  for (const JobRecord& job : store_.all(JobState::running)) take_up(job, true);
+  for (const JobRecord& job : store_.all(JobState::running)) {
+    const bool to_blame = !tried_apart && job.crashes + 1 >= kMaxCrashes;
+    take_up(job, to_blame ? Found::thrice_by_death : Found::by_death);
+  }
 }
 
-void JobQueue::take_up(const JobRecord& job, bool crashed) {
+void JobQueue::take_up(const JobRecord& job, Found found) {
   if (job.cancel_requested) {
     give_up(job, cancelled_by_owner());
-  } else if (crashed && job.crashes + 1 >= kMaxCrashes) {
+  } else if (found == Found::thrice_by_death) {
     give_up(job, poison());
   } else {
-    store_.requeue(job.id, crashed);
+    store_.requeue(job.id, found == Found::by_death);
     wait_again(job);
     log_.warning("job found at nobody's hands, queued again",
                  {{"job", job.id}, {"attempt", job.attempt}});
@@ -190,7 +193,7 @@ void JobQueue::beat() {
   const std::lock_guard lock(mutex_);
   const std::int64_t now = elapsed_ms();
   for (const auto& [id, job] : running_) store_.renew(id, now + config_.lease.count());
-  for (const JobRecord& job : store_.lapsed(now)) take_up(job, false);
+  for (const JobRecord& job : store_.lapsed(now)) take_up(job, Found::lapsed);
 }
 
 /// Whether the job, whose results found no room, waits until there is some.

@@ -65,8 +65,10 @@ class JobQueue {
   JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const Log& log,
            const QueueConfig& config);
 
-  /// Once, before any worker: what the last process left running waits again, or is given up.
-  void recover();
+  /// Once, before any worker: what the last process left running waits again. Its death is held
+  /// against those jobs when they are not tried apart from this process from now on: at the third
+  /// they are given up.
+  void recover(bool tried_apart);
 
   /// Throws RetryLater{queue_full, draining} when a submission would be refused now.
   void check_room();
@@ -97,7 +99,8 @@ class JobQueue {
   [[nodiscard]] std::optional<JobRecord> same_name(const JobRecord& job);
   void enqueue(JobRecord& job, const Submission& submission);
   [[nodiscard]] bool answer_from_store(const JobRecord& job);
-  void take_up(const JobRecord& job, bool crashed);
+  enum class Found { lapsed, by_death, thrice_by_death };
+  void take_up(const JobRecord& job, Found found);
   void give_up(const JobRecord& job, const Error& why);
   void wait_again(const JobRecord& job);
   [[nodiscard]] bool await_turn(std::unique_lock<std::mutex>& lock);

@@ -72,6 +72,8 @@ struct ReceivedJob {
   JobRecord record;
   std::string document;
   std::vector<std::pair<std::string, std::string>> buffers;
+  std::string uvs;
+  std::string report;
 
   [[nodiscard]] asset::Input input() const {
     asset::Input input{.document = document, .buffers = {}};
@@ -96,6 +98,8 @@ ReceivedJob receive_job() {
     if (frame.kind == FrameKind::begin) return job;
     if (frame.kind == FrameKind::task) unpack_task(frame.bytes, job);
     if (frame.kind == FrameKind::document) job.document = std::move(frame.bytes);
+    if (frame.kind == FrameKind::uvs) job.uvs = std::move(frame.bytes);
+    if (frame.kind == FrameKind::report) job.report = std::move(frame.bytes);
     if (frame.kind == FrameKind::buffer)
       job.buffers.emplace_back(std::move(frame.name), std::move(frame.bytes));
   }
@@ -122,8 +126,23 @@ void fail_with(ErrorCode code, std::string_view message, std::string_view where)
   send_frame(send_all, FrameKind::failed, api::error_row(code).name, text.take());
 }
 
-void work(const JobRunner& run) {
-  const ReceivedJob job = receive_job();
+/// A file half made is of no use to anybody.
+void end_at_sigterm() {
+  sigset_t term;
+  sigemptyset(&term);
+  sigaddset(&term, SIGTERM);
+  pthread_sigmask(SIG_UNBLOCK, &term, nullptr);
+}
+
+void draw(const ReceivedJob& job, const Duties& duties) {
+  end_at_sigterm();
+  const RenderingInput input{
+      .record = job.record, .asset = job.input(), .uvs = job.uvs, .report = job.report};
+  const std::string bytes = duties.draw(*job.task.rendering, input, job.task.limits);
+  send_frame(send_all, FrameKind::rendered, {}, bytes);
+}
+
+void run(const ReceivedJob& job, const Duties& duties) {
   const std::stop_source stop = stop_at_sigterm();
   const std::int64_t memory = job.task.memory_bytes;
   SolverCache core({.cache_bytes = memory / kCacheShare, .job_bytes = memory}, 1);
@@ -136,8 +155,14 @@ void work(const JobRunner& run) {
       .began = std::chrono::steady_clock::now() -
                std::chrono::duration_cast<std::chrono::steady_clock::duration>(elapsed),
       .stop = stop.get_token()};
-  const std::string format = run(task, job.input(), output, job.task.limits, executor);
+  const std::string format = duties.run(task, job.input(), output, job.task.limits, executor);
   send_frame(send_all, FrameKind::done, format, {});
+}
+
+void work(const Duties& duties) {
+  const ReceivedJob job = receive_job();
+  if (job.task.rendering) return draw(job, duties);
+  run(job, duties);
 }
 
 /// They come before anything else: nothing may be read without them.
@@ -161,11 +186,11 @@ std::string pack_task(const WorkerTask& task, const JobRecord& job) {
   return pack.take();
 }
 
-int run_job_worker(const JobRunner& run) {
+int run_job_worker(const Duties& duties) {
   try {
     enter_sandbox(sandbox_limits());
     send_frame(send_all, FrameKind::ready, {}, {});
-    work(run);
+    work(duties);
   } catch (const Error& error) {
     fail_with(error.code(), error.what(), error.where());
   } catch (const std::bad_alloc&) {

@@ -1,24 +1,20 @@
 #pragma once
 // The worker process's side of --isolate: unwrapd started again with --job-worker as its only
-// argument and a socket as its standard input. One job, then it ends.
+// argument and a socket as its standard input. One job or rendering, then it ends.
 
-#include <functional>
+#include <optional>
 #include <string>
 
-#include "server/run_job.hpp"
+#include "server/duties.hpp"
 
 namespace unwrapd::server {
 
 inline constexpr const char* kWorkerFlag = "--job-worker";
 
-/// What a worker does with a job; run_job(), but in tests.
-using JobRunner = std::function<std::string(const JobTask&, const asset::Input&, JobOutput&,
-                                            const api::Limits&, Executor&)>;
-
 [[nodiscard]] bool is_job_worker(int argc, const char* const* argv);
 
 /// Locks the process in, takes the job, does it. Returns the exit code.
-int run_job_worker(const JobRunner& run);
+int run_job_worker(const Duties& duties);
 
 /// What the server tells its worker of a job.
 struct WorkerTask {
@@ -26,7 +22,8 @@ struct WorkerTask {
   int threads = 1;
   std::int64_t memory_bytes = 0;
   double queue_ms = 0;
-  double elapsed_ms = 0;  ///< since the job began
+  double elapsed_ms = 0;                    ///< since the job began
+  std::optional<Rendering> rendering = {};  ///< what to make of it; none: to run it
 };
 
 std::string pack_task(const WorkerTask& task, const JobRecord& job);

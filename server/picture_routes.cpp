@@ -34,11 +34,10 @@ Response get_picture(PictureStore& pictures, const JobRecord& job, PictureKind k
   std::multimap<std::string, std::string> query = request.query;
   const std::size_t map = chosen_map(job, query);
   query.erase("lambda");
-  Picture picture = picture_of(kind, query);
-  picture.uv_file = map_file(kUvFile, map);
+  const Picture picture = picture_of(kind, query);
   require_result(job);
   const std::string_view type = kind == PictureKind::layout_svg ? "image/svg+xml" : "image/png";
-  return stored_response(pictures.open(job, picture), type, request);
+  return stored_response(pictures.open(job, map, picture), type, request);
 }
 
 }  // namespace

@@ -2,17 +2,9 @@
 
 #include <bit>
 #include <filesystem>
-#include <vector>
 
-#include "api/options.hpp"
-#include "core/figure/layout_image.hpp"
-#include "core/figure/layout_svg.hpp"
-#include "core/figure/preview.hpp"
 #include "server/identity.hpp"
-#include "server/job_input.hpp"
-#include "server/png_file.hpp"
-#include "server/run_job.hpp"
-#include "server/uv_file.hpp"
+#include "server/map_choice.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -20,18 +12,18 @@ namespace {
 namespace fs = std::filesystem;
 
 /// "layout.svg" for what the worker has drawn already, else "uv.bin.layout.area.1024.png".
-std::string file_name(const Picture& picture) {
+std::string file_name(std::size_t map, const Picture& picture) {
+  const std::string uv_file = map_file(kUvFile, map);
   const std::string colour(kColouringNames[static_cast<std::size_t>(picture.colouring)]);
   const std::string size = std::to_string(picture.size);
   switch (picture.kind) {
     case PictureKind::layout_svg:
-      if (picture.uv_file == kUvFile && picture.colouring == Colouring::stretch)
-        return std::string(kLayoutFile);
-      return picture.uv_file + ".layout." + colour + ".svg";
+      if (map == 0 && picture.colouring == Colouring::stretch) return std::string(kLayoutFile);
+      return uv_file + ".layout." + colour + ".svg";
     case PictureKind::layout_png:
-      return picture.uv_file + ".layout." + colour + "." + size + ".png";
+      return uv_file + ".layout." + colour + "." + size + ".png";
     case PictureKind::preview_png:
-      return picture.uv_file + ".preview." + size + ".png";
+      return uv_file + ".preview." + size + ".png";
   }
   return {};
 }
@@ -43,14 +35,14 @@ bool is_kept(const Picture& picture) {
 
 }  // namespace
 
-StoredResult PictureStore::open(const JobRecord& job, const Picture& picture) {
-  const std::string name = file_name(picture), digest = name + ".sha256";
+StoredResult PictureStore::open(const JobRecord& job, std::size_t map, const Picture& picture) {
+  const std::string name = file_name(map, picture), digest = name + ".sha256";
   const fs::path path = blobs_.path(job.id, name);
   const std::lock_guard lock(drawing_);
   if (fs::exists(path))
     ++counts_.hits;
   else
-    draw_into_store(job, picture, name);
+    draw_into_store(job, {.map = map, .picture = picture, .format = {}}, name);
   if (!fs::exists(blobs_.path(job.id, digest)))
     blobs_.write(job.id, digest, sha256(read_file(path)));
   StoredResult stored{.file = std::make_shared<const File>(File::open(path)),
@@ -61,27 +53,11 @@ StoredResult PictureStore::open(const JobRecord& job, const Picture& picture) {
   return stored;
 }
 
-void PictureStore::draw_into_store(const JobRecord& job, const Picture& picture,
+void PictureStore::draw_into_store(const JobRecord& job, const Rendering& rendering,
                                    const std::string& name) {
-  const std::string bytes = draw(job, picture);
+  const std::string bytes = renderer_.render(job, rendering);
   counts_.made(bytes);
   blobs_.write(job.id, name, bytes);
-}
-
-std::string PictureStore::draw(const JobRecord& job, const Picture& picture) const {
-  const LoadedInput loaded(blobs_, job);
-  const asset::Asset asset = asset::read(loaded.input(), read_limits(job, limits_),
-                                         api::parse_options(job.options, limits_).asset);
-  const std::vector<UnwrappedSurface> unwrapped = decode_uvs(blobs_.read(job.id, picture.uv_file));
-  switch (picture.kind) {
-    case PictureKind::layout_svg:
-      return layout_svg(asset.surfaces(), unwrapped, picture.colouring);
-    case PictureKind::layout_png:
-      return encode_png(layout_image(asset.surfaces(), unwrapped, picture.colouring, picture.size));
-    case PictureKind::preview_png:
-      return encode_png(preview(asset.surfaces(), unwrapped, picture.size));
-  }
-  return {};
 }
 
 }  // namespace unwrapd::server

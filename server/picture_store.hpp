@@ -4,39 +4,28 @@
 #include <mutex>
 #include <string>
 
-#include "api/limits.hpp"
-#include "core/figure/colour_scale.hpp"
 #include "server/blob_store.hpp"
 #include "server/job_record.hpp"
+#include "server/renderer.hpp"
 #include "server/result_store.hpp"
 
 namespace unwrapd::server {
 
-enum class PictureKind { layout_svg, layout_png, preview_png };
-
-struct Picture {
-  PictureKind kind = PictureKind::layout_svg;
-  Colouring colouring = Colouring::stretch;    ///< of layouts
-  int size = kDefaultImageSize;                ///< of PNGs, pixels
-  std::string uv_file = std::string(kUvFile);  ///< the map to draw: a file of the job
-};
-
 /// Thread-safe.
 class PictureStore {
  public:
-  PictureStore(BlobStore& blobs, const api::Limits& limits) : blobs_(blobs), limits_(limits) {}
+  PictureStore(BlobStore& blobs, const Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
-  /// The picture of a succeeded job. Those whose size is a power of two are kept with the job, so
-  /// that whoever asks for every size fills no disk.
-  StoredResult open(const JobRecord& job, const Picture& picture);
+  /// The picture of one of a succeeded job's maps (see map_choice.hpp). Those whose size is a power
+  /// of two are kept with the job, so that whoever asks for every size fills no disk.
+  StoredResult open(const JobRecord& job, std::size_t map, const Picture& picture);
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
-  std::string draw(const JobRecord& job, const Picture& picture) const;
-  void draw_into_store(const JobRecord& job, const Picture& picture, const std::string& name);
+  void draw_into_store(const JobRecord& job, const Rendering& rendering, const std::string& name);
 
   BlobStore& blobs_;
-  const api::Limits& limits_;
+  const Renderer& renderer_;
   FileCounts counts_;
   std::mutex drawing_;  // one at a time, as for results in other formats
 };

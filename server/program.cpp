@@ -10,6 +10,7 @@
 
 #include "server/config.hpp"
 #include "server/http_probe.hpp"
+#include "server/job_worker.hpp"
 #include "server/keys_command.hpp"
 #include "server/log.hpp"
 #include "server/service.hpp"
@@ -37,10 +38,10 @@ sigset_t block_end_signals() {
   return signals;
 }
 
-void serve(const Config& config, const Log& log) {
+void serve(const Config& config, const Log& log, const Duties& duties) {
   allow_open_files(config.edge.max_connections, log);
   const sigset_t signals = block_end_signals();
-  Service service(config, log);
+  Service service(config, log, duties);
   const std::string address = to_text({config.listen.host, service.port()});
   const char* scheme = config.edge.tls_cert.empty() ? "http" : "https";
   std::printf("unwrapd listening on %s://%s\n", scheme, address.c_str());
@@ -58,15 +59,16 @@ void serve(const Config& config, const Log& log) {
 
 }  // namespace
 
-int run_program(int argc, char** argv, const JobRunner& run) {
-  if (is_job_worker(argc, argv)) return run_job_worker(run);
+int run_program(int argc, char** argv, Duties duties) {
+  if (is_job_worker(argc, argv)) return run_job_worker(duties);
   if (argc > 1 && std::string_view(argv[1]) == "keys") return run_keys_command(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);
   if (line.task == Task::leave) return line.exit_code;
   if (line.task == Task::healthcheck) return probe(*line.config.admin);
   const Log log(line.config.log_level, line.config.log_format);
   try {
-    serve(line.config, log);
+    if (duties.program.empty()) duties.program = "/proc/self/exe";
+    serve(line.config, log, duties);
     return 0;
   } catch (const std::exception& error) {
     log.error("unwrapd cannot run", {{"reason", error.what()}});

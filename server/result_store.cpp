@@ -1,18 +1,13 @@
 #include "server/result_store.hpp"
 
-#include <vector>
-
-#include "api/options.hpp"
-#include "api/result.hpp"
-#include "server/job_input.hpp"
 #include "server/map_choice.hpp"
-#include "server/run_job.hpp"
-#include "server/uv_file.hpp"
 
 namespace unwrapd::server {
 namespace {
 
-asset::Format format_named(std::string_view name) {
+/// Nothing for JSON.
+std::optional<asset::Format> format_named(std::string_view name) {
+  if (name == "json") return std::nullopt;
   if (name == "glb") return asset::Format::glb;
   return name == "gltf" ? asset::Format::gltf : asset::Format::obj;
 }
@@ -48,7 +43,8 @@ StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::strin
     ++counts_.hits;
     return std::move(*kept);
   }
-  const std::string bytes = make(job, map, format);
+  const Rendering rendering{.map = map, .picture = {}, .format = format_named(format)};
+  const std::string bytes = renderer_.render(job, rendering);
   counts_.made(bytes);
   blobs_.write(job.id, file, bytes);
   const std::string digest = blobs_.note(job.id, file);
@@ -63,18 +59,6 @@ std::optional<StoredResult> ResultStore::find(const JobRecord& job, const std::s
     if (error.code() == ErrorCode::storage_corrupt) return std::nullopt;  // it is made again
     throw;
   }
-}
-
-std::string ResultStore::make(const JobRecord& job, std::size_t map,
-                              std::string_view format) const {
-  const LoadedInput loaded(blobs_, job);
-  const asset::Asset asset = asset::read(loaded.input(), read_limits(job, limits_),
-                                         api::parse_options(job.options, limits_).asset);
-  const std::vector<UnwrappedSurface> surfaces =
-      decode_uvs(blobs_.read(job.id, map_file(kUvFile, map)));
-  if (format != "json") return asset::write(asset, surfaces, format_named(format));
-  const auto report = api::Json::parse(blobs_.read(job.id, map_file(kReportFile, map)));
-  return api::result_json(report, asset.surfaces(), surfaces);
 }
 
 }  // namespace unwrapd::server

@@ -8,12 +8,12 @@
 #include <string>
 #include <string_view>
 
-#include "api/limits.hpp"
 #include "core/asset/asset.hpp"
 #include "server/blob_store.hpp"
 #include "server/file_counts.hpp"
 #include "server/files.hpp"
 #include "server/job_record.hpp"
+#include "server/renderer.hpp"
 
 namespace unwrapd::server {
 
@@ -32,12 +32,11 @@ struct StoredResult {
 /// Thread-safe.
 class ResultStore {
  public:
-  ResultStore(BlobStore& blobs, const api::Limits& limits) : blobs_(blobs), limits_(limits) {}
+  ResultStore(BlobStore& blobs, const Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
   /// The result of a succeeded job by one of its maps (see map_choice.hpp), in a format (glb, gltf,
   /// obj, json); one that is missing or damaged is made from the job's input and map. Throws what
-  /// asset::write() throws when the asset cannot be had in it, storage_corrupt when those are
-  /// damaged too.
+  /// Renderer::render() throws.
   StoredResult open(const JobRecord& job, std::size_t map, std::string_view format);
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
@@ -45,10 +44,9 @@ class ResultStore {
   /// What lies in the store and is whole.
   [[nodiscard]] std::optional<StoredResult> find(const JobRecord& job,
                                                  const std::string& file) const;
-  std::string make(const JobRecord& job, std::size_t map, std::string_view format) const;
 
   BlobStore& blobs_;
-  const api::Limits& limits_;
+  const Renderer& renderer_;
   FileCounts counts_;
   std::mutex making_;  // one at a time: decoding is worth a worker's time and memory
 };

@@ -51,11 +51,22 @@ HttpConfig admin_config(const Address& address) {
   return http;
 }
 
+/// Processes for all jobs when they are asked for, else for the suspects, if they can be had.
+Isolation isolation_of(const Config& config, const SolverCache& cache, const Duties& duties) {
+  Isolation isolation{.on = config.isolate, .program = duties.program};
+  isolation.threads = config.threads;
+  isolation.memory_bytes = static_cast<std::int64_t>(cache.memory_limit());
+  isolation.possible = isolation.on || (!isolation.program.empty() && can_isolate(isolation));
+  if (isolation.on) check_isolation(isolation);
+  return isolation;
+}
+
 }  // namespace
 
 struct Service::Parts {
-  Parts(const Config& given, const Log& log)
+  Parts(const Config& given, const Log& log, const Duties& duties)
       : config(given),
+        isolation(isolation_of(config, solver_cache, duties)),
         lock(config.data),
         blobs(config.data, config.disk),
         store(config.data / kStoreFile),
@@ -69,9 +80,10 @@ struct Service::Parts {
         access(keys, links, asks_for_keys(config.access, config.listen.host)),
         cors(config.cors_origins),
         webhooks(config.data / kStoreFile, secret, config.webhooks, log),
-        results(blobs, config.limits),
+        renderer(blobs, config.limits, log, isolation, duties),
+        results(blobs, renderer),
         sweeper(store, blobs, log, std::chrono::seconds(config.keep_seconds)),
-        pictures(blobs, config.limits),
+        pictures(blobs, renderer),
         router(routes(), log,
                [this](Request& request, std::string_view route) { access.admit(request, route); }),
         http(http_config(config),
@@ -83,7 +95,7 @@ struct Service::Parts {
       admin.emplace(admin_config(*config.admin), uses(told, log, LogLevel::debug), log);
     }
     tell_state();
-    queue.recover();
+    queue.recover(isolation.possible);
     blobs.sweep([&](const std::string& job) { return store.keeps_files(job); });
     blobs.room().on_shortage([this] { return evict_oldest(store, blobs); });
     start_periodic(log);
@@ -91,7 +103,8 @@ struct Service::Parts {
                     WorkerConfig{.workers = config.workers,
                                  .threads = config.threads,
                                  .core = &solver_cache,
-                                 .isolation = isolation()});
+                                 .isolation = isolation,
+                                 .duties = duties});
     serving = std::jthread([this] { http.serve(); });
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
   }
@@ -157,14 +170,6 @@ struct Service::Parts {
     serving_admin.join();
   }
 
-  Isolation isolation() const {
-    Isolation isolation{.on = config.isolate};
-    isolation.threads = config.threads;
-    isolation.memory_bytes = static_cast<std::int64_t>(solver_cache.memory_limit());
-    if (isolation.on) check_isolation(isolation);
-    return isolation;
-  }
-
   std::vector<Route> routes() {
     const JobServices services{store,       queue,   blobs, events,       streams,
                                submissions, results, links, config.limits};
@@ -178,6 +183,8 @@ struct Service::Parts {
   }
 
   const Config config;
+  SolverCache solver_cache{config.memory, config.workers};
+  const Isolation isolation;
   DataLock lock;
   BlobStore blobs;
   JobStore store;
@@ -192,6 +199,7 @@ struct Service::Parts {
   Access access;
   const Cors cors;
   Webhooks webhooks;
+  const Renderer renderer;
   ResultStore results;
   Sweeper sweeper;
   PictureStore pictures;
@@ -199,7 +207,6 @@ struct Service::Parts {
   HttpServer http;
   Router admin_router;
   std::optional<HttpServer> admin;
-  SolverCache solver_cache{config.memory, config.workers};
   std::optional<Periodic> sweeping;
   std::optional<Periodic> beating;
   std::optional<Periodic> calling;
@@ -208,8 +215,8 @@ struct Service::Parts {
   std::jthread serving_admin;
 };
 
-Service::Service(const Config& config, const Log& log)
-    : parts_(std::make_unique<Parts>(config, log)) {}
+Service::Service(const Config& config, const Log& log, const Duties& duties)
+    : parts_(std::make_unique<Parts>(config, log, duties)) {}
 
 Service::~Service() {
   if (!parts_->serving.joinable()) return;

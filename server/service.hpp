@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "server/config.hpp"
+#include "server/duties.hpp"
 #include "server/log.hpp"
 
 namespace unwrapd::server {
@@ -13,8 +14,9 @@ namespace unwrapd::server {
 class Service {
  public:
   /// Opens the data directory, takes up what the last process left, and serves. Throws Error when
-  /// the directory is in use, the store cannot be read or the address cannot be had.
-  Service(const Config& config, const Log& log);
+  /// the directory is in use, the store cannot be read or the address cannot be had. Without a
+  /// program among the duties there is no worker process.
+  Service(const Config& config, const Log& log, const Duties& duties = {});
   /// Like drain(), without patience.
   ~Service();
 

@@ -1,10 +1,10 @@
 #include "server/webhook_http.hpp"
 
-#include "server/worker_pool.hpp"  // Eigen before httplib, whose headers define _res
-
 #include <httplib.h>
 
 #include <chrono>
+
+#include "server/deadline.hpp"
 
 namespace unwrapd::server {
 namespace {

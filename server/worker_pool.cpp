@@ -4,14 +4,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <memory>
 #include <new>
 
 #include "api/error_table.hpp"
+#include "server/deadline.hpp"
 #include "server/feed_output.hpp"
 #include "server/job_input.hpp"
-#include "server/run_job.hpp"
 #include "server/thread_executor.hpp"
 #include "server/trace.hpp"
 
@@ -52,22 +53,20 @@ JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds
 
 Error too_many_crashes() {
   return {ErrorCode::poison,
-          "The worker process ended three times while it worked on this job; it is not tried "
+          "The process of this job ended three times while it worked on it; it is not tried "
           "again. Check the mesh, or send a smaller part of it."};
 }
 
 }  // namespace
 
-Deadline::Deadline(std::chrono::seconds time, std::function<void()> late)
-    : watch_([this, time, late = std::move(late)](const std::stop_token& stop) {
-        std::unique_lock lock(mutex_);
-        wake_.wait_for(lock, stop, time, [] { return false; });
-        if (!stop.stop_requested()) late();
-      }) {}
-
 WorkerPool::WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
                        const WorkerConfig& config)
-    : queue_(queue), blobs_(blobs), limits_(limits), log_(log), isolation_(config.isolation) {
+    : queue_(queue),
+      blobs_(blobs),
+      limits_(limits),
+      log_(log),
+      isolation_(config.isolation),
+      duties_(config.duties) {
   threads_.reserve(static_cast<std::size_t>(config.workers));
   for (int worker = 0; worker < config.workers; ++worker)
     threads_.emplace_back([this, config] { work(config); });
@@ -108,7 +107,9 @@ std::string WorkerPool::run(const RunningJob& job, Executor& executor) {
                      .queue_ms = std::max(0.0, queue_ms),
                      .began = job.began,
                      .stop = job.stop.get_token()};
-  if (!isolation_.on) return run_job(task, loaded.input(), output, limits_, executor);
+  const bool suspected = job.record.crashes > 0 && isolation_.possible;
+  if (!isolation_.on && !suspected)
+    return duties_.run(task, loaded.input(), output, limits_, executor);
   return run_job_isolated(task, loaded.input(), output, limits_, isolation_);
 }
 

@@ -1,12 +1,9 @@
 #pragma once
-// The threads that do the work: each takes the oldest job and runs it, one after another. They are
-// nice to the threads that answer, which would otherwise wait for their turns on a full machine.
+// The threads that do the work: each takes the job whose turn it is and runs it, one after another.
+// They are nice to the threads that answer, which would otherwise wait for their turns on a full
+// machine. A job that was at work when a server died is suspected, and tried in a process of its own
+// where that can be had: only if it ends that, too, three times, is it to blame (`poison`).
 
-#include <chrono>
-#include <condition_variable>
-#include <functional>
-#include <mutex>
-#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,28 +12,19 @@
 #include "core/executor.hpp"
 #include "core/solver_core.hpp"
 #include "server/blob_store.hpp"
+#include "server/duties.hpp"
 #include "server/job_process.hpp"
 #include "server/job_queue.hpp"
 #include "server/log.hpp"
 
 namespace unwrapd::server {
 
-/// Calls late() once when it still exists after a time.
-class Deadline {
- public:
-  Deadline(std::chrono::seconds time, std::function<void()> late);
-
- private:
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
-  std::jthread watch_;  // last: it uses the others
-};
-
 struct WorkerConfig {
   int workers = 1;
   int threads = 1;             ///< for each worker's job
   SolverCore* core = nullptr;  ///< that their jobs share; outlives the pool
   Isolation isolation = {};
+  Duties duties = {};
 };
 
 class WorkerPool {
@@ -57,6 +45,7 @@ class WorkerPool {
   const api::Limits& limits_;
   const Log& log_;
   const Isolation isolation_;
+  const Duties duties_;
   std::vector<std::jthread> threads_;
 };
 

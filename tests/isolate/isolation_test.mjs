@@ -10,6 +10,7 @@ import {request} from '../contract/http.mjs';
 import * as meshes from '../contract/meshes.mjs';
 import {startServer} from '../contract/server.mjs';
 import {parseEvents} from '../contract/spec.mjs';
+import {dataDirectory, ENDLESS, Server} from '../fault/server.mjs';
 
 const kObj = {'Content-Type': 'model/obj'};
 
@@ -33,6 +34,7 @@ async function done(server, body, query = '') {
 }
 
 const doing = (what) => Buffer.concat([Buffer.from(`# do ${what}\n`), meshes.obj()]);
+const drawing = (what) => Buffer.concat([Buffer.from(`# draw ${what}\n`), meshes.obj()]);
 
 async function get(server, path, headers) {
   const answer = await request(server.base, {path, headers});
@@ -51,7 +53,8 @@ test('a job in a process of its own gives the same answer', async () => {
   const [one, other] = await Promise.all(
     [isolated, plain].map((server) => done(server, meshes.obj(12), query)));
   assert.equal(one.state, 'succeeded');
-  for (const path of ['result', 'result?lambda=0.01', 'layout.svg']) {
+  for (const path of ['result', 'result?lambda=0.01', 'layout.svg', 'layout.svg?colour=area',
+                      'layout.png?size=64', 'preview.png?size=64&lambda=0.01']) {
     assert.deepEqual(await get(isolated, `/v1/jobs/${one.id}/${path}`),
                      await get(plain, `/v1/jobs/${other.id}/${path}`), path);
   }
@@ -87,6 +90,39 @@ for (const what of kCrashes) {
   });
 }
 
+const kRenderings = [['layout.png', 'image/png'], ['preview.png', 'image/png'],
+                     ['layout.svg?colour=area', 'image/svg+xml'], ['result', 'application/json'],
+                     ['result', 'model/gltf-binary']];
+
+for (const what of ['segv', 'abort', 'connect', 'chatter']) {
+  test(`a worker that does ${what} while a file is made costs that request alone`, async () => {
+    const job = await done(isolated, drawing(what));
+    assert.equal(job.state, 'succeeded');
+    for (const [path, type] of kRenderings) {
+      const answer = await request(isolated.base, {path: `/v1/jobs/${job.id}/${path}`, headers: {Accept: type}});
+      const problem = JSON.parse(answer.body.toString());
+      assert.deepEqual([answer.status, problem.code], [500, 'internal'], `${path}: ${answer.body}`);
+      if (what !== 'chatter') assert.match(problem.detail, /^The process that made this file ended/);
+    }
+    for (const path of ['', '/result', '/report', '/layout.svg']) await get(isolated, `/v1/jobs/${job.id}${path}`);
+    assert.equal((await done(isolated, meshes.obj())).state, 'succeeded');
+  });
+}
+
+test('a worker has bounded memory while a file is made', async () => {
+  const job = await done(isolated, drawing('memory'));
+  const answer = await request(isolated.base, {path: `/v1/jobs/${job.id}/preview.png`});
+  assert.deepEqual([answer.status, JSON.parse(answer.body.toString()).code], [422, 'memory_limit']);
+});
+
+test('a worker has bounded time while a file is made', async (t) => {
+  const server = await startServer(process.env.UNWRAPD, ['--isolate', '--workers', '1', '--max-job-seconds', '1']);
+  t.after(() => server.stop());
+  const job = await done(server, drawing('hang'));
+  const answer = await request(server.base, {path: `/v1/jobs/${job.id}/preview.png`});
+  assert.deepEqual([answer.status, JSON.parse(answer.body.toString()).code], [422, 'time_limit']);
+});
+
 test('a worker that sends no frames of ours fails its job', async () => {
   const job = await done(isolated, doing('chatter'));
   assert.deepEqual([job.state, job.problem.code], ['failed', 'internal']);
@@ -117,4 +153,40 @@ test('a worker that does not stop when it is asked to is killed', async () => {
 
 test('no process is left when no job is', async () => {
   while (children(isolated.pid).length > 0) await sleep(20);
+});
+
+/** Sends a mesh that ends the server it is sent to; resolves to its job's id once that is done. */
+async function kill(server, what) {
+  const answer = await fetch(`${server.url}/v1/jobs`, {method: 'POST', headers: kObj, body: doing(what)});
+  const {id} = await answer.json();
+  assert.deepEqual(await server.exited, [null, 'SIGSEGV']);
+  return id;
+}
+
+test('without --isolate a mesh ends the server once, and its neighbour is not blamed', async (t) => {
+  const data = dataDirectory(t);
+  const first = await Server.start(data, '--workers', '2');
+  const neighbour = await first.submit(...ENDLESS);
+  await first.iterates(neighbour);
+  const guilty = await kill(first, 'segv');
+  const second = await Server.start(data, '--workers', '2');
+  const job = await second.finished(guilty);
+  assert.deepEqual([job.state, job.problem.code, job.attempt], ['failed', 'poison', 2]);
+  assert.equal((await second.iterates(neighbour)).attempt, 2);
+  await second.end('SIGKILL');
+});
+
+test('where there are no worker processes, three deaths of the server are held against a job', async (t) => {
+  const data = dataDirectory(t);
+  const alone = () => Server.startIn({NO_WORKER: '1'}, data);
+  const guilty = await kill(await alone(), 'segv');
+  for (let death = 2; death <= 3; death++) {
+    const server = await alone().catch(() => undefined);  // it may end before it is listened to
+    if (server) await server.exited;
+  }
+  const last = await alone();
+  const job = await last.job(guilty);
+  assert.deepEqual([job.state, job.problem.code, job.attempt], ['failed', 'poison', 3]);
+  assert.equal(existsSync(join(data, 'blobs', guilty)), false);
+  await last.end('SIGTERM');
 });

@@ -1,5 +1,6 @@
-// unwrapd whose worker process does what a bug, or a stranger who has found one, would do: the
-// first line of an OBJ, "# do WHAT", says which.
+// unwrapd whose work on meshes does what a bug, or a stranger who has found one, would do: the
+// first line of an OBJ says which, "# do WHAT" while it is unwrapped, "# draw WHAT" when somebody
+// asks for a picture or for another format.
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/error.hpp"
@@ -52,14 +54,39 @@ const std::map<std::string, Deed> kDeeds = {
     {"overwrite", [](auto& output) { output.file("document", "x"); }},
 };
 
+void misbehave(std::string_view when, const unwrapd::asset::Input& input,
+               server::JobOutput& output) {
+  for (const auto& [name, deed] : kDeeds)
+    if (input.document.starts_with("# " + std::string(when) + " " + name + "\n")) deed(output);
+}
+
 std::string run(const server::JobTask& task, const unwrapd::asset::Input& input,
                 server::JobOutput& output, const unwrapd::api::Limits& limits,
                 unwrapd::Executor& executor) {
-  for (const auto& [name, deed] : kDeeds)
-    if (input.document.starts_with("# do " + name + "\n")) deed(output);
+  misbehave("do", input, output);
   return server::run_job(task, input, output, limits, executor);
+}
+
+class NoOutput final : public server::JobOutput {
+ public:
+  void stage(const unwrapd::StageEvent& /*event*/) override {}
+  void iteration(const unwrapd::IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
+  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
+  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
+};
+
+std::string draw(const server::Rendering& rendering, const server::RenderingInput& input,
+                 const unwrapd::api::Limits& limits) {
+  NoOutput none;
+  misbehave("draw", input.asset, none);
+  return server::render(rendering, input, limits);
 }
 
 }  // namespace
 
-int main(int argc, char** argv) { return server::run_program(argc, argv, run); }
+// With NO_WORKER in its environment it is as on a machine where no worker process can be had.
+int main(int argc, char** argv) {
+  const bool alone = ::getenv("NO_WORKER") != nullptr;
+  return server::run_program(argc, argv,
+                             {.run = run, .draw = draw, .program = alone ? "/bin/false" : ""});
+}

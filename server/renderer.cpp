@@ -1,0 +1,41 @@
+#include "server/renderer.hpp"
+
+#include <chrono>
+#include <stop_token>
+
+#include "server/deadline.hpp"
+#include "server/job_input.hpp"
+#include "server/map_choice.hpp"
+
+namespace unwrapd::server {
+
+std::string Renderer::render(const JobRecord& job, const Rendering& rendering) const {
+  const LoadedInput loaded(blobs_, job);
+  const std::string uvs = blobs_.read(job.id, map_file(kUvFile, rendering.map));
+  std::string report;
+  if (!rendering.picture && !rendering.format)
+    report = blobs_.read(job.id, map_file(kReportFile, rendering.map));
+  const RenderingInput input{.record = job, .asset = loaded.input(), .uvs = uvs, .report = report};
+  return isolation_.on ? render_apart(rendering, input) : duties_.draw(rendering, input, limits_);
+}
+
+std::string Renderer::render_apart(const Rendering& rendering, const RenderingInput& input) const {
+  std::stop_source late;
+  const Deadline deadline(std::chrono::seconds(limits_.max_job_seconds),
+                          [&] { late.request_stop(); });
+  try {
+    return render_isolated(rendering, input, late.get_token(), limits_, isolation_);
+  } catch (const WorkerCrashed& crash) {
+    log_.warning("a worker process ended", {{"job", input.record.id}, {"how", crash.what()}});
+    throw Error(ErrorCode::internal,
+                "The process that made this file ended before it was done; the job and its other "
+                "files are as they were.");
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::cancelled) throw;
+    throw Error(ErrorCode::time_limit, "To make this file took longer than the " +
+                                           std::to_string(limits_.max_job_seconds) +
+                                           " s allowed; ask for the result as it was stored.");
+  }
+}
+
+}  // namespace unwrapd::server

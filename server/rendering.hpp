@@ -1,0 +1,44 @@
+#pragma once
+// What is made of a finished job when somebody asks: its result in a format, or a picture of one of
+// its maps. Both begin with the job's mesh, so that both are work for a worker process (--isolate).
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "api/limits.hpp"
+#include "core/asset/asset.hpp"
+#include "core/figure/colour_scale.hpp"
+#include "server/job_record.hpp"
+
+namespace unwrapd::server {
+
+enum class PictureKind { layout_svg, layout_png, preview_png };
+
+struct Picture {
+  PictureKind kind = PictureKind::layout_svg;
+  Colouring colouring = Colouring::stretch;  ///< of layouts
+  int size = kDefaultImageSize;              ///< of PNGs, pixels
+};
+
+struct Rendering {
+  std::size_t map = 0;                  ///< of the job, see map_choice.hpp
+  std::optional<Picture> picture;       ///< none: the result
+  std::optional<asset::Format> format;  ///< of the result; none: JSON
+};
+
+/// What a job keeps. Of its record only the options and whether somebody waited for it count.
+struct RenderingInput {
+  const JobRecord& record;
+  asset::Input asset;
+  std::string_view uvs;     ///< of the map: what encode_uvs() wrote
+  std::string_view report;  ///< of the map, JSON
+};
+
+/// The bytes of the file. Throws what reading and writing the asset throw, storage_failed when the
+/// map is none.
+std::string render(const Rendering& rendering, const RenderingInput& input,
+                   const api::Limits& limits);
+
+}  // namespace unwrapd::server
