@@ -32,7 +32,8 @@ bool allows(const Scopes& scopes, const Request& request) {
 }  // namespace
 
 bool asks_for_keys(const AccessConfig& config, std::string_view host) {
-  return config.require_keys || (!is_loopback(host) && !config.insecure);
+  const bool wanted = config.require_keys || !config.key_file.empty();
+  return wanted || (!is_loopback(host) && !config.insecure);
 }
 
 int RateLimit::wait_seconds(const std::string& key, std::int64_t per_minute,

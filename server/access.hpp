@@ -4,6 +4,7 @@
 // link that was signed for a result (signed_link.hpp) opens that result without a key.
 
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <string>
@@ -16,12 +17,13 @@
 namespace unwrapd::server {
 
 struct AccessConfig {
-  bool require_keys = false;  ///< asked for on loopback, too
-  bool insecure = false;      ///< not asked for anywhere
+  bool require_keys = false;            ///< asked for on loopback, too
+  bool insecure = false;                ///< not asked for anywhere
+  std::filesystem::path key_file = {};  ///< of one key that the operator has made; asked for then
 };
 
 /// Whether keys are asked for: always where others than this machine can connect, unless the
-/// operator insists.
+/// operator insists, and where the operator has given one.
 bool asks_for_keys(const AccessConfig& config, std::string_view host);
 
 /// At most so many requests a minute, a minute's worth of them at once (token bucket).

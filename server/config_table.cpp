@@ -123,6 +123,10 @@ ConfigGroup admitting() {
       .title = "Admitting",
       .rows = {on_off({"require-keys", "", "Ask for API keys on loopback, too"}, &Config::access,
                       &AccessConfig::require_keys),
+               text({"key-file", "PATH",
+                     "File of a key of the operator's own, 32 characters or more, of the scope "
+                     "admin: a mounted secret"},
+                    &Config::access, &AccessConfig::key_file),
                on_off({"insecure", "", "Ask for no API keys although other machines can connect"},
                       &Config::access, &AccessConfig::insecure),
                list({"cors-origins", "LIST", "Sites whose pages may call from a browser, or *"},
@@ -190,6 +194,8 @@ std::vector<ConfigGroup> config_groups() {
 void check_together(const Config& config) {
   if (config.edge.tls_cert.empty() != config.edge.tls_key.empty())
     throw Error(ErrorCode::invalid_option, "--tls-cert and --tls-key go together; give both.");
+  if (config.access.insecure && !config.access.key_file.empty())
+    throw Error(ErrorCode::invalid_option, "--insecure and --key-file exclude each other.");
   if (config.admin && config.admin->port != 0 && *config.admin == config.listen) {
     throw Error(ErrorCode::invalid_option,
                 "--admin-listen and --listen are the same address; give them two.");

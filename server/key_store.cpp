@@ -2,6 +2,9 @@
 
 #include <openssl/crypto.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "core/error.hpp"
 #include "server/clock.hpp"
 #include "server/files.hpp"
@@ -13,6 +16,8 @@ namespace {
 constexpr std::string_view kPrefix = "unw_";
 constexpr std::size_t kIdDigits = 16;
 constexpr std::size_t kSecretDigits = 64;
+constexpr std::size_t kMinGiven = 32;
+constexpr std::size_t kMaxGiven = 512;
 constexpr const char* kSchema = R"sql(
 CREATE TABLE IF NOT EXISTS keys (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -48,6 +53,30 @@ ApiKey key_of(const Statement& row) {
 bool same(const std::string& left, const std::string& right) {
   return left.size() == right.size() &&
          CRYPTO_memcmp(left.data(), right.data(), left.size()) == 0;  // in constant time
+}
+
+/// What the file holds, when that can be a key (the characters of RFC 6750) and none to be guessed.
+std::string key_in(const std::filesystem::path& file) {
+  constexpr std::string_view kSpace = " \t\r\n";
+  std::string text = read_file(file);
+  text.erase(0, std::min(text.find_first_not_of(kSpace), text.size()));
+  text.erase(text.find_last_not_of(kSpace) + 1);
+  const bool of_form = std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("-._~+/=").find(c) != std::string_view::npos;
+  });
+  if (of_form && text.size() >= kMinGiven && text.size() <= kMaxGiven) return text;
+  throw Error(
+      ErrorCode::invalid_option,
+      "The file of --key-file holds no key: 32 to 512 letters, digits and -._~+/=; make one "
+      "with openssl rand -hex 32.");
+}
+
+ApiKey given_key() {
+  ApiKey key;
+  key.id = "k_file";
+  key.name = "that of --key-file";
+  key.scopes.admin = true;
+  return key;
 }
 
 void set_scope(Scopes& scopes, std::string_view name) {
@@ -86,7 +115,8 @@ std::string to_text(const Scopes& scopes) {
   return text;
 }
 
-KeyStore::KeyStore(const std::filesystem::path& data) : database_(file_in(data)) {
+KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::path& given)
+    : database_(file_in(data)), given_(given.empty() ? "" : sha256(key_in(given))) {
   database_.run(kSchema);
 }
 
@@ -104,6 +134,7 @@ std::string KeyStore::add(ApiKey key) {
 }
 
 std::optional<ApiKey> KeyStore::find(std::string_view text) {
+  if (!given_.empty() && same(given_, sha256(text))) return given_key();
   const bool of_form =
       text.starts_with(kPrefix) && text.size() == kPrefix.size() + kIdDigits + 1 + kSecretDigits;
   if (!of_form) return std::nullopt;

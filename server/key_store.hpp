@@ -2,7 +2,8 @@
 // API keys, in DIR/keys.sqlite: of their own, so that `unwrapd keys` may write it while the server
 // runs, and a copy of the jobs holds no keys. A key is "unw_<id>_<secret>" with 256 random bits of
 // secret; only its SHA-256 is stored. A slow hash was rejected: it makes guessing hard where there
-// are few passwords, and 2^256 secrets need no help.
+// are few passwords, and 2^256 secrets need no help. One more key may be given as a file, as
+// containers are given secrets: it is not stored, and goes when the file does.
 
 #include <cstdint>
 #include <filesystem>
@@ -42,8 +43,10 @@ std::string to_text(const Scopes& scopes);
 /// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
 class KeyStore {
  public:
-  /// data: the data directory, made when missing.
-  explicit KeyStore(const std::filesystem::path& data);
+  /// data: the data directory, made when missing. given: the file of a key of the operator's own,
+  /// of the scope admin and the id "k_file"; empty: none. Throws Error{invalid_option} when that
+  /// holds no key: 32 to 512 letters, digits and -._~+/=, and white space around them.
+  explicit KeyStore(const std::filesystem::path& data, const std::filesystem::path& given = {});
 
   /// Stores a key with a new id and returns what its holder sends; it cannot be had again.
   std::string add(ApiKey key);
@@ -57,6 +60,7 @@ class KeyStore {
  private:
   std::mutex mutex_;
   Database database_;
+  const std::string given_;  // SHA-256; empty: none
 };
 
 }  // namespace unwrapd::server

@@ -74,7 +74,7 @@ struct Service::Parts {
               {.max_queue = config.limits.max_queue, .workers = config.workers}),
         streams(events, config.limits.max_streams),
         submissions(queue, blobs, config.limits, config.webhooks),
-        keys(config.data),
+        keys(config.data, config.access.key_file),
         secret(secret_in(config.data / kSecretFile)),
         links(secret),
         access(keys, links, asks_for_keys(config.access, config.listen.host)),

@@ -47,10 +47,10 @@ test("the objects name each other rightly", () => {
   for (const port of [...of("Service").spec.ports.map((one) => one.targetPort),
     ...of("NetworkPolicy").spec.ingress.flatMap((rule) => rule.ports.map((one) => one.port))])
     assert.ok(ports.includes(port), port);
-  const [data, config] = pod.spec.volumes;
+  const [data, config, key] = pod.spec.volumes;
   assert.equal(data.persistentVolumeClaim.claimName, of("PersistentVolumeClaim").metadata.name);
   assert.equal(config.configMap.name, of("ConfigMap").metadata.name);
-  assert.deepEqual(container.volumeMounts.map((mount) => mount.name), [data.name, config.name]);
+  assert.deepEqual(container.volumeMounts.map((mount) => mount.name), [data.name, config.name, key.name]);
 });
 
 test("the pod runs as the image does: no root, nothing writable, no capability", () => {
@@ -62,6 +62,17 @@ test("the pod runs as the image does: no root, nothing writable, no capability",
   assert.equal(securityContext.allowPrivilegeEscalation, false);
   assert.deepEqual(securityContext.capabilities.drop, ["ALL"]);
   assert.equal(of("Deployment").spec.replicas, 1); // one writer of one database
+});
+
+test("what is shipped asks for a key, which it finds where it is mounted", () => {
+  const [, , key] = of("Deployment").spec.template.spec.containers[0].volumeMounts;
+  const { "unwrapd.toml": toml } = of("ConfigMap").data;
+  assert.match(toml, new RegExp(`^key-file = "${key.mountPath}/key"$`, "m"));
+  const { services, secrets } = yaml.load(read("compose.yaml"));
+  const [secret] = services.unwrapd.secrets;
+  assert.equal(services.unwrapd.environment.UNWRAPD_KEY_FILE, `/run/secrets/${secret}`);
+  const ignored = readFileSync(join(folder, "../.gitignore"), "utf8").split("\n");
+  assert.ok(ignored.includes(`/docker/${secrets[secret].file}`), "the key could be committed");
 });
 
 test("the server takes the options of the ConfigMap, and is given time to drain", () => {
@@ -80,7 +91,7 @@ test("the server takes the options of the compose file, and is given time to dra
   const told = accepted([], { ...image, ...unwrapd.environment });
   const drain = Number(/^drain-seconds = (\d+)/m.exec(told)[1]);
   assert.ok(parseInt(unwrapd.stop_grace_period) > drain);
-  for (const port of unwrapd.ports) assert.match(port, /^127\.0\.0\.1:/); // as long as it is insecure
+  for (const port of unwrapd.ports) assert.match(port, /^127\.0\.0\.1:/); // as long as it is plain HTTP
 });
 
 test("the image is built with the packages that ./dev builds with", () => {

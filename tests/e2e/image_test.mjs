@@ -1,10 +1,11 @@
 // The image as it is meant to run: another user, nothing writable but the volume, no capability,
-// little memory. A job is stopped by SIGTERM in its middle and ends well at the next start.
+// little memory, a key in a mounted file. A job is stopped by SIGTERM in its middle and ends well at
+// the next start.
 // UNWRAPD_ENGINE names docker or podman, UNWRAPD_IMAGE the image.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { randomBytes } from "node:crypto";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -23,6 +24,11 @@ if (bare) {
   writeFileSync(process.env.CONTAINERS_CONF, '[containers]\ndefault_ulimits = ["nofile=1024:1024", "nproc=1024:1024"]\n');
 }
 const sandbox = bare ? ["--no-healthcheck"] : [];
+const key = randomBytes(32).toString("hex"); // as docker/compose.yaml has one made
+const keyFile = join(scratch, "key");
+writeFileSync(keyFile, `${key}\n`, { mode: 0o444 });
+chmodSync(scratch, 0o755);
+const holder = { Authorization: `Bearer ${key}` };
 
 const run = (...args) => execFileSync(engine, args, { encoding: "utf8" }).trim();
 
@@ -61,7 +67,7 @@ function grid(size) {
 }
 
 let url, admin;
-const job = async (id) => (await fetch(`${url}/v1/jobs/${id}`)).json();
+const job = async (id) => (await fetch(`${url}/v1/jobs/${id}`, { headers: holder })).json();
 
 async function until(what, condition) {
   for (const giveUp = Date.now() + 180_000; Date.now() < giveUp; await sleep(20)) {
@@ -74,18 +80,14 @@ async function until(what, condition) {
 async function submit(query, size) {
   const answer = await fetch(`${url}/v1/jobs?${query}`, {
     method: "POST",
-    headers: { "Content-Type": "model/obj" },
+    headers: { ...holder, "Content-Type": "model/obj" },
     body: grid(size),
   });
   assert.equal(answer.status, 202, await answer.clone().text());
   return (await answer.json()).id;
 }
 
-after(() => {
-  run("rm", "--force", name);
-  run("volume", "rm", "--force", name);
-  rmSync(scratch, { recursive: true });
-});
+after(() => rmSync(scratch, { recursive: true }));
 
 test("the image is small, labelled, and of a user who is not root", () => {
   const [told] = JSON.parse(run("inspect", "--type", "image", image));
@@ -98,18 +100,38 @@ test("the image is small, labelled, and of a user who is not root", () => {
   assert.ok(added <= MAX_ADDED_MB, `${added} MB over the base`);
 });
 
-test("hardened, it serves, drains at SIGTERM, and goes on where it was", async () => {
+/** Starts the image as it is meant to run, with more flags, and without a shell (/usr/bin is empty). */
+async function start(...flags) {
   const port = await freePorts();
   [url, admin] = [`http://127.0.0.1:${port}`, `http://127.0.0.1:${port + 1}`];
   run("run", "--detach", "--name", name, "--network", "host", "--user", "10001:10001", "--read-only",
     "--cap-drop", "ALL", "--security-opt", "no-new-privileges", "--memory", "512m", "--volume", `${name}:/data`,
-    ...sandbox, "--env", `UNWRAPD_LISTEN=127.0.0.1:${port}`, image, "--drain-seconds", "0", "--workers", "1");
+    "--tmpfs", "/usr/bin", "--volume", `${keyFile}:/run/secrets/key:ro`, "--env", "UNWRAPD_KEY_FILE=/run/secrets/key", ...sandbox,
+    "--env", `UNWRAPD_LISTEN=127.0.0.1:${port}`, image, "--drain-seconds", "0", "--workers", "1", ...flags);
   await until("the server", async () => (await fetch(`${admin}/readyz`)).ok);
+}
+
+function remove() {
+  run("rm", "--force", name);
+  run("volume", "rm", "--force", name);
+}
+
+for (const flags of [[], ["--isolate"]])
+  test(`hardened, it serves, drains at SIGTERM, and goes on where it was ${flags}`, async (t) => {
+    t.after(remove);
+    await start(...flags);
+    await unwrapsAndGoesOn();
+  });
+
+async function unwrapsAndGoesOn() {
   assert.equal(run("exec", name, "unwrapd", "--healthcheck"), "");
+  assert.equal((await fetch(`${url}/v1/jobs`)).status, 401);
 
   const small = await submit("method=arap", 20);
   await until("a small job", async () => (await job(small)).state === "succeeded");
-  const obj = await (await fetch(`${url}/v1/jobs/${small}/result`)).text();
+  const obj = await (await fetch(`${url}/v1/jobs/${small}/result`, { headers: holder })).text();
+  const picture = await fetch(`${url}/v1/jobs/${small}/preview.png?size=64`, { headers: holder });
+  assert.equal(picture.headers.get("content-type"), "image/png");
   assert.equal(obj.match(/^vt /gm).length, 21 * 21);
 
   const long = await submit("stop.iterations=2500", 100);
@@ -127,14 +149,16 @@ test("hardened, it serves, drains at SIGTERM, and goes on where it was", async (
   assert.equal(ended.attempt, 2);
   assert.equal((await job(small)).state, "succeeded");
   run("stop", "--time", "30", name);
-});
+}
 
 test("podman plays the Kubernetes objects", async (context) => {
   if (engine !== "podman") return context.skip("only podman can play them");
   const file = join(scratch, "kube.yaml");
   const objects = readFileSync(new URL("../../docker/kubernetes/unwrapd.yaml", import.meta.url), "utf8");
-  const here = { "unwrapd-data": `${name}-data`, "unwrapd-config": `${name}-config`, "name: unwrapd\n": `name: ${name}\n` };
-  writeFileSync(file, Object.entries(here).reduce((text, [from, to]) => text.replaceAll(from, to), objects)
+  const secret = `apiVersion: v1\nkind: Secret\nmetadata: { name: unwrapd-key }\ndata: { key: ${btoa(key)} }\n---\n`;
+  const here = { "unwrapd-data": `${name}-data`, "unwrapd-config": `${name}-config`, "name: unwrapd\n": `name: ${name}\n`,
+    "unwrapd-key": `${name}-key` };
+  writeFileSync(file, Object.entries(here).reduce((text, [from, to]) => text.replaceAll(from, to), secret + objects)
     .replace("image: unwrapd:latest", `image: ${image}`));
   try {
     run("play", "kube", file);
@@ -142,6 +166,6 @@ test("podman plays the Kubernetes objects", async (context) => {
       "--admin-listen", "127.0.0.1:8081") === "");
   } finally {
     run("play", "kube", "--down", file);
-    run("volume", "rm", "--force", `${name}-data`, `${name}-config`);
+    run("volume", "rm", "--force", `${name}-data`, `${name}-config`, `${name}-key`);
   }
 });

@@ -36,6 +36,7 @@ TEST(AsksForKeys, WhereOthersCanConnectUnlessTheOperatorInsists) {
   for (const char* host : {"127.0.0.1", "127.9.9.9", "::1", "localhost"}) {
     EXPECT_FALSE(asks_for_keys({}, host)) << host;
     EXPECT_TRUE(asks_for_keys({.require_keys = true}, host)) << host;
+    EXPECT_TRUE(asks_for_keys({.key_file = "given"}, host)) << host;
   }
   for (const char* host : {"0.0.0.0", "::", "10.0.0.1", "example.com"}) {
     EXPECT_TRUE(asks_for_keys({}, host)) << host;
@@ -74,6 +75,33 @@ TEST_F(Keys, AreStoredAsADigestAlone) {
   const std::string secret = text.substr(text.rfind('_') + 1);
   for (const auto& entry : std::filesystem::directory_iterator(dir_.path()))
     EXPECT_EQ(read_file(entry.path()).find(secret), std::string::npos) << entry.path();
+}
+
+TEST_F(Keys, OfAFileCountBesideTheOthersAndAreNotStored) {
+  const std::string secret(32, 'k');
+  write_file(dir_.path() / "secret", "\n" + secret + " \r\n");
+  KeyStore keys(dir_.path(), dir_.path() / "secret");
+  const std::string other = add("ci", {.read = true});
+  ASSERT_TRUE(keys.find(secret));
+  EXPECT_EQ(keys.find(secret)->id, "k_file");
+  EXPECT_TRUE(keys.find(secret)->scopes.admin);
+  EXPECT_TRUE(keys.find(other));
+  EXPECT_FALSE(keys.find(secret + "k"));
+  EXPECT_FALSE(keys.find(""));
+  EXPECT_FALSE(keys_.find(secret));
+  EXPECT_EQ(keys.all().size(), 1U);
+}
+
+TEST_F(Keys, OfAFileAreRefusedWhenTheyCouldBeGuessedOrSentByNobody) {
+  for (const std::string& text :
+       {std::string(), std::string(" \n"), std::string(31, 'k'), std::string(513, 'k'),
+        std::string(20, 'k') + ' ' + std::string(20, 'k')}) {
+    write_file(dir_.path() / "secret", text);
+    const auto open = [&] { const KeyStore keys(dir_.path(), dir_.path() / "secret"); };
+    EXPECT_EQ(code_of(open), ErrorCode::invalid_option) << text;
+  }
+  const auto open = [&] { const KeyStore keys(dir_.path(), dir_.path() / "missing"); };
+  EXPECT_EQ(code_of(open), ErrorCode::storage_failed);
 }
 
 TEST_F(Keys, AreRefusedWithAnyCharacterChangedAndOnceRemoved) {
