@@ -1,8 +1,8 @@
 #pragma once
 // The threads that do the work: each takes the job whose turn it is and runs it, one after another.
 // They are nice to the threads that answer, which would otherwise wait for their turns on a full
-// machine. A job that was at work when a server died is suspected, and tried in a process of its own
-// where that can be had: only if it ends that, too, three times, is it to blame (`poison`).
+// machine. A job that was at work when a server died is suspected, and tried in a process of its
+// own where that can be had: only if it ends that, too, three times, is it to blame (`poison`).
 
 #include <string>
 #include <thread>
