@@ -9,6 +9,7 @@
 namespace unwrapd::server {
 namespace {
 
+constexpr std::size_t kSurfaceBytes = 3 * sizeof(std::uint64_t);  // of an empty one: its counts
 constexpr std::string_view kMagic = "unwrapd uv 1\n";
 
 void put_bytes(std::string& out, const void* data, std::size_t size) {
@@ -60,7 +61,7 @@ std::vector<UnwrappedSurface> decode_uvs(std::string_view bytes) {
   bytes.remove_prefix(kMagic.size());
   std::uint64_t count = 0;
   take_bytes(bytes, &count, sizeof count);
-  if (count > bytes.size()) fail();
+  if (count > bytes.size() / kSurfaceBytes) fail();
   std::vector<UnwrappedSurface> surfaces(count);
   for (UnwrappedSurface& surface : surfaces) {
     take(bytes, surface.faces);

@@ -9,7 +9,7 @@ namespace unwrapd::fuzz {
 
 std::vector<Target> all_targets() {
   std::vector<Target> all;
-  for (const auto& some : {asset_targets(), api_targets(), http_targets()})
+  for (const auto& some : {asset_targets(), api_targets(), http_targets(), worker_targets()})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }

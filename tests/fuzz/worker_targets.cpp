@@ -1,0 +1,80 @@
+// What the server reads that a worker process has written: frames, from one that a stranger's mesh
+// may have taken over, and the maps of jobs that were stored. A frame that is none is an answer
+// here.
+#include <algorithm>
+#include <array>
+
+#include "core/error.hpp"
+#include "server/byte_pack.hpp"
+#include "server/job_frames.hpp"
+#include "server/uv_file.hpp"
+#include "tests/fuzz/targets.hpp"
+
+namespace unwrapd::fuzz {
+namespace {
+
+constexpr std::int64_t kMaxFrameBytes = std::int64_t{1} << 16;
+
+class EventSink final : public server::JobOutput {
+ public:
+  void stage(const StageEvent& event) override {
+    promise(event.stage <= Stage::write, "a stage is one of ours");
+  }
+  void iteration(const IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
+  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
+  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
+};
+
+void read_frame(const server::Frame& frame) {
+  EventSink sink;
+  promise(frame.name.size() <= server::kMaxFrameName, "a name is as long as names may be");
+  promise(static_cast<std::int64_t>(frame.bytes.size()) <= kMaxFrameBytes, "a frame is bounded");
+  if (frame.kind == server::FrameKind::stage) unpack_stage(frame.bytes, sink);
+  if (frame.kind == server::FrameKind::iteration) unpack_iteration(frame.bytes, sink);
+}
+
+void frames(std::string_view bytes) {
+  const auto receive = [&](char* data, std::size_t size) {
+    if (bytes.size() < size) return false;
+    std::copy_n(bytes.data(), size, data);
+    bytes.remove_prefix(size);
+    return true;
+  };
+  try {
+    for (server::Frame frame; receive_frame(receive, kMaxFrameBytes, frame);) read_frame(frame);
+  } catch (const Error& error) {
+    promise(error.code() == ErrorCode::internal, "a worker that sends no frames is at fault");
+  }
+}
+
+std::vector<std::string> frames_seeds() {
+  std::string all;
+  const auto send = [&](std::string_view piece) { all += piece; };
+  send_frame(send, server::FrameKind::ready, {}, {});
+  send_frame(send, server::FrameKind::stage, {}, server::pack(StageEvent{.stage = Stage::solve}));
+  send_frame(send, server::FrameKind::iteration, {}, server::pack(IterationEvent{}, 1.5));
+  send_frame(send, server::FrameKind::result, "glb", "glTF");
+  send_frame(send, server::FrameKind::done, "glb", {});
+  return {all};
+}
+
+void uvs(std::string_view bytes) {
+  promise(server::encode_uvs(server::decode_uvs(bytes)) == bytes, "a map is written as it was");
+}
+
+std::vector<std::string> uvs_seeds() {
+  UnwrappedSurface surface;
+  surface.faces = {Triangle{0, 1, 2}};
+  surface.source = {0, 1, 2};
+  surface.uv.resize(3);
+  return {server::encode_uvs({surface}), server::encode_uvs({surface, {}}), server::encode_uvs({})};
+}
+
+constexpr std::array kTargets = {Target{"frames", frames, frames_seeds},
+                                 Target{"uvs", uvs, uvs_seeds}};
+
+}  // namespace
+
+std::span<const Target> worker_targets() { return kTargets; }
+
+}  // namespace unwrapd::fuzz
