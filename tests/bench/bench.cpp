@@ -1,39 +1,53 @@
-// Times and memory of the core, as ratios within one run: machines are noisy, ratios less so.
-//   unwrapd_bench            the table: ours against CGAL, growth, memory
-//   unwrapd_bench --memory N the peak resident set of one ARAP call on N faces (one process each)
+// The goals of speed and memory, as ratios within one run: machines are noisy, ratios less so.
+// Times are the least of several runs; where one thread is at work, the processor's.
+//   unwrapd_bench [OUT.json]   the table: ours against CGAL, Eigen and CHOLMOD, and against
+//   ourselves unwrapd_bench --large      the same for 4M faces, which takes minutes: memory alone
+//   unwrapd_bench --memory N   peak and seconds of one ARAP call on N faces (a process each)
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <cstdlib>
+#include <cmath>
 #include <cstring>
-#include <string>
-#include <vector>
+#include <ctime>
+#include <functional>
 
 #include "core/unwrap.hpp"
+#include "server/solver_cache.hpp"
+#include "server/thread_executor.hpp"
 #include "tests/bench/cgal_arap.hpp"
+#include "tests/bench/goals.hpp"
 #include "tests/bench/measure.hpp"
+#include "tests/bench/rivals.hpp"
 #include "tests/core/obj_reader.hpp"
+#include "tests/core/solve/disk_of.hpp"
+
+#include "core/solve/solve.hpp"
 
 namespace unwrapd::bench {
 namespace {
 
-constexpr int kRuns = 5;
+constexpr int kRuns = 3;
+const UnwrapOptions kTenIterations{.stop = {.iterations = 10}};
 
-double seconds_of(const std::vector<Surface>& surfaces, const UnwrapOptions& options) {
-  SerialExecutor serial;
-  const Stopwatch watch;
-  const Unwrapped unwrapped = unwrap(surfaces, options, {}, serial);
-  const double seconds = watch.seconds();
-  if (unwrapped.surfaces.empty()) std::abort();  // keeps the result alive
-  return seconds;
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+double wall_seconds() {
+  static const Stopwatch since_start;
+  return since_start.seconds();
+}
+using Clock = double (*)();
+
+/// The least of some calls.
+double seconds_of(Clock now, const std::function<void()>& call, int runs = kRuns) {
+  double least = 1e300;
+  for (int k = 0; k < runs; ++k) {
+    const double start = now();
+    call();
+    least = std::min(least, now() - start);
+  }
+  return least;
 }
 
-double median_seconds(const TriMesh& mesh, const UnwrapOptions& options) {
+void unwrap_once(const TriMesh& mesh, const UnwrapOptions& options, Executor& executor) {
   const std::vector<Surface> surfaces{shapes::surface_of(mesh)};
-  std::array<double, kRuns> seconds;
-  for (double& s : seconds) s = seconds_of(surfaces, options);
-  std::sort(seconds.begin(), seconds.end());
-  return seconds[kRuns / 2];
+  if (unwrap(surfaces, options, {}, executor).surfaces.empty()) std::abort();
 }
 
 TriMesh subdivided_to(TriMesh mesh, std::size_t faces) {
@@ -41,53 +55,203 @@ TriMesh subdivided_to(TriMesh mesh, std::size_t faces) {
   return mesh;
 }
 
-void compare_with_cgal() {
-  if (test_data().empty()) {
-    std::puts("CGAL comparison skipped: the paper's models are not here (UNWRAPD_TEST_DATA)");
-    return;
-  }
-  const UnwrapOptions options{.initial = InitialMap::mean_value};
-  std::puts("ARAP, 10 iterations from a mean-value map, whole call      ours s   CGAL s    ratio");
+void compare_with_cgal(Goals& goals) {
+  UnwrapOptions options = kTenIterations;
+  options.initial = InitialMap::mean_value;
+  server::ThreadExecutor two(2);
   for (const auto& [name, file] : {std::pair{"Isis", "Isis_dABF.obj"}, {"Balls", "Balls.obj"}}) {
+    if (test_data().empty()) return;
     const TriMesh mesh = subdivided_to(read_obj(test_data() / "paper" / file), 50'000);
     UvMap uv;
     const auto cgal = cgal_arap_seconds(mesh, uv);
-    const double ours = median_seconds(mesh, options);
-    std::printf("%-6s subdivided, %7zu faces %35.3f %8s %8.1f\n", name, mesh.faces.size(), ours,
-                cgal ? std::to_string(*cgal).substr(0, 6).c_str() : "error",
-                cgal ? *cgal / ours : 0.0);
+    const std::string title =
+        std::string(name) + " subdivided, whole call, 2 threads, times as fast as CGAL: ";
+    for (const auto& [start, kind] :
+         {std::pair{"same start", InitialMap::mean_value}, {"ours", InitialMap::automatic}}) {
+      options.initial = kind;
+      const double ours = seconds_of(wall_seconds, [&] { unwrap_once(mesh, options, two); });
+      if (cgal) goals.at_least(title + start, 150, *cgal / ours);
+    }
   }
 }
 
-void show_growth() {
-  std::puts("\nGrowth of one ARAP call (default options)   seconds   us/face");
-  for (double faces : {20e3, 80e3, 320e3}) {
-    const TriMesh mesh = sheet(faces);
-    const double s = median_seconds(mesh, {});
-    std::printf("%10zu faces %37.3f %9.2f\n", mesh.faces.size(), s,
-                1e6 * s / static_cast<double>(mesh.faces.size()));
+SparseMatrix arap_matrix(const Disk& disk) {
+  std::vector<double> weight;
+  for (const RestTriangle& rest : disk.rest)
+    weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
+  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight);
+  lower.coeffRef(0, 0) *= 2;
+  return lower;
+}
+
+void compare_engines(Goals& goals, double faces, const std::string& title) {
+  const shapes::OwnedDisk owned = shapes::disk_of(sheet(faces));
+  const SparseMatrix matrix = arap_matrix(owned.disk);
+  server::ThreadExecutor two(2);
+  std::vector<Vec2> b(owned.disk.positions.size(), Vec2(1, -1));
+  const double ours = seconds_of(wall_seconds, [&] {
+    const auto factor = try_factor(analyse(matrix), matrix, two);
+    for (int k = 0; k < 10; ++k) factor->solve(b, two);
+  });
+  double eigen = 0, cholmod = 0;
+  const double start = wall_seconds(), cpu = processor_seconds();
+  eigen = time_eigen(matrix, Unknowns::single).ten_iterations();
+  const double waits =
+      (wall_seconds() - start) / (processor_seconds() - cpu);  // for other programs
+  if (const auto times = time_cholmod(matrix, Unknowns::single)) cholmod = times->ten_iterations();
+  goals.at_least(title + ", engine, 2 threads, times as fast as Eigen's", 6,
+                 1e-3 * eigen * waits / ours);
+  if (cholmod > 0)
+    goals.at_least(title + ", engine, 2 threads, as CHOLMOD", 3, 1e-3 * cholmod * waits / ours);
+}
+
+/// What further jobs on a mesh take of what the first one took.
+void show_second_jobs(Goals& goals, const TriMesh& mesh) {
+  UnwrapOptions hybrid = kTenIterations, asap = kTenIterations;
+  hybrid.method = Method::hybrid, hybrid.lambda = 1, asap.method = Method::asap;
+  TriMesh moved = mesh;
+  for (Vec3& p : moved.positions) p.z() *= 1.1;
+  double first = 1e300, again = 1e300, other = 1e300, direct = 1e300, repeat = 1e300;
+  for (int k = 0; k < kRuns; ++k) {
+    server::SolverCache cache({std::int64_t{1} << 30, std::int64_t{1} << 34}, 1);
+    server::ThreadExecutor one(1, &cache);
+    const auto time = [&](const TriMesh& given, const UnwrapOptions& options) {
+      return seconds_of(
+          processor_seconds, [&] { unwrap_once(given, options, one); }, 1);
+    };
+    first = std::min(first, time(mesh, kTenIterations));
+    again = std::min(again, time(mesh, kTenIterations));
+    other = std::min(other, time(mesh, hybrid));
+    time(mesh, asap);
+    direct = std::min(direct, time(mesh, asap));
+    repeat = std::min(repeat, time(moved, kTenIterations));
   }
+  goals.at_most("100k faces: the same job again, share of the first's time", .25, again / first);
+  goals.at_most("100k faces: again with another lambda", .25, other / first);
+  goals.at_most("100k faces: ASAP again", .25, direct / first);
+  goals.at_most("100k faces: other positions, known connectivity", .55, repeat / first);
+}
+
+void show_iteration(Goals& goals, const TriMesh& mesh, const std::string& title) {
+  const shapes::OwnedDisk owned = shapes::disk_of(mesh);
+  const Holds nothing;
+  SerialExecutor serial;
+  const GlobalStep global(owned.disk, nothing, &serial);
+  const auto panels = static_cast<double>(analyse(arap_matrix(owned.disk))->panel_bytes());
+  const UvMap start = initial_map(owned.disk, InitialMap::automatic, global);
+  const auto run = [&](int iterations) {
+    return seconds_of(processor_seconds, [&] {
+      local_global({owned.disk, nothing, global}, start, {{}, iterations}, {}, serial);
+    });
+  };
+  const double iteration = (run(30) - run(10)) / 20;
+  const double reading = 2 * panels / (1e9 * read_bandwidth(processor_seconds));
+  goals.at_most(title + ": one iteration, times reading the panels twice", 1.5,
+                iteration / reading);
+}
+
+/// Seconds until a solver's energy has come down to a bound; infinity where it never does.
+struct Descended {
+  double lowest = 0;
+  std::vector<std::pair<double, double>> trail;  // seconds, energy
+
+  [[nodiscard]] double seconds_to(double bound) const {
+    for (const auto& [seconds, energy] : trail)
+      if (energy <= bound) return seconds;
+    return std::numeric_limits<double>::infinity();
+  }
+};
+
+Descended descend(const Disk& disk, const Stop& stop) {
+  SerialExecutor serial;
+  const UnwrapOptions options{.stop = stop};
+  Solver solver(disk, options, {}, serial);
+  Descended descended;
+  const double start = processor_seconds();
+  SolveWatch watch;
+  watch.loop.on_iteration = [&](const Solution& s) {
+    descended.trail.emplace_back(processor_seconds() - start, s.energy.back());
+  };
+  descended.lowest = solver.run(0, watch).energy.back();
+  return descended;
+}
+
+void show_convergence(Goals& goals, const TriMesh& mesh, const std::string& title) {
+  const shapes::OwnedDisk owned = shapes::disk_of(mesh);
+  const Descended fast = descend(owned.disk, {.tolerance = 1e-9, .max_iterations = 3000});
+  const Descended plain = descend(owned.disk, {.iterations = 3000});
+  const double bound = (1 + 1e-4) * std::min(fast.lowest, plain.lowest);
+  const double seconds = std::min(plain.seconds_to(bound), plain.trail.back().first);
+  goals.at_least(title + ": to 1e-4 of the lowest energy, times as fast as plain", 10,
+                 seconds / fast.seconds_to(bound));
+}
+
+void show_threads(Goals& goals, const TriMesh& mesh) {
+  server::ThreadExecutor one(1), two(2);
+  const auto seconds = [&](Executor& executor) {
+    return seconds_of(wall_seconds, [&] { unwrap_once(mesh, kTenIterations, executor); });
+  };
+  const double alone = seconds(one);
+  goals.at_least("320k faces, whole call: two threads, times as fast as one", 1.4,
+                 alone / seconds(two));
+}
+
+void show_growth(Goals& goals) {
+  SerialExecutor serial;
+  const auto seconds = [&](double faces) {
+    const TriMesh mesh = sheet(faces);
+    return seconds_of(
+        processor_seconds, [&] { unwrap_once(mesh, kTenIterations, serial); }, 2);
+  };
+  goals.at_most("growth of the whole call, 20k to 1.3M faces: exponent", 1.15,
+                std::log(seconds(1.28e6) / seconds(2e4)) / std::log(64.0));
 }
 
 int show_memory(double faces) {
-  const std::vector<Surface> surfaces{shapes::surface_of(sheet(faces))};
-  const double before = peak_megabytes();
-  const double s = seconds_of(surfaces, {});
-  std::printf("%10zu faces: peak %.0f MB (mesh alone %.0f MB), %.1f s\n",
-              surfaces[0].mesh.faces.size(), peak_megabytes(), before, s);
+  const TriMesh mesh = sheet(faces);
+  SerialExecutor serial;
+  const double s = seconds_of(
+      processor_seconds, [&] { unwrap_once(mesh, kTenIterations, serial); }, 1);
+  std::printf("%.0f %.1f\n", peak_megabytes(), s);
   return 0;
+}
+
+/// In a process of its own.
+void show_memory(Goals& goals, const std::string& self, const char* faces, double asked) {
+  std::FILE* run = popen((self + " --memory " + faces).c_str(), "r");
+  double megabytes = 0, seconds = 0;
+  const bool is_read = run != nullptr && std::fscanf(run, "%lf %lf", &megabytes, &seconds) == 2;
+  if (run != nullptr) pclose(run);
+  if (!is_read) std::abort();
+  goals.at_most(std::string(faces) + " faces, ARAP: peak, megabytes", asked, megabytes);
+}
+
+void show_all(Goals& goals, const std::string& self) {
+  show_memory(goals, self, "1e6", 1200);
+  compare_with_cgal(goals);
+  compare_engines(goals, 1e5, "100k faces");
+  compare_engines(goals, 1e6, "1M faces");
+  show_second_jobs(goals, sheet(1e5));
+  show_iteration(goals, sheet(1e5), "100k faces");
+  show_iteration(goals, sheet(3.2e5), "320k faces");
+  if (!test_data().empty())
+    show_convergence(goals, read_obj(test_data() / "paper" / "Gargoyle_ABF.obj"), "Gargoyle");
+  show_threads(goals, sheet(3.2e5));
+  show_growth(goals);
 }
 
 }  // namespace
 }  // namespace unwrapd::bench
 
 int main(int argc, char** argv) {
+  using namespace unwrapd::bench;
   if (argc == 3 && std::strcmp(argv[1], "--memory") == 0)
-    return unwrapd::bench::show_memory(std::strtod(argv[2], nullptr));
-  unwrapd::bench::compare_with_cgal();
-  unwrapd::bench::show_growth();
-  std::puts("");
-  std::fflush(stdout);
-  const std::string self = argv[0];
-  return std::system((self + " --memory 1e6").c_str()) == 0 ? 0 : 1;
+    return show_memory(std::strtod(argv[2], nullptr));
+  Goals goals;
+  if (argc == 2 && std::strcmp(argv[1], "--large") == 0)
+    show_memory(goals, argv[0], "4e6", 5000);
+  else
+    show_all(goals, argv[0]);
+  if (argc == 2 && argv[1][0] != '-') std::ofstream(argv[1]) << goals.json();
+  return 0;
 }

@@ -7,12 +7,12 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <numeric>
 #include <sstream>
 #include <string>
 
 #include "core/measure/rest_triangle.hpp"
 #include "core/solve/conformal_system.hpp"
+#include "tests/bench/goals.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/rivals.hpp"
 #include "tests/core/obj_reader.hpp"
@@ -23,38 +23,15 @@ namespace {
 
 constexpr double kShift = 1e-6;  // added to the diagonal of LSCM's matrix: definite without pins
 
-/// Gigabytes that one thread reads from memory in a second of its own, best of five.
-double read_bandwidth() {
-  const std::vector<double> numbers(std::size_t(1) << 26, 1.0);
-  double best = 0, sum = 0;
-  for (int k = 0; k < 5; ++k) {
-    const std::clock_t start = std::clock();
-    double part[8] = {};
-    for (std::size_t i = 0; i < numbers.size(); i += 8)
-      for (std::size_t j = 0; j < 8; ++j) part[j] += numbers[i + j];
-    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    best = std::max(best, 8e-9 * static_cast<double>(numbers.size()) / seconds);
-    sum += std::accumulate(part, part + 8, 0.0);
-  }
-  return sum > 0 ? best : 0;
-}
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown";
-}
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 class Table {
  public:
-  Table() : bandwidth_(read_bandwidth()) {
-    const char* commit = std::getenv("UNWRAPD_COMMIT");
-    json_ << "{\"processor\": \"" << processor() << "\", \"commit\": \""
-          << (commit != nullptr ? commit : "") << "\", \"read_gb_per_second\": " << bandwidth_
-          << ", \"rows\": [";
+  Table() : bandwidth_(read_bandwidth(processor_seconds)) {
+    json_ << "{\"processor\": \"" << processor() << "\", \"commit\": \"" << commit()
+          << "\", \"read_gb_per_second\": " << bandwidth_ << ", \"rows\": [";
     std::printf("%s, commit %s; one thread reads %.1f GB/s\n", processor().c_str(),
-                commit != nullptr ? commit : "unknown", bandwidth_);
+                commit().c_str(), bandwidth_);
     std::puts(
         "milliseconds                   engine   analysis    factor  refactor    solve  "
         "with 10   MB of L  solve/reading L twice");
