@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "core/executor.hpp"
 #include "core/linear/front_panel.hpp"
 #include "core/linear/large_array.hpp"
 
@@ -49,6 +50,9 @@ class Front {
   /// which is then the update, and writes the panel (shape.size() numbers). False when a pivot is
   /// not positive and finite. The same bits on any processor.
   [[nodiscard]] bool factor(double* panel) const;
+
+  /// The same bits by any executor: large fronts are split among its threads.
+  [[nodiscard]] bool factor(double* panel, Executor& executor) const;
 
   /// The same with the registers of the x86-64 baseline, whatever the processor has.
   [[nodiscard]] bool factor_on_baseline(double* panel) const;

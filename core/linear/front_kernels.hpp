@@ -17,6 +17,11 @@ namespace unwrapd {
 inline constexpr std::size_t kStrip = 8;   ///< rows
 inline constexpr std::size_t kBlock = 64;  ///< columns factored before the rest is updated
 
+/// Columns begin .. end-1 of a front.
+struct Columns {
+  std::size_t begin, end;
+};
+
 /// Lanes: the vector of doubles of one register. Everything is inlined into the one function that
 /// is compiled for the processor which has such registers. No result depends on their length.
 template <typename Lanes>
@@ -24,18 +29,32 @@ class FrontKernels {
  public:
   [[gnu::always_inline]] explicit FrontKernels(const FrontView& front) : f_(front) {}
 
-  [[gnu::always_inline]] bool factor() const {
-    for (std::size_t k = 0; k < f_.shape.pivots; k += kBlock) {
-      const std::size_t end = std::min(k + kBlock, f_.shape.pivots);
-      if (!factor_block(k, end)) return false;
-      pack(k, end);
-      update(k, end);
-    }
+  /// Columns begin .. end-1 become those of the factor. False on a bad pivot.
+  [[gnu::always_inline]] bool finish(Columns own) const {
+    if (!factor_block(own.begin, own.end)) return false;
+    pack(own.begin, own.end);
     return true;
   }
 
-  [[gnu::always_inline]] void write_panel(double* panel) const {
-    for (std::size_t column = 0; column < f_.shape.pivots; column += kPack) {
+  /// Takes the products of finished columns from others, which start at a pack. What lands above
+  /// the diagonal is never read.
+  [[gnu::always_inline]] void update(Columns finished, Columns others) const {
+    Tile<kStrip> tile;
+    for (std::size_t j = others.begin; j < others.end; j += kPack) {
+      const Weights weights{strip(j) + finished.begin * kStrip, kStrip};
+      for (std::size_t row = j / kStrip * kStrip; row < f_.stride; row += kStrip) {
+        multiply(strip(row) + finished.begin * kStrip, weights, finished.end - finished.begin,
+                 tile);
+        for (std::size_t c = 0; c < kPack; ++c)
+          for (std::size_t r = 0; r < kStrip; r += kLanes)
+            lanes(f_.columns + (j + c) * f_.stride + row + r) -= lanes(tile.column[c] + r);
+      }
+    }
+  }
+
+  /// What the panel has of these columns, which start at a pack.
+  [[gnu::always_inline]] void write_panel(Columns own, double* panel) const {
+    for (std::size_t column = own.begin; column < own.end; column += kPack) {
       invert(column);
       write_inverse(column, panel);
       write_below(column, panel);
@@ -52,7 +71,7 @@ class FrontKernels {
   };
 
   /// A matrix of kPack columns: entry (k, c) at entry[k * stride + c].
-  struct Columns {
+  struct Weights {
     const double* entry;
     std::size_t stride;
   };
@@ -76,7 +95,7 @@ class FrontKernels {
 
   /// tile = rows * columns, over `depth` products.
   template <std::size_t kRows>
-  [[gnu::always_inline]] static void multiply(const double* rows, Columns columns,
+  [[gnu::always_inline]] static void multiply(const double* rows, Weights columns,
                                               std::size_t depth, Tile<kRows>& tile) {
     constexpr std::size_t count = std::min<std::size_t>(2, kRows / kLanes);
     for (std::size_t r = 0; r < kRows; r += count * kLanes) {
@@ -131,21 +150,6 @@ class FrontKernels {
       for (std::size_t k = begin; k < end; ++k)
         std::memcpy(strip(row) + k * kStrip, f_.columns + k * f_.stride + row,
                     kStrip * sizeof(double));
-  }
-
-  /// The products of columns begin .. end-1 off those from `end` on. What lands above the diagonal
-  /// is never read.
-  [[gnu::always_inline]] void update(std::size_t begin, std::size_t end) const {
-    Tile<kStrip> tile;
-    for (std::size_t j = padded(end, kPack); j < f_.size(); j += kPack) {
-      const Columns columns{strip(j) + begin * kStrip, kStrip};
-      for (std::size_t row = j / kStrip * kStrip; row < f_.stride; row += kStrip) {
-        multiply(strip(row) + begin * kStrip, columns, end - begin, tile);
-        for (std::size_t c = 0; c < kPack; ++c)
-          for (std::size_t r = 0; r < kStrip; r += kLanes)
-            lanes(f_.columns + (j + c) * f_.stride + row + r) -= lanes(tile.column[c] + r);
-      }
-    }
   }
 
   /// The block of columns of L11^-1 that starts at `column`, by substitution from the diagonal

@@ -22,16 +22,16 @@ using Quad = double __attribute__((vector_size(32), aligned(8), may_alias));
   to = __builtin_shufflevector(two, two, 0, 1, 0, 1);
 }
 
-struct Baseline {
+struct PanelBaseline {
   using Lanes = Duo;
 };
-struct Avx2 {
+struct PanelAvx2 {
   using Lanes = Quad;
 };
 
 /// Registers::Lanes: the vector of doubles of one register. No result depends on its length.
 template <typename Registers>
-class Kernels {
+class PanelLoops {
  public:
   [[gnu::always_inline]] static void multiply(const double* panel, PanelShape shape, const Vec2* x,
                                               PanelRows sum) {
@@ -125,21 +125,21 @@ class Kernels {
 };
 
 void multiply_baseline(const double* panel, PanelShape shape, const Vec2* x, PanelRows sum) {
-  Kernels<Baseline>::multiply(panel, shape, x, sum);
+  PanelLoops<PanelBaseline>::multiply(panel, shape, x, sum);
 }
 
 void transposed_baseline(const double* panel, PanelShape shape, const double* y, Vec2* x) {
-  Kernels<Baseline>::multiply_transposed(panel, shape, y, x);
+  PanelLoops<PanelBaseline>::multiply_transposed(panel, shape, y, x);
 }
 
 [[gnu::target("avx2")]] void multiply_avx2(const double* panel, PanelShape shape, const Vec2* x,
                                            PanelRows sum) {
-  Kernels<Avx2>::multiply(panel, shape, x, sum);
+  PanelLoops<PanelAvx2>::multiply(panel, shape, x, sum);
 }
 
 [[gnu::target("avx2")]] void transposed_avx2(const double* panel, PanelShape shape, const double* y,
                                              Vec2* x) {
-  Kernels<Avx2>::multiply_transposed(panel, shape, y, x);
+  PanelLoops<PanelAvx2>::multiply_transposed(panel, shape, y, x);
 }
 
 }  // namespace

@@ -35,12 +35,12 @@ class Factorisation {
   void reserve(std::size_t numbers) { pile_ = large_array(numbers); }
 
   /// False on a bad pivot.
-  [[nodiscard]] bool eliminate(std::size_t s) {
+  [[nodiscard]] bool eliminate(std::size_t s, Executor& executor) {
     front_.reset(analysis_.shape(s));
     number_rows(s);
     add_entries(s);
     for (Index c = 0; c < nodes_.child_count[s]; ++c) add_update();
-    if (!front_.factor(panels_ + analysis_.panel_begin[s])) return false;
+    if (!front_.factor(panels_ + analysis_.panel_begin[s], executor)) return false;
     keep_update(s);
     return true;
   }
@@ -128,28 +128,29 @@ class Tree {
                             [&](int b) { grow(all[at(b)], grown_[at(b)]); });
     for (const Grown& grown : grown_)
       if (!grown.has_memory) throw std::bad_alloc();
-    return std::ranges::all_of(grown_, &Grown::is_definite) && factor_trunk();
+    return std::ranges::all_of(grown_, &Grown::is_definite) && factor_trunk(executor);
   }
 
  private:
   void grow(const Branch& branch, Grown& grown) const try {
     Factorisation work(analysis_, values_, panels_);
     work.reserve(most_pending(analysis_.nodes, branch));
+    SerialExecutor serial;
     for (std::size_t s = branch.first; s < branch.end; ++s)
-      if (!work.eliminate(s)) return;
+      if (!work.eliminate(s, serial)) return;
     grown.update = work.leave();
     grown.is_definite = true;
   } catch (const std::bad_alloc&) {  // tasks do not throw
     grown.has_memory = false;
   }
 
-  bool factor_trunk() {
+  bool factor_trunk(Executor& executor) {
     Factorisation work(analysis_, values_, panels_);
     work.reserve(analysis_.pending_size);
     bool is_definite = true;
     analysis_.branches.for_each_of_trunk(
         analysis_.nodes.count(),
-        [&](std::size_t s) { is_definite = is_definite && work.eliminate(s); },
+        [&](std::size_t s) { is_definite = is_definite && work.eliminate(s, executor); },
         [&](std::size_t b) {
           work.take(analysis_.branches.all[b].root(), grown_[b].update.data());
         });

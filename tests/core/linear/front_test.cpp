@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/linear/front.hpp"
+#include "tests/core/two_threads.hpp"
 
 namespace unwrapd {
 namespace {
@@ -90,6 +91,23 @@ TEST(Front, GivesTheSameBitsWithAnyRegisters) {
     const std::size_t end = wide.update_begin() + shape.below;
     for (std::size_t j = wide.update_begin(); j < end; ++j)
       EXPECT_TRUE(std::equal(wide.diagonal(j), wide.diagonal(j) + (end - j), narrow.diagonal(j)));
+  }
+}
+
+TEST(Front, GivesTheSameBitsWhenThreadsShareIt) {
+  TwoThreads two;
+  for (const PanelShape shape : {PanelShape{70, 150}, {130, 63}, {203, 0}, {64, 200}}) {
+    const Eigen::MatrixXd a = random_definite(Eigen::Index(shape.pivots + shape.below), 7);
+    Front alone, shared;
+    std::vector<double> panel(shape.size()), panel_of_two(shape.size());
+    fill(alone, shape, a);
+    fill(shared, shape, a);
+    ASSERT_TRUE(alone.factor(panel.data()));
+    ASSERT_TRUE(shared.factor(panel_of_two.data(), two));
+    EXPECT_EQ(panel, panel_of_two);
+    const std::size_t end = alone.update_begin() + shape.below;
+    for (std::size_t j = alone.update_begin(); j < end; ++j)
+      EXPECT_TRUE(std::equal(alone.diagonal(j), alone.diagonal(j) + (end - j), shared.diagonal(j)));
   }
 }
 
