@@ -119,6 +119,7 @@ Laid Arranger::lay(const Arrangement& arrangement, const PageCells& sheet, Budge
   const int run = static_cast<int>(std::min<double>(longest + 2, sheet.width)) + 2 * margin;
   std::vector<Page> pages(1, {Occupancy(sheet.width, sheet.height, margin, run)});
   Laid laid{.spots = std::vector<Spot>(size())};
+  double cells = 0;
   for (const Index k : arrangement.order) {
     throw_if_cancelled(budget.stop);
     const auto island = static_cast<std::size_t>(k);
@@ -132,10 +133,14 @@ Laid Arranger::lay(const Arrangement& arrangement, const PageCells& sheet, Budge
     budget.words -= std::max<std::int64_t>(0, pages.back().cells.work() - before);
     if (!found) return laid;
     ++laid.placed;
-    const int top = spot.y + mask_of(island, spot.turn).touched.height();
+    const Mask& mask = mask_of(island, spot.turn);
+    const int top = spot.y + mask.touched.height();
+    laid.mean_height += mask.cells * (spot.y + mask.touched.height() / 2.0);
+    cells += mask.cells;
     if (spot.page == 0) laid.top = std::max(laid.top, top);
     laid.pages = std::max(laid.pages, spot.page + 1);
   }
+  laid.mean_height /= std::max(cells, 1.0);
   laid.is_complete = true;
   return laid;
 }

@@ -36,9 +36,10 @@ struct PageCells {
 struct Laid {
   std::vector<Spot> spots;  ///< [island]; of those that found a place
   bool is_complete = false;
-  int placed = 0;  ///< islands that found a place before one did not
-  int top = 0;     ///< cells, of the first page
-  int pages = 1;   ///< that islands lie on
+  int placed = 0;          ///< islands that found a place before one did not
+  int top = 0;             ///< cells, of the first page
+  int pages = 1;           ///< that islands lie on
+  double mean_height = 0;  ///< cells: of the islands' middles, by their cells
 };
 
 /// What a search may cost: words of bitmaps looked at. A measure of time that is the same on every

@@ -116,6 +116,7 @@ Mask make_mask(const Outline& outline, const Turn& turn, double padding) {
     fill_inside(row, mask.width);
     append_row(row.runs, mask.touched);
   }
+  for (const Run& run : mask.touched.runs) mask.cells += run.end - run.begin;
   mask.grown = padding > 0 ? grow(mask.touched, padding) : mask.touched;
   return mask;
 }

@@ -41,8 +41,9 @@ struct Turn {
 struct Mask {
   Vec2 low = Vec2::Zero();  ///< the turned island's lower left corner: it comes to lie on (0, 0)
   int width = 0;
-  int margin = 0;  ///< cells by which grown reaches beyond touched on every side
-  Rows touched;    ///< cells that the island's closure touches, holes left free
+  int margin = 0;    ///< cells by which grown reaches beyond touched on every side
+  double cells = 0;  ///< how many are touched
+  Rows touched;      ///< cells that the island's closure touches, holes left free
   /// Touched cells and all that lie nearer than the padding to one; cell (x, y) of the island is
   /// (x + margin, y + margin) here.
   Rows grown;

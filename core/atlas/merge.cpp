@@ -6,6 +6,7 @@
 #include "core/atlas/merge.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/atlas/box.hpp"
 #include "core/atlas/labels.hpp"
 #include "core/cancel.hpp"
 
@@ -21,7 +23,17 @@ namespace {
 
 constexpr std::size_t kBatch = 4;   // unions tried at once
 constexpr double kWideShare = 0.2;  // what the wider patch's share of border counts
+constexpr double kLarge = 0.04;     // of the page: of a union whose shape matters
 constexpr double kLast = 1e99;      // the key of unions that failed before
+
+double area_within(const UvMap& hull) {
+  double area = 0;
+  for (std::size_t k = 2; k < hull.size(); ++k) {
+    const Vec2 a = hull[k - 1] - hull[0], b = hull[k] - hull[0];
+    area += (a.x() * b.y() - a.y() * b.x()) / 2;
+  }
+  return area;
+}
 
 /// What is known of a pair of neighbours.
 struct Promise {
@@ -101,7 +113,19 @@ class Merging {
     const double narrow = std::min(perimeter_[a], perimeter_[b]);
     const double wide = std::max(perimeter_[a], perimeter_[b]);
     const double price = rules_.budget > 0 ? rules_.price * rise / rules_.budget : 0;
-    return rounded(price - border / narrow - kWideShare * border / wide);
+    const double worth = border / narrow + kWideShare * border / wide;
+    return rounded(price - worth * (1 + rules_.whim * drawn(a, b)));
+  }
+
+  /// A number in [0, 1) for this pair in this lot (splitmix64, Steele, Lea, Flood 2014).
+  [[nodiscard]] double drawn(Index a, Index b) const {
+    const auto pair = std::minmax(a, b);
+    std::uint64_t z =
+        static_cast<std::uint64_t>(pair.first) << 32 | static_cast<std::uint64_t>(pair.second);
+    z = (z + static_cast<std::uint64_t>(rules_.lot + 1) * 0x9e3779b97f4a7c15ULL);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
   }
 
   void propose(Index a, Index b, const Promise& promise) {
@@ -126,9 +150,22 @@ class Merging {
     for (Union& both : batch) judge(std::move(both));
   }
 
+  /// Whether a page that holds the patch could not be filled as it shall.
+  [[nodiscard]] bool is_awkward(const MappedRegion& patch) const {
+    if (rules_.least_fill <= 0 || patch.area < kLarge * rules_.page_area) return false;
+    UvMap points;
+    points.reserve(3 * patch.region.uv.size());
+    for (const CornerUv& uv : patch.region.uv) points.insert(points.end(), uv.begin(), uv.end());
+    points = convex_hull(std::move(points));
+    const double side = squarest_box(points).size.maxCoeff();
+    return side * side * rules_.least_fill > rules_.page_area ||
+           rules_.least_solid * area_within(points) > patch.area;
+  }
+
   void judge(Union both) {
     Promise& known = known_[{both.a, both.b}];
-    const Joined& joined = *both.tried;
+    Joined& joined = *both.tried;
+    if (joined.patch.is_sound && is_awkward(joined.patch)) joined.patch.is_sound = false;
     const Excess rise = joined.patch.excess - patches_[both.a].excess - patches_[both.b].excess;
     known = {std::max(rise.worst(), 0.0), !joined.patch.is_sound,
              joined.verdict == Verdict::impossible};

@@ -11,10 +11,15 @@
 namespace unwrapd {
 
 struct MergeRules {
-  double budget = 0;  ///< neither sum of the patches' excess rises above this
-  double cap = 0;     ///< excess of one patch over its area, at most, where a union adds some
-  double price = 5;   ///< of all the budget, in borders of a whole patch
-  Index enough = 1;   ///< ends when there are no more patches than this
+  double budget = 0;       ///< neither sum of the patches' excess rises above this
+  double cap = 0;          ///< excess of one patch over its area, at most, where a union adds some
+  double price = 5;        ///< of all the budget, in borders of a whole patch
+  double page_area = 1;    ///< of all that comes onto the page: no union shall need more of it than
+  double least_fill = 0;   ///< this share allows; 0: as wide as it likes
+  double least_solid = 0;  ///< share of its convex hull that a large union covers, at least
+  double whim = 0;         ///< share of borders' worth that is drawn by lot
+  int lot = 0;             ///< which of the draws; each is the same for everybody
+  Index enough = 1;        ///< ends when there are no more patches than this
   std::function<void(double)> on_progress = {};  ///< share of the patches merged, from this thread
   std::stop_token stop = {};
 };

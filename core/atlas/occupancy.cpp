@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWordBits = 64;
 constexpr int kRowsBetweenChecks = 4;
-constexpr std::size_t kRunWork = 8;  // what a run costs beside its words, in words
+constexpr std::size_t kRunWork = 4;  // what a run costs beside its words, in words
 
 std::size_t words_for(int bits) {
   return static_cast<std::size_t>((bits + kWordBits - 1) / kWordBits);
@@ -36,14 +36,10 @@ const Occupancy::Word* Occupancy::row(int level, int y) const {
   return const_cast<Occupancy*>(this)->row(level, y);
 }
 
-bool Occupancy::all_refused() const {
-  return std::all_of(refused_.begin(), refused_.end(), [](Word w) { return w == ~Word{0}; });
-}
-
 /// Marks the places at which a row of the grown mask hits a taken cell.
-void Occupancy::refuse(const Rows& grown, int mask_row, int page_row) {
-  Word* const refused = refused_.data();
-  const std::size_t count = refused_.size();
+template <std::size_t Words>
+void Occupancy::refuse(const Rows& grown, int mask_row, int page_row, std::span<Word> refused) {
+  const std::size_t count = Words > 0 ? Words : refused.size();
   for (const Run& run : grown.row(mask_row)) {
     const int level = std::bit_width(static_cast<unsigned>(run.end - run.begin)) - 1;
     work_ += static_cast<std::int64_t>(2 * count + kRunWork);
@@ -56,20 +52,38 @@ void Occupancy::refuse(const Rows& grown, int mask_row, int page_row) {
   }
 }
 
+/// Words: of a row, where that is known while compiling; 0: any number.
+template <std::size_t Words>
+std::optional<int> Occupancy::first_free_in(const Mask& mask, int y, std::span<Word> refused) {
+  const auto is_full = [](Word w) { return w == ~Word{0}; };
+  const int height = mask.grown.height();
+  for (int k = 0; k < height; ++k) {  // from the middle outwards: the widest rows tell soonest
+    const int j = height / 2 + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
+    refuse<Words>(mask.grown, j, y + j, refused);
+    if ((Words > 0 || k % kRowsBetweenChecks == 0) &&
+        std::all_of(refused.begin(), refused.end(), is_full))
+      return std::nullopt;
+  }
+  const auto free = std::find_if_not(refused.begin(), refused.end(), is_full);
+  if (free == refused.end()) return std::nullopt;
+  return static_cast<int>(free - refused.begin()) * kWordBits + std::countr_one(*free);
+}
+
 std::optional<int> Occupancy::first_free(const Mask& mask, int y) {
-  const int places = width_ - mask.width + 1, height = mask.grown.height();
+  const int places = width_ - mask.width + 1;
   if (places <= 0 || y + mask.touched.height() > height_) return std::nullopt;
   refused_.assign(words_for(places), 0);
   if (places % kWordBits != 0) refused_.back() = ~Word{0} << (places % kWordBits);
-  for (int k = 0; k < height; ++k) {  // from the middle outwards: the widest rows tell soonest
-    const int j = height / 2 + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
-    refuse(mask.grown, j, y + j);
-    if (k % kRowsBetweenChecks == 0 && all_refused()) return std::nullopt;
+  switch (refused_.size()) {
+    case 1:
+      return first_free_in<1>(mask, y, refused_);
+    case 2:
+      return first_free_in<2>(mask, y, refused_);
+    case 3:
+      return first_free_in<3>(mask, y, refused_);
+    default:
+      return first_free_in<0>(mask, y, refused_);
   }
-  for (std::size_t i = 0; i < refused_.size(); ++i)
-    if (refused_[i] != ~Word{0})
-      return static_cast<int>(i) * kWordBits + std::countr_one(refused_[i]);
-  return std::nullopt;
 }
 
 /// Brings the bitmaps of longer runs up to date after cells [begin, end) of a row have changed.

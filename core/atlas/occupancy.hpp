@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/atlas/mask.hpp"
@@ -32,8 +33,10 @@ class Occupancy {
 
   [[nodiscard]] Word* row(int level, int y);
   [[nodiscard]] const Word* row(int level, int y) const;
-  void refuse(const Rows& grown, int mask_row, int page_row);
-  [[nodiscard]] bool all_refused() const;
+  template <std::size_t Words>
+  void refuse(const Rows& grown, int mask_row, int page_row, std::span<Word> refused);
+  template <std::size_t Words>
+  std::optional<int> first_free_in(const Mask& mask, int y, std::span<Word> refused);
   void spread(int y, int begin, int end);
 
   int width_, height_, margin_, levels_ = 1;

@@ -4,6 +4,7 @@
 #include "core/atlas/pack.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -14,16 +15,25 @@
 namespace unwrapd {
 namespace {
 
-constexpr int kCoarseCells = 160, kFineCells = 1024, kMostCells = 4096;  // a side of a grid
-constexpr double kCoarsePerIsland = 16, kFinePerIsland = 30;             // cells along a side
-constexpr std::size_t kSearched = 400;  // islands at most that are searched on a coarse grid
-constexpr double kUsualFill = 0.7;      // of the first guess of a page's side
-constexpr double kSpareSide = 1.01;     // of a page, for which the padding is wide enough
-constexpr std::int64_t kCoarseWork = 20'000'000, kFineWork = 6'000'000;  // words an island
-constexpr std::size_t kMostShares = 12;                                  // of that work
+/// A grid that is searched.
+struct Level {
+  int cells = 0;          ///< a side, at least
+  double per_island = 0;  ///< cells along a side, for each of as many islands
+  double heat = 0;        ///< see StripRules
+  std::int64_t work = 0;  ///< words an island
+};
+constexpr std::array kLevels = {Level{96, 12, 0.1, 18'000'000}, Level{160, 20, 0.01, 6'000'000}};
+constexpr int kFineCells = 1024, kMostCells = 4096;  // a side of the grid that decides
+constexpr double kFinePerIsland = 30, kFineHeat = 0.002;
+constexpr std::size_t kSearched = 400;         // islands at most that are searched on a coarse grid
+constexpr double kUsualFill = 0.7;             // of the first guess of a page's side
+constexpr double kSpareSide = 1.01;            // of a page, for which the padding is wide enough
+constexpr std::int64_t kFineWork = 1'000'000;  // words an island
+constexpr std::int64_t kRoughWork = 2'000'000;
+constexpr std::size_t kMostShares = 12;  // of that work
 
 int turns_for(std::size_t islands) {
-  if (islands <= 16) return 24;
+  if (islands <= 16) return islands <= 8 ? 48 : 36;
   return islands <= 100 ? 8 : 4;
 }
 
@@ -66,14 +76,35 @@ class Packer {
   Packed largest() {
     std::vector<Arrangement> starts = usual_arrangements(arranger_);
     const std::size_t n = arranger_.size();
-    const bool is_searched = n <= kSearched;
-    const int coarse = is_searched ? cells_for(n, kCoarsePerIsland, kCoarseCells) : fine_cells(n);
-    if (!is_searched) starts.resize(1);
-    const double loose = std::sqrt(kUsualFill * page_.packing.max_pages / box_area(arranger_));
-    const Found found =
-        on_grid(starts, coarse, coarse * loose, is_searched ? work_for(kCoarseWork, n) : 0);
+    double side = fine_cells(n);
+    double scale = side * std::sqrt(kUsualFill * page_.packing.max_pages / box_area(arranger_));
+    if (n > kSearched) starts.resize(1);
+    for (const Level& level : kLevels) {
+      if (n > kSearched) break;
+      const int cells = cells_for(n, level.per_island, level.cells);
+      const double loose = scale / side * cells;
+      const std::vector<Found> found =
+          on_grid(starts, {cells, level.heat}, loose, work_for(level.work, n));
+      starts.clear();
+      for (const Found& own : found) starts.push_back(own.arrangement);
+      scale = loose;
+      side = found.front().side;
+    }
     const int fine = fine_cells(n);
-    return placed(on_grid_exactly({found.arrangement}, fine, fine * coarse * loose / found.side));
+    starts.resize(1);
+    return placed(on_grid_exactly(starts, fine, fine * scale / side));
+  }
+
+  /// The share of the page that is filled after a short search on a coarse grid.
+  double rough_fill(double area) {
+    const std::size_t n = arranger_.size();
+    const int side = cells_for(n, kLevels[0].per_island, kLevels[0].cells);
+    const double loose = std::sqrt(kUsualFill / box_area(arranger_)), scale = side * loose;
+    std::vector<Arrangement> starts = usual_arrangements(arranger_);
+    if (n > kSearched) starts.resize(1);
+    const Found found =
+        on_grid(starts, {side, kLevels[0].heat}, scale, work_for(kRoughWork, n)).front();
+    return area * scale * scale / (double(found.side) * found.side);
   }
 
   /// At the density that is asked for, on as few pages as can be had.
@@ -111,13 +142,13 @@ class Packer {
   }
 
   /// A search at this scale, with the padding of pages of `expected` cells.
-  Found on_grid(const std::vector<Arrangement>& starts, double expected, double cells_per_unit,
-                std::int64_t work) {
-    arranger_.set_scale(cells_per_unit, grid_.padding(expected));
+  std::vector<Found> on_grid(const std::vector<Arrangement>& starts, const StripRules& rules,
+                             double cells_per_unit, std::int64_t work) {
+    arranger_.set_scale(cells_per_unit, grid_.padding(rules.width));
     Budget budget{work, stop_};
     return page_.packing.max_pages == 1
-               ? smallest_page(arranger_, starts, static_cast<int>(expected), budget)
-               : smallest_pages(arranger_, starts, page_.packing.max_pages, budget);
+               ? smallest_page(arranger_, starts, rules, budget)
+               : std::vector{smallest_pages(arranger_, starts, page_.packing.max_pages, budget)};
   }
 
   /// The same where the padding must be kept: should pages come out larger than expected, it is
@@ -125,8 +156,9 @@ class Packer {
   Found on_grid_exactly(const std::vector<Arrangement>& starts, double expected,
                         double cells_per_unit) {
     for (double spare = kSpareSide;; spare *= kSpareSide) {
-      Found found =
-          on_grid(starts, spare * expected, cells_per_unit, work_for(kFineWork, arranger_.size()));
+      Found found = on_grid(starts, {static_cast<int>(std::ceil(spare * expected)), kFineHeat},
+                            cells_per_unit, work_for(kFineWork, arranger_.size()))
+                        .front();
       if (found.side <= spare * expected) return found;
       expected = found.side;
     }
@@ -209,7 +241,20 @@ Packed pack_stacked(std::span<const Outline> islands, const PageOptions& page,
   return packed;
 }
 
+double area_of(const Outline& outline) {
+  double area = 0;
+  for (const auto& [a, b] : outline) area += (a.x() * b.y() - a.y() * b.x()) / 2;
+  return area;
+}
+
 }  // namespace
+
+double rough_fill(std::span<const Outline> islands, const std::stop_token& stop) {
+  if (islands.empty() || !has_extent(points_of(islands))) return 1;
+  double area = 0;
+  for (const Outline& island : islands) area += area_of(island);
+  return Packer(islands, {.padding = 0}, stop).rough_fill(area);
+}
 
 Packed pack(std::span<const Outline> islands, const PageOptions& page,
             const std::stop_token& stop) {

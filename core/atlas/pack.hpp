@@ -54,6 +54,10 @@ double kept_padding(const PageOptions& page, std::size_t island_count);
 Packed pack(std::span<const Outline> islands, const PageOptions& page,
             const std::stop_token& stop = {});
 
+/// The share of a page that the islands would fill, at a glance and without padding; 1 where they
+/// have no extent. Throws Error{cancelled}.
+double rough_fill(std::span<const Outline> islands, const std::stop_token& stop = {});
+
 /// Charts' page UVs back onto the surface's vertices: splits those that lie on a seam. A vertex's
 /// first corner keeps its number, copies are appended in the order of faces and corners. Of the
 /// faces that were set aside, a duplicate gets the UVs of the face that it repeats; a degenerate

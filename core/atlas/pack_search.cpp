@@ -17,6 +17,8 @@ namespace unwrapd {
 namespace {
 
 constexpr int kHeights = 4;     // a strip may be so many times as high as wide
+constexpr double kLift = 0.5;   // what islands' mean height counts beside the strip's
+constexpr int kWidening = 16;   // share of a strip's width by which it widens until islands fit in
 constexpr int kBalancings = 4;  // steps towards a square
 constexpr int kRetries = 12;    // with the homeless to the front
 constexpr double kDense = 0.95,
@@ -48,8 +50,11 @@ void change(Arrangement& arrangement, int turns, Sequence& sequence) {
     std::swap(order[a], order[b]);
   } else if (kind < 6) {
     std::rotate(at(std::min(a, b)), at(std::max(a, b)), at(std::max(a, b) + 1));
-  } else {
+  } else if (kind < 8) {
     arrangement.turn[a] = static_cast<int>(sequence.below(static_cast<std::size_t>(turns)));
+  } else {
+    const int step = sequence.below(2) == 0 ? 1 : turns - 1;
+    arrangement.turn[a] = (std::max(arrangement.turn[a], 0) + step) % turns;
   }
 }
 
@@ -59,41 +64,52 @@ void decide_turns(Arrangement& arrangement, const std::vector<Spot>& spots) {
 
 class Strip {
  public:
-  Strip(Arranger& arranger, Budget& budget) : arranger_(arranger), budget_(budget) {}
+  Strip(Arranger& arranger, Budget& budget, Sequence& sequence)
+      : arranger_(arranger), budget_(budget), sequence_(sequence) {}
 
-  Found search(const std::vector<Arrangement>& starts, int width) {
+  /// heat: by what share of the width the strip may rise for a change, to begin with.
+  Found search(const Arrangement& start, int width, double heat) {
     least_ = arranger_.least_side();
     width_ = std::max(width, least_);
-    for (const Arrangement& start : starts) try_it(start);
+    const auto words = static_cast<double>(budget_.words);
+    now_ = start;
+    for (lay_again(width_); best_.side == 0;) lay_again(width_ + 1 + width_ / kWidening);
     balance();
-    Sequence sequence;
     while (budget_.words > 0 && narrow()) {
       Arrangement next = now_;
-      for (std::size_t k = 0; k <= sequence.below(2); ++k)
-        change(next, arranger_.turns(), sequence);
-      try_it(next);
+      for (std::size_t k = 0; k <= sequence_.below(2); ++k)
+        change(next, arranger_.turns(), sequence_);
+      try_it(next, heat * width_ * static_cast<double>(budget_.words) / words);
     }
     return std::move(best_);
   }
 
  private:
-  /// Takes the arrangement if the strip gets no higher by it.
-  bool try_it(const Arrangement& arrangement) {
-    const int limit = top_ > 0 ? top_ : kHeights * width_;
+  /// Takes the arrangement if the strip gets no higher by it than `rise`.
+  bool try_it(const Arrangement& arrangement, double rise) {
+    const int limit = top_ > 0 ? static_cast<int>(height_ + rise) : kHeights * width_;
     const Laid laid = arranger_.lay(arrangement, {width_, limit, 1}, budget_);
     if (!laid.is_complete) return false;
+    const double height = laid.top + kLift * laid.mean_height;
+    if (top_ > 0 && height > height_ + rise) return false;
     now_ = arrangement;
     decide_turns(now_, laid.spots);
     top_ = laid.top;
+    height_ = height;
     const int side = std::max(width_, top_);
     if (best_.side == 0 || side < best_.side) best_ = {now_, laid.spots, side, 1};
     return true;
   }
 
+  /// Islands that are too wide as they are turned find another turn.
   bool lay_again(int width) {
     width_ = width;
     top_ = 0;
-    return try_it(Arrangement(now_));
+    Arrangement next = now_;
+    for (std::size_t k = 0; k < next.turn.size(); ++k)
+      if (next.turn[k] != kAnyTurn && arranger_.mask_of(k, next.turn[k]).width > width)
+        next.turn[k] = kAnyTurn;
+    return try_it(next, 0);
   }
 
   /// Towards the width at which what was found first is as high as wide.
@@ -116,8 +132,10 @@ class Strip {
 
   Arranger& arranger_;
   Budget& budget_;
+  Sequence& sequence_;
   int least_ = 1, width_ = 1;
-  int top_ = 0;  ///< of what is now in the strip; 0: nothing is
+  int top_ = 0;        ///< of what is now in the strip; 0: nothing is
+  double height_ = 0;  ///< of the same: its top, and a little of how high its islands lie
   Arrangement now_;
   Found best_;
 };
@@ -172,9 +190,18 @@ std::vector<Arrangement> usual_arrangements(const Arranger& arranger) {
   return all;
 }
 
-Found smallest_page(Arranger& arranger, const std::vector<Arrangement>& starts, int width,
-                    Budget& budget) {
-  return Strip(arranger, budget).search(starts, width);
+std::vector<Found> smallest_page(Arranger& arranger, const std::vector<Arrangement>& starts,
+                                 const StripRules& rules, Budget& budget) {
+  std::vector<Found> all;
+  Sequence sequence;
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    Budget own{budget.words / static_cast<std::int64_t>(starts.size() - k), budget.stop};
+    budget.words -= own.words;
+    all.push_back(Strip(arranger, own, sequence).search(starts[k], rules.width, rules.heat));
+    budget.words += std::min<std::int64_t>(own.words, 0);
+  }
+  std::ranges::stable_sort(all, std::less(), &Found::side);
+  return all;
 }
 
 Found smallest_pages(Arranger& arranger, const std::vector<Arrangement>& starts, int page_count,

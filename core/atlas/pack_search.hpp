@@ -18,10 +18,15 @@ struct Found {
 /// Arrangements to begin with: the largest first, by several measures; every turn open.
 std::vector<Arrangement> usual_arrangements(const Arranger& arranger);
 
-/// Looks for the smallest page that holds all, beginning at a width in cells, until it has found
-/// nothing better within the budget. The arranger's scale stays what it is: the page shrinks.
-Found smallest_page(Arranger& arranger, const std::vector<Arrangement>& starts, int width,
-                    Budget& budget);
+struct StripRules {
+  int width = 0;    ///< cells, to begin with
+  double heat = 0;  ///< share of the width by which a change may make things worse at first
+};
+
+/// Looks for the smallest page that holds all, within the budget. What was found from each start,
+/// the smallest first. The arranger's scale stays what it is: the page shrinks.
+std::vector<Found> smallest_page(Arranger& arranger, const std::vector<Arrangement>& starts,
+                                 const StripRules& rules, Budget& budget);
 
 /// The same for several pages of one side.
 Found smallest_pages(Arranger& arranger, const std::vector<Arrangement>& starts, int page_count,

@@ -7,14 +7,13 @@
 #include "core/atlas/segment.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "core/atlas/best_merge.hpp"
 #include "core/atlas/cluster.hpp"
 #include "core/atlas/labels.hpp"
-#include "core/atlas/straighten.hpp"
 #include "core/cancel.hpp"
 
 namespace unwrapd {
@@ -27,32 +26,15 @@ constexpr double kRefinement = 0.3;      // of flatness, each time a patch has n
 constexpr int kRefinements = 4;          // then the patch falls into its triangles
 constexpr int kSmoothingPasses = 3;
 constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
-constexpr std::array kPrices = {5.0, 1.0, 20.0, 2.0, 0.3, 10.0, 0.1, 40.0};  // see MergeRules
-constexpr std::size_t kFacesOfSearch = 60'000;  // that are merged in all, anew for each price
 constexpr double kMargin = 0.97;  // of what is allowed: solving on may shift some between the two
 constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a number of regions
-constexpr double kCostOfAChart = 0.1;
-constexpr double kMergeBegin = 0.3;   // share of the time
-constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
+constexpr double kMergeBegin = 0.3;                 // share of the time
+constexpr double kCapOfOnePatch = 4;                // in shares of what is allowed of all
 
 Excess total_of(std::span<const MappedRegion> patches) {
   Excess total;
   for (const MappedRegion& patch : patches) total += patch.excess;
   return total;
-}
-
-/// What a partition costs: its seams (the sheet's area is 1), and something for each chart.
-double cost_of(const Sheet& sheet, const Partition& partition) {
-  std::vector<Index> owner(sheet.mesh.faces.size());
-  for (std::size_t k = 0; k < partition.patches.size(); ++k)
-    for (const Index t : partition.patches[k].region.faces) owner[t] = static_cast<Index>(k);
-  double seam = 0;
-  for (std::size_t h = 0; h < partition.open.size(); ++h) {
-    const Index twin = sheet.halfedges.twin[h];
-    if (twin == kNoTwin) continue;
-    if (partition.open[h] != 0 || owner[face_of(twin)] != owner[h / 3]) seam += sheet.length[h] / 2;
-  }
-  return rounded(seam + kCostOfAChart * static_cast<double>(partition.patches.size()));
 }
 
 /// The faces of each label with a map of their own, from their projection.
@@ -113,36 +95,15 @@ std::vector<MappedRegion> over_segment(const Sheet& sheet, const SegmentRules& r
   }
 }
 
-/// The cheapest of several greedy merges that weigh distortion against border differently.
 Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& rules,
                  Executor& executor) {
   const double budget = kMargin * (rules.max_distortion - 2);
-  const std::size_t tries =
-      std::clamp(kFacesOfSearch / sheet.mesh.faces.size(), std::size_t{1}, kPrices.size());
-  const Joiner joiner(sheet);
-  const MergeRules bounds{.budget = budget, .cap = kCapOfOnePatch * budget, .stop = rules.stop};
-  Partition best;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < tries; ++k) {
-    const auto tell = [&](double share) {
-      const double done = (static_cast<double>(k) + share) / static_cast<double>(tries);
-      if (rules.on_progress)
-        rules.on_progress(Stage::merge, kMergeBegin + (1 - kMergeBegin) * done);
-    };
-    tell(0);
-    MergeRules merging = bounds;
-    merging.price = kPrices[k];
-    merging.on_progress = tell;
-    Partition own = merge_patches(joiner, sheet, from, merging, executor);
-    const double cost = cost_of(sheet, own);
-    if (cost >= least) continue;
-    least = cost;
-    best = std::move(own);
-  }
-  straighten(sheet, bounds, best);
-  best = merge_patches(joiner, sheet, std::move(best), bounds, executor);  // what now fits together
-  straighten(sheet, bounds, best);
-  return best;
+  MergeRules merging{.budget = budget, .cap = kCapOfOnePatch * budget, .stop = rules.stop};
+  merging.page_area = rules.page_area;
+  merging.on_progress = [&](double share) {
+    if (rules.on_progress) rules.on_progress(Stage::merge, kMergeBegin + (1 - kMergeBegin) * share);
+  };
+  return best_merge(sheet, from, merging, executor);
 }
 
 }  // namespace

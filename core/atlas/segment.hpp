@@ -16,7 +16,8 @@ namespace unwrapd {
 struct SegmentRules {
   double max_distortion = 2.02;  ///< of all regions together, D_angle and D_area each; > 2
   Index most_regions = std::numeric_limits<Index>::max();  ///< however distorted, if maps allow it
-  std::function<void(Stage, double)> on_progress = {};     ///< the share that is done
+  double page_area = 1;  ///< of all that lies on one page with this sheet, in units of its area
+  std::function<void(Stage, double)> on_progress = {};  ///< the share that is done
   std::stop_token stop = {};
 };
 

@@ -38,11 +38,15 @@ class Account {
  public:
   Account(const std::vector<Charts>& surfaces, const SegmentWatch& watch) : watch_(watch) {
     for (const Charts& surface : surfaces)
-      for (const Chart& component : surface.charts) total_ += faces_of(component);
+      for (const Chart& component : surface.charts) {
+        total_ += faces_of(component);
+        area_ += surface_area(component.mesh);
+      }
   }
 
   [[nodiscard]] SegmentRules rules(double max_distortion, const Chart& component) const {
     return {.max_distortion = max_distortion,
+            .page_area = area_ / surface_area(component.mesh),
             .on_progress =
                 [this, &component](Stage stage, double share) {
                   if (watch_.on_progress)
@@ -59,6 +63,7 @@ class Account {
 
   const SegmentWatch& watch_;
   double total_ = 0, done_ = 0;
+  double area_ = 0;  ///< in space, of all components
 };
 
 void note(Charts& surface, RepairKind kind, Index count) {

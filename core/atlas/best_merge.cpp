@@ -1,0 +1,163 @@
+// One greedy merge is a matter of luck: what distortion costs beside border decides which unions
+// come first, and no price is best for all shapes. So several are tried. What is left then is
+// judged as a user would: by its seams, its number of charts, and by a rough packing, since few
+// wide charts that lie like stars or rings leave the page empty. Some of the tries refuse such
+// charts from the start. Rejected: roundness as part of the price of a union: small charts on the
+// way are seldom round, and what counts is the fill of the page, which large charts decide.
+#include "core/atlas/best_merge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "core/atlas/labels.hpp"
+#include "core/atlas/pack.hpp"
+#include "core/atlas/straighten.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// What of MergeRules differs between the tries.
+struct Try {
+  double price = 0, least_fill = 0, least_solid = 0, whim = 0;
+};
+constexpr std::array kTries = {Try{1, 0, 0, 0},       Try{1, .72, 0, .3},   Try{2, .72, .65, 0},
+                               Try{2, 0, 0, .5},      Try{5, .72, 0, 0},    Try{2, .72, .7, .3},
+                               Try{2, 0, 0, .2},      Try{3, .72, .7, .3},  Try{1, .72, .65, .5},
+                               Try{.5, .72, .75, .3}, Try{20, .72, .6, .1}, Try{1, .5, .6, .3}};
+constexpr std::size_t kFacesOfSearch = 120'000;  // that are merged in all, anew for each try
+constexpr std::size_t kFinished = 3;             // of the tries: with borders drawn straight
+constexpr double kFittingFill = 0.72;            // see MergeRules::least_fill
+constexpr double kCostOfAChart = 0.1;
+constexpr double kWantedFill = 0.7, kCostOfEmptiness = 6;  // for a page that is empty beyond that
+constexpr double kMostPage = 1.5;  // of the sheet: with more beside it, others fill the gaps
+
+/// The region of each face.
+std::vector<Index> owners(const Sheet& sheet, const Partition& partition) {
+  std::vector<Index> owner(sheet.mesh.faces.size());
+  for (std::size_t k = 0; k < partition.patches.size(); ++k)
+    for (const Index t : partition.patches[k].region.faces) owner[t] = static_cast<Index>(k);
+  return owner;
+}
+
+std::vector<Outline> outlines(const Sheet& sheet, const Partition& partition,
+                              const std::vector<Index>& owner) {
+  std::vector<Outline> all(partition.patches.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Region& region = partition.patches[k].region;
+    for (std::size_t f = 0; f < region.faces.size(); ++f)
+      for (Index i = 0; i < 3; ++i) {
+        const Index h = 3 * region.faces[f] + i, twin = sheet.halfedges.twin[h];
+        const CornerUv& uv = region.uv[f];
+        if (twin == kNoTwin || partition.open[h] != 0 ||
+            owner[face_of(twin)] != static_cast<Index>(k))
+          all[k].push_back({uv[i], uv[(i + 1) % 3]});
+      }
+  }
+  return all;
+}
+
+double seam_of(const Sheet& sheet, const Partition& partition, const std::vector<Index>& owner) {
+  double seam = 0;
+  for (std::size_t h = 0; h < partition.open.size(); ++h) {
+    const Index twin = sheet.halfedges.twin[h];
+    if (twin == kNoTwin) continue;
+    if (partition.open[h] != 0 || owner[face_of(twin)] != owner[h / 3]) seam += sheet.length[h] / 2;
+  }
+  return seam;
+}
+
+/// What a partition costs: its seams (the sheet's area is 1), and something for each chart and for
+/// the page that it leaves empty.
+double cost_of(const Sheet& sheet, const Partition& partition, const MergeRules& rules) {
+  const std::vector<Index> owner = owners(sheet, partition);
+  double cost = seam_of(sheet, partition, owner) +
+                kCostOfAChart * static_cast<double>(partition.patches.size());
+  const bool has_page = rules.page_area <= kMostPage;
+  const double fill =
+      has_page ? rough_fill(outlines(sheet, partition, owner), rules.stop) : kWantedFill;
+  cost += kCostOfEmptiness * std::max(0.0, kWantedFill - fill);
+  return rounded(cost);
+}
+
+/// A partition and its cost_of().
+struct Candidate {
+  double cost = 0;
+  Partition partition;
+};
+
+class Search {
+ public:
+  Search(const Sheet& sheet, const MergeRules& rules, Executor& executor)
+      : sheet_(sheet), rules_(rules), executor_(executor), joiner_(sheet) {}
+
+  /// The cheapest of the tries, the best first.
+  std::vector<Candidate> greedy(const Partition& from) const {
+    const std::size_t tries =
+        std::clamp(kFacesOfSearch / sheet_.mesh.faces.size(), std::size_t{1}, kTries.size());
+    std::vector<Candidate> best;
+    for (std::size_t k = 0; k < tries; ++k) {
+      MergeRules rules = rules_of(k);
+      rules.on_progress = [&](double share) {
+        if (rules_.on_progress)
+          rules_.on_progress((static_cast<double>(k) + share) / static_cast<double>(tries));
+      };
+      add(merge_patches(joiner_, sheet_, from, rules, executor_), best);
+      std::ranges::stable_sort(best, std::less(), &Candidate::cost);
+      if (best.size() > kFinished) best.pop_back();
+    }
+    return best;
+  }
+
+  /// With borders drawn straight; and with what then fits together merged, of any shape or not.
+  std::vector<Candidate> finished(Partition partition) const {
+    std::vector<Candidate> all;
+    straighten(sheet_, rules_, partition);
+    for (const double least_fill : {0.0, kFittingFill}) {
+      MergeRules rules = rules_;
+      rules.least_fill = least_fill;
+      rules.on_progress = {};
+      Partition merged = merge_patches(joiner_, sheet_, partition, rules, executor_);
+      straighten(sheet_, rules, merged);
+      add(std::move(merged), all);
+    }
+    add(std::move(partition), all);
+    return all;
+  }
+
+ private:
+  [[nodiscard]] MergeRules rules_of(std::size_t number) const {
+    MergeRules rules = rules_;
+    rules.price = kTries[number].price;
+    rules.least_fill = kTries[number].least_fill;
+    rules.least_solid = kTries[number].least_solid;
+    rules.whim = kTries[number].whim;
+    rules.lot = static_cast<int>(number);
+    return rules;
+  }
+
+  void add(Partition partition, std::vector<Candidate>& to) const {
+    const double cost = cost_of(sheet_, partition, rules_);
+    to.push_back({cost, std::move(partition)});
+  }
+
+  const Sheet& sheet_;
+  const MergeRules& rules_;
+  Executor& executor_;
+  Joiner joiner_;
+};
+
+}  // namespace
+
+Partition best_merge(const Sheet& sheet, const Partition& from, const MergeRules& rules,
+                     Executor& executor) {
+  const Search search(sheet, rules, executor);
+  Candidate best{std::numeric_limits<double>::infinity(), {}};
+  for (Candidate& greedy : search.greedy(from))
+    for (Candidate& own : search.finished(std::move(greedy.partition)))
+      if (own.cost < best.cost) best = std::move(own);
+  return std::move(best.partition);
+}
+
+}  // namespace unwrapd
