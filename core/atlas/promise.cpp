@@ -16,6 +16,7 @@
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
 #include "core/solve/bijective.hpp"
+#include "core/solve/hold_align.hpp"
 #include "core/solve/virtual_boundary.hpp"
 
 namespace unwrapd {
@@ -106,12 +107,14 @@ void split(const KeptPart& part, const Seeds& seeds, std::vector<KeptPart>& open
   }
 }
 
-/// A map of the part in which nothing overlaps, in units of which one is `unit` of the mesh's.
+/// A map of the part in which nothing overlaps, in units of which one is `unit` of the mesh's, and
+/// as near to springs as it comes without being bent.
 bool unfold(KeptPart& part, double unit, const MapIntent& intent) {
   SerialExecutor serial;
   const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
   if (!map_injectively(disk, intent.rigidity, intent.stop, part.uv, serial)) return false;
   for (Vec2& u : part.uv) u *= disk.unit / unit;
+  if (!intent.springs.empty()) part.uv = held_start(std::move(part.uv), {{}, intent.springs});
   return overlaps_of(part.chart, part.uv).empty();
 }
 
@@ -150,8 +153,8 @@ std::vector<KeptPart> split_as_needed(KeptPart whole, double unit, const Promise
     const Seeds seeds = seeds_needed(part, unit, promise, mending);
     if (seeds[0].empty())
       kept.push_back(std::move(part));
-    else if (holds_any(promise.intent))
-      fail("the held vertices leave no map without flips or overlaps");
+    else if (holds_any(promise.intent) || !promise.intent.springs.empty())
+      fail("the constraints leave no map without flips or overlaps");
     else
       split(part, seeds, open);
   }

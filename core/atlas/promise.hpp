@@ -25,14 +25,14 @@ struct Kept {
 struct Promise {
   Guarantee guarantee = Guarantee::flip_free;
   RepairMethod repair = RepairMethod::untangle;
-  MapIntent intent = {};  ///< held vertices stay; a chart that has some is not split
+  MapIntent intent = {};  ///< held vertices stay; a chart that has some, or springs, is not split
 };
 
 /// uv: the solved map of the chart's disk, in disk units. Afterwards no triangle of a part is
 /// flipped (flip_free), and no two of a part overlap (bijective), by exact tests; under
 /// Guarantee::none the map stays as it is. A chart with overlaps has a new map (map_injectively()),
 /// and is split only where none is found. The energy that mending.energy_rise tells of is that of
-/// intent.rigidity. Throws Error{guarantee_failed}, where = "/guarantee", where held vertices leave
+/// intent.rigidity. Throws Error{guarantee_failed}, where = "/guarantee", where constraints leave
 /// no way, or a single triangle has no area in the map; Error{cancelled}.
 Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise& promise);
 

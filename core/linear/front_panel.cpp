@@ -38,8 +38,11 @@ class PanelLoops {
     for (std::size_t k = 0; k < shape.pivots; k += kPack)
       at_block(
           panel, shape, k,
-          [&]<std::size_t kWidth>(const double* block, std::size_t length) __attribute__((
-              always_inline)) { add_block<kWidth>(block, length, x + k, sum + row_entry(k)); });
+          [&]<std::size_t kWidth>(const double* block, std::size_t length)
+              __attribute__((always_inline)) {
+                k == 0 ? add_block<kWidth, true>(block, length, x, sum)
+                       : add_block<kWidth, false>(block, length, x + k, sum + row_entry(k));
+              });
   }
 
   [[gnu::always_inline]] static void multiply_transposed(const double* panel, PanelShape shape,
@@ -64,8 +67,8 @@ class PanelLoops {
     return *reinterpret_cast<const Lanes*>(x);
   }
 
-  /// A block of kWidth columns of `length` rows each.
-  template <std::size_t kWidth>
+  /// A block of kWidth columns of `length` rows each; the first finds no sums there yet.
+  template <std::size_t kWidth, bool kIsFirst>
   [[gnu::always_inline]] static void add_block(const double* block, std::size_t length,
                                                const Vec2* x, PanelRows sum) {
     Lanes weight[kWidth][kParts];
@@ -75,7 +78,8 @@ class PanelLoops {
     }
     for (std::size_t r = 0; r < length; r += kDuo, sum += kTwoRows) {
       Lanes total[kParts];
-      for (std::size_t p = 0; p < kParts; ++p) total[p] = lanes(sum + p * kLanes);
+      for (std::size_t p = 0; p < kParts; ++p)
+        total[p] = kIsFirst ? Lanes{} : lanes(sum + p * kLanes);
       for (std::size_t k = 0; k < kWidth; ++k) {
         Lanes entry;
         spread(block + r * kWidth + k * kDuo, entry);

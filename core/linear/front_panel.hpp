@@ -50,7 +50,7 @@ constexpr std::size_t row_entry(std::size_t r) { return 2 * (r / kDuo * kDuo) + 
 
 /// Products of a panel with two right-hand sides. The same bits on any processor.
 struct PanelKernels {
-  /// sum += panel * x: one x a pivot.
+  /// sum = panel * x: one x a pivot.
   void (*multiply)(const double* panel, PanelShape shape, const Vec2* x, PanelRows sum);
   /// x = panel^T * y
   void (*multiply_transposed)(const double* panel, PanelShape shape, const double* y, Vec2* x);

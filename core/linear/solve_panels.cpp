@@ -23,7 +23,6 @@ class Workspace {
     rows_[row_entry(r)] = x.x();
     rows_[row_entry(r) + kDuo] = x.y();
   }
-  void clear(std::size_t height) { std::fill_n(rows_.data(), 2 * height, 0.0); }
 
  private:
   std::vector<double> rows_;
@@ -105,7 +104,6 @@ class Sweep {
   void eliminate(std::size_t s, Workspace& work) const {
     const PanelShape shape = analysis_.shape(s);
     Vec2* own = x_.data() + nodes_.first[s];
-    work.clear(shape.height());
     kernels_.multiply(panels_ + analysis_.panel_begin[s], shape, own, work.rows());
     for (std::size_t k = 0; k < shape.pivots; ++k) own[k] = work.row(k);
   }

@@ -122,6 +122,36 @@ TEST(Promise, OfInjectivitySplitsWhereNoMapWithoutOverlapsIsFound) {
   EXPECT_EQ(kept.parts.size(), 2U);
 }
 
+TEST(Promise, OfInjectivityLaysANewMapWhereSpringsDrawIt) {
+  const auto owned = disk_of(spiral());
+  UvMap uv = from_above(owned.disk);
+  if (!flipped_faces(owned.disk.faces, uv).empty())
+    for (Vec2& u : uv) u.x() = -u.x();
+  Promise promise{.guarantee = Guarantee::bijective};
+  const auto n = Index(uv.size());
+  promise.intent.springs = {{0, Vec2(3, 7), 1}, {n / 2, Vec2(3, 8), 1}, {n - 1, Vec2(3, 9), 1}};
+  const Kept kept = keep_promise(*owned.chart, owned.disk, uv, promise);
+  expect_kept(*owned.chart, kept, Guarantee::bijective);
+  ASSERT_EQ(kept.parts.size(), 1U);
+  Vec2 mean = Vec2::Zero();
+  for (const Spring& spring : promise.intent.springs)
+    mean += kept.parts[0].uv[std::size_t(spring.vertex)] / 3;
+  EXPECT_NEAR((mean - Vec2(3, 8)).norm(), 0, 1e-9);
+}
+
+TEST(Promise, FailsWhereAChartUnderSpringsWouldHaveToBeSplit) {  // parts have no place on the page
+  const EaredTube tube;
+  const auto owned = disk_of(tube.mesh);
+  Promise promise{.guarantee = Guarantee::bijective};
+  promise.intent.springs = {{0, Vec2(0, 0), 1}, {5, Vec2(1, 0), 1}};
+  try {
+    keep_promise(*owned.chart, owned.disk, tube.uv, promise);
+    FAIL() << "split a chart under springs";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::guarantee_failed);
+  }
+}
+
 TEST(Promise, IsKeptOnEveryRandomDisk) {
   for (unsigned seed = 0; seed < 14; ++seed) {
     SCOPED_TRACE(seed);
