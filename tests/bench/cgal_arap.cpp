@@ -6,7 +6,7 @@
 #include <CGAL/Surface_mesh_parameterization/ARAP_parameterizer_3.h>
 #include <CGAL/Surface_mesh_parameterization/parameterize.h>
 
-#include <chrono>
+#include <ctime>
 
 namespace unwrapd::bench {
 namespace {
@@ -27,17 +27,17 @@ std::optional<double> cgal_arap_seconds(const TriMesh& mesh, UvMap& uv) {
   auto uv_map = cgal.add_property_map<Mesh::Vertex_index, Kernel::Point_2>("v:uv").first;
   const Halfedge border = CGAL::Polygon_mesh_processing::longest_border(cgal).first;
 
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   using Parameterizer = smp::ARAP_parameterizer_3<Mesh>;
   constexpr double kLambda = 1000, kNoTolerance = 0;  // its default lambda; all ten iterations
   Parameterizer parameterizer({}, {}, kLambda, 10, kNoTolerance);
   const smp::Error_code error = smp::parameterize(cgal, parameterizer, border, uv_map);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  const double took = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 
   uv.clear();
   for (auto v : vertex) uv.emplace_back(uv_map[v].x(), uv_map[v].y());
   if (error != smp::OK) return std::nullopt;
-  return took.count();
+  return took;
 }
 
 }  // namespace unwrapd::bench
