@@ -1,5 +1,6 @@
 #include "server/result_store.hpp"
 
+#include "core/error.hpp"
 #include "server/map_choice.hpp"
 
 namespace unwrapd::server {
