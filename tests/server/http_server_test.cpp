@@ -2,8 +2,9 @@
 // believed, TLS.
 #include "server/http_server.hpp"
 
+#include "running_server.hpp"  // Eigen before httplib, whose headers define _res
+
 #include <gmock/gmock.h>
-#include <httplib.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/x509.h>
@@ -16,7 +17,6 @@
 #include <thread>
 
 #include "raw_client.hpp"
-#include "running_server.hpp"
 
 namespace unwrapd::server {
 namespace {
