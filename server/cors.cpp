@@ -8,10 +8,10 @@ namespace {
 constexpr const char* kMethods = "GET, HEAD, POST, PUT, DELETE";
 constexpr const char* kRequestHeaders =
     "Authorization, Cache-Control, Content-Type, Idempotency-Key, If-None-Match, If-Range, "
-    "Last-Event-ID, Prefer, Priority, Range, Unwrapd-Webhook";
+    "Last-Event-ID, Prefer, Priority, Range, traceparent, Unwrapd-Webhook";
 constexpr const char* kAnswerHeaders =
     "Content-Range, ETag, Location, Preference-Applied, Retry-After, Unwrapd-Report, "
-    "WWW-Authenticate";
+    "traceparent, WWW-Authenticate";
 constexpr const char* kKeptSeconds = "600";
 
 }  // namespace
