@@ -16,14 +16,6 @@ constexpr int kMaxCrashes = 3;
 constexpr int kMaxAttemptsWhenFull = 20;
 constexpr std::chrono::seconds kLongestPauseWhenFull{60};
 
-JobOutcome ended(JobState state, const Error& why, std::string_view job) {
-  return {.state = state,
-          .result_format = {},
-          .problem = api::problem(why, job),
-          .last_event = 0,
-          .finished_ms = 0};
-}
-
 }  // namespace
 
 void RunningJob::request_stop(StopCause why) {
@@ -285,16 +277,18 @@ void JobQueue::close() {
   changed_.notify_all();
 }
 
-void JobQueue::drain(std::chrono::seconds patience) {
+bool JobQueue::drain(std::chrono::seconds patience) {
   close();
   std::unique_lock lock(mutex_);
   const auto idle = [&] { return running_.empty(); };
-  if (changed_.wait_for(lock, patience, idle)) return;
+  if (changed_.wait_for(lock, patience, idle)) return true;
   for (const auto& [id, job] : running_) {
     log_.warning("job interrupted by the shutdown, queued again", {{"job", id}});
     job->request_stop(StopCause::draining);
   }
-  changed_.wait(lock, idle);
+  if (changed_.wait_for(lock, config_.stop, idle)) return true;
+  for (const auto& [id, job] : running_) store_.requeue(id, false);
+  return false;
 }
 
 }  // namespace unwrapd::server

@@ -49,6 +49,7 @@ struct QueueConfig {
   int max_queue = 256;
   int workers = 1;
   std::chrono::milliseconds lease = std::chrono::seconds(30);
+  std::chrono::milliseconds stop = std::chrono::seconds(10);  ///< for jobs told to stop, at the end
 };
 
 /// A job whose upload is complete, and how it is to be taken.
@@ -89,8 +90,9 @@ class JobQueue {
 
   /// No new jobs from now on; those waiting stay in the store for the next start.
   void close();
-  /// Waits for the running jobs; those that are not done by then go back to the queue.
-  void drain(std::chrono::seconds patience);
+  /// Waits for the running jobs; those that are not done by then go back to the queue. False when
+  /// some have not even stopped: then they are in the queue, too, but their threads do not end.
+  bool drain(std::chrono::seconds patience);
   [[nodiscard]] bool draining() const { return closed_; }
 
  private:

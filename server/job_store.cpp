@@ -1,6 +1,6 @@
 #include "server/job_store.hpp"
 
-#include "core/error.hpp"
+#include "api/error_table.hpp"
 #include "server/job_rows.hpp"
 #include "server/schema.hpp"
 
@@ -18,6 +18,13 @@ std::string insert_statement() {
 }
 
 }  // namespace
+
+JobOutcome ended(JobState state, const Error& why, std::string_view job) {
+  JobOutcome outcome;
+  outcome.state = state;
+  outcome.problem = api::problem(why, job);
+  return outcome;
+}
 
 JobStore::JobStore(const std::filesystem::path& path) : database_(path) { migrate(database_); }
 

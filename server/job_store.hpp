@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/error.hpp"
 #include "server/database.hpp"
 #include "server/job_record.hpp"
 
@@ -30,6 +31,9 @@ struct JobOutcome {
   std::int64_t stored_bytes = 0;  ///< of the job's files, 0 when none are left
   std::string delivery = {};      ///< body of the call to the job's webhook, where it has one
 };
+
+/// Of a job that ends without a result.
+JobOutcome ended(api::JobState state, const Error& why, std::string_view job);
 
 /// Which jobs are listed: the newest first.
 struct JobFilter {

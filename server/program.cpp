@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <string_view>
 
@@ -53,7 +54,10 @@ void serve(const Config& config, const Log& log, const Duties& duties) {
   int signal = 0;
   sigwait(&signals, &signal);
   log.info("draining", {{"signal", signal}});
-  service.drain();
+  if (!service.drain()) {
+    log.warning("ended while jobs do not stop");
+    std::_Exit(EXIT_SUCCESS);  // without their threads; what they do is no longer wanted
+  }
   log.info("drained");
 }
 

@@ -1,5 +1,7 @@
 #include "server/service.hpp"
 
+#include <malloc.h>
+
 #include <chrono>
 #include <thread>
 #include <vector>
@@ -24,6 +26,7 @@ namespace {
 constexpr const char* kStoreFile = "jobs.sqlite";
 constexpr std::chrono::seconds kHeartbeat{10};
 constexpr std::chrono::seconds kWebhookPause{1};
+constexpr std::chrono::seconds kTrimPause{10};
 constexpr int kAdminThreads = 4;
 constexpr int kAdminConnections = 64;
 constexpr std::size_t kEventsKept = 1024;  // of each job
@@ -130,6 +133,8 @@ struct Service::Parts {
         "prolonging leases", kHeartbeat, [this] { queue.beat(); }, log);
     calling.emplace(
         "calling webhooks", kWebhookPause, [this] { webhooks.call_due(now_ms()); }, log);
+    trimming.emplace(  // what large jobs leave free in the heaps of their threads
+        "giving memory back", kTrimPause, [] { ::malloc_trim(0); }, log);
   }
 
   void tell_state() {
@@ -210,6 +215,7 @@ struct Service::Parts {
   std::optional<Periodic> sweeping;
   std::optional<Periodic> beating;
   std::optional<Periodic> calling;
+  std::optional<Periodic> trimming;
   std::optional<WorkerPool> workers;
   std::jthread serving;
   std::jthread serving_admin;
@@ -232,10 +238,11 @@ std::optional<int> Service::admin_port() const {
   return parts_->admin->port();
 }
 
-void Service::drain() {
-  parts_->queue.drain(std::chrono::seconds(parts_->config.drain_seconds));
+bool Service::drain() {
+  const bool is_idle = parts_->queue.drain(std::chrono::seconds(parts_->config.drain_seconds));
   parts_->events.end_all();
   parts_->stop();
+  return is_idle;
 }
 
 }  // namespace unwrapd::server

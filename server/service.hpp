@@ -24,8 +24,9 @@ class Service {
   /// Nothing without an admin port.
   [[nodiscard]] std::optional<int> admin_port() const;
   /// New jobs are refused, running ones get drain_seconds, then their place in the queue; event
-  /// streams end; then nothing is served any more. Call once.
-  void drain();
+  /// streams end; then nothing is served any more. Call once. False when a job does not stop: the
+  /// next start runs it again, but this would not be destroyed before it ends.
+  bool drain();
 
  private:
   struct Parts;

@@ -32,23 +32,15 @@ void give_way() {
   ::setpriority(PRIO_PROCESS, self, ::getpriority(PRIO_PROCESS, self) + kNice);
 }
 
-JobOutcome ended(JobState state, const Error& why, const JobRecord& job) {
-  return {.state = state,
-          .result_format = {},
-          .problem = api::problem(why, job.id),
-          .last_event = 0,
-          .finished_ms = 0};
-}
-
 /// A stop is a failure when time ran out; else the owner, or the server's end, has stopped the job.
 JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds) {
-  if (error.code() != ErrorCode::cancelled) return ended(JobState::failed, error, job.record);
-  if (job.cause != StopCause::time_limit) return ended(JobState::cancelled, error, job.record);
+  if (error.code() != ErrorCode::cancelled) return ended(JobState::failed, error, job.record.id);
+  if (job.cause != StopCause::time_limit) return ended(JobState::cancelled, error, job.record.id);
   const Error late(ErrorCode::time_limit, "The job took longer than the " +
                                               std::to_string(max_seconds) +
                                               " s allowed; ask for fewer iterations, or send a "
                                               "smaller mesh.");
-  return ended(JobState::failed, late, job.record);
+  return ended(JobState::failed, late, job.record.id);
 }
 
 Error too_many_crashes() {
@@ -136,11 +128,11 @@ JobOutcome WorkerPool::attempt(const RunningJob& job, Executor& executor) {
   } catch (const std::bad_alloc&) {
     const Error error(ErrorCode::memory_limit,
                       "The memory of the server did not suffice; send a smaller mesh.");
-    return ended(JobState::failed, error, job.record);
+    return ended(JobState::failed, error, job.record.id);
   } catch (const std::exception& error) {  // the owner learns nothing of our insides
     log_.error("unhandled exception", {{"job", job.record.id}, {"reason", error.what()}});
     return ended(JobState::failed, Error(ErrorCode::internal, "The server made a mistake."),
-                 job.record);
+                 job.record.id);
   }
 }
 

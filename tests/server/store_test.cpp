@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "server/files.hpp"
+#include "server/job_queue.hpp"
 #include "server/sweeper.hpp"
 #include "temp_dir.hpp"
 
@@ -240,6 +241,23 @@ TEST_F(Store, WhatACrashLeavesBehindIsSwept) {
   EXPECT_TRUE(std::filesystem::exists(blobs.path("j_known", kDocumentFile)));
   EXPECT_FALSE(std::filesystem::exists(blobs.path("j_orphan", "")));
   EXPECT_TRUE(std::filesystem::is_empty(dir_.path() / "incoming"));
+}
+
+TEST_F(Store, AJobThatDoesNotStopIsLeftToTheNextStartAndNotBlamed) {
+  store_->insert(some_job("j_1"));
+  BlobStore blobs(dir_.path());
+  std::filesystem::create_directories(blobs.path("j_1", "uv.bin").parent_path());
+  EventFeed events;
+  const Log log(LogLevel::off);
+  JobQueue queue(*store_, blobs, events, log, {.stop = std::chrono::milliseconds(1)});
+  queue.recover(false);
+  const std::shared_ptr<RunningJob> job = queue.take();
+  EXPECT_FALSE(queue.drain(std::chrono::seconds(0)));
+  EXPECT_TRUE(job->stop.stop_requested());
+  EXPECT_EQ(store_->find("j_1")->state, JobState::queued);
+  queue.finish(*job, succeeded());  // too late
+  EXPECT_EQ(store_->find("j_1")->state, JobState::queued);
+  EXPECT_EQ(store_->find("j_1")->crashes, 0);
 }
 
 }  // namespace
