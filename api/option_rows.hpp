@@ -3,6 +3,7 @@
 // that a row cannot read one field and write another.
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -49,14 +50,36 @@ constexpr OptionRow choice(std::string_view name, std::span<const Method> method
   return {.name = name,
           .type = OptionType::choice,
           .choices = kNames,
-          .minimum = 0,
-          .maximum = {},
-          .limit = nullptr,
-          .nullable = false,
           .description = description,
           .methods = methods,
           .get = get_choice<kField, kNames>,
           .set = set_choice<kField, kNames>};
+}
+
+/// What a field holds: T of std::optional<T>, which is null in JSON where it is empty.
+template <class T>
+T held(const std::optional<T>& field);
+template <class T>
+T held(const T& field);
+
+template <auto kField>
+using HeldBy = decltype(held(std::declval<const FieldOf<kField>&>()));
+
+template <auto kField>
+inline constexpr bool kIsOptional = !std::is_same_v<HeldBy<kField>, FieldOf<kField>>;
+
+template <auto kField>
+Json get_plain(const JobOptions& options) {
+  if constexpr (kIsOptional<kField>) {
+    return field<kField>(options) ? Json(*field<kField>(options)) : Json();
+  } else {
+    return field<kField>(options);
+  }
+}
+
+template <auto kField>
+void set_plain(JobOptions& options, const Json& value) {
+  field<kField>(options) = value.get<HeldBy<kField>>();
 }
 
 struct Range {
@@ -68,55 +91,29 @@ struct Range {
 template <auto kField>
 constexpr OptionRow figure(std::string_view name, Range range, std::span<const Method> methods,
                            std::string_view description) {
-  using Field = FieldOf<kField>;
+  const bool is_whole = std::is_integral_v<HeldBy<kField>>;
   return {.name = name,
-          .type = std::is_integral_v<Field> ? OptionType::integer : OptionType::number,
-          .choices = {},
+          .type = is_whole ? OptionType::integer : OptionType::number,
           .minimum = range.minimum,
           .maximum = range.maximum,
           .limit = range.limit,
-          .nullable = false,
+          .nullable = kIsOptional<kField>,
           .description = description,
           .methods = methods,
-          .get = [](const JobOptions& options) { return Json(field<kField>(options)); },
-          .set = [](JobOptions& options,
-                    const Json& value) { field<kField>(options) = value.get<Field>(); }};
+          .get = get_plain<kField>,
+          .set = set_plain<kField>};
 }
 
+/// Of type flag or names.
 template <auto kField>
-constexpr OptionRow flag(std::string_view name, std::span<const Method> methods,
-                         std::string_view description) {
-  return {.name = name,
-          .type = OptionType::flag,
-          .choices = {},
-          .minimum = 0,
-          .maximum = {},
-          .limit = nullptr,
-          .nullable = false,
-          .description = description,
-          .methods = methods,
-          .get = [](const JobOptions& options) { return Json(field<kField>(options)); },
-          .set = [](JobOptions& options,
-                    const Json& value) { field<kField>(options) = value.get<bool>(); }};
-}
-
-template <auto kField>
-constexpr OptionRow names(std::string_view name, std::span<const Method> methods,
+constexpr OptionRow plain(std::string_view name, OptionType type, std::span<const Method> methods,
                           std::string_view description) {
   return {.name = name,
-          .type = OptionType::names,
-          .choices = {},
-          .minimum = 0,
-          .maximum = {},
-          .limit = nullptr,
-          .nullable = false,
+          .type = type,
           .description = description,
           .methods = methods,
-          .get = [](const JobOptions& options) { return Json(field<kField>(options)); },
-          .set =
-              [](JobOptions& options, const Json& value) {
-                field<kField>(options) = value.get<std::vector<std::string>>();
-              }};
+          .get = get_plain<kField>,
+          .set = set_plain<kField>};
 }
 
 }  // namespace unwrapd::api

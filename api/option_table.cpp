@@ -52,15 +52,6 @@ void set_lambda(JobOptions& options, const Json& value) {
   }
 }
 
-Json get_iterations(const JobOptions& options) {
-  const std::optional<int> iterations = options.unwrap.stop.iterations;
-  return iterations ? Json(*iterations) : Json();
-}
-
-void set_iterations(JobOptions& options, const Json& value) {
-  options.unwrap.stop.iterations = value.get<int>();
-}
-
 Json get_constraints(const JobOptions& options) { return to_json(options.unwrap.constraints); }
 
 void set_constraints(JobOptions& options, const Json& value) {
@@ -68,37 +59,10 @@ void set_constraints(JobOptions& options, const Json& value) {
       constraints_from_json(value, std::numeric_limits<int>::max(), "/constraints");
 }
 
-Json get_texels_per_unit(const JobOptions& options) {
-  const std::optional<double> density = options.unwrap.packing.texels_per_unit;
-  return density ? Json(*density) : Json();
-}
-
-void set_texels_per_unit(JobOptions& options, const Json& value) {
-  options.unwrap.packing.texels_per_unit = value.get<double>();
-}
-
 Json get_seam_edges(const JobOptions& options) { return to_json(options.unwrap.seam_edges); }
 
 void set_seam_edges(JobOptions& options, const Json& value) {
   options.unwrap.seam_edges = seam_paths_from_json(value, "/seam_edges");
-}
-
-Json get_max_distortion(const JobOptions& options) {
-  const std::optional<double> bound = options.unwrap.max_distortion;
-  return bound ? Json(*bound) : Json();
-}
-
-void set_max_distortion(JobOptions& options, const Json& value) {
-  options.unwrap.max_distortion = value.get<double>();
-}
-
-Json get_max_charts(const JobOptions& options) {
-  const std::optional<int> most = options.unwrap.max_charts;
-  return most ? Json(*most) : Json();
-}
-
-void set_max_charts(JobOptions& options, const Json& value) {
-  options.unwrap.max_charts = value.get<int>();
 }
 
 using O = UnwrapOptions;
@@ -110,10 +74,6 @@ constexpr std::array kRows = {
         "How the map is judged: asap keeps angles, arap keeps shapes, hybrid lies between them."),
     OptionRow{.name = "lambda",
               .type = OptionType::numbers,
-              .choices = {},
-              .minimum = 0,
-              .maximum = {},
-              .limit = nullptr,
               .nullable = true,
               .description = "Weight of area against angle: 0 is asap, large values approach arap; "
                              "a list makes a map for each.",
@@ -123,18 +83,9 @@ constexpr std::array kRows = {
     choice<&O::lambda_units, kLambdaUnits>(
         "lambda_units", kOnlyHybrid,
         "Whether lambda is dimensionless or as printed in the paper's Eq. (5)."),
-    OptionRow{.name = "stop.iterations",
-              .type = OptionType::integer,
-              .choices = {},
-              .minimum = 1,
-              .maximum = {},
-              .limit = &Limits::max_iterations,
-              .nullable = true,
-              .description = "So many plain iterations of every chart, as in the paper; without "
-                             "it accelerated ones, until they converge. Those of slim are alike.",
-              .methods = kStoppable,
-              .get = get_iterations,
-              .set = set_iterations},
+    figure<&Stop::iterations>("stop.iterations", {1, {}, &Limits::max_iterations}, kStoppable,
+                              "So many plain iterations of every chart, as in the paper; without "
+                              "it accelerated ones, until they converge. Those of slim are alike."),
     figure<&Stop::tolerance>("stop.tolerance", {kMinTolerance, kMaxTolerance}, kStoppable,
                              "Converged is when the energy falls by less than this share."),
     figure<&Stop::max_iterations>("stop.max_iterations", {1, {}, &Limits::max_iterations},
@@ -156,11 +107,7 @@ constexpr std::array kRows = {
                                       "The shape of every chart's longest boundary."),
     OptionRow{.name = "constraints",
               .type = OptionType::objects,
-              .choices = {},
-              .minimum = 0,
-              .maximum = {},
               .limit = &Limits::max_constraints,
-              .nullable = false,
               .description = "Vertices and the texture coordinates that they shall have.",
               .methods = kHolding,
               .get = get_constraints,
@@ -171,67 +118,37 @@ constexpr std::array kRows = {
         "the UVs that came in have theirs (uv0), or auto."),
     OptionRow{.name = "seam_edges",
               .type = OptionType::objects,
-              .choices = {},
-              .minimum = 0,
-              .maximum = {},
               .limit = &Limits::max_constraints,
-              .nullable = false,
               .description = "Paths of vertices along which the mesh is cut open as well.",
               .methods = kEveryMethod,
               .get = get_seam_edges,
               .set = set_seam_edges},
-    OptionRow{.name = "max_distortion",
-              .type = OptionType::number,
-              .choices = {},
-              .minimum = kMinDistortion,
-              .maximum = kMaxDistortion,
-              .limit = nullptr,
-              .nullable = true,
-              .description = "Meshes are taken apart until the angles and areas of ARAP maps are "
-                             "distorted by no more; without it disks stay whole, and all else "
-                             "has 2.02.",
-              .methods = kEveryMethod,
-              .get = get_max_distortion,
-              .set = set_max_distortion},
-    OptionRow{.name = "max_charts",
-              .type = OptionType::integer,
-              .choices = {},
-              .minimum = 1,
-              .maximum = kMaxCharts,
-              .limit = nullptr,
-              .nullable = true,
-              .description = "Charts at most, whatever the distortion, where topology allows it.",
-              .methods = kEveryMethod,
-              .get = get_max_charts,
-              .set = set_max_charts},
+    figure<&O::max_distortion>("max_distortion", {kMinDistortion, kMaxDistortion}, kEveryMethod,
+                               "Meshes are taken apart until the angles and areas of ARAP maps are "
+                               "distorted by no more; without it disks stay whole, and all else "
+                               "has 2.02."),
+    figure<&O::max_charts>("max_charts", {1, kMaxCharts}, kEveryMethod,
+                           "Charts at most, whatever the distortion, where topology allows it."),
     figure<&O::resolution>("resolution", {kMinResolution, kMaxResolution}, kEveryMethod,
                            "Side of the square texture, in texels."),
     figure<&O::padding>("padding", {0, kMaxPadding}, kEveryMethod,
                         "Texels between islands, at most a quarter of resolution."),
-    OptionRow{.name = "texels_per_unit",
-              .type = OptionType::number,
-              .choices = {},
-              .minimum = kMinTexelsPerUnit,
-              .maximum = kMaxTexelsPerUnit,
-              .limit = nullptr,
-              .nullable = true,
-              .description = "Texels that a unit of the mesh gets on every island; without it as "
-                             "many as fit.",
-              .methods = kEveryMethod,
-              .get = get_texels_per_unit,
-              .set = set_texels_per_unit},
+    figure<&Packing::texels_per_unit>(
+        "texels_per_unit", {kMinTexelsPerUnit, kMaxTexelsPerUnit}, kEveryMethod,
+        "Texels that a unit of the mesh gets on every island; without it as "
+        "many as fit."),
     figure<&Packing::max_pages>("max_pages", {1, kMaxPages}, kEveryMethod,
                                 "Pages (UDIM tiles 1001 and on, U counts them) at most."),
-    flag<&Packing::stack_identical>("stack_identical", kEveryMethod,
-                                    "Whether islands of the same shape share one place."),
-    flag<&O::repack_only>("repack_only", kEveryMethod,
-                          "Whether the islands of the UVs that are there are packed anew, and "
-                          "nothing is unwrapped."),
+    plain<&Packing::stack_identical>("stack_identical", OptionType::flag, kEveryMethod,
+                                     "Whether islands of the same shape share one place."),
+    plain<&O::repack_only>("repack_only", OptionType::flag, kEveryMethod,
+                           "Whether the islands of the UVs that are there are packed anew, and "
+                           "nothing is unwrapped."),
     figure<&A::texcoord>("texcoord", {0, kMaxTexcoord}, kEveryMethod,
                          "The set of texture coordinates that is written: TEXCOORD_n."),
-    names<&A::materials>("materials", kEveryMethod,
+    plain<&A::materials>("materials", OptionType::names, kEveryMethod,
                          "Names of the materials that are unwrapped; the rest keeps its UVs."),
-    names<&A::primitives>("primitives", kEveryMethod,
+    plain<&A::primitives>("primitives", OptionType::names, kEveryMethod,
                           "JSON pointers of the primitives that are unwrapped; the rest keeps its "
                           "UVs."),
     choice<&JobOptions::output, kOutputs>("output", kEveryMethod,
@@ -239,8 +156,8 @@ constexpr std::array kRows = {
     choice<&A::compression, kCompressions>(
         "compression", kEveryMethod,
         "Encoding of a glTF's geometry, always without loss; keep encodes as it came in."),
-    flag<&A::vertex_map>("vertex_map", kEveryMethod,
-                         "Whether the report tells which vertices were copied for seams."),
+    plain<&A::vertex_map>("vertex_map", OptionType::flag, kEveryMethod,
+                          "Whether the report tells which vertices were copied for seams."),
 };
 
 }  // namespace

@@ -43,11 +43,11 @@ inline constexpr std::size_t kMaxNumbers = 32;  ///< entries of an option of typ
 struct OptionRow {
   std::string_view name;  ///< on the wire; the flag is this with dashes for "_" and "."
   OptionType type;
-  std::span<const std::string_view> choices;  ///< of a choice, in the order of its enumerators
-  double minimum;                             ///< of a number
-  std::optional<double> maximum;              ///< of a number; empty: none, or the server's
-  int Limits::*limit;            ///< the server's own maximum, of a number or of a list's entries
-  bool nullable;                 ///< null counts as not given
+  std::span<const std::string_view> choices = {};  ///< of a choice, in the order of its enumerators
+  double minimum = 0;                              ///< of a number
+  std::optional<double> maximum = {};              ///< of a number; empty: none, or the server's
+  int Limits::*limit = nullptr;  ///< the server's own maximum, of a number or of a list's entries
+  bool nullable = false;         ///< null counts as not given
   std::string_view description;  ///< one sentence
   std::span<const Method> methods;  ///< with which it has an effect
 
