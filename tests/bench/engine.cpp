@@ -15,6 +15,7 @@
 #include "tests/bench/goals.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/rivals.hpp"
+#include "tests/core/linear/systems.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
@@ -66,15 +67,6 @@ class Table {
   Times ours_;
   bool is_first_ = true;
 };
-
-SparseMatrix arap_matrix(const Disk& disk) {
-  std::vector<double> weight;
-  for (const RestTriangle& rest : disk.rest)
-    weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
-  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight);
-  lower.coeffRef(0, 0) *= 2;
-  return lower;
-}
 
 ComplexMatrix lscm_matrix(const Disk& disk) {
   ComplexMatrix lower = conformal_matrix(disk);

@@ -12,6 +12,8 @@ import { join } from "node:path";
 import test, { after } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
+import { grid } from "../fault/server.mjs";
+
 const { UNWRAPD_ENGINE: engine, UNWRAPD_IMAGE: image } = process.env;
 const name = `unwrapd-test-${randomBytes(4).toString("hex")}`;
 const MAX_ADDED_MB = 150;
@@ -52,18 +54,6 @@ async function freePorts() {
 function megabytes(text) {
   const [, number, unit] = /^([\d.]+) ?([kMG]?)B$/.exec(text);
   return Number(number) * { "": 1e-6, k: 1e-3, M: 1, G: 1e3 }[unit];
-}
-
-function grid(size) {
-  const lines = [];
-  for (let y = 0; y <= size; y++)
-    for (let x = 0; x <= size; x++)
-      lines.push(`v ${x / size} ${y / size} ${0.3 * Math.sin((5 * x) / size) * Math.cos((4 * y) / size)}`);
-  const at = (x, y) => y * (size + 1) + x + 1;
-  for (let y = 0; y < size; y++)
-    for (let x = 0; x < size; x++)
-      lines.push(`f ${at(x, y)} ${at(x + 1, y)} ${at(x + 1, y + 1)}`, `f ${at(x, y)} ${at(x + 1, y + 1)} ${at(x, y + 1)}`);
-  return lines.join("\n") + "\n";
 }
 
 let url, admin;

@@ -12,18 +12,10 @@
 #include "server/webhook_url.hpp"
 #include "server/webhooks.hpp"
 #include "temp_dir.hpp"
+#include "tests/api/error_of.hpp"
 
 namespace unwrapd::server {
 namespace {
-
-ErrorCode code_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.code();
-  }
-  return ErrorCode::internal;
-}
 
 Request request_of(const std::string& method, const std::string& path) {
   Request request;
@@ -110,25 +102,25 @@ TEST_F(Keys, AreRefusedWithAnyCharacterChangedAndOnceRemoved) {
   for (std::size_t at = 0; at < text.size(); ++at) {
     std::string other = text;
     other[at] = other[at] == 'a' ? 'b' : 'a';
-    EXPECT_EQ(code_of([&] { admit(other); }), ErrorCode::unauthorized) << at;
+    EXPECT_EQ(error_of([&] { admit(other); }).code(), ErrorCode::unauthorized) << at;
   }
-  EXPECT_EQ(code_of([&] { admit(""); }), ErrorCode::unauthorized);
+  EXPECT_EQ(error_of([&] { admit(""); }).code(), ErrorCode::unauthorized);
   EXPECT_TRUE(keys_.remove(keys_.all()[0].id));
-  EXPECT_EQ(code_of([&] { admit(text); }), ErrorCode::unauthorized);
+  EXPECT_EQ(error_of([&] { admit(text); }).code(), ErrorCode::unauthorized);
 }
 
 TEST_F(Keys, DoWhatTheirScopesSayAndNoMore) {
   const std::string submit = add("s", {.submit = true});
   const std::string read = add("r", {.read = true});
   const std::string admin = add("a", {.admin = true});
-  EXPECT_EQ(code_of([&] { admit(submit, "GET"); }), ErrorCode::forbidden);
+  EXPECT_EQ(error_of([&] { admit(submit, "GET"); }).code(), ErrorCode::forbidden);
   for (const char* method : {"POST", "PUT", "DELETE"})
-    EXPECT_EQ(code_of([&] { admit(read, method); }), ErrorCode::forbidden) << method;
+    EXPECT_EQ(error_of([&] { admit(read, method); }).code(), ErrorCode::forbidden) << method;
   EXPECT_FALSE(admit(submit, "POST").sees_all);
   EXPECT_FALSE(admit(read, "HEAD").sees_all);
   EXPECT_TRUE(admit(admin, "DELETE").sees_all);
   EXPECT_EQ(to_text(parse_scopes("read,submit")), "submit,read");
-  EXPECT_EQ(code_of([] { parse_scopes("root"); }), ErrorCode::invalid_option);
+  EXPECT_EQ(error_of([] { parse_scopes("root"); }).code(), ErrorCode::invalid_option);
 }
 
 TEST(RateLimit, LetsAMinutesWorthThroughAndThenOneByOne) {
@@ -167,7 +159,7 @@ TEST_F(Keys, ALinkOpensItsOwnFileUntilItExpires) {
   refused[3] = opening(links_.sign("/v1/jobs/j_1/result", 1'000'000'000));
   refused.push_back(opening(LinkSigner("another secret").sign("/v1/jobs/j_1/result", kFarAway)));
   for (Request& each : refused) {
-    EXPECT_EQ(code_of([&] { access_.admit(each, "/v1/jobs/{id}/result"); }),
+    EXPECT_EQ(error_of([&] { access_.admit(each, "/v1/jobs/{id}/result"); }).code(),
               ErrorCode::invalid_link);
   }
 }
@@ -208,7 +200,7 @@ TEST(Webhook, OnlyPublicAddressesAreCalled) {
 TEST(Webhook, NamesThatResolveToThisMachineAreRefusedUnlessAllowed) {
   WebhookConfig config{.allowed_hosts = {"*"}};
   const WebhookUrl url = parse_webhook("http://localhost:81/x", config);
-  EXPECT_EQ(code_of([&] { resolve_webhook(url, config); }), ErrorCode::webhook_refused);
+  EXPECT_EQ(error_of([&] { resolve_webhook(url, config); }).code(), ErrorCode::webhook_refused);
   config.allow_private = true;
   EXPECT_FALSE(resolve_webhook(url, config).empty());
 }
@@ -226,7 +218,8 @@ TEST(Webhook, AddressesAreTakenApart) {
   for (const char* text : {"", "ftp://a.b/", "https://", "https://user@a.b/", "https://a.b:0/",
                            "https://a.b:99999/", "https://a.b:/", "https://a b/", "https://a.b/#x",
                            "https://a.b/\r\nX: y", "//a.b/", "https://a.b\\c/"})
-    EXPECT_EQ(code_of([&] { parse_webhook(text, any); }), ErrorCode::webhook_refused) << text;
+    EXPECT_EQ(error_of([&] { parse_webhook(text, any); }).code(), ErrorCode::webhook_refused)
+        << text;
 }
 
 TEST(Webhook, GoOnlyToHostsThatAreAllowed) {
@@ -235,8 +228,10 @@ TEST(Webhook, GoOnlyToHostsThatAreAllowed) {
     EXPECT_NO_THROW(parse_webhook(text, config)) << text;
   for (const char* text : {"https://x.a.example/", "https://b.example/", "https://xb.example/",
                            "https://a.example.org/", "https://other/"})
-    EXPECT_EQ(code_of([&] { parse_webhook(text, config); }), ErrorCode::webhook_refused) << text;
-  EXPECT_EQ(code_of([] { parse_webhook("https://a.example/", {}); }), ErrorCode::webhook_refused);
+    EXPECT_EQ(error_of([&] { parse_webhook(text, config); }).code(), ErrorCode::webhook_refused)
+        << text;
+  EXPECT_EQ(error_of([] { parse_webhook("https://a.example/", {}); }).code(),
+            ErrorCode::webhook_refused);
 }
 
 TEST(Webhook, AreSignedAsStandardWebhooksHasIt) {  // the example of that specification

@@ -15,6 +15,7 @@
 #include "server/retry_estimate.hpp"
 #include "server/sweeper.hpp"
 #include "temp_dir.hpp"
+#include "tests/api/error_of.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -60,15 +61,6 @@ class Durability : public testing::Test {
   TempDir dir_;
 };
 
-ErrorCode code_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.code();
-  }
-  return ErrorCode::internal;
-}
-
 TEST_F(Durability, AFileOfTheFirstVersionIsBroughtToThisOne) {
   std::filesystem::create_directories(dir_.path());
   Database(path()).run(kVersion1);
@@ -96,7 +88,7 @@ TEST_F(Durability, ADamagedFileIsNeverHandedOut) {
   damage(blobs.path("j_1", kDocumentFile));
   damage(blobs.path("j_1", kReportFile));
   for (const std::string_view file : {kDocumentFile, kReportFile}) {
-    EXPECT_EQ(code_of([&] { static_cast<void>(blobs.open("j_1", file)); }),
+    EXPECT_EQ(error_of([&] { static_cast<void>(blobs.open("j_1", file)); }).code(),
               ErrorCode::storage_corrupt)
         << file;
   }
@@ -109,7 +101,7 @@ TEST_F(Durability, SealingDoesNotPassOverADamagedInput) {
   blobs.write("j_1", kReportFile, "{\"attempt\": 2}");
   blobs.seal("j_1");
   EXPECT_EQ(blobs.read("j_1", kReportFile), "{\"attempt\": 2}");
-  EXPECT_EQ(code_of([&] { static_cast<void>(blobs.read("j_1", kDocumentFile)); }),
+  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", kDocumentFile)); }).code(),
             ErrorCode::storage_corrupt);
 }
 
@@ -127,11 +119,13 @@ TEST_F(Durability, SharedResultsOutliveTheJobTheyCameFrom) {
 TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
   BlobStore blobs(dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0});
   std::vector<std::string> evicted;
-  EXPECT_EQ(code_of([&] { blobs.room().take_for_upload("u", 751); }), ErrorCode::storage_full);
+  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 751); }).code(),
+            ErrorCode::storage_full);
   blobs.room().take_for_upload("u", 750);
-  EXPECT_EQ(code_of([&] { blobs.room().take_for_upload("u", 1); }), ErrorCode::storage_full);
+  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 1); }).code(),
+            ErrorCode::storage_full);
   blobs.room().take("j_1", 250);
-  EXPECT_EQ(code_of([&] { blobs.room().take("j_1", 1); }), ErrorCode::storage_full);
+  EXPECT_EQ(error_of([&] { blobs.room().take("j_1", 1); }).code(), ErrorCode::storage_full);
   blobs.room().on_shortage([&] {
     evicted.emplace_back("u");
     blobs.room().give_back("u");
@@ -140,13 +134,14 @@ TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
   blobs.room().take("j_2", 400);
   EXPECT_EQ(evicted.size(), 1U);
   EXPECT_EQ(blobs.room().used_bytes(), 650);
-  EXPECT_EQ(code_of([&] { blobs.room().take("j_2", 351); }), ErrorCode::storage_full);
+  EXPECT_EQ(error_of([&] { blobs.room().take("j_2", 351); }).code(), ErrorCode::storage_full);
 }
 
 TEST_F(Durability, UploadsLeaveTheDiskSomeRoom) {
   const std::int64_t more_than_any_disk = std::int64_t{1} << 60;
   BlobStore blobs(dir_.path(), {.max_bytes = 0, .min_free_bytes = more_than_any_disk});
-  EXPECT_EQ(code_of([&] { blobs.room().take_for_upload("u", 1); }), ErrorCode::storage_full);
+  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 1); }).code(),
+            ErrorCode::storage_full);
   EXPECT_NO_THROW(blobs.room().take("j_1", 1));
 }
 
