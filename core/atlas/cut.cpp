@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/mesh/counting_sort.hpp"
+#include "core/mesh/disjoint_sets.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/mesh/topology.hpp"
 
@@ -123,14 +124,6 @@ std::vector<Index> opening_path(const TriMesh& mesh, const Graph& graph) {
   return path;
 }
 
-Index root_of(std::vector<Index>& parent, Index k) {
-  while (parent[k] != k) {
-    parent[k] = parent[parent[k]];
-    k = parent[k];
-  }
-  return k;
-}
-
 /// The edges in neither tree, one half-edge each: two for each handle.
 std::vector<Index> generators(const Graph& graph, const Halfedges& halfedges, const Paths& paths) {
   std::vector<bool> in_tree(halfedges.twin.size(), false);
@@ -142,14 +135,10 @@ std::vector<Index> generators(const Graph& graph, const Halfedges& halfedges, co
       detours.emplace_back(
           -(paths.distance[graph.from[h]] + graph.length[h] + paths.distance[graph.to[h]]), h);
   std::sort(detours.begin(), detours.end());
-  std::vector<Index> parent(halfedges.twin.size() / 3);
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets dual(halfedges.twin.size() / 3);
   std::vector<Index> left;
-  for (const auto& [unused, h] : detours) {
-    const Index a = root_of(parent, face_of(h)), b = root_of(parent, face_of(halfedges.twin[h]));
-    if (a == b) left.push_back(h);
-    parent[a] = b;
-  }
+  for (const auto& [unused, h] : detours)
+    if (!dual.join(face_of(h), face_of(halfedges.twin[h]))) left.push_back(h);
   return left;
 }
 

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 
+#include "core/mesh/disjoint_sets.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd {
@@ -54,11 +54,6 @@ std::vector<Index> ranks(const Sheet& sheet, const Region& region) {
   return rank;
 }
 
-Index root_of(std::vector<Index>& into, Index k) {
-  while (into[k] != k) k = into[k] = into[into[k]];
-  return k;
-}
-
 }  // namespace
 
 Region beside(const Sheet& sheet, const Region& a, const Region& b, std::span<const Index> border) {
@@ -100,24 +95,23 @@ std::vector<Index> Joiner::border(const Region& a, const Region& b,
 
 /// All of the border but its longest stretch; empty where it has but one.
 std::vector<Index> Joiner::slit_of(std::span<const Index> border) const {
-  std::vector<Index> into(border.size());
-  std::iota(into.begin(), into.end(), 0);
+  DisjointSets stretches(border.size());
   std::map<Index, Index> at;  // vertex -> a side of the border there
   for (std::size_t k = 0; k < border.size(); ++k)
     for (const Index v :
          {start_of(sheet_.mesh.faces, border[k]), end_of(sheet_.mesh.faces, border[k])}) {
       if (is_flat_[v] == 0) continue;
       const auto [other, is_new] = at.try_emplace(v, static_cast<Index>(k));
-      if (!is_new) into[root_of(into, static_cast<Index>(k))] = root_of(into, other->second);
+      if (!is_new) stretches.join(static_cast<Index>(k), other->second);
     }
   std::map<Index, double> length;
   for (std::size_t k = 0; k < border.size(); ++k)
-    length[root_of(into, static_cast<Index>(k))] += sheet_.length[border[k]];
+    length[stretches.root(static_cast<Index>(k))] += sheet_.length[border[k]];
   const auto longest = std::max_element(length.begin(), length.end(),
                                         [](auto& x, auto& y) { return x.second < y.second; });
   std::vector<Index> slit;
   for (std::size_t k = 0; k < border.size(); ++k) {
-    if (root_of(into, static_cast<Index>(k)) == longest->first) continue;
+    if (stretches.root(static_cast<Index>(k)) == longest->first) continue;
     slit.push_back(border[k]);
     slit.push_back(sheet_.halfedges.twin[border[k]]);
   }

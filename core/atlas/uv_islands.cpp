@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <tuple>
 
+#include "core/mesh/disjoint_sets.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/mesh/weld.hpp"
 
@@ -64,22 +64,15 @@ Places find_places(const Surface& surface) {
   return places;
 }
 
-Index root_of(std::vector<Index>& parent, Index place) {
-  while (parent[place] != place) place = parent[place] = parent[parent[place]];
-  return place;
-}
-
 /// island[place], numbered in the order of the faces.
 std::vector<Index> number_islands(const Places& places, Index& count) {
-  std::vector<Index> parent(places.uv.size());
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets joined(places.uv.size());
   for (const Triangle& face : places.of_corner)
-    for (std::size_t i = 1; i < 3 && face[0] != kNone; ++i)
-      parent[root_of(parent, face[i])] = root_of(parent, face[0]);
+    for (std::size_t i = 1; i < 3 && face[0] != kNone; ++i) joined.join(face[i], face[0]);
   std::vector<Index> of_root(places.uv.size(), kNone), island(places.uv.size());
   count = 0;
   for (Index p = 0; p < static_cast<Index>(island.size()); ++p) {
-    Index& number = of_root[root_of(parent, p)];
+    Index& number = of_root[joined.root(p)];
     if (number == kNone) number = count++;
     island[p] = number;
   }
