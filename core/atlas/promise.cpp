@@ -16,7 +16,6 @@
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
 #include "core/solve/bijective.hpp"
-#include "core/solve/hold_align.hpp"
 #include "core/solve/virtual_boundary.hpp"
 
 namespace unwrapd {
@@ -38,6 +37,9 @@ double energy_of(const Disk& disk, const UvMap& uv, const Rigidity& rigidity) {
 bool holds_any(const MapIntent& intent) {
   return std::any_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
 }
+
+/// Parts are packed wherever there is room: a chart whose places were asked for stays whole.
+bool has_a_place(const MapIntent& intent) { return holds_any(intent) || !intent.springs.empty(); }
 
 /// Mends the map of one disk; returns how many flips are left.
 Index mend(const Disk& disk, const Promise& promise, UvMap& uv, Mending& mending) {
@@ -112,9 +114,8 @@ void split(const KeptPart& part, const Seeds& seeds, std::vector<KeptPart>& open
 bool unfold(KeptPart& part, double unit, const MapIntent& intent) {
   SerialExecutor serial;
   const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
-  if (!map_injectively(disk, intent.rigidity, intent.stop, part.uv, serial)) return false;
+  if (!map_injectively(disk, intent, part.uv, serial)) return false;
   for (Vec2& u : part.uv) u *= disk.unit / unit;
-  if (!intent.springs.empty()) part.uv = held_start(std::move(part.uv), {{}, intent.springs});
   return overlaps_of(part.chart, part.uv).empty();
 }
 
@@ -153,7 +154,7 @@ std::vector<KeptPart> split_as_needed(KeptPart whole, double unit, const Promise
     const Seeds seeds = seeds_needed(part, unit, promise, mending);
     if (seeds[0].empty())
       kept.push_back(std::move(part));
-    else if (holds_any(promise.intent) || !promise.intent.springs.empty())
+    else if (has_a_place(promise.intent))
       fail("the constraints leave no map without flips or overlaps");
     else
       split(part, seeds, open);

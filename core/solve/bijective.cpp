@@ -18,6 +18,7 @@
 #include "core/solve/boundary_barrier.hpp"
 #include "core/solve/convex_map.hpp"
 #include "core/solve/fill_holes.hpp"
+#include "core/solve/hold_align.hpp"
 #include "core/solve/injective_step.hpp"
 #include "core/solve/kept.hpp"
 #include "core/solve/settle_apart.hpp"
@@ -160,6 +161,11 @@ UvMap laid_along(const UvMap& old, const UvMap& uv) {
   return laid;
 }
 
+/// Replaces uv by the map moved, unless moving has rounded it into an overlap.
+void keep_apart(const Disk& disk, UvMap moved, UvMap& uv) {
+  if (is_plainly_injective(disk.faces, disk.loops, moved)) uv = std::move(moved);
+}
+
 bool has_settled(const std::vector<double>& energy) {
   return energy.size() > kWindow &&
          energy[energy.size() - 1 - kWindow] - energy.back() <= kTolerance * energy.back();
@@ -167,8 +173,7 @@ bool has_settled(const std::vector<double>& energy) {
 
 }  // namespace
 
-bool map_injectively(const Disk& disk, const Rigidity& rigidity, const std::stop_token& stop,
-                     UvMap& uv, Executor& executor) {
+bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv, Executor& executor) {
   std::optional<UvMap> start = injective_start(disk);
   if (!start) return false;
   std::vector<char> fixed(disk.positions.size(), 0);
@@ -177,15 +182,16 @@ bool map_injectively(const Disk& disk, const Rigidity& rigidity, const std::stop
   Parting parting(disk, free, std::move(*start), executor);
   std::vector<double> energy{parting.energy()};
   for (int k = 0; k < kMostIterations && !has_settled(energy); ++k) {
-    throw_if_cancelled(stop);
+    throw_if_cancelled(intent.stop);
     if (!parting.iterate()) break;
     energy.push_back(parting.energy());
   }
   UvMap settled = parting.uv();
-  settle_apart(disk, rigidity, stop, settled);
-  UvMap laid = laid_along(uv, settled);
-  const bool is_exact = is_plainly_injective(disk.faces, disk.loops, laid);  // turning rounds
-  uv = std::move(is_exact ? laid : settled);
+  const bool is_drawn = !intent.springs.empty();
+  if (is_drawn) keep_apart(disk, held_start(settled, {{}, intent.springs}), settled);
+  settle_apart(disk, intent, settled);
+  if (!is_drawn) keep_apart(disk, laid_along(uv, settled), settled);
+  uv = std::move(settled);
   return true;
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/cancel.hpp"
 #include "core/linear/engine.hpp"
+#include "core/solve/barrier.hpp"
 #include "core/solve/boundary_barrier.hpp"
 #include "core/solve/injective_step.hpp"
 
@@ -23,18 +24,18 @@ constexpr int kMostSteps = 30;                                 // for each weigh
 constexpr double kTolerance = 1e-3;                            // relative fall in one step
 constexpr double kShift = 1e-10;  // of the mean of the diagonal: translations and turns are free
 
-BarrierMesh loose(const Disk& disk) {
+BarrierMesh loose(const Disk& disk, const std::vector<Spring>& springs) {
   const std::vector<char> fixed(disk.positions.size(), 0);
-  return {{disk.faces.begin(), disk.faces.end()}, disk.rest, number_free(fixed)};
+  return {{disk.faces.begin(), disk.faces.end()}, disk.rest, number_free(fixed), springs};
 }
 
 class Settling {
  public:
-  Settling(const Disk& disk, const Rigidity& rigidity, UvMap& uv)
+  Settling(const Disk& disk, const MapIntent& intent, UvMap& uv)
       : disk_(disk),
-        mesh_(loose(disk)),
+        mesh_(loose(disk, intent.springs)),
         boundary_(disk),
-        barrier_{rigidity, 1, 0},
+        barrier_{intent.rigidity, 1, 0},
         model_(barrier_pattern(mesh_)),
         analysis_(analyse(model_.hessian)),
         uv_(uv) {}
@@ -100,13 +101,12 @@ class Settling {
 
 }  // namespace
 
-void settle_apart(const Disk& disk, const Rigidity& rigidity, const std::stop_token& stop,
-                  UvMap& uv) {
-  Settling settling(disk, rigidity, uv);
+void settle_apart(const Disk& disk, const MapIntent& intent, UvMap& uv) {
+  Settling settling(disk, intent, uv);
   for (const double weight : kFading) {
     double fall = 1;
     for (int k = 0; k < kMostSteps && fall >= kTolerance; ++k) {
-      throw_if_cancelled(stop);
+      throw_if_cancelled(intent.stop);
       fall = settling.step(weight);
     }
   }

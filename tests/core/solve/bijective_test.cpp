@@ -57,7 +57,7 @@ TEST(Bijective, PartsARampThatLiesOnItself) {
     UvMap uv = solved(d.disk);
     ASSERT_GT(overlaps(d.disk, uv), 0U);
     SerialExecutor serial;
-    ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
+    ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
     expect_injective(d.disk, uv, 4.5);  // 4 is isometric
   }
 }
@@ -78,7 +78,7 @@ TEST(Bijective, LeavesAGapBetweenBoundariesThatPress) {
   const OwnedDisk d = disk_of(ramp(150, 4, 2.5));
   UvMap uv = solved(d.disk);
   SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
   EXPECT_LT(least_gap(d.disk, uv), 1);
   EXPECT_GT(least_gap(d.disk, uv), 0.25);
 }
@@ -87,8 +87,9 @@ TEST(Bijective, EndsWithTheEnergyThatIsAskedFor) {
   const OwnedDisk d = disk_of(shapes::sphere_cap(24, 12, 2));
   SerialExecutor serial;
   UvMap rigid(d.disk.positions.size(), Vec2::Zero()), conformal = rigid;
-  ASSERT_TRUE(map_injectively(d.disk, {}, {}, rigid, serial));
-  ASSERT_TRUE(map_injectively(d.disk, {.lambda = 0}, {}, conformal, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, rigid, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {.rigidity = {.lambda = 0}, .held = {}, .stop = {}},
+                              conformal, serial));
   const auto angle = [&](const UvMap& uv) {
     return distortion(distortion_sums(d.disk.rest, d.disk.faces, uv)).angle - 2;
   };
@@ -99,7 +100,7 @@ TEST(Bijective, KeepsHolesOpen) {
   const OwnedDisk d = disk_of(shapes::pierced_disk(12, 5));
   UvMap uv = solved(d.disk);
   SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
   expect_injective(d.disk, uv, 4.5);
 }
 
@@ -110,7 +111,19 @@ TEST(Bijective, LaysAFlatSurfaceWhereItWas) {
     turned.emplace_back(3 + 0.6 * p.x() - 0.8 * p.y(), 0.8 * p.x() + 0.6 * p.y() - 2);
   UvMap uv = turned;
   SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+  for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT((uv[v] - turned[v]).norm(), 0.02) << v;
+}
+
+TEST(Bijective, IsDrawnByItsSprings) {
+  const OwnedDisk d = disk_of(shapes::grid(9, 7, 1.5, 1));
+  UvMap uv = solved(d.disk), turned;
+  for (const Vec3& p : d.disk.positions)
+    turned.emplace_back(3 + 0.6 * p.x() - 0.8 * p.y(), 0.8 * p.x() + 0.6 * p.y() - 2);
+  MapIntent intent;
+  for (const std::size_t v : {0U, 9U, 44U, 79U}) intent.springs.push_back({Index(v), turned[v], 1});
+  SerialExecutor serial;
+  ASSERT_TRUE(map_injectively(d.disk, intent, uv, serial));
   for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT((uv[v] - turned[v]).norm(), 0.02) << v;
 }
 
@@ -120,9 +133,9 @@ TEST(Bijective, GivesTheSameBytesForAnyExecutor) {
   UvMap once = before, again = before, threaded = before;
   SerialExecutor serial;
   TwoThreads two;
-  ASSERT_TRUE(map_injectively(d.disk, {}, {}, once, serial));
-  ASSERT_TRUE(map_injectively(d.disk, {}, {}, again, serial));
-  ASSERT_TRUE(map_injectively(d.disk, {}, {}, threaded, two));
+  ASSERT_TRUE(map_injectively(d.disk, {}, once, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, again, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, threaded, two));
   EXPECT_EQ(once, again);
   EXPECT_EQ(once, threaded);
 }
@@ -135,7 +148,7 @@ TEST(Bijective, StopsWhenAsked) {
   source.request_stop();
   SerialExecutor serial;
   try {
-    map_injectively(d.disk, {}, source.get_token(), uv, serial);
+    map_injectively(d.disk, {.rigidity = {}, .held = {}, .stop = source.get_token()}, uv, serial);
     FAIL() << "went on";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::cancelled);
@@ -151,7 +164,7 @@ TEST(Bijective, LeavesTheMapWhereNoStartIsInjectiveInDoublePrecision) {
   UvMap uv(d.disk.positions.size(), Vec2(1, 2));
   const UvMap before = uv;
   SerialExecutor serial;
-  EXPECT_FALSE(map_injectively(d.disk, {}, {}, uv, serial));
+  EXPECT_FALSE(map_injectively(d.disk, {}, uv, serial));
   EXPECT_EQ(uv, before);
 }
 
@@ -161,7 +174,7 @@ TEST(Bijective, MapsEveryHardDisk) {
     const OwnedDisk d = disk_of(mesh);
     UvMap uv(d.disk.positions.size(), Vec2::Zero());
     SerialExecutor serial;
-    if (map_injectively(d.disk, {}, {}, uv, serial))
+    if (map_injectively(d.disk, {}, uv, serial))
       EXPECT_TRUE(is_plainly_injective(d.disk.faces, d.disk.loops, uv));
     else
       ADD_FAILURE() << "no start";
@@ -176,7 +189,7 @@ TEST(Bijective, MapsRealMeshesThatLieOnThemselves) {
     UvMap uv = solved(d.disk);
     ASSERT_GT(overlaps(d.disk, uv), 0U);
     SerialExecutor serial;
-    ASSERT_TRUE(map_injectively(d.disk, {}, {}, uv, serial));
+    ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
     expect_injective(d.disk, uv, 4.6);
   }
 }

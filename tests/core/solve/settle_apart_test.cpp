@@ -53,7 +53,7 @@ TEST(SettleApart, LowersEveryEnergyAndStaysInjective) {
       UvMap uv = start_of(d.disk);
       ASSERT_TRUE(is_injective(d.disk, uv));
       const double before = energy_of(d.disk, uv, lambda);
-      settle_apart(d.disk, {lambda}, {}, uv);
+      settle_apart(d.disk, {.rigidity = {lambda}, .held = {}, .stop = {}}, uv);
       EXPECT_TRUE(is_injective(d.disk, uv));
       EXPECT_LT(energy_of(d.disk, uv, lambda), 0.5 * before);
     }
@@ -62,14 +62,14 @@ TEST(SettleApart, LowersEveryEnergyAndStaysInjective) {
 TEST(SettleApart, MakesAFlatSurfaceFlat) {
   const OwnedDisk d = disk_of(shapes::grid(9, 7, 1.5, 1));
   UvMap uv = start_of(d.disk);
-  settle_apart(d.disk, {}, {}, uv);
+  settle_apart(d.disk, {}, uv);
   EXPECT_LT(energy_of(d.disk, uv, kInfinity), 1e-6);
 }
 
 TEST(SettleApart, EndsNearTheLeastEnergyWhereNothingPresses) {  // the barriers have faded
   const OwnedDisk d = disk_of(shapes::sphere_cap(24, 10, 2));
   UvMap settled = start_of(d.disk);
-  settle_apart(d.disk, {}, {}, settled);
+  settle_apart(d.disk, {}, settled);
   SerialExecutor serial;
   const UvMap least = Solver(d.disk, UnwrapOptions(), {}, serial).run(0, {}).uv;
   ASSERT_TRUE(is_injective(d.disk, least));
@@ -82,7 +82,7 @@ TEST(SettleApart, StopsWhenAsked) {
   std::stop_source source;
   source.request_stop();
   try {
-    settle_apart(d.disk, {}, source.get_token(), uv);
+    settle_apart(d.disk, {.rigidity = {}, .held = {}, .stop = source.get_token()}, uv);
     FAIL() << "went on";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::cancelled);
