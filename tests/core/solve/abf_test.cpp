@@ -20,8 +20,6 @@ namespace {
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
-constexpr double kPi = std::numbers::pi;
-
 FlatAngles flat(const Disk& disk) {
   SerialExecutor serial;
   return flat_angles(disk, {}, {}, serial);
@@ -40,7 +38,7 @@ std::vector<std::size_t> loop_of(const Disk& disk) {
 Eigen::VectorXd constraints(const Disk& disk, const std::vector<FaceAngles>& angles) {
   const std::vector<std::size_t> loop = loop_of(disk);
   std::vector<double> values;
-  for (const FaceAngles& a : angles) values.push_back(a[0] + a[1] + a[2] - kPi);
+  for (const FaceAngles& a : angles) values.push_back(a[0] + a[1] + a[2] - std::numbers::pi);
   const auto walk = [&](double turn, auto is_met) {
     double sum = 0, quotient = 1;
     for (std::size_t t = 0; t < angles.size(); ++t)
@@ -52,9 +50,10 @@ Eigen::VectorXd constraints(const Disk& disk, const std::vector<FaceAngles>& ang
     values.push_back(sum - turn), values.push_back(quotient - 1);
   };
   for (std::size_t v = 0; v < loop.size(); ++v)
-    if (loop[v] == 0) walk(2 * kPi, [&](std::size_t w) { return w == v; });
+    if (loop[v] == 0) walk(2 * std::numbers::pi, [&](std::size_t w) { return w == v; });
   for (std::size_t k = 1; k < disk.loops.size(); ++k)
-    walk(double(disk.loops[k].size() + 2) * kPi, [&](std::size_t w) { return loop[w] == k + 1; });
+    walk(double(disk.loops[k].size() + 2) * std::numbers::pi,
+         [&](std::size_t w) { return loop[w] == k + 1; });
   return Eigen::Map<Eigen::VectorXd>(values.data(), Index(values.size()));
 }
 
@@ -105,7 +104,7 @@ TEST(Angles, AreTargetsOnceInnerVerticesAreScaledToAFullTurn) {
     }
   const std::vector<std::size_t> loop = loop_of(d.disk);
   for (std::size_t v = 0; v < sum.size(); ++v)
-    EXPECT_NEAR(sum[v], loop[v] == 0 ? 2 * kPi : own_sum[v], 1e-9) << v;
+    EXPECT_NEAR(sum[v], loop[v] == 0 ? 2 * std::numbers::pi : own_sum[v], 1e-9) << v;
 }
 
 TEST(Angles, StayBelowAHalfTurnWhereScalingWouldLeadBeyond) {
@@ -114,7 +113,7 @@ TEST(Angles, StayBelowAHalfTurnWhereScalingWouldLeadBeyond) {
   spike.positions[2] = Vec3(0.001, 0.002, 0);
   const OwnedDisk d = disk_of(spike);
   for (const FaceAngles& a : target_angles(d.disk))
-    for (double x : a) EXPECT_TRUE(x > 0 && x < kPi) << x;
+    for (double x : a) EXPECT_TRUE(x > 0 && x < std::numbers::pi) << x;
 }
 
 TEST(AngleSystem, FindsNothingToMendInThePlane) {
@@ -163,7 +162,7 @@ TEST(AngleSystem, StepsLikeTheDenseLagrangian) {  // which has the triangles' mu
 
 void expect_flat(const Disk& disk, const FlatAngles& flat, const std::string& what) {
   for (const FaceAngles& a : flat.angles)
-    for (double x : a) ASSERT_TRUE(x > 0 && x < kPi) << what << ": " << x;
+    for (double x : a) ASSERT_TRUE(x > 0 && x < std::numbers::pi) << what << ": " << x;
   EXPECT_LT(constraints(disk, flat.angles).cwiseAbs().maxCoeff(), 1e-6) << what;
 }
 

@@ -20,8 +20,6 @@ namespace {
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
-constexpr double kPi = std::numbers::pi;
-
 /// The packing's length of side i of face t.
 double packed_length(const Disk& disk, const CirclePacking& packing, std::size_t t, std::size_t i) {
   const double r = std::exp(packing.log_radius[std::size_t(disk.faces[t][i])]);
@@ -59,7 +57,7 @@ TEST(PackedAngles, MakeATriangleOfAnyRadii) {
   for (double spread : {5.0, 50.0, 500.0}) {
     const PackedAngles packed = packed_angles(d.disk, random_packing(d.disk, rng, spread));
     for (const auto& angle : packed.angle)
-      EXPECT_NEAR(angle[0] + angle[1] + angle[2], kPi, 1e-12) << spread;
+      EXPECT_NEAR(angle[0] + angle[1] + angle[2], std::numbers::pi, 1e-12) << spread;
     for (double w : packed.weight) EXPECT_TRUE(w >= 0 && std::isfinite(w)) << spread << ' ' << w;
   }
 }
@@ -89,7 +87,7 @@ TEST(PackedAngles, CurvatureAddsUpToTheEulerCharacteristic) {  // Gauss, Bonnet
     const OwnedDisk d = disk_of(mesh);
     double sum = 0;
     for (double k : packed_angles(d.disk, random_packing(d.disk, rng, 2)).curvature) sum += k;
-    EXPECT_NEAR(sum, 2 * kPi * euler, 1e-9);
+    EXPECT_NEAR(sum, 2 * std::numbers::pi * euler, 1e-9);
   }
 }
 
@@ -191,10 +189,11 @@ TEST(CirclePacking, LetsTheLinksOfInnerVerticesCrossFlatEnoughToClose) {
     std::vector<double> most(d.disk.positions.size(), 0.0);
     for (std::size_t t = 0; t < d.disk.faces.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i)
-        most[std::size_t(d.disk.faces[t][i])] += kPi - std::acos(packing.crossing[t][(i + 1) % 3]);
+        most[std::size_t(d.disk.faces[t][i])] +=
+            std::numbers::pi - std::acos(packing.crossing[t][(i + 1) % 3]);
     for (const BoundaryLoop& loop : d.disk.loops)
       for (Index h : loop) most[std::size_t(d.disk.faces[std::size_t(h / 3)][h % 3])] = 1e9;
-    for (double sum : most) EXPECT_GT(sum, 2 * kPi + 0.05);
+    for (double sum : most) EXPECT_GT(sum, 2 * std::numbers::pi + 0.05);
   }
 }
 

@@ -18,8 +18,6 @@ namespace {
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
-constexpr double kPi = std::numbers::pi;
-
 /// The angle between two sides of given lengths, by the law of cosines.
 double angle_between(double a, double b, double facing) {
   return std::acos((a * a + b * b - facing * facing) / (2 * a * b));
@@ -88,7 +86,7 @@ TEST(TriangleOfAngles, HasTheSidesOfTheLawOfSinesAndAreaOne) {
   std::uniform_real_distribution<double> part(0.02, 1), excess(0.5, 2);
   for (int k = 0; k < 2000; ++k) {
     std::array<double, 3> angle{part(rng), part(rng), part(rng)};
-    const double unit = kPi / (angle[0] + angle[1] + angle[2]), factor = excess(rng);
+    const double unit = std::numbers::pi / (angle[0] + angle[1] + angle[2]), factor = excess(rng);
     const RestTriangle t = triangle_of_angles(
         {factor * unit * angle[0], factor * unit * angle[1], factor * unit * angle[2]});
     expect_consistent(t);
@@ -103,8 +101,9 @@ TEST(TriangleOfAngles, HasTheSidesOfTheLawOfSinesAndAreaOne) {
 }
 
 TEST(TriangleOfAngles, RaisesAVanishingHeight) {
-  for (const std::array<double, 3>& angle :
-       {std::array<double, 3>{kPi, 1e-12, 1e-12}, {1e-12, kPi, 1e-12}, {1e-300, 1, kPi - 1}}) {
+  for (const std::array<double, 3>& angle : {std::array<double, 3>{std::numbers::pi, 1e-12, 1e-12},
+                                             {1e-12, std::numbers::pi, 1e-12},
+                                             {1e-300, 1, std::numbers::pi - 1}}) {
     const RestTriangle t = triangle_of_angles(angle);
     expect_consistent(t);
     double longest = 0;

@@ -19,8 +19,6 @@ namespace {
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
-constexpr double kPi = std::numbers::pi;
-
 std::vector<FaceAngles> solved(const Disk& disk) {
   SerialExecutor serial;
   return linear_angles(disk, serial);
@@ -45,11 +43,11 @@ Eigen::VectorXd dense_errors(const Disk& disk, const std::vector<FaceAngles>& ga
     for (Index i = 0; i < 3; ++i) {
       scale[3 * t + i] = gamma[std::size_t(t)][std::size_t(i)];
       a(t, 3 * t + i) = 1;
-      b[t] += kPi / 3 - scale[3 * t + i];
+      b[t] += std::numbers::pi / 3 - scale[3 * t + i];
     }
   for (std::size_t v = 0; v < outer.size(); ++v) {
     if (outer[v] != 0) continue;
-    b[row] = 2 * kPi;
+    b[row] = 2 * std::numbers::pi;
     for (Index t = 0; t < faces; ++t)
       for (Index i = 0; i < 3; ++i) {
         if (std::size_t(disk.faces[std::size_t(t)][std::size_t(i)]) != v) continue;
@@ -86,8 +84,8 @@ TEST(LinearAngles, AddUpToAHalfTurnInEveryTriangle) {
   for (const auto& [name, mesh] : meshes) {
     const OwnedDisk d = disk_of(mesh);
     for (const FaceAngles& a : solved(d.disk)) {
-      EXPECT_NEAR(a[0] + a[1] + a[2], kPi, 1e-9) << name;
-      for (double x : a) EXPECT_TRUE(x > 0 && x < kPi) << name << ": " << x;
+      EXPECT_NEAR(a[0] + a[1] + a[2], std::numbers::pi, 1e-9) << name;
+      for (double x : a) EXPECT_TRUE(x > 0 && x < std::numbers::pi) << name << ": " << x;
     }
   }
 }

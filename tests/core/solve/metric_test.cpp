@@ -18,8 +18,6 @@ namespace {
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
-constexpr double kPi = std::numbers::pi;
-
 double total(const std::vector<double>& values) {
   double sum = 0;
   for (double value : values) sum += value;
@@ -49,14 +47,14 @@ TEST(Curvature, AddsUpToTheEulerCharacteristic) {  // Gauss, Bonnet
                                     {shapes::cylinder(12, 4), 0},
                                     {shapes::sphere_cap(16, 5), 1}}) {
     const OwnedDisk d = disk_of(mesh);
-    EXPECT_NEAR(total(curvature(d.disk, d.disk.rest)), 2 * kPi * euler, 1e-9);
+    EXPECT_NEAR(total(curvature(d.disk, d.disk.rest)), 2 * std::numbers::pi * euler, 1e-9);
   }
 }
 
 TEST(Curvature, OfAConeIsAllAtItsApex) {
   const OwnedDisk d = disk_of(shapes::cone(200, 3, 1));
   const std::vector<double> k = curvature(d.disk, d.disk.rest);
-  EXPECT_NEAR(k[0], 2 * kPi * (1 - 1 / std::sqrt(2.0)), 1e-3);
+  EXPECT_NEAR(k[0], 2 * std::numbers::pi * (1 - 1 / std::sqrt(2.0)), 1e-3);
   EXPECT_NEAR(inner_curvature(d.disk, k), k[0], 1e-12);
   for (std::size_t v = 1; v <= 200; ++v) EXPECT_NEAR(k[v], 0, 1e-3);
 }
@@ -140,7 +138,7 @@ TEST(FillHoles, LeavesAManifoldDiskOfOneBoundary) {
   EXPECT_EQ(filled.disk.rest.size(), filled.faces.size());
   EXPECT_EQ(filled.faces.size(), d.disk.faces.size() + d.disk.loops[1].size());
   EXPECT_EQ(filled.disk.vertex_count(), d.disk.vertex_count() + 1);
-  EXPECT_NEAR(total(curvature(filled.disk, filled.disk.rest)), 2 * kPi, 1e-9);
+  EXPECT_NEAR(total(curvature(filled.disk, filled.disk.rest)), 2 * std::numbers::pi, 1e-9);
 }
 
 TEST(FillHoles, LeavesADiskOfOneBoundaryAsItIs) {
