@@ -109,8 +109,8 @@ void split(const KeptPart& part, const Seeds& seeds, std::vector<KeptPart>& open
   }
 }
 
-/// A map of the part in which nothing overlaps, in units of which one is `unit` of the mesh's, and
-/// as near to springs as it comes without being bent.
+/// A map of the part in which nothing overlaps, in units of which one is `unit` of the mesh's,
+/// drawn by the springs.
 bool unfold(KeptPart& part, double unit, const MapIntent& intent) {
   SerialExecutor serial;
   const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
