@@ -92,17 +92,34 @@ void unpack_task(std::string_view bytes, ReceivedJob& job) {
   while (!from.empty()) job.record.notes.emplace_back(from.next_text());
 }
 
+/// Keeps what a frame has brought. False when that was all.
+bool keep(Frame& frame, ReceivedJob& job) {
+  switch (frame.kind) {
+    case FrameKind::task:
+      unpack_task(frame.bytes, job);
+      break;
+    case FrameKind::document:
+      job.document = std::move(frame.bytes);
+      break;
+    case FrameKind::buffer:
+      job.buffers.emplace_back(std::move(frame.name), std::move(frame.bytes));
+      break;
+    case FrameKind::uvs:
+      job.uvs = std::move(frame.bytes);
+      break;
+    case FrameKind::report:
+      job.report = std::move(frame.bytes);
+      break;
+    default:
+      break;
+  }
+  return frame.kind != FrameKind::begin;
+}
+
 ReceivedJob receive_job() {
   ReceivedJob job;
-  for (Frame frame; receive_frame(receive_all, kAnyBytes, frame);) {
-    if (frame.kind == FrameKind::begin) return job;
-    if (frame.kind == FrameKind::task) unpack_task(frame.bytes, job);
-    if (frame.kind == FrameKind::document) job.document = std::move(frame.bytes);
-    if (frame.kind == FrameKind::uvs) job.uvs = std::move(frame.bytes);
-    if (frame.kind == FrameKind::report) job.report = std::move(frame.bytes);
-    if (frame.kind == FrameKind::buffer)
-      job.buffers.emplace_back(std::move(frame.name), std::move(frame.bytes));
-  }
+  for (Frame frame; receive_frame(receive_all, kAnyBytes, frame);)
+    if (!keep(frame, job)) return job;
   gone();
 }
 

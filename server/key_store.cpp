@@ -16,6 +16,8 @@ namespace {
 constexpr std::string_view kPrefix = "unw_";
 constexpr std::size_t kIdDigits = 16;
 constexpr std::size_t kSecretDigits = 64;
+constexpr std::string_view kSpace = " \t\r\n";
+constexpr std::string_view kSigns = "-._~+/=";  // of keys, beside letters and digits
 constexpr std::size_t kMinGiven = 32;
 constexpr std::size_t kMaxGiven = 512;
 constexpr const char* kSchema = R"sql(
@@ -57,12 +59,12 @@ bool same(const std::string& left, const std::string& right) {
 
 /// What the file holds, when that can be a key (the characters of RFC 6750) and none to be guessed.
 std::string key_in(const std::filesystem::path& file) {
-  constexpr std::string_view kSpace = " \t\r\n";
   std::string text = read_file(file);
   text.erase(0, std::min(text.find_first_not_of(kSpace), text.size()));
   text.erase(text.find_last_not_of(kSpace) + 1);
-  const bool of_form = std::ranges::all_of(text, [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("-._~+/=").find(c) != std::string_view::npos;
+  const bool of_form = std::ranges::all_of(text, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           kSigns.find(c) != std::string_view::npos;
   });
   if (of_form && text.size() >= kMinGiven && text.size() <= kMaxGiven) return text;
   throw Error(
