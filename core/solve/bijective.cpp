@@ -161,6 +161,18 @@ UvMap laid_along(const UvMap& old, const UvMap& uv) {
   return laid;
 }
 
+/// The map moved to where its springs pull it no further: nothing else feels where it lies.
+UvMap moved_to_rest(UvMap uv, const std::vector<Spring>& springs) {
+  Vec2 pull = Vec2::Zero();
+  double weight = 0;
+  for (const Spring& spring : springs) {
+    pull += spring.weight * (spring.at - uv[static_cast<std::size_t>(spring.vertex)]);
+    weight += spring.weight;
+  }
+  for (Vec2& u : uv) u += pull / weight;
+  return uv;
+}
+
 /// Replaces uv by the map moved, unless moving has rounded it into an overlap.
 void keep_apart(const Disk& disk, UvMap moved, UvMap& uv) {
   if (is_plainly_injective(disk.faces, disk.loops, moved)) uv = std::move(moved);
@@ -190,7 +202,8 @@ bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv, Execu
   const bool is_drawn = !intent.springs.empty();
   if (is_drawn) keep_apart(disk, held_start(settled, {{}, intent.springs}), settled);
   settle_apart(disk, intent, settled);
-  if (!is_drawn) keep_apart(disk, laid_along(uv, settled), settled);
+  keep_apart(disk, is_drawn ? moved_to_rest(settled, intent.springs) : laid_along(uv, settled),
+             settled);
   uv = std::move(settled);
   return true;
 }
