@@ -101,26 +101,44 @@ class FitAbreast {
   /// J becomes J - L.
   [[gnu::always_inline]] void subtract_fit(const FaceGroup& group, std::size_t k, Matrix& m) {
     const Lanes e = 0.5 * (m.m00 + m.m11), h = 0.5 * (m.m10 - m.m01);
-    Each q, r;
-    lanes(q, 0) = e * e + h * h;
-    for (std::size_t i = 0; i < kLanes; ++i) q[i] = std::sqrt(q[i]);
-    if (std::isinf(rigidity_.lambda))
-      lanes(r, 0) = 1 - Lanes{};
-    else
-      for (std::size_t i = 0; i < kLanes; ++i) r[i] = hold_scale(group.area[k + i], q[i], k + i);
-    const Lanes scale = lanes(r, 0) / lanes(q, 0);
-    const auto is_turned = lanes(q, 0) > 0;  // else a collapsed image: all turns fit alike
-    const Lanes a = is_turned ? scale * e : lanes(r, 0), b = is_turned ? scale * h : Lanes{};
+    Each roots;
+    lanes(roots, 0) = e * e + h * h;
+    for (std::size_t i = 0; i < kLanes; ++i) roots[i] = std::sqrt(roots[i]);
+    const Lanes q = lanes(roots, 0);
+    Lanes r = 1 - Lanes{};
+    if (!std::isinf(rigidity_.lambda)) hold_scale(group, k, q, r);
+    const Lanes scale = r / q;
+    const auto is_turned = q > 0;  // else a collapsed image: all turns fit alike
+    const Lanes a = is_turned ? scale * e : r, b = is_turned ? scale * h : Lanes{};
     m.m00 -= a, m.m11 -= a;
     m.m01 += b, m.m10 -= b;
   }
 
-  /// The best scale; its own energy is added.
-  [[gnu::always_inline]] double hold_scale(double area, double q, std::size_t k) {
-    if (!(area > 0)) return 1;
-    const double lambda = rigidity_.at(area), r = hybrid_scale(lambda, q);
-    energy_[k] += area * lambda * (r * r - 1) * (r * r - 1);
-    return r;
+  /// r becomes the best scale, its own energy is added. Newton as in hybrid_scale(): a lane that
+  /// has arrived waits for the others.
+  [[gnu::always_inline]] void hold_scale(const FaceGroup& group, std::size_t k, const Lanes& q,
+                                         Lanes& r) {
+    const Lanes& area = lanes(group.area, k);
+    const Lanes given = rigidity_.lambda + Lanes{};
+    const Lanes lambda = area > 0 ? (rigidity_.per_area ? given / (2 * area) : given) : Lanes{};
+    const Lanes w = lambda / (1 + lambda), v = 1 / (1 + lambda);
+    r = q > 1 ? q : r;
+    auto is_moving = r >= r;
+    for (int n = 0; n < kMaxNewtonSteps && any(is_moving); ++n) {
+      const Lanes g = w * r * (r * r - 1) + v * (r - q);
+      const Lanes slope = w * (3 * r * r - 1) + v;
+      const Lanes step = slope > 0 ? g / slope : Lanes{};
+      r -= is_moving ? step : Lanes{};
+      is_moving = is_moving & (step > kNewtonTolerance * r);
+    }
+    lanes(energy_, k) += area * lambda * (r * r - 1) * (r * r - 1);
+  }
+
+  template <typename Mask>
+  [[gnu::always_inline]] static bool any(const Mask& mask) {
+    bool is_any = false;
+    for (std::size_t i = 0; i < kLanes; ++i) is_any = is_any || mask[i] != 0;
+    return is_any;
   }
 
   std::span<const Vec2> uv_;

@@ -78,8 +78,6 @@ LocalSums fit_all(const FitBlock& all, FitBlocks fit, Executor& executor) {
 
 /// g is convex there and g(max(1, Q)) >= 0: Newton descends to the root.
 double hybrid_scale(double lambda, double q) {
-  constexpr int kMaxNewtonSteps = 64;         // median 6; the triple root at w = 1/2 takes 47
-  constexpr double kNewtonTolerance = 1e-15;  // relative to r
   if (std::isinf(lambda)) return 1;
   const double w = lambda / (1 + lambda), v = 1 / (1 + lambda);  // v: 1 - w without its rounding
   double r = std::max(1.0, q);

@@ -26,6 +26,9 @@ struct Similarity {
   double a = 1, b = 0;
 };
 
+inline constexpr int kMaxNewtonSteps = 64;  ///< median 6; the triple root at w = 1/2 takes 47
+inline constexpr double kNewtonTolerance = 1e-15;  ///< relative to r
+
 /// The scale of the best similarity for a Jacobian whose own is q: the positive root of
 /// lambda r (r^2 - 1) + r - q; 1 where lambda is infinite.
 double hybrid_scale(double lambda, double q);
