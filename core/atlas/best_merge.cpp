@@ -26,9 +26,9 @@ constexpr std::array kTries = {Try{1, 0, 0, 0},       Try{1, .72, 0, .3},   Try{
                                Try{2, 0, 0, .5},      Try{5, .72, 0, 0},    Try{2, .72, .7, .3},
                                Try{2, 0, 0, .2},      Try{3, .72, .7, .3},  Try{1, .72, .65, .5},
                                Try{.5, .72, .75, .3}, Try{20, .72, .6, .1}, Try{1, .5, .6, .3}};
-constexpr std::size_t kFacesOfSearch = 120'000;  // that are merged in all, anew for each try
-constexpr std::size_t kFinished = 3;             // of the tries: with borders drawn straight
-constexpr double kFittingFill = 0.72;            // see MergeRules::least_fill
+constexpr double kFacesOfSearch = 100'000;  // that are merged for a page, anew for each try
+constexpr std::size_t kFinished = 3;        // of the tries: with borders drawn straight
+constexpr double kFittingFill = 0.72;       // see MergeRules::least_fill
 constexpr double kCostOfAChart = 0.1;
 constexpr double kWantedFill = 0.7, kCostOfEmptiness = 6;  // for a page that is empty beyond that
 constexpr double kMostPage = 1.5;  // of the sheet: with more beside it, others fill the gaps
@@ -72,8 +72,9 @@ double seam_of(const Sheet& sheet, const Partition& partition, const std::vector
 /// the page that it leaves empty.
 double cost_of(const Sheet& sheet, const Partition& partition, const MergeRules& rules) {
   const std::vector<Index> owner = owners(sheet, partition);
-  double cost = seam_of(sheet, partition, owner) +
-                kCostOfAChart * static_cast<double>(partition.patches.size());
+  const double seam = seam_of(sheet, partition, owner);
+  if (seam <= 0) return 0;  // what needs no cut is left whole
+  double cost = seam + kCostOfAChart * static_cast<double>(partition.patches.size());
   const bool has_page = rules.page_area <= kMostPage;
   const double fill =
       has_page ? rough_fill(outlines(sheet, partition, owner), rules.stop) : kWantedFill;
@@ -94,8 +95,9 @@ class Search {
 
   /// The cheapest of the tries, the best first.
   std::vector<Candidate> greedy(const Partition& from) const {
-    const std::size_t tries =
-        std::clamp(kFacesOfSearch / sheet_.mesh.faces.size(), std::size_t{1}, kTries.size());
+    const double faces = sheet_.face_count() * std::max(1.0, rules_.page_area);
+    const auto tries = static_cast<std::size_t>(
+        std::clamp<double>(kFacesOfSearch / faces, 1, static_cast<double>(kTries.size())));
     std::vector<Candidate> best;
     for (std::size_t k = 0; k < tries; ++k) {
       MergeRules rules = rules_of(k);
@@ -105,7 +107,7 @@ class Search {
       };
       add(merge_patches(joiner_, sheet_, from, rules, executor_), best);
       std::ranges::stable_sort(best, std::less(), &Candidate::cost);
-      if (best.size() > kFinished) best.pop_back();
+      if (best.size() > std::clamp(tries / 4, std::size_t{1}, kFinished)) best.pop_back();
     }
     return best;
   }
@@ -113,6 +115,10 @@ class Search {
   /// With borders drawn straight; and with what then fits together merged, of any shape or not.
   std::vector<Candidate> finished(Partition partition) const {
     std::vector<Candidate> all;
+    if (partition.patches.size() == 1) {
+      add(std::move(partition), all);
+      return all;
+    }
     straighten(sheet_, rules_, partition);
     for (const double least_fill : {0.0, kFittingFill}) {
       MergeRules rules = rules_;

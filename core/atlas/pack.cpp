@@ -1,4 +1,4 @@
-// Islands are packed on the cells of a coarse grid first, where a search among orders and turns is
+// Islands are packed on the cells of coarse grids first, where a search among orders and turns is
 // cheap, then with what was found on a fine one. In both they keep their scale and the page
 // shrinks; the cells' size in texels, and with it the padding in cells, follows from its side.
 #include "core/atlas/pack.hpp"

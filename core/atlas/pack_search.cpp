@@ -1,7 +1,8 @@
 // The islands keep their scale and the page shrinks: so every island is turned into cells once, and
 // one placement of all yields a figure, the height that they take in a strip as wide as the page,
 // rather than a yes or no. Where the strip is higher than wide, small changes of order and turns
-// are tried, and kept when the height does not grow; once it is a square, the strip gets narrower.
+// are tried, and kept when the height does not grow by more than a threshold that falls to none
+// (Dueck, Scheuer 1990); once it is a square, the strip gets narrower.
 //
 // Pages of a given size know only a yes or no: islands that found no place go to the front.
 #include "core/atlas/pack_search.hpp"

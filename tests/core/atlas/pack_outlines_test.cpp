@@ -151,5 +151,25 @@ TEST(SquarestBox, HasTheLeastLongerSideOfAllAngles) {
   }
 }
 
+TEST(PackOutlines, IsRatedAtAGlanceAsItIsPacked) {
+  const Outline square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  EXPECT_GT(rough_fill(std::vector<Outline>(4, square)), 0.9);  // they tile the page
+  const Outline cross = polygon({{1, 0},
+                                 {1.2, 0},
+                                 {1.2, 1},
+                                 {2.2, 1},
+                                 {2.2, 1.2},
+                                 {1.2, 1.2},
+                                 {1.2, 2.2},
+                                 {1, 2.2},
+                                 {1, 1.2},
+                                 {0, 1.2},
+                                 {0, 1},
+                                 {1, 1}});
+  EXPECT_LT(rough_fill(std::vector<Outline>{cross, cross}), 0.4);
+  const std::vector<Outline> islands = stars(12, 7);
+  EXPECT_NEAR(rough_fill(islands), fill(islands, pack(islands, {.padding = 0}).placements), 0.12);
+}
+
 }  // namespace
 }  // namespace unwrapd
