@@ -9,7 +9,7 @@ namespace unwrapd::server {
 namespace {
 
 constexpr std::int64_t kSeqsPerAttempt = 1'000'000'000;
-constexpr std::size_t kMaxReadingBytes = std::size_t{16} * 1024;  // at once, by each reader
+constexpr std::size_t kMaxReadingBytes = std::size_t{4} * 1024;  // at once, kept by each reader
 
 }  // namespace
 

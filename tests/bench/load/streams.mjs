@@ -10,6 +10,7 @@ import {
 
 const kStreams = 500;
 const kWatchSeconds = 15;
+const kTrimmed = 12_000;  // ms; the server gives memory back every 10 s
 
 /** Opens a stream; resolves at its first byte. */
 function follow(base, job) {
@@ -49,7 +50,8 @@ export async function streams(binary) {
   for (let i = 0; i < 2; ++i) {
     jobs.push((await submit(server.base, mesh, '?stop.iterations=10000&guarantee=none')).job.id);
   }
-  for (const job of jobs) await iterates(server.base, job);  // its memory is taken
+  for (const job of jobs) await iterates(server.base, job);
+  await sleep(kTrimmed);  // now the jobs' memory is taken, and what they have freed is given back
   const before = anonymousKb(server.pid);
   const stopProbe = probe(server.base);
   const open = [];
