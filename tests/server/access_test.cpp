@@ -90,10 +90,10 @@ TEST_F(Keys, OfAFileAreRefusedWhenTheyCouldBeGuessedOrSentByNobody) {
         std::string(20, 'k') + ' ' + std::string(20, 'k')}) {
     write_file(dir_.path() / "secret", text);
     const auto open = [&] { const KeyStore keys(dir_.path(), dir_.path() / "secret"); };
-    EXPECT_EQ(code_of(open), ErrorCode::invalid_option) << text;
+    EXPECT_EQ(error_of(open).code(), ErrorCode::invalid_option) << text;
   }
   const auto open = [&] { const KeyStore keys(dir_.path(), dir_.path() / "missing"); };
-  EXPECT_EQ(code_of(open), ErrorCode::storage_failed);
+  EXPECT_EQ(error_of(open).code(), ErrorCode::storage_failed);
 }
 
 TEST_F(Keys, AreRefusedWithAnyCharacterChangedAndOnceRemoved) {
