@@ -196,13 +196,20 @@ void count_signs(std::span<const WrittenFace> faces, WrittenAtlas& atlas) {
   for (const auto& [chart, own] : area) atlas.mirrored += own < 0 ? 1 : 0;
 }
 
+/// Vertices are one where place and texture coordinates are, whatever else the asset splits them
+/// for.
+Index number_of(const Vec3& p, const Vec2& uv, std::map<std::array<double, 5>, Index>& number) {
+  const std::array key{p.x(), p.y(), p.z(), uv.x(), uv.y()};
+  return number.try_emplace(key, Index(number.size())).first->second;
+}
+
 }  // namespace
 
 std::vector<WrittenFace> written_faces(std::span<const Surface> surfaces,
                                        std::span<const UnwrappedSurface> unwrapped) {
   std::vector<WrittenFace> faces;
   std::set<std::array<Index, 3>> seen;
-  Index base = 0;
+  std::map<std::array<double, 5>, Index> number;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const UnwrappedSurface& own = unwrapped[s];
     for (const Triangle& face : own.faces) {
@@ -211,7 +218,7 @@ std::vector<WrittenFace> written_faces(std::span<const Surface> surfaces,
         const auto v = std::size_t(face[i]);
         written.position[i] = surfaces[s].mesh.positions[std::size_t(own.source[v])];
         written.uv[i] = own.uv[v];
-        written.vertex[i] = base + face[i];
+        written.vertex[i] = number_of(written.position[i], written.uv[i], number);
       }
       std::array<Index, 3> sorted = written.vertex;
       std::ranges::sort(sorted);
@@ -219,9 +226,8 @@ std::vector<WrittenFace> written_faces(std::span<const Surface> surfaces,
       const bool has_area = (b - a).cross(c - a).norm() > 0 && signed_area(written.uv) != 0;
       if (has_area && seen.insert(sorted).second) faces.push_back(written);
     }
-    base += Index(own.uv.size());
   }
-  number_charts(base, faces);
+  number_charts(Index(number.size()), faces);
   return faces;
 }
 

@@ -13,7 +13,7 @@ namespace unwrapd::bench {
 struct WrittenFace {
   std::array<Vec3, 3> position;
   CornerUv uv;
-  std::array<Index, 3> vertex;  ///< after splitting, of the whole atlas
+  std::array<Index, 3> vertex;  ///< one for each place and texture coordinates
   Index chart = 0;
 };
 
