@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace unwrapd {
 namespace {
@@ -22,12 +23,13 @@ std::size_t words_for(int bits) {
 Occupancy::Occupancy(int width, int height, int margin, int longest_run)
     : width_(width), height_(height), margin_(margin), words_(words_for(width + 2 * margin) + 2) {
   while ((1 << levels_) <= std::min(longest_run, width + 2 * margin)) ++levels_;
-  const auto rows = static_cast<std::size_t>(height + 2 * margin);
+  const std::size_t rows = static_cast<std::size_t>(height) + 2 * static_cast<std::size_t>(margin);
   bits_.assign(static_cast<std::size_t>(levels_) * rows * words_, 0);
 }
 
 Occupancy::Word* Occupancy::row(int level, int y) {
-  const auto rows = static_cast<std::size_t>(height_ + 2 * margin_);
+  const std::size_t rows =
+      static_cast<std::size_t>(height_) + 2 * static_cast<std::size_t>(margin_);
   return bits_.data() +
          (static_cast<std::size_t>(level) * rows + static_cast<std::size_t>(y)) * words_;
 }
@@ -41,7 +43,9 @@ template <std::size_t Words>
 void Occupancy::refuse(const Rows& grown, int mask_row, int page_row, std::span<Word> refused) {
   const std::size_t count = Words > 0 ? Words : refused.size();
   for (const Run& run : grown.row(mask_row)) {
-    const int level = std::bit_width(static_cast<unsigned>(run.end - run.begin)) - 1;
+    assert(run.begin < run.end);
+    const int level =
+        static_cast<int>(std::bit_width(static_cast<unsigned>(run.end - run.begin))) - 1;
     work_ += static_cast<std::int64_t>(2 * count + kRunWork);
     for (const int shift : {run.begin, run.end - (1 << level)}) {
       const Word* taken = row(level, page_row) + shift / kWordBits;
