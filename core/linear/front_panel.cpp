@@ -67,19 +67,28 @@ class PanelLoops {
     return *reinterpret_cast<const Lanes*>(x);
   }
 
+  /// x for two rows of each right-hand side.
+  [[gnu::always_inline]] static void spread_pivot(const Vec2& x, Lanes (&weight)[kParts]) {
+    const double both[kTwoRows] = {x.x(), x.x(), x.y(), x.y()};
+    for (std::size_t p = 0; p < kParts; ++p) weight[p] = lanes(both + p * kLanes);
+  }
+
+  /// What two rows have summed up before.
+  template <bool kIsFirst>
+  [[gnu::always_inline]] static void begin_rows(const double* sum, Lanes (&total)[kParts]) {
+    for (std::size_t p = 0; p < kParts; ++p)
+      total[p] = kIsFirst ? Lanes{} : lanes(sum + p * kLanes);
+  }
+
   /// A block of kWidth columns of `length` rows each; the first finds no sums there yet.
   template <std::size_t kWidth, bool kIsFirst>
   [[gnu::always_inline]] static void add_block(const double* block, std::size_t length,
                                                const Vec2* x, PanelRows sum) {
     Lanes weight[kWidth][kParts];
-    for (std::size_t k = 0; k < kWidth; ++k) {
-      const double both[kTwoRows] = {x[k].x(), x[k].x(), x[k].y(), x[k].y()};
-      for (std::size_t p = 0; p < kParts; ++p) weight[k][p] = lanes(both + p * kLanes);
-    }
+    for (std::size_t k = 0; k < kWidth; ++k) spread_pivot(x[k], weight[k]);
     for (std::size_t r = 0; r < length; r += kDuo, sum += kTwoRows) {
       Lanes total[kParts];
-      for (std::size_t p = 0; p < kParts; ++p)
-        total[p] = kIsFirst ? Lanes{} : lanes(sum + p * kLanes);
+      begin_rows<kIsFirst>(sum, total);
       for (std::size_t k = 0; k < kWidth; ++k) {
         Lanes entry;
         spread(block + r * kWidth + k * kDuo, entry);

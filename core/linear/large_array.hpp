@@ -15,14 +15,15 @@ namespace unwrapd {
 struct FreeNumbers {
   void operator()(double* numbers) const { std::free(numbers); }
 };
+inline constexpr std::size_t kHugePage = std::size_t{2} << 20, kCacheLine = 64;  // bytes
+inline constexpr std::size_t kWorthHugePages = 2 * kHugePage;
+
 using LargeArray = std::unique_ptr<double[], FreeNumbers>;
 
 /// count numbers of no particular value. Throws std::bad_alloc.
 inline LargeArray large_array(std::size_t count) {
-  constexpr std::size_t kHugePage = std::size_t{2} << 20, kLine = 64;
-  constexpr std::size_t kWorthHugePages = 2 * kHugePage;
   const std::size_t bytes = sizeof(double) * count;
-  const std::size_t page = bytes >= kWorthHugePages ? kHugePage : kLine;
+  const std::size_t page = bytes >= kWorthHugePages ? kHugePage : kCacheLine;
   const std::size_t whole_pages = (bytes / page + 1) * page;
   auto* numbers = static_cast<double*>(std::aligned_alloc(page, whole_pages));
   if (numbers == nullptr) throw std::bad_alloc();

@@ -16,6 +16,7 @@
 namespace unwrapd {
 namespace {
 
+constexpr std::size_t kFew = 16;              // sides that are sorted by insertion
 constexpr std::size_t kMaxSidesThatPair = 4;  // a double-sided sheet's inner edge
 
 bool can_be_twins(std::span<const Triangle> faces, Index g, Index h) {
@@ -50,7 +51,6 @@ Index next_on_boundary(const Halfedges& halfedges, Index h) {
 
 /// Stable. A vertex has about three sides of which it is the low end; one may have all there are.
 void sort_by_high(std::span<EdgeSide> sides) {
-  constexpr std::size_t kFew = 16;
   const auto is_lower = [](const EdgeSide& a, const EdgeSide& b) { return a.high < b.high; };
   if (sides.size() > kFew) {
     std::stable_sort(sides.begin(), sides.end(), is_lower);
