@@ -85,6 +85,7 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double doubt = kFilter * (std::abs(left) + std::abs(right));
   if (determinant > doubt) return 1;
   if (determinant < -doubt) return -1;
+  if (doubt == 0) return 0;  // both products are: corners that triangles share come here most often
   return exact_orientation(a, b, c);
 }
 
