@@ -3,6 +3,8 @@
 // Through it a job also reaches what it shares with others.
 
 #include <functional>
+#include <stop_token>
+#include <utility>
 
 namespace unwrapd {
 
@@ -21,6 +23,26 @@ class Executor {
 
   /// What jobs share (solver_core.hpp); null where this one is alone. Outlives the job.
   [[nodiscard]] virtual SolverCore* shared_core() const { return nullptr; }
+
+  /// Of the job whose blocks these are: long work looks at it (cancel.hpp).
+  [[nodiscard]] virtual std::stop_token stop() const { return {}; }
+};
+
+/// Another executor, for one job that may be told to stop.
+class JobExecutor final : public Executor {
+ public:
+  /// inner must outlive this.
+  JobExecutor(Executor& inner, std::stop_token stop) : inner_(inner), stop_(std::move(stop)) {}
+
+  void for_each_block(int block_count, const std::function<void(int)>& body) override {
+    inner_.for_each_block(block_count, body);
+  }
+  [[nodiscard]] SolverCore* shared_core() const override { return inner_.shared_core(); }
+  [[nodiscard]] std::stop_token stop() const override { return stop_; }
+
+ private:
+  Executor& inner_;
+  std::stop_token stop_;
 };
 
 /// Runs the blocks one after another on the calling thread.

@@ -56,7 +56,8 @@ SegmentOptions segment_options(const UnwrapOptions& options) {
       .one_chart_each = !options.constraints.empty() || options.boundary != BoundaryShape::free};
 }
 
-std::vector<Charts> components(std::span<const Surface> surfaces, const UnwrapOptions& options) {
+std::vector<Charts> components(std::span<const Surface> surfaces, const UnwrapOptions& options,
+                               const std::stop_token& stop) {
   const auto is_empty = [](const Surface& surface) { return surface.mesh.faces.empty(); };
   if (std::all_of(surfaces.begin(), surfaces.end(), is_empty))
     throw Error(ErrorCode::no_triangles, "the asset has no triangles; there is nothing to unwrap");
@@ -64,7 +65,7 @@ std::vector<Charts> components(std::span<const Surface> surfaces, const UnwrapOp
   parts.reserve(surfaces.size());
   for (const Surface& surface : surfaces)
     parts.push_back(components_of(
-        surface, {options.seams, options.seam_edges, static_cast<Index>(parts.size())}));
+        surface, {options.seams, options.seam_edges, static_cast<Index>(parts.size()), stop}));
   return parts;
 }
 
@@ -76,7 +77,7 @@ void check_memory(std::span<const Surface> surfaces, const SolverCore* core) {
 
 Taken take_apart(std::span<const Surface> surfaces, const UnwrapOptions& options,
                  const Progress& progress, Executor& executor) {
-  Taken taken{components(surfaces, options), kSolveBegin, {}};
+  Taken taken{components(surfaces, options, progress.stop), kSolveBegin, {}};
   const auto on_progress = [&](Stage stage, double share) {
     taken.solve_begin = kSegmentEnd;
     announce(progress, stage, 0, kChartsBegin + (kSegmentEnd - kChartsBegin) * share);
@@ -261,11 +262,12 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
                                     const Progress& progress, Executor& executor) {
   validate(options, std::numeric_limits<int>::max());
   if (options.repack_only) return {lambdas_of(options).size(), repack(surfaces, options, progress)};
+  JobExecutor job(executor, progress.stop);
   announce(progress, Stage::setup, 0, kChartsBegin);
   check_memory(surfaces, executor.shared_core());
-  const Taken taken = take_apart(surfaces, options, progress, executor);
+  const Taken taken = take_apart(surfaces, options, progress, job);
   const auto page = page_holds(surfaces, taken.parts, options.constraints, progress.stop);
-  std::vector<Layout> layouts = map_charts(taken, page, options, progress, executor);
+  std::vector<Layout> layouts = map_charts(taken, page, options, progress, job);
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
   for (Layout& layout : layouts) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/atlas/cut.hpp"
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/mesh/counting_sort.hpp"
 #include "core/mesh/repair.hpp"
@@ -249,10 +250,13 @@ Charts make_charts(const Surface& surface, SeamMode seams) {
 Charts components_of(const Surface& surface, const SeamRules& seams) {
   assert(surface.part.size() == surface.mesh.faces.size());
   const std::vector<Index> first_at = weld(surface.mesh.positions);
+  throw_if_cancelled(seams.stop);
   const std::vector<Triangle> welded = renumbered(surface.mesh.faces, first_at);
   const FaceStates states = inspect_faces(surface.mesh, welded);
+  throw_if_cancelled(seams.stop);
   const auto [pieces, was_welded] = choose({surface, first_at, welded, states}, seams);
   require_two_sides(surface, pieces);
+  throw_if_cancelled(seams.stop);
   Charts charts;
   charts.charts = separate(surface, pieces);
   for (std::size_t t = 0; t < states.of.size(); ++t) {

@@ -3,6 +3,7 @@
 // the solver takes: everything that is not a disk cut to one, or taken apart (segment_charts.hpp).
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/halfedges.hpp"
@@ -36,11 +37,13 @@ struct SeamRules {
   SeamMode mode = SeamMode::automatic;   ///< uv0 is automatic for a surface without UVs
   std::span<const SeamPath> paths = {};  ///< of all surfaces
   Index surface = 0;                     ///< which of them this is
+  std::stop_token stop = {};
 };
 
 /// The components of a surface, which need not be disks: those that are none have yet to be cut or
 /// taken apart, and may be without a loop. Throws Error{not_orientable}, and Error{invalid_option}
 /// with where = "/seam_edges/<i>" where a path leaves the surface's vertices or edges.
+/// Throws Error{cancelled}.
 Charts components_of(const Surface& surface, const SeamRules& seams);
 
 /// Whether a component is a disk, holes allowed.

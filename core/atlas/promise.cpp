@@ -89,9 +89,10 @@ Seeds seeds_at_overlaps(const Chart& chart, const std::vector<std::array<Index, 
   return seeds;
 }
 
-std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& uv) {
+std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& uv,
+                                              const std::stop_token& stop) {
   if (is_plainly_injective(chart.mesh.faces, chart.loops, uv)) return {};
-  return overlapping_pairs(chart.mesh.faces, uv, kMostPairs);
+  return overlapping_pairs(chart.mesh.faces, uv, kMostPairs, stop);
 }
 
 [[noreturn]] void fail(const std::string& why) {
@@ -116,7 +117,7 @@ bool unfold(KeptPart& part, double unit, const MapIntent& intent) {
   const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
   if (!map_injectively(disk, intent, part.uv, serial)) return false;
   for (Vec2& u : part.uv) u *= disk.unit / unit;
-  return overlaps_of(part.chart, part.uv).empty();
+  return overlaps_of(part.chart, part.uv, intent.stop).empty();
 }
 
 /// The seeds of the split that a part needs; both empty where it keeps the promise, if need be
@@ -128,7 +129,7 @@ Seeds seeds_needed(KeptPart& part, double unit, const Promise& promise, Mending&
     return seeds_at_flips(part.chart, flipped);
   }
   if (promise.guarantee != Guarantee::bijective) return {};
-  const auto pairs = overlaps_of(part.chart, part.uv);
+  const auto pairs = overlaps_of(part.chart, part.uv, promise.intent.stop);
   if (pairs.empty()) return {};
   mending.overlaps += static_cast<Index>(pairs.size());
   const bool is_small = part.chart.mesh.face_count() <= kMostFacesUnfolded;
@@ -189,7 +190,7 @@ Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv)
     return {static_cast<Index>(flipped_faces(chart.mesh.faces, page_uv).size()), {}};
   if (snap(chart, promise.intent.held, promise.intent.stop, page_uv) > 0)
     fail("a triangle is too small beside the page for the precision in which UVs are written");
-  const auto overlaps = static_cast<Index>(overlaps_of(chart, page_uv).size());
+  const auto overlaps = static_cast<Index>(overlaps_of(chart, page_uv, promise.intent.stop).size());
   if (overlaps == 0 || promise.guarantee != Guarantee::bijective) return {0, overlaps};
   if (!part_on_page(chart, promise.intent.held, page_uv))
     fail("two triangles are too near to each other for the precision in which UVs are written");

@@ -21,6 +21,8 @@ namespace {
 
 constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
 constexpr Index kMostFacesSegmented = 36'000, kFacesOfCoarse = 24'000;
+constexpr double kShareOfCoarse =
+    0.93;  // of the excess allowed: the rest is for what it averages out
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const Chart& component) {
@@ -111,7 +113,9 @@ class Cutter {
   std::vector<Chart> parts_of_large(const Chart& component, const SegmentRules& rules) {
     const Coarse coarse = coarsen(component.mesh, component.halfedges, kFacesOfCoarse, rules.stop);
     const Sheet sheet = make_sheet(coarse.mesh, coarse.halfedges);
-    return region_charts(component, coarse, segment(sheet, rules, executor_), rules.stop);
+    SegmentRules own = rules;
+    own.max_distortion = 2 + kShareOfCoarse * (rules.max_distortion - 2);
+    return region_charts(component, coarse, segment(sheet, own, executor_), rules.stop);
   }
 
   const SegmentOptions& options_;

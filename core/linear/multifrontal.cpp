@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <new>
 
+#include "core/cancel.hpp"
 #include "core/linear/front.hpp"
 
 namespace unwrapd {
@@ -125,19 +126,20 @@ class Tree {
     const std::vector<Branch>& all = analysis_.branches.all;
     grown_.resize(all.size());
     executor.for_each_block(static_cast<int>(all.size()),
-                            [&](int b) { grow(all[at(b)], grown_[at(b)]); });
+                            [&](int b) { grow(all[at(b)], executor.stop(), grown_[at(b)]); });
+    throw_if_cancelled(executor.stop());
     for (const Grown& grown : grown_)
       if (!grown.has_memory) throw std::bad_alloc();
     return std::ranges::all_of(grown_, &Grown::is_definite) && factor_trunk(executor);
   }
 
  private:
-  void grow(const Branch& branch, Grown& grown) const try {
+  void grow(const Branch& branch, const std::stop_token& stop, Grown& grown) const try {
     Factorisation work(analysis_, values_, panels_);
     work.reserve(most_pending(analysis_.nodes, branch));
     SerialExecutor serial;
     for (std::size_t s = branch.first; s < branch.end; ++s)
-      if (!work.eliminate(s, serial)) return;
+      if (stop.stop_requested() || !work.eliminate(s, serial)) return;
     grown.update = work.leave();
     grown.is_definite = true;
   } catch (const std::bad_alloc&) {  // tasks do not throw
@@ -150,7 +152,10 @@ class Tree {
     bool is_definite = true;
     analysis_.branches.for_each_of_trunk(
         analysis_.nodes.count(),
-        [&](std::size_t s) { is_definite = is_definite && work.eliminate(s, executor); },
+        [&](std::size_t s) {
+          throw_if_cancelled(executor.stop());
+          is_definite = is_definite && work.eliminate(s, executor);
+        },
         [&](std::size_t b) {
           work.take(analysis_.branches.all[b].root(), grown_[b].update.data());
         });

@@ -11,11 +11,14 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/cancel.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd {
 namespace {
+
+constexpr std::size_t kStepsBetweenLooks = 4096;
 
 struct Bounds {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
@@ -193,13 +196,15 @@ bool is_plainly_injective(std::span<const Triangle> faces, std::span<const Bound
 }
 
 std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> faces,
-                                                    std::span<const Vec2> uv, std::size_t most) {
+                                                    std::span<const Vec2> uv, std::size_t most,
+                                                    const std::stop_token& stop) {
   std::vector<Bounds> bounds(faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t)
     for (const Vec2& p : corners(faces[t], uv)) bounds[t].add(p);
   const BoxTree tree(bounds);
   std::vector<std::array<Index, 2>> pairs;
   for (std::size_t t = 0; t < faces.size() && pairs.size() < most; ++t) {
+    if (t % kStepsBetweenLooks == 0) throw_if_cancelled(stop);
     const std::size_t first = pairs.size();
     tree.query(bounds[t], [&](Index other) {
       if (static_cast<std::size_t>(other) > t &&

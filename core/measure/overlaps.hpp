@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/halfedges.hpp"
@@ -21,8 +22,9 @@ bool is_plainly_injective(std::span<const Triangle> faces, std::span<const Bound
                           std::span<const Vec2> uv);
 
 /// All pairs (s, t), s < t, of faces whose images overlap, in lexicographic order; at most `most`
-/// of them. Near-linear for maps of ordinary triangles.
+/// of them. Near-linear for maps of ordinary triangles. Throws Error{cancelled}.
 std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> faces,
-                                                    std::span<const Vec2> uv, std::size_t most);
+                                                    std::span<const Vec2> uv, std::size_t most,
+                                                    const std::stop_token& stop = {});
 
 }  // namespace unwrapd

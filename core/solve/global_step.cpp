@@ -8,6 +8,7 @@
 #include <cassert>
 #include <vector>
 
+#include "core/cancel.hpp"
 #include "core/solve/kept.hpp"
 
 namespace unwrapd {
@@ -35,8 +36,10 @@ SparseMatrix free_matrix(const Disk& disk, const Holds& holds, const FreeVertice
 std::shared_ptr<const Factor> factored(const Disk& disk, const Holds& holds,
                                        const FreeVertices& free, Executor& executor) {
   const SparseMatrix lower = free_matrix(disk, holds, free);
+  throw_if_cancelled(executor.stop());
   const Content pattern = Content("analysis").add(disk.connectivity).add(free.slot);
   const auto analysis = kept(disk, pattern, [&] { return analyse(lower); });
+  throw_if_cancelled(executor.stop());
   check_memory(disk, analysis->job_bytes());
   return definite(try_factor(analysis, lower, executor));
 }

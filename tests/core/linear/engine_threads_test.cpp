@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "core/error.hpp"
 #include "core/linear/engine.hpp"
 #include "tests/core/linear/systems.hpp"
 #include "tests/core/solve/disk_of.hpp"
@@ -19,6 +20,31 @@ class ManyThreads final : public Executor {
     for (int block = block_count; block-- > 0;) threads.emplace_back(body, block);
   }
 };
+
+/// Told to stop when the branches are done and the trunk begins.
+class StoppedAfterBranches final : public Executor {
+ public:
+  void for_each_block(int block_count, const std::function<void(int)>& body) override {
+    for (int block = 0; block < block_count; ++block) body(block);
+    source_.request_stop();
+  }
+  [[nodiscard]] std::stop_token stop() const override { return source_.get_token(); }
+
+ private:
+  std::stop_source source_;
+};
+
+TEST(Engine, StopsInTheMiddleOfAFactorWhenTold) {
+  const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(60, 9));
+  const SparseMatrix lower = arap_matrix(owned.disk);
+  StoppedAfterBranches stopped;
+  try {
+    const auto factor = try_factor(analyse(lower), lower, stopped);
+    ADD_FAILURE() << "went on";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::cancelled);
+  }
+}
 
 TEST(Engine, GivesTheSameBitsAgainAndOnAnyNumberOfThreads) {
   const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(120, 9));
