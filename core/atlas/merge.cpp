@@ -16,6 +16,7 @@
 
 #include "core/atlas/box.hpp"
 #include "core/atlas/labels.hpp"
+#include "core/atlas/scrambled.hpp"
 #include "core/cancel.hpp"
 
 namespace unwrapd {
@@ -117,15 +118,13 @@ class Merging {
     return rounded(price - worth * (1 + rules_.whim * drawn(a, b)));
   }
 
-  /// A number in [0, 1) for this pair in this lot (splitmix64, Steele, Lea, Flood 2014).
+  /// A number in [0, 1) for this pair in this lot.
   [[nodiscard]] double drawn(Index a, Index b) const {
     const auto pair = std::minmax(a, b);
-    std::uint64_t z =
+    const std::uint64_t both =
         static_cast<std::uint64_t>(pair.first) << 32 | static_cast<std::uint64_t>(pair.second);
-    z = (z + static_cast<std::uint64_t>(rules_.lot + 1) * 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+    const std::uint64_t lot = static_cast<std::uint64_t>(rules_.lot + 1) * kGoldenStep;
+    return static_cast<double>(scrambled(both + lot) >> 11) * 0x1p-53;
   }
 
   void propose(Index a, Index b, const Promise& promise) {

@@ -14,6 +14,8 @@
 #include <functional>
 #include <numeric>
 
+#include "core/atlas/scrambled.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -26,15 +28,11 @@ constexpr double kDense = 0.95,
                  kLoose = 0.3;   // shares of pages that islands fill, at most and least
 constexpr double kStep = 1.003;  // to which a page's side is found
 
-/// Numbers that are spread evenly and are the same for everybody (a hash of 1, 2, 3, ...:
-/// splitmix64, Steele, Lea, Flood 2014).
+/// Numbers that are spread evenly: 1, 2, 3, ... scrambled.
 class Sequence {
  public:
   std::size_t below(std::size_t bound) {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return static_cast<std::size_t>((z ^ (z >> 31)) % bound);
+    return static_cast<std::size_t>(scrambled(state_ += kGoldenStep) % bound);
   }
 
  private:
