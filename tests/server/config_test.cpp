@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include <fstream>
-#include <regex>
+#include <sstream>
 #include <vector>
 
 #include "server/config_row.hpp"
@@ -154,6 +154,15 @@ TEST(Config, QuestionsAreAnsweredAndEndTheProgramWithSuccess) {
   EXPECT_THAT(answer({"--version"}), testing::StartsWith("unwrapd "));
 }
 
+/// The text without what follows "  # from " in each line.
+std::string without_sources(const std::string& text) {
+  std::istringstream lines(text);
+  std::string kept;
+  for (std::string line; std::getline(lines, line);)
+    kept += line.substr(0, line.find("  # from ")) + "\n";
+  return kept;
+}
+
 TEST_F(ConfigFile, APrintedConfigReadAsAFileIsTheSameConfig) {
   const std::string odd = R"(a "b"\#c, d)";
   const std::string printed = answer({"--print-config", "--data", odd.c_str(), "--listen",
@@ -161,9 +170,8 @@ TEST_F(ConfigFile, APrintedConfigReadAsAFileIsTheSameConfig) {
   EXPECT_THAT(printed, HasSubstr("max-queue = 7  # from --max-queue"));
   const char* file = write(printed);
   EXPECT_EQ(parse({"--config", file}).config.data, odd);
-  const std::regex source("  # from .*");
-  EXPECT_EQ(std::regex_replace(answer({"--print-config", "--config", file}), source, ""),
-            std::regex_replace(printed, source, ""));
+  EXPECT_EQ(without_sources(answer({"--print-config", "--config", file})),
+            without_sources(printed));
 }
 
 TEST(Config, EveryOptionTellsItselfWithoutItsSecret) {

@@ -134,9 +134,9 @@ TEST_F(Operations, MetricsTellWhatHasHappened) {
   await_state(waiting, "succeeded");
   EXPECT_EQ(metric("unwrapd_jobs_ended_total{state=\"cancelled\"}"), 1);
   client().Post("/v1/jobs?method=none", "x", "model/obj");
-  EXPECT_EQ(metric("unwrapd_errors_total{code=\"invalid_option\"}"), 1);
+  await([this] { return metric("unwrapd_errors_total{code=\"invalid_option\"}") == 1; });
   const std::string refused = R"({method="POST",route="/v1/jobs",status="422"})";
-  EXPECT_EQ(metric("unwrapd_requests_total" + refused), 1);
+  await([&] { return metric("unwrapd_requests_total" + refused) == 1; });
   EXPECT_GT(metric("unwrapd_sent_bytes_total"), 1000);
   EXPECT_GT(metric("process_resident_memory_bytes"), 1e6);
 }
@@ -228,7 +228,7 @@ TEST_F(Operations, RequestsThatCannotBeReadAreLoggedAndCountedAsWell) {
   httplib::Client raw = client();
   raw.set_keep_alive(false);
   expect_problem(raw.Get("/" + std::string(9000, 'a')), 431, "headers_too_large");
-  EXPECT_EQ(metric("unwrapd_errors_total{code=\"headers_too_large\"}"), 1);
+  await([this] { return metric("unwrapd_errors_total{code=\"headers_too_large\"}") == 1; });
 }
 
 }  // namespace
