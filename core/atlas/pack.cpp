@@ -28,18 +28,21 @@ constexpr double kFinePerIsland = 30, kFineHeat = 0.002;
 constexpr std::size_t kSearched = 400;         // islands at most that are searched on a coarse grid
 constexpr double kUsualFill = 0.7;             // of the first guess of a page's side
 constexpr double kSpareSide = 1.01;            // of a page, for which the padding is wide enough
-constexpr std::int64_t kFineWork = 1'000'000;  // words an island
+constexpr std::int64_t kFineWork = 1'000'000;  // words a share
 constexpr std::int64_t kRoughWork = 2'000'000;
-constexpr std::size_t kMostShares = 12;  // of that work
+constexpr double kMostShares = 12;   // of that work
+constexpr double kSidesAShare = 30;  // of outlines: small shapes need no long search
 
 int turns_for(std::size_t islands) {
   if (islands <= 16) return islands <= 8 ? 48 : 36;
   return islands <= 100 ? 8 : 4;
 }
 
-/// Few islands have few orders and turns to try.
-std::int64_t work_for(std::int64_t an_island, std::size_t islands) {
-  return an_island * static_cast<std::int64_t>(std::min(islands, kMostShares));
+/// Few islands have few orders and turns to try, and a handful of triangles is packed at once.
+double shares_of(std::span<const Outline> outlines) {
+  double sides = 0;
+  for (const Outline& outline : outlines) sides += static_cast<double>(outline.size());
+  return std::min({static_cast<double>(outlines.size()), sides / kSidesAShare, kMostShares});
 }
 
 int cells_for(std::size_t islands, double per_island, int least) {
@@ -67,6 +70,7 @@ class Packer {
  public:
   Packer(std::span<const Outline> outlines, const PageOptions& page, const std::stop_token& stop)
       : arranger_(outlines, turns_for(outlines.size())),
+        shares_(shares_of(outlines)),
         page_(page),
         padding_(kept_padding(page, outlines.size())),
         grid_{padding_ / page.resolution},
@@ -84,7 +88,7 @@ class Packer {
       const int cells = cells_for(n, level.per_island, level.cells);
       const double loose = scale / side * cells;
       const std::vector<Found> found =
-          on_grid(starts, {cells, level.heat}, loose, work_for(level.work, n));
+          on_grid(starts, {cells, level.heat}, loose, work(level.work));
       starts.clear();
       for (const Found& own : found) starts.push_back(own.arrangement);
       scale = loose;
@@ -102,8 +106,7 @@ class Packer {
     const double loose = std::sqrt(kUsualFill / box_area(arranger_)), scale = side * loose;
     std::vector<Arrangement> starts = usual_arrangements(arranger_);
     if (n > kSearched) starts.resize(1);
-    const Found found =
-        on_grid(starts, {side, kLevels[0].heat}, scale, work_for(kRoughWork, n)).front();
+    const Found found = on_grid(starts, {side, kLevels[0].heat}, scale, work(kRoughWork)).front();
     return area * scale * scale / (double(found.side) * found.side);
   }
 
@@ -116,7 +119,7 @@ class Packer {
           "An island at this density is larger than a page; lower texels_per_unit, or raise "
           "resolution.");
     arranger_.set_scale(page_per_unit / grid_.cell(side), grid_.padding(side));
-    Budget budget{work_for(kFineWork, arranger_.size()), stop_};
+    Budget budget{work(kFineWork), stop_};
     const Found found = fewest_pages(arranger_, usual_arrangements(arranger_),
                                      {side, side, page_.packing.max_pages}, budget);
     if (found.side == 0)
@@ -141,6 +144,10 @@ class Packer {
     return false;
   }
 
+  [[nodiscard]] std::int64_t work(std::int64_t a_share) const {
+    return static_cast<std::int64_t>(shares_ * static_cast<double>(a_share));
+  }
+
   /// A search at this scale, with the padding of pages of `expected` cells.
   std::vector<Found> on_grid(const std::vector<Arrangement>& starts, const StripRules& rules,
                              double cells_per_unit, std::int64_t work) {
@@ -157,7 +164,7 @@ class Packer {
                         double cells_per_unit) {
     for (double spare = kSpareSide;; spare *= kSpareSide) {
       Found found = on_grid(starts, {static_cast<int>(std::ceil(spare * expected)), kFineHeat},
-                            cells_per_unit, work_for(kFineWork, arranger_.size()))
+                            cells_per_unit, work(kFineWork))
                         .front();
       if (found.side <= spare * expected) return found;
       expected = found.side;
@@ -179,6 +186,7 @@ class Packer {
   }
 
   Arranger arranger_;
+  double shares_;
   PageOptions page_;
   double padding_;
   Grid grid_;

@@ -203,6 +203,12 @@ TEST(Unwrap, GivesDegenerateFacesUvsAndSaysSo) {
   EXPECT_TRUE(kinds.contains(RepairKind::duplicate_faces_set_aside));
 }
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr Index kMostRealFaces = 12'000;  // a sanitizer takes minutes for the two larger ones
+#else
+constexpr Index kMostRealFaces = std::numeric_limits<Index>::max();
+#endif
+
 TEST(Unwrap, AnswersEveryRealMeshOrSaysWhyNot) {
   const std::filesystem::path data = test_data();
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no test data at " << data;
@@ -210,6 +216,7 @@ TEST(Unwrap, AnswersEveryRealMeshOrSaysWhyNot) {
     for (const auto& entry : std::filesystem::directory_iterator(data / folder)) {
       SCOPED_TRACE(entry.path().filename().string());
       const Surface surface = shapes::surface_of(read_obj(entry.path()));
+      if (surface.mesh.face_count() > kMostRealFaces) continue;
       try {
         expect_sound(surface, unwrapped({surface}).surfaces[0]);
       } catch (const Error& e) {
