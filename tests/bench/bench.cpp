@@ -18,6 +18,7 @@
 #include "tests/bench/goals.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/rivals.hpp"
+#include "tests/core/linear/systems.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
@@ -80,15 +81,6 @@ void compare_with_cgal(Goals& goals, const std::string& name, const char* file) 
   const std::string title = name + " subdivided, whole call, 2 threads, times as fast as CGAL: ";
   goals.at_least(title + "same start", 150, *cgal / ours(InitialMap::mean_value));
   goals.at_least(title + "ours", 150, *cgal / ours(InitialMap::automatic));
-}
-
-SparseMatrix arap_matrix(const Disk& disk) {
-  std::vector<double> weight;
-  for (const RestTriangle& rest : disk.rest)
-    weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
-  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight);
-  lower.coeffRef(0, 0) *= 2;
-  return lower;
 }
 
 void compare_engines(Goals& goals, double faces, const std::string& title) {
