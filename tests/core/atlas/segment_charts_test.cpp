@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "core/error.hpp"
@@ -266,6 +267,23 @@ TEST(SegmentCharts, CutsWhereTheUvsThatCameInHaveTheirSeams) {
   EXPECT_EQ(sides.charts.size(), 6U);
   for (const Chart& side : sides.charts) EXPECT_EQ(side.mesh.face_count(), 2);
   EXPECT_EQ(components_of(box, {.mode = SeamMode::automatic}).charts.size(), 1U);
+}
+
+/// A band along three quarters of a circle, rolled up: it lies flat without distortion, and leaves
+/// a page empty.
+TriMesh rolled_arc() {
+  constexpr double kRoll = 0.4;
+  return mapped_grid(48, 2, Wrap::none, [](double u, double v) {
+    const double angle = 1.5 * std::numbers::pi * u, radius = 1 - 0.1 * v;
+    const double around = radius * std::cos(angle) / kRoll;
+    return Vec3(kRoll * std::sin(around), radius * std::sin(angle), kRoll * std::cos(around));
+  });
+}
+
+TEST(SegmentCharts, LeavesWholeWhatLiesFlatHoweverEmptyThePage) {
+  const Cut cut = cut_up(rolled_arc(), {.max_distortion = 2.02});
+  EXPECT_EQ(cut.surfaces.front().charts.size(), 1U);
+  expect_sound(cut, std::size_t(rolled_arc().face_count()));
 }
 
 }  // namespace

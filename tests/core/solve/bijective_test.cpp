@@ -127,6 +127,18 @@ TEST(Bijective, IsDrawnByItsSprings) {
   for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT((uv[v] - turned[v]).norm(), 0.02) << v;
 }
 
+TEST(Bijective, IsStretchedByStrongSprings) {
+  const OwnedDisk d = disk_of(shapes::grid(9, 7, 1.5, 1));
+  UvMap uv = solved(d.disk);
+  MapIntent intent;
+  for (const std::size_t v : {0U, 9U, 70U, 79U})
+    intent.springs.push_back({Index(v), 1.2 * d.disk.positions[v].head<2>(), 1e4});
+  SerialExecutor serial;
+  ASSERT_TRUE(map_injectively(d.disk, intent, uv, serial));
+  for (const Spring& spring : intent.springs)
+    EXPECT_LT((uv[std::size_t(spring.vertex)] - spring.at).norm(), 0.01) << spring.vertex;
+}
+
 TEST(Bijective, GivesTheSameBytesForAnyExecutor) {
   const OwnedDisk d = disk_of(ramp(300, 10, 1.5));  // more than one block of faces
   const UvMap before = solved(d.disk);
