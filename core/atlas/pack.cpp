@@ -9,7 +9,8 @@
 #include <string>
 
 #include "core/atlas/pack_search.hpp"
-#include "core/atlas/stacks.hpp"
+#include "core/atlas/pack_stacked.hpp"
+#include "core/atlas/squeeze.hpp"
 #include "core/error.hpp"
 
 namespace unwrapd {
@@ -23,18 +24,28 @@ struct Level {
   std::int64_t work = 0;  ///< words an island
 };
 constexpr std::array kLevels = {Level{96, 12, 0.1, 18'000'000}, Level{160, 20, 0.01, 6'000'000}};
+/// A grid on which few islands are squeezed together after a short search.
+struct Squeeze {
+  SqueezeRules rules;     ///< for 1024 cells a side; the first grid's side as it is
+  std::int64_t work = 0;  ///< words an island
+};
+constexpr Level kStart = {96, 12, 0.1, 4'000'000};
+constexpr std::array kSqueezes = {Squeeze{{128, 0, 1, 20}, 20'000'000},
+                                  Squeeze{{512, 8, 2, 3}, 8'000'000},
+                                  Squeeze{{1024, 8, 1, 3}, 8'000'000}};
+constexpr std::size_t kSqueezed = 40;                // islands at most
 constexpr int kFineCells = 1024, kMostCells = 4096;  // a side of the grid that decides
 constexpr double kFinePerIsland = 30, kFineHeat = 0.002;
 constexpr std::size_t kSearched = 400;         // islands at most that are searched on a coarse grid
 constexpr double kUsualFill = 0.7;             // of the first guess of a page's side
 constexpr double kSpareSide = 1.01;            // of a page, for which the padding is wide enough
 constexpr std::int64_t kFineWork = 1'000'000;  // words a share
-constexpr std::int64_t kRoughWork = 2'000'000;
+constexpr std::int64_t kRoughWork = 500'000, kRoughSqueezeWork = 1'000'000;
 constexpr double kMostShares = 12;   // of that work
 constexpr double kSidesAShare = 30;  // of outlines: small shapes need no long search
 
 int turns_for(std::size_t islands) {
-  if (islands <= 16) return islands <= 8 ? 48 : 36;
+  if (islands <= kSqueezed) return 48;
   return islands <= 100 ? 8 : 4;
 }
 
@@ -78,6 +89,10 @@ class Packer {
 
   /// As large as fits on the pages that are allowed.
   Packed largest() {
+    if (arranger_.size() <= kSqueezed && page_.packing.max_pages == 1) {
+      const std::optional<Found> few = few_on_a_page();
+      if (few) return placed(*few);
+    }
     std::vector<Arrangement> starts = usual_arrangements(arranger_);
     const std::size_t n = arranger_.size();
     double side = fine_cells(n);
@@ -99,14 +114,23 @@ class Packer {
     return placed(on_grid_exactly(starts, fine, fine * scale / side));
   }
 
-  /// The share of the page that is filled after a short search on a coarse grid.
+  /// The share of the page that is filled after a short search on coarse grids.
   double rough_fill(double area) {
     const std::size_t n = arranger_.size();
-    const int side = cells_for(n, kLevels[0].per_island, kLevels[0].cells);
-    const double loose = std::sqrt(kUsualFill / box_area(arranger_)), scale = side * loose;
+    const int side = cells_for(n, kStart.per_island, kStart.cells);
+    double scale = side * std::sqrt(kUsualFill / box_area(arranger_));
     std::vector<Arrangement> starts = usual_arrangements(arranger_);
     if (n > kSearched) starts.resize(1);
-    const Found found = on_grid(starts, {side, kLevels[0].heat}, scale, work(kRoughWork)).front();
+    Found found = on_grid(starts, {side, kStart.heat}, scale, work(kRoughWork)).front();
+    if (n <= kSqueezed) {
+      const Squeeze rough{kSqueezes.front().rules, kRoughSqueezeWork};
+      const double ratio = double(rough.rules.side) / found.side;
+      const Found tight = squeezed_on(rough, found, scale * ratio);
+      if (tight.side > 0) {
+        scale *= ratio;
+        found = tight;
+      }
+    }
     return area * scale * scale / (double(found.side) * found.side);
   }
 
@@ -146,6 +170,34 @@ class Packer {
 
   [[nodiscard]] std::int64_t work(std::int64_t a_share) const {
     return static_cast<std::int64_t>(shares_ * static_cast<double>(a_share));
+  }
+
+  /// Each grid begins with what was found on the one before; gaps come with the second.
+  std::optional<Found> few_on_a_page() {
+    const int cells = kStart.cells;
+    double scale = cells * std::sqrt(kUsualFill / box_area(arranger_));
+    Found found =
+        on_grid(usual_arrangements(arranger_), {cells, kStart.heat}, scale, work(kStart.work))
+            .front();
+    for (const Squeeze& grid : kSqueezes) {
+      const double ratio = double(grid.rules.side) / found.side;
+      scale *= ratio;
+      found = squeezed_on(grid, found, scale);
+      if (found.side == 0) return std::nullopt;
+    }
+    return found;
+  }
+
+  /// The last grid's pages must be no larger than those for which the padding was made.
+  Found squeezed_on(const Squeeze& grid, const Found& from, double cells_per_unit) {
+    const bool has_gaps = grid.rules.reach > 0;
+    for (int side = grid.rules.side;;) {
+      arranger_.set_scale(cells_per_unit, has_gaps ? grid_.padding(side) : 0);
+      Budget budget{work(grid.work), stop_};
+      Found found = squeezed(arranger_, from, grid.rules, budget);
+      if (!has_gaps || found.side <= side) return found;
+      side = found.side + 1 + found.side / 100;
+    }
   }
 
   /// A search at this scale, with the padding of pages of `expected` cells.
@@ -216,39 +268,6 @@ Packed pack_apart(std::span<const Outline> islands, const PageOptions& page,
   return tight.placements.front().scale > rows.placements.front().scale ? tight : rows;
 }
 
-Placement on_top(const Placement& first, const SameShape& same) {
-  return {first.cosine * same.cosine - first.sine * same.sine,
-          first.sine * same.cosine + first.cosine * same.sine, first.scale, first(same.offset)};
-}
-
-/// One island of each shape is packed, with the outlines of all that come to lie on it.
-Packed pack_stacked(std::span<const Outline> islands, const PageOptions& page,
-                    const std::stop_token& stop) {
-  const std::vector<SameShape> same = same_shapes(islands, stop);
-  std::vector<Outline> shapes;
-  std::vector<std::size_t> shape_of(islands.size());
-  for (std::size_t k = 0; k < islands.size(); ++k)
-    if (same[k].as == static_cast<Index>(k)) {
-      shape_of[k] = shapes.size();
-      shapes.push_back(islands[k]);
-    }
-  for (std::size_t k = 0; k < islands.size(); ++k) {
-    const auto first = static_cast<std::size_t>(same[k].as);
-    if (first == k) continue;
-    shape_of[k] = shape_of[first];
-    for (const auto& [a, b] : islands[k]) shapes[shape_of[k]].push_back({same[k](a), same[k](b)});
-  }
-  Packed packed = pack_apart(shapes, page, stop);
-  std::vector<Placement> placements(islands.size());
-  packed.is_stacked.assign(islands.size(), 0);
-  for (std::size_t k = 0; k < islands.size(); ++k) {
-    placements[k] = on_top(packed.placements[shape_of[k]], same[k]);
-    packed.is_stacked[k] = same[k].as == static_cast<Index>(k) ? 0 : 1;
-  }
-  packed.placements = std::move(placements);
-  return packed;
-}
-
 double area_of(const Outline& outline) {
   double area = 0;
   for (const auto& [a, b] : outline) area += (a.x() * b.y() - a.y() * b.x()) / 2;
@@ -267,8 +286,8 @@ double rough_fill(std::span<const Outline> islands, const std::stop_token& stop)
 Packed pack(std::span<const Outline> islands, const PageOptions& page,
             const std::stop_token& stop) {
   if (islands.empty()) return {};
-  return page.packing.stack_identical ? pack_stacked(islands, page, stop)
-                                      : pack_apart(islands, page, stop);
+  const auto apart = [&](std::span<const Outline> each) { return pack_apart(each, page, stop); };
+  return page.packing.stack_identical ? pack_stacked(islands, apart, stop) : apart(islands);
 }
 
 }  // namespace unwrapd

@@ -1,0 +1,50 @@
+#pragma once
+// How much of a mask lies on taken cells, for any place of it at once.
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/atlas/mask.hpp"
+
+namespace unwrapd {
+
+/// Cells [x_begin, x_end) x [y_begin, y_end).
+struct CellWindow {
+  int x_begin = 0, x_end = 0, y_begin = 0, y_end = 0;
+};
+
+/// Weighted cells of a window, in each row summed up from the left: what a run covers is the
+/// difference of two entries.
+class OverlapTable {
+ public:
+  static constexpr std::int64_t kTooMuch = std::numeric_limits<std::int64_t>::max();
+
+  /// Forgets what was taken.
+  void reset(const CellWindow& window);
+
+  /// Cells of an island whose lower left one lies on (x, y) get heavier. What lies outside of the
+  /// window is left out.
+  void take(const Rows& touched, int x, int y, std::int32_t weight);
+
+  /// To be called once between take() and overlap().
+  void sum_up();
+
+  /// The weight of the cells on or near to the mask at (x, y), or kTooMuch once it is no less than
+  /// most. All of mask.grown lies in the window there.
+  [[nodiscard]] std::int64_t overlap(const Mask& mask, int x, int y, std::int64_t most);
+
+  [[nodiscard]] std::int64_t work() const { return work_; }  ///< in steps of about a nanosecond
+
+ private:
+  [[nodiscard]] std::int32_t* row(int y) {
+    return &table_[static_cast<std::size_t>(y - window_.y_begin) * stride_];
+  }
+
+  CellWindow window_;
+  std::size_t stride_ = 0;
+  std::int64_t work_ = 0;
+  std::vector<std::int32_t> table_;
+};
+
+}  // namespace unwrapd
