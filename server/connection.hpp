@@ -55,7 +55,8 @@ class Connection {
   [[nodiscard]] bool is_writable();
 
   [[nodiscard]] bool is_readable() const { return !body_done_; }
-  [[nodiscard]] bool body_done() const { return body_done_; }
+  /// Whether the current request has been handed out to its end: what follows is the next one.
+  [[nodiscard]] bool is_read() const { return body_done_ && used_ >= head_end_; }
   [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
   [[nodiscard]] int socket() const { return client_.transport->socket(); }
   /// Its address.

@@ -163,6 +163,7 @@ class Exchange::Http final : public httplib::Server {
     svr_sock_ = connection.socket();  // httplib writes only while it has one
     last_ = last;
     done_ = {};
+    done_.client = connection.client();
     bool closed = false;
     ConnectionStream stream(connection);
     const bool written = process_request(stream, false, closed, unframe);
@@ -214,7 +215,7 @@ class Exchange::Http final : public httplib::Server {
 
   /// Corrects what httplib has added to the header fields.
   void finish(httplib::Response& response) {
-    if (!connection_->body_done()) last_ = true;
+    if (!connection_->is_read()) last_ = true;  // its rest is no request
     if (last_) {
       response.headers.erase("Keep-Alive");
       response.headers.erase("Connection");

@@ -75,7 +75,7 @@ std::string_view vet_request_line(std::string_view line) {
         "check the client.");
   const std::string_view target = line.substr(first + 1, last - first - 1);
   const std::string_view version = line.substr(last + 1);
-  if (target.size() > kMaxTargetBytes)
+  if (line.size() > kMaxLineBytes)
     throw Error(ErrorCode::headers_too_large, "The address is longer than 8 KiB; shorten it.");
   if (target.find(' ') != std::string_view::npos || std::ranges::any_of(target, is_control))
     malformed(
@@ -141,6 +141,8 @@ Framing vet_head(std::string_view head) {
     if (line.empty()) break;
     if (++counts.fields > kMaxHeaderFields)
       throw Error(ErrorCode::headers_too_large, "There are over 100 header fields; send fewer.");
+    if (line.size() > kMaxLineBytes)
+      throw Error(ErrorCode::headers_too_large, "A header field is longer than 8 KiB; shorten it.");
     const std::size_t colon = std::min(line.find(':'), line.size());
     vet_field(line.substr(0, colon), trim(line.substr(std::min(colon + 1, line.size()))), framing,
               counts);

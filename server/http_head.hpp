@@ -8,7 +8,7 @@
 namespace unwrapd::server {
 
 inline constexpr std::size_t kMaxHeadBytes = std::size_t{32} * 1024;
-inline constexpr std::size_t kMaxTargetBytes = std::size_t{8} * 1024;
+inline constexpr std::size_t kMaxLineBytes = std::size_t{8} * 1024 - 2;  // httplib's, without CRLF
 inline constexpr int kMaxHeaderFields = 100;
 
 /// How the body of a request is delimited.

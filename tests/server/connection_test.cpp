@@ -64,7 +64,7 @@ TEST_F(ConnectionTest, HandsOutTheHeadAndThenTheBody) {
   send(kHead + "helloGET / HTTP/1.1\r\nHost: x\r\n\r\n");
   ASSERT_TRUE(connection().next_request());
   EXPECT_EQ(read_all(), kHead + "hello");
-  EXPECT_TRUE(connection().body_done());
+  EXPECT_TRUE(connection().is_read());
   ASSERT_TRUE(connection().next_request());
   EXPECT_EQ(read_all(), "GET / HTTP/1.1\r\nHost: x\r\n\r\n");
 }
@@ -90,7 +90,7 @@ TEST_F(ConnectionTest, HalfABodyIsATimeout) {
   EXPECT_EQ(read_all(), kHead + "he");
   ASSERT_TRUE(connection().failure());
   EXPECT_EQ(connection().failure()->code(), ErrorCode::request_timeout);
-  EXPECT_FALSE(connection().body_done());
+  EXPECT_FALSE(connection().is_read());
   hang_up();
 }
 

@@ -79,6 +79,8 @@ TEST(HttpHead, RefusesWhatIsNoRequestLine) {
 TEST(HttpHead, KeepsItsLimits) {
   EXPECT_EQ(refusal(head("GET /" + std::string(9000, 'a') + " HTTP/1.1")),
             ErrorCode::headers_too_large);
+  EXPECT_EQ(refusal(head("GET / HTTP/1.1", "X: " + std::string(9000, 'a') + "\r\n")),
+            ErrorCode::headers_too_large);
   std::string fields;
   for (int i = 0; i < 101; ++i) fields += "X-" + std::to_string(i) + ": y\r\n";
   EXPECT_EQ(refusal(head("GET / HTTP/1.1", fields)), ErrorCode::headers_too_large);

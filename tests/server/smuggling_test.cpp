@@ -58,6 +58,9 @@ std::vector<Shape> shapes() {
        "POST /v1/jobs HTTP/1.1 HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n"},
       {"a small version", "POST /v1/jobs http/1.1\r\nHost: x\r\nContent-Length: 0\r\n"},
       {"a tunnel", "CONNECT x:1 HTTP/1.1\r\nHost: x\r\n"},
+      {"a method that httplib does not know", "FOO /healthz HTTP/1.1\r\nHost: x\r\n"},
+      {"a field longer than httplib reads",
+       "GET /healthz HTTP/1.1\r\nHost: x\r\nX: " + std::string(9000, 'a') + "\r\nY: z\r\n"},
       {"a body that nobody reads", "GET /healthz HTTP/1.1\r\nHost: x\r\nContent-Length: 38\r\n"},
       {"a chunk size with a prefix", post + chunked, "0x0\r\n\r\n"},
       {"a chunk size with a sign", post + chunked, "-0\r\n\r\n"},
@@ -79,6 +82,7 @@ TEST_F(Smuggling, NoShapeIsAnsweredTwice) {
     const std::string answer = raw.finish();
     EXPECT_THAT(answer, testing::StartsWith("HTTP/1.1 ")) << shape.name;
     EXPECT_THAT(answer, Not(HasSubstr("max_body_bytes"))) << shape.name << ": " << answer;
+    EXPECT_THAT(answer, Not(HasSubstr("}HTTP/1.1 "))) << shape.name;  // a second answer
     EXPECT_THAT(answer, HasSubstr("Connection: close")) << shape.name;
     const bool is_unread_body = answer.starts_with("HTTP/1.1 200");
     EXPECT_TRUE(answer.starts_with("HTTP/1.1 4") || is_unread_body) << shape.name << answer;
