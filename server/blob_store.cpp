@@ -115,7 +115,12 @@ std::string BlobStore::note(std::string_view job, const std::string& file) {
   const std::string digest = sha256_of(File::open(path(job, file)));
   digests[file] = digest;
   write_digests(blobs_ / job, digests);
+  if (noted_) noted_(job, bytes_below(blobs_ / job));
   return digest;
+}
+
+void BlobStore::on_noted(std::function<void(std::string_view job, std::int64_t bytes)> told) {
+  noted_ = std::move(told);
 }
 
 bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {

@@ -63,6 +63,9 @@ class BlobStore {
   /// The noted digest; of a file without one (of an older version), computed.
   [[nodiscard]] std::string digest(std::string_view job, std::string_view file) const;
 
+  /// told: of the bytes of all files of a job whenever note() was called.
+  void on_noted(std::function<void(std::string_view job, std::int64_t bytes)> told);
+
   /// Removes unfinished uploads and files, and the folders of jobs that keeps_files refuses.
   void sweep(const std::function<bool(const std::string& job)>& keeps_files);
 
@@ -72,6 +75,7 @@ class BlobStore {
   std::filesystem::path incoming_;
   std::filesystem::path blobs_;
   DiskRoom room_;
+  std::function<void(std::string_view job, std::int64_t bytes)> noted_;
   mutable std::mutex noting_;  // one writer of `digests` at a time
 };
 

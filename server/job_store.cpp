@@ -168,6 +168,13 @@ std::vector<std::string> JobStore::finished_before(std::int64_t epoch_ms, int li
   return ids;
 }
 
+void JobStore::set_stored_bytes(std::string_view id, std::int64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  Statement(database_, "UPDATE jobs SET stored_bytes = ?2 WHERE id = ?1 AND expired = 0")
+      .with(id, bytes)
+      .run();
+}
+
 void JobStore::set_expired(std::string_view id) {
   const std::lock_guard lock(mutex_);
   Statement(database_, "UPDATE jobs SET expired = 1, stored_bytes = 0 WHERE id = ?").with(id).run();

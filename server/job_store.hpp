@@ -84,6 +84,7 @@ class JobStore {
   bool keeps_files(std::string_view id);
   /// Final jobs that ended before this time and still have their files, the oldest first.
   std::vector<std::string> finished_before(std::int64_t epoch_ms, int limit = -1);
+  void set_stored_bytes(std::string_view id, std::int64_t bytes);
   void set_expired(std::string_view id);
   /// Removes the rows of expired jobs that ended before this time.
   void forget_before(std::int64_t epoch_ms);

@@ -1,15 +1,12 @@
 #include "server/picture_store.hpp"
 
 #include <bit>
-#include <filesystem>
 
 #include "server/identity.hpp"
 #include "server/map_choice.hpp"
 
 namespace unwrapd::server {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// "layout.svg" for what the worker has drawn already, else "uv.bin.layout.area.1024.png".
 std::string file_name(std::size_t map, const Picture& picture) {
@@ -36,28 +33,20 @@ bool is_kept(const Picture& picture) {
 }  // namespace
 
 StoredResult PictureStore::open(const JobRecord& job, std::size_t map, const Picture& picture) {
-  const std::string name = file_name(map, picture), digest = name + ".sha256";
-  const fs::path path = blobs_.path(job.id, name);
+  const std::string name = file_name(map, picture);
   const std::lock_guard lock(drawing_);
-  if (fs::exists(path))
+  if (std::optional<StoredResult> kept = find_whole(blobs_, job.id, name)) {
     ++counts_.hits;
-  else
-    draw_into_store(job, {.map = map, .picture = picture, .format = {}}, name);
-  if (!fs::exists(blobs_.path(job.id, digest)))
-    blobs_.write(job.id, digest, sha256(read_file(path)));
-  StoredResult stored{.file = std::make_shared<const File>(File::open(path)),
-                      .sha256 = read_file(blobs_.path(job.id, digest))};
-  if (is_kept(picture)) return stored;
-  blobs_.discard(job.id, name);
-  blobs_.discard(job.id, digest);
-  return stored;
-}
-
-void PictureStore::draw_into_store(const JobRecord& job, const Rendering& rendering,
-                                   const std::string& name) {
-  const std::string bytes = renderer_.render(job, rendering);
+    return std::move(*kept);
+  }
+  const std::string bytes = renderer_.render(job, {.map = map, .picture = picture, .format = {}});
   counts_.made(bytes);
+  if (is_kept(picture)) return keep(blobs_, job.id, name, bytes);
   blobs_.write(job.id, name, bytes);
+  StoredResult once{.file = std::make_shared<const File>(File::open(blobs_.path(job.id, name))),
+                    .sha256 = sha256(bytes)};
+  blobs_.discard(job.id, name);
+  return once;
 }
 
 }  // namespace unwrapd::server

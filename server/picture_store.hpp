@@ -17,13 +17,12 @@ class PictureStore {
   PictureStore(BlobStore& blobs, const Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
   /// The picture of one of a succeeded job's maps (see map_choice.hpp). Those whose size is a power
-  /// of two are kept with the job, so that whoever asks for every size fills no disk.
+  /// of two are kept with the job, so that whoever asks for every size fills no disk; a damaged one
+  /// is drawn again.
   StoredResult open(const JobRecord& job, std::size_t map, const Picture& picture);
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
-  void draw_into_store(const JobRecord& job, const Rendering& rendering, const std::string& name);
-
   BlobStore& blobs_;
   const Renderer& renderer_;
   FileCounts counts_;

@@ -32,13 +32,31 @@ void write_result(BlobStore& blobs, std::string_view job, std::string_view forma
   blobs.write(job, result_file(format), bytes);
 }
 
+std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string& job,
+                                       const std::string& file) {
+  if (!std::filesystem::exists(blobs.path(job, file))) return std::nullopt;
+  try {
+    return StoredResult{.file = blobs.open(job, file), .sha256 = blobs.digest(job, file)};
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::storage_corrupt) return std::nullopt;  // it is made again
+    throw;
+  }
+}
+
+StoredResult keep(BlobStore& blobs, const std::string& job, const std::string& file,
+                  std::string_view bytes) {
+  blobs.write(job, file, bytes);
+  const std::string digest = blobs.note(job, file);
+  return {.file = blobs.open(job, file), .sha256 = digest};
+}
+
 StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::string_view format) {
   const std::string file = map_file(result_file(format), map);
-  std::optional<StoredResult> kept = find(job, file);
+  std::optional<StoredResult> kept = find_whole(blobs_, job.id, file);
   std::unique_lock lock(making_, std::defer_lock);
   if (!kept) {
     lock.lock();
-    kept = find(job, file);  // made meanwhile
+    kept = find_whole(blobs_, job.id, file);  // made meanwhile
   }
   if (kept) {
     ++counts_.hits;
@@ -47,19 +65,7 @@ StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::strin
   const Rendering rendering{.map = map, .picture = {}, .format = format_named(format)};
   const std::string bytes = renderer_.render(job, rendering);
   counts_.made(bytes);
-  blobs_.write(job.id, file, bytes);
-  const std::string digest = blobs_.note(job.id, file);
-  return {.file = blobs_.open(job.id, file), .sha256 = digest};
-}
-
-std::optional<StoredResult> ResultStore::find(const JobRecord& job, const std::string& file) const {
-  if (!std::filesystem::exists(blobs_.path(job.id, file))) return std::nullopt;
-  try {
-    return StoredResult{.file = blobs_.open(job.id, file), .sha256 = blobs_.digest(job.id, file)};
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::storage_corrupt) return std::nullopt;  // it is made again
-    throw;
-  }
+  return keep(blobs_, job.id, file, bytes);
 }
 
 }  // namespace unwrapd::server

@@ -29,6 +29,13 @@ struct StoredResult {
   std::string sha256;                ///< becomes the ETag
 };
 
+/// A file of a job that is there and whole.
+std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string& job,
+                                       const std::string& file);
+/// Stores a file that was made after the end of its job.
+StoredResult keep(BlobStore& blobs, const std::string& job, const std::string& file,
+                  std::string_view bytes);
+
 /// Thread-safe.
 class ResultStore {
  public:
@@ -41,10 +48,6 @@ class ResultStore {
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
-  /// What lies in the store and is whole.
-  [[nodiscard]] std::optional<StoredResult> find(const JobRecord& job,
-                                                 const std::string& file) const;
-
   BlobStore& blobs_;
   const Renderer& renderer_;
   FileCounts counts_;

@@ -101,6 +101,8 @@ struct Service::Parts {
     queue.recover(isolation.possible);
     blobs.sweep([&](const std::string& job) { return store.keeps_files(job); });
     blobs.room().on_shortage([this] { return evict_oldest(store, blobs); });
+    blobs.on_noted(
+        [this](std::string_view job, auto bytes) { store.set_stored_bytes(job, bytes); });
     start_periodic(log);
     workers.emplace(queue, blobs, config.limits, log,
                     WorkerConfig{.workers = config.workers,

@@ -1,6 +1,7 @@
 // The pictures of jobs: what they are, what may be asked of them, when there are none.
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <set>
 
 #include "decode_png.hpp"
@@ -67,10 +68,24 @@ TEST_F(Pictures, AreDrawnOnceAndKeptAtTheUsualSizesOnly) {
   const std::string id = succeeded();
   EXPECT_EQ(files(id, ".png"), 0);
   const std::string drawn = get(id, "preview.png?size=128")->body;
-  EXPECT_EQ(files(id, "preview.128.png"), 2);  // and its digest
+  EXPECT_EQ(files(id, "preview.128.png"), 1);
   EXPECT_EQ(get(id, "preview.png?size=128")->body, drawn);
   EXPECT_THAT(get(id, "preview.png?size=129")->body, StartsWith(kSignature));
   EXPECT_EQ(files(id, "preview.129.png"), 0);
+}
+
+TEST_F(Pictures, AreDrawnAgainWhenTheyAreDamaged) {
+  start();
+  const std::string id = succeeded();
+  for (const std::string picture : {"layout.svg", "preview.png"}) {
+    const std::string whole = get(id, picture)->body;
+    for (const auto& entry : std::filesystem::directory_iterator(config_.data / "blobs" / id)) {
+      const std::string name = entry.path().filename();
+      if (name.ends_with(".png") || name.ends_with(".svg"))
+        std::fstream(entry.path()).seekp(100).put('\0');
+    }
+    EXPECT_EQ(get(id, picture)->body, whole) << picture;
+  }
 }
 
 TEST_F(Pictures, ComeWithATagAndInParts) {
