@@ -19,6 +19,12 @@ bool is_loopback(std::string_view host) {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
 
+/// Schemes have no case (RFC 9110, 11.1).
+bool is_bearer(std::string_view field) {
+  const std::string_view scheme = field.substr(0, kScheme.size());
+  return !IgnoreCase()(scheme, kScheme) && !IgnoreCase()(kScheme, scheme);
+}
+
 bool is_public(std::string_view route) { return std::ranges::count(kPublic, route) > 0; }
 
 bool only_reads(const Request& request) {
@@ -56,7 +62,7 @@ int RateLimit::wait_seconds(const std::string& key, std::int64_t per_minute,
 ApiKey Access::key_of(const Request& request) {
   const std::string field = request.header("Authorization");
   std::optional<ApiKey> key;
-  if (field.starts_with(kScheme)) key = keys_.find(std::string_view(field).substr(kScheme.size()));
+  if (is_bearer(field)) key = keys_.find(std::string_view(field).substr(kScheme.size()));
   if (key) return std::move(*key);
   throw Error(ErrorCode::unauthorized,
               "This server asks for an API key; send it as Authorization: Bearer KEY.");

@@ -122,6 +122,8 @@ std::string text_of(const toml::node& node, const std::string& where) {
 }
 
 void Reading::read_file(const std::string& path) {
+  if (std::filesystem::is_directory(path))  // which the parser takes for an empty file
+    wrong(path + " is a directory; name the file in it.");
   toml::table table;
   try {
     table = toml::parse_file(path);
@@ -166,6 +168,11 @@ void Reading::finish() {
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
+    if (c >= 0 && c < ' ') {
+      constexpr std::string_view digits = "0123456789ABCDEF";
+      out.append("\\u00").append({digits[c >> 4], digits[c & 15]});
+      continue;
+    }
     if (c == '"' || c == '\\') out += '\\';
     out += c;
   }

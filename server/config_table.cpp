@@ -1,4 +1,5 @@
 // The one place where options of the server are declared: name, range and sentence of each.
+#include <algorithm>
 #include <limits>
 
 #include "server/addresses.hpp"
@@ -107,15 +108,24 @@ ConfigGroup storing() {
 }
 
 /// "https://example.com", without a path, as browsers write it.
+/// Browsers send origins, and webhooks' hosts are compared, in small letters.
+bool has_capital(const std::string& text) {
+  return std::ranges::any_of(text, [](char c) { return c >= 'A' && c <= 'Z'; });
+}
+
 void check_origin(const std::string& item) {
   const std::size_t scheme = item.find("://");
-  const bool whole = scheme != std::string::npos && item.find('/', scheme + 3) == std::string::npos;
-  if (item != "*" && !whole) expected("origins like https://example.com, or *");
+  const bool whole = scheme != std::string::npos && item.size() > scheme + 3 &&
+                     item.find('/', scheme + 3) == std::string::npos;
+  if (item != "*" && (!whole || has_capital(item)))
+    expected("origins like https://example.com, in small letters, or *");
 }
 
 void check_host(const std::string& item) {
-  if (item.find('/') != std::string::npos || item.find(':') != std::string::npos)
-    expected("hosts like example.com or *.example.com, or *");
+  const std::string host = item.starts_with("*.") ? item.substr(2) : item;
+  const bool whole = !host.empty() && host.find_first_of("*/:@? ") == std::string::npos;
+  if (item != "*" && (!whole || has_capital(item)))
+    expected("hosts like example.com or *.example.com, in small letters, or *");
 }
 
 ConfigGroup admitting() {

@@ -57,9 +57,17 @@ bool same(const std::string& left, const std::string& right) {
          CRYPTO_memcmp(left.data(), right.data(), left.size()) == 0;  // in constant time
 }
 
+std::string read_given(const std::filesystem::path& file) {
+  try {
+    return read_file(file);
+  } catch (const Error& error) {
+    throw Error(error.code(), "The file " + file.string() + " of --key-file: " + error.what());
+  }
+}
+
 /// What the file holds, when that can be a key (the characters of RFC 6750) and none to be guessed.
 std::string key_in(const std::filesystem::path& file) {
-  std::string text = read_file(file);
+  std::string text = read_given(file);
   text.erase(0, std::min(text.find_first_not_of(kSpace), text.size()));
   text.erase(text.find_last_not_of(kSpace) + 1);
   const bool of_form = std::ranges::all_of(text, [](char c) {

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <cstdio>
@@ -18,6 +19,8 @@
 
 namespace unwrapd::server {
 namespace {
+
+constexpr mode_t kNotOfOthers = 0027;  // meshes, results and the databases
 
 /// As many files as the kernel lets us have: the default is less than --max-connections.
 void allow_open_files(int connections, const Log& log) {
@@ -64,6 +67,7 @@ void serve(const Config& config, const Log& log, const Duties& duties) {
 }  // namespace
 
 int run_program(int argc, char** argv, Duties duties) {
+  ::umask(kNotOfOthers);
   if (is_job_worker(argc, argv)) return run_job_worker(duties);
   if (argc > 1 && std::string_view(argv[1]) == "keys") return run_keys_command(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);

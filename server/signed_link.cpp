@@ -38,7 +38,11 @@ std::string secret_in(const std::filesystem::path& file) {
     write_file(file, random_hex(kSecretBytes));
     ::umask(before);
   }
-  return read_file(file);
+  std::string secret = read_file(file);
+  if (secret.size() == 2 * kSecretBytes) return secret;
+  throw Error(ErrorCode::storage_failed, "The file " + file.string() +
+                                             " is damaged; remove it to have a new one made: "
+                                             "links and webhooks' secrets change with it.");
 }
 
 std::string LinkSigner::signature(const std::string& path, const std::string& expires) const {

@@ -2,6 +2,8 @@
 // jobs of another; and no key comes into the log.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { readdirSync, statSync } from "node:fs";
+import { join } from "node:path";
 import test from "node:test";
 
 import { dataDirectory, ENDLESS, grid, QUICK, Server } from "../fault/server.mjs";
@@ -62,6 +64,10 @@ test("without a key there are the contract and the probes, and nothing else", as
     const headers = await refused(await nobody.fetch(path), 401, "unauthorized");
     assert.equal(headers.get("WWW-Authenticate"), "Bearer");
   }
+  const small = { Authorization: `bearer ${addKey(data, "a")}` }; // schemes have no case
+  assert.equal((await nobody.fetch("/v1/jobs", { headers: small })).status, 200);
+  for (const file of readdirSync(data))
+    assert.equal(statSync(join(data, file)).mode & 0o007, 0, `${file} is of its user and group alone`);
   await refused(await nobody.post(), 401, "unauthorized");
   await refused(await nobody.fetch(job, { method: "DELETE" }), 401, "unauthorized");
   await refused(await new Holder(server, "unw_nonsense").post(), 401, "unauthorized");
@@ -115,6 +121,7 @@ test("scopes, rates and quotas are kept, each by its code", async (t) => {
     rare: add("--requests-per-minute", "2"),
     one: add("--max-jobs", "1"),
     small: add("--max-bytes", "9000"),
+    drawing: add("--max-bytes", "40000"), // three jobs without pictures
   };
   const server = await Server.start(data, "--require-keys");
   const as = (name) => new Holder(server, keys[name]);
@@ -132,6 +139,10 @@ test("scopes, rates and quotas are kept, each by its code", async (t) => {
   await refused(await as("small").post(QUICK, 12), 507, "quota_exceeded");
   await as("small").fetch(`/v1/jobs/${kept}`, { method: "DELETE" });
   assert.equal((await as("small").post(QUICK, 5)).status, 202);
+  const drawn = await as("drawing").done(QUICK, 5);
+  assert.equal((await as("drawing").post(QUICK, 5)).status, 202);
+  await as("drawing").fetch(`/v1/jobs/${drawn}/preview.png?size=256`); // kept with the job
+  await refused(await as("drawing").post(QUICK, 5), 507, "quota_exceeded");
   await server.end("SIGTERM");
 });
 

@@ -123,6 +123,13 @@ TEST_F(Keys, DoWhatTheirScopesSayAndNoMore) {
   EXPECT_EQ(error_of([] { parse_scopes("root"); }).code(), ErrorCode::invalid_option);
 }
 
+TEST(Links, AreNotSignedWithWhatIsLeftOfASecret) {
+  const TempDir dir;
+  write_file(dir.path() / "secret", "");
+  EXPECT_EQ(error_of([&] { static_cast<void>(secret_in(dir.path() / "secret")); }).code(),
+            ErrorCode::storage_failed);
+}
+
 TEST(RateLimit, LetsAMinutesWorthThroughAndThenOneByOne) {
   RateLimit rates;
   const RateLimit::Clock::time_point start{};

@@ -123,6 +123,7 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithItsPlaceAndWhatWouldBeRight) {
   EXPECT_THAT(wrong("workers = 1.5"), HasSubstr("workers is neither text, a whole number"));
   EXPECT_THAT(wrong("data = [1]"), HasSubstr("data has an item that is not text"));
   EXPECT_THAT(mistake({"--config", "/no/such/file"}), HasSubstr("/no/such/file"));
+  EXPECT_THAT(mistake({"--config", "/tmp"}), HasSubstr("/tmp is a directory"));
   const Environment queue("UNWRAPD_MAX_QUEUE", "many");
   EXPECT_THAT(mistake({}),
               AllOf(HasSubstr("UNWRAPD_MAX_QUEUE: max-queue takes"), HasSubstr("not \"many\"")));
@@ -142,6 +143,11 @@ TEST(Config, MistakesEndTheProgram) {
                                              {"--max-queue", "many"},
                                              {"--max-queue", "99999999999999999999"},
                                              {"--log-level", "loud"},
+                                             {"--cors-origins", "https://Example.com"},
+                                             {"--cors-origins", "https://"},
+                                             {"--webhook-hosts", "*.*"},
+                                             {"--webhook-hosts", "Example.com"},
+                                             {"--webhook-hosts", "*."},
                                              {"--no-such-flag"},
                                              {"file.glb"}})
     EXPECT_NE(mistake(flags), "") << flags[0];
