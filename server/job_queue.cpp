@@ -6,6 +6,7 @@
 #include "server/clock.hpp"
 #include "server/job_rows.hpp"
 #include "server/queue_errors.hpp"
+#include "server/trace.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -43,6 +44,7 @@ void JobQueue::recover(bool tried_apart) {
 }
 
 void JobQueue::take_up(const JobRecord& job, Found found) {
+  const TraceScope trace(job.trace);
   if (job.cancel_requested) {
     give_up(job, cancelled_by_owner());
   } else if (found == Found::thrice_by_death) {
@@ -62,6 +64,7 @@ void JobQueue::give_up(const JobRecord& job, const Error& why) {
 }
 
 void JobQueue::wait_again(const JobRecord& job) {
+  const TraceScope trace(job.trace);
   std::shared_ptr<JobFeed> feed = events_.find(job.id);  // with its readers, if it ran already
   if (!feed) feed = events_.open(job.id, job.attempt);
   feed->publish([&](std::int64_t seq) { return api::queued_event(seq, share_.waiting()); });

@@ -50,6 +50,7 @@ struct JobRecord {
   std::string content_key;        ///< the same for the same question: mesh, options, version
   std::int64_t stored_bytes = 0;  ///< of its files, as far as quotas count them
   std::string webhook;            ///< called at its end, empty for none
+  std::string trace;              ///< id of the trace that it came in and all is done in
 };
 
 /// The job as its owner sees it, without live progress.

@@ -13,8 +13,10 @@ using api::state_name;
 /// What a reader of a job's row finds there of its input.
 std::string insert_statement() {
   return "INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256, bytes,"
-         " buffers, owner, urgency, request_key, content_key, stored_bytes, webhook)"
-         " VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, NULLIF(?, ''), ?, ?, ?) RETURNING seq";
+         " buffers, owner, urgency, request_key, content_key, stored_bytes, webhook,"
+         " trace)"
+         " VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, NULLIF(?, ''), ?, ?, ?, ?) RETURNING "
+         "seq";
 }
 
 }  // namespace
@@ -43,7 +45,7 @@ std::int64_t JobStore::insert(const JobRecord& job) {
   statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, text_of(job.options),
                  text_of(job.notes), job.input.sha256, job.input.bytes,
                  text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
-                 job.request_key, job.content_key, job.stored_bytes, job.webhook);
+                 job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace);
   statement.step();
   const std::int64_t seq = statement.number(0);
   statement.run();
@@ -129,8 +131,11 @@ bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
       .run();
   if (database_.changes() != 1) return false;
   if (!known.webhook.empty()) {
-    Statement(database_, "INSERT INTO deliveries (job, url, body, due_ms) VALUES (?, ?, ?, ?)")
-        .with(known.id, known.webhook, outcome.delivery, outcome.finished_ms)
+    Statement(database_,
+              "INSERT INTO deliveries (job, owner, trace, url, body, due_ms)"
+              " VALUES (?, ?, ?, ?, ?, ?)")
+        .with(known.id, known.owner, known.trace, known.webhook, outcome.delivery,
+              outcome.finished_ms)
         .run();
   }
   both.commit();

@@ -8,7 +8,7 @@ namespace unwrapd::server {
 namespace {
 
 /// Step k makes version k + 1 out of version k. Steps that were released are never edited.
-constexpr std::array<const char*, 2> kSteps = {
+constexpr std::array<const char*, 3> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -56,6 +56,12 @@ CREATE TABLE deliveries (
   due_ms INTEGER NOT NULL
 ) STRICT;
 CREATE INDEX deliveries_by_time ON deliveries (due_ms);
+)sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN trace TEXT NOT NULL DEFAULT '';
+ALTER TABLE deliveries ADD COLUMN trace TEXT NOT NULL DEFAULT '';
+ALTER TABLE deliveries ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+UPDATE deliveries SET owner = COALESCE((SELECT owner FROM jobs WHERE id = job), '');
 )sql"};
 
 constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());

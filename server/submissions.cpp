@@ -5,6 +5,7 @@
 #include "server/job_input.hpp"
 #include "server/media_types.hpp"
 #include "server/request_headers.hpp"
+#include "server/trace.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -63,6 +64,7 @@ Submission Submissions::receive(const Request& request, const std::string& uploa
   job.request_key = request.id.empty() ? idempotency_key(request) : request.id;
   job.owner = request.caller.owner;
   job.urgency = urgency(request);
+  job.trace = current_trace();
   job.webhook = request.header("Unwrapd-Webhook");
   if (!job.webhook.empty()) static_cast<void>(parse_webhook(job.webhook, webhooks_));
   const UploadFolder folder{.path = blobs_.begin_upload(upload), .take = [&](std::int64_t bytes) {

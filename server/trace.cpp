@@ -43,8 +43,14 @@ bool is_traceparent(std::string_view text) {
 
 std::string new_trace_id() { return random_job_id().substr(2); }  // both are 128 random bits
 
-Trace continue_trace(std::string_view traceparent) {
+Trace step_of(std::string_view id) {
   Trace trace{.id = new_trace_id(), .span = new_trace_id().substr(0, kSpanDigits)};
+  if (!id.empty()) trace.id = id;
+  return trace;
+}
+
+Trace continue_trace(std::string_view traceparent) {
+  Trace trace = step_of({});
   if (!is_traceparent(traceparent)) return trace;
   trace.id = traceparent.substr(kIdAt, kIdDigits);
   trace.flags = traceparent.substr(kFlagsAt, 2);

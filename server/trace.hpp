@@ -19,6 +19,8 @@ struct Trace {
 std::string new_trace_id();
 /// The trace that a traceparent names, with a span of our own; a new one when it names none.
 Trace continue_trace(std::string_view traceparent);
+/// A further span of this trace; of a new one when there is none.
+Trace step_of(std::string_view id);
 /// "00-{id}-{span}-{flags}"
 std::string to_traceparent(const Trace& trace);
 

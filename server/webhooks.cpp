@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "server/clock.hpp"
 #include "server/identity.hpp"
+#include "server/trace.hpp"
 #include "server/webhook_http.hpp"
 
 namespace unwrapd::server {
@@ -84,15 +85,15 @@ std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
 
 Delivery Webhooks::load(std::int64_t seq) {
   Statement statement(database_,
-                      "SELECT d.job, COALESCE(j.owner, ''), d.url, d.body, d.tries"
-                      " FROM deliveries d LEFT JOIN jobs j ON j.id = d.job WHERE d.seq = ?");
+                      "SELECT job, owner, trace, url, body, tries FROM deliveries WHERE seq = ?");
   statement.with(seq).step();
   return {.seq = seq,
           .job = statement.text(0),
           .owner = statement.text(1),
-          .url = statement.text(2),
-          .body = statement.text(3),
-          .tries = static_cast<int>(statement.number(4))};
+          .trace = statement.text(2),
+          .url = statement.text(3),
+          .body = statement.text(4),
+          .tries = static_cast<int>(statement.number(5))};
 }
 
 std::string Webhooks::call(const Delivery& delivery, const std::stop_token& stop) const {
@@ -106,6 +107,7 @@ std::string Webhooks::call(const Delivery& delivery, const std::stop_token& stop
          .address = address,
          .headers = {{"webhook-id", delivery.job},
                      {"webhook-timestamp", timestamp},
+                     {"traceparent", to_traceparent(step_of(delivery.trace))},
                      {"webhook-signature",
                       webhook_signature(webhook_secret(secret_, delivery.owner), signed_text)}},
          .body = delivery.body},
@@ -136,6 +138,7 @@ void Webhooks::settle(const Delivery& delivery, const std::string& failure, std:
 
 /// What cannot be settled is called again: once too often rather than never.
 void Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
+  const TraceScope trace(delivery.trace);
   const std::string failure = call(delivery, stop);
   const std::lock_guard lock(mutex_);
   being_made_.erase(delivery.seq);

@@ -3,7 +3,8 @@
 // ends the job, and goes when it was answered with 2xx: neither a crash nor a receiver that is down
 // loses it. Tries go on with doubled pauses, ten in all. It is signed as Standard Webhooks has it:
 // webhook-id, webhook-timestamp, and webhook-signature, the HMAC-SHA256 of both and the body under
-// a secret of the job's owner. Eight calls at once, two to one host (webhook_pool.hpp).
+// a secret of the job's owner; traceparent is of the job's trace. Eight calls at once, two to one
+// host (webhook_pool.hpp).
 
 #include <cstdint>
 #include <filesystem>
@@ -25,7 +26,8 @@ namespace unwrapd::server {
 struct Delivery {
   std::int64_t seq = 0;
   std::string job;
-  std::string owner;  ///< of the job, empty once that is forgotten
+  std::string owner;  ///< of the job, which may be removed meanwhile
+  std::string trace;  ///< of the job
   std::string url;
   std::string body;
   int tries = 0;

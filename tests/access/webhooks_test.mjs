@@ -34,8 +34,8 @@ async function receiver(t) {
   return hook;
 }
 
-function submit(server, url, query = QUICK) {
-  const headers = { "Content-Type": "model/obj", "Unwrapd-Webhook": url };
+function submit(server, url, query = QUICK, more = {}) {
+  const headers = { "Content-Type": "model/obj", "Unwrapd-Webhook": url, ...more };
   return fetch(`${server.url}/v1/jobs?${query}`, { method: "POST", headers, body: grid(3) });
 }
 
@@ -70,6 +70,32 @@ test("a webhook is called, signed, until it answers, over a kill -9", async (t) 
   }
   await second.end("SIGTERM");
   assert.ok(!second.log.includes(secret.slice(6)) && !second.log.includes("done?a=b"));
+});
+
+test("a call is signed for its owner and tells its trace, also when the job is removed", async (t) => {
+  const data = dataDirectory(t);
+  const hook = await receiver(t);
+  hook.status = 500;
+  const keys = (...args) => execFileSync(process.env.UNWRAPD, ["keys", ...args, "--data", data],
+    { stdio: ["ignore", "pipe", "ignore"] }).toString().trim();
+  const holder = { Authorization: `Bearer ${keys("add", "--name", "a")}` };
+  const server = await Server.start(data, ...ALLOWED, "--require-keys", "--log-level", "info");
+  const trace = "0af7651916cd43dd8448eb211c80319c";
+  const more = { ...holder, traceparent: `00-${trace}-b7ad6b7169203331-01` };
+  const { id } = await (await submit(server, hook.url, QUICK, more)).json();
+  await hook.called(1);
+  const removed = await fetch(`${server.url}/v1/jobs/${id}`, { method: "DELETE", headers: holder });
+  assert.equal(removed.status, 204);
+  await hook.called(2);
+  const secret = keys("webhook-secret", keys("list").split(" ")[0]);
+  for (const call of hook.calls) {
+    assertSigned(call, secret);
+    assert.match(call.headers.traceparent, new RegExp(`^00-${trace}-[0-9a-f]{16}-00$`));
+  }
+  await server.end("SIGTERM");
+  const lines = server.log.trim().split("\n").map(JSON.parse).filter(({ job }) => job === id);
+  assert.ok(lines.some(({ event }) => event === "webhook not reached"));
+  for (const line of lines.filter(({ event }) => event !== "job removed")) assert.equal(line.trace, trace, line.event);
 });
 
 test("hosts that are not allowed are refused at once", async (t) => {

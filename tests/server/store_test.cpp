@@ -26,6 +26,7 @@ JobRecord some_job(const std::string& id) {
   job.options = {{"method", "arap"}};
   job.notes = {"lambda has no effect"};
   job.input = {.sha256 = "ab", .bytes = 7, .buffers = {{"a b.bin", "buffer_0"}}};
+  job.trace = "0af7";
   return job;
 }
 
@@ -61,6 +62,7 @@ TEST_F(Store, KeepsEveryFieldOverAReopening) {
   EXPECT_EQ(job->input.bytes, 7);
   ASSERT_EQ(job->input.buffers.size(), 1U);
   EXPECT_EQ(job->input.buffers[0].uri, "a b.bin");
+  EXPECT_EQ(job->trace, some_job("j_1").trace);
   EXPECT_TRUE(job->problem.is_null());
 }
 
