@@ -167,7 +167,8 @@ class Tracing {
     }
     const auto last = static_cast<Index>(row.size());
     while (!open.empty()) {
-      const auto [d, at] = open.top();
+      const auto [length_here, at] = open.top();
+      const double d = length_here;  // Clang 14 lets no lambda capture what a binding names
       open.pop();
       const Place here{at.first, at.second};
       if (d > distance[node(here)]) continue;
