@@ -1,6 +1,7 @@
 #include "server/event_feed.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "server/trace.hpp"
@@ -9,19 +10,22 @@ namespace unwrapd::server {
 namespace {
 
 constexpr std::int64_t kSeqsPerAttempt = 1'000'000'000;
-constexpr std::size_t kMaxReadingBytes = std::size_t{4} * 1024;  // at once, kept by each reader
+constexpr std::size_t kMaxReadingBytes = std::size_t{4} * 1024;  // at once, kept for each reader
 
 }  // namespace
 
-JobFeed::JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics)
+JobFeed::JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics,
+                 std::shared_ptr<const Doorbell> news)
     : base_(base),
       trace_(current_trace().empty() ? new_trace_id() : current_trace()),
+      news_(std::move(news)),
       newest_(base),
       capacity_(capacity) {
   if (metrics) watch_.emplace(*metrics);
 }
 
 void JobFeed::publish(const std::function<api::Event(std::int64_t seq)>& make) {
+  bool is_last = false;
   {
     const std::lock_guard lock(mutex_);
     if (over()) return;
@@ -30,9 +34,14 @@ void JobFeed::publish(const std::function<api::Event(std::int64_t seq)>& make) {
     ring_.push_back({event.seq, api::sse_frame(event)});
     newest_ = event.seq;
     if (ring_.size() > capacity_) ring_.pop_front();
-    finished_ = api::is_last(event);
+    finished_ = is_last = api::is_last(event);
   }
-  changed_.notify_all();
+  tell_news(is_last);
+}
+
+void JobFeed::tell_news(bool is_over) {
+  if (is_over) over_.notify_all();
+  if (news_) news_->ring();
 }
 
 void JobFeed::set_progress(const api::JobProgress& progress) {
@@ -50,7 +59,7 @@ void JobFeed::end() {
     const std::lock_guard lock(mutex_);
     ended_ = true;
   }
-  changed_.notify_all();
+  tell_news(true);
 }
 
 std::int64_t JobFeed::next_seq() const {
@@ -64,19 +73,18 @@ std::int64_t JobFeed::resume_after(std::optional<std::int64_t> last_event_id) co
   return finished_ ? std::min(*last_event_id, newest_ - 1) : *last_event_id;
 }
 
-Reading JobFeed::read(std::int64_t after, std::chrono::milliseconds patience) const {
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, patience, [&] { return newest_ > after || over(); });
+Reading JobFeed::read(std::int64_t after) const {
+  const std::lock_guard lock(mutex_);
   Reading reading{.frames = {}, .last_seq = after, .end = false};
   if (!ring_.empty() && ring_.front().seq > after + 1) {
     reading.last_seq = ring_.front().seq - 1;
     reading.frames = api::sse_frame(api::gap_event(after + 1, reading.last_seq));
   }
-  for (const Frame& frame : ring_) {
-    if (frame.seq <= reading.last_seq) continue;
+  while (!ring_.empty() && reading.last_seq < newest_) {
     if (reading.frames.size() > kMaxReadingBytes) return reading;
-    reading.frames += frame.text;
-    reading.last_seq = frame.seq;
+    const auto behind = static_cast<std::size_t>(newest_ - reading.last_seq);
+    reading.frames += ring_[ring_.size() - behind].text;
+    ++reading.last_seq;
   }
   reading.end = over();
   return reading;
@@ -84,13 +92,13 @@ Reading JobFeed::read(std::int64_t after, std::chrono::milliseconds patience) co
 
 bool JobFeed::wait_finished(std::chrono::steady_clock::time_point until) const {
   std::unique_lock lock(mutex_);
-  changed_.wait_until(lock, until, [&] { return over(); });
+  over_.wait_until(lock, until, [&] { return over(); });
   return finished_;
 }
 
 std::shared_ptr<JobFeed> EventFeed::open(const std::string& job, int attempt) {
   const std::lock_guard lock(mutex_);
-  auto feed = std::make_shared<JobFeed>(attempt * kSeqsPerAttempt, ring_, metrics_);
+  auto feed = std::make_shared<JobFeed>(attempt * kSeqsPerAttempt, ring_, metrics_, news_);
   feeds_[job] = feed;
   return feed;
 }

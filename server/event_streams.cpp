@@ -1,14 +1,12 @@
 #include "server/event_streams.hpp"
 
 #include <charconv>
-#include <chrono>
 
 #include "server/job_queue.hpp"
 
 namespace unwrapd::server {
 namespace {
 
-constexpr std::chrono::seconds kHeartbeat{15};
 constexpr int kRetrySeconds = 5;
 
 std::optional<std::int64_t> parse_event_id(const std::string& text) {
@@ -30,13 +28,10 @@ struct Reader {
   std::shared_ptr<void> place;
 };
 
-/// One reading a call. False when the stream is over or the reader has left; the job goes on.
-bool write_next(Reader& reader, const WriteBytes& write) {
-  const Reading reading = reader.feed->read(reader.after, kHeartbeat);
+StreamPiece next_piece(Reader& reader) {
+  Reading reading = reader.feed->read(reader.after);
   reader.after = reading.last_seq;
-  const bool idle = reading.frames.empty() && !reading.end;
-  if (idle) return write(api::kPing);
-  return (reading.frames.empty() || write(reading.frames)) && !reading.end;
+  return {.bytes = std::move(reading.frames), .end = reading.end};
 }
 
 std::string last_frame(const JobRecord& job) {
@@ -68,8 +63,7 @@ Response EventStreams::open(const JobRecord& job, const std::string& last_event_
   }
   auto reader = std::make_shared<Reader>(
       Reader{.feed = feed, .after = feed->resume_after(seen), .place = take_place()});
-  response.body =
-      StreamBody([reader](const WriteBytes& write) { return write_next(*reader, write); });
+  response.body = StreamBody{.next = [reader] { return next_piece(*reader); }, .ping = api::kPing};
   return response;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Server-sent events: a job's feed as the body of an answer. Only the reader's own thread ever
-// waits for the reader.
+// Server-sent events: a job's feed as the body of an answer, which one thread writes for all
+// readers (stream_writer.hpp).
 
 #include <atomic>
 #include <memory>

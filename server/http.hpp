@@ -67,10 +67,17 @@ struct FileBody {
   std::int64_t length = 0;
 };
 
-/// A body without an end known beforehand: called until it returns false. write returns false when
-/// the reader has left.
-using WriteBytes = std::function<bool(std::string_view bytes)>;
-using StreamBody = std::function<bool(const WriteBytes& write)>;
+struct StreamPiece {
+  std::string bytes;  ///< empty when there is nothing new
+  bool end = false;   ///< nothing will follow
+};
+
+/// A body that comes with time. Whoever makes one rings the bell (HttpUses::news) when next() has
+/// more.
+struct StreamBody {
+  std::function<StreamPiece()> next;  ///< what is there by now, some kB at most; never waits
+  std::string_view ping = {};         ///< sent after a silence; outlives the body
+};
 
 struct Response {
   int status = 200;

@@ -99,19 +99,17 @@ void set_file(const FileBody& file, const std::string& type, httplib::Response& 
       });
 }
 
-void set_stream(const StreamBody& stream, const std::string& type, httplib::Response& out) {
-  out.set_chunked_content_provider(type, [stream](size_t, httplib::DataSink& sink) {
-    bool taken = true;
-    const bool more = stream([&](std::string_view bytes) {
-      taken = sink.write(bytes.data(), bytes.size());
-      return taken;
-    });
-    if (!more) sink.done();
-    return taken;
+/// Leaves off where httplib would begin with the body.
+void set_stream(const StreamBody& stream, const std::string& type, std::optional<StreamBody>& begun,
+                httplib::Response& out) {
+  out.set_chunked_content_provider(type, [stream, &begun](size_t, httplib::DataSink&) {
+    begun = stream;
+    return false;
   });
 }
 
-void put(const Response& response, httplib::Response& out) {
+/// begun: gets the body of a stream once its head is out.
+void put(const Response& response, std::optional<StreamBody>& begun, httplib::Response& out) {
   out.status = response.status;
   for (const auto& [name, value] : response.headers) out.set_header(name.c_str(), value);
   if (const auto* text = std::get_if<std::string>(&response.body)) {
@@ -119,7 +117,7 @@ void put(const Response& response, httplib::Response& out) {
   } else if (const auto* file = std::get_if<FileBody>(&response.body)) {
     set_file(*file, response.content_type, out);
   } else {
-    set_stream(std::get<StreamBody>(response.body), response.content_type, out);
+    set_stream(std::get<StreamBody>(response.body), response.content_type, begun, out);
   }
 }
 
@@ -158,7 +156,7 @@ class Exchange::Http final : public httplib::Server {
   }
 
   bool answer_request(Connection& connection, bool last) {
-    const auto began = std::chrono::steady_clock::now();
+    began_ = std::chrono::steady_clock::now();
     connection_ = &connection;
     svr_sock_ = connection.socket();  // httplib writes only while it has one
     last_ = last;
@@ -167,13 +165,25 @@ class Exchange::Http final : public httplib::Server {
     bool closed = false;
     ConnectionStream stream(connection);
     const bool written = process_request(stream, false, closed, unframe);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began_;
     done_.seconds = took.count();
     done_.received_bytes = connection.body_bytes();
     done_.sent_bytes = connection.sent_bytes();
-    uses_.observe(done_);
+    if (!begun_) uses_.observe(done_);
+    told_trace_ = current_trace();
     trace_.reset();
     return written && !closed && !last_;
+  }
+
+  std::optional<OpenStream> take_stream() {
+    if (!begun_) return std::nullopt;
+    OpenStream stream{.body = std::move(*begun_),
+                      .done = done_,
+                      .trace = told_trace_,
+                      .began = began_,
+                      .last = last_};
+    begun_.reset();
+    return stream;
   }
 
  private:
@@ -193,7 +203,7 @@ class Exchange::Http final : public httplib::Server {
   void send(const Response& response, httplib::Response& out) {
     done_.route = response.route;
     done_.problem = response.problem;
-    put(response, out);
+    put(response, begun_, out);
   }
 
   /// The stream has no framing any more, and ranges and encodings are not
@@ -229,6 +239,9 @@ class Exchange::Http final : public httplib::Server {
   const Log& log_;
   Connection* connection_ = nullptr;  // of the request that is being answered
   bool last_ = false;
+  std::optional<StreamBody> begun_;
+  std::chrono::steady_clock::time_point began_;
+  std::string told_trace_;
   Exchanged done_;
   std::optional<TraceScope> trace_;
 };
@@ -241,5 +254,7 @@ Exchange::~Exchange() = default;
 bool Exchange::answer_request(Connection& connection, bool last) {
   return http_->answer_request(connection, last);
 }
+
+std::optional<OpenStream> Exchange::take_stream() { return http_->take_stream(); }
 
 }  // namespace unwrapd::server

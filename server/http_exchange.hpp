@@ -7,11 +7,14 @@
 // connection, whose routes (regular expressions) cost more than most requests.
 
 #include <memory>
+#include <optional>
 
 #include "server/addresses.hpp"
 #include "server/connection.hpp"
+#include "server/doorbell.hpp"
 #include "server/http.hpp"
 #include "server/log.hpp"
+#include "server/stream_writer.hpp"
 
 namespace unwrapd::server {
 
@@ -20,6 +23,8 @@ struct HttpUses {
   Handler answer;                   ///< called from many threads; must not throw
   Observer observe;                 ///< told of every answer, after it; the same
   AddressSet trusted_proxies = {};  ///< whose X-Forwarded-For is believed
+  /// Rung when the body of a stream may have more; for one server alone.
+  std::shared_ptr<Doorbell> news = std::make_shared<Doorbell>();
 };
 
 /// Not for use by two threads at once.
@@ -30,8 +35,12 @@ class Exchange {
   ~Exchange();
 
   /// Answers the request whose head the connection has just vetted; last: no
-  /// other may follow. True when another may.
+  /// other may follow. True when another may; false, too, when of a stream
+  /// only the head is out.
   bool answer_request(Connection& connection, bool last);
+  /// The stream that the last answer began, if it did: its body is to be sent, and it is not yet
+  /// observed.
+  std::optional<OpenStream> take_stream();
 
  private:
   class Http;

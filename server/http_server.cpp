@@ -63,7 +63,11 @@ HttpServer::HttpServer(const HttpConfig& config, HttpUses uses, const Log& log)
                 .greet = [this](Client client) { greeters_->greet(std::move(client)); },
                 .ready = [this](Client client) { make_ready(std::move(client)); },
                 .refuse = [this](Client& client, const Error& why) { turn_away(client, why); }},
-               config.parking) {
+               config.parking),
+      streams_({.news = uses_.news,
+                .observe = uses_.observe,
+                .back = [this](Client client, bool again) { let_go(std::move(client), again); }},
+               config.limits, config.ping) {
   if (tls_)
     greeters_.emplace(kGreeters, [this](Client client) { parking_.park(std::move(client)); });
 }
@@ -132,6 +136,7 @@ void HttpServer::serve() {
   }
   end_late();
   threads_.clear();
+  streams_.stop();
 }
 
 /// Who is not done in time is cut off: an upload must not hold up the end.
@@ -173,12 +178,25 @@ void HttpServer::serve_client(Client client, Exchange& exchange) {
   } catch (const std::exception& error) {
     log_.error("a connection failed", {{"reason", error.what()}});
   }
+  if (std::optional<OpenStream> stream = exchange.take_stream())
+    return streams_.take(connection.release(), std::move(*stream));
+  if (again) return let_go(connection.release(), true);
+  forget(connection.socket());
+}
+
+/// Of one that may send another request, or whose stream has ended.
+void HttpServer::let_go(Client client, bool again) {
+  forget(client.transport->socket());
+  if (again && !stopping_) return parking_.park(std::move(client));
+  client.transport->end();
+}
+
+void HttpServer::forget(int socket) {
   {
     const std::lock_guard lock(mutex_);
-    served_.erase(connection.socket());
+    served_.erase(socket);
   }
   left_.notify_all();
-  if (again) parking_.park(connection.release());
 }
 
 /// True when the client may send another request.

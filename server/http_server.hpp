@@ -1,8 +1,9 @@
 #pragma once
 // The HTTP edge: connections in, Requests to one answer function, Responses
 // out. Who has no complete head waits in the parking lot (parking.hpp), without
-// a thread; a request is answered by a thread of its own. cpp-httplib parses
-// and writes (http_exchange.hpp); accepting, waiting, framing and limits are
+// a thread; a request is answered by a thread of its own, but for the bodies of
+// streams (stream_writer.hpp). cpp-httplib parses and writes
+// (http_exchange.hpp); accepting, waiting, framing and limits are
 // ours, since the packaged version keeps its limits for bodies of known length
 // only.
 
@@ -27,6 +28,7 @@
 #include "server/listener.hpp"
 #include "server/log.hpp"
 #include "server/parking.hpp"
+#include "server/stream_writer.hpp"
 #include "server/tls.hpp"
 
 namespace unwrapd::server {
@@ -39,6 +41,7 @@ struct HttpConfig {
   std::filesystem::path tls_certificate;  ///< empty: plain HTTP
   std::filesystem::path tls_key;
   std::chrono::milliseconds last_answers{10'000};  ///< for what is being answered at the end
+  std::chrono::milliseconds ping{15'000};          ///< of silence in a stream, until one is sent
   ParkingRules parking;
   ConnectionLimits limits;
 };
@@ -74,6 +77,8 @@ class HttpServer {
   void work();
   void end_late();
   void serve_client(Client client, Exchange& exchange);
+  void let_go(Client client, bool again);
+  void forget(int socket);
   bool serve_requests(Connection& connection, Exchange& exchange);
   void refuse(Connection& connection, const Error& error) const;
   void observe_refusal(const std::string& client, const Error& error, std::int64_t sent) const;
@@ -92,6 +97,7 @@ class HttpServer {
   std::vector<Idle*> idle_;  // the last to become so at the back
   std::set<int> served_;     // sockets
   std::atomic<bool> stopping_ = false;
+  StreamWriter streams_;               // uses the others
   std::vector<std::jthread> threads_;  // last: they use the others
 };
 

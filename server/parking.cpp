@@ -1,9 +1,6 @@
 #include "server/parking.hpp"
 
 #include <poll.h>
-#include <sys/epoll.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -15,7 +12,6 @@ namespace unwrapd::server {
 namespace {
 
 constexpr int kTickMs = 100;  // how late a deadline may be noticed; not sooner: it looks at all
-constexpr int kMostEvents = 256;
 constexpr int kAcceptsInARow = 64;
 constexpr std::size_t kReadBytes = std::size_t{4} * 1024;
 constexpr std::string_view kHeadEnd = "\r\n\r\n";
@@ -23,26 +19,10 @@ constexpr std::string_view kHeadEnd = "\r\n\r\n";
 }  // namespace
 
 Parking::Parking(const Listener& listener, Uses uses, const ParkingRules& rules)
-    : listener_(listener),
-      uses_(std::move(uses)),
-      rules_(rules),
-      epoll_(::epoll_create1(EPOLL_CLOEXEC)),
-      wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  for (const int descriptor : {listener_.socket(), listener_.stop_descriptor(), wake_})
-    watch(descriptor, POLLIN, EPOLL_CTL_ADD);
-}
-
-Parking::~Parking() {
-  ::close(wake_);
-  ::close(epoll_);
-}
-
-/// poll()'s and epoll's events are the same bits.
-void Parking::watch(int descriptor, short events, int operation) const {
-  epoll_event event{};
-  event.events = static_cast<std::uint32_t>(events);
-  event.data.fd = descriptor;
-  ::epoll_ctl(epoll_, operation, descriptor, &event);
+    : listener_(listener), uses_(std::move(uses)), rules_(rules) {
+  for (const int descriptor :
+       {listener_.socket(), listener_.stop_descriptor(), returned_bell_.descriptor()})
+    epoll_.add(descriptor, POLLIN);
 }
 
 void Parking::run() {
@@ -58,15 +38,13 @@ void Parking::run() {
 }
 
 void Parking::turn(int patience_ms) {
-  std::array<epoll_event, kMostEvents> events;
-  const int count = ::epoll_wait(epoll_, events.data(), kMostEvents, patience_ms);
-  for (int i = 0; i < count; ++i) attend(events[static_cast<std::size_t>(i)].data.fd);
+  for (const epoll_event& event : epoll_.wait(patience_ms)) attend(event.data.fd);
 }
 
 void Parking::attend(int descriptor) {
   if (descriptor == listener_.stop_descriptor()) stopped_ = true;
   if (descriptor == listener_.socket()) let_in();
-  if (descriptor == wake_) take_back();
+  if (descriptor == returned_bell_.descriptor()) take_back();
   const auto at = lot_.find(descriptor);
   if (at == lot_.end()) return;
   if (at->second.client.transport->is_open()) return look_at(at);
@@ -88,13 +66,11 @@ void Parking::park(Client client) {
     const std::lock_guard lock(mutex_);
     returned_.push_back(std::move(client));
   }
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const ssize_t written = ::write(wake_, &one, sizeof one);
+  returned_bell_.ring();
 }
 
 void Parking::take_back() {
-  std::uint64_t count = 0;
-  [[maybe_unused]] const ssize_t got = ::read(wake_, &count, sizeof count);
+  returned_bell_.answer();
   std::vector<Client> returned;
   {
     const std::lock_guard lock(mutex_);
@@ -114,7 +90,7 @@ void Parking::admit(Client client) {
   const auto at =
       lot_.insert_or_assign(socket, Parked{std::move(client), until, awaits, complete}).first;
   count_ = static_cast<int>(lot_.size());
-  watch(socket, awaits, EPOLL_CTL_ADD);
+  epoll_.add(socket, awaits);
   if (is_open) look_at(at);  // TLS may hold bytes that the socket no longer tells of
   if (count_ > rules_.max_idle) drive_out_longest_idle();
 }
@@ -144,13 +120,13 @@ void Parking::look_at(Lot::iterator at) {
   if (parked.complete || parked.client.received.size() > kMaxHeadBytes)
     return uses_.ready(remove(at));
   const short awaits = parked.client.transport->awaits(POLLIN);
-  if (awaits != parked.awaits) watch(at->first, awaits, EPOLL_CTL_MOD);
+  if (awaits != parked.awaits) epoll_.change(at->first, awaits);
   parked.awaits = awaits;
 }
 
 Client Parking::remove(Lot::iterator at) {
   Client client = std::move(at->second.client);
-  ::epoll_ctl(epoll_, EPOLL_CTL_DEL, at->first, nullptr);
+  epoll_.remove(at->first);
   lot_.erase(at);
   count_ = static_cast<int>(lot_.size());
   return client;

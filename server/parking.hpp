@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "server/doorbell.hpp"
+#include "server/epoll.hpp"
 #include "server/listener.hpp"
 #include "server/transport.hpp"
 
@@ -39,9 +41,6 @@ class Parking {
   using Clock = std::chrono::steady_clock;
 
   Parking(const Listener& listener, Uses uses, const ParkingRules& rules);
-  Parking(const Parking&) = delete;
-  Parking& operator=(const Parking&) = delete;
-  ~Parking();
 
   /// Until the listener is stopped; then all that are parked are closed.
   void run();
@@ -63,7 +62,6 @@ class Parking {
   };
   using Lot = std::map<int, Parked>;  // by socket
 
-  void watch(int descriptor, short events, int operation) const;
   void let_in();
   void take_back();
   void admit(Client client);
@@ -77,8 +75,8 @@ class Parking {
   const Listener& listener_;
   const Uses uses_;
   const ParkingRules rules_;
-  int epoll_ = -1;
-  int wake_ = -1;
+  Epoll epoll_;
+  Doorbell returned_bell_;
   Lot lot_;
   Clock::time_point next_expiry_{};
   bool stopped_ = false;

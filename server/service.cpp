@@ -36,7 +36,7 @@ HttpConfig http_config(const Config& config) {
   const EdgeConfig& edge = config.edge;
   HttpConfig http;
   http.address = config.listen;
-  http.max_requests = config.limits.max_streams + edge.max_requests;
+  http.max_requests = edge.max_requests;
   http.max_connections = edge.max_connections;
   http.max_connections_per_address = edge.max_connections_per_address;
   http.parking.max_idle = edge.max_idle_connections;
@@ -89,9 +89,7 @@ struct Service::Parts {
         pictures(blobs, renderer),
         router(routes(), log,
                [this](Request& request, std::string_view route) { access.admit(request, route); }),
-        http(http_config(config),
-             uses([this](const Request& request) { return answer(request); }, log, LogLevel::info),
-             log),
+        http(http_config(config), main_uses(log), log),
         admin_router(admin_routes(queue, metrics), log) {
     if (config.admin) {
       const auto told = [this](const Request& request) { return admin_router.answer(request); };
@@ -112,6 +110,13 @@ struct Service::Parts {
                                  .duties = duties});
     serving = std::jthread([this] { http.serve(); });
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
+  }
+
+  HttpUses main_uses(const Log& log) {
+    HttpUses all =
+        uses([this](const Request& request) { return answer(request); }, log, LogLevel::info);
+    all.news = news;
+    return all;
   }
 
   HttpUses uses(Handler answer_one, const Log& log, LogLevel level) {
@@ -196,7 +201,8 @@ struct Service::Parts {
   BlobStore blobs;
   JobStore store;
   Metrics metrics;
-  EventFeed events{kEventsKept, kFeedsKept, &metrics};
+  const std::shared_ptr<Doorbell> news = std::make_shared<Doorbell>();
+  EventFeed events{kEventsKept, kFeedsKept, &metrics, news};
   JobQueue queue;
   EventStreams streams;
   Submissions submissions;

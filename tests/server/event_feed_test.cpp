@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 
 #include <atomic>
 #include <thread>
@@ -11,12 +12,11 @@
 namespace unwrapd::server {
 namespace {
 
-using std::chrono::milliseconds;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr milliseconds kLong{60'000};  // never waited for when the feed works
+constexpr std::chrono::seconds kLong{60};  // never waited for when the feed works
 
 void publish_iteration(JobFeed& feed, int iteration) {
   feed.publish([&](std::int64_t seq) {
@@ -42,7 +42,7 @@ TEST(EventFeed, AReaderGetsEveryEventInOrderAndThenTheEnd) {
   JobFeed feed(0, 100);
   for (int i = 1; i <= 3; ++i) publish_iteration(feed, i);
   publish_end(feed);
-  const Reading reading = feed.read(feed.resume_after({}), kLong);
+  const Reading reading = feed.read(feed.resume_after({}));
   EXPECT_EQ(reading.last_seq, 4);
   EXPECT_TRUE(reading.end);
   EXPECT_EQ(reading.frames.find("id: 1\n"), 0U);
@@ -53,7 +53,7 @@ TEST(EventFeed, AReaderGetsEveryEventInOrderAndThenTheEnd) {
 TEST(EventFeed, AReaderGoesOnAfterTheLastEventItHasSeen) {
   JobFeed feed(0, 100);
   for (int i = 1; i <= 5; ++i) publish_iteration(feed, i);
-  const Reading reading = feed.read(feed.resume_after(3), kLong);
+  const Reading reading = feed.read(feed.resume_after(3));
   EXPECT_EQ(count(reading.frames, "event: iteration"), 2);
   EXPECT_EQ(reading.frames.find("id: 4\n"), 0U);
   EXPECT_FALSE(reading.end);
@@ -62,7 +62,7 @@ TEST(EventFeed, AReaderGoesOnAfterTheLastEventItHasSeen) {
 TEST(EventFeed, AReaderThatIsTooSlowIsToldWhatItMissed) {
   JobFeed feed(0, 4);
   for (int i = 1; i <= 10; ++i) publish_iteration(feed, i);
-  const Reading reading = feed.read(feed.resume_after(2), kLong);
+  const Reading reading = feed.read(feed.resume_after(2));
   EXPECT_EQ(reading.frames.find("id: 6\nevent: gap\ndata: {\"first\":3,\"last\":6}"), 0U);
   EXPECT_EQ(count(reading.frames, "event: iteration"), 4);
   EXPECT_EQ(reading.last_seq, 10);
@@ -72,9 +72,9 @@ TEST(EventFeed, ALaterAttemptGoesOnCounting) {
   EventFeed events;
   const auto feed = events.open("j_1", 2);
   publish_iteration(*feed, 1);
-  EXPECT_EQ(feed->read(feed->resume_after({}), kLong).frames.find("id: 2000000001\n"), 0U);
+  EXPECT_EQ(feed->read(feed->resume_after({})).frames.find("id: 2000000001\n"), 0U);
   // A reader of an earlier attempt learns that there is a gap.
-  const Reading resumed = feed->read(feed->resume_after(1'000'000'007), kLong);
+  const Reading resumed = feed->read(feed->resume_after(1'000'000'007));
   EXPECT_EQ(resumed.frames.find("id: 2000000000\nevent: gap"), 0U);
 }
 
@@ -82,7 +82,7 @@ TEST(EventFeed, AReaderThatHasSeenTheEndSeesItAgain) {
   JobFeed feed(0, 100);
   publish_iteration(feed, 1);
   publish_end(feed);
-  const Reading reading = feed.read(feed.resume_after(2), kLong);
+  const Reading reading = feed.read(feed.resume_after(2));
   EXPECT_EQ(reading.frames.find("id: 2\nevent: succeeded"), 0U);
   EXPECT_TRUE(reading.end);
 }
@@ -90,7 +90,7 @@ TEST(EventFeed, AReaderThatHasSeenTheEndSeesItAgain) {
 TEST(EventFeed, AnIdFromTheFutureStartsFromTheFirst) {
   JobFeed feed(0, 100);
   publish_iteration(feed, 1);
-  EXPECT_EQ(feed.read(feed.resume_after(999), kLong).frames.find("id: 1\n"), 0U);
+  EXPECT_EQ(feed.read(feed.resume_after(999)).frames.find("id: 1\n"), 0U);
 }
 
 TEST(EventFeed, NothingFollowsTheFinalEvent) {
@@ -102,21 +102,54 @@ TEST(EventFeed, NothingFollowsTheFinalEvent) {
 
 TEST(EventFeed, AReadingIsIdleWhenNothingHappens) {
   const JobFeed feed(0, 100);
-  const Reading reading = feed.read(0, milliseconds(1));
+  const Reading reading = feed.read(0);
   EXPECT_THAT(reading.frames, IsEmpty());
   EXPECT_FALSE(reading.end);
 }
 
-TEST(EventFeed, EndingWakesReadersWithoutAFinalEvent) {
+TEST(EventFeed, EndingEndsReadersAndWaitsWithoutAFinalEvent) {
   EventFeed events;
   const auto feed = events.open("j_1", 0);
-  Reading reading;
-  std::jthread reader([&] { reading = feed->read(0, kLong); });
+  bool finished = true;
+  std::jthread waiting(
+      [&] { finished = feed->wait_finished(std::chrono::steady_clock::now() + kLong); });
   events.end_all();
-  reader.join();
+  waiting.join();
+  EXPECT_FALSE(finished);
+  const Reading reading = feed->read(0);
   EXPECT_TRUE(reading.end);
   EXPECT_THAT(reading.frames, IsEmpty());
-  EXPECT_FALSE(feed->wait_finished(std::chrono::steady_clock::now() + kLong));
+}
+
+TEST(EventFeed, TheBellRingsAtEventsAndAtTheEndOfAll) {
+  const auto bell = std::make_shared<Doorbell>();
+  const auto has_rung = [&] {
+    pollfd polled{bell->descriptor(), POLLIN, 0};
+    const bool rung = ::poll(&polled, 1, 0) == 1;
+    bell->answer();
+    return rung;
+  };
+  EventFeed events(16, 2, nullptr, bell);
+  const auto feed = events.open("j_1", 0);
+  EXPECT_FALSE(has_rung());
+  publish_iteration(*feed, 1);
+  publish_iteration(*feed, 2);
+  EXPECT_TRUE(has_rung());
+  EXPECT_FALSE(has_rung());
+  events.end_all();
+  EXPECT_TRUE(has_rung());
+}
+
+TEST(EventFeed, AReadingIsShortAndTheNextGoesOn) {
+  JobFeed feed(0, 1000);
+  for (int i = 1; i <= 500; ++i) publish_iteration(feed, i);
+  int frames = 0;
+  for (Reading reading = feed.read(0); !reading.frames.empty();
+       reading = feed.read(reading.last_seq)) {
+    EXPECT_LT(reading.frames.size(), 8192U);
+    frames += count(reading.frames, "event: iteration");
+  }
+  EXPECT_EQ(frames, 500);
 }
 
 TEST(EventFeed, OldFinishedFeedsMakeRoomForNewOnes) {
@@ -141,7 +174,7 @@ TEST(EventFeed, ManyReadersOfABusyFeedMissNothingUntold) {
       bool end = false;
       bool in_order = true;
       while (!end) {
-        const Reading reading = feed.read(after, kLong);
+        const Reading reading = feed.read(after);
         in_order = in_order && reading.last_seq >= after;
         const bool gap = reading.frames.find("event: gap") != std::string::npos;
         const int frames = count(reading.frames, "\n\n") - (gap ? 1 : 0);

@@ -7,9 +7,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace unwrapd::server {
 
@@ -40,6 +42,21 @@ class RawClient {
     ::shutdown(socket_, SHUT_WR);
     return read_to_end();
   }
+  /// What comes until this text has come; less when the server closes before.
+  std::string read_until(std::string_view text) {
+    std::array<char, 4096> piece;
+    std::size_t end = received_.find(text);
+    while (end == std::string::npos) {
+      const ssize_t got = ::recv(socket_, piece.data(), piece.size(), 0);
+      if (got <= 0) return std::exchange(received_, {});
+      const std::size_t from = received_.size() - std::min(received_.size(), text.size() - 1);
+      received_.append(piece.data(), static_cast<std::size_t>(got));
+      end = received_.find(text, from);
+    }
+    std::string until = received_.substr(0, end + text.size());
+    received_.erase(0, until.size());
+    return until;
+  }
   /// Everything until the server closes.
   std::string read_to_end() const {
     std::string all;
@@ -53,6 +70,7 @@ class RawClient {
 
  private:
   int socket_;
+  std::string received_;  // beyond what was asked for
 };
 
 }  // namespace unwrapd::server

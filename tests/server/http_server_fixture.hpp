@@ -1,0 +1,97 @@
+#pragma once
+// An HttpServer by itself on a free port, what it answers, and what it tells of it.
+
+#include "server/http_server.hpp"
+
+#include "running_server.hpp"  // Eigen before httplib, whose headers define _res
+
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/x509.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "raw_client.hpp"
+
+namespace unwrapd::server {
+
+class HttpServerTest : public testing::Test {
+ protected:
+  HttpServerTest() {
+    config_.address.port = 0;
+    config_.max_requests = 4;
+    config_.limits.max_body_bytes = 1'000'000;
+    config_.limits.head = std::chrono::milliseconds(1000);
+  }
+  ~HttpServerTest() override { stop(); }
+
+  void start() {
+    server_ = std::make_unique<HttpServer>(
+        config_,
+        HttpUses{.answer = [this](const Request& request) { return answer_(request); },
+                 .observe = [this](const Exchanged& done) { observe(done); },
+                 .trusted_proxies = proxies_,
+                 .news = news_},
+        log_);
+    serving_ = std::jthread([this] { server_->serve(); });
+  }
+  void stop() {
+    if (server_) server_->stop();
+    if (serving_.joinable()) serving_.join();
+  }
+  void observe(const Exchanged& done) {
+    const std::lock_guard lock(mutex_);
+    seen_.push_back(done);
+  }
+  std::size_t refused(std::string_view problem) {
+    const std::lock_guard lock(mutex_);
+    return static_cast<std::size_t>(std::ranges::count(seen_, problem, &Exchanged::problem));
+  }
+  [[nodiscard]] std::unique_ptr<RawClient> connect() const {
+    return std::make_unique<RawClient>(server_->port());
+  }
+  [[nodiscard]] std::string get() const {
+    const auto client = connect();
+    client->send("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+    return client->finish();
+  }
+
+  HttpConfig config_;
+  AddressSet proxies_;
+  std::function<Response(const Request&)> answer_ = [](const Request& request) {
+    return json_response(200, "\"" + request.client + "\"");
+  };
+  std::shared_ptr<Doorbell> news_ = std::make_shared<Doorbell>();
+  Log log_{LogLevel::off};
+  std::unique_ptr<HttpServer> server_;
+  std::jthread serving_;
+  std::mutex mutex_;
+  std::vector<Exchanged> seen_;
+};
+
+/// PEM files of a certificate that signs itself, and its key.
+inline void write_certificate(const std::string& certificate, const std::string& key) {
+  EVP_PKEY* pair = EVP_EC_gen("P-256");
+  X509* own = X509_new();
+  X509_gmtime_adj(X509_getm_notBefore(own), 0);
+  X509_gmtime_adj(X509_getm_notAfter(own), 3600);
+  X509_set_pubkey(own, pair);
+  X509_sign(own, pair, EVP_sha256());
+  const auto close = [](std::FILE* file) { std::fclose(file); };
+  const std::unique_ptr<std::FILE, decltype(close)> to(std::fopen(certificate.c_str(), "w"), close);
+  const std::unique_ptr<std::FILE, decltype(close)> key_to(std::fopen(key.c_str(), "w"), close);
+  PEM_write_X509(to.get(), own);
+  PEM_write_PrivateKey(key_to.get(), pair, nullptr, nullptr, 0, nullptr, nullptr);
+  X509_free(own);
+  EVP_PKEY_free(pair);
+}
+
+}  // namespace unwrapd::server
