@@ -34,8 +34,14 @@ bool is_kept(const Picture& picture) {
 
 StoredResult PictureStore::open(const JobRecord& job, std::size_t map, const Picture& picture) {
   const std::string name = file_name(map, picture);
-  const std::lock_guard lock(drawing_);
-  if (std::optional<StoredResult> kept = find_whole(blobs_, job.id, name)) {
+  std::optional<StoredResult> kept;
+  if (is_kept(picture)) kept = find_whole(blobs_, job.id, name);
+  std::shared_ptr<void> place;
+  if (!kept) {
+    place = renderer_.enter(job, map, name);
+    kept = find_whole(blobs_, job.id, name);  // drawn meanwhile
+  }
+  if (kept) {
     ++counts_.hits;
     return std::move(*kept);
   }

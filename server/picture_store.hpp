@@ -1,7 +1,6 @@
 #pragma once
 // The pictures of a job: drawn when somebody asks, from what the job keeps anyway.
 
-#include <mutex>
 #include <string>
 
 #include "server/blob_store.hpp"
@@ -14,7 +13,7 @@ namespace unwrapd::server {
 /// Thread-safe.
 class PictureStore {
  public:
-  PictureStore(BlobStore& blobs, const Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
+  PictureStore(BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
   /// The picture of one of a succeeded job's maps (see map_choice.hpp). Those whose size is a power
   /// of two are kept with the job, so that whoever asks for every size fills no disk; a damaged one
@@ -24,9 +23,8 @@ class PictureStore {
 
  private:
   BlobStore& blobs_;
-  const Renderer& renderer_;
+  Renderer& renderer_;
   FileCounts counts_;
-  std::mutex drawing_;  // one at a time, as for results in other formats
 };
 
 }  // namespace unwrapd::server

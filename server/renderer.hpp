@@ -2,6 +2,7 @@
 // Results in other formats and pictures, made from what a job keeps: here, or with --isolate in a
 // worker process of its own, so that a crash costs the request and no more.
 
+#include <memory>
 #include <string>
 
 #include "api/limits.hpp"
@@ -10,6 +11,7 @@
 #include "server/job_process.hpp"
 #include "server/job_record.hpp"
 #include "server/log.hpp"
+#include "server/making_room.hpp"
 
 namespace unwrapd::server {
 
@@ -17,8 +19,19 @@ namespace unwrapd::server {
 class Renderer {
  public:
   Renderer(const BlobStore& blobs, const api::Limits& limits, const Log& log,
-           const Isolation& isolation, const Duties& duties = {})
-      : blobs_(blobs), limits_(limits), log_(log), isolation_(isolation), duties_(duties) {}
+           const Isolation& isolation, const MakingLimits& making, const Duties& duties = {})
+      : blobs_(blobs),
+        limits_(limits),
+        log_(log),
+        isolation_(isolation),
+        room_(making),
+        duties_(duties) {}
+
+  /// Waits until a file of a job may be made; then it is the caller's to make while the pointer is
+  /// kept, unless somebody has made it meanwhile. map: that it is made from. Throws
+  /// RetryLater{rate_limited} when too many wait.
+  [[nodiscard]] std::shared_ptr<void> enter(const JobRecord& job, std::size_t map,
+                                            const std::string& file);
 
   /// The bytes of a file of a succeeded job. Throws what render() throws, storage_corrupt, and in a
   /// process time_limit, memory_limit, and internal when the process has ended.
@@ -32,6 +45,7 @@ class Renderer {
   const api::Limits& limits_;
   const Log& log_;
   const Isolation isolation_;
+  MakingRoom room_;
   const Duties duties_;
 };
 

@@ -53,9 +53,9 @@ StoredResult keep(BlobStore& blobs, const std::string& job, const std::string& f
 StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::string_view format) {
   const std::string file = map_file(result_file(format), map);
   std::optional<StoredResult> kept = find_whole(blobs_, job.id, file);
-  std::unique_lock lock(making_, std::defer_lock);
+  std::shared_ptr<void> place;
   if (!kept) {
-    lock.lock();
+    place = renderer_.enter(job, map, file);
     kept = find_whole(blobs_, job.id, file);  // made meanwhile
   }
   if (kept) {

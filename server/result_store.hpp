@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,7 +38,7 @@ StoredResult keep(BlobStore& blobs, const std::string& job, const std::string& f
 /// Thread-safe.
 class ResultStore {
  public:
-  ResultStore(BlobStore& blobs, const Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
+  ResultStore(BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
   /// The result of a succeeded job by one of its maps (see map_choice.hpp), in a format (glb, gltf,
   /// obj, json); one that is missing or damaged is made from the job's input and map. Throws what
@@ -49,9 +48,8 @@ class ResultStore {
 
  private:
   BlobStore& blobs_;
-  const Renderer& renderer_;
+  Renderer& renderer_;
   FileCounts counts_;
-  std::mutex making_;  // one at a time: decoding is worth a worker's time and memory
 };
 
 }  // namespace unwrapd::server

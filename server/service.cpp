@@ -2,6 +2,7 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <vector>
@@ -27,6 +28,7 @@ constexpr const char* kStoreFile = "jobs.sqlite";
 constexpr std::chrono::seconds kHeartbeat{10};
 constexpr std::chrono::seconds kWebhookPause{1};
 constexpr std::chrono::seconds kTrimPause{10};
+constexpr int kLeastMakers = 4;
 constexpr int kAdminThreads = 4;
 constexpr int kAdminConnections = 64;
 constexpr std::size_t kEventsKept = 1024;  // of each job
@@ -64,6 +66,13 @@ Isolation isolation_of(const Config& config, const SolverCache& cache, const Dut
   return isolation;
 }
 
+/// Waiting takes a thread that answers: half of them are never taken so.
+MakingLimits making_limits(const Config& config, const SolverCache& cache) {
+  return {.places = std::max(kLeastMakers, config.workers),
+          .waiting = std::max(1, config.edge.max_requests / 2),
+          .bytes = cache.memory_limit()};
+}
+
 }  // namespace
 
 struct Service::Parts {
@@ -83,7 +92,7 @@ struct Service::Parts {
         access(keys, links, asks_for_keys(config.access, config.listen.host)),
         cors(config.cors_origins),
         webhooks(config.data / kStoreFile, secret, config.webhooks, log),
-        renderer(blobs, config.limits, log, isolation, duties),
+        renderer(blobs, config.limits, log, isolation, making_limits(config, solver_cache), duties),
         results(blobs, renderer),
         sweeper(store, blobs, log, std::chrono::seconds(config.keep_seconds)),
         pictures(blobs, renderer),
@@ -212,7 +221,7 @@ struct Service::Parts {
   Access access;
   const Cors cors;
   Webhooks webhooks;
-  const Renderer renderer;
+  Renderer renderer;
   ResultStore results;
   Sweeper sweeper;
   PictureStore pictures;

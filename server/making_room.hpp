@@ -1,0 +1,58 @@
+#pragma once
+// Who may make a file (a picture, a result in another format) now. Each file is made by one at a
+// time, so that whoever asks for it meanwhile finds it made; a few are made at once, no more than
+// fit into the memory together. Nobody has more than half of the places, nor of those to wait, so
+// that a small picture need not wait for somebody's large ones; else in order of arrival.
+
+#include <condition_variable>
+#include <cstddef>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace unwrapd::server {
+
+struct MakingLimits {
+  int places = 2;         ///< files made at once
+  int waiting = 32;       ///< who wait for a place; more are turned away
+  std::size_t bytes = 0;  ///< of memory for all at work; one alone may take more
+};
+
+/// A file that is to be made.
+struct Making {
+  std::string file;       ///< its name, unlike all others
+  std::string holder;     ///< for whom
+  std::size_t bytes = 0;  ///< of memory that it may take
+};
+
+/// Thread-safe.
+class MakingRoom {
+ public:
+  explicit MakingRoom(const MakingLimits& limits) : limits_(limits) {}
+
+  /// Waits for a place, which is the caller's while it keeps what is returned. Throws
+  /// RetryLater{rate_limited} when too many wait.
+  [[nodiscard]] std::shared_ptr<void> enter(const Making& making);
+  [[nodiscard]] int waiting();
+
+ private:
+  struct Guest {
+    Making making;
+    bool is_in = false;
+  };
+  using Guests = std::list<Guest>;
+
+  void check_waiting(const std::string& holder) const;
+  [[nodiscard]] bool is_held_up(const Making& making) const;
+  [[nodiscard]] bool fits(const Making& making) const;
+  void let_in();
+  void leave(Guests::iterator guest);
+
+  const MakingLimits limits_;
+  std::mutex mutex_;
+  std::condition_variable let_in_;
+  Guests guests_;  // in order of arrival
+};
+
+}  // namespace unwrapd::server
