@@ -1,8 +1,14 @@
 #include "server/webhook_pool.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace unwrapd::server {
+namespace {
+
+constexpr std::size_t kHostsRemembered = 1024;
+
+}  // namespace
 
 WebhookPool::WebhookPool(int at_once, int per_host, std::function<void()> freed)
     : at_once_(at_once), per_host_(per_host), freed_(std::move(freed)) {
@@ -21,10 +27,19 @@ bool WebhookPool::is_full() const {
   return taken_ >= at_once_;
 }
 
+bool WebhookPool::is_proven(const std::string& host) const {
+  return std::ranges::find(proven_, host) != proven_.end();
+}
+
 bool WebhookPool::has_room(const std::string& host) const {
   const std::lock_guard lock(mutex_);
   const auto known = of_host_.find(host);
-  return taken_ < at_once_ && (known == of_host_.end() || known->second < per_host_);
+  const int of_host = known == of_host_.end() ? 0 : known->second;
+  if (is_proven(host)) return taken_ < at_once_ && of_host < per_host_;
+  int of_unproven = 0;
+  for (const auto& [name, count] : of_host_)
+    if (!is_proven(name)) of_unproven += count;
+  return taken_ < at_once_ && of_host == 0 && of_unproven < at_once_ / 2;
 }
 
 void WebhookPool::begin(const std::string& host, Call call) {
@@ -43,14 +58,20 @@ void WebhookPool::work(const std::stop_token& stop) {
     const Task task = std::move(waiting_.front());
     waiting_.pop_front();
     lock.unlock();
-    task.call(stop);
-    lock.lock();
-    --taken_;
-    if (--of_host_[task.host] == 0) of_host_.erase(task.host);
-    lock.unlock();
+    const bool answered = task.call(stop);
+    end(task.host, answered);
     freed_();
     lock.lock();
   }
+}
+
+void WebhookPool::end(const std::string& host, bool answered) {
+  const std::lock_guard lock(mutex_);
+  --taken_;
+  if (--of_host_[host] == 0) of_host_.erase(host);
+  proven_.remove(host);
+  if (answered) proven_.push_front(host);
+  if (proven_.size() > kHostsRemembered) proven_.pop_back();
 }
 
 }  // namespace unwrapd::server

@@ -1,10 +1,13 @@
 #pragma once
-// Threads that call webhooks: a few calls at once, and of these fewer to one host, so that a
-// receiver that hangs delays its own calls only.
+// Threads that call webhooks: a few calls at once, and of these fewer to one host. A host is proven
+// when it has answered its last call. Those that are not have one call each, and half of all places
+// together: so receivers that hang, however many, delay neither proven ones nor, while they are
+// few, new ones.
 
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <list>
 #include <map>
 #include <mutex>
 #include <stop_token>
@@ -17,11 +20,11 @@ namespace unwrapd::server {
 /// Thread-safe.
 class WebhookPool {
  public:
-  /// One call; it ends early when the token asks for it.
-  using Call = std::function<void(const std::stop_token& stop)>;
+  /// One call; it ends early when the token asks for it. Whether the host has answered.
+  using Call = std::function<bool(const std::stop_token& stop)>;
 
-  /// at_once: calls in all; per_host: of these, to one host; freed: called after each, by its
-  /// thread, when its place is free again.
+  /// at_once: calls in all; per_host: of these, to one proven host; freed: called after each, by
+  /// its thread, when its place is free again.
   WebhookPool(int at_once, int per_host, std::function<void()> freed);
   WebhookPool(const WebhookPool&) = delete;
   WebhookPool& operator=(const WebhookPool&) = delete;
@@ -40,6 +43,8 @@ class WebhookPool {
     Call call;
   };
   void work(const std::stop_token& stop);
+  void end(const std::string& host, bool answered);
+  [[nodiscard]] bool is_proven(const std::string& host) const;
 
   const int at_once_;
   const int per_host_;
@@ -49,6 +54,7 @@ class WebhookPool {
   std::deque<Task> waiting_;
   std::map<std::string, int> of_host_;  // waiting or being made
   int taken_ = 0;                       // the same, in all
+  std::list<std::string> proven_;       // hosts, the last to answer first
   std::vector<std::jthread> threads_;   // last: they use the others
 };
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kSecretPrefix = "whsec_";
 constexpr int kMaxTries = 10;
-constexpr int kAtOnce = 8;
+constexpr int kAtOnce = 16;
 constexpr int kPerHost = 2;
 constexpr std::int64_t kMsPerSecond = 1000;
 constexpr std::int64_t kLongestPauseMs = 3'600'000;
@@ -136,18 +136,20 @@ void Webhooks::settle(const Delivery& delivery, const std::string& failure, std:
   }
 }
 
-/// What cannot be settled is called again: once too often rather than never.
-void Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
+/// True when it was answered. What cannot be settled is called again: once too often rather than
+/// never.
+bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
   const TraceScope trace(delivery.trace);
   const std::string failure = call(delivery, stop);
   const std::lock_guard lock(mutex_);
   being_made_.erase(delivery.seq);
-  if (stop.stop_requested() && !failure.empty()) return;  // cut off by us
+  if (stop.stop_requested() && !failure.empty()) return false;  // cut off by us
   try {
     settle(delivery, failure, now_ms());
   } catch (const Error& error) {
     log_.error("a webhook's call was not noted", {{"reason", error.what()}});
   }
+  return failure.empty();
 }
 
 void Webhooks::begin(const Due& due) {
@@ -156,7 +158,7 @@ void Webhooks::begin(const Due& due) {
   Delivery delivery = load(due.seq);
   being_made_.insert(due.seq);
   pool_.begin(host, [this, delivery = std::move(delivery)](const std::stop_token& stop) {
-    make(delivery, stop);
+    return make(delivery, stop);
   });
 }
 

@@ -3,7 +3,7 @@
 // ends the job, and goes when it was answered with 2xx: neither a crash nor a receiver that is down
 // loses it. Tries go on with doubled pauses, ten in all. It is signed as Standard Webhooks has it:
 // webhook-id, webhook-timestamp, and webhook-signature, the HMAC-SHA256 of both and the body under
-// a secret of the job's owner; traceparent is of the job's trace. Eight calls at once, two to one
+// a secret of the job's owner; traceparent is of the job's trace. Sixteen calls at once, two to one
 // host (webhook_pool.hpp).
 
 #include <cstdint>
@@ -62,7 +62,7 @@ class Webhooks {
   std::vector<Due> due(std::int64_t now_ms);
   Delivery load(std::int64_t seq);
   void begin(const Due& due);
-  void make(const Delivery& delivery, const std::stop_token& stop);
+  bool make(const Delivery& delivery, const std::stop_token& stop);
   [[nodiscard]] std::string call(const Delivery& delivery, const std::stop_token& stop) const;
   void settle(const Delivery& delivery, const std::string& failure, std::int64_t now_ms);
   void go_on();
