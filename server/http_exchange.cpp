@@ -13,6 +13,7 @@ namespace unwrapd::server {
 namespace {
 
 constexpr std::int64_t kFilePiece = std::int64_t{256} * 1024;
+constexpr int kRangeNotRead = 416;
 constexpr std::size_t kLongestRoute = 256;  // httplib's routing recurses over longer paths
 
 /// A connection as httplib sees it: bytes without chunks.
@@ -146,7 +147,7 @@ class Exchange::Http final : public httplib::Server {
       return HandlerResponse::Handled;
     });
     set_error_handler(HandlerWithResponse(
-        [this](const auto&, httplib::Response& response) { return fill_error(response); }));
+        [this](const auto& request, auto& response) { return fill_error(request, response); }));
     set_exception_handler([this](const auto&, httplib::Response& response, const auto&) {
       log_.error("exception at the HTTP edge");
       send(error_response(Error(ErrorCode::internal, "The server made a mistake.")), response);
@@ -214,9 +215,14 @@ class Exchange::Http final : public httplib::Server {
     request.ranges.clear();
   }
 
-  /// Gives a body to the errors that httplib itself answers with.
-  HandlerResponse fill_error(httplib::Response& response) {
+  /// Gives a body to the errors that httplib itself answers with. A Range that it cannot read is
+  /// none (RFC 9110, 14.2).
+  HandlerResponse fill_error(const httplib::Request& request, httplib::Response& response) {
     if (!response.body.empty()) return HandlerResponse::Unhandled;
+    if (response.status == kRangeNotRead && !takes_body(request)) {
+      answer(request, nullptr, response);
+      return HandlerResponse::Handled;
+    }
     send(error_response(Error(ErrorCode::malformed_request,
                               "The request cannot be read as HTTP; check the client.")),
          response);

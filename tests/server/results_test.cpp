@@ -56,6 +56,9 @@ TEST_F(Results, ARangeIsAPieceOfTheWhole) {
   EXPECT_EQ(piece->get_header_value("Content-Range"), "bytes 5-14/" + std::to_string(whole.size()));
   EXPECT_EQ(get(id, "result", {{"Range", "bytes=999999999-"}})->body, whole);
   EXPECT_EQ(get(id, "result", {{"Range", "bytes=0-3"}, {"If-Range", "\"other\""}})->body, whole);
+  for (const char* range : {"bytes=5-2", "bytes=x", "items=0-5", "bytes"})
+    EXPECT_EQ(get(id, "result", {{"Range", range}})->body, whole) << range;
+  EXPECT_EQ(client().Post("/v1/jobs", {{"Range", "items=0-5"}}, "", "model/obj")->status, 400);
 }
 
 TEST_F(Results, HeadTellsWhatGetWouldSend) {
