@@ -11,7 +11,10 @@ namespace unwrapd {
 
 /// Solves A x = b for both coordinates of b at once; b becomes x.
 /// matrix: square, row i diagonally dominant, pattern symmetric (values need not be).
-/// Throws Error{solver_failed} when a pivot vanishes.
+/// Throws Error{solver_failed} when a pivot vanishes. The same bits on any processor.
 void solve_dominant(const SparseMatrix& matrix, std::span<Vec2> b);
+
+/// The same with the registers of the x86-64 baseline, whatever the processor has.
+void solve_dominant_on_baseline(const SparseMatrix& matrix, std::span<Vec2> b);
 
 }  // namespace unwrapd
