@@ -1,12 +1,9 @@
 // Around the flips, everything within a few rings of triangles is let loose; the rest of the map
 // holds the rim. First the regularised barrier turns the triangles over (its epsilon shrinks with
-// the worst of them); then, from a map without flips, the method's own energy is minimised under a
-// barrier that fades. Where that fails the patch grows, in the end to the whole chart, and at last
-// the whole chart starts anew from Tutte's map, which has no flips to begin with.
-//
-// Where flips are many, patches around them hold each other's folds fast and fail one by one: there
-// the whole chart is turned over first, or starts anew. Where they are few that would do as well,
-// at many times the cost.
+// the worst of them); then the method's own energy is minimised under a barrier that fades. Where
+// that fails the patch grows, in the end to the whole chart, which at last starts anew from Tutte's
+// map. Where flips are many, patches hold each other's folds fast: there the whole comes first, at
+// many times the cost.
 #include "core/solve/untangle.hpp"
 
 #include <algorithm>
@@ -37,6 +34,7 @@ constexpr int kPatience = 15;          // steps in which the flips must halve, a
 constexpr double kCrowded = 0.25;      // share of flips beyond which only the whole is worth a try
 constexpr double kMany = 0.05;         // share of flips beyond which the whole comes first
 constexpr double kFew = 0.02;          // of those flips, to be left to patches
+constexpr int kSettlingRings = 2;      // around what is rough
 constexpr double kEpsilonShare = 0.2;  // of the worst determinant
 constexpr double kFirstEpsilon = 0.1;  // collapsed triangles open under a large one
 constexpr double kLeastEpsilon = 1e-6;
@@ -54,7 +52,6 @@ constexpr std::array kFading{Fading{1e-1, 1e-2}, Fading{1e-2, 1e-3}, Fading{1e-3
 constexpr double kConformalBelow = 0.01;  // lambda: below, sizes are not the energy's business
 constexpr double kLeastStretch = 1e-12;
 
-/// Whether every vertex may move.
 bool may_move_all(const MapIntent& intent) {
   return !intent.in_place &&
          std::none_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
@@ -179,31 +176,37 @@ void settle(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv) 
 /// What rounds of patches leave.
 struct Left {
   std::vector<Index> flipped;
-  bool is_rough = false;  ///< some patch has not settled
+  std::vector<char> is_rough;  ///< of each face: turned over with others, but not settled since
+
+  void mark(const Patch& patch, char rough) {
+    for (Index t : patch.face) is_rough[t] = rough;
+  }
+  [[nodiscard]] std::vector<Index> rough() const {
+    std::vector<Index> faces;
+    for (std::size_t t = 0; t < is_rough.size(); ++t)
+      if (is_rough[t] != 0) faces.push_back(static_cast<Index>(t));
+    return faces;
+  }
 };
 
 /// Mends one patch. Where that fails the map stays as it is, unless half of the flips are gone:
 /// then it has yet to settle.
-void mend(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv, bool& is_rough) {
+void mend(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv, Left& left) {
   UvMap own = map_of(patch, uv);
-  const bool is_whole = patch.face.size() == disk.faces.size();
   const std::size_t before = flipped_faces(patch.mesh.faces, own).size();
   turn_over(patch.mesh, intent, 0, own);
   const bool is_mended = is_untangled(patch.mesh, own);
   if (!is_mended && flipped_faces(patch.mesh.faces, own).size() > before / 2) return;
   put_back(patch, own, uv);
   if (is_mended) settle(disk, intent, patch, uv);
-  is_rough = !is_mended || (is_rough && !is_whole);
+  left.mark(patch, is_mended ? 0 : 1);
 }
 
-/// All that may move.
-std::vector<Patch> all_patches(const Disk& disk, std::span<const char> held) {
+Patch whole(const Disk& disk) {
   std::vector<Index> all(disk.faces.size());
   std::iota(all.begin(), all.end(), 0);
-  return patches_around(disk, all, 0, held);
+  return std::move(patches_around(disk, all, 0, {}).front());
 }
-
-Patch whole(const Disk& disk) { return std::move(all_patches(disk, {}).front()); }
 
 /// A new map at the surface's size or, where there are springs, where they draw it.
 UvMap at_its_place(const Disk& disk, const MapIntent& intent, UvMap uv) {
@@ -229,7 +232,8 @@ void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) 
   turn_over(patch.mesh, intent, few, own);
   if (flipped_faces(patch.mesh.faces, own).size() > few) return;
   put_back(patch, own, uv);
-  left = {flipped_faces(disk.faces, uv), true};
+  left.flipped = flipped_faces(disk.faces, uv);
+  left.mark(patch, 1);
 }
 
 /// Whether a patch holds more flips than there is hope for within its rim.
@@ -246,7 +250,7 @@ void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& le
       was_whole = was_whole || patch.face.size() == disk.faces.size();
       const bool may_grow = may_move_all(intent) && !was_whole && rings < kMostRings;
       if (may_grow && is_crowded(patch, uv)) continue;
-      mend(disk, intent, patch, uv, left.is_rough);
+      mend(disk, intent, patch, uv, left);
     }
     left.flipped = flipped_faces(disk.faces, uv);
     if (rings >= kMostRings) break;
@@ -281,15 +285,15 @@ bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& u
 
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   assert(intent.rings >= 1);
-  Left left{flipped_faces(disk.faces, uv)};
+  Left left{flipped_faces(disk.faces, uv), std::vector<char>(disk.faces.size(), 0)};
   thin_out(disk, intent, uv, left);
   if (exceeds(left.flipped.size(), kMany, disk.faces.size()) && start_over(disk, intent, uv))
     return 0;
   mend_in_rounds(disk, intent, uv, left);
   if (!left.flipped.empty())
     return start_over(disk, intent, uv) ? 0 : static_cast<Index>(left.flipped.size());
-  if (!left.is_rough) return 0;
-  for (Patch& patch : all_patches(disk, intent.held)) settle(disk, intent, patch, uv);
+  for (Patch& patch : patches_around(disk, left.rough(), kSettlingRings, intent.held))
+    settle(disk, intent, patch, uv);
   return 0;
 }
 

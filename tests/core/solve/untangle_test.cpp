@@ -172,6 +172,23 @@ TEST(Untangle, CostsLittleEnergyOnRealMeshes) {
   EXPECT_GT(turned, 0U) << "these meshes no longer show anything";
 }
 
+TEST(Untangle, SettlesOnlyAroundWhatItTurnedOver) {  // many flips, on which several rounds work
+  if (test_data().empty()) GTEST_SKIP() << "no test data (UNWRAPD_TEST_DATA)";
+  TriMesh balls = read_obj(test_data() / "paper" / "Balls.obj");
+  for (int k = 0; k < 3; ++k) balls = shapes::subdivided(balls);
+  const auto owned = disk_of(std::move(balls));
+  const UvMap before = solved(owned.disk, {.stop = {.iterations = 10}});
+  ASSERT_GT(flips(owned.disk, before), 100U);
+  UvMap after = before;
+  EXPECT_EQ(untangle(owned.disk, {}, after), 0);
+  EXPECT_EQ(flips(owned.disk, after), 0U);
+  EXPECT_LE(arap_energy(owned.disk.rest, owned.disk.faces, after),
+            arap_energy(owned.disk.rest, owned.disk.faces, before));
+  std::size_t moved = 0;
+  for (std::size_t v = 0; v < before.size(); ++v) moved += before[v] != after[v] ? 1 : 0;
+  EXPECT_LT(moved, before.size() / 4);
+}
+
 TEST(Patches, LetRingsLooseAndHoldTheRim) {
   const auto owned = disk_of(shapes::grid(12, 12));
   const Index face = 2 * (6 * 12 + 6);
