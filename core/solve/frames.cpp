@@ -49,38 +49,53 @@ std::vector<double> log_scales(const Disk& disk, const GlobalStep& global) {
   return u;
 }
 
-/// The direction of half-edge h in its rest triangle.
-Complex direction(const Disk& disk, Index h) {
-  const Vec2& e = disk.rest[static_cast<std::size_t>(h / 3)].edge[static_cast<std::size_t>(h % 3)];
-  return Complex(-e.x(), -e.y()) / e.norm();
-}
-
 double cotangent(const Disk& disk, Index h) {
   return disk.rest[static_cast<std::size_t>(h / 3)].cot[static_cast<std::size_t>(h % 3)];
 }
 
-/// The rotation of the face beyond half-edge h against that of the face of h.
+/// Half-edge h in its rest triangle, backwards.
+Complex rest_edge(const Disk& disk, Index h) {
+  const Vec2& e = disk.rest[static_cast<std::size_t>(h / 3)].edge[static_cast<std::size_t>(h % 3)];
+  return {e.x(), e.y()};
+}
+
+/// The rotation of the face beyond half-edge h against that of the face of h, times some length.
 Complex turn_across(const Disk& disk, std::span<const double> u, Index h, Index twin) {
   const double weight = (cotangent(disk, h) + cotangent(disk, twin)) / 2;
   const double rise = u[static_cast<std::size_t>(start_of(disk.faces, h))] -
                       u[static_cast<std::size_t>(end_of(disk.faces, h))];
-  return -direction(disk, h) * std::conj(direction(disk, twin)) * std::polar(1.0, weight * rise);
+  return -rest_edge(disk, h) * std::conj(rest_edge(disk, twin)) * std::polar(1.0, weight * rise);
+}
+
+/// The half-edge on the other side of h, found among those that start at its end; kNoTwin where
+/// there is none, or several.
+Index twin_of(const Disk& disk, Index h) {
+  const Index start = start_of(disk.faces, h);
+  const auto end = static_cast<std::size_t>(end_of(disk.faces, h));
+  Index twin = kNoTwin;
+  for (Index k = disk.corners.begin[end]; k < disk.corners.begin[end + 1]; ++k) {
+    const Index g = disk.corners.corner[static_cast<std::size_t>(k)];
+    if (end_of(disk.faces, g) != start) continue;
+    if (twin != kNoTwin) return kNoTwin;
+    twin = g;
+  }
+  return twin;
 }
 
 /// Carried breadth first from face 0.
 std::vector<Complex> carried_rotations(const Disk& disk, const GlobalStep& global) {
   const std::vector<double> u = log_scales(disk, global);
-  const Halfedges edges = build_halfedges(disk.faces, disk.vertex_count());
   std::vector<Complex> rotation(disk.faces.size(), 0);
   std::vector<Index> reached{0};
+  reached.reserve(rotation.size());
   rotation[0] = 1;
   for (std::size_t k = 0; k < reached.size(); ++k)
     for (Index h = 3 * reached[k]; h < 3 * reached[k] + 3; ++h) {
-      const Index twin = edges.twin[static_cast<std::size_t>(h)];
+      const Index twin = twin_of(disk, h);
       if (twin == kNoTwin || rotation[static_cast<std::size_t>(face_of(twin))] != 0.0) continue;
       const Complex turned =
           rotation[static_cast<std::size_t>(reached[k])] * turn_across(disk, u, h, twin);
-      rotation[static_cast<std::size_t>(face_of(twin))] = turned / std::abs(turned);
+      rotation[static_cast<std::size_t>(face_of(twin))] = turned / std::sqrt(std::norm(turned));
       reached.push_back(face_of(twin));
     }
   return rotation;
