@@ -91,14 +91,15 @@ UvMap arap_map(const Disk& disk, const TrialRules& rules, std::span<const Corner
   const GlobalStep global(disk, nothing);
   UvMap uv = stitched(disk, seed, global);
   SerialExecutor serial;
-  Objective objective(disk, {}, nothing, serial);
+  Objective objective(disk, {}, nothing, global.rank(), serial);
+  uv = by_rank(uv, global.rank());
   std::vector<Vec2> step(uv.size());
   for (int k = 1; k < rules.iterations && !rules.stop.stop_requested(); ++k) {
     objective.evaluate(uv, step);
-    global.solve(step);
+    global.solve_by_rank(step);
     for (std::size_t v = 0; v < uv.size(); ++v) uv[v] += step[v];
   }
-  return uv;
+  return by_vertex(uv, global.rank());
 }
 
 /// For UV area = 3D area.

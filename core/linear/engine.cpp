@@ -31,8 +31,12 @@ void Factor::solve(std::span<Vec2> b, Executor& executor) const {
   assert(b.size() == order.size());
   std::vector<Vec2> x(b.size());
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = b[at(order[k])];
-  solve_panels(*analysis_, panels_.get(), x, executor);
+  solve_in_order(x, executor);
   for (std::size_t k = 0; k < x.size(); ++k) b[at(order[k])] = x[k];
+}
+
+void Factor::solve_in_order(std::span<Vec2> b, Executor& executor) const {
+  solve_panels(*analysis_, panels_.get(), b, executor);
 }
 
 void Factor::solve(std::span<Vec2> b) const {

@@ -26,6 +26,9 @@ class Factor final : public RealSystem {
   void solve(std::span<Vec2> b, Executor& executor) const;
   void solve(std::span<Vec2> b) const override;
 
+  /// As solve(), of unknowns listed in the order of elimination (analysis()->nodes.order).
+  void solve_in_order(std::span<Vec2> b, Executor& executor) const;
+
   [[nodiscard]] const std::shared_ptr<const Analysis>& analysis() const { return analysis_; }
 
   /// While it is refilled, its analysis included.

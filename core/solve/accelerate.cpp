@@ -20,24 +20,23 @@ constexpr int kHalvings = 3;
 
 }  // namespace
 
-Descent::Descent(const Assembly& assembly, UvMap start, const Rigidity& rigidity,
+Descent::Descent(const Assembly& assembly, const UvMap& start, const Rigidity& rigidity,
                  Executor& executor)
     : global_(assembly.global),
-      objective_(assembly.disk, rigidity, assembly.holds, executor),
+      objective_(assembly.disk, rigidity, assembly.holds, global_.rank(), executor),
       memory_(executor),
-      solution_{.uv = std::move(start), .energy = {}},
-      trial_(solution_.uv.size()) {
+      uv_(by_rank(start, global_.rank())),
+      trial_(uv_.size()) {
   const std::size_t n = trial_.size();
   for (auto* vector : {&now_.force, &now_.plain, &before_.force, &before_.plain, &step_,
                        &direction_, &force_at_trial_})
     vector->resize(n);
-  solution_.energy.push_back(objective_.evaluate(solution_.uv, now_.force));
+  solution_.energy.push_back(objective_.evaluate(uv_, now_.force));
   if (std::isfinite(rigidity.lambda)) least_area_ = kMinAreaShare * objective_.uv_area();
 }
 
 double Descent::try_step(double length, std::span<const Vec2> direction) {
-  for (std::size_t v = 0; v < trial_.size(); ++v)
-    trial_[v] = solution_.uv[v] + length * direction[v];
+  for (std::size_t v = 0; v < trial_.size(); ++v) trial_[v] = uv_[v] + length * direction[v];
   const double energy = objective_.evaluate(trial_, force_at_trial_);
   if (!(objective_.uv_area() < least_area_)) return energy;
   solution_.stop_reason = StopReason::collapse_guard;
@@ -50,10 +49,10 @@ bool Descent::advance(double slope, std::span<const Vec2> direction) {
   for (int k = 0; k <= kHalvings; ++k, length /= 2) {
     const double energy = try_step(length, direction);
     if (!(energy <= this->energy() - kSufficient * length * slope)) continue;
-    for (std::size_t v = 0; v < trial_.size(); ++v) step_[v] = trial_[v] - solution_.uv[v];
+    for (std::size_t v = 0; v < trial_.size(); ++v) step_[v] = trial_[v] - uv_[v];
     std::swap(now_, before_);
     std::swap(now_.force, force_at_trial_);
-    std::swap(solution_.uv, trial_);
+    std::swap(uv_, trial_);
     solution_.energy.push_back(energy);
     ++solution_.iterations;
     has_stepped_ = true;
@@ -65,7 +64,7 @@ bool Descent::advance(double slope, std::span<const Vec2> direction) {
 bool Descent::step() {
   solution_.stop_reason = StopReason::converged;
   now_.plain = now_.force;
-  global_.solve(now_.plain);
+  global_.solve_by_rank(now_.plain);
   if (std::exchange(has_stepped_, false)) memory_.learn(step_, before_, now_);
   const bool is_plain = memory_.empty();
   if (advance(memory_.direct(now_, direction_), direction_)) return true;
@@ -90,7 +89,13 @@ void Descent::take_over(const Solution& before) {
   solution_.iterations = before.iterations + 1;
 }
 
+const Solution& Descent::told() {
+  solution_.uv = by_vertex(uv_, global_.rank());
+  return solution_;
+}
+
 Solution Descent::finish(StopReason reason) && {
+  told();
   solution_.stop_reason = reason;
   return std::move(solution_);
 }
@@ -100,7 +105,7 @@ StopReason run(Descent& descent, const DescentOptions& options, const LoopWatch&
     throw_if_cancelled(watch.stop);
     if (descent.solution().iterations >= options.max_iterations) return StopReason::max_iterations;
     if (!descent.step()) return descent.solution().stop_reason;
-    if (watch.on_iteration) watch.on_iteration(descent.solution());
+    if (watch.on_iteration) watch.on_iteration(descent.told());
   }
   return StopReason::converged;
 }

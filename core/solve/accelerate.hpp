@@ -11,7 +11,8 @@ class Descent {
  public:
   /// From the map start, in which fixed vertices lie where they are held. What assembly refers to,
   /// and executor, must outlive the descent.
-  Descent(const Assembly& assembly, UvMap start, const Rigidity& rigidity, Executor& executor);
+  Descent(const Assembly& assembly, const UvMap& start, const Rigidity& rigidity,
+          Executor& executor);
 
   /// One iteration: one solve and, nearly always, one evaluation of the energy, which never rises.
   /// False, and nothing is done, when double precision knows no lower energy (converged) or the map
@@ -19,7 +20,12 @@ class Descent {
   /// finite lambda only, because that of ARAP does not fall towards a point): solution() tells.
   bool step();
 
+  /// But for its map, which is that of the last told().
   [[nodiscard]] const Solution& solution() const { return solution_; }
+
+  /// With the map so far.
+  const Solution& told();
+
   [[nodiscard]] double energy() const { return solution_.energy.back(); }
 
   /// Whether the energy has fallen by no more than this share over the last kWindow iterations, or
@@ -45,10 +51,10 @@ class Descent {
   const GlobalStep& global_;
   Objective objective_;
   StepMemory memory_;
-  Solution solution_;
+  Solution solution_{};
   Slope now_, before_;
+  UvMap uv_, trial_;  // as all vectors here, by ranks
   std::vector<Vec2> step_, direction_, force_at_trial_;
-  UvMap trial_;
   double least_area_ = 0;
   bool has_stepped_ = false;  // step_ is yet to be learnt
 };

@@ -69,7 +69,7 @@ Solution run_race(const Race& race, const UvMap& first,
   Descent challenger(race.assembly, *other, race.rigidity, race.executor);
   if (!overtakes(race, challenger, leader)) return go_on(race, std::move(leader));
   challenger.take_over(leader.solution());
-  if (race.watch.on_iteration) race.watch.on_iteration(challenger.solution());
+  if (race.watch.on_iteration) race.watch.on_iteration(challenger.told());
   return go_on(race, std::move(challenger));
 }
 

@@ -11,32 +11,33 @@
 
 namespace unwrapd {
 
+using Duo = double __attribute__((vector_size(16), aligned(8), may_alias));
+using Quad = double __attribute__((vector_size(32), aligned(8), may_alias));
+
+/// Two faces in a register.
 struct TwoLanes {
-  using Lanes = double __attribute__((vector_size(16), aligned(8), may_alias));
+  using Lanes = Duo;
 };
 struct FourLanes {
-  using Lanes = double __attribute__((vector_size(32), aligned(8), may_alias));
+  using Lanes = Quad;
 };
 
-/// Registers::Lanes: the vector of doubles of one register. Lanes do not meet but in sums(), in an
-/// order of their own: no result depends on their number.
+/// Registers::Lanes: the vector of doubles of one register. Lanes do not meet but in sums() and in
+/// the forces on one vertex, in an order of their own: no result depends on their number.
 template <typename Registers>
 class FitAbreast {
  public:
-  [[gnu::always_inline]] FitAbreast(std::span<const Vec2> uv, const Rigidity& rigidity)
-      : uv_(uv), rigidity_(rigidity) {}
+  /// uv, force: two numbers a vertex, as the block numbers them.
+  [[gnu::always_inline]] FitAbreast(const double* uv, double* force, const Rigidity& rigidity)
+      : uv_(uv), force_(force), rigidity_(rigidity) {}
 
-  /// residual: of the corners of the group's faces.
-  [[gnu::always_inline]] void add(const FaceGroup& group, Vec2* residual) {
-    Gathered u;
-    gather(group, u);
-    Forces forces;
-    for (std::size_t k = 0; k < kFacesAbreast; k += kLanes) fit(group, u, k, forces);
-    for (std::size_t k = 0; k < kFacesAbreast; ++k) {
-      const Vec2 first(forces.x[0][k], forces.y[0][k]), second(forces.x[1][k], forces.y[1][k]);
-      residual[3 * k] = -(first + second);
-      residual[3 * k + 1] = first;
-      residual[3 * k + 2] = second;
+  /// Adds the group's forces, energy and area.
+  [[gnu::always_inline]] void add(const FaceGroup& group) {
+    for (std::size_t k = 0; k < kFacesAbreast; k += kLanes) {
+      Ends ends[2];
+      gather(group, k, ends);
+      fit(group, k, ends);
+      scatter(group, k, ends);
     }
   }
 
@@ -50,13 +51,9 @@ class FitAbreast {
   using Each = FaceGroup::Each<double>;
   static constexpr std::size_t kLanes = sizeof(Lanes) / sizeof(double);
 
-  /// u^1 - u^0 and u^2 - u^0.
-  struct Gathered {
-    Each x[2], y[2];
-  };
-  /// On corners 1 and 2.
-  struct Forces {
-    Each x[2], y[2];
+  /// Of one lane each: u^1 - u^0 or u^2 - u^0, then the force on corner 1 or 2.
+  struct Ends {
+    Lanes x, y;
   };
   /// J, or J - L.
   struct Matrix {
@@ -70,32 +67,72 @@ class FitAbreast {
     return *reinterpret_cast<Lanes*>(&x[k]);
   }
 
-  [[gnu::always_inline]] void gather(const FaceGroup& group, Gathered& u) const {
-    for (std::size_t k = 0; k < kFacesAbreast; ++k) {
-      const Vec2& origin = uv_[static_cast<std::size_t>(group.corner[0][k])];
-      for (std::size_t i = 0; i < 2; ++i) {
-        const Vec2& end = uv_[static_cast<std::size_t>(group.corner[i + 1][k])];
-        u.x[i][k] = end.x() - origin.x();
-        u.y[i][k] = end.y() - origin.y();
-      }
+  /// Both coordinates of a corner of face k and, in registers of four, of face k + 2.
+  [[gnu::always_inline]] void load(const FaceGroup::Each<Index>& corner, std::size_t k,
+                                   Lanes& to) const {
+    const auto at = [&](std::size_t face) {
+      return *reinterpret_cast<const Duo*>(uv_ + 2 * static_cast<std::size_t>(corner[face]));
+    };
+    if constexpr (kLanes == 2)
+      to = at(k);
+    else
+      to = __builtin_shufflevector(at(k), at(k + 2), 0, 1, 2, 3);
+  }
+
+  /// {x, y} of even and of odd faces become all x and all y; twice the same gives them back.
+  [[gnu::always_inline]] static void transpose(Lanes& even, Lanes& odd) {
+    const Lanes a = even, b = odd;
+    if constexpr (kLanes == 2) {
+      even = __builtin_shufflevector(a, b, 0, 2), odd = __builtin_shufflevector(a, b, 1, 3);
+    } else {
+      even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+      odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
     }
   }
 
-  [[gnu::always_inline]] void fit(const FaceGroup& group, const Gathered& u, std::size_t k,
-                                  Forces& forces) {
+  [[gnu::always_inline]] void gather(const FaceGroup& group, std::size_t k, Ends (&ends)[2]) const {
+    Lanes even, odd;
+    load(group.corner[0], k, even);
+    load(group.corner[0], k + 1, odd);
+    for (std::size_t i = 0; i < 2; ++i) {
+      load(group.corner[i + 1], k, ends[i].x);
+      load(group.corner[i + 1], k + 1, ends[i].y);
+      ends[i].x -= even, ends[i].y -= odd;
+      transpose(ends[i].x, ends[i].y);
+    }
+  }
+
+  [[gnu::always_inline]] void push(Index vertex, const Lanes& forces, std::size_t half) {
+    Duo& force = *reinterpret_cast<Duo*>(force_ + 2 * static_cast<std::size_t>(vertex));
+    force += *(reinterpret_cast<const Duo*>(&forces) + half);
+  }
+
+  /// Face after face: one vertex may be met by several lanes.
+  [[gnu::always_inline]] void scatter(const FaceGroup& group, std::size_t k, Ends (&forces)[2]) {
+    for (Ends& force : forces) transpose(force.x, force.y);
+    const Lanes even = -(forces[0].x + forces[1].x), odd = -(forces[0].y + forces[1].y);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t half = lane / 2;
+      const bool is_odd = lane % 2 != 0;
+      push(group.corner[0][k + lane], is_odd ? odd : even, half);
+      push(group.corner[1][k + lane], is_odd ? forces[0].y : forces[0].x, half);
+      push(group.corner[2][k + lane], is_odd ? forces[1].y : forces[1].x, half);
+    }
+  }
+
+  [[gnu::always_inline]] void fit(const FaceGroup& group, std::size_t k, Ends (&ends)[2]) {
     const Lanes &across = lanes(group.across, k), &shear = lanes(group.shear, k);
     const Lanes &up = lanes(group.up, k), &area = lanes(group.area, k);
-    Matrix m{lanes(u.x[0], k) * across, lanes(u.x[0], k) * shear + lanes(u.x[1], k) * up,
-             lanes(u.y[0], k) * across, lanes(u.y[0], k) * shear + lanes(u.y[1], k) * up};
+    Matrix m{ends[0].x * across, ends[0].x * shear + ends[1].x * up,  //
+             ends[0].y * across, ends[0].y * shear + ends[1].y * up};
     const Lanes determinant = m.m00 * m.m11 - m.m01 * m.m10;
     lanes(uv_area_, k) += area * (determinant < 0 ? -determinant : determinant);
     subtract_fit(group, k, m);
     lanes(energy_, k) += area * ((m.m00 * m.m00 + m.m11 * m.m11) + (m.m01 * m.m01 + m.m10 * m.m10));
     const Lanes weight = -2 * area;
-    lanes(forces.x[0], k) = weight * (m.m00 * across + m.m01 * shear);
-    lanes(forces.y[0], k) = weight * (m.m10 * across + m.m11 * shear);
-    lanes(forces.x[1], k) = weight * m.m01 * up;
-    lanes(forces.y[1], k) = weight * m.m11 * up;
+    ends[0] = {weight * (m.m00 * across + m.m01 * shear),
+               weight * (m.m10 * across + m.m11 * shear)};
+    ends[1] = {weight * m.m01 * up, weight * m.m11 * up};
   }
 
   /// J becomes J - L.
@@ -141,7 +178,8 @@ class FitAbreast {
     return is_any;
   }
 
-  std::span<const Vec2> uv_;
+  const double* uv_;
+  double* force_;
   Rigidity rigidity_;
   Each energy_{}, uv_area_{};
 };

@@ -5,6 +5,7 @@
 // more does, and leaves the solution exact, because the right-hand side adds up to zero.
 #include "core/solve/global_step.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <vector>
 
@@ -44,11 +45,37 @@ std::shared_ptr<const Factor> factored(const Disk& disk, const Holds& holds,
   return definite(try_factor(analysis, lower, executor));
 }
 
+std::vector<Index> ranks(const FreeVertices& free, std::span<const Index> position) {
+  std::vector<Index> rank;
+  rank.reserve(free.slot.size());
+  Index next_fixed = free.count;
+  for (const Index slot : free.slot)
+    rank.push_back(slot == kFixed ? next_fixed++ : position[static_cast<std::size_t>(slot)]);
+  return rank;
+}
+
 }  // namespace
+
+std::vector<Vec2> by_rank(std::span<const Vec2> by_vertex, std::span<const Index> rank) {
+  std::vector<Vec2> sorted(rank.size());
+  for (std::size_t v = 0; v < rank.size(); ++v)
+    sorted[static_cast<std::size_t>(rank[v])] = by_vertex[v];
+  return sorted;
+}
+
+std::vector<Vec2> by_vertex(std::span<const Vec2> by_rank, std::span<const Index> rank) {
+  std::vector<Vec2> sorted(rank.size());
+  for (std::size_t v = 0; v < rank.size(); ++v)
+    sorted[v] = by_rank[static_cast<std::size_t>(rank[v])];
+  return sorted;
+}
 
 GlobalStep::GlobalStep(const Disk& disk, const Holds& holds, Executor* executor)
     : free_(free_vertices(disk.positions.size(), holds)), executor_(executor) {
-  if (free_.count == 0) return;
+  if (free_.count == 0) {
+    rank_ = ranks(free_, {});
+    return;
+  }
   std::vector<Index> spring;
   std::vector<double> weight;
   for (const Spring& s : holds.springs) spring.push_back(s.vertex), weight.push_back(s.weight);
@@ -57,20 +84,23 @@ GlobalStep::GlobalStep(const Disk& disk, const Holds& holds, Executor* executor)
   SerialExecutor serial;
   Executor& runs = executor_ != nullptr ? *executor_ : serial;
   system_ = kept(disk, content, [&] { return factored(disk, holds, free_, runs); });
+  rank_ = ranks(free_, system_->analysis()->nodes.position);
 }
 
 void GlobalStep::solve(std::span<Vec2> force) const {
-  assert(force.size() == free_.slot.size());
+  std::vector<Vec2> sorted = by_rank(force, rank_);
+  solve_by_rank(sorted);
+  for (std::size_t v = 0; v < force.size(); ++v)
+    force[v] = sorted[static_cast<std::size_t>(rank_[v])];
+}
+
+void GlobalStep::solve_by_rank(std::span<Vec2> force) const {
+  assert(force.size() == rank_.size());
   SerialExecutor serial;
   Executor& runs = executor_ != nullptr ? *executor_ : serial;
-  if (free_.count == static_cast<Index>(force.size())) return system_->solve(force, runs);
-  std::vector<Vec2> change(static_cast<std::size_t>(free_.count));
-  for (std::size_t v = 0; v < force.size(); ++v)
-    if (free_.slot[v] != kFixed) change[static_cast<std::size_t>(free_.slot[v])] = force[v];
-  if (system_) system_->solve(change, runs);
-  for (std::size_t v = 0; v < force.size(); ++v)
-    force[v] = free_.slot[v] == kFixed ? Vec2(Vec2::Zero())
-                                       : change[static_cast<std::size_t>(free_.slot[v])];
+  const auto free_count = static_cast<std::size_t>(free_.count);
+  if (system_) system_->solve_in_order(force.first(free_count), runs);
+  std::ranges::fill(force.subspan(free_count), Vec2::Zero());
 }
 
 void GlobalStep::solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/executor.hpp"
 #include "core/linear/eliminate.hpp"
@@ -26,14 +27,26 @@ class GlobalStep {
   /// The same for any executor. Thread-safe where its executor is.
   void solve(std::span<Vec2> force) const;
 
+  /// In which order vertices are eliminated: rank[v] of vertex v, fixed ones last. What lies side
+  /// by side in it lies near by on the disk, too.
+  [[nodiscard]] std::span<const Index> rank() const { return rank_; }
+
+  /// As solve(), of a force listed by ranks, which saves sorting it.
+  void solve_by_rank(std::span<Vec2> force) const;
+
   /// Replaces b by the solution for another positive definite matrix of the same pattern, of which
   /// the lower triangle is given; nothing is held. Throws Error{solver_failed}.
   void solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const;
 
  private:
   FreeVertices free_;
-  std::shared_ptr<const Factor> system_;
+  std::shared_ptr<const Factor> system_;  // null where no vertex is free
+  std::vector<Index> rank_;
   Executor* executor_;
 };
+
+/// One entry a vertex, listed by ranks; and back.
+std::vector<Vec2> by_rank(std::span<const Vec2> by_vertex, std::span<const Index> rank);
+std::vector<Vec2> by_vertex(std::span<const Vec2> by_rank, std::span<const Index> rank);
 
 }  // namespace unwrapd

@@ -42,8 +42,9 @@ struct LocalGlobalOptions {
 /// energy never rises. A step that would leave less than kMinAreaShare of the start's UV area is
 /// rejected and ends the run (collapse_guard).
 /// Throws Error{cancelled} within one iteration of a stop request.
-Solution local_global(const Assembly& assembly, UvMap start, const LocalGlobalOptions& options,
-                      const LoopWatch& watch, Executor& executor);
+Solution local_global(const Assembly& assembly, const UvMap& start,
+                      const LocalGlobalOptions& options, const LoopWatch& watch,
+                      Executor& executor);
 
 inline constexpr double kMinAreaShare = 0.01;
 

@@ -7,7 +7,7 @@
 // by C2 of Eq. (B3), which vanishes at quarter turns:
 //   g(r) = w r^3 + (1 - 2w) r - (1 - w) Q,   w = lambda / (1 + lambda),   Q = |(e, h)|.
 // w = 0 is ASAP (r = Q) and w = 1 is ARAP (r = 1).
-// local_step() fits four triangles at once (fit_abreast.hpp).
+// LocalStep fits four triangles at once (fit_abreast.hpp).
 #include "core/solve/local_step.hpp"
 
 #include <algorithm>
@@ -19,56 +19,67 @@
 namespace unwrapd {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // groups a block: fixed, so sums do not depend on threads
-
-FaceGroup group_of(std::span<const RestTriangle> rest, std::span<const Triangle> faces) {
-  FaceGroup group{};
-  for (std::size_t k = 0; k < kFacesAbreast; ++k) {
-    const std::size_t t = std::min(k, faces.size() - 1);
-    const Vec2 first = -rest[t].edge[0], second = rest[t].edge[2];
-    const double length = first.norm(), height = 2 * rest[t].area / length;
-    for (std::size_t i = 0; i < 3; ++i) group.corner[i][k] = faces[t][i];
-    group.across[k] = 1 / length;
-    group.shear[k] = -first.dot(second) / (length * length * height);
-    group.up[k] = 1 / height;
-    group.area[k] = k == t ? rest[t].area : 0;
+/// The vertices of one block: where they lie, and the forces on them.
+class BlockVertices {
+ public:
+  BlockVertices(const LocalStep& step, const FaceBlock& block)
+      : step_(step), block_(block), uv_(block.vertex_count()), force_(uv_.size(), Vec2::Zero()) {
+    const auto own = step.uv.subspan(first(), count());
+    std::copy(own.begin(), own.end(), uv_.begin());
+    for (std::size_t k = 0; k < beyond().size(); ++k)
+      uv_[count() + k] = step.uv[static_cast<std::size_t>(beyond()[k])];
   }
-  return group;
-}
 
-/// What one thread fits at once.
-struct FitBlock {
-  std::span<const FaceGroup> groups;
-  std::span<const Vec2> uv;
-  Rigidity rigidity;
-  Vec2* residual;
+  [[nodiscard]] const double* uv() const { return uv_.front().data(); }
+  [[nodiscard]] double* force() { return force_.front().data(); }
+
+  /// Writes the forces on its own vertices; those on others, which other blocks write, beside.
+  void give_back() const {
+    std::copy_n(force_.begin(), count(), step_.force.begin() + block_.first);
+    std::copy_n(force_.begin() + block_.own, beyond().size(),
+                step_.beyond.begin() + static_cast<std::ptrdiff_t>(block_.beyond_begin));
+  }
+
+ private:
+  [[nodiscard]] std::size_t first() const { return static_cast<std::size_t>(block_.first); }
+  [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(block_.own); }
+  [[nodiscard]] std::span<const Index> beyond() const {
+    return std::span(step_.blocks.beyond)
+        .subspan(block_.beyond_begin, block_.beyond_end - block_.beyond_begin);
+  }
+
+  const LocalStep& step_;
+  const FaceBlock& block_;
+  std::vector<Vec2> uv_, force_;
 };
 
 template <typename Registers>
-[[gnu::always_inline]] inline LocalSums fit_block(const FitBlock& block) {
-  FitAbreast<Registers> fit(block.uv, block.rigidity);
-  for (std::size_t g = 0; g < block.groups.size(); ++g)
-    fit.add(block.groups[g], block.residual + 3 * kFacesAbreast * g);
+[[gnu::always_inline]] inline LocalSums fit_block(const LocalStep& step, const FaceBlock& block) {
+  BlockVertices vertices(step, block);
+  FitAbreast<Registers> fit(vertices.uv(), vertices.force(), step.rigidity);
+  for (std::size_t g = block.group_begin; g < block.group_end; ++g) fit.add(step.blocks.groups[g]);
+  vertices.give_back();
   return fit.sums();
 }
 
-LocalSums fit_block_on_baseline(const FitBlock& block) { return fit_block<TwoLanes>(block); }
-
-[[gnu::target("avx2")]] LocalSums fit_block_avx2(const FitBlock& block) {
-  return fit_block<FourLanes>(block);
+LocalSums fit_block_on_baseline(const LocalStep& step, const FaceBlock& block) {
+  return fit_block<TwoLanes>(step, block);
 }
 
-using FitBlocks = LocalSums (*)(const FitBlock& block);
+[[gnu::target("avx2")]] LocalSums fit_block_avx2(const LocalStep& step, const FaceBlock& block) {
+  return fit_block<FourLanes>(step, block);
+}
 
-LocalSums fit_all(const FitBlock& all, FitBlocks fit, Executor& executor) {
-  const std::size_t count = all.groups.size();
-  std::vector<LocalSums> sums((count + kBlock - 1) / kBlock);
+using FitBlock = LocalSums (*)(const LocalStep& step, const FaceBlock& block);
+
+LocalSums fit_all(const LocalStep& step, FitBlock fit, Executor& executor) {
+  const FaceBlocks& blocks = step.blocks;
+  std::vector<LocalSums> sums(blocks.all.size());
   executor.for_each_block(static_cast<int>(sums.size()), [&](int b) {
-    const std::size_t first = static_cast<std::size_t>(b) * kBlock;
-    const std::size_t size = std::min(kBlock, count - first);
-    sums[static_cast<std::size_t>(b)] = fit({all.groups.subspan(first, size), all.uv, all.rigidity,
-                                             all.residual + 3 * kFacesAbreast * first});
+    sums[static_cast<std::size_t>(b)] = fit(step, blocks.all[static_cast<std::size_t>(b)]);
   });
+  for (std::size_t k = 0; k < blocks.beyond.size(); ++k)
+    step.force[static_cast<std::size_t>(blocks.beyond[k])] += step.beyond[k];
   LocalSums total;
   for (const LocalSums& own : sums) total.energy += own.energy, total.uv_area += own.uv_area;
   return total;
@@ -106,30 +117,14 @@ double fit_energy(const Jacobian& j, const Similarity& fit, double area, double 
   return area * (misfit + (std::isinf(lambda) ? 0 : lambda * excess * excess));
 }
 
-std::vector<FaceGroup> face_groups(std::span<const RestTriangle> rest,
-                                   std::span<const Triangle> faces) {
-  assert(rest.size() == faces.size());
-  std::vector<FaceGroup> groups;
-  groups.reserve((faces.size() + kFacesAbreast - 1) / kFacesAbreast);
-  for (std::size_t t = 0; t < faces.size(); t += kFacesAbreast) {
-    const std::size_t count = std::min(kFacesAbreast, faces.size() - t);
-    groups.push_back(group_of(rest.subspan(t, count), faces.subspan(t, count)));
-  }
-  return groups;
-}
-
-LocalSums local_step(std::span<const FaceGroup> groups, std::span<const Vec2> uv,
-                     const Rigidity& rigidity, std::span<Vec2> residual, Executor& executor) {
-  assert(residual.size() == 3 * kFacesAbreast * groups.size());
+LocalSums LocalStep::run(Executor& executor) const {
+  assert(force.size() == uv.size() && beyond.size() == blocks.beyond.size());
   static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
-  return fit_all({groups, uv, rigidity, residual.data()},
-                 has_avx2 ? fit_block_avx2 : fit_block_on_baseline, executor);
+  return fit_all(*this, has_avx2 ? fit_block_avx2 : fit_block_on_baseline, executor);
 }
 
-LocalSums local_step_on_baseline(std::span<const FaceGroup> groups, std::span<const Vec2> uv,
-                                 const Rigidity& rigidity, std::span<Vec2> residual,
-                                 Executor& executor) {
-  return fit_all({groups, uv, rigidity, residual.data()}, fit_block_on_baseline, executor);
+LocalSums LocalStep::run_on_baseline(Executor& executor) const {
+  return fit_all(*this, fit_block_on_baseline, executor);
 }
 
 }  // namespace unwrapd

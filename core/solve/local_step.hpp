@@ -1,13 +1,13 @@
 #pragma once
 // The local step: each triangle takes the similarity that fits its image best (Secs. 4.1, 5).
 
-#include <array>
 #include <limits>
 #include <span>
 #include <vector>
 
 #include "core/executor.hpp"
 #include "core/measure/jacobian.hpp"
+#include "core/solve/face_blocks.hpp"
 
 namespace unwrapd {
 
@@ -39,38 +39,25 @@ Similarity fit_similarity(const Jacobian& j, double lambda);
 /// A_t |J - L|^2 + A_t lambda (a^2 + b^2 - 1)^2 for the fitted L.
 double fit_energy(const Jacobian& j, const Similarity& fit, double area, double lambda);
 
-inline constexpr std::size_t kFacesAbreast = 4;
-
-/// Four faces side by side, as the local step reads them. Each triangle lies with corner 0 at the
-/// origin and corner 1 on the x axis: [x^1 x^2]^-1 = [across shear; 0 up]. The last group is filled
-/// up with copies of its last face, of area 0.
-struct FaceGroup {
-  template <typename T>
-  using Each = std::array<T, kFacesAbreast>;
-
-  std::array<Each<Index>, 3> corner;
-  Each<double> across, shear, up, area;
-};
-
-/// In the order of the faces: rest has one entry a face.
-std::vector<FaceGroup> face_groups(std::span<const RestTriangle> rest,
-                                   std::span<const Triangle> faces);
-
 /// Of a map.
 struct LocalSums {
   double energy = 0;   ///< under the best fits
   double uv_area = 0;  ///< sum of A_t |det J_t|
 };
 
-/// Fits every triangle. residual[3t+i] becomes the share of corner i of face t in the right-hand
-/// side of Eq. (4) minus its left-hand side; 3 * kFacesAbreast entries a group. The same bits for
-/// any executor and on any processor.
-LocalSums local_step(std::span<const FaceGroup> groups, std::span<const Vec2> uv,
-                     const Rigidity& rigidity, std::span<Vec2> residual, Executor& executor);
+/// Fits every triangle. force[r] becomes -dE/du of the vertex of rank r: the right-hand side of
+/// Eq. (4) minus its left-hand side. uv and force go by ranks; beyond: scratch, one for each of
+/// blocks.beyond. The same bits for any executor and on any processor.
+struct LocalStep {
+  const FaceBlocks& blocks;
+  std::span<const Vec2> uv;
+  Rigidity rigidity;
+  std::span<Vec2> force, beyond;
 
-/// The same with the registers of the x86-64 baseline, whatever the processor has.
-LocalSums local_step_on_baseline(std::span<const FaceGroup> groups, std::span<const Vec2> uv,
-                                 const Rigidity& rigidity, std::span<Vec2> residual,
-                                 Executor& executor);
+  LocalSums run(Executor& executor) const;
+
+  /// The same with the registers of the x86-64 baseline, whatever the processor has.
+  LocalSums run_on_baseline(Executor& executor) const;
+};
 
 }  // namespace unwrapd

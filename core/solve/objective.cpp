@@ -1,43 +1,33 @@
 #include "core/solve/objective.hpp"
 
-#include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace unwrapd {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // vertices a block
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// force[v]: the sum of the residual over the corners of v.
-void gather(const VertexCorners& corners, std::span<const Vec2> residual, std::span<Vec2> force,
-            Executor& executor) {
-  const std::size_t n = force.size();
-  executor.for_each_block(static_cast<int>((n + kBlock - 1) / kBlock), [&](int block) {
-    const std::size_t first = static_cast<std::size_t>(block) * kBlock;
-    for (std::size_t v = first; v < std::min(n, first + kBlock); ++v) {
-      Vec2 sum = Vec2::Zero();
-      for (Index k = corners.begin[v]; k < corners.begin[v + 1]; ++k)
-        sum += residual[static_cast<std::size_t>(corners.corner[static_cast<std::size_t>(k)])];
-      force[v] = sum;
-    }
-  });
+Holds renumbered(Holds holds, std::span<const Index> rank) {
+  for (FixedPoint& point : holds.fixed) point.vertex = rank[at(point.vertex)];
+  for (Spring& spring : holds.springs) spring.vertex = rank[at(spring.vertex)];
+  return holds;
 }
 
 }  // namespace
 
-Objective::Objective(const Disk& disk, const Rigidity& rigidity, const Holds& holds,
-                     Executor& executor)
-    : disk_(disk),
-      rigidity_(rigidity),
-      holds_(holds),
+Objective::Objective(const Disk& disk, const Rigidity& rigidity, Holds holds,
+                     std::span<const Index> rank, Executor& executor)
+    : rigidity_(rigidity),
+      holds_(renumbered(std::move(holds), rank)),
       executor_(executor),
-      groups_(face_groups(disk.rest, disk.faces)),
-      residual_(3 * kFacesAbreast * groups_.size()) {}
+      blocks_(face_blocks(disk.rest, disk.faces, rank)),
+      beyond_(blocks_.beyond.size()) {}
 
 double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const {
   double energy = 0;
   for (const Spring& spring : holds_.springs) {
-    const auto v = static_cast<std::size_t>(spring.vertex);
+    const std::size_t v = at(spring.vertex);
     const Vec2 away = uv[v] - spring.at;
     energy += spring.weight * away.squaredNorm();
     force[v] -= 2 * spring.weight * away;
@@ -46,13 +36,10 @@ double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) 
 }
 
 double Objective::evaluate(std::span<const Vec2> uv, std::span<Vec2> force) {
-  assert(uv.size() == disk_.positions.size() && force.size() == uv.size());
-  const LocalSums fits = local_step(groups_, uv, rigidity_, residual_, executor_);
+  const LocalSums fits = LocalStep{blocks_, uv, rigidity_, force, beyond_}.run(executor_);
   uv_area_ = fits.uv_area;
-  gather(disk_.corners, residual_, force, executor_);
   const double springs = pull_springs(uv, force);
-  for (const FixedPoint& point : holds_.fixed)
-    force[static_cast<std::size_t>(point.vertex)].setZero();
+  for (const FixedPoint& point : holds_.fixed) force[at(point.vertex)].setZero();
   return fits.energy + springs;
 }
 

@@ -14,12 +14,13 @@ namespace unwrapd {
 
 class Objective {
  public:
-  /// disk, holds and executor must outlive the objective.
-  Objective(const Disk& disk, const Rigidity& rigidity, const Holds& holds, Executor& executor);
+  /// executor must outlive the objective. rank: that of GlobalStep, or any permutation.
+  Objective(const Disk& disk, const Rigidity& rigidity, Holds holds, std::span<const Index> rank,
+            Executor& executor);
 
-  /// Returns E(uv). force[v] becomes -dE/du_v: zero at fixed vertices. For fixed fits the Hessian
-  /// of E is the matrix of GlobalStep, so that one plain iteration is uv += A^-1 force. Both spans
-  /// have one entry a vertex. The same for any executor.
+  /// Returns E(uv). force becomes -dE/du: zero at fixed vertices. For fixed fits the Hessian of E
+  /// is the matrix of GlobalStep, so that one plain iteration is uv += A^-1 force. Both spans have
+  /// one entry a vertex, by ranks. The same for any executor.
   double evaluate(std::span<const Vec2> uv, std::span<Vec2> force);
 
   /// The area that the images of the map evaluated last cover, counted with multiplicity.
@@ -28,12 +29,11 @@ class Objective {
  private:
   double pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const;
 
-  const Disk& disk_;
   Rigidity rigidity_;
-  const Holds& holds_;
+  Holds holds_;  // by ranks
   Executor& executor_;
-  std::vector<FaceGroup> groups_;
-  std::vector<Vec2> residual_;  // one a corner, those that fill up the last group included
+  FaceBlocks blocks_;
+  std::vector<Vec2> beyond_;  // scratch of the local step
   double uv_area_ = 0;
 };
 

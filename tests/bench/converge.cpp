@@ -54,7 +54,7 @@ std::vector<double> nesterov(const Problem& p, UvMap uv) {
   double theta = 1;
   for (int k = 0; k < kMost; ++k) {
     p.objective.evaluate(ahead, force);
-    p.assembly.global.solve(force);
+    p.assembly.global.solve_by_rank(force);
     UvMap next = sum(ahead, 1, force);
     const double now = p.objective.evaluate(next, force);
     if (now > energy.back()) {
@@ -77,7 +77,7 @@ std::vector<double> anderson(const Problem& p, UvMap uv) {
   std::vector<double> energy{p.objective.evaluate(uv, force)};
   Vectors steps, ends;
   for (int k = 0; k < kMost; ++k) {
-    p.assembly.global.solve(force);
+    p.assembly.global.solve_by_rank(force);
     const UvMap end = sum(uv, 1, force);
     if (k > 0) steps.push_back(sum(force, -1, old_step)), ends.push_back(sum(end, -1, old_end));
     if (steps.size() > 5) steps.pop_front(), ends.pop_front();
@@ -113,7 +113,7 @@ void compare_iterations(const Disk& disk) {
   const Holds free;
   const GlobalStep global(disk, free);
   const Assembly assembly{disk, free, global};
-  Objective objective(disk, {}, free, serial);
+  Objective objective(disk, {}, free, global.rank(), serial);
   const UvMap start = initial_map(disk, InitialMap::mean_value, global);
   Descent descent(assembly, start, {}, serial);
   run(descent, {1e-12, kMost}, {});
@@ -123,8 +123,9 @@ void compare_iterations(const Disk& disk) {
                 first_below(energy, least * 1.00001));
   };
   row("plain", local_global(assembly, start, {{}, kMost}, {}, serial).energy);
-  row("Anderson", anderson({assembly, objective}, start));
-  row("Nesterov", nesterov({assembly, objective}, start));
+  const UvMap sorted = by_rank(start, global.rank());
+  row("Anderson", anderson({assembly, objective}, sorted));
+  row("Nesterov", nesterov({assembly, objective}, sorted));
   row("L-BFGS", descent.solution().energy);
 }
 

@@ -11,6 +11,7 @@
 #include "tests/core/linear/systems.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
+#include "tests/core/solve/ranks.hpp"
 
 namespace unwrapd {
 namespace {
@@ -86,8 +87,8 @@ TEST(Engine, SolvesLikeTheReferenceOnAllData) {
 double energy_after_ten_iterations(const Disk& disk, const RealSystem& system) {
   SerialExecutor serial;
   const Holds nothing;
-  Objective objective(disk, Rigidity{}, nothing, serial);
   UvMap uv = tutte_map(disk);
+  Objective objective(disk, Rigidity{}, nothing, shapes::as_listed(uv.size()), serial);
   std::vector<Vec2> force(uv.size());
   for (int k = 0; k < 10; ++k) {
     objective.evaluate(uv, force);

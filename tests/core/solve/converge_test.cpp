@@ -13,6 +13,7 @@
 #include "tests/core/solve/cancel_at.hpp"
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/solve/folded.hpp"
+#include "tests/core/solve/ranks.hpp"
 #include "tests/core/solve/similarity.hpp"
 #include "tests/core/two_threads.hpp"
 
@@ -163,7 +164,7 @@ TEST(Converge, HeldVerticesStayAndTheOthersComeToRest) {
   EXPECT_NEAR(s.energy.back(),
               arap_energy(d.disk.rest, d.disk.faces, s.uv) + spring_energy(holds, s.uv), 1e-12);
   std::vector<Vec2> force(s.uv.size());
-  Objective(d.disk, {}, holds, serial).evaluate(s.uv, force);
+  Objective(d.disk, {}, holds, shapes::as_listed(force.size()), serial).evaluate(s.uv, force);
   for (const Vec2& f : force) EXPECT_LT(f.norm(), 1e-6);
 }
 

@@ -8,6 +8,7 @@
 #include "core/solve/solve.hpp"
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/solve/holds_of.hpp"
+#include "tests/core/solve/ranks.hpp"
 
 namespace unwrapd {
 namespace {
@@ -94,8 +95,9 @@ TEST(HeldSolve, EndsWhereTheForceIsZero) {
     const double lambda = options.method == Method::arap
                               ? std::numeric_limits<double>::infinity()
                               : (options.method == Method::asap ? 0 : options.lambda);
-    Objective objective(d.disk, {lambda, false}, s.hold.held.holds, serial);
     std::vector<Vec2> force(s.page.size());
+    Objective objective(d.disk, {lambda, false}, s.hold.held.holds, shapes::as_listed(force.size()),
+                        serial);
     EXPECT_NEAR(objective.evaluate(s.solution.uv, force), s.solution.energy.back(), 1e-12);
     for (const Vec2& f : force) EXPECT_LT(f.norm(), 2e-5) << "lambda " << lambda;
   }

@@ -12,6 +12,7 @@
 #include "core/solve/objective.hpp"
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/solve/holds_of.hpp"
+#include "tests/core/solve/ranks.hpp"
 
 namespace unwrapd {
 namespace {
@@ -141,7 +142,7 @@ TEST(Objective, ForceIsMinusTheGradientWithSpringsAndFixedVertices) {
     const Holds holds = random_holds(d.disk, 10, 6);
     const UvMap uv = tutte_map(d.disk);
     for (double lambda : {0.0, 0.7, std::numeric_limits<double>::infinity()}) {
-      Objective objective(d.disk, {lambda, false}, holds, serial);
+      Objective objective(d.disk, {lambda, false}, holds, shapes::as_listed(uv.size()), serial);
       std::vector<Vec2> force(uv.size());
       objective.evaluate(uv, force);
       const std::vector<Vec2> gradient = numeric_gradient(objective, uv, holds);
@@ -159,8 +160,9 @@ TEST(Objective, CountsTheSpringsInItsEnergy) {
   double springs = 0;
   for (const Spring& s : holds.springs)
     springs += s.weight * (uv[std::size_t(s.vertex)] - s.at).squaredNorm();
-  EXPECT_NEAR(Objective(d.disk, {}, holds, serial).evaluate(uv, force),
-              arap_energy(d.disk.rest, d.disk.faces, uv) + springs, 1e-12);
+  EXPECT_NEAR(
+      Objective(d.disk, {}, holds, shapes::as_listed(uv.size()), serial).evaluate(uv, force),
+      arap_energy(d.disk.rest, d.disk.faces, uv) + springs, 1e-12);
   EXPECT_NEAR(spring_energy(holds, uv), springs, 1e-15);
 }
 

@@ -5,7 +5,10 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "core/solve/global_step.hpp"
 #include "tests/core/shapes.hpp"
+#include "tests/core/solve/ranks.hpp"
+#include "tests/core/two_threads.hpp"
 
 namespace unwrapd {
 namespace {
@@ -98,76 +101,150 @@ TEST(LocalStep, FitEnergyIsTheEnergyOfTheFit) {
   }
 }
 
-TEST(LocalStep, ResidualIsMinusTheGradientOfTheEnergy) {  // Eq. (4), by finite differences
+/// What a local step reads and writes.
+struct Fitted {
+  FaceBlocks blocks;
+  std::vector<Vec2> force, beyond;
+  LocalSums sums;
+
+  Fitted(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+         std::span<const Index> rank)
+      : blocks(face_blocks(rest, faces, rank)), force(rank.size()), beyond(blocks.beyond.size()) {}
+
+  LocalStep step(const UvMap& uv, const Rigidity& rigidity) {
+    return {blocks, uv, rigidity, force, beyond};
+  }
+};
+
+const std::vector<Rigidity> kRigidities{{}, {0.4, false}, {0.01, true}};
+
+TEST(LocalStep, ForceIsMinusTheGradientOfTheEnergy) {  // Eq. (4), by finite differences
   const TriMesh mesh = shapes::random_disk(4, 6);
-  const std::vector<RestTriangle> rest = flatten(mesh);
   UvMap uv;
   for (const Vec3& p : mesh.positions) uv.emplace_back(1.2 * p.x() + 0.3 * p.y(), p.y() - p.z());
   SerialExecutor serial;
-  for (const Rigidity& rigidity : {Rigidity{}, Rigidity{0.4, false}, Rigidity{0.01, true}}) {
-    const std::vector<FaceGroup> groups = face_groups(rest, mesh.faces);
-    std::vector<Vec2> residual(12 * groups.size()), scratch(residual.size());
+  for (const Rigidity& rigidity : kRigidities) {
+    Fitted fitted(flatten(mesh), mesh.faces, shapes::as_listed(uv.size()));
     const auto energy_of = [&](const UvMap& map) {
-      return local_step(groups, map, rigidity, scratch, serial).energy;
+      return fitted.step(map, rigidity).run(serial).energy;
     };
-    local_step(groups, uv, rigidity, residual, serial);
+    energy_of(uv);
+    const std::vector<Vec2> force = fitted.force;
     for (std::size_t v = 0; v < uv.size(); v += 3)
       for (int k : {0, 1}) {
-        double sum = 0;
-        for (std::size_t c = 0; c < 3 * rest.size(); ++c)
-          if (std::size_t(mesh.faces[c / 3][c % 3]) == v) sum += residual[c][k];
         UvMap up = uv, down = uv;
         up[v][k] += 1e-6, down[v][k] -= 1e-6;
-        EXPECT_NEAR(sum, -(energy_of(up) - energy_of(down)) / 2e-6, 1e-7);
+        EXPECT_NEAR(force[v][k], -(energy_of(up) - energy_of(down)) / 2e-6, 1e-7);
       }
   }
 }
 
-/// Folded over, and one face collapsed to a point.
 UvMap folded_map(const TriMesh& mesh) {
   UvMap uv;
   for (const Vec3& p : mesh.positions) uv.emplace_back(p.x() * p.x(), p.y() - 2 * p.z() * p.x());
+  return uv;
+}
+
+/// Folded over, and one face collapsed to a point.
+UvMap collapsed_map(const TriMesh& mesh) {
+  UvMap uv = folded_map(mesh);
   for (Index v : mesh.faces[5]) uv[std::size_t(v)] = Vec2(0.3, 0.2);
   return uv;
+}
+
+struct Expected {
+  double energy = 0, area = 0;
+};
+
+/// Face by face.
+Expected expected_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+                       const UvMap& uv, const Rigidity& rigidity) {
+  Expected sums;
+  for (std::size_t t = 0; t < rest.size(); ++t) {
+    const Jacobian j = jacobian(rest[t], uv_edges(faces[t], uv));
+    const double lambda = rigidity.at(rest[t].area);
+    sums.energy += fit_energy(j, fit_similarity(j, lambda), rest[t].area, lambda);
+    sums.area += rest[t].area * std::abs(j.determinant());
+  }
+  return sums;
 }
 
 TEST(LocalStep, AddsUpTheFitsOfAllFacesWhateverTheirNumber) {  // groups are filled up
   const TriMesh disk = shapes::random_disk(4, 6);
   const std::vector<RestTriangle> all = flatten(disk);
-  const UvMap uv = folded_map(disk);
+  const UvMap uv = collapsed_map(disk);
   SerialExecutor serial;
   for (std::size_t count = 6; count < 12; ++count)
-    for (const Rigidity& rigidity : {Rigidity{}, Rigidity{0.4, false}, Rigidity{0.01, true}}) {
+    for (const Rigidity& rigidity : kRigidities) {
       const std::span rest = std::span(all).first(count);
       const std::span faces = std::span<const Triangle>(disk.faces).first(count);
-      double energy = 0, area = 0;
-      for (std::size_t t = 0; t < count; ++t) {
-        const Jacobian j = jacobian(rest[t], uv_edges(faces[t], uv));
-        const double lambda = rigidity.at(rest[t].area);
-        energy += fit_energy(j, fit_similarity(j, lambda), rest[t].area, lambda);
-        area += rest[t].area * std::abs(j.determinant());
-      }
-      const std::vector<FaceGroup> groups = face_groups(rest, faces);
-      std::vector<Vec2> residual(12 * groups.size());
-      const LocalSums sums = local_step(groups, uv, rigidity, residual, serial);
-      EXPECT_NEAR(sums.energy, energy, 1e-13 * energy);
-      EXPECT_NEAR(sums.uv_area, area, 1e-13 * area);
-      for (std::size_t c = 3 * count; c < residual.size(); ++c) EXPECT_EQ(residual[c].norm(), 0);
+      const Expected expected = expected_sums(rest, faces, uv, rigidity);
+      Fitted fitted(rest, faces, shapes::as_listed(uv.size()));
+      const LocalSums sums = fitted.step(uv, rigidity).run(serial);
+      EXPECT_NEAR(sums.energy, expected.energy, 1e-13 * expected.energy);
+      EXPECT_NEAR(sums.uv_area, expected.area, 1e-13 * expected.area);
+    }
+}
+
+/// -2 A (J - L) W^T of every face, [x^1 x^2] W = 1, at its corners.
+std::vector<Vec2> expected_forces(const TriMesh& mesh, const UvMap& uv, const Rigidity& rigidity) {
+  const std::vector<RestTriangle> rest = flatten(mesh);
+  std::vector<Vec2> force(uv.size(), Vec2::Zero());
+  for (std::size_t t = 0; t < rest.size(); ++t) {
+    Eigen::Matrix2d x, u;
+    x << -rest[t].edge[0], rest[t].edge[2];
+    const auto at = [&](int i) { return uv[std::size_t(mesh.faces[t][std::size_t(i)])]; };
+    u << at(1) - at(0), at(2) - at(0);
+    const Jacobian j = jacobian(rest[t], uv_edges(mesh.faces[t], uv));
+    const Similarity fit = fit_similarity(j, rigidity.at(rest[t].area));
+    Eigen::Matrix2d l;
+    l << fit.a, fit.b, -fit.b, fit.a;
+    const Eigen::Matrix2d w = x.inverse();
+    const Eigen::Matrix2d pull = -2 * rest[t].area * (u * w - l) * w.transpose();
+    force[std::size_t(mesh.faces[t][0])] -= pull.rowwise().sum();
+    for (int i : {0, 1}) force[std::size_t(mesh.faces[t][std::size_t(i) + 1])] += pull.col(i);
+  }
+  return force;
+}
+
+TEST(LocalStep, GivesTheForcesOfAllFacesWhateverTheOrderOfVertices) {  // several blocks
+  const TriMesh mesh = shapes::random_disk(70, 6);
+  ASSERT_GT(mesh.vertex_count(), 2 * FaceBlocks::kOwn);
+  const std::vector<RestTriangle> rest = flatten(mesh);
+  const UvMap uv = folded_map(mesh);
+  SerialExecutor serial;
+  TwoThreads two;
+  for (const Rigidity& rigidity : kRigidities)
+    for (const std::vector<Index>& rank :
+         {shapes::as_listed(uv.size()), shapes::shuffled_ranks(uv.size(), 5)}) {
+      const UvMap sorted = by_rank(uv, rank);
+      Fitted fitted(rest, mesh.faces, rank), again(rest, mesh.faces, rank);
+      const LocalSums sums = fitted.step(sorted, rigidity).run(serial);
+      const Expected expected = expected_sums(rest, mesh.faces, uv, rigidity);
+      EXPECT_NEAR(sums.energy, expected.energy, 1e-12 * expected.energy);
+      EXPECT_NEAR(sums.uv_area, expected.area, 1e-12 * expected.area);
+      const std::vector<Vec2> force = by_vertex(fitted.force, rank);
+      const std::vector<Vec2> known = expected_forces(mesh, uv, rigidity);
+      for (std::size_t v = 0; v < uv.size(); ++v)
+        EXPECT_LT((force[v] - known[v]).norm(), 1e-11 * (1 + known[v].norm()));
+      EXPECT_EQ(again.step(sorted, rigidity).run(two).energy, sums.energy);
+      EXPECT_EQ(again.force, fitted.force);
     }
 }
 
 TEST(LocalStep, GivesTheSameBitsOnTheBaseline) {
-  const TriMesh mesh = shapes::random_disk(9, 7);
-  const std::vector<FaceGroup> groups = face_groups(flatten(mesh), mesh.faces);
-  const UvMap uv = folded_map(mesh);
+  const TriMesh mesh = shapes::random_disk(60, 7);
+  const UvMap uv = collapsed_map(mesh);
+  const std::vector<RestTriangle> rest = flatten(mesh);
+  const std::vector<Index> rank = shapes::shuffled_ranks(uv.size(), 8);
   SerialExecutor serial;
-  for (const Rigidity& rigidity : {Rigidity{}, Rigidity{0.4, false}, Rigidity{0.01, true}}) {
-    std::vector<Vec2> wide(12 * groups.size()), narrow(wide.size());
-    const LocalSums a = local_step(groups, uv, rigidity, wide, serial);
-    const LocalSums b = local_step_on_baseline(groups, uv, rigidity, narrow, serial);
+  for (const Rigidity& rigidity : kRigidities) {
+    Fitted wide(rest, mesh.faces, rank), narrow(rest, mesh.faces, rank);
+    const LocalSums a = wide.step(uv, rigidity).run(serial);
+    const LocalSums b = narrow.step(uv, rigidity).run_on_baseline(serial);
     EXPECT_EQ(a.energy, b.energy);
     EXPECT_EQ(a.uv_area, b.uv_area);
-    EXPECT_EQ(wide, narrow);
+    EXPECT_EQ(wide.force, narrow.force);
   }
 }
 
