@@ -2,7 +2,7 @@
 // pattern, row k of U and column k of L have the rows of its column k. A front is a full square
 // here, the pivots first, with the right-hand side as two more columns: what is taken off them on
 // the way down is L^-1 b, so that L is never kept and one sweep up is all that is left. Rejected:
-// row after row along the elimination tree's reach, entry by entry (five times slower); Eigen's
+// row after row along the elimination tree's reach, entry by entry (four times slower); Eigen's
 // SparseLU, which orders and stores for partial pivoting (docs/adr/0009).
 #include "core/linear/dominant_lu.hpp"
 
