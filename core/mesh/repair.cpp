@@ -4,7 +4,8 @@
 // Coordinates are rounded to half a unit in the last place, 2^-53 of their size; three points that
 // were on one line end up a few such units off it, and no more. So the bound is 2^-50 of the
 // largest coordinate (and of the longest edge): it follows the mesh when that is scaled or moved,
-// and a sliver of any real height, say 1e-12 of its length, stays in.
+// and a sliver of any real height, say 1e-12 of its length, stays in. Flat, too, is a face less
+// than 2^-300 as long as the mesh reaches: its area underflows where that of others does not.
 #include "core/mesh/repair.hpp"
 
 #include <Eigen/Geometry>
@@ -19,14 +20,16 @@ namespace unwrapd {
 namespace {
 
 constexpr double kRounding = 0x1p-50;
+constexpr double kLeastLength = 0x1p-300;  // of a face, to the largest coordinate of the mesh
 
-bool is_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto size = [](const Vec3& v) { return v.lpNorm<Eigen::Infinity>(); };
+double greatest(const Vec3& v) { return v.lpNorm<Eigen::Infinity>(); }
+
+bool is_flat(const Vec3& a, const Vec3& b, const Vec3& c, double least_length) {
   const Vec3 ab = b - a, ac = c - a;
-  const double length = std::max({size(ab), size(ac), size(c - b)});
-  const double reach = std::max({size(a), size(b), size(c)}) + length;
+  const double length = std::max({greatest(ab), greatest(ac), greatest(c - b)});
+  const double reach = std::max({greatest(a), greatest(b), greatest(c)}) + length;
   const double relative_height = (ab / length).cross(ac / length).norm();
-  return !(relative_height * length > kRounding * reach);
+  return !(relative_height * length > kRounding * reach && length > least_length);
 }
 
 struct Corners {
@@ -54,11 +57,13 @@ std::vector<Corners> sorted_corners(std::span<const Triangle> faces, const FaceS
 FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded) {
   FaceStates states{std::vector<FaceState>(welded.size(), FaceState::sound),
                     std::vector<Index>(welded.size(), kNoFace)};
+  double most = 0;
+  for (const Vec3& position : mesh.positions) most = std::max(most, greatest(position));
   for (std::size_t t = 0; t < welded.size(); ++t) {
     const auto& [a, b, c] = welded[t];
     if (repeats_vertex(welded[t]))
       states.of[t] = FaceState::collapsed;
-    else if (is_flat(mesh.positions[a], mesh.positions[b], mesh.positions[c]))
+    else if (is_flat(mesh.positions[a], mesh.positions[b], mesh.positions[c], kLeastLength * most))
       states.of[t] = FaceState::flat;
   }
   for_each_run(

@@ -44,6 +44,14 @@ TEST(Repair, SizeAloneNeverMakesAFaceDegenerate) {
     EXPECT_EQ(state_of_triangle({0, 0, 0}, {scale, 0, 0}, {0, scale, 0}), FaceState::sound);
 }
 
+TEST(Repair, AFaceWhoseAreaUnderflowsBesideTheOthersIsFlat) {
+  for (double tiny : {1e-200, 1e-120, 1e-80}) {
+    const FaceStates states =
+        inspected({{{0, 0, 0}, {tiny, 0, 0}, {0, tiny, 0}, {-1, -1, 1}}, {{0, 1, 2}, {1, 0, 3}}});
+    EXPECT_EQ(states.of[0], tiny < 1e-90 ? FaceState::flat : FaceState::sound) << tiny;
+  }
+}
+
 TEST(Repair, TwoCornersAtOnePositionAreACollapsedFace) {
   EXPECT_EQ(state_of_triangle({0, 0, 0}, {1, 0, 0}, {-0.0, 0, 0}), FaceState::collapsed);
   EXPECT_EQ(state_of_triangle({1, 1, 1}, {1, 1, 1}, {1, 1, 1}), FaceState::collapsed);
