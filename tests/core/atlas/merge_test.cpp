@@ -1,0 +1,107 @@
+#include "core/atlas/merge.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// Patches of a flat sheet, one for each value of label(middle of a face), with their own places
+/// for maps.
+template <class Label>
+Partition parted(const Sheet& sheet, Label label) {
+  Partition parts{{}, std::vector<char>(sheet.length.size(), 0)};
+  for (Index t = 0; t < sheet.face_count(); ++t) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : sheet.mesh.faces[std::size_t(t)])
+      middle += sheet.mesh.positions[std::size_t(v)] / 3;
+    const auto k = std::size_t(label(middle));
+    if (parts.patches.size() <= k) parts.patches.resize(k + 1);
+    parts.patches[k].region.faces.push_back(t);
+  }
+  for (MappedRegion& patch : parts.patches) {
+    patch.region.uv = projected(sheet, patch.region.faces);
+    for (const Index t : patch.region.faces) patch.area += sheet.area(t);
+    patch.is_sound = true;
+  }
+  return parts;
+}
+
+Sheet sheet_of(const TriMesh& mesh) {
+  return make_sheet(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+}
+
+std::size_t merged_count(const Sheet& sheet, const Partition& from, MergeRules rules) {
+  SerialExecutor serial;
+  rules.budget = rules.cap = 0.02;
+  return merge_patches(Joiner(sheet), sheet, from, rules, serial).patches.size();
+}
+
+/// Halves of a strip 16 wide and 1 high, and of one 2 wide.
+TEST(Merge, RefusesWhatIsTooLongForAPageOnlyWhereThePageShallBeFilled) {
+  const auto half = [](const Vec3& middle) { return middle.x() < 0 ? 0 : 1; };
+  const Sheet strip = sheet_of(shapes::grid(16, 1, 16, 1)), brick = sheet_of(shapes::grid(4, 2, 2));
+  EXPECT_EQ(merged_count(strip, parted(strip, half), {}), 1U);
+  EXPECT_EQ(merged_count(strip, parted(strip, half), {.least_fill = 0.3}), 2U);
+  EXPECT_EQ(merged_count(brick, parted(brick, half), {.least_fill = 0.3}), 1U);
+  EXPECT_EQ(merged_count(strip, parted(strip, half), {.page_area = 10, .least_fill = 0.3}), 1U);
+}
+
+/// An L of three squares covers 6/7 of its convex hull.
+TEST(Merge, RefusesALargeUnionThatFillsItsHullTooLittle) {
+  TriMesh corner = shapes::grid(4, 4);
+  std::erase_if(corner.faces, [&](const Triangle& face) {
+    return std::ranges::all_of(face, [&](Index v) {
+      const Vec3& p = corner.positions[std::size_t(v)];
+      return p.x() >= 0.5 && p.y() >= 0.5;
+    });
+  });
+  std::vector<Index> number(corner.positions.size(), -1);
+  TriMesh mesh;
+  for (const Triangle& face : corner.faces) {
+    mesh.faces.push_back(face);
+    for (Index& v : mesh.faces.back()) {
+      if (number[std::size_t(v)] < 0) {
+        number[std::size_t(v)] = mesh.vertex_count();
+        mesh.positions.push_back(corner.positions[std::size_t(v)]);
+      }
+      v = number[std::size_t(v)];
+    }
+  }
+  const Sheet sheet = sheet_of(mesh);
+  const double bend = sheet.mesh.positions[std::size_t(number[12])].y();  // (0.5, 0.5)
+  const Partition halves = parted(sheet, [&](const Vec3& m) { return m.y() < bend ? 0 : 1; });
+  const auto count = [&](double least_solid, double page_area) {
+    return merged_count(sheet, halves,
+                        {.page_area = page_area, .least_fill = 0.01, .least_solid = least_solid});
+  };
+  EXPECT_EQ(count(0.8, 1), 1U);
+  EXPECT_EQ(count(0.9, 1), 2U);
+  EXPECT_EQ(count(0.9, 30), 1U);  // too small a share of the page to matter
+}
+
+/// Six sides of a cube lie flat as a cross, but only with slits, which are told.
+TEST(Merge, TellsOfSlitsOnBothSides) {
+  const TriMesh mesh = shapes::cube(1);
+  const Sheet sheet = sheet_of(mesh);
+  const auto side = [](const Vec3& m) {
+    Eigen::Index axis = 0;
+    m.cwiseAbs().maxCoeff(&axis);
+    return 2 * int(axis) + (m[axis] > 0 ? 1 : 0);
+  };
+  SerialExecutor serial;
+  const Partition all = merge_patches(Joiner(sheet), sheet, parted(sheet, side),
+                                      {.budget = 0.02, .cap = 0.08}, serial);
+  double slit = 0;
+  for (std::size_t h = 0; h < all.open.size(); ++h) {
+    if (all.open[h] == 0) continue;
+    EXPECT_EQ(all.open[std::size_t(sheet.halfedges.twin[h])], 1);
+    slit += sheet.length[h] / 2;
+  }
+  EXPECT_EQ(all.patches.size(), 1U);
+  EXPECT_NEAR(slit, 7 * std::sqrt(1.0 / 6), 1e-9);  // of twelve edges a tree of five is glued
+}
+
+}  // namespace
+}  // namespace unwrapd
