@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/atlas/promise.hpp"
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/solve/hold_page.hpp"
 
@@ -111,7 +112,9 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
   const Chart& chart = job.chart;
   const std::vector<double> lambdas = lambdas_of(options);
   watch.begin_chart(chart.mesh.faces.size(), lambdas.size());
+  throw_if_cancelled(watch.stop());
   const Disk disk = make_disk(chart.mesh, chart.loops, executor.shared_core());
+  throw_if_cancelled(watch.stop());
   const ChartHold hold = hold_chart(disk, options, job.page, watch.stop(), executor);
   Solver solver(disk, options, held_or_begun(chart, disk, options, hold.held), executor);
   std::vector<std::vector<MappedChart>> maps(lambdas.size());

@@ -9,6 +9,7 @@
 #include "core/atlas/snap.hpp"
 #include "core/atlas/uv_islands.hpp"
 #include "core/cancel.hpp"
+#include "core/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/measure/seam_length.hpp"

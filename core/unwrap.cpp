@@ -220,12 +220,13 @@ void add_totals(Report& report) {
   report.seam_ratio = report.seam_length / std::sqrt(report.area);
 }
 
-Unwrapped put_back(std::span<const Surface> surfaces, Layout layout) {
+Unwrapped put_back(std::span<const Surface> surfaces, Layout layout, const std::stop_token& stop) {
   Unwrapped unwrapped;
   auto report = layout.report.charts.begin();
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    unwrapped.surfaces.push_back(assemble(surfaces[s], layout.surfaces[s], layout.islands[s]));
-    const std::vector<double> seams = seam_lengths(surfaces[s], unwrapped.surfaces.back());
+    unwrapped.surfaces.push_back(
+        assemble(surfaces[s], layout.surfaces[s], layout.islands[s], stop));
+    const std::vector<double> seams = seam_lengths(surfaces[s], unwrapped.surfaces.back(), stop);
     for (const Chart& chart : layout.surfaces[s].charts) {
       for (const Index t : chart.face_source) report->seam_length += seams[t];
       ++report;
@@ -276,7 +277,8 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
   std::vector<Unwrapped> maps;
-  for (Layout& layout : layouts) maps.push_back(put_back(surfaces, std::move(layout)));
+  for (Layout& layout : layouts)
+    maps.push_back(put_back(surfaces, std::move(layout), progress.stop));
   if (is_curve(options)) add_curve(maps, lambdas_of(options));
   return maps;
 }

@@ -71,9 +71,10 @@ const Mask& Arranger::mask_of(std::size_t island, int turn) {
   return *mask;
 }
 
-int Arranger::least_side() {
+int Arranger::least_side(const std::stop_token& stop) {
   int side = 1;
   for (std::size_t k = 0; k < size(); ++k) {
+    throw_if_cancelled(stop);
     int own = std::numeric_limits<int>::max();
     for (int turn = 0; turn < turns_; ++turn) {
       const Mask& mask = mask_of(k, turn);

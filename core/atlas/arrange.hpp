@@ -70,8 +70,9 @@ class Arranger {
   [[nodiscard]] Turn turn_of(std::size_t island, int turn) const;
   const Mask& mask_of(std::size_t island, int turn);
 
-  /// The least side of a page on which every island finds room for itself.
-  int least_side();
+  /// The least side of a page on which every island finds room for itself. Throws
+  /// Error{cancelled}.
+  int least_side(const std::stop_token& stop);
 
  private:
   struct Page;

@@ -7,6 +7,7 @@
 #include <cassert>
 
 #include "core/atlas/pack.hpp"
+#include "core/cancel.hpp"
 #include "core/mesh/counting_sort.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/mesh/weld.hpp"
@@ -127,20 +128,23 @@ UvMap joined(std::span<const UvMap> chart_uv) {
 }  // namespace
 
 UnwrappedSurface assemble(const Surface& surface, const Charts& charts,
-                          std::span<const UvMap> chart_uv) {
+                          std::span<const UvMap> chart_uv, const std::stop_token& stop) {
   assert(chart_uv.size() == charts.charts.size());
   const Numbering numbering = number_vertices(charts);
   std::vector<Triangle> at = charted_corners(surface, charts, numbering);
   give_corners_to_set_aside(surface, charts, numbering, at);
+  throw_if_cancelled(stop);
   const std::vector<Triangle>& faces = surface.mesh.faces;
   const Index vertex_count = surface.mesh.vertex_count();
   const std::vector<Index> first_equal =
       first_equal_corners(faces, vertex_count, at, numbering.total());
+  throw_if_cancelled(stop);
   const UvMap uv = joined(chart_uv);
   UnwrappedSurface out{faces, std::vector<Index>(vertex_count), UvMap(vertex_count, Vec2::Zero())};
   for (Index v = 0; v < vertex_count; ++v) out.source[v] = v;
   std::vector<bool> taken(vertex_count, false);
   for (Index c = 0; c < static_cast<Index>(first_equal.size()); ++c) {
+    look_now_and_then(c, stop);
     const Index first = first_equal[c], v = faces[c / 3][c % 3], shown = at[c / 3][c % 3];
     Index& number = out.faces[c / 3][c % 3];
     if (first != c) {

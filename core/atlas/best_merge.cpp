@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/atlas/glue_slits.hpp"
 #include "core/atlas/labels.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/atlas/straighten.hpp"
@@ -30,7 +31,8 @@ constexpr double kFacesOfSearch = 100'000;  // that are merged for a page, anew 
 constexpr std::size_t kFinished = 3;        // of the tries: with borders drawn straight
 constexpr double kFittingFill = 0.72;       // see MergeRules::least_fill
 constexpr double kCostOfAChart = 0.1;
-constexpr double kWantedFill = 0.7, kCostOfEmptiness = 6;  // for a page that is empty beyond that
+constexpr double kWantedFill = 0.7, kCostOfEmptiness = 6;   // for a page that is empty beyond that
+constexpr double kFacesOfATry = 20, kTriesOfFinishing = 1;  // for each face; see Effort
 constexpr double kMostPage = 1.5;  // of the sheet: with more beside it, others fill the gaps
 
 /// The region of each face.
@@ -91,29 +93,31 @@ struct Candidate {
 class Search {
  public:
   Search(const Sheet& sheet, const MergeRules& rules, Executor& executor)
-      : sheet_(sheet), rules_(rules), executor_(executor), joiner_(sheet) {}
+      : sheet_(sheet), rules_(rules), executor_(executor), joiner_(sheet) {
+    const double faces = sheet_.face_count() * std::max(1.0, rules_.page_area);
+    tries_ = static_cast<std::size_t>(
+        std::clamp<double>(kFacesOfSearch / faces, 1, static_cast<double>(kTries.size())));
+    kept_ = std::clamp(tries_ / 4, std::size_t{1}, kFinished);
+    weight_left_ = static_cast<double>(tries_) + kTriesOfFinishing * static_cast<double>(kept_);
+    try_faces_ = kFacesOfATry * sheet_.face_count();
+  }
 
   /// The cheapest of the tries, the best first.
-  std::vector<Candidate> greedy(const Partition& from) const {
-    const double faces = sheet_.face_count() * std::max(1.0, rules_.page_area);
-    const auto tries = static_cast<std::size_t>(
-        std::clamp<double>(kFacesOfSearch / faces, 1, static_cast<double>(kTries.size())));
+  std::vector<Candidate> greedy(const Partition& from) {
     std::vector<Candidate> best;
-    for (std::size_t k = 0; k < tries; ++k) {
-      MergeRules rules = rules_of(k);
-      rules.on_progress = [&](double share) {
-        if (rules_.on_progress)
-          rules_.on_progress((static_cast<double>(k) + share) / static_cast<double>(tries));
-      };
-      add(merge_patches(joiner_, sheet_, from, rules, executor_), best);
+    for (std::size_t k = 0; k < tries_; ++k) {
+      begin(1);
+      add(merge_patches(joiner_, sheet_, from, rules_of(k), executor_), best);
+      try_faces_ = rules_.effort->done();
       std::ranges::stable_sort(best, std::less(), &Candidate::cost);
-      if (best.size() > std::clamp(tries / 4, std::size_t{1}, kFinished)) best.pop_back();
+      if (best.size() > kept_) best.pop_back();
     }
     return best;
   }
 
   /// With borders drawn straight; and with what then fits together merged, of any shape or not.
-  std::vector<Candidate> finished(Partition partition) const {
+  std::vector<Candidate> finished(Partition partition) {
+    begin(kTriesOfFinishing);
     std::vector<Candidate> all;
     if (partition.patches.size() == 1) {
       add(std::move(partition), all);
@@ -123,7 +127,6 @@ class Search {
     for (const double least_fill : {0.0, kFittingFill}) {
       MergeRules rules = rules_;
       rules.least_fill = least_fill;
-      rules.on_progress = {};
       Partition merged = merge_patches(joiner_, sheet_, partition, rules, executor_);
       straighten(sheet_, rules, merged);
       add(std::move(merged), all);
@@ -133,6 +136,12 @@ class Search {
   }
 
  private:
+  /// A part of the work begins that takes as long as so many tries, of which the last one tells.
+  void begin(double tries) {
+    rules_.effort->begin(tries / weight_left_, tries * try_faces_);
+    weight_left_ = std::max(weight_left_ - tries, tries);
+  }
+
   [[nodiscard]] MergeRules rules_of(std::size_t number) const {
     MergeRules rules = rules_;
     rules.price = kTries[number].price;
@@ -152,17 +161,21 @@ class Search {
   const MergeRules& rules_;
   Executor& executor_;
   Joiner joiner_;
+  std::size_t tries_ = 1, kept_ = 1;
+  double weight_left_ = 1;  ///< of the work, in tries
+  double try_faces_ = 0;    ///< that the last try took, or the first is thought to take
 };
 
 }  // namespace
 
 Partition best_merge(const Sheet& sheet, const Partition& from, const MergeRules& rules,
                      Executor& executor) {
-  const Search search(sheet, rules, executor);
+  Search search(sheet, rules, executor);
   Candidate best{std::numeric_limits<double>::infinity(), {}};
   for (Candidate& greedy : search.greedy(from))
     for (Candidate& own : search.finished(std::move(greedy.partition)))
       if (own.cost < best.cost) best = std::move(own);
+  glue_slits(sheet, rules, best.partition);
   return std::move(best.partition);
 }
 

@@ -14,6 +14,7 @@
 #include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/mesh/counting_sort.hpp"
+#include "core/mesh/edges.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/mesh/seams.hpp"
 #include "core/mesh/weld.hpp"
@@ -35,7 +36,8 @@ struct Pieces {
 };
 
 /// Leaves out the faces that are set aside.
-Pieces pieces_of(Pairing pairing, const FaceStates& states) {
+Pieces pieces_of(Pairing pairing, const FaceStates& states, const std::stop_token& stop) {
+  throw_if_cancelled(stop);
   Pieces pieces;
   std::vector<Index> rank(states.of.size(), kNoFace);
   for (std::size_t t = 0; t < states.of.size(); ++t) {
@@ -48,6 +50,7 @@ Pieces pieces_of(Pairing pairing, const FaceStates& states) {
   for (std::size_t h = 0; h < pieces.halfedges.twin.size(); ++h)
     pieces.halfedges.twin[h] = moved(pairing.halfedges.twin[3 * pieces.source[h / 3] + h % 3]);
   close_slits(pieces.halfedges);
+  throw_if_cancelled(stop);
   pieces.topology = topology(corner_vertices(pieces.halfedges).faces, pieces.halfedges);
   pieces.split_edges = pairing.split_edges;
   for (const auto& [g, h] : pairing.clashes)
@@ -115,13 +118,13 @@ Pieces welded_pieces(const Inspected& in, const SeamRules& seams) {
   if (seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty())
     cut_at_uv_seams(in.surface, pairing.halfedges);
   cut_paths(in, seams, pairing.halfedges);
-  return pieces_of(std::move(pairing), in.states);
+  return pieces_of(std::move(pairing), in.states, seams.stop);
 }
 
 Pieces kept_pieces(const Inspected& in, const SeamRules& seams) {
   Pairing pairing = pair_keeping_seams(in.surface, in.welded, in.states);
   cut_paths(in, seams, pairing.halfedges);
-  return pieces_of(std::move(pairing), in.states);
+  return pieces_of(std::move(pairing), in.states, seams.stop);
 }
 
 /// The pieces that the mode asks for, and whether vertices were welded for them.
@@ -131,6 +134,7 @@ std::pair<Pieces, bool> choose(const Inspected& in, const SeamRules& seams) {
   if (seams.mode == SeamMode::none || by_uv) return {welded_pieces(in, seams), !nothing_to_weld};
   if (seams.mode == SeamMode::keep || nothing_to_weld) return {kept_pieces(in, seams), false};
   Pieces with_cuts = kept_pieces(in, seams);
+  throw_if_cancelled(seams.stop);
   Pieces without = welded_pieces(in, seams);
   const bool same = with_cuts.halfedges.twin == without.halfedges.twin;
   if (same || is_a_few_disks(with_cuts, without)) return {std::move(with_cuts), false};
@@ -159,6 +163,14 @@ TriMesh mesh_of(const Halfedges& halfedges, Position position) {
   return mesh;
 }
 
+/// Whether materials meet between two half-edges of one edge, or the input has other vertices on
+/// either side: of normals, or of texture coordinates.
+bool is_crease(const Surface& surface, Index g, Index h) {
+  const std::vector<Triangle>& faces = surface.mesh.faces;
+  return surface.part[face_of(g)] != surface.part[face_of(h)] ||
+         start_of(faces, g) != end_of(faces, h) || end_of(faces, g) != start_of(faces, h);
+}
+
 /// source: the chart's faces as numbers of pieces; rank: their place in source.
 Chart chart_of(const Surface& surface, const Pieces& pieces, std::span<const Index> source,
                std::span<const Index> rank) {
@@ -168,6 +180,8 @@ Chart chart_of(const Surface& surface, const Pieces& pieces, std::span<const Ind
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
       const Index twin = pieces.halfedges.twin[h];
       chart.halfedges.twin.push_back(twin == kNoTwin ? kNoTwin : 3 * rank[twin / 3] + twin % 3);
+      const auto given = [&](Index g) { return 3 * pieces.source[g / 3] + g % 3; };
+      chart.crease.push_back(twin != kNoTwin && is_crease(surface, given(h), given(twin)) ? 1 : 0);
     }
   }
   chart.mesh = mesh_of(chart.halfedges, [&](Index h) {
@@ -176,7 +190,8 @@ Chart chart_of(const Surface& surface, const Pieces& pieces, std::span<const Ind
   return chart;
 }
 
-std::vector<Chart> separate(const Surface& surface, const Pieces& pieces) {
+std::vector<Chart> separate(const Surface& surface, const Pieces& pieces,
+                            const std::stop_token& stop) {
   const auto& components = pieces.topology.components;
   const auto& of = pieces.topology.component_of;
   std::vector<Index> order(pieces.source.size());
@@ -187,10 +202,12 @@ std::vector<Chart> separate(const Surface& surface, const Pieces& pieces) {
   std::vector<Index> rank(order.size());
   std::size_t first = 0;
   for (const Component& component : components) {
+    throw_if_cancelled(stop);
     const std::span<const Index> source(order.data() + first, component.faces);
     for (std::size_t k = 0; k < source.size(); ++k) rank[source[k]] = static_cast<Index>(k);
     first += source.size();
     charts.push_back(chart_of(surface, pieces, source, rank));
+    throw_if_cancelled(stop);
     charts.back().loops = boundary_loops(charts.back().mesh, charts.back().halfedges);
   }
   return charts;
@@ -258,7 +275,7 @@ Charts components_of(const Surface& surface, const SeamRules& seams) {
   require_two_sides(surface, pieces);
   throw_if_cancelled(seams.stop);
   Charts charts;
-  charts.charts = separate(surface, pieces);
+  charts.charts = separate(surface, pieces, seams.stop);
   for (std::size_t t = 0; t < states.of.size(); ++t) {
     if (states.of[t] == FaceState::sound) continue;
     charts.set_aside.push_back(static_cast<Index>(t));

@@ -21,6 +21,8 @@ struct Chart {
   std::vector<Index> face_source;   ///< chart face -> face of the surface; corners keep their order
   UvMap start = {};  ///< a map of any scale to begin with, nearly free of flips; empty: none
   Guarantee least = Guarantee::none;  ///< what its map keeps unless nothing shall be guaranteed
+  std::vector<char> crease = {};  ///< of a component, one a half-edge, 1: materials meet there, or
+                                  ///< the input has vertices of their own on both sides
 };
 
 /// A surface taken apart. Faces in set_aside are in no chart.

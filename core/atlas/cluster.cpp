@@ -69,9 +69,9 @@ class Clustering {
     own.area = sheet.area(t);
     own.normal_sum = own.area * normal;
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
-      own.perimeter += sheet.length[h];
+      own.perimeter += sheet.seam_cost[h];
       const Index twin = sheet.halfedges.twin[h];
-      if (twin != kNoTwin && face_of(twin) != t) own.borders[face_of(twin)] += sheet.length[h];
+      if (twin != kNoTwin && face_of(twin) != t) own.borders[face_of(twin)] += sheet.seam_cost[h];
     }
   }
 

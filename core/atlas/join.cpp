@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/cancel.hpp"
 #include "core/mesh/disjoint_sets.hpp"
 #include "core/mesh/edges.hpp"
 
@@ -133,7 +134,7 @@ Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<cons
     joined.patch.is_sound = result.verdict == Verdict::sound;
   };
   attempt(common, open);
-  if (joined.patch.is_sound || stop.stop_requested()) return joined;
+  if (joined.patch.is_sound || is_cancelled(stop)) return joined;
   joined.slit = slit_of(common);
   if (joined.slit.empty()) return joined;
   std::vector<char> cut(open.begin(), open.end());

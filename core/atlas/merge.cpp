@@ -62,7 +62,7 @@ class Merging {
         open_(std::move(from.open)),
         patches_(std::move(from.patches)) {
     alive_.assign(patches_.size(), 1);
-    count_ = first_count_ = patches_.size();
+    count_ = patches_.size();
     for (const MappedRegion& patch : patches_) total_ += patch.excess;
     measure_borders();
   }
@@ -101,8 +101,8 @@ class Merging {
       const Index twin = sheet_.halfedges.twin[h], own = owner[face_of(h)];
       const Index other = twin == kNoTwin ? -1 : owner[face_of(twin)];
       if (own < 0 || own == other) continue;
-      perimeter_[own] += sheet_.length[h];
-      if (other >= 0 && open_[h] == 0) borders_[own][other] += sheet_.length[h];
+      perimeter_[own] += sheet_.seam_cost[h];
+      if (other >= 0 && open_[h] == 0) borders_[own][other] += sheet_.seam_cost[h];
     }
   }
 
@@ -146,7 +146,10 @@ class Merging {
           joiner_.join(patches_[own.a], patches_[own.b], open_, rules_.cap, rules_.stop));
     });
     throw_if_cancelled(rules_.stop);
-    for (Union& both : batch) judge(std::move(both));
+    for (Union& both : batch) {
+      if (rules_.effort != nullptr) rules_.effort->add(both.tried->patch.region.faces.size());
+      judge(std::move(both));
+    }
   }
 
   /// Whether a page that holds the patch could not be filled as it shall.
@@ -182,7 +185,7 @@ class Merging {
     double slit = 0;
     for (const Index h : best.tried->slit) {
       open_[h] = 1;
-      slit += sheet_.length[h];
+      slit += sheet_.seam_cost[h];
     }
     perimeter_.push_back(perimeter_[best.a] + perimeter_[best.b] - 2 * borders_[best.a].at(best.b) +
                          slit);
@@ -195,8 +198,6 @@ class Merging {
     }
     --count_;
     for (const auto& [other, length] : borders_[joined]) meet(joined, other, length, best);
-    if (rules_.on_progress)
-      rules_.on_progress(1 - static_cast<double>(count_) / static_cast<double>(first_count_));
   }
 
   [[nodiscard]] std::map<Index, double> joined_borders(Index a, Index b) const {
@@ -234,7 +235,7 @@ class Merging {
   std::map<std::pair<Index, Index>, Promise> known_;
   std::priority_queue<Union, std::vector<Union>, std::greater<>> queue_;
   Excess total_;
-  std::size_t count_ = 0, first_count_ = 0;
+  std::size_t count_ = 0;
 };
 
 }  // namespace

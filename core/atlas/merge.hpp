@@ -1,10 +1,10 @@
 #pragma once
 // Neighbouring regions made one, greedily, as long as their maps stay good.
 
-#include <functional>
 #include <stop_token>
 #include <vector>
 
+#include "core/atlas/effort.hpp"
 #include "core/atlas/join.hpp"
 #include "core/executor.hpp"
 
@@ -20,7 +20,7 @@ struct MergeRules {
   double whim = 0;         ///< share of borders' worth that is drawn by lot
   int lot = 0;             ///< which of the draws; each is the same for everybody
   Index enough = 1;        ///< ends when there are no more patches than this
-  std::function<void(double)> on_progress = {};  ///< share of the patches merged, from this thread
+  Effort* effort = nullptr;  ///< told of the faces that are tried, from this thread; null: nobody
   std::stop_token stop = {};
 };
 

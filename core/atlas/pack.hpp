@@ -62,8 +62,8 @@ double rough_fill(std::span<const Outline> islands, const std::stop_token& stop 
 /// first corner keeps its number, copies are appended in the order of faces and corners. Of the
 /// faces that were set aside, a duplicate gets the UVs of the face that it repeats; a degenerate
 /// one those of its vertices (or of others at their positions), of one of them when they lie in
-/// several charts, and (0,0) when there are none.
+/// several charts, and (0,0) when there are none. Throws Error{cancelled}.
 UnwrappedSurface assemble(const Surface& surface, const Charts& charts,
-                          std::span<const UvMap> chart_uv);
+                          std::span<const UvMap> chart_uv, const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -68,7 +68,7 @@ class Strip {
 
   /// heat: by what share of the width the strip may rise for a change, to begin with.
   Found search(const Arrangement& start, int width, double heat) {
-    least_ = arranger_.least_side();
+    least_ = arranger_.least_side(budget_.stop);
     width_ = std::max(width, least_);
     const auto words = static_cast<double>(budget_.words);
     now_ = start;
@@ -206,7 +206,8 @@ std::vector<Found> smallest_page(Arranger& arranger, const std::vector<Arrangeme
 Found smallest_pages(Arranger& arranger, const std::vector<Arrangement>& starts, int page_count,
                      Budget& budget) {
   const double area = area_in_cells(arranger) / page_count;
-  const double least = std::max<double>(arranger.least_side(), std::sqrt(kLoose * area / kDense));
+  const double least =
+      std::max<double>(arranger.least_side(budget.stop), std::sqrt(kLoose * area / kDense));
   Found best;
   double low = least, high = std::max(least, std::sqrt(area / kLoose)) + 1;
   for (double side = high; best.side == 0; side *= 2)

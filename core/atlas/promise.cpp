@@ -92,6 +92,7 @@ Seeds seeds_at_overlaps(const Chart& chart, const std::vector<std::array<Index, 
 std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& uv,
                                               const std::stop_token& stop) {
   if (is_plainly_injective(chart.mesh.faces, chart.loops, uv)) return {};
+  throw_if_cancelled(stop);
   return overlapping_pairs(chart.mesh.faces, uv, kMostPairs, stop);
 }
 
@@ -102,8 +103,11 @@ std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& u
 }
 
 /// Splits a part in two or more and puts them on the list of those to be looked at.
-void split(const KeptPart& part, const Seeds& seeds, std::vector<KeptPart>& open) {
+void split(const KeptPart& part, const Seeds& seeds, const std::stop_token& stop,
+           std::vector<KeptPart>& open) {
+  throw_if_cancelled(stop);
   for (ChartPart& piece : split_chart(part.chart, seeds)) {
+    throw_if_cancelled(stop);
     UvMap uv;
     for (Index v : piece.vertex) uv.push_back(part.uv[v]);
     open.push_back({std::move(piece.chart), std::move(uv)});
@@ -158,7 +162,7 @@ std::vector<KeptPart> split_as_needed(KeptPart whole, double unit, const Promise
     else if (has_a_place(promise.intent))
       fail("the constraints leave no map without flips or overlaps");
     else
-      split(part, seeds, open);
+      split(part, seeds, promise.intent.stop, open);
   }
   return kept;
 }
@@ -171,14 +175,17 @@ Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise&
     kept.parts.push_back({chart, std::move(uv)});
     return kept;
   }
+  throw_if_cancelled(promise.intent.stop);
   const double before = energy_of(disk, uv, promise.intent.rigidity);
   const auto rise = [&](const UvMap& now) {
     return before > 0 ? energy_of(disk, now, promise.intent.rigidity) / before - 1 : 0;
   };
+  throw_if_cancelled(promise.intent.stop);
   kept.mending.flips = static_cast<Index>(flipped_faces(disk.faces, uv).size());
   if (kept.mending.flips > 0 && mend(disk, promise, uv, kept.mending) == 0)
     kept.mending.energy_rise = rise(uv);
   kept.parts = split_as_needed({chart, std::move(uv)}, disk.unit, promise, kept.mending);
+  throw_if_cancelled(promise.intent.stop);
   if (kept.mending.overlaps > 0 && kept.parts.size() == 1)
     kept.mending.energy_rise = rise(kept.parts.front().uv);
   kept.mending.parts = static_cast<Index>(kept.parts.size());

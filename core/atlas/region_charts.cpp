@@ -6,6 +6,7 @@
 
 #include "core/atlas/carry.hpp"
 #include "core/atlas/split_chart.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd {
 namespace {
@@ -93,8 +94,10 @@ std::vector<Chart> region_charts(const Chart& component, const Coarse& coarse,
                                  const Segments& segments, const std::stop_token& stop) {
   const auto [uv, seam] = seamed(coarse.halfedges, segments);
   const Carried carried = carry(component.mesh, component.halfedges, coarse, seam, stop);
+  throw_if_cancelled(stop);
   std::vector<Chart> charts;
   for (ChartPart& part : parts_of(component, carried.cut)) {
+    throw_if_cancelled(stop);
     part.chart.start = carried_map(part, coarse, uv, carried.near);
     part.chart.least = Guarantee::bijective;
     charts.push_back(std::move(part.chart));

@@ -28,8 +28,15 @@ constexpr int kSmoothingPasses = 3;
 constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
 constexpr double kMargin = 0.97;  // of what is allowed: solving on may shift some between the two
 constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a number of regions
-constexpr double kMergeBegin = 0.3;                 // share of the time
-constexpr double kCapOfOnePatch = 4;                // in shares of what is allowed of all
+constexpr double kPatchesShare = 0.1, kFacesOfPatches = 6;  // of the work; for each face
+constexpr double kCapOfOnePatch = 4;                        // in shares of what is allowed of all
+
+/// How the work is watched and done.
+struct Work {
+  const std::stop_token& stop;
+  Effort& effort;
+  Executor& executor;
+};
 
 Excess total_of(std::span<const MappedRegion> patches) {
   Excess total;
@@ -39,20 +46,22 @@ Excess total_of(std::span<const MappedRegion> patches) {
 
 /// The faces of each label with a map of their own, from their projection.
 std::vector<MappedRegion> map_patches(const Sheet& sheet, std::vector<Index>& label,
-                                      const std::stop_token& stop, Executor& executor) {
+                                      const Work& work) {
   std::vector<std::vector<Index>> faces = faces_by_label(label, renumber(label));
   std::vector<MappedRegion> patches(faces.size());
-  executor.for_each_block(static_cast<int>(faces.size()), [&](int block) {
+  work.executor.for_each_block(static_cast<int>(faces.size()), [&](int block) {
     MappedRegion& patch = patches[static_cast<std::size_t>(block)];
     patch.region.faces = std::move(faces[static_cast<std::size_t>(block)]);
     patch.region.uv = projected(sheet, patch.region.faces);
-    const TrialRules rules{.most_excess = std::numeric_limits<double>::infinity(), .stop = stop};
+    const TrialRules rules{.most_excess = std::numeric_limits<double>::infinity(),
+                           .stop = work.stop};
     const TrialResult result = try_map(sheet, {}, rules, patch.region);
     patch.excess = result.excess;
     patch.is_sound = result.verdict == Verdict::sound;
     for (const Index t : patch.region.faces) patch.area += sheet.area(t);
   });
-  throw_if_cancelled(stop);
+  throw_if_cancelled(work.stop);
+  work.effort.add(label.size());
   return patches;
 }
 
@@ -68,59 +77,59 @@ void split_unsound(const Sheet& sheet, std::span<const MappedRegion> patches,
 }
 
 std::vector<MappedRegion> sound_patches(const Sheet& sheet, double flatness,
-                                        std::vector<Index> label, const SegmentRules& rules,
-                                        Executor& executor) {
-  std::vector<MappedRegion> patches = map_patches(sheet, label, rules.stop, executor);
+                                        std::vector<Index> label, const Work& work) {
+  std::vector<MappedRegion> patches = map_patches(sheet, label, work);
   const auto is_sound = [](const MappedRegion& patch) { return patch.is_sound; };
   for (int k = 0; k <= kRefinements && !std::ranges::all_of(patches, is_sound); ++k) {
     flatness *= kRefinement;
     std::vector<Index> finer(label.size());
     std::iota(finer.begin(), finer.end(), 0);
-    if (k < kRefinements) finer = cluster_faces(sheet, sheet.normal, flatness, rules.stop);
+    if (k < kRefinements) finer = cluster_faces(sheet, sheet.normal, flatness, work.stop);
     split_unsound(sheet, patches, finer, label);
-    patches = map_patches(sheet, label, rules.stop, executor);
+    patches = map_patches(sheet, label, work);
   }
   return patches;
 }
 
-std::vector<MappedRegion> over_segment(const Sheet& sheet, const SegmentRules& rules,
-                                       Executor& executor) {
-  const double allowed = kShareOfPatches * (rules.max_distortion - 2);
+std::vector<MappedRegion> over_segment(const Sheet& sheet, double max_distortion,
+                                       const Work& work) {
+  work.effort.begin(kPatchesShare, kFacesOfPatches * sheet.face_count());
+  const double allowed = kShareOfPatches * (max_distortion - 2);
   double flatness = kFlatness;
   for (int round = 1;; ++round, flatness /= 2) {
-    std::vector<Index> label = cluster_faces(sheet, sheet.normal, flatness, rules.stop);
+    std::vector<Index> label = cluster_faces(sheet, sheet.normal, flatness, work.stop);
     smooth_labels(sheet, kSmoothingPasses, kSmoothCosine, label);
-    std::vector<MappedRegion> patches = sound_patches(sheet, flatness, label, rules, executor);
+    std::vector<MappedRegion> patches = sound_patches(sheet, flatness, label, work);
     if (round == kFlatnessRounds || total_of(patches).worst() <= allowed) return patches;
   }
 }
 
 Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& rules,
-                 Executor& executor) {
+                 const Work& work) {
   const double budget = kMargin * (rules.max_distortion - 2);
   MergeRules merging{.budget = budget, .cap = kCapOfOnePatch * budget, .stop = rules.stop};
   merging.page_area = rules.page_area;
-  merging.on_progress = [&](double share) {
-    if (rules.on_progress) rules.on_progress(Stage::merge, kMergeBegin + (1 - kMergeBegin) * share);
-  };
-  return best_merge(sheet, from, merging, executor);
+  merging.effort = &work.effort;
+  return best_merge(sheet, from, merging, work.executor);
 }
 
 }  // namespace
 
 Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
-  const auto tell = [&](Stage stage, double share) {
+  Stage stage = Stage::segment;
+  Effort effort([&](double share) {
     if (rules.on_progress) rules.on_progress(stage, share);
-  };
-  tell(Stage::segment, 0);
-  Partition best{over_segment(sheet, rules, executor), std::vector<char>(sheet.length.size(), 0)};
-  best = merged(sheet, best, rules, executor);
+  });
+  const Work work{rules.stop, effort, executor};
+  Partition best{over_segment(sheet, rules.max_distortion, work),
+                 std::vector<char>(sheet.length.size(), 0)};
+  stage = Stage::merge;
+  best = merged(sheet, best, rules, work);
   if (best.patches.size() > static_cast<std::size_t>(rules.most_regions)) {
     const MergeRules merging{.budget = kAnyExcess,
                              .cap = kAnyExcess,
                              .price = kFarPrice * kAnyExcess,
                              .enough = rules.most_regions,
-                             .on_progress = {},
                              .stop = rules.stop};
     best = merge_patches(Joiner(sheet), sheet, std::move(best), merging, executor);
   }

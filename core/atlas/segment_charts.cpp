@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/atlas/region_charts.hpp"
+#include "core/cancel.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/edges.hpp"
 
@@ -56,6 +57,7 @@ class Account {
                 },
             .stop = watch_.stop};
   }
+  [[nodiscard]] const std::stop_token& stop() const { return watch_.stop; }
   void finish(std::size_t faces) { done_ += static_cast<double>(faces); }
 
  private:
@@ -80,6 +82,7 @@ class Cutter {
 
   /// most: charts that it shall become at most.
   void add(Chart component, Index most) {
+    throw_if_cancelled(account_.stop());
     const bool whole = is_disk(component), one_chart = options_.one_chart_each || most == 1;
     const bool is_left = !options_.max_distortion && openness(component) >= kLeastOpenness;
     if (!one_chart && !(whole && is_left)) return take_apart(component, whole, most);
@@ -106,7 +109,7 @@ class Cutter {
   }
 
   std::vector<Chart> parts_of_small(const Chart& component, const SegmentRules& rules) {
-    const Sheet sheet = make_sheet(component.mesh, component.halfedges);
+    const Sheet sheet = make_sheet(component.mesh, component.halfedges, component.crease);
     return region_charts(component, segment(sheet, rules, executor_));
   }
 

@@ -9,6 +9,10 @@
 namespace unwrapd {
 namespace {
 
+constexpr double kSharp = 0.788;  // the cosine of 38 degrees between two faces
+constexpr double kCostOfCrease = 0.7;
+constexpr double kMostCreases = 0.4;  // of all inner edges
+
 /// Recentred and scaled to area 1, so that nothing that follows depends on place or scale.
 TriMesh normalised(const TriMesh& mesh) {
   Vec3 centre = Vec3::Zero();
@@ -25,10 +29,27 @@ Vec3 normal_of(const TriMesh& mesh, const Triangle& face) {
   return ab.cross(ac).stableNormalized();
 }
 
+/// One a half-edge.
+std::vector<double> seam_costs(const Sheet& sheet, std::span<const char> given) {
+  std::vector<double> cost = sheet.length;
+  std::size_t inner = 0, creases = 0;
+  for (std::size_t h = 0; h < cost.size(); ++h) {
+    const Index twin = sheet.halfedges.twin[h];
+    if (twin == kNoTwin) continue;
+    const double cosine = sheet.normal[h / 3].dot(sheet.normal[face_of(twin)]);
+    const bool is_crease = cosine < kSharp || (!given.empty() && given[h] != 0);
+    inner += 1;
+    creases += is_crease ? 1 : 0;
+    if (is_crease) cost[h] *= kCostOfCrease;
+  }
+  return kMostCreases * static_cast<double>(inner) < static_cast<double>(creases) ? sheet.length
+                                                                                  : cost;
+}
+
 }  // namespace
 
-Sheet make_sheet(const TriMesh& mesh, const Halfedges& halfedges) {
-  Sheet sheet{normalised(mesh), halfedges, {}, {}, {}};
+Sheet make_sheet(const TriMesh& mesh, const Halfedges& halfedges, std::span<const char> crease) {
+  Sheet sheet{normalised(mesh), halfedges, {}, {}, {}, {}};
   sheet.rest = flatten(sheet.mesh);
   sheet.normal.reserve(mesh.faces.size());
   for (const Triangle& face : mesh.faces) sheet.normal.push_back(normal_of(sheet.mesh, face));
@@ -37,6 +58,7 @@ Sheet make_sheet(const TriMesh& mesh, const Halfedges& halfedges) {
     sheet.length.push_back((sheet.mesh.positions[end_of(mesh.faces, h)] -
                             sheet.mesh.positions[start_of(mesh.faces, h)])
                                .norm());
+  sheet.seam_cost = seam_costs(sheet, crease);
   return sheet;
 }
 

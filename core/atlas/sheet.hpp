@@ -17,13 +17,17 @@ struct Sheet {
   std::vector<RestTriangle> rest;  ///< one a face
   std::vector<Vec3> normal;        ///< one a face, of unit length
   std::vector<double> length;      ///< one a half-edge
+  std::vector<double> seam_cost;   ///< one a half-edge: its length, but less along a crease
 
   [[nodiscard]] Index face_count() const { return mesh.face_count(); }
   [[nodiscard]] double area(Index t) const { return rest[static_cast<std::size_t>(t)].area; }
 };
 
-/// mesh: connected, no face of zero area, each vertex with one fan.
-Sheet make_sheet(const TriMesh& mesh, const Halfedges& halfedges);
+/// mesh: connected, no face of zero area, each vertex with one fan. crease: one a half-edge, 1: a
+/// seam shows less there; empty: none are given. Sharp edges are creases, too. Where many edges are
+/// (each face of a flat-shaded export stands alone) they tell nothing, and none is.
+Sheet make_sheet(const TriMesh& mesh, const Halfedges& halfedges,
+                 std::span<const char> crease = {});
 
 /// The faces projected along their mean normal: a seed for the map of a nearly flat set of faces.
 std::vector<CornerUv> projected(const Sheet& sheet, std::span<const Index> faces);

@@ -98,7 +98,7 @@ class Straightening {
 
   [[nodiscard]] double length(const Chain& chain) const {
     double sum = 0;
-    for (const Index h : chain) sum += sheet_.length[h];
+    for (const Index h : chain) sum += sheet_.seam_cost[h];
     return sum;
   }
 
@@ -129,8 +129,8 @@ class Straightening {
       if (d > distance[v]) continue;
       for (Index k = corners_.begin[v]; k < corners_.begin[v + 1]; ++k) {
         const Index h = corners_.corner[k];
-        if (!is_inside(h) || !(d + sheet_.length[h] < distance[end(h)])) continue;
-        distance[end(h)] = d + sheet_.length[h];
+        if (!is_inside(h) || !(d + sheet_.seam_cost[h] < distance[end(h)])) continue;
+        distance[end(h)] = d + sheet_.seam_cost[h];
         via[end(h)] = h;
         open.emplace(distance[end(h)], end(h));
       }
@@ -205,6 +205,7 @@ class Straightening {
     const TrialRules rules{.most_excess = std::max(rules_.cap * patch.area, most),
                            .stop = rules_.stop};
     const TrialResult result = try_map(sheet_, partition_.open, rules, patch.region);
+    if (rules_.effort != nullptr) rules_.effort->add(patch.region.faces.size());
     patch.excess = result.excess;
     patch.is_sound = result.verdict == Verdict::sound;
     return patch;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/overlaps.hpp"
@@ -94,7 +95,7 @@ UvMap arap_map(const Disk& disk, const TrialRules& rules, std::span<const Corner
   Objective objective(disk, {}, nothing, global.rank(), serial);
   uv = by_rank(uv, global.rank());
   std::vector<Vec2> step(uv.size());
-  for (int k = 1; k < rules.iterations && !rules.stop.stop_requested(); ++k) {
+  for (int k = 1; k < rules.iterations && !is_cancelled(rules.stop); ++k) {
     objective.evaluate(uv, step);
     global.solve_by_rank(step);
     for (std::size_t v = 0; v < uv.size(); ++v) uv[v] += step[v];

@@ -139,7 +139,7 @@ class Tree {
     work.reserve(most_pending(analysis_.nodes, branch));
     SerialExecutor serial;
     for (std::size_t s = branch.first; s < branch.end; ++s)
-      if (stop.stop_requested() || !work.eliminate(s, serial)) return;
+      if (is_cancelled(stop) || !work.eliminate(s, serial)) return;
     grown.update = work.leave();
     grown.is_definite = true;
   } catch (const std::bad_alloc&) {  // tasks do not throw

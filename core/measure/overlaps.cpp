@@ -201,6 +201,7 @@ std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> fa
   std::vector<Bounds> bounds(faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t)
     for (const Vec2& p : corners(faces[t], uv)) bounds[t].add(p);
+  throw_if_cancelled(stop);
   const BoxTree tree(bounds);
   std::vector<std::array<Index, 2>> pairs;
   for (std::size_t t = 0; t < faces.size() && pairs.size() < most; ++t) {

@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "core/cancel.hpp"
 #include "core/mesh/halfedges.hpp"
 #include "core/mesh/weld.hpp"
 
@@ -21,9 +22,11 @@ bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
 
 }  // namespace
 
-std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface& unwrapped) {
+std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface& unwrapped,
+                                 const std::stop_token& stop) {
   const TriMesh& mesh = surface.mesh;
   const std::vector<Triangle> welded = renumbered(mesh.faces, weld(mesh.positions));
+  throw_if_cancelled(stop);
   const Halfedges halfedges = build_halfedges(welded, mesh.vertex_count());
   const auto start = [&](Index h) -> const Vec3& {
     const Triangle& face = welded[static_cast<std::size_t>(face_of(h))];
@@ -31,6 +34,7 @@ std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface&
   };
   std::vector<double> length(mesh.faces.size(), 0);
   for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
+    look_now_and_then(h, stop);
     const Index twin = halfedges.twin[static_cast<std::size_t>(h)];
     if (twin != kNoTwin && is_seam(unwrapped, h, twin))
       length[static_cast<std::size_t>(face_of(h))] += (start(h) - start(twin)).norm();

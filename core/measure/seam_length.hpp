@@ -1,6 +1,7 @@
 #pragma once
 // How much seam an unwrapped surface has.
 
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/tri_mesh.hpp"
@@ -13,7 +14,8 @@ namespace unwrapd {
 double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped);
 
 /// The same by face: the length of each face's own sides that are seams. Adds up to twice
-/// seam_length().
-std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface& unwrapped);
+/// seam_length(). Throws Error{cancelled}.
+std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface& unwrapped,
+                                 const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -186,7 +186,9 @@ bool has_settled(const std::vector<double>& energy) {
 }  // namespace
 
 bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv, Executor& executor) {
+  throw_if_cancelled(intent.stop);
   std::optional<UvMap> start = injective_start(disk);
+  throw_if_cancelled(intent.stop);
   if (!start) return false;
   std::vector<char> fixed(disk.positions.size(), 0);
   fixed.front() = 1;  // translation costs nothing
@@ -198,10 +200,12 @@ bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv, Execu
     if (!parting.iterate()) break;
     energy.push_back(parting.energy());
   }
+  throw_if_cancelled(intent.stop);
   UvMap settled = parting.uv();
   const bool is_drawn = !intent.springs.empty();
   if (is_drawn) keep_apart(disk, held_start(settled, {{}, intent.springs}), settled);
   settle_apart(disk, intent, settled);
+  throw_if_cancelled(intent.stop);
   keep_apart(disk, is_drawn ? moved_to_rest(settled, intent.springs) : laid_along(uv, settled),
              settled);
   uv = std::move(settled);

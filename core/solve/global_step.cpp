@@ -98,6 +98,7 @@ void GlobalStep::solve_by_rank(std::span<Vec2> force) const {
   assert(force.size() == rank_.size());
   SerialExecutor serial;
   Executor& runs = executor_ != nullptr ? *executor_ : serial;
+  throw_if_cancelled(runs.stop());
   const auto free_count = static_cast<std::size_t>(free_.count);
   if (system_) system_->solve_in_order(force.first(free_count), runs);
   std::ranges::fill(force.subspan(free_count), Vec2::Zero());
@@ -107,7 +108,11 @@ void GlobalStep::solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const
   assert(free_.count == static_cast<Index>(b.size()));
   SerialExecutor serial;
   Executor& runs = executor_ != nullptr ? *executor_ : serial;
-  definite(try_factor(system_->analysis(), lower, runs))->solve(b, runs);
+  throw_if_cancelled(runs.stop());
+  const auto other = definite(try_factor(system_->analysis(), lower, runs));
+  throw_if_cancelled(runs.stop());
+  other->solve(b, runs);
+  throw_if_cancelled(runs.stop());
 }
 
 }  // namespace unwrapd

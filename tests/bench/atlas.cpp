@@ -16,6 +16,7 @@
 #include "core/asset/asset.hpp"
 #include "core/error.hpp"
 #include "core/unwrap.hpp"
+#include "tests/bench/creases.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/noisy_body.hpp"
 #include "tests/bench/peers.hpp"
@@ -74,14 +75,19 @@ void print_peer(const char* name, const PeerFigures& peer, const WrittenAtlas& o
               peer.fill, peer.seconds, double(own.charts) / peer.charts, seam / peer.seam);
 }
 
+/// What running a job took.
+struct Took {
+  double seconds = 0, megabytes = 0;
+};
+
 void print_row(const fs::path& path, const Unwrapped& unwrapped, const WrittenAtlas& own,
-               double seconds, double megabytes) {
+               double creases, const Took& took) {
   const Report& report = unwrapped.report;
-  std::printf("%-22.22s %7d %6d %7.3f %7.4f %7.4f %5.3f %5d %7lld %6.2f %8d %7.2f %6.0f",
+  std::printf("%-22.22s %7d %6d %7.3f %7.4f %7.4f %5.3f %5d %7lld %6.2f %8d %6.2f %7.2f %6.0f",
               path.stem().string().c_str(), report.input.faces, own.charts, report.seam_ratio,
               own.angle, own.area, own.fill, own.flips,
-              static_cast<long long>(own.overlapping_texels), own.gap, own.mirrored, seconds,
-              megabytes);
+              static_cast<long long>(own.overlapping_texels), own.gap, own.mirrored, creases,
+              took.seconds, took.megabytes);
   const auto peers = std::ranges::find(kPeers, path.stem().string(), &PeerRow::mesh);
   if (peers != kPeers.end()) {
     print_peer("xatlas", peers->xatlas, own, report.seam_ratio);
@@ -99,7 +105,8 @@ void show(const fs::path& path, const UnwrapOptions& options) try {
   const double seconds = cpu_seconds() - begin, megabytes = peak_megabytes();
   const std::vector<WrittenFace> faces = written_faces(surfaces, unwrapped.surfaces);
   const WrittenRules rules{.resolution = options.resolution, .most_gap = 2.0 * options.padding};
-  print_row(path, unwrapped, measure_written(faces, rules), seconds, megabytes);
+  print_row(path, unwrapped, measure_written(faces, rules),
+            share_on_creases(surfaces, unwrapped.surfaces), {seconds, megabytes});
 } catch (const Error& e) {
   std::printf("%-22.22s refused: %s\n", path.stem().string().c_str(), e.what());
 }
@@ -119,11 +126,13 @@ int show_all(const std::vector<std::string>& paths, const UnwrapOptions& options
   std::printf(
       "D <= 2.02, %d texels, padding %d; CPU seconds of one thread. xatlas, UVAtlas: charts/"
       "seam/fill and seconds as\nmeasured once elsewhere, not run here; then ours in shares "
-      "of theirs. MB: the peak meanwhile. gap: texels, at least. overlap: texels of 4096.\n",
+      "of theirs. MB: the peak meanwhile. gap: texels, at least. overlap: texels of 4096. crease: "
+      "share of the seams that lies on sharp or split edges and "
+      "between materials.\n",
       options.resolution, options.padding);
-  std::printf("%-22s %7s %6s %7s %7s %7s %5s %5s %7s %6s %8s %7s %6s\n", "mesh", "faces", "charts",
-              "seam", "D_angle", "D_area", "fill", "flips", "overlap", "gap", "mirrored", "seconds",
-              "MB");
+  std::printf("%-22s %7s %6s %7s %7s %7s %5s %5s %7s %6s %8s %6s %7s %6s\n", "mesh", "faces",
+              "charts", "seam", "D_angle", "D_area", "fill", "flips", "overlap", "gap", "mirrored",
+              "crease", "seconds", "MB");
   for (const std::string& path : paths)
     for (const fs::path& mesh : meshes_in(path)) {
       show(mesh, options);
