@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "server/addresses.hpp"
 #include "server/job_queue.hpp"
 
 namespace unwrapd::server {
@@ -14,10 +15,6 @@ constexpr double kSecondsPerMinute = 60;
 // Open to everybody: what the server is and whether it is well, and no job.
 constexpr std::array<std::string_view, 5> kPublic = {"/v1/methods", "/v1/limits", "/openapi.yaml",
                                                      "/healthz", "/readyz"};
-
-bool is_loopback(std::string_view host) {
-  return host == "localhost" || host == "::1" || host.starts_with("127.");
-}
 
 /// Schemes have no case (RFC 9110, 11.1).
 bool is_bearer(std::string_view field) {
@@ -39,7 +36,8 @@ bool allows(const Scopes& scopes, const Request& request) {
 
 bool asks_for_keys(const AccessConfig& config, std::string_view host) {
   const bool wanted = config.require_keys || !config.key_file.empty();
-  return wanted || (!is_loopback(host) && !config.insecure);
+  const bool is_here = host == "localhost" || is_loopback(host);  // no name that begins so
+  return wanted || (!is_here && !config.insecure);
 }
 
 int RateLimit::wait_seconds(const std::string& key, std::int64_t per_minute,

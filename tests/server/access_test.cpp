@@ -30,7 +30,7 @@ TEST(AsksForKeys, WhereOthersCanConnectUnlessTheOperatorInsists) {
     EXPECT_TRUE(asks_for_keys({.require_keys = true}, host)) << host;
     EXPECT_TRUE(asks_for_keys({.key_file = "given"}, host)) << host;
   }
-  for (const char* host : {"0.0.0.0", "::", "10.0.0.1", "example.com"}) {
+  for (const char* host : {"0.0.0.0", "::", "10.0.0.1", "example.com", "127.0.0.1.example.com"}) {
     EXPECT_TRUE(asks_for_keys({}, host)) << host;
     EXPECT_FALSE(asks_for_keys({.insecure = true}, host)) << host;
   }
