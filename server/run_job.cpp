@@ -102,7 +102,9 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   const Progress progress = progress_of(task, output, clock);
   progress.on_stage({.stage = Stage::read, .chart = 0, .chart_count = 0, .fraction = 0});
   const api::JobOptions options = api::parse_options(record.options, limits);
-  asset::Asset asset = asset::read(input, read_limits(record, limits), options.asset);
+  asset::Input watched = input;
+  watched.stop = task.stop;
+  asset::Asset asset = asset::read(watched, read_limits(record, limits), options.asset);
   if (options.unwrap.repack_only || options.unwrap.seams == SeamMode::uv0) asset::read_uvs(asset);
   check_stop(task);
 
@@ -115,7 +117,7 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   std::string name(format_name(format));
   const std::vector<UnwrappedSurface>& first = maps.front().surfaces;
   output.result(name, asset::write(asset, first, format));
-  output.file(kLayoutFile, layout_svg(asset.surfaces(), first));
+  output.file(kLayoutFile, layout_svg(asset.surfaces(), first, Colouring::stretch, task.stop));
   write_maps(task, output, {asset, format, maps}, clock, options.asset.vertex_map);
   return name;
 }

@@ -11,6 +11,7 @@
 #include "core/asset/container.hpp"
 #include "core/asset/patch.hpp"
 #include "core/asset/references.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -183,6 +184,7 @@ std::string assemble(const Gltf& gltf, PatchedDocument patched, Format format, b
     buffers.push_back(patched.added);
     return finish(document, buffers, gltf.other_chunks, format);
   }
+  throw_if_cancelled(gltf.stop);
   const std::size_t views_before = view_count(document);
   if (!gltf.has_foreign_references) {
     drop_dead_accessors(gltf, document);
@@ -192,6 +194,7 @@ std::string assemble(const Gltf& gltf, PatchedDocument patched, Format format, b
   buffers.push_back(patched.added);
   std::vector<Run> runs = has_dead_bytes ? used_runs(document) : whole_buffers(buffers);
   std::string bytes = joined(buffers, runs);
+  throw_if_cancelled(gltf.stop);
   move_views(document, runs);
   Json& list = document["buffers"];
   while (list.size() > 1) list.erase(list.size() - 1);

@@ -42,9 +42,9 @@ void check_for_obj(const AssetOptions& options) {
 }
 
 /// A plain GLB compressed: Draco needs the document as it will be.
-std::string compressed(const std::string& plain, Format output, Compression compression) {
+std::string compressed(const Input& plain, Format output, Compression compression) {
   std::vector<Surface> surfaces;
-  const Gltf again = read_gltf({plain, {}}, Format::glb, kNoLimits, {}, surfaces);
+  const Gltf again = read_gltf(plain, Format::glb, kNoLimits, {}, surfaces);
   if (compression == Compression::draco) return assemble(again, draco_compressed(again), output);
   return assemble(again, {again.json, {}}, output, true);
 }
@@ -59,7 +59,8 @@ std::string write_from_gltf(const Gltf& gltf, std::span<const UnwrappedSurface> 
   PatchedDocument patched = patch(gltf, unwrapped);
   if (compression != Compression::draco)
     return assemble(gltf, std::move(patched), output, compression == Compression::meshopt);
-  return compressed(assemble(gltf, std::move(patched), Format::glb), output, compression);
+  const std::string plain = assemble(gltf, std::move(patched), Format::glb);
+  return compressed({plain, {}, gltf.stop}, output, compression);
 }
 
 std::string write_from_obj(const Document& document, const UnwrappedSurface& unwrapped,
@@ -69,8 +70,8 @@ std::string write_from_obj(const Document& document, const UnwrappedSurface& unw
   const Compression compression = document.options.compression;
   if (!is_compressed(compression))
     return obj_as_gltf(obj, document.surfaces.front(), unwrapped, output);
-  return compressed(obj_as_gltf(obj, document.surfaces.front(), unwrapped, Format::glb), output,
-                    compression);
+  const std::string plain = obj_as_gltf(obj, document.surfaces.front(), unwrapped, Format::glb);
+  return compressed({plain, {}, obj.stop}, output, compression);
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& opt
   if (document->format == Format::obj) {
     check_for_obj(options);
     document->surfaces.resize(1);
-    document->source = read_obj(input.document, limits, document->surfaces.front());
+    document->source = read_obj(input, limits, document->surfaces.front());
   } else {
     document->source = read_gltf(input, document->format, limits, options, document->surfaces);
   }

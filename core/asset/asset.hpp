@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,7 @@ enum class Format { glb, gltf, obj };
 struct Input {
   std::string_view document;
   std::map<std::string, std::string_view> buffers;
+  std::stop_token stop = {};  ///< of the job: reading looks at it, and so does writing later
 };
 
 /// Checked against counts in the document before anything of their size is allocated.
@@ -53,7 +55,7 @@ class Asset {
 /// does what they ask for. Throws Error with a JSON pointer or a file position: unknown_format,
 /// malformed_*, missing_buffer, external_uri, unsupported_extension, too_many_vertices,
 /// too_many_faces, no_triangles, non_finite_position; invalid_option where the asset has none of
-/// what an option names.
+/// what an option names. Throws Error{cancelled}.
 Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& options = {});
 
 /// Fills Surface::corner_uv from the set of texture coordinates that the options name, as the
@@ -62,7 +64,7 @@ void read_uvs(Asset& asset);
 
 /// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data
 /// URIs). unwrapped has one entry for each of asset.surfaces(). Tangents that belonged to replaced
-/// texture coordinates are left out: a reader makes new ones.
+/// texture coordinates are left out: a reader makes new ones. Throws Error{cancelled}.
 std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrapped, Format output);
 
 /// Where the vertices come from that write() writes: one entry for each primitive that is

@@ -7,6 +7,7 @@
 
 #include "core/asset/base64.hpp"
 #include "core/asset/gltf_steps.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -126,6 +127,7 @@ void resolve_buffers(Gltf& gltf, std::string_view bin, const Input& input) {
   const bool uses_meshopt = std::any_of(kMeshopt.begin(), kMeshopt.end(),
                                         [&](auto name) { return uses_extension(gltf.json, name); });
   for (std::size_t i = 0; i < count; ++i) {
+    throw_if_cancelled(gltf.stop);
     const Node buffer = list->at(i);
     buffer.expect_object();
     const std::string_view own_bin = i == 0 ? bin : std::string_view();

@@ -14,6 +14,7 @@
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/grow.hpp"
 #include "core/asset/references.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -60,6 +61,7 @@ void add_attribute(const Gltf& gltf, const std::string& semantic, std::size_t nu
               data_type(accessor.type), accessor.normalized,
               static_cast<std::int64_t>(accessor.element_bytes), 0);
   const int id = mesh.AddAttribute(header, true, static_cast<std::uint32_t>(accessor.count));
+  throw_if_cancelled(gltf.stop);
   const Elements elements(gltf, number);
   const std::string zeros(accessor.element_bytes, '\0');
   for (std::size_t i = 0; i < accessor.count; ++i) {
@@ -92,6 +94,7 @@ std::string bitstream_of(const Gltf& gltf, const Primitive& primitive) {
     mesh.AddFace({draco::PointIndex(static_cast<std::uint32_t>(corners[c])),
                   draco::PointIndex(static_cast<std::uint32_t>(corners[c + 1])),
                   draco::PointIndex(static_cast<std::uint32_t>(corners[c + 2]))});
+  throw_if_cancelled(gltf.stop);
   draco::ExpertEncoder encoder(mesh);
   encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
   encoder.SetSpeedOptions(10 - kCompressionLevel, 10 - kCompressionLevel);

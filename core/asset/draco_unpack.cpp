@@ -8,6 +8,7 @@
 #include "core/asset/draco.hpp"
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/grow.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -69,7 +70,9 @@ class Unpacker {
   }
 
   Unpacked decode(const DracoSource& source) {
+    throw_if_cancelled(gltf_.stop);
     const DracoMesh mesh(bitstream(source), left_, place_of(source));
+    throw_if_cancelled(gltf_.stop);
     const std::vector<Index> corners = mesh.corners();
     left_.max_vertices -= static_cast<std::int64_t>(mesh.point_count());
     left_.max_faces -= static_cast<std::int64_t>(corners.size() / 3);
@@ -93,6 +96,7 @@ class Unpacker {
 
   std::size_t add_attribute(const DracoSource& source, const std::string& semantic, std::size_t id,
                             const DracoMesh& mesh) {
+    throw_if_cancelled(gltf_.stop);
     const std::size_t old = accessor_of(source, semantic);
     const Accessor& accessor = gltf_.accessors[old];
     const std::string bytes = mesh.elements(id, accessor);

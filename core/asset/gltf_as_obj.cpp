@@ -7,6 +7,7 @@
 #include "core/asset/convert.hpp"
 #include "core/asset/elements.hpp"
 #include "core/asset/obj_text.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -35,6 +36,7 @@ class ObjFromGltf {
   std::string write() {
     std::size_t piece = 0;
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+      throw_if_cancelled(gltf_.stop);
       out_ += "o " + object_name(s) + '\n';
       for (const Vec3& position : surfaces_[s].mesh.positions) append_vec3(out_, "v", position);
       for (const Vec2& uv : unwrapped_[s].uv) append_vt(out_, uv);
@@ -68,6 +70,7 @@ class ObjFromGltf {
     if (has_normals) write_normals(piece, *normal_accessors_[number]);
     const UnwrappedSurface& unwrapped = unwrapped_[piece.surface];
     for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
+      look_now_and_then(t, gltf_.stop);
       out_ += 'f';
       for (std::size_t k = 0; k < 3; ++k)
         append_corner(unwrapped, unwrapped.faces[t][k], has_normals ? normal_base_++ : -1);
@@ -83,12 +86,14 @@ class ObjFromGltf {
   void write_normals(const Piece& piece, std::size_t accessor) {
     const Elements normals(gltf_, accessor);
     const Surface& surface = surfaces_[piece.surface];
-    for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t)
+    for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
+      look_now_and_then(t, gltf_.stop);
       for (const Index corner : surface.mesh.faces[t]) {
         const Index vertex = gltf_.vertices[piece.surface][as_size(corner)];
         const Vec3 normal = normals.vec3_at(as_size(vertex));
         append_vec3(out_, "vn", normal.allFinite() ? normal : Vec3(0, 0, 0));
       }
+    }
   }
 
   const Gltf& gltf_;

@@ -9,6 +9,7 @@
 #include "core/asset/as_size.hpp"
 #include "core/asset/bytes.hpp"
 #include "core/asset/elements.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -95,6 +96,7 @@ std::size_t NewViews::add(std::string_view bytes, std::size_t stride, int target
 
 Json grown_accessor(const Gltf& gltf, std::size_t accessor, const std::vector<Index>& copies,
                     NewViews& views) {
+  throw_if_cancelled(gltf.stop);
   const Accessor& old = gltf.accessors[accessor];
   Json grown = gltf.json.at("accessors").at(accessor);
   grown["count"] = old.count + copies.size();
@@ -110,6 +112,7 @@ Json grown_accessor(const Gltf& gltf, std::size_t accessor, const std::vector<In
 
 Json index_accessor(const Gltf& gltf, std::optional<std::size_t> old,
                     const std::vector<Index>& corners, NewViews& views) {
+  throw_if_cancelled(gltf.stop);
   const Index largest = *std::max_element(corners.begin(), corners.end());
   const bool had_u8 = old && gltf.accessors[*old].type == ComponentType::u8;
   const ComponentType type = index_type(as_size(largest), had_u8);

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd::asset {
 namespace {
 
@@ -30,6 +32,8 @@ bool has_duplicates(const std::string* names, std::size_t count) {
 /// Receives the parser's events; document() is the result once parsing has succeeded.
 class Builder : public nlohmann::json_sax<Json> {
  public:
+  explicit Builder(const std::stop_token& stop) : stop_(stop) {}
+
   bool null() override { return push(nullptr); }
   bool boolean(bool value) override { return push(value); }
   bool number_integer(number_integer_t value) override { return push(value); }
@@ -85,6 +89,7 @@ class Builder : public nlohmann::json_sax<Json> {
   };
 
   bool push(Json value) {
+    look_now_and_then(++steps_, stop_);
     values_.push_back(std::move(value));
     return true;
   }
@@ -104,6 +109,8 @@ class Builder : public nlohmann::json_sax<Json> {
     return push(std::move(container));
   }
 
+  const std::stop_token& stop_;
+  std::size_t steps_ = 0;
   std::vector<Json> values_;
   std::vector<std::string> names_;
   std::vector<Frame> frames_;
@@ -117,8 +124,8 @@ std::string escaped(std::string_view key) {
 
 }  // namespace
 
-Json parse_json(std::string_view text) {
-  Builder builder;
+Json parse_json(std::string_view text, const std::stop_token& stop) {
+  Builder builder(stop);
   Json::sax_parse(text.begin(), text.end(), &builder);
   return builder.document();
 }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -19,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 /// Throws Error{malformed_json} with the byte of the fault: bad syntax or UTF-8, a number that no
 /// double holds, a name that occurs twice in one object, more than 128 levels.
-Json parse_json(std::string_view text);
+Json parse_json(std::string_view text, const std::stop_token& stop);
 
 /// A JSON pointer (RFC 6901) as it grows; a value, cheap to copy, turned into text only on error.
 class Place {

@@ -9,6 +9,7 @@
 #include "core/asset/bytes.hpp"
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/grow.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -163,6 +164,7 @@ void decode_meshopt(Gltf& gltf) {
     const Node view = Node(gltf.json).at("bufferViews").at(i);
     const auto compression = compression_of(view);
     if (!compression) continue;
+    throw_if_cancelled(gltf.stop);
     const std::string decoded = decode_view(gltf, compression->first, gltf.views[i].length);
     if (bytes.size() + decoded.size() > kMaxDecodedBytes)
       refuse(view.place(), "the asset decodes to more than 2 GiB");

@@ -41,10 +41,12 @@ struct Obj {
   std::vector<std::array<Index, 3>> face_corners;  ///< [face]: which corners of its element
   std::vector<std::pair<std::size_t, std::size_t>> texcoord_lines;  ///< their bytes, in order
   std::vector<Vec3> normals;
+  std::stop_token stop;  ///< of the job, for reading and writing
 };
 
-/// Throws Error{malformed_obj, non_finite_position, too_many_*, no_triangles} with the line.
-Obj read_obj(std::string_view text, const ReadLimits& limits, Surface& surface);
+/// Throws Error{malformed_obj, non_finite_position, too_many_*, no_triangles} with the line, and
+/// Error{cancelled}.
+Obj read_obj(const Input& input, const ReadLimits& limits, Surface& surface);
 
 /// The text with its vt statements replaced, its faces given as v/vt[/vn]. A polygon stays one
 /// unless a seam runs through it.

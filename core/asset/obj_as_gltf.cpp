@@ -11,6 +11,7 @@
 #include "core/asset/convert.hpp"
 #include "core/asset/grow.hpp"
 #include "core/asset/patch.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -40,10 +41,12 @@ class Combiner {
 
   Vertices run() {
     for (const ObjElement& element : obj_.elements)
-      for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t)
+      for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
+        look_now_and_then(t, obj_.stop);
         for (std::size_t k = 0; k < 3; ++k)
           vertices_.corners[surface_.part[t]].push_back(
               number_of(unwrapped_.faces[t][k], normal_of(element, t, k)));
+      }
     return std::move(vertices_);
   }
 
@@ -99,7 +102,8 @@ std::vector<Index> sources_in_gltf(const Obj& obj, const Surface& surface,
 std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
                         Format output) {
   const Vertices vertices = Combiner(obj, surface, unwrapped).run();
-  const Gltf empty;
+  Gltf empty;
+  empty.stop = obj.stop;
   PatchedDocument document{Json::parse(R"({
     "asset": {"version": "2.0", "generator": "unwrapd"},
     "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/asset/obj.hpp"
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 
 namespace unwrapd::asset {
@@ -69,13 +70,16 @@ class Words {
 
 class ObjReader {
  public:
-  ObjReader(std::string_view text, const ReadLimits& limits, Surface& surface)
+  ObjReader(const Input& input, const ReadLimits& limits, Surface& surface)
       : limits_(limits), surface_(surface) {
-    obj_.text = text;
+    obj_.text = input.document;
+    obj_.stop = input.stop;
   }
 
   Obj read() {
-    for (at_ = {}; at_.next < obj_.text.size();) {
+    std::size_t lines = 0;
+    for (at_ = {}; at_.next < obj_.text.size(); ++lines) {
+      look_now_and_then(lines, obj_.stop);
       at_ = statement_at(obj_.text, at_.next);
       read_statement(Words(std::string_view(obj_.text).substr(at_.begin, at_.end - at_.begin)));
     }
@@ -188,6 +192,7 @@ class ObjReader {
     const auto vertex_count = surface_.mesh.vertex_count();
     const auto normal_count = static_cast<Index>(obj_.normals.size());
     for (const ObjElement& element : obj_.elements) {
+      look_now_and_then(element.first_face, obj_.stop);
       at_.begin = element.begin;
       for (std::size_t i = 0; i < element.corner_count; ++i) {
         const ObjCorner& corner = obj_.corners[element.first_corner + i];
@@ -209,6 +214,7 @@ class ObjReader {
     std::vector<Vec3> polygon;
     for (const ObjElement& element : obj_.elements) {
       if (element.face_count() == 0) continue;
+      look_now_and_then(element.first_face, obj_.stop);
       const ObjCorner* corners = &obj_.corners[element.first_corner];
       polygon.clear();
       for (std::size_t i = 0; i < element.corner_count; ++i)
@@ -234,9 +240,9 @@ class ObjReader {
 
 }  // namespace
 
-Obj read_obj(std::string_view text, const ReadLimits& limits, Surface& surface) {
+Obj read_obj(const Input& input, const ReadLimits& limits, Surface& surface) {
   surface.name = "obj";
-  return ObjReader(text, limits, surface).read();
+  return ObjReader(input, limits, surface).read();
 }
 
 }  // namespace unwrapd::asset

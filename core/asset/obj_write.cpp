@@ -2,6 +2,7 @@
 #include "core/asset/as_size.hpp"
 #include "core/asset/obj.hpp"
 #include "core/asset/obj_text.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -13,6 +14,7 @@ class ObjWriter {
   std::string write() {
     out_.reserve(obj_.text.size() + unwrapped_.uv.size() * 26 + obj_.corners.size() * 8);
     for (const ObjElement& element : obj_.elements) {
+      look_now_and_then(element.first_face, obj_.stop);
       keep_until(element.begin);
       if (element.face_count() > 0 && !has_texcoords_) append_all_texcoords();
       write_element(element);

@@ -2,6 +2,7 @@
 
 #include "core/asset/container.hpp"
 #include "core/asset/gltf_steps.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 
@@ -11,7 +12,8 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
   gltf.texcoord = "TEXCOORD_" + std::to_string(options.texcoord);
   const GlbChunks chunks =
       format == Format::glb ? split_glb(input.document) : GlbChunks{input.document, {}, {}};
-  gltf.json = parse_json(chunks.json);
+  gltf.stop = input.stop;
+  gltf.json = parse_json(chunks.json, gltf.stop);
   gltf.other_chunks = chunks.others;
   check_asset_and_extensions(gltf);
   resolve_buffers(gltf, chunks.bin, input);

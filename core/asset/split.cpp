@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "core/asset/as_size.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -55,9 +56,11 @@ Split Splitter::split(const std::vector<std::size_t>& pieces, std::size_t vertex
     if (placed.empty()) placed.assign(surface.source.size(), kNotPlaced);
     std::vector<Index> corners;
     corners.reserve(3 * piece.face_count);
-    for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t)
+    for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
+      look_now_and_then(t, gltf_.stop);
       for (const Index corner : surface.faces[t])
         corners.push_back(place_corner(piece, corner, split));
+    }
     const auto is_copy = [&](Index corner) { return as_size(corner) >= vertex_count; };
     if (std::any_of(corners.begin(), corners.end(), is_copy)) split.corners[p] = std::move(corners);
   }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/cancel.hpp"
 #include "core/figure/legend.hpp"
 #include "core/figure/painting.hpp"
 
@@ -75,9 +76,10 @@ void append_edge(std::string& text, const Edge& edge, const Places& places) {
 }
 
 void draw(const UnwrappedSurface& surface, std::span<const std::uint8_t> painted,
-          const Frame& frame, Paths& paths) {
+          const Frame& frame, const std::stop_token& stop, Paths& paths) {
   const Places places(surface.uv, frame);
   for (std::size_t t = 0; t < painted.size(); ++t) {
+    look_now_and_then(t, stop);
     if (painted[t] == kHiddenFace) continue;
     std::string& path = painted[t] == kFlippedFace ? paths.flipped : paths.colour[painted[t]];
     append_triangle(path, surface.faces[t], places);
@@ -146,13 +148,15 @@ static_assert(kPageUnits == 4096 && kLegendUnits == 320, "append_head() spells t
 }  // namespace
 
 std::string layout_svg(std::span<const Surface> surfaces,
-                       std::span<const UnwrappedSurface> unwrapped, Colouring colouring) {
+                       std::span<const UnwrappedSurface> unwrapped, Colouring colouring,
+                       const std::stop_token& stop) {
   const ColourScale& scale = colour_scale(colouring);
   const auto painted = painted_faces(surfaces, unwrapped, colouring);
   const Frame frame = frame_of(unwrapped);
   Paths paths{
       .colour = std::vector<std::string>(scale.colours.size()), .flipped = {}, .boundary = {}};
-  for (std::size_t s = 0; s < unwrapped.size(); ++s) draw(unwrapped[s], painted[s], frame, paths);
+  for (std::size_t s = 0; s < unwrapped.size(); ++s)
+    draw(unwrapped[s], painted[s], frame, stop, paths);
   std::string svg;
   append_head(svg, scale);
   svg += "<g transform=\"matrix(.1 0 0 -.1 0 4096)\" stroke-linejoin=\"round\">\n";

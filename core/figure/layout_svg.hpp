@@ -2,6 +2,7 @@
 // The UV layout as a drawing: every triangle of the page, coloured by its distortion.
 
 #include <span>
+#include <stop_token>
 #include <string>
 
 #include "core/figure/colour_scale.hpp"
@@ -16,6 +17,6 @@ namespace unwrapd {
 /// islands lie outside it. unwrapped has one entry for each surface.
 std::string layout_svg(std::span<const Surface> surfaces,
                        std::span<const UnwrappedSurface> unwrapped,
-                       Colouring colouring = Colouring::stretch);
+                       Colouring colouring = Colouring::stretch, const std::stop_token& stop = {});
 
 }  // namespace unwrapd
