@@ -92,7 +92,7 @@ TEST(MakingRoom, WhoFindsTooManyWaitingIsTurnedAway) {
     EXPECT_EQ(error.code(), ErrorCode::rate_limited);
     EXPECT_GT(error.seconds(), 0);
   }
-  EXPECT_TRUE(room.enter({.file = "e", .holder = "y"}));
+  EXPECT_NO_THROW(room.enter({.file = "e", .holder = "y"}).reset());
   a.leave();
 }
 

@@ -82,15 +82,15 @@ class ParkingTest : public testing::Test {
 };
 
 TEST_F(ParkingTest, AHandshakeThatComputesLongDelaysNobody) {
-  std::promise<void> begun;
+  const auto begun = std::make_shared<std::promise<void>>();
   std::promise<void> release;
   start(std::chrono::minutes(1));
-  const int slow = come([&] {
-    begun.set_value();
-    release.get_future().wait();
+  const int slow = come([begun, released = release.get_future().share()] {  // outlives this test
+    begun->set_value();
+    released.wait();
   });
   ASSERT_TRUE(send(slow, "!"));
-  begun.get_future().wait();
+  begun->get_future().wait();
   ASSERT_TRUE(send(come(), kHead));
   EXPECT_EQ(ready_.get_future().get(), kHead);
   ready_ = {};

@@ -219,6 +219,7 @@ TEST_F(StreamWriting, GoesThroughTls) {
   std::jthread reader([&] {
     httplib::SSLClient client("127.0.0.1", server_->port());
     client.enable_server_certificate_verification(false);
+    client.set_read_timeout(std::chrono::minutes(2));
     client.Get("/", [&](const char* data, std::size_t size) {
       if (!begun) std::this_thread::sleep_for(milliseconds(200));  // now it has to wait for us
       begun = true;
