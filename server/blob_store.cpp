@@ -23,16 +23,18 @@ void remove_unfinished(const fs::path& folder) {
   }
 }
 
-/// Replaces the digests of the files that are chosen.
-void note_files(const fs::path& folder, const std::function<bool(std::string_view)>& chosen) {
+/// Syncs the files that are chosen, and replaces their digests.
+void seal_files(const fs::path& folder, const std::function<bool(std::string_view)>& chosen) {
   Digests digests = read_digests(folder);
   std::erase_if(digests, [&](const auto& noted) { return chosen(noted.first); });
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
     const bool is_content = name != kDigestsFile && !is_unfinished(entry.path());
-    if (is_content && chosen(name)) digests[name] = sha256_of(File::open(entry.path()));
+    if (!is_content || !chosen(name)) continue;
+    sync_file(entry.path());
+    digests[name] = sha256_of(File::open(entry.path()));
   }
-  write_digests(folder, digests);
+  write_digests(folder, digests);  // which syncs the folder
 }
 
 std::int64_t bytes_below(const fs::path& folder) {
@@ -70,7 +72,7 @@ fs::path BlobStore::begin_upload(std::string_view upload) {
 }
 
 void BlobStore::keep_upload(std::string_view upload, std::string_view job) {
-  note_files(incoming_ / upload, is_input);
+  seal_files(incoming_ / upload, is_input);
   rename_durably(incoming_ / upload, blobs_ / job);
   room_.give_back(upload);
   room_.set(job, bytes_below(blobs_ / job));
@@ -91,6 +93,12 @@ void BlobStore::write(std::string_view job, std::string_view file, std::string_v
   write_file(path(job, file), bytes);
 }
 
+void BlobStore::write_unsealed(std::string_view job, std::string_view file,
+                               std::string_view bytes) {
+  room_.take(job, static_cast<std::int64_t>(bytes.size()));
+  write_file_unsynced(path(job, file), bytes);
+}
+
 void BlobStore::remove(std::string_view job) noexcept {
   remove_tree(blobs_ / job);
   room_.give_back(job);
@@ -103,7 +111,7 @@ void BlobStore::discard(std::string_view job, std::string_view file) noexcept {
 
 std::int64_t BlobStore::seal(std::string_view job) {
   const std::lock_guard lock(noting_);
-  note_files(blobs_ / job, [](std::string_view file) { return !is_input(file); });
+  seal_files(blobs_ / job, [](std::string_view file) { return !is_input(file); });
   const std::int64_t bytes = bytes_below(blobs_ / job);
   room_.set(job, bytes);
   return bytes;

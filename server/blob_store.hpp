@@ -1,8 +1,9 @@
 #pragma once
-// The files of jobs: DIR/blobs/<job>/{document,buffer_N,digests,result.*,report.json*,layout.svg,
-// uv.bin*}. An upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is
-// written under another name, synced and renamed. What a crash leaves behind is swept at the next
-// start. `digests` has the SHA-256 of each file (digests.hpp): what is read is checked against it.
+// The files of jobs: DIR/blobs/<job>/{document,buffer_N,digests,result.*,report.json*,uv.bin*}. An
+// upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is written under
+// another name and renamed, and synced before the job counts as done. What a crash leaves behind is
+// swept at the next start. `digests` has the SHA-256 of each file (digests.hpp): what is read is
+// checked against it.
 
 #include <cstdint>
 #include <filesystem>
@@ -19,7 +20,6 @@ namespace unwrapd::server {
 
 inline constexpr std::string_view kDocumentFile = "document";
 inline constexpr std::string_view kReportFile = "report.json";
-inline constexpr std::string_view kLayoutFile = "layout.svg";
 inline constexpr std::string_view kTotalsFile = "totals.json";
 inline constexpr std::string_view kUvFile = "uv.bin";
 
@@ -43,12 +43,14 @@ class BlobStore {
   [[nodiscard]] std::filesystem::path path(std::string_view job, std::string_view file) const;
   /// Throws Error{storage_full} when there is no room, or storage_failed.
   void write(std::string_view job, std::string_view file, std::string_view bytes);
+  /// The same for a file of a job at work: seal() syncs it.
+  void write_unsealed(std::string_view job, std::string_view file, std::string_view bytes);
   void remove(std::string_view job) noexcept;
   /// Removes one file that was written only to be handed out once.
   void discard(std::string_view job, std::string_view file) noexcept;
 
-  /// Notes the digests of all results, replacing those of an attempt before. Returns the bytes of
-  /// all files of the job.
+  /// Syncs all results and notes their digests, replacing those of an attempt before: on return
+  /// they survive a loss of power. Returns the bytes of all files of the job.
   std::int64_t seal(std::string_view job);
   /// Notes the digest of a file that was written after seal(), and returns it.
   std::string note(std::string_view job, const std::string& file);

@@ -29,7 +29,7 @@ void FeedOutput::result(std::string_view format, std::string_view bytes) {
 }
 
 void FeedOutput::file(std::string_view name, std::string_view bytes) {
-  blobs_.write(job_.record.id, name, bytes);
+  blobs_.write_unsealed(job_.record.id, name, bytes);
 }
 
 }  // namespace unwrapd::server

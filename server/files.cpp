@@ -26,6 +26,19 @@ constexpr std::string_view kPartSuffix = ".part";
               "The server failed to " + std::string(doing) + " (" + reason + "); try again later.");
 }
 
+std::filesystem::path part_of(std::filesystem::path path) { return path += kPartSuffix; }
+
+File create_whole(const std::filesystem::path& path, std::string_view bytes) {
+  remove_tree(path);
+  File file = File::create(path);
+  file.append(bytes);
+  return file;
+}
+
+void give_name(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) fail("name a file");
+}
+
 }  // namespace
 
 File::File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
@@ -59,6 +72,8 @@ void File::sync() {
   if (::fsync(descriptor_) != 0) fail("write a file");
 }
 
+void File::begin_sync() noexcept { ::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE); }
+
 std::int64_t File::size() const {
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0) fail("read a file");
@@ -86,14 +101,18 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
-  std::filesystem::path part = path;
-  part += kPartSuffix;
-  remove_tree(part);
-  File file = File::create(part);
-  file.append(bytes);
-  file.sync();
+  const std::filesystem::path part = part_of(path);
+  create_whole(part, bytes).sync();
   rename_durably(part, path);
 }
+
+void write_file_unsynced(const std::filesystem::path& path, std::string_view bytes) {
+  const std::filesystem::path part = part_of(path);
+  create_whole(part, bytes).begin_sync();
+  give_name(part, path);
+}
+
+void sync_file(const std::filesystem::path& path) { File::open(path).sync(); }
 
 bool is_unfinished(const std::filesystem::path& path) { return path.extension() == kPartSuffix; }
 
@@ -103,7 +122,7 @@ void sync_directory(const std::filesystem::path& directory) {
 }
 
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (::rename(from.c_str(), to.c_str()) != 0) fail("name a file");
+  give_name(from, to);
   sync_directory(to.parent_path());
   if (from.parent_path() != to.parent_path()) sync_directory(from.parent_path());
 }

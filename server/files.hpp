@@ -30,6 +30,8 @@ class File {
   void append(std::string_view bytes);
   /// On return the content survives a loss of power.
   void sync();
+  /// Has the disk begin with what a later sync() waits for.
+  void begin_sync() noexcept;
   [[nodiscard]] std::int64_t size() const;
   /// Reads at most length bytes from offset; fewer only at the end of the file.
   [[nodiscard]] std::string read(std::int64_t offset, std::size_t length) const;
@@ -43,6 +45,12 @@ std::string read_file(const std::filesystem::path& path);
 
 /// Replaces path by a file with these bytes; readers see the old one or the new one.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// The same, but what is written need not survive a loss of power before sync_file(path) and
+/// sync_directory() of its directory, so that several files wait for the disk but once.
+void write_file_unsynced(const std::filesystem::path& path, std::string_view bytes);
+
+void sync_file(const std::filesystem::path& path);
 
 /// Whether path is what write_file() leaves behind when the machine stops in the middle of it.
 bool is_unfinished(const std::filesystem::path& path);

@@ -21,9 +21,10 @@ class GrowingFile {
     pending_.append(bytes);
     if (pending_.size() >= kPieceBytes) flush();
   }
+  /// BlobStore::keep_upload() syncs it.
   void finish() {
     flush();
-    file_.sync();
+    file_.begin_sync();
   }
 
  private:

@@ -8,14 +8,13 @@
 namespace unwrapd::server {
 namespace {
 
-/// "layout.svg" for what the worker has drawn already, else "uv.bin.layout.area.1024.png".
+/// "uv.bin.layout.area.1024.png".
 std::string file_name(std::size_t map, const Picture& picture) {
   const std::string uv_file = map_file(kUvFile, map);
   const std::string colour(kColouringNames[static_cast<std::size_t>(picture.colouring)]);
   const std::string size = std::to_string(picture.size);
   switch (picture.kind) {
     case PictureKind::layout_svg:
-      if (map == 0 && picture.colouring == Colouring::stretch) return std::string(kLayoutFile);
       return uv_file + ".layout." + colour + ".svg";
     case PictureKind::layout_png:
       return uv_file + ".layout." + colour + "." + size + ".png";

@@ -29,7 +29,7 @@ std::string_view format_name(asset::Format format) {
 
 void write_result(BlobStore& blobs, std::string_view job, std::string_view format,
                   std::string_view bytes) {
-  blobs.write(job, result_file(format), bytes);
+  blobs.write_unsealed(job, result_file(format), bytes);
 }
 
 std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string& job,

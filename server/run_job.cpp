@@ -6,7 +6,6 @@
 #include "api/options.hpp"
 #include "api/report.hpp"
 #include "core/error.hpp"
-#include "core/figure/layout_svg.hpp"
 #include "core/unwrap.hpp"
 #include "server/blob_store.hpp"
 #include "server/map_choice.hpp"
@@ -117,7 +116,6 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   std::string name(format_name(format));
   const std::vector<UnwrappedSurface>& first = maps.front().surfaces;
   output.result(name, asset::write(asset, first, format));
-  output.file(kLayoutFile, layout_svg(asset.surfaces(), first, Colouring::stretch, task.stop));
   write_maps(task, output, {asset, format, maps}, clock, options.asset.vertex_map);
   return name;
 }

@@ -67,6 +67,7 @@ TEST_F(Pictures, AreDrawnOnceAndKeptAtTheUsualSizesOnly) {
   start();
   const std::string id = succeeded();
   EXPECT_EQ(files(id, ".png"), 0);
+  EXPECT_EQ(files(id, ".svg"), 0);
   const std::string drawn = get(id, "preview.png?size=128")->body;
   EXPECT_EQ(files(id, "preview.128.png"), 1);
   EXPECT_EQ(get(id, "preview.png?size=128")->body, drawn);

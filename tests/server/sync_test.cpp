@@ -1,0 +1,120 @@
+// What has to be on the disk before an answer says so: every fsync of the process is noted here,
+// and the file that it is of must not have changed since.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <map>
+#include <mutex>
+
+#include "server/blob_store.hpp"
+#include "server/digests.hpp"
+#include "server/job_input.hpp"
+#include "temp_dir.hpp"
+
+namespace {
+
+using FileId = std::pair<dev_t, ino_t>;
+using Time = std::pair<std::int64_t, std::int64_t>;
+
+/// What a file was when it was synced last: a directory's names count, a file's size does.
+struct Synced {
+  Time changed;
+  off_t size;
+};
+
+FileId id_of(const struct stat& status) { return {status.st_dev, status.st_ino}; }
+Synced state_of(const struct stat& status) {
+  return {{status.st_mtim.tv_sec, status.st_mtim.tv_nsec}, status.st_size};
+}
+
+std::mutex noting;
+std::map<FileId, Synced> synced;
+
+}  // namespace
+
+/// In the place of the C library's, for the whole of this program.
+extern "C" int fsync(int descriptor) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) == 0) {
+    const std::lock_guard lock(noting);
+    synced.insert_or_assign(id_of(status), state_of(status));
+  }
+  return static_cast<int>(::syscall(SYS_fsync, descriptor));
+}
+
+namespace unwrapd::server {
+namespace {
+
+bool is_synced(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return false;
+  const std::lock_guard lock(noting);
+  const auto found = synced.find(id_of(status));
+  if (found == synced.end()) return false;
+  const Synced now = state_of(status);
+  return found->second.changed == now.changed && found->second.size == now.size;
+}
+
+/// A folder, and all that is in it.
+void expect_synced(const std::filesystem::path& folder) {
+  EXPECT_TRUE(is_synced(folder)) << folder;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    EXPECT_TRUE(is_synced(entry.path())) << entry.path();
+}
+
+/// A body that has come whole.
+class TextBody final : public BodyReader {
+ public:
+  void read(const std::function<void(std::string_view)>& take) override { take("v 0 0 0"); }
+  void read_parts(const std::function<void(const Part&)>& start,
+                  const std::function<void(std::string_view)>& take) override {
+    start({.name = "mesh", .filename = {}});
+    take("v 0 0 0");
+    start({.name = "buffer", .filename = "a.bin"});
+    take("0123");
+  }
+};
+
+class Synchronising : public testing::Test {
+ protected:
+  TempDir dir_;
+};
+
+TEST_F(Synchronising, AnUploadIsOnTheDiskBeforeItIsAJob) {
+  for (const bool in_parts : {false, true}) {
+    BlobStore blobs(dir_.path());
+    const UploadFolder folder{.path = blobs.begin_upload("u")};
+    TextBody body;
+    const Upload upload = in_parts ? receive_parts(body, folder) : receive_asset(body, folder);
+    const std::string job = in_parts ? "j_parts" : "j_whole";
+    blobs.keep_upload("u", job);
+    EXPECT_EQ(blobs.read(job, kDocumentFile), "v 0 0 0");
+    EXPECT_EQ(blobs.digest(job, kDocumentFile), upload.input.sha256);
+    expect_synced(blobs.path(job, ""));
+    EXPECT_TRUE(is_synced(dir_.path() / "blobs"));
+  }
+}
+
+TEST_F(Synchronising, ResultsAreOnTheDiskWhenTheyAreSealed) {
+  BlobStore blobs(dir_.path());
+  write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+  blobs.keep_upload("u", "j_1");
+  blobs.write_unsealed("j_1", kReportFile, "{}");
+  blobs.write_unsealed("j_1", result_file("glb"), std::string(3'000'000, 'x'));
+  EXPECT_FALSE(is_synced(blobs.path("j_1", kReportFile)));  // or the next line tells nothing
+  blobs.seal("j_1");
+  expect_synced(blobs.path("j_1", ""));
+  EXPECT_EQ(read_digests(blobs.path("j_1", "")).size(), 3U);
+}
+
+TEST_F(Synchronising, AFileWrittenByItselfIsOnTheDiskAtOnce) {
+  BlobStore blobs(dir_.path());
+  std::filesystem::create_directories(blobs.path("j_1", ""));
+  blobs.write("j_1", kReportFile, "{}");
+  expect_synced(blobs.path("j_1", ""));
+}
+
+}  // namespace
+}  // namespace unwrapd::server
