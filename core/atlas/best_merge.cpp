@@ -13,6 +13,7 @@
 
 #include "core/atlas/glue_slits.hpp"
 #include "core/atlas/labels.hpp"
+#include "core/atlas/loosen.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/atlas/straighten.hpp"
 
@@ -27,21 +28,17 @@ constexpr std::array kTries = {Try{1, 0, 0, 0},       Try{1, .72, 0, .3},   Try{
                                Try{2, 0, 0, .5},      Try{5, .72, 0, 0},    Try{2, .72, .7, .3},
                                Try{2, 0, 0, .2},      Try{3, .72, .7, .3},  Try{1, .72, .65, .5},
                                Try{.5, .72, .75, .3}, Try{20, .72, .6, .1}, Try{1, .5, .6, .3}};
-constexpr double kFacesOfSearch = 100'000;  // that are merged for a page, anew for each try
-constexpr std::size_t kFinished = 3;        // of the tries: with borders drawn straight
-constexpr double kFittingFill = 0.72;       // see MergeRules::least_fill
+constexpr double kFacesOfSearch = 100'000;  // that are merged for a page, about
+constexpr std::size_t kFinished = 2;        // of the tries: mended, and with borders drawn straight
+constexpr double kFewTries = 4;             // that are worth half of all the merging
+constexpr double kShareOfMends = 0.7, kMostMends = 20;  // of how often all could be merged anew
+constexpr double kWhimOfMends = 0.3, kTriesOfAMend = 0.3;
+constexpr int kFirstLotOfMends = 100;
+constexpr double kFittingFill = 0.72;  // see MergeRules::least_fill
 constexpr double kCostOfAChart = 0.1;
 constexpr double kWantedFill = 0.7, kCostOfEmptiness = 6;   // for a page that is empty beyond that
 constexpr double kFacesOfATry = 20, kTriesOfFinishing = 1;  // for each face; see Effort
 constexpr double kMostPage = 1.5;  // of the sheet: with more beside it, others fill the gaps
-
-/// The region of each face.
-std::vector<Index> owners(const Sheet& sheet, const Partition& partition) {
-  std::vector<Index> owner(sheet.mesh.faces.size());
-  for (std::size_t k = 0; k < partition.patches.size(); ++k)
-    for (const Index t : partition.patches[k].region.faces) owner[t] = static_cast<Index>(k);
-  return owner;
-}
 
 std::vector<Outline> outlines(const Sheet& sheet, const Partition& partition,
                               const std::vector<Index>& owner) {
@@ -94,11 +91,13 @@ class Search {
  public:
   Search(const Sheet& sheet, const MergeRules& rules, Executor& executor)
       : sheet_(sheet), rules_(rules), executor_(executor), joiner_(sheet) {
-    const double faces = sheet_.face_count() * std::max(1.0, rules_.page_area);
-    tries_ = static_cast<std::size_t>(
-        std::clamp<double>(kFacesOfSearch / faces, 1, static_cast<double>(kTries.size())));
-    kept_ = std::clamp(tries_ / 4, std::size_t{1}, kFinished);
-    weight_left_ = static_cast<double>(tries_) + kTriesOfFinishing * static_cast<double>(kept_);
+    const double rounds = kFacesOfSearch / (sheet_.face_count() * std::max(1.0, rules_.page_area));
+    const double wanted = std::max(std::min(rounds / 2, kFewTries), rounds / 4);
+    tries_ = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(kTries.size())));
+    mends_ = static_cast<int>(std::clamp(kShareOfMends * rounds, 0.0, kMostMends));
+    kept_ = std::clamp(tries_ / 2, std::size_t{1}, kFinished);
+    weight_left_ = static_cast<double>(tries_) +
+                   (kTriesOfAMend * mends_ + kTriesOfFinishing) * static_cast<double>(kept_);
     try_faces_ = kFacesOfATry * sheet_.face_count();
   }
 
@@ -111,6 +110,24 @@ class Search {
       try_faces_ = rules_.effort->done();
       std::ranges::stable_sort(best, std::less(), &Candidate::cost);
       if (best.size() > kept_) best.pop_back();
+    }
+    return best;
+  }
+
+  /// Again and again a part is taken apart and merged anew; what is cheaper stays (large
+  /// neighbourhood search, Shaw 1998).
+  [[nodiscard]] Candidate mended(const Partition& from, Candidate best) {
+    for (int k = 0; k < mends_ && best.partition.patches.size() > 1; ++k) {
+      begin(kTriesOfAMend);
+      MergeRules rules = rules_of(static_cast<std::size_t>(k) % kTries.size());
+      rules.lot = kFirstLotOfMends + k;
+      rules.whim = kWhimOfMends;
+      Loosened loose = loosened(sheet_, from, best.partition, static_cast<std::uint64_t>(k));
+      rules.whole = loose.whole;
+      Partition again =
+          merge_patches(joiner_, sheet_, std::move(loose.partition), rules, executor_);
+      const double cost = cost_of(sheet_, again, rules_);
+      if (cost < best.cost) best = {cost, std::move(again)};
     }
     return best;
   }
@@ -162,6 +179,7 @@ class Search {
   Executor& executor_;
   Joiner joiner_;
   std::size_t tries_ = 1, kept_ = 1;
+  int mends_ = 0;           ///< of each that is kept
   double weight_left_ = 1;  ///< of the work, in tries
   double try_faces_ = 0;    ///< that the last try took, or the first is thought to take
 };
@@ -172,9 +190,11 @@ Partition best_merge(const Sheet& sheet, const Partition& from, const MergeRules
                      Executor& executor) {
   Search search(sheet, rules, executor);
   Candidate best{std::numeric_limits<double>::infinity(), {}};
-  for (Candidate& greedy : search.greedy(from))
-    for (Candidate& own : search.finished(std::move(greedy.partition)))
+  for (Candidate& greedy : search.greedy(from)) {
+    Candidate mended = search.mended(from, std::move(greedy));
+    for (Candidate& own : search.finished(std::move(mended.partition)))
       if (own.cost < best.cost) best = std::move(own);
+  }
   glue_slits(sheet, rules, best.partition);
   return std::move(best.partition);
 }

@@ -128,6 +128,7 @@ class Merging {
   }
 
   void propose(Index a, Index b, const Promise& promise) {
+    if (std::max(a, b) < rules_.whole) return;
     if (promise.is_impossible || !patches_[a].is_sound || !patches_[b].is_sound) return;
     const double promised = promise.was_flawed ? kLast : key(a, b, promise.rise);
     queue_.push({promised, std::min(a, b), std::max(a, b)});

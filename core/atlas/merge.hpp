@@ -19,6 +19,7 @@ struct MergeRules {
   double least_solid = 0;  ///< share of its convex hull that a large union covers, at least
   double whim = 0;         ///< share of borders' worth that is drawn by lot
   int lot = 0;             ///< which of the draws; each is the same for everybody
+  Index whole = 0;         ///< so many patches at the front merge only by way of others
   Index enough = 1;        ///< ends when there are no more patches than this
   Effort* effort = nullptr;  ///< told of the faces that are tried, from this thread; null: nobody
   std::stop_token stop = {};

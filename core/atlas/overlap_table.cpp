@@ -9,6 +9,17 @@ constexpr int kWorkOfALook = 4;  // rows' worth
 
 }  // namespace
 
+int common_cells(std::span<const Run> a, std::span<const Run> b, int shift) {
+  int count = 0;
+  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+    const int begin = std::max(a[i].begin, b[j].begin + shift);
+    const int end = std::min(a[i].end, b[j].end + shift);
+    count += std::max(0, end - begin);
+    ++(a[i].end < b[j].end + shift ? i : j);
+  }
+  return count;
+}
+
 void OverlapTable::reset(const CellWindow& window) {
   window_ = window;
   stride_ = static_cast<std::size_t>(window.x_end - window.x_begin) + 1;

@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/atlas/mask.hpp"
 
 namespace unwrapd {
+
+/// How many cells lie in both rows; shift: added to those of b.
+int common_cells(std::span<const Run> a, std::span<const Run> b, int shift);
 
 /// Cells [x_begin, x_end) x [y_begin, y_end).
 struct CellWindow {

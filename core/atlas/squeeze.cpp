@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <numeric>
 #include <utility>
 
 #include "core/atlas/overlap_table.hpp"
@@ -30,18 +32,6 @@ struct Place {
   Spot spot;
   std::int64_t overlap = OverlapTable::kTooMuch;  ///< weighted
 };
-
-/// Cells that lie in both rows; shift: added to b's.
-int common_cells(std::span<const Run> a, std::span<const Run> b, int shift) {
-  int count = 0;
-  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-    const int begin = std::max(a[i].begin, b[j].begin + shift);
-    const int end = std::min(a[i].end, b[j].end + shift);
-    count += std::max(0, end - begin);
-    ++(a[i].end < b[j].end + shift ? i : j);
-  }
-  return count;
-}
 
 /// All islands on one page of a given side, overlapping or not.
 class Page {
@@ -74,11 +64,19 @@ class Page {
     return false;
   }
 
-  /// Two islands change places, which may be what a dead end needs.
+  /// Two islands change places, large ones rather than small, and one is turned at random: which
+  /// may lead out of a dead end.
   void exchange(std::vector<Spot>& spots) {
-    const std::size_t a = below(count_), b = below(count_);
-    std::swap(spots[a].x, spots[b].x);
-    std::swap(spots[a].y, spots[b].y);
+    std::vector<std::size_t> by_size(count_);
+    std::iota(by_size.begin(), by_size.end(), 0);
+    std::ranges::stable_sort(by_size, std::greater(),
+                             [&](std::size_t k) { return arranger_.box(k).size.prod(); });
+    const auto large = [&] { return by_size[std::min(below(count_), below(count_))]; };
+    Spot &a = spots[large()], &b = spots[large()];
+    std::swap(a.x, b.x);
+    std::swap(a.y, b.y);
+    if (below(2) == 0)
+      a.turn = static_cast<int>(below(static_cast<std::size_t>(arranger_.turns())));
   }
 
  private:
