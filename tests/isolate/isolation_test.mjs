@@ -92,7 +92,7 @@ for (const what of kCrashes) {
 }
 
 const kRenderings = [['layout.png', 'image/png'], ['preview.png', 'image/png'],
-                     ['layout.svg?colour=area', 'image/svg+xml'], ['result', 'application/json'],
+                     ['layout.svg', 'image/svg+xml'], ['result', 'application/json'],
                      ['result', 'model/gltf-binary']];
 
 for (const what of ['segv', 'abort', 'connect', 'chatter']) {
@@ -105,7 +105,7 @@ for (const what of ['segv', 'abort', 'connect', 'chatter']) {
       assert.deepEqual([answer.status, problem.code], [500, 'internal'], `${path}: ${answer.body}`);
       if (what !== 'chatter') assert.match(problem.detail, /^The process that made this file ended/);
     }
-    for (const path of ['', '/result', '/report', '/layout.svg']) await get(isolated, `/v1/jobs/${job.id}${path}`);
+    for (const path of ['', '/result', '/report']) await get(isolated, `/v1/jobs/${job.id}${path}`);
     assert.equal((await done(isolated, meshes.obj())).state, 'succeeded');
   });
 }
