@@ -107,12 +107,12 @@ ConfigGroup storing() {
                           {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::min_free_bytes)}};
 }
 
-/// "https://example.com", without a path, as browsers write it.
 /// Browsers send origins, and webhooks' hosts are compared, in small letters.
 bool has_capital(const std::string& text) {
   return std::ranges::any_of(text, [](char c) { return c >= 'A' && c <= 'Z'; });
 }
 
+/// "https://example.com", without a path, as browsers write it.
 void check_origin(const std::string& item) {
   const std::size_t scheme = item.find("://");
   const bool whole = scheme != std::string::npos && item.size() > scheme + 3 &&

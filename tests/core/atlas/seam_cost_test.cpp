@@ -43,6 +43,17 @@ TEST(SeamCost, IsLessAlongSharpEdgesAndGivenOnesUnlessMostAre) {
   EXPECT_EQ(creases_of(sheet_of(plane, std::vector<char>(given.size(), 1))), 0U);
 }
 
+/// 1 for each face above the equator, else 0.
+std::vector<Index> halves(const TriMesh& mesh) {
+  std::vector<Index> half;
+  for (const Triangle& face : mesh.faces) {
+    double z = 0;
+    for (const Index v : face) z += mesh.positions[std::size_t(v)].z();
+    half.push_back(z > 0 ? 1 : 0);
+  }
+  return half;
+}
+
 std::ptrdiff_t flagged(const Surface& surface) {
   const Charts charts = components_of(surface, {.mode = SeamMode::none});
   return std::ranges::count(charts.charts.front().crease, 1);
@@ -50,12 +61,7 @@ std::ptrdiff_t flagged(const Surface& surface) {
 
 TEST(SeamCost, KnowsWhereMaterialsMeetAndWhereTheInputWasSplit) {
   const TriMesh mesh = sphere(2);
-  std::vector<Index> half;
-  for (const Triangle& face : mesh.faces) {
-    double z = 0;
-    for (const Index v : face) z += mesh.positions[std::size_t(v)].z();
-    half.push_back(z > 0 ? 1 : 0);
-  }
+  const std::vector<Index> half = halves(mesh);
   const std::vector<Index> one(half.size(), 0);
   const Surface painted{mesh, half, "two materials on the same vertices"};
   EXPECT_EQ(flagged(painted), 2 * 16);  // the equator
@@ -83,12 +89,7 @@ double share_at_equator(const Surface& surface, double height) {
 
 TEST(SeamCost, DrawsSeamsToWhereMaterialsMeet) {
   const TriMesh mesh = sphere(3);
-  std::vector<Index> half;
-  for (const Triangle& face : mesh.faces) {
-    double z = 0;
-    for (const Index v : face) z += mesh.positions[std::size_t(v)].z();
-    half.push_back(z > 0 ? 1 : 0);
-  }
+  const std::vector<Index> half = halves(mesh);
   const double plain = share_at_equator(surface_of(mesh), 1e-9);
   const double painted = share_at_equator({mesh, half, "painted"}, 1e-9);
   EXPECT_GT(painted, plain + 0.02) << plain;
