@@ -2,6 +2,8 @@
 
 namespace unwrapd::api {
 
+Event accepted_event(const Job& job) { return {0, "accepted", to_json(job)}; }
+
 Event queued_event(std::int64_t seq, std::int64_t position) {
   return {seq, "queued", {{"position", position}}};
 }
@@ -52,7 +54,8 @@ bool is_last(const Event& event) {
 
 std::string sse_frame(const Event& event) {
   const std::string data = event.data.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return "id: " + std::to_string(event.seq) + "\nevent: " + event.name + "\ndata: " + data + "\n\n";
+  const std::string id = event.seq > 0 ? "id: " + std::to_string(event.seq) + "\n" : "";
+  return id + "event: " + event.name + "\ndata: " + data + "\n\n";
 }
 
 }  // namespace unwrapd::api

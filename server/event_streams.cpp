@@ -1,6 +1,7 @@
 #include "server/event_streams.hpp"
 
 #include <charconv>
+#include <utility>
 
 #include "server/job_queue.hpp"
 
@@ -26,9 +27,11 @@ struct Reader {
   std::shared_ptr<const JobFeed> feed;
   std::int64_t after = 0;
   std::shared_ptr<void> place;
+  std::string greeting;  // comes first
 };
 
 StreamPiece next_piece(Reader& reader) {
+  if (!reader.greeting.empty()) return {.bytes = std::exchange(reader.greeting, {}), .end = false};
   Reading reading = reader.feed->read(reader.after);
   reader.after = reading.last_seq;
   return {.bytes = std::move(reading.frames), .end = reading.end};
@@ -48,23 +51,38 @@ std::shared_ptr<void> EventStreams::take_place() {
                          " event streams are taken; come back after Retry-After.",
                      kRetrySeconds);
   }
-  return {nullptr, [open = open_](void*) { open->fetch_sub(1); }};
+  return {open_.get(), [open = open_](void*) { open->fetch_sub(1); }};
 }
 
-Response EventStreams::open(const JobRecord& job, const std::string& last_event_id) {
-  const std::optional<std::int64_t> seen = parse_event_id(last_event_id);
+Response EventStreams::stream(const JobRecord& job, Watcher watcher, std::string greeting) {
   Response response;
   response.content_type = "text/event-stream";
   response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
   const std::shared_ptr<JobFeed> feed = events_.find(job.id);
   if (!feed) {
-    response.body = last_frame(job);
+    response.body = greeting + last_frame(job);
     return response;
   }
-  auto reader = std::make_shared<Reader>(
-      Reader{.feed = feed, .after = feed->resume_after(seen), .place = take_place()});
+  if (!watcher.place) watcher.place = take_place();
+  auto reader = std::make_shared<Reader>(Reader{.feed = feed,
+                                                .after = feed->resume_after(watcher.seen),
+                                                .place = std::move(watcher.place),
+                                                .greeting = std::move(greeting)});
   response.body = StreamBody{.next = [reader] { return next_piece(*reader); }, .ping = api::kPing};
   return response;
+}
+
+Response EventStreams::open(const JobRecord& job, const std::string& last_event_id) {
+  return stream(job, {.seen = parse_event_id(last_event_id), .place = {}}, {});
+}
+
+Watcher EventStreams::let_in(const std::string& last_event_id) {
+  return {.seen = parse_event_id(last_event_id), .place = take_place()};
+}
+
+Response EventStreams::open_accepted(const JobRecord& job, Watcher watcher) {
+  if (job.request_key.empty()) watcher.seen.reset();
+  return stream(job, std::move(watcher), api::sse_frame(api::accepted_event(to_job(job))));
 }
 
 }  // namespace unwrapd::server

@@ -13,6 +13,12 @@
 
 namespace unwrapd::server {
 
+/// Of a reader who is let in before there is a job to watch.
+struct Watcher {
+  std::optional<std::int64_t> seen;  ///< the last event, by its own account
+  std::shared_ptr<void> place;       ///< among the streams
+};
+
 /// Thread-safe.
 class EventStreams {
  public:
@@ -22,10 +28,17 @@ class EventStreams {
   /// made from the record. Throws RetryLater{too_many_streams}, Error{malformed_request}.
   Response open(const JobRecord& job, const std::string& last_event_id);
 
+  /// Lets somebody in who is about to submit a job and will watch it. Throws like open().
+  Watcher let_in(const std::string& last_event_id);
+  /// The answer to that submission: the job, then its events. A job without a name of the sender's
+  /// is a new one, of which nothing was seen.
+  Response open_accepted(const JobRecord& job, Watcher watcher);
+
   [[nodiscard]] int open_count() const { return *open_; }
 
  private:
   std::shared_ptr<void> take_place();
+  Response stream(const JobRecord& job, Watcher watcher, std::string greeting);
 
   EventFeed& events_;
   const int max_streams_;

@@ -35,7 +35,18 @@ JobRecord stored_job(JobStore& store, const std::string& id) {
   return std::move(*job);
 }
 
+/// Who has no place among the streams is told so before anything is accepted.
+Response post_watched(const JobServices& services, const Request& request) {
+  Watcher watcher = services.streams.let_in(request.header("Last-Event-ID"));
+  const std::string id = services.submissions.accept(request, false).id;
+  const JobRecord job = stored_job(services.store, id);
+  Response response = services.streams.open_accepted(job, std::move(watcher));
+  response.headers.emplace_back("Location", api::job_path(id));
+  return response;
+}
+
 Response post_job(const JobServices& services, const Request& request) {
+  if (prefers_events(request.header("Accept"))) return post_watched(services, request);
   const std::string id = services.submissions.accept(request, false).id;
   const std::optional<int> wait = preferred_wait(request.header("Prefer"));
   const int seconds = std::min(wait.value_or(0), services.limits.max_wait_seconds);

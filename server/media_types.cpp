@@ -76,16 +76,31 @@ int closeness(std::string_view range, std::string_view type) {
   return range.ends_with("/*") && range.substr(0, range.size() - 1) == group ? 2 : 0;
 }
 
-/// The quality that the closest range gives to a type.
-double quality(const std::vector<MediaRange>& ranges, std::string_view type) {
-  int closest = 0;
-  double found = 0;
+std::vector<MediaRange> media_ranges(std::string_view accept) {
+  std::vector<MediaRange> ranges;
+  for (const std::string_view entry : split(accept, ',')) ranges.push_back(media_range(entry));
+  return ranges;
+}
+
+/// How much a type is liked, and how exactly it was named.
+struct Liking {
+  double quality = 0;
+  int closeness = 0;
+  auto operator<=>(const Liking&) const = default;
+};
+
+/// What the closest range says of a type.
+Liking liking(const std::vector<MediaRange>& ranges, std::string_view type) {
+  Liking found;
   for (const MediaRange& range : ranges) {
     const int close = closeness(range.type, type);
-    if (close > closest) found = range.quality;
-    closest = std::max(closest, close);
+    if (close > found.closeness) found = {.quality = range.quality, .closeness = close};
   }
   return found;
+}
+
+double quality(const std::vector<MediaRange>& ranges, std::string_view type) {
+  return liking(ranges, type).quality;
 }
 
 }  // namespace
@@ -108,8 +123,7 @@ std::string_view media_type(std::string_view format) {
 }
 
 std::string choose_format(std::string_view accept, std::string_view usual) {
-  std::vector<MediaRange> ranges;
-  for (const std::string_view entry : split(accept, ',')) ranges.push_back(media_range(entry));
+  const std::vector<MediaRange> ranges = media_ranges(accept);
   if (ranges.empty()) return std::string(usual);
   std::string_view best = usual;
   double best_quality = quality(ranges, media_type(usual));
@@ -122,6 +136,12 @@ std::string choose_format(std::string_view accept, std::string_view usual) {
   throw Error(ErrorCode::not_acceptable,
               "The result can be had as model/gltf-binary, model/gltf+json, model/obj or "
               "application/json; name one of them in Accept.");
+}
+
+bool prefers_events(std::string_view accept) {
+  const std::vector<MediaRange> ranges = media_ranges(accept);
+  const Liking events = liking(ranges, "text/event-stream");
+  return events.quality > 0 && events > liking(ranges, "application/json");
 }
 
 std::optional<int> preferred_wait(std::string_view prefer) {

@@ -20,6 +20,10 @@ std::string_view media_type(std::string_view format);
 /// Error{not_acceptable}.
 std::string choose_format(std::string_view accept, std::string_view usual);
 
+/// Whether an Accept header asks for events rather than JSON: it names them, and likes JSON less or
+/// does not name it as exactly.
+bool prefers_events(std::string_view accept);
+
 /// N of "Prefer: wait=N"; empty when there is no such preference.
 std::optional<int> preferred_wait(std::string_view prefer);
 

@@ -108,6 +108,12 @@ export function tooManyStreams(run, binary) {
     run.expectEqual('the stream that fits', stream.status, 200);
     const problem = await run.json(base, 'watchJob', {job, status: 503});
     run.expectEqual('the stream too many', problem.code, 'too_many_streams');
+    const headers = {...kGlb, Accept: 'text/event-stream'};
+    for (const id of ['createJob', 'putJob']) {
+      const refused = await run.json(base, id,
+                                     {job: newId(), headers, body: meshes.glb(), status: 503});
+      run.expectEqual(`${id} without a place to watch`, refused.code, 'too_many_streams');
+    }
     stream.close();
     await run.call(base, 'deleteJob', {job, status: 202});
   });

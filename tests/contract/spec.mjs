@@ -188,7 +188,7 @@ export function parseEvents(text) {
     if (fields.length === 0) continue;
     const data = fields.filter(([name]) => name === 'data').map(([, value]) => value).join('\n');
     const {id, event} = Object.fromEntries(fields);
-    events.push({id: Number(id), event, data: JSON.parse(data)});
+    events.push({...(id !== undefined && {id: Number(id)}), event, data: JSON.parse(data)});
   }
   return events;
 }

@@ -33,6 +33,16 @@ TEST(MediaTypes, BodiesAreAssetsOrForms) {
   EXPECT_THROW(body_kind("application/x-www-form-urlencoded"), Error);
 }
 
+TEST(MediaTypes, EventsAreForWhoNamesThem) {
+  for (const char* events : {"text/event-stream", "Text/Event-Stream; charset=utf-8", "text/*",
+                             "text/event-stream, */*", "application/json;q=0.5, text/event-stream"})
+    EXPECT_TRUE(prefers_events(events)) << events;
+  for (const char* json :
+       {"", "*/*", "application/json", "application/json, text/event-stream", "text/html",
+        "text/event-stream;q=0", "text/event-stream;q=0.5, application/json", "garbage"})
+    EXPECT_FALSE(prefers_events(json)) << json;
+}
+
 TEST(MediaTypes, ReadsThePreferredWait) {
   EXPECT_EQ(preferred_wait("wait=10"), 10);
   EXPECT_EQ(preferred_wait("respond-async, Wait=3"), 3);

@@ -3,7 +3,7 @@ import * as meshes from '../meshes.mjs';
 import {kOutcomes} from '../run.mjs';
 import {parseEvents} from '../spec.mjs';
 import {pictures} from './pictures.mjs';
-import {failure, kGlb, kRepresentations, kWait, validGltf} from './shared.mjs';
+import {failure, kGlb, kRepresentations, kWait, newId, validGltf} from './shared.mjs';
 
 const kAnew = {...kGlb, 'Cache-Control': 'no-cache'};  // not answered from the store
 
@@ -57,6 +57,24 @@ async function representation(run, base, job, type) {
   const answer = await run.call(base, 'getResult', {job, headers: {Accept: type}, status: 200});
   run.expectEqual(`media type for ${type}`, answer.headers['content-type']?.split(';')[0], type);
   if (type.startsWith('model/gltf')) await validGltf(run, type, answer.body);
+}
+
+/** Submitted and watched in one request: the job, then its events; sent again, the rest of them. */
+export async function watchedSubmission(run, base) {
+  const headers = {...kAnew, Accept: 'text/event-stream', 'Idempotency-Key': `watched-${Date.now()}`};
+  for (const [id, job] of [['createJob', undefined], ['putJob', newId()]]) {
+    const whole = await run.call(base, id, {job, headers, body: meshes.glb(), status: 200});
+    run.expectEqual(`type of ${id}`, whole.headers['content-type'], 'text/event-stream');
+    const events = parseEvents(whole.body.toString());
+    run.expectEqual('the first event', events[0].event, 'accepted');
+    run.expectEqual('its job', events[0].data.links.self, whole.headers.location);
+    run.expectEqual('the last event', events.at(-1).event, 'succeeded');
+    const again = await run.call(base, id, {
+      job, headers: {...headers, 'Last-Event-ID': '1'}, body: meshes.glb(), status: 200,
+    });
+    const ids = (list) => list.slice(1).map((event) => event.id).join();
+    run.expectEqual('the rest', ids(parseEvents(again.body.toString())), ids(events.slice(1)));
+  }
 }
 
 export async function preferWait(run, base) {
