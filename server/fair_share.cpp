@@ -5,14 +5,9 @@
 #include <limits>
 
 namespace unwrapd::server {
-namespace {
-
-constexpr double kMeanWeight = 0.2;  // of the newest job in the running mean of run times
-
-}  // namespace
 
 double FairShare::service(const Account& account) const {
-  return account.served_seconds + static_cast<double>(account.running) * mean_seconds_;
+  return account.served_seconds + static_cast<double>(account.running) * lengths_.mean;
 }
 
 double FairShare::least_service() const {
@@ -21,6 +16,10 @@ double FairShare::least_service() const {
     if (!account.idle()) least = std::min(least, account.served_seconds);
   }
   return least;
+}
+
+std::int64_t FairShare::owners() const {
+  return std::ranges::count_if(accounts_, [](const auto& entry) { return !entry.second.idle(); });
 }
 
 void FairShare::add(const std::string& owner) {
@@ -58,7 +57,7 @@ void FairShare::end(const std::string& owner, double seconds) {
   Account& account = accounts_[owner];
   --account.running;
   account.served_seconds += seconds;
-  mean_seconds_ += kMeanWeight * (seconds - mean_seconds_);
+  lengths_.add(seconds);
   const bool nobody_else =
       std::ranges::all_of(accounts_, [](const auto& entry) { return entry.second.idle(); });
   if (nobody_else) accounts_.clear();  // all start level again

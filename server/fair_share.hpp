@@ -9,6 +9,8 @@
 #include <map>
 #include <string>
 
+#include "server/promised_places.hpp"
+
 namespace unwrapd::server {
 
 /// Not for use by two threads at once.
@@ -26,8 +28,10 @@ class FairShare {
   void end(const std::string& owner, double seconds);
 
   [[nodiscard]] std::int64_t waiting() const { return waiting_; }
+  /// Owners with jobs that wait or run.
+  [[nodiscard]] std::int64_t owners() const;
   /// Of the newest jobs, the more recent the heavier.
-  [[nodiscard]] double mean_seconds() const { return mean_seconds_; }
+  [[nodiscard]] const Lengths& lengths() const { return lengths_; }
 
  private:
   struct Account {
@@ -41,7 +45,7 @@ class FairShare {
 
   std::map<std::string, Account> accounts_;  // of owners with jobs, and of some without
   std::int64_t waiting_ = 0;
-  double mean_seconds_ = 1;
+  Lengths lengths_;
 };
 
 }  // namespace unwrapd::server

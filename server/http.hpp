@@ -51,10 +51,11 @@ struct Request {
   std::string path;  ///< percent-decoded
   std::multimap<std::string, std::string> query;
   std::multimap<std::string, std::string, IgnoreCase> headers;
-  std::string id;              ///< the {id} of the path, once a route has matched
-  Caller caller;               ///< who asks, once that has been found out
-  std::string client;          ///< the address of who asks
-  BodyReader* body = nullptr;  ///< of POST, PUT and PATCH
+  std::string id;                   ///< the {id} of the path, once a route has matched
+  Caller caller;                    ///< who asks, once that has been found out
+  std::string client;               ///< the address of who asks
+  BodyReader* body = nullptr;       ///< of POST, PUT and PATCH
+  std::int64_t declared_bytes = 0;  ///< of the body; 0 when not told beforehand
 
   /// The first header of this name, empty when there is none.
   [[nodiscard]] std::string header(std::string_view name) const;

@@ -190,6 +190,7 @@ class Exchange::Http final : public httplib::Server {
  private:
   void answer(const httplib::Request& from, BodyReader* body, httplib::Response& out) {
     Request request = to_request(from, body);
+    request.declared_bytes = connection_->declared_bytes();
     request.client =
         client_behind(connection_->client(), forwarded_for(request), uses_.trusted_proxies);
     const Trace trace = continue_trace(request.header("traceparent"));

@@ -32,7 +32,7 @@ JobQueue::JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const L
       events_(events),
       log_(log),
       config_(config),
-      retry_(config.workers, config.max_queue) {}
+      door_(config.max_queue, config.workers) {}
 
 void JobQueue::recover(bool tried_apart) {
   const std::lock_guard lock(mutex_);
@@ -72,31 +72,29 @@ void JobQueue::wait_again(const JobRecord& job) {
   changed_.notify_all();
 }
 
-void JobQueue::check_room_locked() {
-  const auto now = std::chrono::steady_clock::now();
+void JobQueue::check_open() const {
   if (closed_) throw server::draining();
-  if (now < paused_until_) {
-    const auto left = std::chrono::ceil<std::chrono::seconds>(paused_until_ - now);
-    throw no_room(static_cast<int>(left.count()));
-  }
-  if (share_.waiting() >= config_.max_queue)
-    throw queue_full(config_.max_queue, retry_.promise(now, share_.mean_seconds()));
+  const auto now = std::chrono::steady_clock::now();
+  if (now >= paused_until_) return;
+  const auto left = std::chrono::ceil<std::chrono::seconds>(paused_until_ - now);
+  throw no_room(static_cast<int>(left.count()));
 }
 
-void JobQueue::check_room() {
+std::vector<AtWork> JobQueue::at_work() const {
+  std::vector<AtWork> all;
+  for (const auto& [id, job] : running_) all.push_back({job->record.owner, job->seconds()});
+  return all;
+}
+
+void JobQueue::check_room(std::string_view sender) {
   const std::lock_guard lock(mutex_);
-  check_room_locked();
+  check_open();
+  door_.check_place(sender, share_, at_work());
 }
 
-void JobQueue::check_quota(const JobRecord& job, const Quota& quota) {
-  if (quota.max_jobs == 0 && quota.max_bytes == 0) return;
-  const OwnerUsage usage = store_.usage(job.owner);
-  if (quota.max_jobs > 0 && usage.live_jobs >= quota.max_jobs) {
-    const auto now = std::chrono::steady_clock::now();
-    throw too_many_jobs(quota.max_jobs, retry_.promise(now, share_.mean_seconds()));
-  }
-  if (quota.max_bytes > 0 && usage.stored_bytes + job.input.bytes > quota.max_bytes)
-    throw quota_exceeded(quota.max_bytes);
+void JobQueue::give_back(std::string_view sender) {
+  const std::lock_guard lock(mutex_);
+  door_.leave(sender);
 }
 
 std::optional<JobRecord> JobQueue::same_name(const JobRecord& job) {
@@ -114,6 +112,7 @@ JobRecord JobQueue::submit(Submission submission) {
   std::unique_lock named(naming_, std::defer_lock);
   if (!job.request_key.empty()) named.lock();
   if (std::optional<JobRecord> known = same_name(job)) {
+    give_back(submission.sender);
     blobs_.drop_upload(submission.upload);
     return std::move(*known);
   }
@@ -130,8 +129,11 @@ JobRecord JobQueue::submit(Submission submission) {
 
 void JobQueue::enqueue(JobRecord& job, const Submission& submission) {
   const std::lock_guard lock(mutex_);
-  check_room_locked();
-  check_quota(job, submission.quota);
+  check_open();
+  door_.check_place(submission.sender, share_, at_work());
+  if (const Quota& quota = submission.quota; quota.max_jobs > 0 || quota.max_bytes > 0)
+    door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
+  door_.leave(submission.sender);
   job.stored_bytes = job.input.bytes;
   job.seq = store_.insert(job);
   if (submission.anew || !answer_from_store(job)) wait_again(job);
@@ -220,8 +222,7 @@ void JobQueue::finish(const RunningJob& job, JobOutcome outcome) {
   const std::lock_guard lock(mutex_);
   running_.erase(job.record.id);
   changed_.notify_all();
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - job.began;
-  share_.end(job.record.owner, took.count());
+  share_.end(job.record.owner, job.seconds());
   if (outcome.state == JobState::cancelled && job.cause == StopCause::draining) {
     store_.requeue(job.record.id, false);
     return;

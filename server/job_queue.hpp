@@ -17,6 +17,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/error.hpp"
 #include "server/blob_store.hpp"
@@ -25,7 +26,7 @@
 #include "server/fair_share.hpp"
 #include "server/job_store.hpp"
 #include "server/log.hpp"
-#include "server/retry_estimate.hpp"
+#include "server/queue_door.hpp"
 #include "server/retry_later.hpp"
 
 namespace unwrapd::server {
@@ -41,6 +42,10 @@ struct RunningJob {
   std::stop_source stop;
   std::atomic<StopCause> cause = StopCause::none;
 
+  /// Since it began.
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  }
   /// Asks the worker to stop; the first cause counts.
   void request_stop(StopCause why);
 };
@@ -55,9 +60,10 @@ struct QueueConfig {
 /// A job whose upload is complete, and how it is to be taken.
 struct Submission {
   JobRecord job;
-  std::string upload;  ///< the folder of its files, of BlobStore::begin_upload()
-  Quota quota;         ///< of its owner
-  bool anew = false;   ///< run it even when the same question has been answered
+  std::string sender = {};  ///< as check_room() was told
+  std::string upload;       ///< the folder of its files, of BlobStore::begin_upload()
+  Quota quota;              ///< of its owner
+  bool anew = false;        ///< run it even when the same question has been answered
 };
 
 /// Thread-safe.
@@ -71,8 +77,11 @@ class JobQueue {
   /// they are given up.
   void recover(bool tried_apart);
 
-  /// Throws RetryLater{queue_full, draining} when a submission would be refused now.
-  void check_room();
+  /// Throws RetryLater{queue_full, draining} when a submission would be refused now, else keeps a
+  /// place for it until submit() or give_back(). sender: the same for a request that is sent again
+  /// when told so, if possible another for each other request.
+  void check_room(std::string_view sender);
+  void give_back(std::string_view sender);
   /// Stores a job; one of the same name that is there already is returned instead. A question that
   /// this owner has had answered is answered from the store. Throws like check_room(), and
   /// idempotency_conflict, too_many_jobs, quota_exceeded, storage_full.
@@ -96,8 +105,8 @@ class JobQueue {
   [[nodiscard]] bool draining() const { return closed_; }
 
  private:
-  void check_room_locked();
-  void check_quota(const JobRecord& job, const Quota& quota);
+  void check_open() const;
+  [[nodiscard]] std::vector<AtWork> at_work() const;
   [[nodiscard]] std::optional<JobRecord> same_name(const JobRecord& job);
   void enqueue(JobRecord& job, const Submission& submission);
   [[nodiscard]] bool answer_from_store(const JobRecord& job);
@@ -122,7 +131,7 @@ class JobQueue {
   std::atomic<bool> closed_ = false;
   std::mutex naming_;  // one request with a name of its own at a time
   FairShare share_;
-  RetryEstimate retry_;
+  QueueDoor door_;
   std::chrono::steady_clock::time_point paused_until_{};  // while the disk is full
   int full_in_a_row_ = 0;                                 // jobs that found the disk full
   std::map<std::string, std::shared_ptr<RunningJob>, std::less<>> running_;

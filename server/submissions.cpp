@@ -35,10 +35,27 @@ std::string content_key(const JobRecord& job) {
   return hash.finish();
 }
 
+/// What tells a request from others before its body is read: the same when it is sent again.
+std::string sender_of(const Request& request) {
+  Sha256 hash;
+  const auto add = [&](const std::string& text) { hash.add(text + '\0'); };
+  add(request.caller.owner);
+  add(request.client);
+  add(request.path);
+  for (const auto& [name, value] : request.query) {
+    add(name);
+    add(value);
+  }
+  add(std::to_string(request.declared_bytes));
+  add(request.header("Idempotency-Key"));
+  return hash.finish();
+}
+
 }  // namespace
 
 JobRecord Submissions::accept(const Request& request, bool synchronous) {
-  queue_.check_room();
+  const std::string sender = sender_of(request);
+  queue_.check_room(sender);
   const std::string upload = random_job_id();
   try {
     Submission submission = receive(request, upload);
@@ -46,6 +63,7 @@ JobRecord Submissions::accept(const Request& request, bool synchronous) {
     submission.job.content_key = content_key(submission.job);
     return queue_.submit(std::move(submission));
   } catch (...) {
+    queue_.give_back(sender);
     blobs_.drop_upload(upload);
     throw;
   }
@@ -56,6 +74,7 @@ Submission Submissions::receive(const Request& request, const std::string& uploa
   const bool raw = kind == BodyKind::asset;
   api::JobOptions options = api::parse_options(request.query, limits_);  // before the body is read
   Submission submission{.job = {},
+                        .sender = sender_of(request),
                         .upload = upload,
                         .quota = request.caller.quota,
                         .anew = wants_new_answer(request)};

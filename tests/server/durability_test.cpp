@@ -12,7 +12,6 @@
 #include "server/fair_share.hpp"
 #include "server/identity.hpp"
 #include "server/job_store.hpp"
-#include "server/retry_estimate.hpp"
 #include "server/sweeper.hpp"
 #include "temp_dir.hpp"
 #include "tests/api/error_of.hpp"
@@ -215,16 +214,6 @@ TEST(FairShare, RunningJobsCountBeforeTheyEnd) {
   EXPECT_EQ(share.next(), "b");
   share.start(share.next());
   EXPECT_EQ(share.waiting(), 4);
-}
-
-TEST(RetryEstimate, PromisesEachSenderAPlaceOfItsOwn) {
-  RetryEstimate retry(2, 10);
-  const RetryEstimate::Clock::time_point now{};
-  EXPECT_EQ(retry.promise(now, 6.0), 3);
-  EXPECT_EQ(retry.promise(now, 6.0), 6);
-  EXPECT_EQ(retry.promise(now + std::chrono::seconds(6), 6.0), 3);
-  for (int k = 0; k < 50; ++k) EXPECT_LE(retry.promise(now, 6.0), 30) << "the queue is no longer";
-  EXPECT_EQ(RetryEstimate(4, 10).promise(now, 0.01), 1) << "never 0";
 }
 
 }  // namespace

@@ -165,6 +165,32 @@ TEST_F(Jobs, ARunningJobIsCancelledWithinAnIteration) {
   expect_problem(client().Get("/v1/jobs/" + id), 404, "not_found");
 }
 
+TEST_F(Jobs, WhoComesBackWhenToldFindsThePlaceThatANewcomerDoesNotGet) {
+  config_.workers = 1;
+  config_.limits.max_queue = 2;
+  start();
+  const std::string running = submit_endless();
+  await_state(running, "running");
+  const std::string waiting = submit();
+  submit();
+  const auto send = [&](int size) {
+    return client().Post("/v1/jobs", grid_obj(size), "model/obj");
+  };
+  const auto refused = send(2);
+  const auto when = std::chrono::steady_clock::now();
+  expect_problem(refused, 429, "queue_full");
+  const std::chrono::seconds told(std::stoi(refused->get_header_value("Retry-After")));
+  std::this_thread::sleep_until(when + told);
+  client().Delete("/v1/jobs/" + waiting);
+  const auto newcomer = send(3);
+  const auto returned = send(2);
+  client().Delete("/v1/jobs/" + running);
+  if (std::chrono::steady_clock::now() > when + told + std::chrono::seconds(1))
+    GTEST_SKIP() << "too slow a machine to come back in time";
+  expect_problem(newcomer, 429, "queue_full");
+  EXPECT_EQ(returned->status, 202);
+}
+
 TEST_F(Jobs, AWaitingJobIsCancelledAtOnceAndAFullQueueRefuses) {
   config_.workers = 1;
   config_.limits.max_queue = 1;
