@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -51,9 +52,10 @@ class SolverCore {
 
   /// What was made under this key before, or what make() gives. Jobs that ask for the same key at
   /// once get the same value, made once; where make() throws, so does this, and the next one makes
-  /// it anew. Thread-safe. make() must not ask for the same key.
-  virtual std::shared_ptr<const void> obtain(const Digest& key,
-                                             const std::function<Made()>& make) = 0;
+  /// it anew. Thread-safe. make() must not ask for the same key. Throws Error{cancelled} where a
+  /// stop is requested while another job makes it.
+  virtual std::shared_ptr<const void> obtain(const Digest& key, const std::function<Made()>& make,
+                                             const std::stop_token& stop) = 0;
 
   /// Bytes that one job may take.
   [[nodiscard]] virtual std::size_t memory_limit() const = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "server/memory_room.hpp"
 
@@ -43,14 +44,18 @@ Digest SolverCache::digest(const Content& content) const {
 }
 
 std::shared_ptr<const void> SolverCache::obtain(const Digest& key,
-                                                const std::function<Made()>& make) {
+                                                const std::function<Made()>& make,
+                                                const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   for (auto found = entries_.find(key); found != entries_.end(); found = entries_.find(key)) {
     const std::shared_ptr<Entry> entry = found->second;  // it may be dropped while we wait
-    ended_.wait(lock, [&] { return entry->made.value || entry->has_failed; });
+    const auto is_done = [&] { return entry->made.value || entry->has_failed; };
+    if (!ended_.wait(lock, stop, is_done)) throw_if_cancelled(stop);
     if (entry->has_failed) continue;
     ++counters_.hits;
-    if (entries_.contains(key)) uses_.splice(uses_.begin(), uses_, entry->use);
+    const auto now = entries_.find(key);
+    if (now != entries_.end() && now->second == entry)
+      uses_.splice(uses_.begin(), uses_, entry->use);
     return entry->made.value;
   }
   const auto entry = std::make_shared<Entry>();
@@ -79,6 +84,11 @@ std::shared_ptr<const void> SolverCache::make_now(const Digest& key, Entry& entr
 }
 
 void SolverCache::keep(const Digest& key, Entry& entry) {
+  if (entry.made.bytes > most_bytes_) {  // the others stay
+    entries_.erase(key);
+    ++counters_.evictions;
+    return;
+  }
   uses_.push_front(key);
   entry.use = uses_.begin();
   counters_.bytes += entry.made.bytes;

@@ -33,7 +33,8 @@ class SolverCache final : public SolverCore {
   SolverCache(const MemoryLimits& limits, int workers);
 
   [[nodiscard]] Digest digest(const Content& content) const override;
-  std::shared_ptr<const void> obtain(const Digest& key, const std::function<Made()>& make) override;
+  std::shared_ptr<const void> obtain(const Digest& key, const std::function<Made()>& make,
+                                     const std::stop_token& stop) override;
   [[nodiscard]] std::size_t memory_limit() const override { return job_bytes_; }
 
   [[nodiscard]] CacheCounters counters() const;
@@ -53,7 +54,7 @@ class SolverCache final : public SolverCore {
 
   const std::size_t most_bytes_, job_bytes_;
   mutable std::mutex mutex_;
-  std::condition_variable ended_;  ///< something was made, or that failed
+  std::condition_variable_any ended_;  ///< something was made, or that failed
   std::map<Digest, std::shared_ptr<Entry>> entries_;
   std::list<Digest> uses_;  ///< the most recent first
   CacheCounters counters_;

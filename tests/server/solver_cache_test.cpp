@@ -26,7 +26,7 @@ SolverCore::Made number(int value, std::size_t bytes = 10) {
 
 int ask(SolverCache& cache, char name, int value, std::size_t bytes = 10) {
   return *std::static_pointer_cast<const int>(
-      cache.obtain(key(name), [&] { return number(value, bytes); }));
+      cache.obtain(key(name), [&] { return number(value, bytes); }, {}));
 }
 
 TEST(SolverCache, GivesWhatWasMadeBefore) {
@@ -52,9 +52,11 @@ TEST(SolverCache, DropsWhatWasNotUsedLongest) {
 
 TEST(SolverCache, HandsOutWhatIsTooLargeToKeep) {
   SolverCache cache({.cache_bytes = 30, .job_bytes = kPlenty}, 1);
+  ask(cache, 'b', 7);
   EXPECT_EQ(ask(cache, 'a', 1, 31), 1);
   EXPECT_EQ(ask(cache, 'a', 2, 31), 2);
-  EXPECT_EQ(cache.counters().bytes, 0U);
+  EXPECT_EQ(ask(cache, 'b', 8), 7);  // what fits stays
+  EXPECT_EQ(cache.counters().bytes, 10U);
 }
 
 TEST(SolverCache, MakesOnceForJobsThatAskAtOnce) {
@@ -68,10 +70,12 @@ TEST(SolverCache, MakesOnceForJobsThatAskAtOnce) {
     for (int& result : got)
       jobs.emplace_back([&] {
         all_here.count_down();
-        result = *std::static_pointer_cast<const int>(cache.obtain(key('a'), [&] {
-          all_here.wait();
-          return number(++made);
-        }));
+        result = *std::static_pointer_cast<const int>(cache.obtain(key('a'),
+                                                                   [&] {
+                                                                     all_here.wait();
+                                                                     return number(++made);
+                                                                   },
+                                                                   {}));
       });
     jobs.clear();
     EXPECT_TRUE(room == 0 || got == std::vector<int>(kJobs, 1));
@@ -80,11 +84,64 @@ TEST(SolverCache, MakesOnceForJobsThatAskAtOnce) {
   }
 }
 
+TEST(SolverCache, HandsOutTheRightThingHoweverManyAskForMoreThanItKeeps) {
+  for (std::int64_t room : {0, 10, 20}) {
+    SolverCache cache({.cache_bytes = room, .job_bytes = kPlenty}, 1);
+    std::atomic<int> wrong = 0;
+    std::vector<std::jthread> jobs;
+    for (int job = 0; job < 4; ++job)
+      jobs.emplace_back([&, job] {
+        for (int k = 0; k < 3000; ++k) {
+          const auto name = static_cast<char>('a' + (k + job) % 3);
+          if (ask(cache, name, name) != name) ++wrong;
+        }
+      });
+    jobs.clear();
+    EXPECT_EQ(wrong, 0);
+    EXPECT_LE(cache.counters().bytes, static_cast<std::size_t>(room));
+    EXPECT_EQ(cache.counters().bytes, 10 * cache.counters().entries);
+  }
+}
+
 TEST(SolverCache, LetsTheNextOneTryWhereMakingFailed) {
   SolverCache cache({.cache_bytes = 30, .job_bytes = kPlenty}, 1);
   const auto fail = []() -> SolverCore::Made { throw Error(ErrorCode::solver_failed, "no"); };
-  EXPECT_THROW(cache.obtain(key('a'), fail), Error);
+  EXPECT_THROW(cache.obtain(key('a'), fail, {}), Error);
   EXPECT_EQ(ask(cache, 'a', 5), 5);
+}
+
+TEST(SolverCache, LetsAnotherMakeItWhereTheMakerIsStopped) {
+  SolverCache cache({.cache_bytes = 30, .job_bytes = kPlenty}, 1);
+  std::latch is_making(1);
+  const auto is_stopped = [&]() -> SolverCore::Made {
+    is_making.count_down();
+    throw Error(ErrorCode::cancelled, "stopped");
+  };
+  std::jthread maker([&] { EXPECT_THROW(cache.obtain(key('a'), is_stopped, {}), Error); });
+  is_making.wait();
+  EXPECT_EQ(ask(cache, 'a', 5), 5);  // whether it waited for the other or came after it
+}
+
+TEST(SolverCache, LetsAJobStopThatWaitsForAnother) {
+  SolverCache cache({.cache_bytes = 30, .job_bytes = kPlenty}, 1);
+  std::latch is_making(1), may_end(1);
+  std::jthread maker([&] {
+    cache.obtain(key('a'),
+                 [&] {
+                   is_making.count_down();
+                   may_end.wait();
+                   return number(1);
+                 },
+                 {});
+  });
+  is_making.wait();
+  std::stop_source stop;
+  std::jthread stopper([&] { stop.request_stop(); });
+  const auto never = []() -> SolverCore::Made { throw std::logic_error("made twice"); };
+  EXPECT_THROW(cache.obtain(key('a'), never, stop.get_token()), Error);
+  may_end.count_down();
+  maker.join();
+  EXPECT_EQ(ask(cache, 'a', 2), 1);
 }
 
 TEST(SolverCache, TellsContentsApart) {
