@@ -5,8 +5,17 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <vector>
 
 namespace unwrapd {
+namespace {
+
+/// Of one face: its singular values, by which it counts among all, and the area it counts with.
+struct Stretches {
+  double sigma_max, sigma_min, area;
+};
+
+}  // namespace
 
 DistortionSums& DistortionSums::operator+=(const DistortionSums& other) {
   area += other.area;
@@ -30,18 +39,21 @@ DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<con
                                std::span<const Vec2> uv) {
   assert(rest.size() == faces.size());
   DistortionSums sums;
-  for (const RestTriangle& r : rest) sums.area += r.area;
-  sums.uv_area = uv_area(rest, faces, uv);
-  const double floor = std::max(kMinSingularValue * std::sqrt(sums.uv_area / sums.area), 1e-150);
+  std::vector<Stretches> stretches;
+  stretches.reserve(faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t) {
     const Jacobian j = jacobian(rest[t], uv_edges(faces[t], uv));
-    const double s1 = std::max(j.sigma_max(), floor);
-    const double s2 = std::max(std::abs(j.sigma_min()), floor);
-    const double a = rest[t].area;
+    sums.area += rest[t].area;
+    sums.uv_area += rest[t].area * std::abs(j.determinant());
+    stretches.push_back({j.sigma_max(), j.sigma_min(), rest[t].area});
+  }
+  const double floor = std::max(kMinSingularValue * std::sqrt(sums.uv_area / sums.area), 1e-150);
+  for (const auto& [sigma_max, sigma_min, a] : stretches) {
+    const double s1 = std::max(sigma_max, floor), s2 = std::max(std::abs(sigma_min), floor);
     sums.angle += a * (s1 / s2 + s2 / s1);
     sums.inverse += a / (s1 * s2);
     sums.stretch += a * (1 / (s1 * s1) + 1 / (s2 * s2)) / 2;
-    if (!(j.sigma_min() > 0)) ++sums.flipped;
+    if (!(sigma_min > 0)) ++sums.flipped;
   }
   return sums;
 }
