@@ -8,9 +8,9 @@
 
 namespace unwrapd {
 
-/// The share of the job that lies behind us when solving begins, where charts need not be sought
-/// first, and when it ends.
-inline constexpr double kSolveBegin = 0.10, kSolveEnd = 0.90;
+/// The share of the job that lies behind us when charts are made, when solving begins, where charts
+/// need not be sought first, and when it ends.
+inline constexpr double kChartsBegin = 0.05, kSolveBegin = 0.10, kSolveEnd = 0.90;
 
 /// Where the solving of charts stands: which chart, which lambda, how far. Charts weigh by their
 /// faces, the lambdas of a chart weigh alike.

@@ -62,9 +62,9 @@ MappedChart finish(const Disk& disk, KeptPart part, const ChartHold& hold,
   mapped.uv = frame.to_page(std::move(part.uv), hold.page);
   mapped.held = fixed_vertices(disk.positions.size(), hold.page);
   mapped.sums = in_mesh_units(own, disk.unit, frame.scale);
-  mapped.report = {.faces = part.chart.mesh.face_count(),
-                   .vertices = part.chart.mesh.vertex_count(),
-                   .boundaries = static_cast<Index>(part.chart.loops.size()),
+  mapped.report = {.faces = part.chart->mesh.face_count(),
+                   .vertices = part.chart->mesh.vertex_count(),
+                   .boundaries = static_cast<Index>(part.chart->loops.size()),
                    .area = mapped.sums.area,
                    .distortion = distortion(mapped.sums),
                    .iterations = solution.iterations,
@@ -83,7 +83,7 @@ std::vector<MappedChart> finish_parts(const Disk& disk, Kept kept, const ChartHo
     mapped.push_back(finish(disk, std::move(kept.parts.front()), hold, solution));
   } else {
     for (KeptPart& part : kept.parts) {
-      const Disk own = make_disk(part.chart.mesh, part.chart.loops);
+      const Disk own = make_disk(part.chart->mesh, part.chart->loops);
       mapped.push_back(finish(own, std::move(part), {}, solution));
       mapped.back().report.mending.parts = kept.mending.parts;
     }
@@ -109,11 +109,10 @@ std::vector<double> lambdas_of(const UnwrapOptions& options) {
 
 std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const UnwrapOptions& options,
                                                 ChartWatch& watch, Executor& executor) {
-  const Chart& chart = job.chart;
+  const Chart& chart = *job.chart;
+  const Disk& disk = job.disk;
   const std::vector<double> lambdas = lambdas_of(options);
   watch.begin_chart(chart.mesh.faces.size(), lambdas.size());
-  throw_if_cancelled(watch.stop());
-  const Disk disk = make_disk(chart.mesh, chart.loops, executor.shared_core());
   throw_if_cancelled(watch.stop());
   const ChartHold hold = hold_chart(disk, options, job.page, watch.stop(), executor);
   Solver solver(disk, options, held_or_begun(chart, disk, options, hold.held), executor);
@@ -128,7 +127,7 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
                            .stop = watch.stop(),
                            .springs = hold.held.holds.springs}};
     if (options.guarantee != Guarantee::none) watch.tell(Stage::untangle);
-    Kept kept = keep_promise(chart, disk, std::move(solution.uv), promise);
+    Kept kept = keep_promise(job.chart, disk, std::move(solution.uv), promise);
     maps[k] = finish_parts(disk, std::move(kept), hold, solution);
     watch.end_run();
   }

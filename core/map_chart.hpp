@@ -1,6 +1,7 @@
 #pragma once
 // One chart through the solver: every lambda that is asked for, each map kept to its promise.
 
+#include <memory>
 #include <vector>
 
 #include "core/atlas/charts.hpp"
@@ -12,7 +13,7 @@ namespace unwrapd {
 
 /// A chart with its map: a part of the chart that was solved, if the guarantee took a split.
 struct MappedChart {
-  Chart chart;
+  std::shared_ptr<const Chart> chart;
   UvMap uv;  ///< in mesh units, UV area = 3D area; under position constraints the page's
   std::vector<char> held = {};  ///< one a vertex, 1: fixed by a position constraint
   DistortionSums sums;          ///< of that map, in mesh units
@@ -30,7 +31,8 @@ Guarantee guarantee_of(const Chart& chart, const UnwrapOptions& options);
 
 /// A chart and its position constraints, in the page's coordinates; empty: it is packed.
 struct ChartJob {
-  const Chart& chart;
+  std::shared_ptr<const Chart> chart;
+  const Disk& disk;  ///< of that chart
   const Holds& page;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -12,26 +13,24 @@
 #include "core/atlas/outline.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/atlas/promise.hpp"
-#include "core/atlas/segment_charts.hpp"
 #include "core/error.hpp"
 #include "core/map_chart.hpp"
 #include "core/measure/seam_length.hpp"
 #include "core/place_islands.hpp"
 #include "core/repack.hpp"
-#include "core/solver_core.hpp"
+#include "core/take_apart.hpp"
 
 namespace unwrapd {
 namespace {
 
 /// Shares of the job that are behind us when a step of core begins; reading comes before, writing
 /// after.
-constexpr double kChartsBegin = 0.05, kPackBegin = kSolveEnd, kMeasureBegin = 0.93;
-constexpr double kSegmentEnd = 0.50;  // where something is segmented
+constexpr double kPackBegin = kSolveEnd, kMeasureBegin = 0.93;
 
 /// All charts under one map: what goes on one page.
 struct Layout {
-  std::vector<Charts> surfaces;             ///< with the charts as mapped
-  std::vector<std::vector<UvMap>> islands;  ///< islands[s][k]: the map of chart k of surface s
+  std::vector<std::vector<std::shared_ptr<const Chart>>> charts;  ///< of each surface, as mapped
+  std::vector<std::vector<UvMap>> islands;           ///< islands[s][k]: the map of charts[s][k]
   std::vector<std::vector<std::vector<char>>> held;  ///< held[s][k]: see MappedChart
   DistortionSums sums;                               ///< of all charts, in mesh units
   Report report;
@@ -39,52 +38,6 @@ struct Layout {
 
 void announce(const Progress& progress, Stage stage, std::size_t charts, double fraction) {
   if (progress.on_stage) progress.on_stage({stage, 0, static_cast<Index>(charts), fraction});
-}
-
-/// The charts of a job, and where their solving begins in it.
-struct Taken {
-  std::vector<Charts> parts;
-  double solve_begin = kSolveBegin;
-  std::string note;
-};
-
-/// Constraints and boundary shapes are about whole components.
-SegmentOptions segment_options(const UnwrapOptions& options) {
-  return {
-      .max_distortion = options.max_distortion,
-      .max_charts = options.max_charts,
-      .one_chart_each = !options.constraints.empty() || options.boundary != BoundaryShape::free};
-}
-
-std::vector<Charts> components(std::span<const Surface> surfaces, const UnwrapOptions& options,
-                               const std::stop_token& stop) {
-  const auto is_empty = [](const Surface& surface) { return surface.mesh.faces.empty(); };
-  if (std::all_of(surfaces.begin(), surfaces.end(), is_empty))
-    throw Error(ErrorCode::no_triangles, "the asset has no triangles; there is nothing to unwrap");
-  std::vector<Charts> parts;
-  parts.reserve(surfaces.size());
-  for (const Surface& surface : surfaces)
-    parts.push_back(components_of(
-        surface, {options.seams, options.seam_edges, static_cast<Index>(parts.size()), stop}));
-  return parts;
-}
-
-void check_memory(std::span<const Surface> surfaces, const SolverCore* core) {
-  std::size_t faces = 0;
-  for (const Surface& surface : surfaces) faces += surface.mesh.faces.size();
-  if (core != nullptr) check_memory(*core, kJobBytesPerFace * faces);
-}
-
-Taken take_apart(std::span<const Surface> surfaces, const UnwrapOptions& options,
-                 const Progress& progress, Executor& executor) {
-  Taken taken{components(surfaces, options, progress.stop), kSolveBegin, {}};
-  const auto on_progress = [&](Stage stage, double share) {
-    taken.solve_begin = kSegmentEnd;
-    announce(progress, stage, 0, kChartsBegin + (kSegmentEnd - kChartsBegin) * share);
-  };
-  taken.note =
-      segment_charts(taken.parts, segment_options(options), {on_progress, progress.stop}, executor);
-  return taken;
 }
 
 void add_input(Report& report, const Charts& part, Index surface) {
@@ -103,16 +56,11 @@ void add_input(Report& report, const Charts& part, Index surface) {
 /// A page for each map: what came in is in its report, charts are not in it yet.
 std::vector<Layout> empty_layouts(const std::vector<Charts>& parts, std::size_t map_count) {
   Layout layout;
+  layout.charts.resize(parts.size());
   layout.islands.resize(parts.size());
   layout.held.resize(parts.size());
-  for (std::size_t s = 0; s < parts.size(); ++s) {
+  for (std::size_t s = 0; s < parts.size(); ++s)
     add_input(layout.report, parts[s], static_cast<Index>(s));
-    layout.surfaces.push_back({.charts = {},
-                               .set_aside = parts[s].set_aside,
-                               .repeats = parts[s].repeats,
-                               .input = parts[s].input,
-                               .repairs = {}});
-  }
   return {map_count, layout};
 }
 
@@ -120,14 +68,14 @@ void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
   mapped.report.surface = static_cast<Index>(surface);
   layout.sums += mapped.sums;
   layout.report.charts.push_back(std::move(mapped.report));
-  layout.surfaces[surface].charts.push_back(std::move(mapped.chart));
+  layout.charts[surface].push_back(std::move(mapped.chart));
   layout.islands[surface].push_back(std::move(mapped.uv));
   layout.held[surface].push_back(std::move(mapped.held));
 }
 
-ChartWatch chart_watch(const Taken& taken, const Progress& progress) {
+ChartWatch chart_watch(const TakenApart& taken, const Progress& progress) {
   std::size_t chart_count = 0, face_count = 0;
-  for (const Charts& part : taken.parts) {
+  for (const Charts& part : taken.all->surfaces) {
     chart_count += part.charts.size();
     for (const Chart& chart : part.charts) face_count += chart.mesh.faces.size();
   }
@@ -137,17 +85,18 @@ ChartWatch chart_watch(const Taken& taken, const Progress& progress) {
 }
 
 /// page: the position constraints of every chart of every surface.
-std::vector<Layout> map_charts(const Taken& taken, const std::vector<std::vector<Holds>>& page,
+std::vector<Layout> map_charts(const TakenApart& taken, const std::vector<std::vector<Holds>>& page,
                                const UnwrapOptions& options, const Progress& progress,
                                Executor& executor) {
-  const std::vector<Charts>& parts = taken.parts;
+  const Prepared& all = *taken.all;
   ChartWatch watch = chart_watch(taken, progress);
-  std::vector<Layout> layouts = empty_layouts(parts, lambdas_of(options).size());
-  if (!taken.note.empty())
-    for (Layout& layout : layouts) layout.report.notes.push_back(taken.note);
-  for (std::size_t s = 0; s < parts.size(); ++s)
-    for (std::size_t c = 0; c < parts[s].charts.size(); ++c) {
-      auto maps = map_chart({parts[s].charts[c], page[s][c]}, options, watch, executor);
+  std::vector<Layout> layouts = empty_layouts(all.surfaces, lambdas_of(options).size());
+  if (!all.note.empty())
+    for (Layout& layout : layouts) layout.report.notes.push_back(all.note);
+  for (std::size_t s = 0; s < all.surfaces.size(); ++s)
+    for (std::size_t c = 0; c < all.surfaces[s].charts.size(); ++c) {
+      const std::shared_ptr<const Chart> chart(taken.all, &all.surfaces[s].charts[c]);
+      auto maps = map_chart({chart, all.disks[s][c], page[s][c]}, options, watch, executor);
       for (std::size_t k = 0; k < maps.size(); ++k)
         for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped));
     }
@@ -161,7 +110,7 @@ double place(Layout& layout, const UnwrapOptions& options, const std::stop_token
   std::vector<UvMap*> maps;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
-      outlines.push_back(outline_of(layout.surfaces[s].charts[k], layout.islands[s][k]));
+      outlines.push_back(outline_of(*layout.charts[s][k], layout.islands[s][k]));
       maps.push_back(&layout.islands[s][k]);
     }
   return place_islands(outlines, options, stop, maps, layout.report);
@@ -198,8 +147,7 @@ void keep_on_page(Layout& layout, const UnwrapOptions& options, const std::stop_
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
       Promise promise{.guarantee = options.guarantee};
       promise.intent = {.rigidity = {}, .held = layout.held[s][k], .stop = stop};
-      const Written written =
-          keep_on_page(layout.surfaces[s].charts[k], promise, layout.islands[s][k]);
+      const Written written = keep_on_page(*layout.charts[s][k], promise, layout.islands[s][k]);
       report->distortion.flipped = written.flipped;
       report->overlaps = written.overlaps;
       layout.report.distortion.flipped += written.flipped;
@@ -220,15 +168,26 @@ void add_totals(Report& report) {
   report.seam_ratio = report.seam_length / std::sqrt(report.area);
 }
 
-Unwrapped put_back(std::span<const Surface> surfaces, Layout layout, const std::stop_token& stop) {
+/// The plan that is there already, unless charts came apart.
+UnwrappedSurface assembled(const Surface& surface, const Prepared& all, std::size_t s,
+                           const Layout& layout, const std::stop_token& stop) {
+  const Charts& whole = all.surfaces[s];
+  std::vector<const Chart*> charts;
+  for (const std::shared_ptr<const Chart>& chart : layout.charts[s]) charts.push_back(chart.get());
+  if (charts == pointers_to(whole.charts)) return assemble(*all.plans[s], layout.islands[s]);
+  return assemble(plan_vertices(surface, whole, charts, stop), layout.islands[s]);
+}
+
+Unwrapped put_back(std::span<const Surface> surfaces, const Prepared& all, Layout layout,
+                   const std::stop_token& stop) {
   Unwrapped unwrapped;
   auto report = layout.report.charts.begin();
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    unwrapped.surfaces.push_back(
-        assemble(surfaces[s], layout.surfaces[s], layout.islands[s], stop));
-    const std::vector<double> seams = seam_lengths(surfaces[s], unwrapped.surfaces.back(), stop);
-    for (const Chart& chart : layout.surfaces[s].charts) {
-      for (const Index t : chart.face_source) report->seam_length += seams[t];
+    unwrapped.surfaces.push_back(assembled(surfaces[s], all, s, layout, stop));
+    const std::vector<double> seams = seam_lengths(surfaces[s].mesh, *all.surfaces[s].by_position,
+                                                   unwrapped.surfaces.back(), stop);
+    for (const std::shared_ptr<const Chart>& chart : layout.charts[s]) {
+      for (const Index t : chart->face_source) report->seam_length += seams[t];
       ++report;
     }
   }
@@ -265,9 +224,8 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   if (options.repack_only) return {lambdas_of(options).size(), repack(surfaces, options, progress)};
   JobExecutor job(executor, progress.stop);
   announce(progress, Stage::setup, 0, kChartsBegin);
-  check_memory(surfaces, executor.shared_core());
-  const Taken taken = take_apart(surfaces, options, progress, job);
-  const auto page = page_holds(surfaces, taken.parts, options.constraints, progress.stop);
+  const TakenApart taken = take_apart(surfaces, options, progress, job);
+  const auto page = page_holds(surfaces, taken.all->surfaces, options.constraints, progress.stop);
   std::vector<Layout> layouts = map_charts(taken, page, options, progress, job);
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
@@ -278,7 +236,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
   std::vector<Unwrapped> maps;
   for (Layout& layout : layouts)
-    maps.push_back(put_back(surfaces, std::move(layout), progress.stop));
+    maps.push_back(put_back(surfaces, *taken.all, std::move(layout), progress.stop));
   if (is_curve(options)) add_curve(maps, lambdas_of(options));
   return maps;
 }

@@ -11,6 +11,7 @@
 #include "core/mesh/counting_sort.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/mesh/weld.hpp"
+#include "core/solve/kept.hpp"
 
 namespace unwrapd {
 namespace {
@@ -27,19 +28,19 @@ struct Numbering {
   }
 };
 
-Numbering number_vertices(const Charts& charts) {
+Numbering number_vertices(std::span<const Chart* const> charts) {
   Numbering numbering{{0}};
-  for (const Chart& chart : charts.charts)
-    numbering.first.push_back(numbering.first.back() + chart.mesh.vertex_count());
+  for (const Chart* chart : charts)
+    numbering.first.push_back(numbering.first.back() + chart->mesh.vertex_count());
   return numbering;
 }
 
 /// at[corner]: the chart vertex that it shows; kUncharted for faces that are set aside.
-std::vector<Triangle> charted_corners(const Surface& surface, const Charts& charts,
+std::vector<Triangle> charted_corners(const Surface& surface, std::span<const Chart* const> charts,
                                       const Numbering& numbering) {
   std::vector<Triangle> at(surface.mesh.faces.size(), {kUncharted, kUncharted, kUncharted});
-  for (std::size_t k = 0; k < charts.charts.size(); ++k) {
-    const Chart& chart = charts.charts[k];
+  for (std::size_t k = 0; k < charts.size(); ++k) {
+    const Chart& chart = *charts[k];
     for (std::size_t t = 0; t < chart.face_source.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i)
         at[chart.face_source[t]][i] = numbering.first[k] + chart.mesh.faces[t][i];
@@ -127,39 +128,62 @@ UvMap joined(std::span<const UvMap> chart_uv) {
 
 }  // namespace
 
-UnwrappedSurface assemble(const Surface& surface, const Charts& charts,
-                          std::span<const UvMap> chart_uv, const std::stop_token& stop) {
-  assert(chart_uv.size() == charts.charts.size());
+VertexPlan plan_vertices(const Surface& surface, const Charts& whole,
+                         std::span<const Chart* const> charts, const std::stop_token& stop) {
   const Numbering numbering = number_vertices(charts);
   std::vector<Triangle> at = charted_corners(surface, charts, numbering);
-  give_corners_to_set_aside(surface, charts, numbering, at);
+  give_corners_to_set_aside(surface, whole, numbering, at);
   throw_if_cancelled(stop);
   const std::vector<Triangle>& faces = surface.mesh.faces;
   const Index vertex_count = surface.mesh.vertex_count();
   const std::vector<Index> first_equal =
       first_equal_corners(faces, vertex_count, at, numbering.total());
   throw_if_cancelled(stop);
-  const UvMap uv = joined(chart_uv);
-  UnwrappedSurface out{faces, std::vector<Index>(vertex_count), UvMap(vertex_count, Vec2::Zero())};
-  for (Index v = 0; v < vertex_count; ++v) out.source[v] = v;
+  VertexPlan plan{faces, std::vector<Index>(vertex_count),
+                  std::vector<Index>(vertex_count, kUncharted)};
+  for (Index v = 0; v < vertex_count; ++v) plan.source[v] = v;
   std::vector<bool> taken(vertex_count, false);
   for (Index c = 0; c < static_cast<Index>(first_equal.size()); ++c) {
     look_now_and_then(c, stop);
-    const Index first = first_equal[c], v = faces[c / 3][c % 3], shown = at[c / 3][c % 3];
-    Index& number = out.faces[c / 3][c % 3];
+    const Index first = first_equal[c], v = faces[c / 3][c % 3];
+    Index& number = plan.faces[c / 3][c % 3];
     if (first != c) {
-      number = out.faces[first / 3][first % 3];
+      number = plan.faces[first / 3][first % 3];
       continue;
     }
     if (taken[v]) {
-      number = static_cast<Index>(out.source.size());
-      out.source.push_back(v);
-      out.uv.push_back(Vec2::Zero());
+      number = static_cast<Index>(plan.source.size());
+      plan.source.push_back(v);
+      plan.shown.push_back(kUncharted);
     }
     taken[v] = true;
-    if (shown != kUncharted) out.uv[number] = uv[shown];
+    plan.shown[number] = at[c / 3][c % 3];
   }
+  return plan;
+}
+
+std::size_t bytes_of(const VertexPlan& plan) {
+  return bytes_of(plan.faces) + bytes_of(plan.source) + bytes_of(plan.shown);
+}
+
+UnwrappedSurface assemble(const VertexPlan& plan, std::span<const UvMap> chart_uv) {
+  const UvMap uv = joined(chart_uv);
+  UnwrappedSurface out{plan.faces, plan.source, UvMap(plan.shown.size(), Vec2::Zero())};
+  for (std::size_t v = 0; v < plan.shown.size(); ++v)
+    if (plan.shown[v] != kUncharted) out.uv[v] = uv[plan.shown[v]];
   return out;
+}
+
+UnwrappedSurface assemble(const Surface& surface, const Charts& charts,
+                          std::span<const UvMap> chart_uv, const std::stop_token& stop) {
+  assert(chart_uv.size() == charts.charts.size());
+  return assemble(plan_vertices(surface, charts, pointers_to(charts.charts), stop), chart_uv);
+}
+
+std::vector<const Chart*> pointers_to(std::span<const Chart> charts) {
+  std::vector<const Chart*> pointers;
+  for (const Chart& chart : charts) pointers.push_back(&chart);
+  return pointers;
 }
 
 }  // namespace unwrapd

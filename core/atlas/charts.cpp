@@ -1,16 +1,15 @@
 // A surface taken apart: weld, set bad faces aside, pair half-edges, separate components, cut.
-//
-// SeamMode::automatic keeps the surface's own cuts when they make it a few disks: that is what
-// someone did who opened a model on purpose. A flat-shaded export or a triangle soup is hundreds of
-// tiny "disks", and a model with the seams of an old atlas is many more than it has components;
-// both are welded. The bounds below part the two by a wide margin.
+// Once it is known which vertices are welded and which faces have no area, all but the order of
+// boundaries follows from numbers alone, and is kept for the next mesh of the same faces.
 #include "core/atlas/charts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <utility>
 
 #include "core/atlas/cut.hpp"
+#include "core/atlas/pieces.hpp"
 #include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/mesh/counting_sort.hpp"
@@ -18,128 +17,10 @@
 #include "core/mesh/repair.hpp"
 #include "core/mesh/seams.hpp"
 #include "core/mesh/weld.hpp"
+#include "core/solve/kept.hpp"
 
 namespace unwrapd {
 namespace {
-
-constexpr std::size_t kMostKeptDisks = 64;           // in all
-constexpr std::size_t kMostKeptDisksAComponent = 4;  // for each component of the welded surface
-constexpr std::size_t kLeastFacesADisk = 8;          // on average
-
-/// The sound faces of a surface and how they hang together.
-struct Pieces {
-  std::vector<Index> source;  ///< face -> face of the surface
-  Halfedges halfedges;
-  Topology topology;
-  Index split_edges = 0;
-  std::vector<std::array<Index, 2>> clashes;
-};
-
-/// Leaves out the faces that are set aside.
-Pieces pieces_of(Pairing pairing, const FaceStates& states, const std::stop_token& stop) {
-  throw_if_cancelled(stop);
-  Pieces pieces;
-  std::vector<Index> rank(states.of.size(), kNoFace);
-  for (std::size_t t = 0; t < states.of.size(); ++t) {
-    if (states.of[t] != FaceState::sound) continue;
-    rank[t] = static_cast<Index>(pieces.source.size());
-    pieces.source.push_back(static_cast<Index>(t));
-  }
-  const auto moved = [&](Index h) { return h == kNoTwin ? kNoTwin : 3 * rank[h / 3] + h % 3; };
-  pieces.halfedges.twin.resize(3 * pieces.source.size());
-  for (std::size_t h = 0; h < pieces.halfedges.twin.size(); ++h)
-    pieces.halfedges.twin[h] = moved(pairing.halfedges.twin[3 * pieces.source[h / 3] + h % 3]);
-  close_slits(pieces.halfedges);
-  throw_if_cancelled(stop);
-  pieces.topology = topology(corner_vertices(pieces.halfedges).faces, pieces.halfedges);
-  pieces.split_edges = pairing.split_edges;
-  for (const auto& [g, h] : pairing.clashes)
-    if (rank[g / 3] != kNoFace && rank[h / 3] != kNoFace)
-      pieces.clashes.push_back({moved(g), moved(h)});
-  return pieces;
-}
-
-bool is_a_few_disks(const Pieces& kept, const Pieces& welded) {
-  const auto& components = kept.topology.components;
-  const std::size_t count = components.size();
-  const auto is_disk = [](const Component& c) { return c.is_disk(); };
-  return count <= kMostKeptDisks &&
-         count <= kMostKeptDisksAComponent * welded.topology.components.size() &&
-         count * kLeastFacesADisk <= kept.source.size() &&
-         std::all_of(components.begin(), components.end(), is_disk);
-}
-
-/// A surface with what weld() and inspect_faces() say of it.
-struct Inspected {
-  const Surface& surface;
-  std::span<const Index> first_at;
-  std::span<const Triangle> welded;
-  const FaceStates& states;
-};
-
-[[noreturn]] void refuse_path(std::size_t path, const std::string& why) {
-  throw Error(ErrorCode::invalid_option, "seam_edges: " + why,
-              "/seam_edges/" + std::to_string(path));
-}
-
-std::string text(const EdgeEnds& edge) {
-  return std::to_string(edge[0]) + " and " + std::to_string(edge[1]);
-}
-
-/// The edges of one path, in ascending order, over welded vertices.
-std::vector<EdgeEnds> edges_of(const Inspected& in, const SeamPath& path, std::size_t number) {
-  const auto count = static_cast<Index>(in.first_at.size());
-  std::vector<EdgeEnds> edges;
-  for (std::size_t k = 0; k < path.vertices.size(); ++k) {
-    const Index v = path.vertices[k];
-    if (v < 0 || v >= count)
-      refuse_path(number, "there is no vertex " + std::to_string(v) + " in a mesh of " +
-                              std::to_string(count) + "; give vertices of this mesh");
-    if (k == 0) continue;
-    const auto ends = std::minmax(in.first_at[path.vertices[k - 1]], in.first_at[v]);
-    edges.push_back({ends.first, ends.second});
-  }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
-void cut_paths(const Inspected& in, const SeamRules& seams, Halfedges& halfedges) {
-  for (std::size_t k = 0; k < seams.paths.size(); ++k) {
-    if (seams.paths[k].surface != seams.surface) continue;
-    const std::vector<EdgeEnds> edges = edges_of(in, seams.paths[k], k);
-    if (const auto missing = cut_edges(in.welded, edges, halfedges))
-      refuse_path(k, "no edge joins vertices " + text(*missing) +
-                         "; give vertices that follow each other along edges");
-  }
-}
-
-Pieces welded_pieces(const Inspected& in, const SeamRules& seams) {
-  Pairing pairing = pair_welded(in.welded, in.states);
-  if (seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty())
-    cut_at_uv_seams(in.surface, pairing.halfedges);
-  cut_paths(in, seams, pairing.halfedges);
-  return pieces_of(std::move(pairing), in.states, seams.stop);
-}
-
-Pieces kept_pieces(const Inspected& in, const SeamRules& seams) {
-  Pairing pairing = pair_keeping_seams(in.surface, in.welded, in.states);
-  cut_paths(in, seams, pairing.halfedges);
-  return pieces_of(std::move(pairing), in.states, seams.stop);
-}
-
-/// The pieces that the mode asks for, and whether vertices were welded for them.
-std::pair<Pieces, bool> choose(const Inspected& in, const SeamRules& seams) {
-  const bool nothing_to_weld = std::ranges::equal(in.welded, in.surface.mesh.faces);
-  const bool by_uv = seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty();
-  if (seams.mode == SeamMode::none || by_uv) return {welded_pieces(in, seams), !nothing_to_weld};
-  if (seams.mode == SeamMode::keep || nothing_to_weld) return {kept_pieces(in, seams), false};
-  Pieces with_cuts = kept_pieces(in, seams);
-  throw_if_cancelled(seams.stop);
-  Pieces without = welded_pieces(in, seams);
-  const bool same = with_cuts.halfedges.twin == without.halfedges.twin;
-  if (same || is_a_few_disks(with_cuts, without)) return {std::move(with_cuts), false};
-  return {std::move(without), true};
-}
 
 void require_two_sides(const Surface& surface, const Pieces& pieces) {
   const auto component = one_sided_component(pieces.clashes, pieces.topology);
@@ -171,9 +52,27 @@ bool is_crease(const Surface& surface, Index g, Index h) {
          start_of(faces, g) != end_of(faces, h) || end_of(faces, g) != start_of(faces, h);
 }
 
-/// source: the chart's faces as numbers of pieces; rank: their place in source.
+/// What a surface comes to wherever its vertices lie, as long as the same ones lie at one place and
+/// the same faces have no area.
+struct Connected {
+  Charts charts;                                  ///< without positions, loops in any order
+  std::vector<std::vector<Index>> vertex_source;  ///< of each chart: the surface's vertices
+};
+
+std::size_t bytes_of(const Connected& connected) {
+  using unwrapd::bytes_of;
+  const Charts& charts = connected.charts;
+  std::size_t bytes = bytes_of(charts.set_aside) + bytes_of(charts.repeats);
+  bytes += bytes_of(*charts.by_position);
+  for (const std::vector<Index>& source : connected.vertex_source) bytes += bytes_of(source);
+  for (const Chart& chart : charts.charts) bytes += bytes_of(chart);
+  return bytes;
+}
+
+/// source: the chart's faces as numbers of pieces; rank: their place in source. vertex_source: left
+/// for each of the chart's vertices.
 Chart chart_of(const Surface& surface, const Pieces& pieces, std::span<const Index> source,
-               std::span<const Index> rank) {
+               std::span<const Index> rank, std::vector<Index>& vertex_source) {
   Chart chart;
   for (Index t : source) {
     chart.face_source.push_back(pieces.source[t]);
@@ -184,33 +83,34 @@ Chart chart_of(const Surface& surface, const Pieces& pieces, std::span<const Ind
       chart.crease.push_back(twin != kNoTwin && is_crease(surface, given(h), given(twin)) ? 1 : 0);
     }
   }
-  chart.mesh = mesh_of(chart.halfedges, [&](Index h) {
-    return surface.mesh.positions[surface.mesh.faces[chart.face_source[h / 3]][h % 3]];
-  });
+  CornerVertices corners = corner_vertices(chart.halfedges);
+  chart.mesh.faces = std::move(corners.faces);
+  vertex_source.resize(corners.count);
+  for (std::size_t t = 0; t < chart.face_source.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      vertex_source[chart.mesh.faces[t][i]] = surface.mesh.faces[chart.face_source[t]][i];
+  chart.loops = boundary_loops(chart.halfedges);
   return chart;
 }
 
-std::vector<Chart> separate(const Surface& surface, const Pieces& pieces,
-                            const std::stop_token& stop) {
+void separate(const Surface& surface, const Pieces& pieces, const std::stop_token& stop,
+              Connected& out) {
   const auto& components = pieces.topology.components;
   const auto& of = pieces.topology.component_of;
   std::vector<Index> order(pieces.source.size());
   for (std::size_t t = 0; t < order.size(); ++t) order[t] = static_cast<Index>(t);
   counting_sort(order, static_cast<Index>(components.size()), [&](Index t) { return of[t]; });
-  std::vector<Chart> charts;
-  charts.reserve(components.size());
+  out.charts.charts.reserve(components.size());
+  out.vertex_source.resize(components.size());
   std::vector<Index> rank(order.size());
   std::size_t first = 0;
-  for (const Component& component : components) {
+  for (std::size_t k = 0; k < components.size(); ++k) {
     throw_if_cancelled(stop);
-    const std::span<const Index> source(order.data() + first, component.faces);
-    for (std::size_t k = 0; k < source.size(); ++k) rank[source[k]] = static_cast<Index>(k);
+    const std::span<const Index> source(order.data() + first, components[k].faces);
+    for (std::size_t i = 0; i < source.size(); ++i) rank[source[i]] = static_cast<Index>(i);
     first += source.size();
-    charts.push_back(chart_of(surface, pieces, source, rank));
-    throw_if_cancelled(stop);
-    charts.back().loops = boundary_loops(charts.back().mesh, charts.back().halfedges);
+    out.charts.charts.push_back(chart_of(surface, pieces, source, rank, out.vertex_source[k]));
   }
-  return charts;
 }
 
 InputReport input_report(const TriMesh& mesh, const Topology& shape, bool welded) {
@@ -235,6 +135,49 @@ std::vector<Repair> repairs_of(const FaceStates& states, const Pieces& pieces) {
       {RepairKind::non_manifold_edges_split, 0, pieces.split_edges}};
   std::erase_if(repairs, [](const Repair& repair) { return repair.count == 0; });
   return repairs;
+}
+
+Connected connect(const Inspected& in, const SeamRules& seams) {
+  const Surface& surface = in.surface;
+  const auto [pieces, was_welded] = choose_pieces(in, seams);
+  require_two_sides(surface, pieces);
+  throw_if_cancelled(seams.stop);
+  Connected connected;
+  Charts& charts = connected.charts;
+  separate(surface, pieces, seams.stop, connected);
+  for (std::size_t t = 0; t < in.states.of.size(); ++t) {
+    if (in.states.of[t] == FaceState::sound) continue;
+    charts.set_aside.push_back(static_cast<Index>(t));
+    charts.repeats.push_back(in.states.same_as[t]);
+  }
+  charts.input = input_report(surface.mesh, pieces.topology, was_welded);
+  charts.repairs = repairs_of(in.states, pieces);
+  charts.by_position =
+      std::make_shared<const Halfedges>(build_halfedges(in.welded, surface.mesh.vertex_count()));
+  return connected;
+}
+
+/// Everything that connect() looks at: duplicates follow from it.
+Content content_of(const Inspected& in, const SeamRules& seams, const std::array<int, 1>& mode) {
+  Content content("components");
+  content.add(mode).add(in.surface.mesh.faces).add(in.surface.part);
+  content.add(in.first_at).add(in.states.of);
+  if (seams.mode == SeamMode::uv0) content.add(in.surface.corner_uv);
+  for (const SeamPath& path : seams.paths)
+    if (path.surface == seams.surface) content.add(path.vertices);
+  return content;
+}
+
+Charts placed(const Connected& connected, const TriMesh& mesh) {
+  Charts charts = connected.charts;
+  for (std::size_t k = 0; k < charts.charts.size(); ++k) {
+    Chart& chart = charts.charts[k];
+    chart.mesh.positions.reserve(connected.vertex_source[k].size());
+    for (const Index v : connected.vertex_source[k])
+      chart.mesh.positions.push_back(mesh.positions[v]);
+    sort_by_length(chart.mesh, chart.loops);
+  }
+  return charts;
 }
 
 }  // namespace
@@ -269,21 +212,23 @@ Charts components_of(const Surface& surface, const SeamRules& seams) {
   const std::vector<Index> first_at = weld(surface.mesh.positions);
   throw_if_cancelled(seams.stop);
   const std::vector<Triangle> welded = renumbered(surface.mesh.faces, first_at);
-  const FaceStates states = inspect_faces(surface.mesh, welded);
+  FaceStates states = inspect_areas(surface.mesh, welded);
   throw_if_cancelled(seams.stop);
-  const auto [pieces, was_welded] = choose({surface, first_at, welded, states}, seams);
-  require_two_sides(surface, pieces);
-  throw_if_cancelled(seams.stop);
-  Charts charts;
-  charts.charts = separate(surface, pieces, seams.stop);
-  for (std::size_t t = 0; t < states.of.size(); ++t) {
-    if (states.of[t] == FaceState::sound) continue;
-    charts.set_aside.push_back(static_cast<Index>(t));
-    charts.repeats.push_back(states.same_as[t]);
-  }
-  charts.input = input_report(surface.mesh, pieces.topology, was_welded);
-  charts.repairs = repairs_of(states, pieces);
-  return charts;
+  const Inspected inspected{surface, first_at, welded, states};
+  const std::array<int, 1> mode{static_cast<int>(seams.mode)};
+  const auto connected = kept(seams.core, content_of(inspected, seams, mode), [&] {
+    find_duplicates(welded, surface.mesh.vertex_count(), states);
+    return std::make_shared<const Connected>(connect(inspected, seams));
+  });
+  return placed(*connected, surface.mesh);
+}
+
+std::size_t bytes_of(const Chart& chart) {
+  std::size_t bytes = sizeof(Chart) + bytes_of(chart.mesh.positions) + bytes_of(chart.mesh.faces) +
+                      bytes_of(chart.halfedges) + bytes_of(chart.face_source) +
+                      bytes_of(chart.start) + bytes_of(chart.crease);
+  for (const BoundaryLoop& loop : chart.loops) bytes += sizeof(BoundaryLoop) + bytes_of(loop);
+  return bytes;
 }
 
 }  // namespace unwrapd

@@ -2,6 +2,7 @@
 // From a surface as it came in to its connected components, topology repaired, and to charts that
 // the solver takes: everything that is not a disk cut to one, or taken apart (segment_charts.hpp).
 
+#include <memory>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/mesh/topology.hpp"
 #include "core/options.hpp"
 #include "core/report.hpp"
+#include "core/solver_core.hpp"
 
 namespace unwrapd {
 
@@ -32,6 +34,7 @@ struct Charts {
   std::vector<Index> repeats;    ///< one for each set aside: the face it duplicates, else -1
   InputReport input;             ///< of this surface
   std::vector<Repair> repairs;   ///< Repair::surface is left 0 for the caller to fill in
+  std::shared_ptr<const Halfedges> by_position = {};  ///< of all faces, see seam_length.hpp
 };
 
 /// What opens a surface beside its boundaries.
@@ -40,13 +43,17 @@ struct SeamRules {
   std::span<const SeamPath> paths = {};  ///< of all surfaces
   Index surface = 0;                     ///< which of them this is
   std::stop_token stop = {};
+  SolverCore* core = nullptr;  ///< shares what does not depend on places; null: none
 };
 
 /// The components of a surface, which need not be disks: those that are none have yet to be cut or
-/// taken apart, and may be without a loop. Throws Error{not_orientable}, and Error{invalid_option}
-/// with where = "/seam_edges/<i>" where a path leaves the surface's vertices or edges.
-/// Throws Error{cancelled}.
+/// taken apart, and may be without a loop; by_position is there. Throws Error{not_orientable}, and
+/// Error{invalid_option} with where = "/seam_edges/<i>" where a path leaves the surface's vertices
+/// or edges. Throws Error{cancelled}.
 Charts components_of(const Surface& surface, const SeamRules& seams);
+
+/// Bytes that keeping it takes.
+std::size_t bytes_of(const Chart& chart);
 
 /// Whether a component is a disk, holes allowed.
 bool is_disk(const Chart& component);

@@ -106,11 +106,11 @@ std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& u
 void split(const KeptPart& part, const Seeds& seeds, const std::stop_token& stop,
            std::vector<KeptPart>& open) {
   throw_if_cancelled(stop);
-  for (ChartPart& piece : split_chart(part.chart, seeds)) {
+  for (ChartPart& piece : split_chart(*part.chart, seeds)) {
     throw_if_cancelled(stop);
     UvMap uv;
     for (Index v : piece.vertex) uv.push_back(part.uv[v]);
-    open.push_back({std::move(piece.chart), std::move(uv)});
+    open.push_back({std::make_shared<const Chart>(std::move(piece.chart)), std::move(uv)});
   }
 }
 
@@ -118,45 +118,50 @@ void split(const KeptPart& part, const Seeds& seeds, const std::stop_token& stop
 /// drawn by the springs.
 bool unfold(KeptPart& part, double unit, const MapIntent& intent) {
   SerialExecutor serial;
-  const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
+  const Disk disk = make_disk(part.chart->mesh, part.chart->loops);
   if (!map_injectively(disk, intent, part.uv, serial)) return false;
   for (Vec2& u : part.uv) u *= disk.unit / unit;
-  return overlaps_of(part.chart, part.uv, intent.stop).empty();
+  return overlaps_of(*part.chart, part.uv, intent.stop).empty();
 }
 
-/// The seeds of the split that a part needs; both empty where it keeps the promise, if need be
-/// after a new map.
-Seeds seeds_needed(KeptPart& part, double unit, const Promise& promise, Mending& mending) {
-  const std::vector<Index> flipped = flipped_faces(part.chart.mesh.faces, part.uv);
+/// The seeds of the split that a part with these flips needs; both empty where it keeps the
+/// promise, if need be after a new map.
+Seeds seeds_needed(KeptPart& part, const std::vector<Index>& flipped, double unit,
+                   const Promise& promise, Mending& mending) {
   if (!flipped.empty()) {
-    if (part.chart.mesh.face_count() == 1) fail("a triangle has no area in the map");
-    return seeds_at_flips(part.chart, flipped);
+    if (part.chart->mesh.face_count() == 1) fail("a triangle has no area in the map");
+    return seeds_at_flips(*part.chart, flipped);
   }
   if (promise.guarantee != Guarantee::bijective) return {};
-  const auto pairs = overlaps_of(part.chart, part.uv, promise.intent.stop);
+  const auto pairs = overlaps_of(*part.chart, part.uv, promise.intent.stop);
   if (pairs.empty()) return {};
   mending.overlaps += static_cast<Index>(pairs.size());
-  const bool is_small = part.chart.mesh.face_count() <= kMostFacesUnfolded;
+  const bool is_small = part.chart->mesh.face_count() <= kMostFacesUnfolded;
   if (is_small && !holds_any(promise.intent) && unfold(part, unit, promise.intent)) return {};
-  return seeds_at_overlaps(part.chart, pairs);
+  return seeds_at_overlaps(*part.chart, pairs);
 }
 
-/// Splits until every part keeps the promise. A part that was cut off for its flips may be
-/// untangled where the whole could not.
-std::vector<KeptPart> split_as_needed(KeptPart whole, double unit, const Promise& promise,
-                                      Mending& mending) {
+/// The flips of a part that was cut off for its flips: it may be untangled where the whole could
+/// not.
+std::vector<Index> flips_left(KeptPart& part, const MapIntent& intent) {
+  std::vector<Index> flipped = flipped_faces(part.chart->mesh.faces, part.uv);
+  if (flipped.empty()) return flipped;
+  const Disk disk = make_disk(part.chart->mesh, part.chart->loops);
+  untangle(disk, {.rigidity = intent.rigidity, .held = {}, .stop = intent.stop}, part.uv);
+  return flipped_faces(part.chart->mesh.faces, part.uv);
+}
+
+/// Splits until every part keeps the promise. flipped: those of the whole.
+std::vector<KeptPart> split_as_needed(KeptPart whole, std::vector<Index> flipped, double unit,
+                                      const Promise& promise, Mending& mending) {
   std::vector<KeptPart> open, kept;
   open.push_back(std::move(whole));
   for (bool is_whole = true; !open.empty(); is_whole = false) {
     KeptPart part = std::move(open.back());
     open.pop_back();
     throw_if_cancelled(promise.intent.stop);
-    if (!is_whole && !flipped_faces(part.chart.mesh.faces, part.uv).empty()) {
-      const Disk disk = make_disk(part.chart.mesh, part.chart.loops);
-      untangle(disk, {.rigidity = promise.intent.rigidity, .held = {}, .stop = promise.intent.stop},
-               part.uv);
-    }
-    const Seeds seeds = seeds_needed(part, unit, promise, mending);
+    if (!is_whole) flipped = flips_left(part, promise.intent);
+    const Seeds seeds = seeds_needed(part, flipped, unit, promise, mending);
     if (seeds[0].empty())
       kept.push_back(std::move(part));
     else if (has_a_place(promise.intent))
@@ -169,22 +174,28 @@ std::vector<KeptPart> split_as_needed(KeptPart whole, double unit, const Promise
 
 }  // namespace
 
-Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise& promise) {
+Kept keep_promise(std::shared_ptr<const Chart> chart, const Disk& disk, UvMap uv,
+                  const Promise& promise) {
   Kept kept;
   if (promise.guarantee == Guarantee::none) {
-    kept.parts.push_back({chart, std::move(uv)});
+    kept.parts.push_back({std::move(chart), std::move(uv)});
     return kept;
   }
   throw_if_cancelled(promise.intent.stop);
-  const double before = energy_of(disk, uv, promise.intent.rigidity);
+  std::vector<Index> flipped = flipped_faces(disk.faces, uv);
+  kept.mending.flips = static_cast<Index>(flipped.size());
+  const bool may_change = kept.mending.flips > 0 || promise.guarantee == Guarantee::bijective;
+  const UvMap before = may_change ? uv : UvMap();
   const auto rise = [&](const UvMap& now) {
-    return before > 0 ? energy_of(disk, now, promise.intent.rigidity) / before - 1 : 0;
+    const double energy = energy_of(disk, before, promise.intent.rigidity);
+    return energy > 0 ? energy_of(disk, now, promise.intent.rigidity) / energy - 1 : 0;
   };
-  throw_if_cancelled(promise.intent.stop);
-  kept.mending.flips = static_cast<Index>(flipped_faces(disk.faces, uv).size());
-  if (kept.mending.flips > 0 && mend(disk, promise, uv, kept.mending) == 0)
-    kept.mending.energy_rise = rise(uv);
-  kept.parts = split_as_needed({chart, std::move(uv)}, disk.unit, promise, kept.mending);
+  if (!flipped.empty()) {
+    if (mend(disk, promise, uv, kept.mending) == 0) kept.mending.energy_rise = rise(uv);
+    flipped = flipped_faces(disk.faces, uv);
+  }
+  kept.parts = split_as_needed({std::move(chart), std::move(uv)}, std::move(flipped), disk.unit,
+                               promise, kept.mending);
   throw_if_cancelled(promise.intent.stop);
   if (kept.mending.overlaps > 0 && kept.parts.size() == 1)
     kept.mending.energy_rise = rise(kept.parts.front().uv);

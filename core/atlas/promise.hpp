@@ -1,6 +1,7 @@
 #pragma once
 // The guarantee kept for one chart: its map mended, and the chart split where nothing else helps.
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace unwrapd {
 
 /// A chart, whole or one part of it, with its map.
 struct KeptPart {
-  Chart chart;
+  std::shared_ptr<const Chart> chart;
   UvMap uv;  ///< in the units of the map that was handed in
 };
 
@@ -34,7 +35,8 @@ struct Promise {
 /// and is split only where none is found. The energy that mending.energy_rise tells of is that of
 /// intent.rigidity. Throws Error{guarantee_failed}, where = "/guarantee", where constraints leave
 /// no way, or a single triangle has no area in the map; Error{cancelled}.
-Kept keep_promise(const Chart& chart, const Disk& disk, UvMap uv, const Promise& promise);
+Kept keep_promise(std::shared_ptr<const Chart> chart, const Disk& disk, UvMap uv,
+                  const Promise& promise);
 
 /// What is true of the UVs that are written.
 struct Written {

@@ -22,20 +22,26 @@ bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
 
 }  // namespace
 
+Halfedges halfedges_by_position(const TriMesh& mesh) {
+  return build_halfedges(renumbered(mesh.faces, weld(mesh.positions)), mesh.vertex_count());
+}
+
 std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface& unwrapped,
                                  const std::stop_token& stop) {
-  const TriMesh& mesh = surface.mesh;
-  const std::vector<Triangle> welded = renumbered(mesh.faces, weld(mesh.positions));
+  return seam_lengths(surface.mesh, halfedges_by_position(surface.mesh), unwrapped, stop);
+}
+
+std::vector<double> seam_lengths(const TriMesh& mesh, const Halfedges& by_position,
+                                 const UnwrappedSurface& unwrapped, const std::stop_token& stop) {
   throw_if_cancelled(stop);
-  const Halfedges halfedges = build_halfedges(welded, mesh.vertex_count());
   const auto start = [&](Index h) -> const Vec3& {
-    const Triangle& face = welded[static_cast<std::size_t>(face_of(h))];
+    const Triangle& face = mesh.faces[static_cast<std::size_t>(face_of(h))];
     return mesh.positions[static_cast<std::size_t>(face[static_cast<std::size_t>(h % 3)])];
   };
   std::vector<double> length(mesh.faces.size(), 0);
-  for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
+  for (Index h = 0; h < static_cast<Index>(by_position.twin.size()); ++h) {
     look_now_and_then(h, stop);
-    const Index twin = halfedges.twin[static_cast<std::size_t>(h)];
+    const Index twin = by_position.twin[static_cast<std::size_t>(h)];
     if (twin != kNoTwin && is_seam(unwrapped, h, twin))
       length[static_cast<std::size_t>(face_of(h))] += (start(h) - start(twin)).norm();
   }

@@ -4,9 +4,12 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/mesh/tri_mesh.hpp"
+#include "core/mesh/halfedges.hpp"
 
 namespace unwrapd {
+
+/// The twins of a mesh whose vertices at one position are one.
+Halfedges halfedges_by_position(const TriMesh& mesh);
 
 /// 3D length of the edges between two faces whose UVs differ on both sides, mesh units. Edges are
 /// found by position, so cuts that the input came with count as well; boundaries and non-manifold
@@ -16,6 +19,11 @@ double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped);
 /// The same by face: the length of each face's own sides that are seams. Adds up to twice
 /// seam_length(). Throws Error{cancelled}.
 std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface& unwrapped,
+                                 const std::stop_token& stop = {});
+
+/// The same, by_position being halfedges_by_position() of the surface's mesh.
+std::vector<double> seam_lengths(const TriMesh& mesh, const Halfedges& by_position,
+                                 const UnwrappedSurface& unwrapped,
                                  const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -104,25 +104,37 @@ Halfedges build_halfedges(std::span<const Triangle> faces, Index vertex_count) {
   return halfedges;
 }
 
-std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges) {
-  assert(halfedges.twin.size() == 3 * mesh.faces.size());
-  std::vector<std::pair<double, BoundaryLoop>> loops;
+std::vector<BoundaryLoop> boundary_loops(const Halfedges& halfedges) {
+  std::vector<BoundaryLoop> loops;
   std::vector<bool> seen(halfedges.twin.size(), false);
   for (Index start = 0; start < static_cast<Index>(seen.size()); ++start) {
     if (seen[start] || halfedges.twin[start] != kNoTwin) continue;
-    BoundaryLoop loop;
+    BoundaryLoop& loop = loops.emplace_back();
     for (Index h = start; !seen[h]; h = next_on_boundary(halfedges, h)) {
       seen[h] = true;
       loop.push_back(h);
     }
-    loops.emplace_back(length(mesh, loop), std::move(loop));
   }
-  std::stable_sort(loops.begin(), loops.end(),
+  return loops;
+}
+
+void sort_by_length(const TriMesh& mesh, std::vector<BoundaryLoop>& loops) {
+  std::vector<std::pair<double, BoundaryLoop>> by_length;
+  by_length.reserve(loops.size());
+  for (BoundaryLoop& loop : loops) {
+    const double own = length(mesh, loop);
+    by_length.emplace_back(own, std::move(loop));
+  }
+  std::stable_sort(by_length.begin(), by_length.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<BoundaryLoop> sorted;
-  sorted.reserve(loops.size());
-  for (auto& [unused, loop] : loops) sorted.push_back(std::move(loop));
-  return sorted;
+  for (std::size_t k = 0; k < loops.size(); ++k) loops[k] = std::move(by_length[k].second);
+}
+
+std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges) {
+  assert(halfedges.twin.size() == 3 * mesh.faces.size());
+  std::vector<BoundaryLoop> loops = boundary_loops(halfedges);
+  sort_by_length(mesh, loops);
+  return loops;
 }
 
 }  // namespace unwrapd

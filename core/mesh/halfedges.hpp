@@ -29,6 +29,12 @@ Halfedges build_halfedges(std::span<const Triangle> faces, Index vertex_count);
 /// (the surface to the left). Each half-edge of the chain starts where the one before ends.
 using BoundaryLoop = std::vector<Index>;
 
+/// All boundary loops, by their lowest half-edge.
+std::vector<BoundaryLoop> boundary_loops(const Halfedges& halfedges);
+
+/// The one of greatest 3D length first; those of one length keep their order.
+void sort_by_length(const TriMesh& mesh, std::vector<BoundaryLoop>& loops);
+
 /// All boundary loops, the one of greatest 3D length first (ties: the lowest half-edge).
 /// Needs manifold vertices, as Chart's are: each vertex has one fan.
 std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges);

@@ -54,7 +54,7 @@ std::vector<Corners> sorted_corners(std::span<const Triangle> faces, const FaceS
 
 }  // namespace
 
-FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded) {
+FaceStates inspect_areas(const TriMesh& mesh, std::span<const Triangle> welded) {
   FaceStates states{std::vector<FaceState>(welded.size(), FaceState::sound),
                     std::vector<Index>(welded.size(), kNoFace)};
   double most = 0;
@@ -66,8 +66,12 @@ FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded) 
     else if (is_flat(mesh.positions[a], mesh.positions[b], mesh.positions[c], kLeastLength * most))
       states.of[t] = FaceState::flat;
   }
+  return states;
+}
+
+void find_duplicates(std::span<const Triangle> welded, Index vertex_count, FaceStates& states) {
   for_each_run(
-      sorted_corners(welded, states, mesh.vertex_count()),
+      sorted_corners(welded, states, vertex_count),
       [](const Corners& a, const Corners& b) { return a.vertex == b.vertex; },
       [&](const Corners* first, const Corners* last) {
         for (const Corners* c = first + 1; c < last; ++c) {
@@ -75,6 +79,11 @@ FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded) 
           states.same_as[c->face] = first->face;
         }
       });
+}
+
+FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded) {
+  FaceStates states = inspect_areas(mesh, welded);
+  find_duplicates(welded, mesh.vertex_count(), states);
   return states;
 }
 

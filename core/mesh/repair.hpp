@@ -23,8 +23,14 @@ struct FaceStates {
   std::vector<Index> same_as;  ///< the face that a duplicate repeats; kNoFace for all others
 };
 
-/// welded: the faces of mesh over welded vertices (see weld()). The same triangle seen from behind
-/// is no duplicate: both sides of a double-sided sheet stay.
+/// Which faces have no area. welded: the faces of mesh over welded vertices (see weld()).
+FaceStates inspect_areas(const TriMesh& mesh, std::span<const Triangle> welded);
+
+/// Sets apart which of the sound faces are duplicates.
+void find_duplicates(std::span<const Triangle> welded, Index vertex_count, FaceStates& states);
+
+/// Both. welded: the faces of mesh over welded vertices (see weld()). The same triangle seen from
+/// behind is no duplicate: both sides of a double-sided sheet stay.
 FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded);
 
 }  // namespace unwrapd

@@ -17,7 +17,6 @@
 
 #include "core/linear/factor.hpp"
 #include "core/mesh/edges.hpp"
-#include "core/solve/kept.hpp"
 #include "core/solve/metric.hpp"
 
 namespace unwrapd {
@@ -82,8 +81,8 @@ Index twin_of(const Disk& disk, Index h) {
   return twin;
 }
 
-/// Carried breadth first from face 0.
-std::vector<Complex> carried_rotations(const Disk& disk, const GlobalStep& global) {
+/// One a face, carried breadth first from face 0.
+std::vector<Complex> rotations(const Disk& disk, const GlobalStep& global) {
   const std::vector<double> u = log_scales(disk, global);
   std::vector<Complex> rotation(disk.faces.size(), 0);
   std::vector<Index> reached{0};
@@ -99,12 +98,6 @@ std::vector<Complex> carried_rotations(const Disk& disk, const GlobalStep& globa
       reached.push_back(face_of(twin));
     }
   return rotation;
-}
-
-/// One a face.
-std::vector<Complex> rotations(const Disk& disk, const GlobalStep& global) {
-  return kept_value(disk, Content("frames").add(disk.content),
-                    [&] { return carried_rotations(disk, global); });
 }
 
 }  // namespace

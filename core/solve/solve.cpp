@@ -20,6 +20,7 @@
 #include "core/solve/convex_map.hpp"
 #include "core/solve/frames.hpp"
 #include "core/solve/hold_align.hpp"
+#include "core/solve/kept.hpp"
 #include "core/solve/methods.hpp"
 
 namespace unwrapd {
@@ -56,11 +57,15 @@ Solution direct(const Disk& disk, const Holds& holds, UvMap uv) {
 }
 
 /// Nothing where the frames contradict each other so much that the map collapses, as around a
-/// cylinder.
+/// cylinder. global: that of the disk without holds.
 std::optional<UvMap> usable_frame_map(const Disk& disk, const GlobalStep& global) {
-  UvMap uv = frame_map(disk, global);
-  if (!(uv_area(disk.rest, disk.faces, uv) > kMinAreaShare)) return std::nullopt;
-  return scaled_to_unit_area(disk, std::move(uv));
+  UvMap start = kept_value(disk, Content("frame map").add(disk.content), [&] {
+    UvMap uv = frame_map(disk, global);
+    if (!(uv_area(disk.rest, disk.faces, uv) > kMinAreaShare)) return UvMap();
+    return scaled_to_unit_area(disk, std::move(uv));
+  });
+  if (start.empty()) return std::nullopt;
+  return start;
 }
 
 void tell(const SolveWatch& watch, Stage stage) {

@@ -13,14 +13,14 @@ namespace unwrapd::shapes {
 
 /// Owns the chart that its disk looks into.
 struct OwnedDisk {
-  std::unique_ptr<Chart> chart;
+  std::shared_ptr<Chart> chart;
   Disk disk;
 };
 
 inline OwnedDisk disk_of(TriMesh mesh) {
   Charts charts = make_charts(surface_of(std::move(mesh)), SeamMode::keep);
   if (charts.charts.size() != 1) throw std::invalid_argument("not one disk");
-  auto chart = std::make_unique<Chart>(std::move(charts.charts.front()));
+  auto chart = std::make_shared<Chart>(std::move(charts.charts.front()));
   Disk disk = make_disk(chart->mesh, chart->loops);
   return {std::move(chart), std::move(disk)};
 }
