@@ -18,6 +18,17 @@ double share_done(int iterations, const Stop& stop) {
   return 1 - std::exp2(-iterations / kHalfWay);
 }
 
+IterationEvent describe(const Disk& disk, const Solution& s) {
+  const Distortion d = distortion(distortion_sums(disk.rest, disk.faces, s.uv));
+  const double before = s.energy[s.energy.size() - 2], now = s.energy.back();
+  return {.iteration = s.iterations,
+          .energy = now,
+          .rel_change = before > 0 ? (before - now) / before : 0,
+          .angle = d.angle,
+          .area = d.area,
+          .flipped = d.flipped};
+}
+
 }  // namespace
 
 ChartWatch::ChartWatch(const Progress& progress, Index chart_count, std::size_t face_count,
@@ -56,29 +67,30 @@ void ChartWatch::tell(Stage stage) const {
   progress_.on_stage({stage, chart_, chart_count_, fraction(of_run), lambda_});
 }
 
-IterationEvent ChartWatch::describe(const Disk& disk, const Solution& s, const Stop& stop) const {
-  const Distortion d = distortion(distortion_sums(disk.rest, disk.faces, s.uv));
-  const double before = s.energy[s.energy.size() - 2], now = s.energy.back();
-  return {.chart = chart_,
-          .iteration = s.iterations,
-          .energy = now,
-          .rel_change = before > 0 ? (before - now) / before : 0,
-          .angle = d.angle,
-          .area = d.area,
-          .flipped = d.flipped,
-          .fraction = fraction(share_done(s.iterations, stop)),
-          .lambda = lambda_};
+/// Where it belongs in the job.
+IterationEvent ChartWatch::placed(IterationEvent event, const Stop& stop) const {
+  event.chart = chart_;
+  event.fraction = fraction(share_done(event.iteration, stop));
+  event.lambda = lambda_;
+  return event;
 }
 
-SolveWatch ChartWatch::solve_watch(const Disk& disk, const Stop& stop) const {
+SolveWatch ChartWatch::solve_watch(const Disk& disk, const Stop& stop,
+                                   std::vector<IterationEvent>& told) const {
   SolveWatch watch;
   watch.loop.stop = progress_.stop;
   watch.on_stage = [this](Stage stage) { tell(stage); };
-  if (progress_.on_iteration)
-    watch.loop.on_iteration = [this, &disk, &stop](const Solution& s) {
-      progress_.on_iteration(describe(disk, s, stop));
+  if (is_followed())
+    watch.loop.on_iteration = [this, &disk, &stop, &told](const Solution& s) {
+      told.push_back(describe(disk, s));
+      progress_.on_iteration(placed(told.back(), stop));
     };
   return watch;
+}
+
+void ChartWatch::tell_again(const std::vector<IterationEvent>& told, const Stop& stop) const {
+  tell(Stage::solve);
+  for (const IterationEvent& event : told) progress_.on_iteration(placed(event, stop));
 }
 
 void ChartWatch::throw_if_cancelled() const { unwrapd::throw_if_cancelled(progress_.stop); }

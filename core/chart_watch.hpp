@@ -2,6 +2,7 @@
 // From what a solver tells of one chart to what a job tells of itself.
 
 #include <optional>
+#include <vector>
 
 #include "core/progress.hpp"
 #include "core/solve/solve.hpp"
@@ -26,15 +27,20 @@ class ChartWatch {
   void end_chart();
 
   void tell(Stage stage) const;
-  /// What to hand to a Solver. disk and stop must outlive it.
-  [[nodiscard]] SolveWatch solve_watch(const Disk& disk, const Stop& stop) const;
+  /// What to hand to a Solver. disk and stop must outlive it, and told, to which each iteration
+  /// that is told of is added.
+  [[nodiscard]] SolveWatch solve_watch(const Disk& disk, const Stop& stop,
+                                       std::vector<IterationEvent>& told) const;
+  /// What was told of an equal run, as of this one.
+  void tell_again(const std::vector<IterationEvent>& told, const Stop& stop) const;
+  /// Whether iterations are told of at all.
+  [[nodiscard]] bool is_followed() const { return progress_.on_iteration != nullptr; }
   void throw_if_cancelled() const;
   [[nodiscard]] const std::stop_token& stop() const { return progress_.stop; }
 
  private:
   [[nodiscard]] double fraction(double of_run) const;
-  [[nodiscard]] IterationEvent describe(const Disk& disk, const Solution& s,
-                                        const Stop& stop) const;
+  [[nodiscard]] IterationEvent placed(IterationEvent event, const Stop& stop) const;
 
   const Progress& progress_;
   Index chart_ = 0, chart_count_;

@@ -8,6 +8,7 @@
 #include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/solve/hold_page.hpp"
+#include "core/solve_once.hpp"
 
 namespace unwrapd {
 namespace {
@@ -119,7 +120,7 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
   std::vector<std::vector<MappedChart>> maps(lambdas.size());
   for (std::size_t k = 0; k < lambdas.size(); ++k) {
     watch.begin_run(is_curve(options) ? std::optional(lambdas[k]) : std::nullopt);
-    Solution solution = solver.run(lambdas[k], watch.solve_watch(disk, options.stop));
+    Solution solution = solve_once(solver, job, options, lambdas[k], watch);
     const Promise promise{guarantee_of(chart, options),
                           options.repair,
                           {.rigidity = rigidity_of(disk, options, lambdas[k]),
