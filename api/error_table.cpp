@@ -33,6 +33,8 @@ constexpr std::array kRows = {
     ErrorRow{too_many_jobs, "too_many_jobs", 429, "Too many jobs of this API key"},
     ErrorRow{quota_exceeded, "quota_exceeded", 507, "The storage of this API key is used up"},
     ErrorRow{webhook_refused, "webhook_refused", 422, "The webhook cannot be called"},
+    ErrorRow{mesh_not_found, "mesh_not_found", 404, "There is no such mesh"},
+    ErrorRow{digest_mismatch, "digest_mismatch", 400, "The body is not what its digest says"},
     ErrorRow{unknown_format, "unknown_format", 415, "The format is not recognised"},
     ErrorRow{malformed_glb, "malformed_glb", 400, "The GLB container is broken"},
     ErrorRow{malformed_json, "malformed_json", 400, "The asset's JSON is broken"},

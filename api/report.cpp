@@ -25,11 +25,16 @@ Json to_json(const Distortion& distortion) {
           {"flipped", distortion.flipped}};
 }
 
-Json to_json(const InputReport& input, const ReportContext& context) {
-  return {{"sha256", context.sha256},       {"bytes", context.bytes},
-          {"faces", input.faces},           {"vertices", input.vertices},
+Json counts_json(const InputReport& input) {
+  return {{"faces", input.faces},           {"vertices", input.vertices},
           {"components", input.components}, {"boundaries", input.boundaries},
           {"genus", input.genus},           {"welded", input.welded}};
+}
+
+Json to_json(const InputReport& input, const ReportContext& context) {
+  Json json = {{"sha256", context.sha256}, {"bytes", context.bytes}};
+  json.update(counts_json(input));
+  return json;
 }
 
 Json to_json(const Repair& repair) {
@@ -97,6 +102,12 @@ Json array_of(const std::vector<Item>& items) {
 }
 
 }  // namespace
+
+Json to_json(const InputReport& input, const std::vector<Repair>& repairs) {
+  Json json = counts_json(input);
+  json["repairs"] = array_of(repairs);
+  return json;
+}
 
 Json totals_json(const Report& report) {
   return {{"charts", report.charts.size()},

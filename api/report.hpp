@@ -28,6 +28,10 @@ struct ReportContext {
 /// The report, every figure finite: an infinite one is given as the largest double.
 Json to_json(const Report& report, const ReportContext& context);
 
+/// What came in and what would be repaired, of a mesh that is only looked at: the counts of a
+/// report's `input`, and `repairs`.
+Json to_json(const InputReport& input, const std::vector<Repair>& repairs);
+
 /// The totals alone, for a header: charts, distortion, seam_length, fill, texel_density.
 Json totals_json(const Report& report);
 

@@ -34,6 +34,8 @@ enum class ErrorCode {
   too_many_jobs,
   quota_exceeded,
   webhook_refused,
+  mesh_not_found,
+  digest_mismatch,
   // the asset's bytes
   unknown_format,
   malformed_glb,

@@ -13,11 +13,11 @@ std::string megabytes(std::size_t bytes) {
 
 }  // namespace
 
-void check_memory(const SolverCore& core, std::size_t bytes) {
-  if (bytes <= core.memory_limit()) return;
+void check_memory(std::size_t bytes, std::size_t limit) {
+  if (bytes <= limit) return;
   throw Error(ErrorCode::too_much_memory,
               "The job would take about " + megabytes(bytes) +
-                  " of memory, and no job may take more than " + megabytes(core.memory_limit()) +
+                  " of memory, and no job may take more than " + megabytes(limit) +
                   " here; send fewer faces, or cut the mesh into charts.");
 }
 

@@ -66,7 +66,7 @@ class SolverCore {
 inline constexpr std::size_t kJobBytesPerFace = 800;
 
 /// Throws Error{too_much_memory}, with the estimate, when a job would take so many bytes and may
-/// not.
-void check_memory(const SolverCore& core, std::size_t bytes);
+/// take less.
+void check_memory(std::size_t bytes, std::size_t limit);
 
 }  // namespace unwrapd

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "core/analyse.hpp"
 #include "core/atlas/segment_charts.hpp"
 #include "core/cancel.hpp"
 #include "core/chart_watch.hpp"
@@ -21,19 +22,6 @@ SegmentOptions segment_options(const UnwrapOptions& options) {
       .max_distortion = options.max_distortion,
       .max_charts = options.max_charts,
       .one_chart_each = !options.constraints.empty() || options.boundary != BoundaryShape::free};
-}
-
-std::vector<Charts> components(std::span<const Surface> surfaces, const UnwrapOptions& options,
-                               const std::stop_token& stop, SolverCore* core) {
-  const auto is_empty = [](const Surface& surface) { return surface.mesh.faces.empty(); };
-  if (std::all_of(surfaces.begin(), surfaces.end(), is_empty))
-    throw Error(ErrorCode::no_triangles, "the asset has no triangles; there is nothing to unwrap");
-  std::vector<Charts> parts;
-  parts.reserve(surfaces.size());
-  for (const Surface& surface : surfaces)
-    parts.push_back(components_of(surface, {options.seams, options.seam_edges,
-                                            static_cast<Index>(parts.size()), stop, core}));
-  return parts;
 }
 
 std::vector<Disk> disks_of(const Charts& surface, const std::stop_token& stop, SolverCore* core) {
@@ -109,12 +97,6 @@ std::size_t bytes_of_disk(const Disk& disk) {
          bytes_of(disk.corners.begin) + bytes_of(disk.corners.corner);
 }
 
-void check_memory(std::span<const Surface> surfaces, const SolverCore& core) {
-  std::size_t faces = 0;
-  for (const Surface& surface : surfaces) faces += surface.mesh.faces.size();
-  check_memory(core, kJobBytesPerFace * faces);
-}
-
 }  // namespace
 
 std::size_t bytes_of(const Prepared& prepared) {
@@ -141,7 +123,7 @@ TakenApart take_apart(std::span<const Surface> surfaces, const UnwrapOptions& op
     taken.all = make();
     return taken;
   }
-  check_memory(surfaces, *core);
+  check_memory(job_bytes(surfaces), core->memory_limit());
   const auto made = [&]() -> SolverCore::Made {
     const std::shared_ptr<const Prepared> prepared = make();
     return {prepared, bytes_of(*prepared)};

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/analyse.hpp"
 #include "core/atlas/constraints.hpp"
 #include "core/atlas/outline.hpp"
 #include "core/atlas/pack.hpp"
@@ -40,27 +41,15 @@ void announce(const Progress& progress, Stage stage, std::size_t charts, double 
   if (progress.on_stage) progress.on_stage({stage, 0, static_cast<Index>(charts), fraction});
 }
 
-void add_input(Report& report, const Charts& part, Index surface) {
-  report.input.faces += part.input.faces;
-  report.input.vertices += part.input.vertices;
-  report.input.components += part.input.components;
-  report.input.boundaries += part.input.boundaries;
-  report.input.genus += part.input.genus;
-  report.input.welded = report.input.welded || part.input.welded;
-  for (Repair repair : part.repairs) {
-    repair.surface = surface;
-    report.repairs.push_back(repair);
-  }
-}
-
 /// A page for each map: what came in is in its report, charts are not in it yet.
 std::vector<Layout> empty_layouts(const std::vector<Charts>& parts, std::size_t map_count) {
   Layout layout;
   layout.charts.resize(parts.size());
   layout.islands.resize(parts.size());
   layout.held.resize(parts.size());
-  for (std::size_t s = 0; s < parts.size(); ++s)
-    add_input(layout.report, parts[s], static_cast<Index>(s));
+  const InputAnalysis analysis = analysis_of(parts);
+  layout.report.input = analysis.input;
+  layout.report.repairs = analysis.repairs;
   return {map_count, layout};
 }
 
@@ -79,8 +68,7 @@ ChartWatch chart_watch(const TakenApart& taken, const Progress& progress) {
     chart_count += part.charts.size();
     for (const Chart& chart : part.charts) face_count += chart.mesh.faces.size();
   }
-  if (chart_count == 0)
-    throw Error(ErrorCode::zero_area, "every triangle has zero area; there is nothing to unwrap");
+  require_area(taken.all->surfaces);
   return {progress, static_cast<Index>(chart_count), face_count, taken.solve_begin};
 }
 

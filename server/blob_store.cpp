@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "server/digests.hpp"
+#include "server/identity.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -37,10 +38,20 @@ void seal_files(const fs::path& folder, const std::function<bool(std::string_vie
   write_digests(folder, digests);  // which syncs the folder
 }
 
+/// Whether a document has several names: a mesh's and those of the jobs that share it.
+bool is_shared_file(const fs::path& file) {
+  std::error_code gone;
+  const std::uintmax_t names = fs::hard_link_count(file, gone);
+  return !gone && names > 1;
+}
+
 std::int64_t bytes_below(const fs::path& folder) {
+  const bool of_job = !is_mesh_id(folder.filename().native());
   std::int64_t bytes = 0;
   std::error_code gone;  // what somebody removes meanwhile counts nothing
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, gone)) {
+    const bool of_mesh = of_job && is_input(entry.path().filename().native());
+    if (of_mesh && is_shared_file(entry.path())) continue;  // it counts there
     const std::uintmax_t size = entry.file_size(gone);
     if (!gone) bytes += static_cast<std::int64_t>(size);
   }
@@ -103,6 +114,18 @@ void BlobStore::remove(std::string_view job) noexcept {
   remove_tree(blobs_ / job);
   room_.give_back(job);
 }
+
+bool BlobStore::share_document(std::string_view mesh, std::string_view upload) noexcept {
+  std::error_code failed;
+  fs::create_hard_link(path(mesh, kDocumentFile), incoming_ / upload / kDocumentFile, failed);
+  return !failed;
+}
+
+bool BlobStore::is_shared(std::string_view mesh) const noexcept {
+  return is_shared_file(path(mesh, kDocumentFile));
+}
+
+std::int64_t BlobStore::bytes(std::string_view job) const { return bytes_below(blobs_ / job); }
 
 void BlobStore::discard(std::string_view job, std::string_view file) noexcept {
   remove_tree(path(job, file));

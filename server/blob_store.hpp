@@ -1,5 +1,6 @@
 #pragma once
-// The files of jobs: DIR/blobs/<job>/{document,buffer_N,digests,result.*,report.json*,uv.bin*}. An
+// The files of jobs: DIR/blobs/<job>/{document,buffer_N,digests,result.*,report.json*,uv.bin*}; and
+// of stored meshes, alike: DIR/blobs/<mesh>/{document,digests,analysis.json}. An
 // upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is written under
 // another name and renamed, and synced before the job counts as done. What a crash leaves behind is
 // swept at the next start. `digests` has the SHA-256 of each file (digests.hpp): what is read is
@@ -46,6 +47,13 @@ class BlobStore {
   /// The same for a file of a job at work: seal() syncs it.
   void write_unsealed(std::string_view job, std::string_view file, std::string_view bytes);
   void remove(std::string_view job) noexcept;
+  /// The document of a stored mesh becomes that of an upload, too; its bytes are shared, and count
+  /// for the mesh. False when it is not there.
+  bool share_document(std::string_view mesh, std::string_view upload) noexcept;
+  /// Whether a job shares the document of a mesh.
+  [[nodiscard]] bool is_shared(std::string_view mesh) const noexcept;
+  /// Bytes of all files, without a document that is shared with a mesh.
+  [[nodiscard]] std::int64_t bytes(std::string_view job) const;
   /// Removes one file that was written only to be handed out once.
   void discard(std::string_view job, std::string_view file) noexcept;
 

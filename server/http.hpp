@@ -52,6 +52,7 @@ struct Request {
   std::multimap<std::string, std::string> query;
   std::multimap<std::string, std::string, IgnoreCase> headers;
   std::string id;                   ///< the {id} of the path, once a route has matched
+  std::string sha256;               ///< the {sha256} of the path, the same
   Caller caller;                    ///< who asks, once that has been found out
   std::string client;               ///< the address of who asks
   BodyReader* body = nullptr;       ///< of POST, PUT and PATCH

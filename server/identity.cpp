@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 constexpr std::string_view kIdPrefix = "j_";
+constexpr std::string_view kMeshPrefix = "m_";
+constexpr std::size_t kSha256Digits = 64;
 constexpr std::size_t kIdBytes = 16;
 
 std::string hex(std::span<const unsigned char> bytes) {
@@ -24,6 +26,11 @@ std::string hex(std::span<const unsigned char> bytes) {
     text += kHexDigits[byte & 15];
   }
   return text;
+}
+
+bool is_id(std::string_view text, std::string_view prefix) {
+  return text.size() == prefix.size() + 2 * kIdBytes && text.starts_with(prefix) &&
+         text.find_first_not_of(kHexDigits, prefix.size()) == std::string_view::npos;
 }
 
 void check(int result) {
@@ -40,9 +47,14 @@ std::string random_hex(std::size_t bytes) {
 
 std::string random_job_id() { return std::string(kIdPrefix) + random_hex(kIdBytes); }
 
-bool is_job_id(std::string_view text) {
-  if (text.size() != kIdPrefix.size() + 2 * kIdBytes || !text.starts_with(kIdPrefix)) return false;
-  return text.find_first_not_of(kHexDigits, kIdPrefix.size()) == std::string_view::npos;
+bool is_job_id(std::string_view text) { return is_id(text, kIdPrefix); }
+
+std::string random_mesh_id() { return std::string(kMeshPrefix) + random_hex(kIdBytes); }
+
+bool is_mesh_id(std::string_view text) { return is_id(text, kMeshPrefix); }
+
+bool is_sha256(std::string_view text) {
+  return text.size() == kSha256Digits && text.find_first_not_of(kHexDigits) == std::string::npos;
 }
 
 void Sha256::Free::operator()(evp_md_ctx_st* context) const { EVP_MD_CTX_free(context); }

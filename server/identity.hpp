@@ -19,6 +19,14 @@ std::string random_job_id();
 /// True for what random_job_id() can return; anything else never reaches the store or a path.
 bool is_job_id(std::string_view text);
 
+/// A new name for the folder of a stored mesh: "m_" and as many.
+std::string random_mesh_id();
+
+bool is_mesh_id(std::string_view text);
+
+/// True for 64 lowercase hex digits.
+bool is_sha256(std::string_view text);
+
 /// SHA-256 of bytes that come in pieces.
 class Sha256 {
  public:

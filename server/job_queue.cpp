@@ -134,7 +134,6 @@ void JobQueue::enqueue(JobRecord& job, const Submission& submission) {
   if (const Quota& quota = submission.quota; quota.max_jobs > 0 || quota.max_bytes > 0)
     door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
   door_.leave(submission.sender);
-  job.stored_bytes = job.input.bytes;
   job.seq = store_.insert(job);
   if (submission.anew || !answer_from_store(job)) wait_again(job);
 }
@@ -146,7 +145,7 @@ bool JobQueue::answer_from_store(const JobRecord& job) {
   events_.open(job.id, job.attempt);
   JobOutcome outcome;
   outcome.result_format = same->result_format;
-  outcome.stored_bytes = same->stored_bytes;
+  outcome.stored_bytes = blobs_.bytes(job.id);
   try {
     end_job(job, std::move(outcome));
     return true;

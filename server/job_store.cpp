@@ -86,7 +86,8 @@ OwnerUsage JobStore::usage(std::string_view owner) {
   const std::lock_guard lock(mutex_);
   Statement statement(database_,
                       "SELECT COALESCE(SUM(state IN ('queued', 'running')), 0),"
-                      " COALESCE(SUM(stored_bytes), 0) FROM jobs WHERE owner = ?");
+                      " COALESCE(SUM(stored_bytes), 0) + (SELECT COALESCE(SUM(stored_bytes), 0)"
+                      " FROM meshes WHERE owner = ?1) FROM jobs WHERE owner = ?1");
   statement.with(owner).step();
   return {.live_jobs = statement.number(0), .stored_bytes = statement.number(1)};
 }

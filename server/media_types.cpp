@@ -108,13 +108,15 @@ double quality(const std::vector<MediaRange>& ranges, std::string_view type) {
 BodyKind body_kind(std::string_view content_type) {
   const std::string type = lower(trim(content_type.substr(0, content_type.find(';'))));
   if (type == "multipart/form-data") return BodyKind::multipart;
+  if (type == media_type("json")) return BodyKind::reference;
   const bool is_asset = type.empty() || type == "application/octet-stream" ||
                         type == media_type("glb") || type == media_type("gltf") ||
                         type == media_type("obj");
   if (is_asset) return BodyKind::asset;
   throw Error(ErrorCode::unsupported_media_type,
               "The Content-Type is none of model/gltf-binary, model/gltf+json, model/obj, "
-              "application/octet-stream, multipart/form-data; say which of them the body is.");
+              "application/octet-stream, multipart/form-data or, for a stored mesh, "
+              "application/json; say which of them the body is.");
 }
 
 std::string_view media_type(std::string_view format) {

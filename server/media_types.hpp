@@ -8,9 +8,10 @@
 
 namespace unwrapd::server {
 
-enum class BodyKind { asset, multipart };
+enum class BodyKind { asset, multipart, reference };
 
-/// Throws Error{unsupported_media_type} for anything but an asset's types and multipart/form-data.
+/// Throws Error{unsupported_media_type} for anything but an asset's types, multipart/form-data, and
+/// JSON, which names a stored mesh.
 BodyKind body_kind(std::string_view content_type);
 
 /// Of a result format: glb, gltf, obj or json.

@@ -24,7 +24,7 @@ void QueueDoor::check_place(std::string_view sender, const FairShare& share,
 void QueueDoor::check_quota(std::string_view sender, const Quota& quota, const OwnerUsage& usage,
                             const JobRecord& job, const FairShare& share,
                             const std::vector<AtWork>& running) {
-  if (quota.max_bytes > 0 && usage.stored_bytes + job.input.bytes > quota.max_bytes)
+  if (quota.max_bytes > 0 && usage.stored_bytes + job.stored_bytes > quota.max_bytes)
     throw quota_exceeded(quota.max_bytes);
   if (quota.max_jobs == 0) return;
   Line his = line(share, running);

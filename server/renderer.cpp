@@ -35,21 +35,28 @@ std::string Renderer::render(const JobRecord& job, const Rendering& rendering) c
   std::string report;
   if (!rendering.picture && !rendering.format)
     report = blobs_.read(job.id, map_file(kReportFile, rendering.map));
-  const RenderingInput input{.record = job, .asset = loaded.input(), .uvs = uvs, .report = report};
-  return isolation_.on ? render_apart(rendering, input) : duties_.draw(rendering, input, limits_);
+  return make(rendering, {.record = job, .asset = loaded.input(), .uvs = uvs, .report = report});
 }
 
-std::string Renderer::render_apart(const Rendering& rendering, const RenderingInput& input) const {
+std::string Renderer::analyse(const JobRecord& mesh) const {
+  const LoadedInput loaded(blobs_, mesh);
+  return make({.map = 0, .picture = {}, .format = {}, .analysis = job_bytes_},
+              {.record = mesh, .asset = loaded.input(), .uvs = {}, .report = {}});
+}
+
+std::string Renderer::make(const Rendering& rendering, RenderingInput input) const {
   std::stop_source late;
+  input.asset.stop = late.get_token();
   const Deadline deadline(std::chrono::seconds(limits_.max_job_seconds),
                           [&] { late.request_stop(); });
   try {
+    if (!isolation_.on) return duties_.draw(rendering, input, limits_);
     return render_isolated(rendering, input, late.get_token(), limits_, isolation_);
   } catch (const WorkerCrashed& crash) {
     log_.warning("a worker process ended", {{"job", input.record.id}, {"how", crash.what()}});
     throw Error(ErrorCode::internal,
-                "The process that made this file ended before it was done; the job and its other "
-                "files are as they were.");
+                "The process that made this file ended before it was done; what it was made from "
+                "is as it was.");
   } catch (const Error& error) {
     if (error.code() != ErrorCode::cancelled) throw;
     throw Error(ErrorCode::time_limit, "To make this file took longer than the " +

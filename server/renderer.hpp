@@ -24,6 +24,7 @@ class Renderer {
         limits_(limits),
         log_(log),
         isolation_(isolation),
+        job_bytes_(making.bytes),
         room_(making),
         duties_(duties) {}
 
@@ -37,14 +38,18 @@ class Renderer {
   /// process time_limit, memory_limit, and internal when the process has ended.
   [[nodiscard]] std::string render(const JobRecord& job, const Rendering& rendering) const;
 
+  /// What a stored mesh is (mesh_analysis.hpp), which is given as the job that it could be. Throws
+  /// like render().
+  [[nodiscard]] std::string analyse(const JobRecord& mesh) const;
+
  private:
-  [[nodiscard]] std::string render_apart(const Rendering& rendering,
-                                         const RenderingInput& input) const;
+  [[nodiscard]] std::string make(const Rendering& rendering, RenderingInput input) const;
 
   const BlobStore& blobs_;
   const api::Limits& limits_;
   const Log& log_;
   const Isolation isolation_;
+  const std::size_t job_bytes_;  // of memory, that a job may take
   MakingRoom room_;
   const Duties duties_;
 };

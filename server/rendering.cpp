@@ -7,6 +7,7 @@
 #include "core/figure/layout_image.hpp"
 #include "core/figure/layout_svg.hpp"
 #include "core/figure/preview.hpp"
+#include "server/mesh_analysis.hpp"
 #include "server/png_file.hpp"
 #include "server/run_job.hpp"
 #include "server/uv_file.hpp"
@@ -32,6 +33,7 @@ std::string draw(const Picture& picture, const asset::Asset& asset, const Surfac
 
 std::string render(const Rendering& rendering, const RenderingInput& input,
                    const api::Limits& limits) {
+  if (rendering.analysis) return mesh_analysis(input, *rendering.analysis, limits);
   const asset::Asset asset = asset::read(input.asset, read_limits(input.record, limits),
                                          api::parse_options(input.record.options, limits).asset);
   const Surfaces unwrapped = decode_uvs(input.uvs);

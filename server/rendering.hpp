@@ -1,6 +1,7 @@
 #pragma once
 // What is made of a finished job when somebody asks: its result in a format, or a picture of one of
-// its maps. Both begin with the job's mesh, so that both are work for a worker process (--isolate).
+// its maps; and of a stored mesh: its analysis. All begin with the mesh, so that all are work for a
+// worker process (--isolate).
 
 #include <cstddef>
 #include <optional>
@@ -26,6 +27,8 @@ struct Rendering {
   std::size_t map = 0;                  ///< of the job, see map_choice.hpp
   std::optional<Picture> picture;       ///< none: the result
   std::optional<asset::Format> format;  ///< of the result; none: JSON
+  /// What the mesh is, where a job may take so much memory; there is no map then.
+  std::optional<std::size_t> analysis = {};
 };
 
 /// What a job keeps. Of its record only the options and whether somebody waited for it count.

@@ -10,6 +10,7 @@ namespace unwrapd::server {
 namespace {
 
 constexpr std::string_view kIdSegment = "{id}";
+constexpr std::string_view kDigestSegment = "{sha256}";
 
 /// The first segment of a path, which loses it.
 std::string_view take_segment(std::string_view& path) {
@@ -19,18 +20,28 @@ std::string_view take_segment(std::string_view& path) {
   return segment.substr(1);
 }
 
-/// The job id in path, "" for a route without one; empty when the path is not of this route.
-std::optional<std::string> match(std::string_view route, std::string_view path) {
+/// What the segments of a path that have no fixed text say.
+struct PathNames {
   std::string id;
+  std::string sha256;
+};
+
+/// Empty when the path is not of this route.
+std::optional<PathNames> match(std::string_view route, std::string_view path) {
+  PathNames names;
   while (!route.empty() && !path.empty()) {
     const std::string_view expected = take_segment(route);
     const std::string_view segment = take_segment(path);
-    const bool same = expected == kIdSegment ? is_job_id(segment) : expected == segment;
-    if (!same) return std::nullopt;
-    if (expected == kIdSegment) id = segment;
+    if (expected == kIdSegment && is_job_id(segment)) {
+      names.id = segment;
+    } else if (expected == kDigestSegment && is_sha256(segment)) {
+      names.sha256 = segment;
+    } else if (expected != segment) {
+      return std::nullopt;
+    }
   }
   if (!route.empty() || !path.empty()) return std::nullopt;
-  return id;
+  return names;
 }
 
 Response not_allowed(const std::string& allowed) {
@@ -68,11 +79,12 @@ Response Router::dispatch(Request& request, std::string_view& matched) const {
       request.method == "HEAD" ? "GET" : std::string_view(request.method);
   std::string allowed;
   for (const Route& route : routes_) {
-    const std::optional<std::string> id = match(route.path, request.path);
-    if (!id) continue;
+    const std::optional<PathNames> names = match(route.path, request.path);
+    if (!names) continue;
     matched = route.path;
     if (route.method == method) {
-      request.id = *id;
+      request.id = names->id;
+      request.sha256 = names->sha256;
       if (admit_) admit_(request, route.path);
       return route.handler(request);
     }

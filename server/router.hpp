@@ -12,7 +12,7 @@
 
 namespace unwrapd::server {
 
-/// A segment "{id}" of the path matches a job id.
+/// A segment "{id}" of the path matches a job id, "{sha256}" a digest.
 struct Route {
   std::string_view method;
   std::string_view path;

@@ -8,7 +8,7 @@ namespace unwrapd::server {
 namespace {
 
 /// Step k makes version k + 1 out of version k. Steps that were released are never edited.
-constexpr std::array<const char*, 3> kSteps = {
+constexpr std::array<const char*, 4> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -62,6 +62,21 @@ ALTER TABLE jobs ADD COLUMN trace TEXT NOT NULL DEFAULT '';
 ALTER TABLE deliveries ADD COLUMN trace TEXT NOT NULL DEFAULT '';
 ALTER TABLE deliveries ADD COLUMN owner TEXT NOT NULL DEFAULT '';
 UPDATE deliveries SET owner = COALESCE((SELECT owner FROM jobs WHERE id = job), '');
+)sql",
+    R"sql(
+CREATE TABLE meshes (
+  seq INTEGER PRIMARY KEY AUTOINCREMENT,
+  id TEXT NOT NULL UNIQUE,
+  owner TEXT NOT NULL,
+  sha256 TEXT NOT NULL,
+  bytes INTEGER NOT NULL,
+  media_type TEXT NOT NULL,
+  created_ms INTEGER NOT NULL,
+  kept_since_ms INTEGER NOT NULL,
+  stored_bytes INTEGER NOT NULL,
+  UNIQUE (owner, sha256)
+) STRICT;
+CREATE INDEX meshes_by_time ON meshes (kept_since_ms);
 )sql"};
 
 constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());

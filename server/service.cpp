@@ -13,8 +13,10 @@
 #include "server/cors.hpp"
 #include "server/data_lock.hpp"
 #include "server/http_server.hpp"
+#include "server/identity.hpp"
 #include "server/info_routes.hpp"
 #include "server/job_routes.hpp"
+#include "server/mesh_routes.hpp"
 #include "server/periodic.hpp"
 #include "server/picture_routes.hpp"
 #include "server/sweeper.hpp"
@@ -82,10 +84,10 @@ struct Service::Parts {
         lock(config.data),
         blobs(config.data, config.disk),
         store(config.data / kStoreFile),
+        mesh_store(config.data / kStoreFile),
         queue(store, blobs, events, log,
               {.max_queue = config.limits.max_queue, .workers = config.workers}),
         streams(events, config.limits.max_streams),
-        submissions(queue, blobs, config.limits, config.webhooks),
         keys(config.data, config.access.key_file),
         secret(secret_in(config.data / kSecretFile)),
         links(secret),
@@ -93,8 +95,10 @@ struct Service::Parts {
         cors(config.cors_origins),
         webhooks(config.data / kStoreFile, secret, config.webhooks, log),
         renderer(blobs, config.limits, log, isolation, making_limits(config, solver_cache), duties),
+        meshes(mesh_store, store, blobs, renderer),
+        submissions(queue, blobs, config.limits, config.webhooks, meshes),
         results(blobs, renderer),
-        sweeper(store, blobs, log, std::chrono::seconds(config.keep_seconds)),
+        sweeper(store, mesh_store, blobs, log, std::chrono::seconds(config.keep_seconds)),
         pictures(blobs, renderer),
         router(routes(), log,
                [this](Request& request, std::string_view route) { access.admit(request, route); }),
@@ -106,10 +110,14 @@ struct Service::Parts {
     }
     tell_state();
     queue.recover(isolation.possible);
-    blobs.sweep([&](const std::string& job) { return store.keeps_files(job); });
-    blobs.room().on_shortage([this] { return evict_oldest(store, blobs); });
-    blobs.on_noted(
-        [this](std::string_view job, auto bytes) { store.set_stored_bytes(job, bytes); });
+    blobs.sweep([&](const std::string& owner) {
+      return is_mesh_id(owner) ? mesh_store.has(owner) : store.keeps_files(owner);
+    });
+    blobs.room().on_shortage([this] { return evict_oldest(store, mesh_store, blobs); });
+    blobs.on_noted([this](std::string_view owner, auto bytes) {
+      is_mesh_id(owner) ? mesh_store.set_stored_bytes(owner, bytes)
+                        : store.set_stored_bytes(owner, bytes);
+    });
     start_periodic(log);
     workers.emplace(queue, blobs, config.limits, log,
                     WorkerConfig{.workers = config.workers,
@@ -180,6 +188,7 @@ struct Service::Parts {
                  [&] { return solver_cache.counters().bytes; });
     tell_files("result", results.counts());
     tell_files("picture", pictures.counts());
+    tell_files("analysis", meshes.counts());
   }
 
   /// The probes answer until the last request is.
@@ -197,6 +206,7 @@ struct Service::Parts {
     std::vector<Route> all;
     add_job_routes(all, services);
     add_unwrap_route(all, services);
+    add_mesh_routes(all, meshes, std::chrono::seconds(config.keep_seconds));
     add_picture_routes(all, store, pictures);
     add_info_routes(all, config.limits);
     add_probe_routes(all, queue);
@@ -209,12 +219,12 @@ struct Service::Parts {
   DataLock lock;
   BlobStore blobs;
   JobStore store;
+  MeshStore mesh_store;
   Metrics metrics;
   const std::shared_ptr<Doorbell> news = std::make_shared<Doorbell>();
   EventFeed events{kEventsKept, kFeedsKept, &metrics, news};
   JobQueue queue;
   EventStreams streams;
-  Submissions submissions;
   KeyStore keys;
   const std::string secret;
   const LinkSigner links;
@@ -222,6 +232,8 @@ struct Service::Parts {
   const Cors cors;
   Webhooks webhooks;
   Renderer renderer;
+  Meshes meshes;
+  Submissions submissions;
   ResultStore results;
   Sweeper sweeper;
   PictureStore pictures;

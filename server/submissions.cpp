@@ -2,21 +2,20 @@
 
 #include "server/clock.hpp"
 #include "server/identity.hpp"
-#include "server/job_input.hpp"
-#include "server/media_types.hpp"
+#include "server/mesh_reference.hpp"
 #include "server/request_headers.hpp"
 #include "server/trace.hpp"
 
 namespace unwrapd::server {
 namespace {
 
-/// The options of a form: its part, or the query when there is no such part.
-api::JobOptions form_options(const Upload& upload, const Request& request,
-                             const api::Limits& limits) {
+/// The options of a body that may bring some: those, or the query when there are none.
+api::JobOptions options_of(const Upload& upload, const Request& request,
+                           const api::Limits& limits) {
   if (!upload.options) return api::parse_options(request.query, limits);
   if (request.query.empty()) return api::parse_options_text(*upload.options, limits);
   throw Error(ErrorCode::invalid_option,
-              "Options are given in the query and in the part \"options\"; give them once.",
+              "Options are given in the query and in the body; give them once.",
               "/" + request.query.begin()->first);
 }
 
@@ -69,9 +68,19 @@ JobRecord Submissions::accept(const Request& request, bool synchronous) {
   }
 }
 
+Upload Submissions::bring(const Request& request, BodyKind kind, const std::string& upload) {
+  const UploadFolder folder{.path = blobs_.begin_upload(upload), .take = [&](std::int64_t bytes) {
+                              blobs_.room().take_for_upload(upload, bytes);
+                            }};
+  if (kind == BodyKind::asset) return receive_asset(*request.body, folder);
+  if (kind == BodyKind::multipart) return receive_parts(*request.body, folder);
+  MeshReference named = receive_mesh_reference(*request.body);
+  return {.input = meshes_.share(request.caller.owner, named.sha256, upload),
+          .options = std::move(named.options)};
+}
+
 Submission Submissions::receive(const Request& request, const std::string& upload) {
   const BodyKind kind = body_kind(request.header("Content-Type"));
-  const bool raw = kind == BodyKind::asset;
   api::JobOptions options = api::parse_options(request.query, limits_);  // before the body is read
   Submission submission{.job = {},
                         .sender = sender_of(request),
@@ -86,15 +95,13 @@ Submission Submissions::receive(const Request& request, const std::string& uploa
   job.trace = current_trace();
   job.webhook = request.header("Unwrapd-Webhook");
   if (!job.webhook.empty()) static_cast<void>(parse_webhook(job.webhook, webhooks_));
-  const UploadFolder folder{.path = blobs_.begin_upload(upload), .take = [&](std::int64_t bytes) {
-                              blobs_.room().take_for_upload(upload, bytes);
-                            }};
-  Upload came = raw ? receive_asset(*request.body, folder) : receive_parts(*request.body, folder);
-  if (!raw) options = form_options(came, request, limits_);
+  Upload came = bring(request, kind, upload);
+  if (kind != BodyKind::asset) options = options_of(came, request, limits_);
   job.created_ms = now_ms();
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);
   job.input = std::move(came.input);
+  job.stored_bytes = kind == BodyKind::reference ? 0 : job.input.bytes;
   return submission;
 }
 

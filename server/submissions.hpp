@@ -1,12 +1,15 @@
 #pragma once
-// From a request with a mesh to a queued job: cheap checks before the body is read, the body
-// straight to disk, and the job in the queue when all of it is there.
+// From a request with a mesh, or the name of a stored one, to a queued job: cheap checks before the
+// body is read, the body straight to disk, and the job in the queue when all of it is there.
 
 #include "api/limits.hpp"
 #include "api/options.hpp"
 #include "server/blob_store.hpp"
 #include "server/http.hpp"
+#include "server/job_input.hpp"
 #include "server/job_queue.hpp"
+#include "server/media_types.hpp"
+#include "server/meshes.hpp"
 #include "server/webhook_url.hpp"
 
 namespace unwrapd::server {
@@ -14,23 +17,25 @@ namespace unwrapd::server {
 class Submissions {
  public:
   Submissions(JobQueue& queue, BlobStore& blobs, const api::Limits& limits,
-              const WebhookConfig& webhooks)
-      : queue_(queue), blobs_(blobs), limits_(limits), webhooks_(webhooks) {}
+              const WebhookConfig& webhooks, Meshes& meshes)
+      : queue_(queue), blobs_(blobs), limits_(limits), webhooks_(webhooks), meshes_(meshes) {}
 
   /// synchronous: the sender waits, so the mesh must be small. Where the path has an id, it becomes
   /// the job's; a request by Idempotency-Key or by such an id may come again and gets the same job.
   /// Throws Error: queue_full, draining, unsupported_media_type, invalid_option, malformed_request,
   /// body_too_large, idempotency_conflict, too_many_jobs, quota_exceeded, storage_full,
-  /// storage_failed, webhook_refused.
+  /// storage_failed, webhook_refused, mesh_not_found.
   JobRecord accept(const Request& request, bool synchronous);
 
  private:
+  [[nodiscard]] Upload bring(const Request& request, BodyKind kind, const std::string& upload);
   [[nodiscard]] Submission receive(const Request& request, const std::string& upload);
 
   JobQueue& queue_;
   BlobStore& blobs_;
   const api::Limits& limits_;
   const WebhookConfig& webhooks_;
+  Meshes& meshes_;
 };
 
 }  // namespace unwrapd::server

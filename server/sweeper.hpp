@@ -1,7 +1,7 @@
 #pragma once
 // Removes what is kept long enough: first the files of a finished job (410 from then on), and after
-// as long again the job itself (404). Where the disk may hold only so much, the files of the job
-// that ended first go earlier.
+// as long again the job itself (404); and meshes that were not used for so long. Where the disk may
+// hold only so much, the files of the job that ended first, or that mesh, go earlier.
 
 #include <chrono>
 #include <cstdint>
@@ -10,20 +10,26 @@
 #include "server/blob_store.hpp"
 #include "server/job_store.hpp"
 #include "server/log.hpp"
+#include "server/mesh_store.hpp"
 
 namespace unwrapd::server {
 
 /// One sweep at this time.
 void sweep(JobStore& store, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep);
 
-/// Gives up the files of the job that ended first; false when no finished job has any.
-bool evict_oldest(JobStore& store, BlobStore& blobs);
+/// The same of stored meshes: those that were not used for so long, and that no job shares.
+void sweep(MeshStore& meshes, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep);
+
+/// Gives up the files of the job that ended first, or the mesh that is unused for longer and that
+/// no job shares; false when there is neither.
+bool evict_oldest(JobStore& store, MeshStore& meshes, BlobStore& blobs);
 
 /// Sweeps, and notices when the time of day is set: nothing is then removed too early or too late.
 class Sweeper {
  public:
-  Sweeper(JobStore& store, BlobStore& blobs, const Log& log, std::chrono::seconds keep)
-      : store_(store), blobs_(blobs), log_(log), keep_(keep) {}
+  Sweeper(JobStore& store, MeshStore& meshes, BlobStore& blobs, const Log& log,
+          std::chrono::seconds keep)
+      : store_(store), meshes_(meshes), blobs_(blobs), log_(log), keep_(keep) {}
 
   /// How long to wait between two sweeps.
   [[nodiscard]] std::chrono::milliseconds pause() const;
@@ -32,6 +38,7 @@ class Sweeper {
 
  private:
   JobStore& store_;
+  MeshStore& meshes_;
   BlobStore& blobs_;
   const Log& log_;
   const std::chrono::seconds keep_;

@@ -8,7 +8,8 @@
 namespace unwrapd {
 
 void check_memory(const Disk& disk, std::size_t bytes) {
-  if (disk.core != nullptr) check_memory(*disk.core, kJobBytesPerFace * disk.faces.size() + bytes);
+  if (disk.core != nullptr)
+    check_memory(kJobBytesPerFace * disk.faces.size() + bytes, disk.core->memory_limit());
 }
 
 }  // namespace unwrapd

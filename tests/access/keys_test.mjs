@@ -2,6 +2,7 @@
 // jobs of another; and no key comes into the log.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { createHash } from "node:crypto";
 import { readdirSync, statSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
@@ -110,6 +111,47 @@ test("a key sees its own jobs alone; admin sees all; a removed key sees nothing"
   assert.ok(server.log.length > 0);
   for (const secret of [...keys, adminKey, signature])
     for (const text of [server.log, list]) assert.ok(!text.includes(secret.slice(-40)), "a secret");
+});
+
+test("a key's meshes are its own, and count once", async (t) => {
+  const data = dataDirectory(t);
+  const mesh = grid(30);
+  const sha256 = createHash("sha256").update(mesh).digest("hex");
+  const most = Math.round(mesh.length * 1.5); // room for it once, and for small results
+  const [a, b, boss] = [
+    ["a", "--max-bytes", String(most)],
+    ["b"],
+    ["boss", "--scopes", "admin"],
+  ].map((flags) => addKey(data, ...flags));
+  const server = await Server.start(data, "--require-keys");
+  const holders = [a, b, boss].map((key) => new Holder(server, key));
+  const put = (holder, body = mesh, name = sha256) =>
+    holder.fetch(`/v1/meshes/${name}`, { method: "PUT", headers: { "Content-Type": "model/obj" }, body });
+  const job = (holder, method) =>
+    holder.fetch("/v1/jobs", {
+      method: "POST",
+      headers: { "Content-Type": "application/json", "Cache-Control": "no-cache" },
+      body: JSON.stringify({ mesh: sha256, options: { method, stop: { iterations: 10_000 } } }),
+    });
+  const [mine, ...others] = holders;
+  assert.equal((await put(mine)).status, 201);
+  for (const other of others) {
+    await refused(await other.fetch(`/v1/meshes/${sha256}`), 404, "mesh_not_found");
+    await refused(await job(other, "arap"), 404, "mesh_not_found");
+    assert.equal((await put(other)).status, 201, "each has its own");
+  }
+  assert.equal((await put(mine)).status, 200);
+  const jobs = await Promise.all(["arap", "slim", "hybrid"].map((method) => job(mine, method)));
+  for (const answer of jobs) assert.equal(answer.status, 202, await answer.clone().text());
+  await refused(await mine.post(QUICK, 29), 507, "quota_exceeded");
+  const second = grid(29);
+  const name = createHash("sha256").update(second).digest("hex");
+  await refused(await put(mine, second, name), 507, "quota_exceeded");
+  for (const answer of jobs) {
+    const { id } = await answer.json();
+    await mine.fetch(`/v1/jobs/${id}`, { method: "DELETE" });
+  }
+  await server.end("SIGTERM");
 });
 
 test("scopes, rates and quotas are kept, each by its code", async (t) => {

@@ -8,6 +8,7 @@
 #include "api/error_table.hpp"
 #include "api/events.hpp"
 #include "api/job.hpp"
+#include "api/mesh.hpp"
 #include "api/openapi.hpp"
 #include "api/options.hpp"
 #include "error_of.hpp"
@@ -57,6 +58,17 @@ TEST(Examples, OfEventsEndsWithTheExampleJob) {
   const std::string last = sse_frame(final_event(5, job));
   EXPECT_TRUE(stream.ends_with(last));
   EXPECT_TRUE(stream.starts_with(sse_frame(queued_event(1, 0)) + sse_frame(started_event(2, 1))));
+}
+
+TEST(Examples, OfAStoredMeshIsWhatIsWritten) {
+  const std::string text = example("mesh_stored.json");
+  const Json json = Json::parse(text);
+  const Mesh mesh{.sha256 = json.at("sha256"),
+                  .bytes = json.at("bytes"),
+                  .media_type = json.at("media_type"),
+                  .created = json.at("created"),
+                  .expires = json.at("expires")};
+  EXPECT_EQ(to_json(mesh).dump(2) + "\n", text);
 }
 
 TEST(Contract, IsEmbeddedWhole) {

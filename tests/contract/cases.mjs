@@ -3,5 +3,6 @@
 export * from './cases/access.mjs';
 export * from './cases/bodies.mjs';
 export * from './cases/jobs.mjs';
+export * from './cases/meshes.mjs';
 export * from './cases/options.mjs';
 export * from './cases/service.mjs';

@@ -4,6 +4,7 @@ import fc from 'fast-check';
 
 import {multipart, request} from './http.mjs';
 import * as meshes from './meshes.mjs';
+import {pathTo} from './run.mjs';
 
 const kSeed = 20260131;
 const kTiny = meshes.glb(1);
@@ -236,10 +237,10 @@ async function paths(run, base) {
                        fc.constantFrom('..', '.', '%00', '%'),
                        fc.stringMatching(/^j_[0-9a-f]{32}$/));
   const operations = run.contract.operations().filter(
-    ({path, method}) => path.includes('{id}') && method !== 'PUT');  // a PUT makes the job
+    ({path, method}) => path.includes('{') && method !== 'PUT');  // a PUT makes what it names
   const property = fc.asyncProperty(fc.constantFrom(...operations), ids, async (operation, id) => {
     const segment = encodeURIComponent(id).replaceAll('.', '%2e');
-    const path = operation.path.replace('{id}', segment);
+    const path = pathTo(operation.path, segment, segment);
     const answer = await request(base, {method: operation.method, path});
     obey(run, operation.id, answer);
     if (answer.status !== 404) throw new Error(`status ${answer.status} for an unknown job`);

@@ -4,6 +4,7 @@ import fc from 'fast-check';
 
 import {request} from './http.mjs';
 import * as meshes from './meshes.mjs';
+import {pathTo} from './run.mjs';
 
 const kSeed = 20260131;
 const kRuns = 400;
@@ -56,7 +57,7 @@ function someCall(contract, operation, job) {
   const headers = fc.record(kFields, {requiredKeys: []});
   const hasBody = ['POST', 'PUT'].includes(operation.method);
   return fc.record({query, headers, body: fc.constant(hasBody ? meshes.obj(1) : undefined)})
-    .map((call) => ({...call, operation, path: operation.path.replace('{id}', job)}));
+    .map((call) => ({...call, operation, path: pathTo(operation.path, job)}));
 }
 
 /** After a job has been done and one is removed again and again. */

@@ -37,7 +37,7 @@ export function tinyLimits(run, binary) {
   const flags = ['--workers', '1', '--max-body-bytes', '4000', '--max-faces', '20'];
   return withServer(binary, flags, async ({base}) => {
     await failure(run, base, {body: meshes.glb(4), code: 'too_many_faces', status: 413});
-    for (const id of kSubmissions) {
+    for (const id of [...kSubmissions, 'putMesh']) {
       const job = newId();
       const problem = await run.json(base, id,
                                      {job, headers: kGlb, body: meshes.glb(20), status: 413});

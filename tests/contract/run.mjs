@@ -4,6 +4,12 @@ import {request} from './http.mjs';
 /** What a job that succeeded has to show. */
 export const kOutcomes = ['getResult', 'getReport', 'getLayout', 'getLayoutPng', 'getPreview'];
 
+const kNoMesh = '0'.repeat(64);
+
+/** A path of the contract with its parameters filled in. */
+export const pathTo = (path, job, sha256 = kNoMesh) =>
+  path.replace('{id}', job).replace('{sha256}', sha256);
+
 const kShown = 40;    // failures that are printed in full
 const kEchoed = 200;  // characters of a value
 
@@ -43,14 +49,14 @@ export class Run {
   }
 
   /**
-   * Calls an operation and judges the answer. job fills the path's {id}; query is an object or an
+   * Calls an operation and judges the answer. job fills the path's {id}, sha256 its {sha256}; query is an object or an
    * array of pairs; status is the one expected.
    */
-  async call(base, id, {job, query = {}, headers, body, status, name = ''} = {}) {
+  async call(base, id, {job, sha256, query = {}, headers, body, status, name = ''} = {}) {
     const {method, path} = this.contract.operation(id);
     const search = new URLSearchParams(query).toString();
     const answer = await request(base, {
-      method, headers, body, path: path.replace('{id}', job) + (search ? `?${search}` : ''),
+      method, headers, body, path: pathTo(path, job, sha256) + (search ? `?${search}` : ''),
     });
     return this.judge(name || `${id} → ${status ?? 'any'}`, id, answer, status);
   }

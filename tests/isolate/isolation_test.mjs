@@ -1,6 +1,7 @@
 // --isolate: whatever a worker process does, one job pays for it, and nothing else. UNWRAPD names the
 // server of misbehaving_main.cpp.
 import assert from 'node:assert/strict';
+import {createHash} from 'node:crypto';
 import {existsSync, readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import test, {after, before} from 'node:test';
@@ -107,6 +108,21 @@ for (const what of ['segv', 'abort', 'connect', 'chatter']) {
     }
     for (const path of ['', '/result', '/report']) await get(isolated, `/v1/jobs/${job.id}${path}`);
     assert.equal((await done(isolated, meshes.obj())).state, 'succeeded');
+  });
+}
+
+for (const [what, status, code] of [['segv', 500, 'internal'], ['chatter', 500, 'internal'],
+                                    ['memory', 200, 'memory_limit'], ['none', 200, undefined]]) {
+  test(`a worker that does ${what} while a mesh is looked at costs that request alone`, async () => {
+    const body = drawing(what);
+    const path = `/v1/meshes/${createHash('sha256').update(body).digest('hex')}`;
+    assert.equal((await request(isolated.base, {method: 'PUT', path, headers: kObj, body})).status, 201);
+    const answer = await request(isolated.base, {path});
+    const seen = JSON.parse(answer.body.toString());
+    assert.deepEqual([answer.status, (seen.problem ?? seen).code], [status, code], answer.body.toString());
+    if (what !== 'none') return;
+    await request(plain.base, {method: 'PUT', path, headers: kObj, body});
+    assert.deepEqual(seen.analysis, JSON.parse((await get(plain, path)).toString()).analysis);
   });
 }
 

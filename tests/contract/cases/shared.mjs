@@ -1,5 +1,5 @@
 // What several groups of cases send and judge.
-import {randomBytes} from 'node:crypto';
+import {createHash, randomBytes} from 'node:crypto';
 import validator from 'gltf-validator';
 
 import {kOutcomes} from '../run.mjs';
@@ -12,6 +12,9 @@ export const kRepresentations =
 
 /** Of a job that is not there. */
 export const newId = () => `j_${randomBytes(16).toString('hex')}`;
+
+/** SHA-256, as meshes are named by it. */
+export const digest = (bytes) => createHash('sha256').update(bytes).digest('hex');
 
 /** The calls that make jobs. */
 export const kSubmissions = ['createJob', 'putJob', 'unwrap'];

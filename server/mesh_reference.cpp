@@ -1,0 +1,59 @@
+#include "server/mesh_reference.hpp"
+
+#include "api/options.hpp"
+#include "core/error.hpp"
+#include "server/identity.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::size_t kMaxBytes = api::kMaxOptionsBytes + 1024;
+
+[[noreturn]] void refuse(const std::string& member, const std::string& what) {
+  throw Error(ErrorCode::invalid_option, what, "/" + api::pointer_token(member));
+}
+
+std::string mesh_of(const api::Json& value) {
+  if (!value.is_string() || !is_sha256(value.get_ref<const std::string&>()))
+    refuse("mesh", "The mesh is named by its SHA-256; send its 64 lowercase hex digits.");
+  return value;
+}
+
+std::string options_of(const api::Json& value) {
+  if (!value.is_object()) refuse("options", "The options must be a JSON object.");
+  return value.dump();
+}
+
+}  // namespace
+
+MeshReference parse_mesh_reference(std::string_view text) {
+  const api::Json json = api::parse_json(text, {.max_bytes = kMaxBytes});
+  if (!json.is_object()) {
+    throw Error(ErrorCode::malformed_request,
+                "The body is no JSON object; send {\"mesh\": SHA-256, \"options\": {...}}.");
+  }
+  MeshReference reference;
+  for (const auto& [member, value] : json.items()) {
+    if (member == "mesh") {
+      reference.sha256 = mesh_of(value);
+    } else if (member == "options") {
+      reference.options = options_of(value);
+    } else {
+      refuse(member, "There is no member of this name; there are mesh and options.");
+    }
+  }
+  if (reference.sha256.empty()) refuse("mesh", "No mesh is named; send its SHA-256.");
+  return reference;
+}
+
+MeshReference receive_mesh_reference(BodyReader& body) {
+  std::string text;
+  body.read([&](std::string_view bytes) {
+    if (text.size() + bytes.size() > kMaxBytes)
+      throw Error(ErrorCode::body_too_large, "The JSON exceeds 16 MiB; shorten the options.");
+    text += bytes;
+  });
+  return parse_mesh_reference(text);
+}
+
+}  // namespace unwrapd::server

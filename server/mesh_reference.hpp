@@ -1,0 +1,24 @@
+#pragma once
+// A request for a job that names a stored mesh: {"mesh": SHA-256, "options": {...}}.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/http.hpp"
+
+namespace unwrapd::server {
+
+struct MeshReference {
+  std::string sha256;
+  std::optional<std::string> options;  ///< JSON text, where there are any
+};
+
+/// Throws Error: malformed_request for what is no JSON object; invalid_option with the pointer of a
+/// member that is missing, unknown, given twice or of another type.
+MeshReference parse_mesh_reference(std::string_view text);
+
+/// The same from a body. Throws what BodyReader throws, too.
+MeshReference receive_mesh_reference(BodyReader& body);
+
+}  // namespace unwrapd::server
