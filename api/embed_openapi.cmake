@@ -1,10 +1,11 @@
-# Writes the C++ source that holds openapi.yaml: cmake -DYAML=... -DOUTPUT=... -P this file.
-file(READ ${YAML} text)
-file(WRITE ${OUTPUT} "#include \"api/openapi.hpp\"
-
-namespace unwrapd::api {
-
-std::string_view openapi_yaml() { return R\"yaml(${text})yaml\"; }
-
-}  // namespace unwrapd::api
-")
+# Writes the C++ source that holds texts, each as a function: cmake -DTEXTS=name=file;... -DOUTPUT=...
+# -P this file.
+set(source "#include \"api/openapi.hpp\"\n\nnamespace unwrapd::api {\n")
+foreach(text ${TEXTS})
+  string(REPLACE "=" ";" text "${text}")
+  list(GET text 0 name)
+  list(GET text 1 path)
+  file(READ "${path}" content)
+  string(APPEND source "\nstd::string_view ${name}() { return R\"text(${content})text\"; }\n")
+endforeach()
+file(WRITE ${OUTPUT} "${source}\n}  // namespace unwrapd::api\n")

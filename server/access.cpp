@@ -13,8 +13,9 @@ namespace {
 constexpr std::string_view kScheme = "Bearer ";
 constexpr double kSecondsPerMinute = 60;
 // Open to everybody: what the server is and whether it is well, and no job.
-constexpr std::array<std::string_view, 5> kPublic = {"/v1/methods", "/v1/limits", "/openapi.yaml",
-                                                     "/healthz", "/readyz"};
+constexpr std::array<std::string_view, 8> kPublic = {"/v1/methods",   "/v1/limits", "/openapi.yaml",
+                                                     "/openapi.json", "/docs",      "/docs.css",
+                                                     "/healthz",      "/readyz"};
 
 /// Schemes have no case (RFC 9110, 11.1).
 bool is_bearer(std::string_view field) {

@@ -6,13 +6,6 @@
 namespace unwrapd::server {
 namespace {
 
-/// Whether the sender has what this tag names, and asks only for something else.
-bool is_known(const Request& request, const std::string& etag) {
-  if (request.method == "POST") return false;  // an answer to a call, not a copy of a resource
-  const std::string if_none_match = request.header("If-None-Match");
-  return if_none_match == "*" || if_none_match.find(etag) != std::string::npos;
-}
-
 /// Range counts when there is no If-Range, or when that is the tag of what would be sent.
 bool range_counts(const Request& request, const std::string& etag) {
   const std::string condition = request.header("If-Range");
@@ -34,6 +27,12 @@ void send_range(const Request& request, FileBody& body, Response& response) {
 
 }  // namespace
 
+bool has_copy(const Request& request, const std::string& etag) {
+  if (request.method == "POST") return false;  // an answer to a call, not a copy of a resource
+  const std::string if_none_match = request.header("If-None-Match");
+  return if_none_match == "*" || if_none_match.find(etag) != std::string::npos;
+}
+
 void require_result(const JobRecord& job) {
   if (!api::is_final(job.state)) {
     throw Error(ErrorCode::job_unfinished,
@@ -51,7 +50,7 @@ Response stored_response(const StoredResult& stored, std::string_view type,
   const std::string etag = "\"" + stored.sha256 + "\"";
   Response response;
   response.headers = {{"ETag", etag}, {"Accept-Ranges", "bytes"}};
-  if (is_known(request, etag)) {
+  if (has_copy(request, etag)) {
     response.status = 304;
     return response;
   }

@@ -8,6 +8,9 @@
 
 namespace unwrapd::server {
 
+/// Whether the sender of a GET has what this ETag names, and asks only for something else.
+bool has_copy(const Request& request, const std::string& etag);
+
 /// Throws unless the job has succeeded and its files are still kept: job_unfinished,
 /// result_expired, or the job's own problem.
 void require_result(const JobRecord& job);

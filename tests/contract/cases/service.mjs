@@ -1,5 +1,6 @@
 // The calls about the server itself, and what every path and method answers.
 import {readFileSync} from 'node:fs';
+import {isDeepStrictEqual} from 'node:util';
 
 import {raw, request} from '../http.mjs';
 import * as meshes from '../meshes.mjs';
@@ -15,6 +16,44 @@ export async function service(run, base) {
   const contract = await run.call(base, 'getContract', {status: 200});
   run.expectEqual('the contract served is the contract tested', contract.body.toString(),
                   readFileSync(run.contract.path, 'utf8'));
+  const asJson = await run.json(base, 'getContractAsJson', {status: 200});
+  run.expect('the same as JSON', isDeepStrictEqual(asJson, run.contract.document) ? [] : ['it differs']);
+  await page(run, base);
+  for (const id of ['getContract', 'getContractAsJson', 'getDocs', 'getDocsStyle']) {
+    const {headers} = await run.call(base, id, {status: 200});
+    const same = {'If-None-Match': headers.etag};
+    await run.call(base, id, {headers: same, status: 304, name: `${id} that is known`});
+  }
+}
+
+/** The page has every call, schema and error, and refers to nothing but itself. */
+async function page(run, base) {
+  const answer = await run.call(base, 'getDocs', {status: 200});
+  const html = answer.body.toString();
+  const ids = new Set([...html.matchAll(/ id="([^"]+)"/g)].map((match) => match[1]));
+  const wanted = [...run.contract.operations().map(({id}) => id),
+                  ...Object.keys(run.contract.document.components.schemas).map((name) => `schema-${name}`)];
+  run.expect('what the page has', wanted.filter((id) => !ids.has(id)));
+  run.expect('the errors of the page',
+             run.contract.errorCodes().filter((code) => !html.includes(`<td><code>${code}</code></td>`)));
+  const links = [...html.matchAll(/(?:href|src)="([^"]*)"/g)].map((match) => match[1]);
+  const beside = ['docs.css', 'openapi.yaml', 'openapi.json'];
+  run.expect('the links of the page', links.filter((link) =>
+    !(link.startsWith('#') ? ids.has(link.slice(1)) : beside.includes(link))));
+  run.expect('scripts', html.match(/<script|\son[a-z]+=|style="/gi) ?? []);
+  run.expect('elements that are left open', unbalanced(html));
+  run.expectEqual('its policy', answer.headers['content-security-policy']?.split(';')[0], "default-src 'none'");
+}
+
+/** Elements that are closed in another order than they were opened. */
+function unbalanced(html) {
+  const open = [];
+  for (const [, slash, name] of html.matchAll(/<(\/?)([a-z][a-z0-9]*)[^>]*>/g)) {
+    if (['meta', 'link'].includes(name)) continue;
+    if (!slash) open.push(name);
+    else if (open.pop() !== name) return [`</${name}>`];
+  }
+  return open;
 }
 
 /** HEAD is GET without the body. */
