@@ -1,6 +1,8 @@
 // Where the values of the options come from, who wins, and what is said of a wrong one.
 #include "server/config.hpp"
 
+#include <unistd.h>  // environ
+
 #include <toml++/toml.h>
 #include <CLI/CLI.hpp>
 
@@ -12,6 +14,7 @@
 #include <thread>
 
 #include "server/config_row.hpp"
+#include "server/variables.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -50,6 +53,7 @@ class Reading {
   void declare(CLI::App& app);
   void read_file(const std::string& path);
   void read_environment();
+  void check_environment() const;
   void read_flags(const CLI::App& app);
   void finish();
   void set(const ConfigRow& row, const std::string& text, const std::string& source);
@@ -146,6 +150,17 @@ void Reading::read_environment() {
   });
 }
 
+/// A variable of ours that there is not is a mistake, as an unknown key of the file is.
+void Reading::check_environment() const {
+  std::vector<std::string> known = {"UNWRAPD_CONFIG"};
+  each_row([&](const ConfigGroup&, const ConfigRow& row) {
+    known.push_back(variable_name(row.heading.name));
+  });
+  const std::optional<UnknownVariable> unknown = unknown_variable(environ, known);
+  if (!unknown) return;
+  wrong("there is no variable " + unknown->name + "; did you mean " + unknown->nearest + "?");
+}
+
 void Reading::read_flags(const CLI::App& app) {
   each_row([&](const ConfigGroup&, const ConfigRow& row) {
     const std::string flag = "--" + std::string(row.heading.name);
@@ -214,6 +229,7 @@ CommandLine Reading::run(int argc, const char* const* argv) {
   const char* file = std::getenv("UNWRAPD_CONFIG");  // NOLINT(concurrency-mt-unsafe)
   if (file_.empty() && file) file_ = file;
   if (!file_.empty()) read_file(file_);
+  check_environment();
   read_environment();
   read_flags(app);
   finish();

@@ -129,6 +129,29 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithItsPlaceAndWhatWouldBeRight) {
               AllOf(HasSubstr("UNWRAPD_MAX_QUEUE: max-queue takes"), HasSubstr("not \"many\"")));
 }
 
+TEST(Config, AVariableThatThereIsNotIsAMistakeThatNamesTheNearest) {
+  for (const auto& [name, nearest] : {std::pair{"UNWRAPD_MAX_QUEU", "UNWRAPD_MAX_QUEUE"},
+                                      {"UNWRAPD_MAX_QEUUE", "UNWRAPD_MAX_QUEUE"},
+                                      {"UNWRAPD_CONFIG_FILE", "UNWRAPD_CONFIG"},
+                                      {"UNWRAPD_CORS_ORIGIN", "UNWRAPD_CORS_ORIGINS"},
+                                      {"UNWRAPD_", "UNWRAPD_DATA"}}) {
+    const Environment variable(name, "9");
+    EXPECT_THAT(mistake({}), AllOf(HasSubstr(std::string("there is no variable ") + name + ";"),
+                                   HasSubstr(std::string("did you mean ") + nearest + "?")));
+  }
+}
+
+TEST(Config, VariablesOfOthersAreTheirs) {
+  const Environment client("UNWRAPD_SERVER", "http://farm:8080");
+  const Environment service("UNWRAPD_SERVICE_HOST", "10.0.0.1");
+  const Environment port("UNWRAPD_PORT", "tcp://10.0.0.1:8080");
+  const Environment linked("UNWRAPD_PORT_8080_TCP_ADDR", "10.0.0.1");
+  const Environment ours("UNWRAPD_MAX_QUEUE", "9");
+  EXPECT_EQ(parse({}).config.limits.max_queue, 9);
+  const Environment mistaken("UNWRAPD_PORT", "8080");  // what somebody may well try
+  EXPECT_THAT(mistake({}), HasSubstr("there is no variable UNWRAPD_PORT;"));
+}
+
 TEST(Config, MistakesEndTheProgram) {
   for (const std::vector<const char*>& flags :
        std::vector<std::vector<const char*>>{{"--listen", "8080"},
