@@ -7,6 +7,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <utility>
 
 namespace unwrapd::server {
 namespace {
@@ -17,6 +18,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kReadBytes = std::size_t{64} * 1024;
 constexpr std::size_t kMaxChunkLine = 256;  // a chunk's size with its extensions
 constexpr int kMaxTrailers = 32;
+constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
 constexpr std::chrono::seconds kLingerTime{10};
 constexpr milliseconds kLingerSilence{2'000};
 
@@ -107,6 +109,8 @@ bool Connection::next_request() {
   if (head_end_ > kMaxHeadBytes)
     throw Error(ErrorCode::headers_too_large, "The header is longer than 32 KiB; shorten it.");
   framing_ = vet_head(std::string_view(buffer_).substr(0, head_end_));
+  head_end_ -= static_cast<std::size_t>(to_origin_form(buffer_, framing_));
+  if (buffer_.size() > head_end_) framing_.awaits_continue = false;  // it did not wait
   left_ = framing_.content_length;
   body_done_ = !framing_.has_body();
   chunk_open_ = false;
@@ -211,6 +215,7 @@ std::optional<std::string> Connection::read_line() {
 
 /// Receives more of the body.
 bool Connection::fill_body() {
+  if (std::exchange(framing_.awaits_continue, false)) write(kContinue);
   buffer_.erase(0, used_);
   used_ = 0;
   head_end_ = 0;

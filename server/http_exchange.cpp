@@ -122,6 +122,12 @@ void put(const Response& response, std::optional<StreamBody>& begun, httplib::Re
   }
 }
 
+/// How long a connection may be idle; there is no limit to the requests on it.
+std::string kept_alive(std::chrono::milliseconds idle) {
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(idle);
+  return "timeout=" + std::to_string(seconds.count());
+}
+
 bool takes_body(const httplib::Request& request) {
   const bool method =
       request.method == "POST" || request.method == "PUT" || request.method == "PATCH";
@@ -132,7 +138,8 @@ bool takes_body(const httplib::Request& request) {
 
 class Exchange::Http final : public httplib::Server {
  public:
-  Http(const HttpUses& uses, const Log& log) : uses_(uses), log_(log) {
+  Http(const HttpUses& uses, const Log& log, std::chrono::milliseconds idle)
+      : uses_(uses), log_(log), kept_(kept_alive(idle)) {
     const auto with_body = [this](const httplib::Request& request, httplib::Response& response,
                                   const httplib::ContentReader& reader) {
       HttplibBody body(reader);
@@ -208,10 +215,10 @@ class Exchange::Http final : public httplib::Server {
     put(response, begun_, out);
   }
 
-  /// The stream has no framing any more, and ranges and encodings are not
+  /// The stream has no framing any more, and ranges, encodings and who waits for 100 are not
   /// httplib's business.
   static void unframe(httplib::Request& request) {
-    for (const char* name : {"Content-Length", "Transfer-Encoding", "Accept-Encoding"})
+    for (const char* name : {"Content-Length", "Transfer-Encoding", "Accept-Encoding", "Expect"})
       request.headers.erase(name);
     request.ranges.clear();
   }
@@ -233,10 +240,12 @@ class Exchange::Http final : public httplib::Server {
   /// Corrects what httplib has added to the header fields.
   void finish(httplib::Response& response) {
     if (!connection_->is_read()) last_ = true;  // its rest is no request
+    const bool kept = response.headers.erase("Keep-Alive") > 0;
     if (last_) {
-      response.headers.erase("Keep-Alive");
       response.headers.erase("Connection");
       response.set_header("Connection", "close");
+    } else if (kept) {
+      response.set_header("Keep-Alive", kept_);
     }
     done_.status = response.status;
     if (response.status == 204 || response.status == 304) response.headers.erase("Content-Length");
@@ -244,6 +253,7 @@ class Exchange::Http final : public httplib::Server {
 
   const HttpUses& uses_;
   const Log& log_;
+  const std::string kept_;            // the Keep-Alive of answers after which another may come
   Connection* connection_ = nullptr;  // of the request that is being answered
   bool last_ = false;
   std::optional<StreamBody> begun_;
@@ -253,8 +263,8 @@ class Exchange::Http final : public httplib::Server {
   std::optional<TraceScope> trace_;
 };
 
-Exchange::Exchange(const HttpUses& uses, const Log& log)
-    : http_(std::make_unique<Http>(uses, log)) {}
+Exchange::Exchange(const HttpUses& uses, const Log& log, std::chrono::milliseconds idle)
+    : http_(std::make_unique<Http>(uses, log, idle)) {}
 
 Exchange::~Exchange() = default;
 

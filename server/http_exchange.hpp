@@ -6,6 +6,7 @@
 // handler a look-up of which connection it serves. Rejected: one for each
 // connection, whose routes (regular expressions) cost more than most requests.
 
+#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -30,8 +31,8 @@ struct HttpUses {
 /// Not for use by two threads at once.
 class Exchange {
  public:
-  /// Both must outlive it.
-  Exchange(const HttpUses& uses, const Log& log);
+  /// Both must outlive it. idle: for so long a client is told that it may wait between requests.
+  Exchange(const HttpUses& uses, const Log& log, std::chrono::milliseconds idle);
   ~Exchange();
 
   /// Answers the request whose head the connection has just vetted; last: no

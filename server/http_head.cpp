@@ -28,6 +28,12 @@ struct Counts {
   throw Error(ErrorCode::malformed_request, what);
 }
 
+[[noreturn]] void no_request_line() {
+  malformed(
+      "The request line is not of the form \"GET /path HTTP/1.1\"; "
+      "check the client.");
+}
+
 bool same(std::string_view left, std::string_view right) {
   return !IgnoreCase()(left, right) && !IgnoreCase()(right, left);
 }
@@ -65,18 +71,32 @@ bool needs_length(std::string_view method) {
   return std::ranges::find(with_body, method) != with_body.end();
 }
 
+/// Bytes of "http://host:80" before the path of an absolute target, 0 of any other. The host is
+/// under the rules of the Host header, which it stands for.
+std::size_t authority_of(std::string_view target) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (!same(target.substr(0, scheme.size()), scheme)) continue;
+    const std::size_t end = std::min(target.find_first_of("/?#", scheme.size()), target.size());
+    const std::string_view host = target.substr(scheme.size(), end - scheme.size());
+    if (host.empty() || !is_made_of(host, kHostSymbols))
+      malformed("The address names no host; check the client.");
+    return end;
+  }
+  return 0;
+}
+
 /// Returns the method.
-std::string_view vet_request_line(std::string_view line) {
+std::string_view vet_request_line(std::string_view line, Framing& framing) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');
-  if (first == last || !is_token(line.substr(0, first)) || line.at(first + 1) != '/')
-    malformed(
-        "The request line is not of the form \"GET /path HTTP/1.1\"; "
-        "check the client.");
-  const std::string_view target = line.substr(first + 1, last - first - 1);
-  const std::string_view version = line.substr(last + 1);
+  if (first == last || !is_token(line.substr(0, first))) no_request_line();
   if (line.size() > kMaxLineBytes)
     throw Error(ErrorCode::headers_too_large, "The address is longer than 8 KiB; shorten it.");
+  const std::string_view target = line.substr(first + 1, last - first - 1);
+  const std::string_view version = line.substr(last + 1);
+  framing.target = first + 1;
+  framing.authority = authority_of(target);
+  if (framing.authority == 0 && !target.starts_with('/')) no_request_line();
   if (target.find(' ') != std::string_view::npos || std::ranges::any_of(target, is_control))
     malformed(
         "The address contains a space or a control character; "
@@ -103,6 +123,7 @@ void vet_field(std::string_view name, std::string_view value, Framing& framing, 
     framing.chunked = true;
     if (!same(value, "chunked")) malformed("Transfer-Encoding is not \"chunked\"; use that.");
   }
+  if (same(name, "expect")) framing.awaits_continue = same(value, "100-continue");
   if (same(name, "content-encoding") && !same(value, "identity")) {
     throw Error(ErrorCode::unsupported_media_type,
                 "The body has a Content-Encoding; send it uncompressed.");
@@ -130,8 +151,8 @@ void vet_counts(const Counts& counts, std::string_view method) {
 
 Framing vet_head(std::string_view head) {
   std::size_t end = head.find(kLineEnd);
-  const std::string_view method = vet_request_line(head.substr(0, end));
   Framing framing;
+  const std::string_view method = vet_request_line(head.substr(0, end), framing);
   Counts counts;
   counts.version_1_0 = head.substr(0, end).ends_with("1.0");
   while (true) {
@@ -148,7 +169,16 @@ Framing vet_head(std::string_view head) {
               counts);
   }
   vet_counts(counts, method);
+  if (counts.version_1_0) framing.awaits_continue = false;  // it knows no 100 (RFC 9110, 10.1.1)
   return framing;
+}
+
+std::ptrdiff_t to_origin_form(std::string& head, const Framing& framing) {
+  if (framing.authority == 0) return 0;
+  const char next = head.at(framing.target + framing.authority);
+  const std::string_view path = next == '/' ? "" : "/";  // an empty one is the root
+  head.replace(framing.target, framing.authority, path);
+  return static_cast<std::ptrdiff_t>(framing.authority) - static_cast<std::ptrdiff_t>(path.size());
 }
 
 }  // namespace unwrapd::server

@@ -2,7 +2,9 @@
 // The head of a request (request line and header fields) is vetted before anything parses it: what
 // two programs could read differently is refused, which is how requests are smuggled.
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace unwrapd::server {
@@ -11,10 +13,13 @@ inline constexpr std::size_t kMaxHeadBytes = std::size_t{32} * 1024;
 inline constexpr std::size_t kMaxLineBytes = std::size_t{8} * 1024 - 2;  // httplib's, without CRLF
 inline constexpr int kMaxHeaderFields = 100;
 
-/// How the body of a request is delimited.
+/// How the body of a request is delimited, and what else is to be known before it is parsed.
 struct Framing {
   bool chunked = false;
   std::int64_t content_length = 0;  ///< of a body that is not chunked
+  bool awaits_continue = false;     ///< the sender waits for 100 before it sends the body
+  std::size_t target = 0;           ///< where the request line's target begins
+  std::size_t authority = 0;        ///< bytes of scheme and host before its path
 
   [[nodiscard]] bool has_body() const { return chunked || content_length > 0; }
 };
@@ -22,5 +27,9 @@ struct Framing {
 /// Reads the framing from a head that ends with the empty line. Throws Error: malformed_request,
 /// length_required, headers_too_large, unsupported_media_type (a Content-Encoding).
 Framing vet_head(std::string_view head);
+
+/// Makes "GET http://host/path" "GET /path" in a head that was vetted (RFC 9112, 3.2.2). Returns by
+/// how many bytes it is shorter.
+std::ptrdiff_t to_origin_form(std::string& head, const Framing& framing);
 
 }  // namespace unwrapd::server

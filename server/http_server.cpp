@@ -166,7 +166,7 @@ std::optional<Client> HttpServer::next_client() {
 }
 
 void HttpServer::work() {
-  Exchange exchange(uses_, log_);
+  Exchange exchange(uses_, log_, config_.parking.idle);
   while (std::optional<Client> client = next_client()) serve_client(std::move(*client), exchange);
 }
 

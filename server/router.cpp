@@ -44,10 +44,14 @@ std::optional<PathNames> match(std::string_view route, std::string_view path) {
   return names;
 }
 
-Response not_allowed(const std::string& allowed) {
-  Response response =
-      error_response(Error(ErrorCode::method_not_allowed,
-                           "This method is not allowed here; use one of " + allowed + "."));
+/// The answer to OPTIONS, and to what is not allowed.
+Response tell_allowed(const Request& request, const std::string& allowed) {
+  Response response;
+  response.status = 204;
+  if (request.method != "OPTIONS")
+    response =
+        error_response(Error(ErrorCode::method_not_allowed,
+                             "This method is not allowed here; use one of " + allowed + "."));
   response.headers.emplace_back("Allow", allowed);
   return response;
 }
@@ -91,7 +95,7 @@ Response Router::dispatch(Request& request, std::string_view& matched) const {
     allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
     if (route.method == "GET") allowed += ", HEAD";
   }
-  if (!allowed.empty()) return not_allowed(allowed);
+  if (!allowed.empty()) return tell_allowed(request, allowed + ", OPTIONS");
   throw Error(ErrorCode::not_found, "There is nothing at this address; see /openapi.yaml.");
 }
 

@@ -21,11 +21,20 @@ void head(std::string_view bytes) {
   const server::Framing framing = server::vet_head(whole);
   promise(framing.content_length >= 0, "a length is no less than 0");
   promise(!framing.chunked || framing.content_length == 0, "a body has one length");
+  std::string plain = whole;
+  const std::ptrdiff_t shorter = server::to_origin_form(plain, framing);
+  promise(std::ssize(plain) == std::ssize(whole) - shorter, "a head is as long as it says");
+  promise(plain.at(framing.target) == '/', "a target is a path then");
+  const server::Framing again = server::vet_head(plain);
+  promise(again.authority == 0 && again.content_length == framing.content_length &&
+              again.chunked == framing.chunked,
+          "and nothing else has changed");
 }
 
 std::vector<std::string> head_seeds() {
   return {"GET /v1/jobs?a=b HTTP/1.1\r\nHost: x\r\nAccept: */*\r\n",
           "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 12\r\nExpect: 100-continue\r\n",
+          "GET http://[::1]:80?a=b HTTP/1.1\r\nHost: x\r\n",
           "PUT / HTTP/1.0\r\nTransfer-Encoding: chunked\r\nContent-Encoding: identity\r\n"};
 }
 
@@ -66,7 +75,7 @@ void connection(std::string_view bytes) {
         .observe = [](const server::Exchanged& /*done*/) {}};
     server::Connection served({.transport = std::make_unique<server::Transport>(ends[1])}, -1,
                               {.max_body_bytes = kMaxBytes});
-    server::Exchange exchange(uses, log);
+    server::Exchange exchange(uses, log, std::chrono::seconds(15));
     try {
       while (served.next_request() && exchange.answer_request(served, false)) {
       }
@@ -77,10 +86,13 @@ void connection(std::string_view bytes) {
 }
 
 std::vector<std::string> connection_seeds() {
-  return {"GET /v1/limits?x=%41&y HTTP/1.1\r\nHost: x\r\n\r\nGET / HTTP/1.1\r\nHost: x\r\n\r\n",
-          "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
-          "5;a=b\r\nhello\r\n0\r\nTrailer: x\r\n\r\n",
-          "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello"};
+  return {
+      "POST http://x/v1/jobs HTTP/1.1\r\nHost: x\r\nExpect: 100-continue\r\n"
+      "Content-Length: 3\r\n\r\nabcGET http://x HTTP/1.1\r\nHost: x\r\n\r\n",
+      "GET /v1/limits?x=%41&y HTTP/1.1\r\nHost: x\r\n\r\nGET / HTTP/1.1\r\nHost: x\r\n\r\n",
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
+      "5;a=b\r\nhello\r\n0\r\nTrailer: x\r\n\r\n",
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello"};
 }
 
 void multipart(std::string_view bytes) {

@@ -75,6 +75,44 @@ TEST_F(Edge, ABodyOverTheLimitIsRefusedHoweverItIsSent) {
   EXPECT_TRUE(std::filesystem::is_empty(dir_.path() / "blobs"));
 }
 
+TEST_F(Edge, WhoWaitsFor100GetsItWhenTheBodyIsWanted) {
+  start();
+  const std::string mesh = grid_obj(4);
+  const auto head = [](const std::string& path, std::size_t length) {
+    return "POST " + path + " HTTP/1.1\r\nHost: x\r\nExpect: 100-continue\r\nContent-Length: " +
+           std::to_string(length) + "\r\n\r\n";
+  };
+  RawClient wanted(service_->port());
+  wanted.send(head("/v1/jobs", mesh.size()));
+  EXPECT_EQ(wanted.read_until("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
+  wanted.send(mesh);
+  EXPECT_THAT(wanted.finish(), StartsWith("HTTP/1.1 202"));
+  EXPECT_THAT(exchange(head("/v1/jobs", mesh.size()) + mesh), StartsWith("HTTP/1.1 202"))
+      << "a sender that did not wait";
+  for (const auto& [path, length, status] :
+       {std::tuple{"/v1/jobs", std::size_t{200'000}, "HTTP/1.1 413"},
+        std::tuple{"/v1/jobs?method=none", mesh.size(), "HTTP/1.1 422"},
+        std::tuple{"/v1/nothing", mesh.size(), "HTTP/1.1 404"}}) {
+    RawClient refused(service_->port());
+    refused.send(head(path, length));
+    EXPECT_THAT(refused.read_until("\r\n\r\n"), AllOf(StartsWith(status), HasSubstr("close")));
+  }
+}
+
+TEST_F(Edge, AbsoluteTargetsArePaths) {
+  start();
+  const std::string get = "GET http://other:81/v1/limits HTTP/1.1\r\nHost: x\r\n\r\n";
+  const std::string post = "POST http://other/v1/jobs?method=asap HTTP/1.1\r\nHost: x\r\n";
+  const std::string mesh = grid_obj(4);
+  const std::string answers = exchange(
+      get + post + "Content-Length: " + std::to_string(mesh.size()) + "\r\n\r\n" + mesh + get);
+  const std::size_t first = answers.find("HTTP/1.1 200");
+  const std::size_t second = answers.find("HTTP/1.1 202", first);
+  EXPECT_NE(answers.find("HTTP/1.1 200", second), std::string::npos) << answers;
+  EXPECT_THAT(exchange("GET http://u@other/v1/limits HTTP/1.1\r\nHost: x\r\n\r\n"),
+              StartsWith("HTTP/1.1 400"));
+}
+
 TEST_F(Edge, BrokenChunksAreRefused) {
   start();
   for (const char* body :
@@ -148,14 +186,19 @@ TEST_F(Edge, KnownPathsTellTheirMethodsAndUnknownOnesAreNotFound) {
                            "/v1/jobs/../../etc/passwd", "/healthz/", "//healthz"})
     expect_problem(client().Get(path), 404, "not_found");
   const std::array<std::pair<const char*, const char*>, 3> known = {
-      {{"/v1/jobs", "POST, GET, HEAD"}, {"/healthz", "GET, HEAD"}, {"/v1/unwrap", "POST"}}};
+      {{"/v1/jobs", "POST, GET, HEAD, OPTIONS"},
+       {"/healthz", "GET, HEAD, OPTIONS"},
+       {"/v1/unwrap", "POST, OPTIONS"}}};
   for (const auto& [path, allowed] : known) {
     const auto answer = client().Delete(path);
     expect_problem(answer, 405, "method_not_allowed");
     EXPECT_EQ(answer->get_header_value("Allow"), allowed);
+    const auto options = client().Options(path);  // which is allowed, as it says
+    EXPECT_EQ(options->status, 204);
+    EXPECT_EQ(options->get_header_value("Allow"), allowed);
   }
   expect_problem(client().Put("/v1/methods", "x", "text/plain"), 405, "method_not_allowed");
-  expect_problem(client().Options("/v1/limits"), 405, "method_not_allowed");
+  expect_problem(client().Options("/v1/nothing"), 404, "not_found");
 }
 
 TEST_F(Edge, TheServerTellsOfItself) {

@@ -76,6 +76,43 @@ TEST(HttpHead, RefusesWhatIsNoRequestLine) {
     EXPECT_EQ(refusal(head(line)), ErrorCode::malformed_request) << line;
 }
 
+/// The head as it is parsed once its target is a path.
+std::string in_origin_form(std::string text) {
+  to_origin_form(text, vet_head(text));
+  return text;
+}
+
+TEST(HttpHead, ReadsAbsoluteTargetsAsTheirPaths) {  // RFC 9112, 3.2.2
+  const std::string fields = "Content-Length: 3\r\n";
+  for (const auto& [target, path] : {std::pair{"http://host/a?b=c", "/a?b=c"},
+                                     {"HTTPS://[::1]:8080/", "/"},
+                                     {"http://host", "/"},
+                                     {"http://host?b=/c", "/?b=/c"},
+                                     {"http://host//x", "//x"},
+                                     {"/http://host/a", "/http://host/a"}})
+    EXPECT_EQ(in_origin_form(head("POST " + std::string(target) + " HTTP/1.1", fields)),
+              head("POST " + std::string(path) + " HTTP/1.1", fields));
+}
+
+TEST(HttpHead, HoldsTheHostOfATargetToTheRulesOfHosts) {
+  for (const char* target :
+       {"http:///a", "http://", "http://user@host/a", "http://a b/", "ftp://x/", "http:/x",
+        "http://ho\x01st/", "http://ho\\st/", "host:80", "*"})
+    EXPECT_EQ(refusal(head("GET " + std::string(target) + " HTTP/1.1")),
+              ErrorCode::malformed_request)
+        << target;
+  EXPECT_EQ(refusal("GET http://host/ HTTP/1.1\r\n\r\n"), ErrorCode::malformed_request)
+      << "without a Host header";
+}
+
+TEST(HttpHead, KnowsWhoWaitsFor100) {
+  EXPECT_TRUE(
+      vet_head(head(kPost, "Content-Length: 5\r\nExpect: 100-Continue\r\n")).awaits_continue);
+  EXPECT_FALSE(vet_head(head(kPost, "Content-Length: 5\r\n")).awaits_continue);
+  EXPECT_FALSE(vet_head("POST / HTTP/1.0\r\nContent-Length: 5\r\nExpect: 100-continue\r\n\r\n")
+                   .awaits_continue);
+}
+
 TEST(HttpHead, KeepsItsLimits) {
   EXPECT_EQ(refusal(head("GET /" + std::string(9000, 'a') + " HTTP/1.1")),
             ErrorCode::headers_too_large);

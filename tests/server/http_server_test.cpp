@@ -101,6 +101,16 @@ TEST_F(HttpServerTest, WhoIsIdleTooLongIsClosedWithoutAWord) {
   EXPECT_EQ(connect()->read_to_end(), "");
 }
 
+TEST_F(HttpServerTest, KeepAliveSaysForHowLongAClientMayBeIdle) {
+  config_.parking.idle = std::chrono::milliseconds(2500);
+  start();
+  const auto client = connect();
+  client->send("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+  EXPECT_THAT(client->read_until("\r\n\r\n"), testing::HasSubstr("\r\nKeep-Alive: timeout=2\r\n"));
+  client->send("GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(client->read_to_end(), testing::Not(testing::HasSubstr("Keep-Alive")));
+}
+
 TEST_F(HttpServerTest, OneIdleClientTooManyDrivesOutTheLongest) {
   config_.parking.max_idle = 2;
   start();
