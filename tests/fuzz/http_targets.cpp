@@ -5,10 +5,14 @@
 
 #include <array>
 
+#include "api/json.hpp"
+#include "api/options.hpp"
 #include "core/error.hpp"
 #include "server/connection.hpp"
 #include "server/http_exchange.hpp"
 #include "server/http_head.hpp"
+#include "server/identity.hpp"
+#include "server/mesh_reference.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace unwrapd::fuzz {
@@ -109,12 +113,28 @@ std::vector<std::string> multipart_seeds() {
       "Content-Type: model/obj\r\n\r\nv 0 0 0\n\r\n--b--\r\n"};
 }
 
+void reference(std::string_view bytes) {
+  const server::MeshReference named = server::parse_mesh_reference(bytes);
+  promise(server::is_sha256(named.sha256),
+          "a mesh is named by its digest, which leads nowhere else");
+  promise(!named.options ||
+              api::parse_json(*named.options, {.max_bytes = api::kMaxOptionsBytes}).is_object(),
+          "options are an object");
+}
+
+std::vector<std::string> reference_seeds() {
+  const std::string digest(64, 'a');
+  return {R"({"mesh":")" + digest + R"(","options":{"method":"slim","stop":{"iterations":3}}})",
+          R"({"mesh":")" + digest + R"("})"};
+}
+
 }  // namespace
 
 std::span<const Target> http_targets() {
   static const std::array targets = {
       Target{"head", head, head_seeds}, Target{"http", connection, connection_seeds},
-      Target{"multipart", multipart, multipart_seeds}, parking_target()};
+      Target{"multipart", multipart, multipart_seeds},
+      Target{"reference", reference, reference_seeds}, parking_target()};
   return targets;
 }
 

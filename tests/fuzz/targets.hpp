@@ -18,7 +18,7 @@ struct Target {
 
 std::span<const Target> asset_targets();   ///< gltf, obj, draco, meshopt
 std::span<const Target> api_targets();     ///< options, query, constraints
-std::span<const Target> http_targets();    ///< head, http, multipart, parking
+std::span<const Target> http_targets();    ///< head, http, multipart, reference, parking
 std::span<const Target> worker_targets();  ///< frames, uvs
 Target parking_target();
 
