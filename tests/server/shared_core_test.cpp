@@ -110,12 +110,19 @@ TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyCut) {
   expect_answers_as_alone(meshes, jobs);
 }
 
+TEST(JobsThatShare, AnswerAsTheyWouldAloneWhateverPartsFacesAreOf) {
+  const Surface soup = shapes::surface_of(shapes::soup(shapes::random_disk(2, 3)));
+  Surface in_two = soup;  // faces of two parts are joined where they meet
+  for (std::size_t t = 0; t < in_two.part.size(); t += 2) in_two.part[t] = 1;
+  UnwrapOptions options{.seams = SeamMode::keep};
+  options.stop.iterations = 2;
+  expect_answers_as_alone({{soup}, {in_two}}, {options});
+}
+
 TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyTakeBodiesApart) {
   const Surface disk = shapes::surface_of(shapes::random_disk(4, 3));
   const Surface ball = shapes::surface_of(shapes::sphere(0));
   const Surface other = shapes::surface_of(bent(ball.mesh, 0.3));
-  Surface in_two = ball;  // its charts meet where its parts do
-  in_two.part[0] = in_two.part[1] = in_two.part[6] = 1;
   std::vector<UnwrapOptions> jobs(6);
   for (UnwrapOptions& options : jobs) options.stop.iterations = 2;
   jobs[1].max_charts = 1;
@@ -125,7 +132,7 @@ TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyTakeBodiesApart) {
   jobs[5].boundary = BoundaryShape::circle;  // one chart for each body
   expect_answers_as_alone({{ball}}, jobs);
   jobs.resize(2);
-  expect_answers_as_alone({{ball}, {in_two}, {other}, {disk, ball}}, jobs);
+  expect_answers_as_alone({{ball}, {other}, {disk, ball}}, jobs);
 }
 
 TEST(JobsThatShare, AnswerAsTheyWouldAloneUnderConstraints) {
