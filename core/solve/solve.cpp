@@ -3,7 +3,8 @@
 // A hybrid of very small lambda has nothing to hold it open: with c the conformal energy of the
 // ASAP map over its area, a map of uniform scale s costs c s^2 + lambda (s^2 - 1)^2 per area, whose
 // only minimum for lambda <= c / 2 is s = 0. There the answer is the limit itself, the ASAP map.
-// Two held vertices hold it open.
+// Two held vertices hold it open; so does a start of less energy than a collapsed map has, as no
+// iteration raises the energy. Only where neither is so is the ASAP map asked for.
 #include "core/solve/solve.hpp"
 
 #include <algorithm>
@@ -28,6 +29,10 @@ namespace {
 
 /// Above this lambda no conformal map of use has energy enough to collapse the hybrid.
 constexpr double kSafeLambda = 0.5;
+/// Below this one no start is likely to keep the hybrid open.
+constexpr double kTrustedLambda = 0.02;
+/// Of a collapsed map's energy, that a start may have: with room, so that it ends nowhere near.
+constexpr double kOpenShare = 0.9;
 constexpr int kTrialIterations = 2;
 
 UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
@@ -46,6 +51,16 @@ Rigidity rigidity_of(const Disk& disk, double lambda, LambdaUnits units) {
 double mean_lambda(const Disk& disk, const Rigidity& rigidity) {
   double sum = 0;
   for (const RestTriangle& rest : disk.rest) sum += rest.area * rigidity.at(rest.area);
+  return sum;
+}
+
+/// Of a map shrunk to a point: |L|^2 is 0 there, or 1 - 1 / lambda where that is more.
+double collapsed_energy(const Disk& disk, const Rigidity& rigidity) {
+  double sum = 0;
+  for (const RestTriangle& rest : disk.rest) {
+    const double lambda = rigidity.at(rest.area);
+    sum += rest.area * (lambda > 1 ? 2 - 1 / lambda : lambda);
+  }
   return sum;
 }
 
@@ -153,11 +168,14 @@ Solution Solver::iterate_plainly(const Race& race) {
   return solution(*from, *options_.stop.iterations, race.watch);
 }
 
+void Solver::factor(const SolveWatch& watch) {
+  if (global_) return;
+  tell(watch, Stage::factor);
+  global_.emplace(disk_, holds_, &executor_);
+}
+
 Solution Solver::iterate(const Rigidity& rigidity, const SolveWatch& watch) {
-  if (!global_) {
-    tell(watch, Stage::factor);
-    global_.emplace(disk_, holds_, &executor_);
-  }
+  factor(watch);
   const UvMap& first = start();
   tell(watch, Stage::solve);
   const Stop& stop = options_.stop;
@@ -167,10 +185,20 @@ Solution Solver::iterate(const Rigidity& rigidity, const SolveWatch& watch) {
   return run_race(race, first, [&] { return second_start(); });
 }
 
+/// Whether the start has so little energy that no iteration can shrink the map away. Its energy as
+/// a hybrid is at most that of ARAP, whose fits cost nothing for their scale.
+bool Solver::stays_open(const Rigidity& rigidity, const SolveWatch& watch) {
+  factor(watch);
+  return arap_energy(disk_.rest, disk_.faces, start()) <
+         kOpenShare * collapsed_energy(disk_, rigidity);
+}
+
 Solution Solver::hybrid(const Rigidity& rigidity, const SolveWatch& watch) {
   const double lambda = mean_lambda(disk_, rigidity);
   if (lambda > kSafeLambda) return iterate(rigidity, watch);
   const bool is_held_open = holds_.count() > 1;
+  if (holds_.empty() && lambda > kTrustedLambda && stays_open(rigidity, watch))
+    return iterate(rigidity, watch);
   if (lambda <= (is_held_open ? 0 : asap_energy(disk_.rest, disk_.faces, conformal()) / 2))
     return direct(disk_, holds_, conformal());
   return iterate(rigidity, watch);

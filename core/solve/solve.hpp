@@ -41,6 +41,8 @@ class Solver {
   const UvMap& conformal();
   UvMap conformal_under_holds();
   [[nodiscard]] bool is_automatic() const;
+  void factor(const SolveWatch& watch);
+  bool stays_open(const Rigidity& rigidity, const SolveWatch& watch);
   Solution hybrid(const Rigidity& rigidity, const SolveWatch& watch);
   Solution iterate(const Rigidity& rigidity, const SolveWatch& watch);
   Solution iterate_plainly(const Race& race);

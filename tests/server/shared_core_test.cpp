@@ -159,6 +159,21 @@ TEST(JobsThatShare, AnswerAsTheyWouldAloneOnHardShapes) {
   expect_answers_as_alone(hard, {options});
 }
 
+TEST(JobsThatShare, MakeNothingForAnotherLambdaButItsIterations) {
+  const Surfaces mesh{shapes::surface_of(shapes::random_disk(12, 3))};
+  SolverCache cache(kRoomForAll, 1);
+  UnwrapOptions options;
+  options.stop.iterations = 4;
+  answer(mesh, options, &cache);
+  options.method = Method::hybrid;
+  for (double lambda : {0.1, 0.3, 0.5, 1.0, 10.0}) {
+    const std::uint64_t before = cache.counters().misses;
+    options.lambda = lambda;
+    answer(mesh, options, &cache);
+    EXPECT_EQ(cache.counters().misses, before + 1) << lambda;
+  }
+}
+
 TEST(JobsThatShare, KeepToTheBytesThatMayBeKept) {
   for (std::int64_t most : {0, 20'000, 60'000}) {
     SolverCache cache({.cache_bytes = most, .job_bytes = kRoomForAll.job_bytes}, 1);
