@@ -159,7 +159,7 @@ class FitAbreast {
     const Lanes given = rigidity_.lambda + Lanes{};
     const Lanes lambda = area > 0 ? (rigidity_.per_area ? given / (2 * area) : given) : Lanes{};
     const Lanes w = lambda / (1 + lambda), v = 1 / (1 + lambda);
-    r = q > 1 ? q : r;
+    r = 1 + (q - 1) / (1 + 2 * lambda);
     auto is_moving = r >= r;
     for (int n = 0; n < kMaxNewtonSteps && any(is_moving); ++n) {
       const Lanes g = w * r * (r * r - 1) + v * (r - q);

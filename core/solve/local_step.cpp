@@ -87,11 +87,12 @@ LocalSums fit_all(const LocalStep& step, FitBlock fit, Executor& executor) {
 
 }  // namespace
 
-/// g is convex there and g(max(1, Q)) >= 0: Newton descends to the root.
+/// g is convex: its tangent at 1, whose slope is 1 + w, crosses zero at or beyond the root, and
+/// from there Newton descends to it.
 double hybrid_scale(double lambda, double q) {
   if (std::isinf(lambda)) return 1;
   const double w = lambda / (1 + lambda), v = 1 / (1 + lambda);  // v: 1 - w without its rounding
-  double r = std::max(1.0, q);
+  double r = 1 + (q - 1) / (1 + 2 * lambda);
   for (int k = 0; k < kMaxNewtonSteps; ++k) {
     const double g = w * r * (r * r - 1) + v * (r - q);
     const double slope = w * (3 * r * r - 1) + v;

@@ -26,8 +26,8 @@ struct Similarity {
   double a = 1, b = 0;
 };
 
-inline constexpr int kMaxNewtonSteps = 64;  ///< median 6; the triple root at w = 1/2 takes 47
-inline constexpr double kNewtonTolerance = 1e-15;  ///< relative to r
+inline constexpr int kMaxNewtonSteps = 64;        ///< median 3; the triple root at w = 1/2 takes 47
+inline constexpr double kNewtonTolerance = 1e-8;  ///< of a step to r: its square is what is left
 
 /// The scale of the best similarity for a Jacobian whose own is q: the positive root of
 /// lambda r (r^2 - 1) + r - q; 1 where lambda is infinite.
