@@ -44,6 +44,7 @@ const ONLY_IN = [
   { header: /^CLI\//, files: /^(server|client)\// },
   { header: /^seccomp\.h$/, files: /^server\/sandbox\.cpp$/ },
   { header: /^png\.h$/, files: /^(server\/png_file\.cpp$|tests\/server\/)/ },
+  { header: /^yaml\.h$/, files: /^api\/contract\// },
   { header: /^sqlite3\.h$/, files: /^(server|tests\/server)\// },
   { header: /^(draco\/|meshoptimizer\.h|tiny_gltf\.h)/, files: /^(core\/asset|tests\/asset|tests\/fuzz)\// },
   { header: /^Eigen\//, files: /^(core|server|api|tests)\// },
