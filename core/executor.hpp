@@ -6,6 +6,8 @@
 #include <stop_token>
 #include <utility>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 
 class SolverCore;
@@ -18,7 +20,8 @@ class Executor {
   virtual ~Executor() = default;
 
   /// Calls body(block) once for every block in [0, block_count), in any order and on any thread;
-  /// returns when all are done. body must not throw.
+  /// returns when all are done. body must not throw. Of a job that was told to stop: calls no
+  /// further blocks and throws Error{cancelled}.
   virtual void for_each_block(int block_count, const std::function<void(int)>& body) = 0;
 
   /// What jobs share (solver_core.hpp); null where this one is alone. Outlives the job.
@@ -35,7 +38,11 @@ class JobExecutor final : public Executor {
   JobExecutor(Executor& inner, std::stop_token stop) : inner_(inner), stop_(std::move(stop)) {}
 
   void for_each_block(int block_count, const std::function<void(int)>& body) override {
-    inner_.for_each_block(block_count, body);
+    throw_if_cancelled(stop_);
+    inner_.for_each_block(block_count, [&](int block) {
+      if (!is_cancelled(stop_)) body(block);
+    });
+    throw_if_cancelled(stop_);
   }
   [[nodiscard]] SolverCore* shared_core() const override { return inner_.shared_core(); }
   [[nodiscard]] std::stop_token stop() const override { return stop_; }

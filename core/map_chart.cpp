@@ -54,7 +54,7 @@ Held held_or_begun(const Chart& chart, const Disk& disk, const UnwrapOptions& op
 MappedChart finish(const Disk& disk, KeptPart part, const ChartHold& hold,
                    const Solution& solution) {
   MappedChart mapped;
-  const DistortionSums own = distortion_sums(disk.rest, disk.faces, part.uv);
+  const DistortionSums own = distortion_sums(disk.rest, disk.faces, part.uv, disk.stop);
   const double even = std::sqrt(own.area / own.uv_area);
   if (!std::isfinite(even))
     throw Error(ErrorCode::solver_failed,
@@ -84,7 +84,7 @@ std::vector<MappedChart> finish_parts(const Disk& disk, Kept kept, const ChartHo
     mapped.push_back(finish(disk, std::move(kept.parts.front()), hold, solution));
   } else {
     for (KeptPart& part : kept.parts) {
-      const Disk own = make_disk(part.chart->mesh, part.chart->loops);
+      const Disk own = make_disk(part.chart->mesh, part.chart->loops, nullptr, disk.stop);
       mapped.push_back(finish(own, std::move(part), {}, solution));
       mapped.back().report.mending.parts = kept.mending.parts;
     }
@@ -111,7 +111,8 @@ std::vector<double> lambdas_of(const UnwrapOptions& options) {
 std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const UnwrapOptions& options,
                                                 ChartWatch& watch, Executor& executor) {
   const Chart& chart = *job.chart;
-  const Disk& disk = job.disk;
+  Disk disk = job.disk;  // which other jobs may have, too
+  disk.stop = watch.stop();
   const std::vector<double> lambdas = lambdas_of(options);
   watch.begin_chart(chart.mesh.faces.size(), lambdas.size());
   throw_if_cancelled(watch.stop());

@@ -28,8 +28,8 @@ std::vector<Disk> disks_of(const Charts& surface, const std::stop_token& stop, S
   std::vector<Disk> disks;
   disks.reserve(surface.charts.size());
   for (const Chart& chart : surface.charts) {
-    throw_if_cancelled(stop);
-    disks.push_back(make_disk(chart.mesh, chart.loops, core));
+    disks.push_back(make_disk(chart.mesh, chart.loops, core, stop));
+    disks.back().stop = {};  // it may be kept for other jobs
   }
   return disks;
 }
@@ -43,9 +43,10 @@ std::shared_ptr<const VertexPlan> plan_of(const Surface& surface, const Charts& 
   content.add(surface.mesh.faces);
   if (!own.set_aside.empty()) content.add(surface.mesh.positions);
   for (const Chart* chart : charts) content.add(chart->mesh.faces).add(chart->face_source);
-  return kept(core, content, [&] {
+  const auto make = [&] {
     return std::make_shared<const VertexPlan>(plan_vertices(surface, own, charts, stop));
-  });
+  };
+  return kept(core, content, make, stop);
 }
 
 std::shared_ptr<const Prepared> prepare(std::span<const Surface> surfaces,

@@ -37,13 +37,15 @@ Numbering number_vertices(std::span<const Chart* const> charts) {
 
 /// at[corner]: the chart vertex that it shows; kUncharted for faces that are set aside.
 std::vector<Triangle> charted_corners(const Surface& surface, std::span<const Chart* const> charts,
-                                      const Numbering& numbering) {
+                                      const Numbering& numbering, const std::stop_token& stop) {
   std::vector<Triangle> at(surface.mesh.faces.size(), {kUncharted, kUncharted, kUncharted});
   for (std::size_t k = 0; k < charts.size(); ++k) {
     const Chart& chart = *charts[k];
-    for (std::size_t t = 0; t < chart.face_source.size(); ++t)
+    for (std::size_t t = 0; t < chart.face_source.size(); ++t) {
+      look_now_and_then(t, stop);
       for (std::size_t i = 0; i < 3; ++i)
         at[chart.face_source[t]][i] = numbering.first[k] + chart.mesh.faces[t][i];
+    }
   }
   return at;
 }
@@ -100,23 +102,29 @@ void give_corners_to_set_aside(const Surface& surface, const Charts& charts,
 
 /// For each corner 3t + i, the first corner with the same vertex and the same chart vertex.
 std::vector<Index> first_equal_corners(const std::vector<Triangle>& faces, Index vertex_count,
-                                       const std::vector<Triangle>& at, Index chart_vertex_count) {
+                                       const std::vector<Triangle>& at, Index chart_vertex_count,
+                                       const std::stop_token& stop) {
   struct Corner {
     Index vertex, shown, corner;
   };
   std::vector<Corner> corners;
   corners.reserve(3 * faces.size());
-  for (Index c = 0; c < static_cast<Index>(3 * faces.size()); ++c)
+  for (Index c = 0; c < static_cast<Index>(3 * faces.size()); ++c) {
+    look_now_and_then(c, stop);
     corners.push_back({faces[c / 3][c % 3], at[c / 3][c % 3] + 1, c});
-  counting_sort(corners, chart_vertex_count + 1, [](const Corner& c) { return c.shown; });
-  counting_sort(corners, vertex_count, [](const Corner& c) { return c.vertex; });
+  }
+  counting_sort(
+      corners, chart_vertex_count + 1, [](const Corner& c) { return c.shown; }, stop);
+  counting_sort(
+      corners, vertex_count, [](const Corner& c) { return c.vertex; }, stop);
   std::vector<Index> first_equal(corners.size());
   for_each_run(
       corners,
       [](const Corner& a, const Corner& b) { return a.vertex == b.vertex && a.shown == b.shown; },
       [&](const Corner* first, const Corner* last) {
         for (const Corner* c = first; c < last; ++c) first_equal[c->corner] = first->corner;
-      });
+      },
+      stop);
   return first_equal;
 }
 
@@ -131,13 +139,13 @@ UvMap joined(std::span<const UvMap> chart_uv) {
 VertexPlan plan_vertices(const Surface& surface, const Charts& whole,
                          std::span<const Chart* const> charts, const std::stop_token& stop) {
   const Numbering numbering = number_vertices(charts);
-  std::vector<Triangle> at = charted_corners(surface, charts, numbering);
+  std::vector<Triangle> at = charted_corners(surface, charts, numbering, stop);
   give_corners_to_set_aside(surface, whole, numbering, at);
   throw_if_cancelled(stop);
   const std::vector<Triangle>& faces = surface.mesh.faces;
   const Index vertex_count = surface.mesh.vertex_count();
   const std::vector<Index> first_equal =
-      first_equal_corners(faces, vertex_count, at, numbering.total());
+      first_equal_corners(faces, vertex_count, at, numbering.total(), stop);
   throw_if_cancelled(stop);
   VertexPlan plan{faces, std::vector<Index>(vertex_count),
                   std::vector<Index>(vertex_count, kUncharted)};

@@ -81,11 +81,12 @@ class SeamRows {
 /// Walks rows of seams over the large surface.
 class Tracing {
  public:
-  Tracing(const TriMesh& mesh, const Halfedges& halfedges, const Coarse& coarse)
+  Tracing(const TriMesh& mesh, const Halfedges& halfedges, const Coarse& coarse,
+          const std::stop_token& stop)
       : mesh_(mesh),
         twin_(halfedges.twin),
         coarse_(coarse),
-        corners_(vertex_corners(mesh.faces, mesh.vertex_count())),
+        corners_(vertex_corners(mesh.faces, mesh.vertex_count(), stop)),
         members_(mesh.positions.size()),
         rank_(members_.size()),
         strip_(twin_.size(), kNoTwin),
@@ -94,7 +95,8 @@ class Tracing {
         cut_(twin_.size(), 0) {
     for (const Index t : coarse.face) is_core_[t] = 1;
     for (Index v = 0; v < mesh.vertex_count(); ++v) members_[v] = v;
-    counting_sort(members_, coarse.mesh.vertex_count(), [&](Index v) { return coarse.cluster[v]; });
+    counting_sort(
+        members_, coarse.mesh.vertex_count(), [&](Index v) { return coarse.cluster[v]; }, stop);
     first_.assign(coarse.mesh.positions.size() + 1, 0);
     for (const Index c : coarse.cluster) ++first_[c + 1];
     for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
@@ -223,7 +225,8 @@ class Tracing {
 /// From the faces that both surfaces have to all others on the same side of the cut.
 class Spreading {
  public:
-  Spreading(const Coarse& coarse, Carried& carried) : carried_(carried) {
+  Spreading(const Coarse& coarse, const std::stop_token& stop, Carried& carried)
+      : carried_(carried), stop_(stop) {
     carried.near.assign(carried.cut.twin.size() / 3, -1);
     for (std::size_t k = 0; k < coarse.face.size(); ++k) {
       carried.near[coarse.face[k]] = static_cast<Index>(k);
@@ -248,17 +251,20 @@ class Spreading {
 
  private:
   void spread() {
-    for (std::size_t k = 0; k < open_.size(); ++k)
+    for (std::size_t k = 0; k < open_.size(); ++k) {
+      look_now_and_then(k, stop_);
       for (Index h = 3 * open_[k]; h < 3 * open_[k] + 3; ++h) {
         const Index twin = carried_.cut.twin[h];
         if (twin == kNoTwin || carried_.near[face_of(twin)] >= 0) continue;
         carried_.near[face_of(twin)] = carried_.near[open_[k]];
         open_.push_back(face_of(twin));
       }
+    }
     open_.clear();
   }
 
   Carried& carried_;
+  const std::stop_token& stop_;
   std::vector<Index> open_;
 };
 
@@ -266,7 +272,7 @@ class Spreading {
 
 Carried carry(const TriMesh& mesh, const Halfedges& halfedges, const Coarse& coarse,
               std::span<const char> seam, const std::stop_token& stop) {
-  Tracing tracing(mesh, halfedges, coarse);
+  Tracing tracing(mesh, halfedges, coarse, stop);
   for (const SeamRow& row : SeamRows(coarse, seam).find()) {
     throw_if_cancelled(stop);
     tracing.trace(row);
@@ -275,7 +281,7 @@ Carried carry(const TriMesh& mesh, const Halfedges& halfedges, const Coarse& coa
   Carried carried{halfedges, {}};
   for (std::size_t h = 0; h < cut.size(); ++h)
     if (cut[h] != 0) carried.cut.twin[h] = kNoTwin;
-  Spreading(coarse, carried).glue_what_is_left(halfedges);
+  Spreading(coarse, stop, carried).glue_what_is_left(halfedges);
   return carried;
 }
 

@@ -72,9 +72,11 @@ std::size_t bytes_of(const Connected& connected) {
 /// source: the chart's faces as numbers of pieces; rank: their place in source. vertex_source: left
 /// for each of the chart's vertices.
 Chart chart_of(const Surface& surface, const Pieces& pieces, std::span<const Index> source,
-               std::span<const Index> rank, std::vector<Index>& vertex_source) {
+               std::span<const Index> rank, const std::stop_token& stop,
+               std::vector<Index>& vertex_source) {
   Chart chart;
-  for (Index t : source) {
+  for (const Index t : source) {
+    look_now_and_then(rank[t], stop);
     chart.face_source.push_back(pieces.source[t]);
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
       const Index twin = pieces.halfedges.twin[h];
@@ -83,13 +85,15 @@ Chart chart_of(const Surface& surface, const Pieces& pieces, std::span<const Ind
       chart.crease.push_back(twin != kNoTwin && is_crease(surface, given(h), given(twin)) ? 1 : 0);
     }
   }
-  CornerVertices corners = corner_vertices(chart.halfedges);
+  CornerVertices corners = corner_vertices(chart.halfedges, stop);
   chart.mesh.faces = std::move(corners.faces);
   vertex_source.resize(corners.count);
-  for (std::size_t t = 0; t < chart.face_source.size(); ++t)
+  for (std::size_t t = 0; t < chart.face_source.size(); ++t) {
+    look_now_and_then(t, stop);
     for (std::size_t i = 0; i < 3; ++i)
       vertex_source[chart.mesh.faces[t][i]] = surface.mesh.faces[chart.face_source[t]][i];
-  chart.loops = boundary_loops(chart.halfedges);
+  }
+  chart.loops = boundary_loops(chart.halfedges, stop);
   return chart;
 }
 
@@ -99,17 +103,18 @@ void separate(const Surface& surface, const Pieces& pieces, const std::stop_toke
   const auto& of = pieces.topology.component_of;
   std::vector<Index> order(pieces.source.size());
   for (std::size_t t = 0; t < order.size(); ++t) order[t] = static_cast<Index>(t);
-  counting_sort(order, static_cast<Index>(components.size()), [&](Index t) { return of[t]; });
+  counting_sort(
+      order, static_cast<Index>(components.size()), [&](Index t) { return of[t]; }, stop);
   out.charts.charts.reserve(components.size());
   out.vertex_source.resize(components.size());
   std::vector<Index> rank(order.size());
   std::size_t first = 0;
   for (std::size_t k = 0; k < components.size(); ++k) {
-    throw_if_cancelled(stop);
     const std::span<const Index> source(order.data() + first, components[k].faces);
     for (std::size_t i = 0; i < source.size(); ++i) rank[source[i]] = static_cast<Index>(i);
     first += source.size();
-    out.charts.charts.push_back(chart_of(surface, pieces, source, rank, out.vertex_source[k]));
+    out.charts.charts.push_back(
+        chart_of(surface, pieces, source, rank, stop, out.vertex_source[k]));
   }
 }
 
@@ -152,8 +157,8 @@ Connected connect(const Inspected& in, const SeamRules& seams) {
   }
   charts.input = input_report(surface.mesh, pieces.topology, was_welded);
   charts.repairs = repairs_of(in.states, pieces);
-  charts.by_position =
-      std::make_shared<const Halfedges>(build_halfedges(in.welded, surface.mesh.vertex_count()));
+  charts.by_position = std::make_shared<const Halfedges>(
+      build_halfedges(in.welded, surface.mesh.vertex_count(), seams.stop));
   return connected;
 }
 
@@ -168,9 +173,10 @@ Content content_of(const Inspected& in, const SeamRules& seams, const std::array
   return content;
 }
 
-Charts placed(const Connected& connected, const TriMesh& mesh) {
+Charts placed(const Connected& connected, const TriMesh& mesh, const std::stop_token& stop) {
   Charts charts = connected.charts;
   for (std::size_t k = 0; k < charts.charts.size(); ++k) {
+    throw_if_cancelled(stop);
     Chart& chart = charts.charts[k];
     chart.mesh.positions.reserve(connected.vertex_source[k].size());
     for (const Index v : connected.vertex_source[k])
@@ -209,18 +215,19 @@ Charts make_charts(const Surface& surface, SeamMode seams) {
 
 Charts components_of(const Surface& surface, const SeamRules& seams) {
   assert(surface.part.size() == surface.mesh.faces.size());
-  const std::vector<Index> first_at = weld(surface.mesh.positions);
+  const std::vector<Index> first_at = weld(surface.mesh.positions, seams.stop);
   throw_if_cancelled(seams.stop);
   const std::vector<Triangle> welded = renumbered(surface.mesh.faces, first_at);
-  FaceStates states = inspect_areas(surface.mesh, welded);
+  FaceStates states = inspect_areas(surface.mesh, welded, seams.stop);
   throw_if_cancelled(seams.stop);
   const Inspected inspected{surface, first_at, welded, states};
   const std::array<int, 1> mode{static_cast<int>(seams.mode)};
-  const auto connected = kept(seams.core, content_of(inspected, seams, mode), [&] {
-    find_duplicates(welded, surface.mesh.vertex_count(), states);
+  const auto make = [&] {
+    find_duplicates(welded, surface.mesh.vertex_count(), seams.stop, states);
     return std::make_shared<const Connected>(connect(inspected, seams));
-  });
-  return placed(*connected, surface.mesh);
+  };
+  const auto connected = kept(seams.core, content_of(inspected, seams, mode), make, seams.stop);
+  return placed(*connected, surface.mesh, seams.stop);
 }
 
 std::size_t bytes_of(const Chart& chart) {

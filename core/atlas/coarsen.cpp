@@ -25,7 +25,7 @@ constexpr Index kDead = -1;
 
 class Contraction {
  public:
-  Contraction(const TriMesh& mesh, const Halfedges& halfedges)
+  Contraction(const TriMesh& mesh, const Halfedges& halfedges, const std::stop_token& stop)
       : faces_(mesh.faces),
         twin_(halfedges.twin),
         face_count_(mesh.face_count()),
@@ -36,7 +36,9 @@ class Contraction {
         stamp_(out_.size(), -1) {
     for (Index v = 0; v < mesh.vertex_count(); ++v) into_[v] = v;
     for (Index h = 0; h < 3 * face_count_; ++h) out_[start(h)] = h;
-    for (const Triangle& face : faces_) {
+    for (std::size_t t = 0; t < faces_.size(); ++t) {
+      look_now_and_then(t, stop);
+      const Triangle& face = faces_[t];
       const double share = face_normal(face).norm() / 6;
       for (const Index v : face) area_[v] += share;
       total_ += 3 * share;
@@ -220,8 +222,9 @@ class Contraction {
 
 Coarse coarsen(const TriMesh& mesh, const Halfedges& halfedges, Index faces,
                const std::stop_token& stop) {
-  Contraction contraction(mesh, halfedges);
+  Contraction contraction(mesh, halfedges, stop);
   contraction.run(faces, stop);
+  throw_if_cancelled(stop);
   return contraction.result();
 }
 

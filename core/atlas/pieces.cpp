@@ -24,17 +24,20 @@ Pieces pieces_of(Pairing pairing, const FaceStates& states, const std::stop_toke
   Pieces pieces;
   std::vector<Index> rank(states.of.size(), kNoFace);
   for (std::size_t t = 0; t < states.of.size(); ++t) {
+    look_now_and_then(t, stop);
     if (states.of[t] != FaceState::sound) continue;
     rank[t] = static_cast<Index>(pieces.source.size());
     pieces.source.push_back(static_cast<Index>(t));
   }
   const auto moved = [&](Index h) { return h == kNoTwin ? kNoTwin : 3 * rank[h / 3] + h % 3; };
   pieces.halfedges.twin.resize(3 * pieces.source.size());
-  for (std::size_t h = 0; h < pieces.halfedges.twin.size(); ++h)
+  for (std::size_t h = 0; h < pieces.halfedges.twin.size(); ++h) {
+    look_now_and_then(h, stop);
     pieces.halfedges.twin[h] = moved(pairing.halfedges.twin[3 * pieces.source[h / 3] + h % 3]);
-  close_slits(pieces.halfedges);
+  }
+  close_slits(pieces.halfedges, stop);
   throw_if_cancelled(stop);
-  pieces.topology = topology(corner_vertices(pieces.halfedges).faces, pieces.halfedges);
+  pieces.topology = topology(corner_vertices(pieces.halfedges, stop).faces, pieces.halfedges, stop);
   pieces.split_edges = pairing.split_edges;
   for (const auto& [g, h] : pairing.clashes)
     if (rank[g / 3] != kNoFace && rank[h / 3] != kNoFace)
@@ -89,7 +92,7 @@ void cut_paths(const Inspected& in, const SeamRules& seams, Halfedges& halfedges
 }
 
 Pieces welded_pieces(const Inspected& in, const SeamRules& seams) {
-  Pairing pairing = pair_welded(in.welded, in.states);
+  Pairing pairing = pair_welded(in.welded, in.states, seams.stop);
   if (seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty())
     cut_at_uv_seams(in.surface, pairing.halfedges);
   cut_paths(in, seams, pairing.halfedges);
@@ -97,7 +100,7 @@ Pieces welded_pieces(const Inspected& in, const SeamRules& seams) {
 }
 
 Pieces kept_pieces(const Inspected& in, const SeamRules& seams) {
-  Pairing pairing = pair_keeping_seams(in.surface, in.welded, in.states);
+  Pairing pairing = pair_keeping_seams(in.surface, in.welded, in.states, seams.stop);
   cut_paths(in, seams, pairing.halfedges);
   return pieces_of(std::move(pairing), in.states, seams.stop);
 }

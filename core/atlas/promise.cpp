@@ -27,6 +27,7 @@ constexpr Index kMostFacesUnfolded = 50'000;  // a new map of more takes minutes
 double energy_of(const Disk& disk, const UvMap& uv, const Rigidity& rigidity) {
   double energy = 0;
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
+    look_now_and_then(t, disk.stop);
     const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
     const double lambda = rigidity.at(disk.rest[t].area);
     energy += fit_energy(j, fit_similarity(j, lambda), disk.rest[t].area, lambda);
@@ -91,7 +92,7 @@ Seeds seeds_at_overlaps(const Chart& chart, const std::vector<std::array<Index, 
 
 std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& uv,
                                               const std::stop_token& stop) {
-  if (is_plainly_injective(chart.mesh.faces, chart.loops, uv)) return {};
+  if (is_plainly_injective(chart.mesh.faces, chart.loops, uv, stop)) return {};
   throw_if_cancelled(stop);
   return overlapping_pairs(chart.mesh.faces, uv, kMostPairs, stop);
 }
@@ -106,7 +107,7 @@ std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& u
 void split(const KeptPart& part, const Seeds& seeds, const std::stop_token& stop,
            std::vector<KeptPart>& open) {
   throw_if_cancelled(stop);
-  for (ChartPart& piece : split_chart(*part.chart, seeds)) {
+  for (ChartPart& piece : split_chart(*part.chart, seeds, stop)) {
     throw_if_cancelled(stop);
     UvMap uv;
     for (Index v : piece.vertex) uv.push_back(part.uv[v]);
@@ -118,7 +119,7 @@ void split(const KeptPart& part, const Seeds& seeds, const std::stop_token& stop
 /// drawn by the springs.
 bool unfold(KeptPart& part, double unit, const MapIntent& intent) {
   SerialExecutor serial;
-  const Disk disk = make_disk(part.chart->mesh, part.chart->loops);
+  const Disk disk = make_disk(part.chart->mesh, part.chart->loops, nullptr, intent.stop);
   if (!map_injectively(disk, intent, part.uv, serial)) return false;
   for (Vec2& u : part.uv) u *= disk.unit / unit;
   return overlaps_of(*part.chart, part.uv, intent.stop).empty();
@@ -144,9 +145,9 @@ Seeds seeds_needed(KeptPart& part, const std::vector<Index>& flipped, double uni
 /// The flips of a part that was cut off for its flips: it may be untangled where the whole could
 /// not.
 std::vector<Index> flips_left(KeptPart& part, const MapIntent& intent) {
-  std::vector<Index> flipped = flipped_faces(part.chart->mesh.faces, part.uv);
+  std::vector<Index> flipped = flipped_faces(part.chart->mesh.faces, part.uv, intent.stop);
   if (flipped.empty()) return flipped;
-  const Disk disk = make_disk(part.chart->mesh, part.chart->loops);
+  const Disk disk = make_disk(part.chart->mesh, part.chart->loops, nullptr, intent.stop);
   untangle(disk, {.rigidity = intent.rigidity, .held = {}, .stop = intent.stop}, part.uv);
   return flipped_faces(part.chart->mesh.faces, part.uv);
 }
@@ -182,7 +183,7 @@ Kept keep_promise(std::shared_ptr<const Chart> chart, const Disk& disk, UvMap uv
     return kept;
   }
   throw_if_cancelled(promise.intent.stop);
-  std::vector<Index> flipped = flipped_faces(disk.faces, uv);
+  std::vector<Index> flipped = flipped_faces(disk.faces, uv, promise.intent.stop);
   kept.mending.flips = static_cast<Index>(flipped.size());
   const bool may_change = kept.mending.flips > 0 || promise.guarantee == Guarantee::bijective;
   const UvMap before = may_change ? uv : UvMap();

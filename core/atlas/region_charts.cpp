@@ -55,11 +55,12 @@ class Extended {
 
 /// The map of the small surface, smoothed by the way: each corner follows the triangle nearby.
 UvMap carried_map(const ChartPart& part, const Coarse& coarse, std::span<const CornerUv> uv,
-                  std::span<const Index> near) {
+                  std::span<const Index> near, const std::stop_token& stop) {
   UvMap map(part.vertex.size(), Vec2::Zero());
   std::vector<double> count(map.size(), 0);
   const TriMesh& mesh = part.chart.mesh;
   for (std::size_t t = 0; t < part.face.size(); ++t) {
+    look_now_and_then(t, stop);
     const Index n = near[part.face[t]];
     const Extended extended(coarse.mesh, coarse.mesh.faces[n], uv[n]);
     for (const Index v : mesh.faces[t]) {
@@ -94,11 +95,9 @@ std::vector<Chart> region_charts(const Chart& component, const Coarse& coarse,
                                  const Segments& segments, const std::stop_token& stop) {
   const auto [uv, seam] = seamed(coarse.halfedges, segments);
   const Carried carried = carry(component.mesh, component.halfedges, coarse, seam, stop);
-  throw_if_cancelled(stop);
   std::vector<Chart> charts;
-  for (ChartPart& part : parts_of(component, carried.cut)) {
-    throw_if_cancelled(stop);
-    part.chart.start = carried_map(part, coarse, uv, carried.near);
+  for (ChartPart& part : parts_of(component, carried.cut, stop)) {
+    part.chart.start = carried_map(part, coarse, uv, carried.near, stop);
     part.chart.least = Guarantee::bijective;
     charts.push_back(std::move(part.chart));
   }

@@ -82,7 +82,7 @@ Index snap(const Chart& chart, const std::vector<char>& held, const std::stop_to
   const double step = uv_step(uv);
   for (Vec2& u : uv) u /= step;
   UvMap best = rounded(uv);
-  std::size_t flipped = flipped_faces(chart.mesh.faces, best).size();
+  std::size_t flipped = flipped_faces(chart.mesh.faces, best, stop).size();
   if (flipped > 0) {
     Disk disk = page_disk(chart, uv);
     MapIntent intent{.rigidity = {}, .held = held, .stop = stop, .in_place = true};

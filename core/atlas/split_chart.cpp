@@ -8,6 +8,7 @@
 #include <queue>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd {
@@ -19,7 +20,8 @@ Vec3 middle(const TriMesh& mesh, Index t) {
 }
 
 /// side[t]: 0 or 1, whose seeds are nearer.
-std::vector<int> nearer_seeds(const Chart& chart, const std::array<std::vector<Index>, 2>& seeds) {
+std::vector<int> nearer_seeds(const Chart& chart, const std::array<std::vector<Index>, 2>& seeds,
+                              const std::stop_token& stop) {
   using Reached = std::pair<double, Index>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> open;
   std::vector<double> distance(chart.mesh.faces.size(), std::numeric_limits<double>::infinity());
@@ -30,7 +32,8 @@ std::vector<int> nearer_seeds(const Chart& chart, const std::array<std::vector<I
       side[t] = k;
       open.emplace(0, t);
     }
-  while (!open.empty()) {
+  for (std::size_t step = 0; !open.empty(); ++step) {
+    look_now_and_then(step, stop);
     const auto [d, t] = open.top();
     open.pop();
     if (d > distance[t]) continue;
@@ -49,11 +52,12 @@ std::vector<int> nearer_seeds(const Chart& chart, const std::array<std::vector<I
 
 /// The faces listed, as a chart of its own; rank[t]: the place of t in the list.
 ChartPart part_of(const Chart& chart, const Halfedges& cut, const std::vector<Index>& faces,
-                  const std::vector<Index>& rank) {
+                  const std::vector<Index>& rank, const std::stop_token& stop) {
   ChartPart part;
   part.face = faces;
   part.chart.least = chart.least;
-  for (Index t : faces) {
+  for (const Index t : faces) {
+    look_now_and_then(rank[t], stop);
     part.chart.face_source.push_back(chart.face_source[t]);
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
       const Index twin = cut.twin[h];
@@ -61,7 +65,7 @@ ChartPart part_of(const Chart& chart, const Halfedges& cut, const std::vector<In
                                                           : 3 * rank[twin / 3] + twin % 3);
     }
   }
-  CornerVertices corners = corner_vertices(part.chart.halfedges);
+  CornerVertices corners = corner_vertices(part.chart.halfedges, stop);
   part.chart.mesh = {std::vector<Vec3>(corners.count), std::move(corners.faces)};
   part.vertex.resize(part.chart.mesh.positions.size());
   for (std::size_t k = 0; k < faces.size(); ++k)
@@ -70,14 +74,15 @@ ChartPart part_of(const Chart& chart, const Halfedges& cut, const std::vector<In
       part.chart.mesh.positions[own] = chart.mesh.positions[v];
       part.vertex[own] = v;
     }
-  part.chart.loops = boundary_loops(part.chart.mesh, part.chart.halfedges);
+  part.chart.loops = boundary_loops(part.chart.mesh, part.chart.halfedges, stop);
   return part;
 }
 
 }  // namespace
 
-std::vector<ChartPart> parts_of(const Chart& chart, const Halfedges& cut) {
-  const Topology pieces = topology(corner_vertices(cut).faces, cut);
+std::vector<ChartPart> parts_of(const Chart& chart, const Halfedges& cut,
+                                const std::stop_token& stop) {
+  const Topology pieces = topology(corner_vertices(cut, stop).faces, cut, stop);
   std::vector<std::vector<Index>> faces(pieces.components.size());
   std::vector<Index> rank(chart.mesh.faces.size());
   for (std::size_t t = 0; t < rank.size(); ++t) {
@@ -86,19 +91,20 @@ std::vector<ChartPart> parts_of(const Chart& chart, const Halfedges& cut) {
     own.push_back(static_cast<Index>(t));
   }
   std::vector<ChartPart> parts;
-  for (const std::vector<Index>& own : faces) parts.push_back(part_of(chart, cut, own, rank));
+  for (const std::vector<Index>& own : faces) parts.push_back(part_of(chart, cut, own, rank, stop));
   return parts;
 }
 
 std::vector<ChartPart> split_chart(const Chart& chart,
-                                   const std::array<std::vector<Index>, 2>& seeds) {
-  const std::vector<int> side = nearer_seeds(chart, seeds);
+                                   const std::array<std::vector<Index>, 2>& seeds,
+                                   const std::stop_token& stop) {
+  const std::vector<int> side = nearer_seeds(chart, seeds, stop);
   Halfedges cut = chart.halfedges;
   for (Index& twin : cut.twin) {
     const auto h = static_cast<Index>(&twin - cut.twin.data());
     if (twin != kNoTwin && side[twin / 3] != side[h / 3]) twin = kNoTwin;
   }
-  return parts_of(chart, cut);
+  return parts_of(chart, cut, stop);
 }
 
 }  // namespace unwrapd

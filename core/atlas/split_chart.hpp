@@ -2,6 +2,7 @@
 // One chart made two, where its map covers the page twice or cannot be mended.
 
 #include <array>
+#include <stop_token>
 #include <vector>
 
 #include "core/atlas/charts.hpp"
@@ -17,13 +18,16 @@ struct ChartPart {
 
 /// The pieces that hang together by the twins in `cut`, which are some of the chart's own (it need
 /// not be a disk): ordered by their lowest face, faces ascending, corners in their order.
-std::vector<ChartPart> parts_of(const Chart& chart, const Halfedges& cut);
+/// Throws Error{cancelled}.
+std::vector<ChartPart> parts_of(const Chart& chart, const Halfedges& cut,
+                                const std::stop_token& stop = {});
 
 /// Parts the faces so that those of seeds[0] and of seeds[1] are in different parts: each face goes
 /// with the seeds that are nearer over the surface. Seeds are disjoint, none empty; where a part
 /// would fall to pieces, there are more than two. Every face is in exactly one part, with its
 /// corners in their order.
 std::vector<ChartPart> split_chart(const Chart& chart,
-                                   const std::array<std::vector<Index>, 2>& seeds);
+                                   const std::array<std::vector<Index>, 2>& seeds,
+                                   const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -7,18 +7,22 @@
 #include <numeric>
 #include <utility>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// The matrix's entries by new columns.
-void list_entries(const SparseMatrix& lower, Analysis& analysis) {
+void list_entries(const SparseMatrix& lower, const std::stop_token& stop, Analysis& analysis) {
   const std::vector<Index>& position = analysis.nodes.position;
   const auto for_each_entry = [&](auto visit) {
-    for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j)
+    for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j) {
+      look_now_and_then(j, stop);
       for (Index p = lower.outerIndexPtr()[j]; p < lower.outerIndexPtr()[j + 1]; ++p)
         visit(std::minmax(position[at(j)], position[at(lower.innerIndexPtr()[p])]), p);
+    }
   };
   analysis.entry_begin.assign(position.size() + 1, 0);
   for_each_entry(
@@ -36,7 +40,7 @@ void list_entries(const SparseMatrix& lower, Analysis& analysis) {
 }
 
 /// The pattern of a matrix of pairs, one row a pair.
-Graph graph_of_pairs(const SparseMatrix& lower) {
+Graph graph_of_pairs(const SparseMatrix& lower, const std::stop_token& stop) {
   assert(lower.cols() % 2 == 0);
   std::vector<Index> begin{0}, row;
   for (Index j = 0; j < static_cast<Index>(lower.cols()); j += 2) {
@@ -44,7 +48,7 @@ Graph graph_of_pairs(const SparseMatrix& lower) {
       if (lower.innerIndexPtr()[p] % 2 == 0) row.push_back(lower.innerIndexPtr()[p] / 2);
     begin.push_back(static_cast<Index>(row.size()));
   }
-  return graph_of_lower(begin, row);
+  return graph_of_lower(begin, row, stop);
 }
 
 /// Two numbers for each: 2i and 2i + 1.
@@ -64,10 +68,12 @@ Supernodes doubled(Supernodes nodes) {
   return nodes;
 }
 
-std::shared_ptr<const Analysis> complete(Supernodes nodes, const SparseMatrix& lower) {
+std::shared_ptr<const Analysis> complete(Supernodes nodes, const SparseMatrix& lower,
+                                         const std::stop_token& stop) {
   Analysis analysis;
   analysis.nodes = std::move(nodes);
-  list_entries(lower, analysis);
+  list_entries(lower, stop, analysis);
+  throw_if_cancelled(stop);
   analysis.panel_begin.assign(1, 0);
   for (std::size_t s = 0; s < analysis.nodes.count(); ++s)
     analysis.panel_begin.push_back(analysis.panel_begin.back() + analysis.shape(s).size());
@@ -111,16 +117,17 @@ std::size_t Analysis::scratch_bytes() const {
   return 2 * sizeof(double) * (front + pending_size);  // two threads at least
 }
 
-std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower) {
+std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower, const std::stop_token& stop) {
   assert(lower.isCompressed());
   const std::span begin(lower.outerIndexPtr(), static_cast<std::size_t>(lower.cols()) + 1);
   const std::span row(lower.innerIndexPtr(), static_cast<std::size_t>(lower.nonZeros()));
-  return complete(analyse(graph_of_lower(begin, row)), lower);
+  return complete(analyse(graph_of_lower(begin, row, stop), stop), lower, stop);
 }
 
-std::shared_ptr<const Analysis> analyse_pairs(const SparseMatrix& lower) {
+std::shared_ptr<const Analysis> analyse_pairs(const SparseMatrix& lower,
+                                              const std::stop_token& stop) {
   assert(lower.isCompressed());
-  return complete(doubled(analyse(graph_of_pairs(lower))), lower);
+  return complete(doubled(analyse(graph_of_pairs(lower, stop), stop)), lower, stop);
 }
 
 }  // namespace unwrapd

@@ -42,12 +42,14 @@ constexpr std::size_t packed_size(std::size_t n) { return n * (n + 1) / 2; }
 /// The most numbers that the updates of a subtree ever occupy at once.
 std::size_t most_pending(const Supernodes& nodes, Branch branch);
 
-/// lower: the lower triangle, compressed.
-std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower);
+/// lower: the lower triangle, compressed. Throws Error{cancelled}.
+std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower,
+                                        const std::stop_token& stop = {});
 
 /// As analyse(), of a matrix with two unknowns a vertex, rows 2v and 2v+1, whose entries come in
 /// whole blocks of two by two (of the diagonal ones the lower triangle): ordered by vertices, a
 /// quarter of the graph. Values are those of the given, not the halved, matrix.
-std::shared_ptr<const Analysis> analyse_pairs(const SparseMatrix& lower);
+std::shared_ptr<const Analysis> analyse_pairs(const SparseMatrix& lower,
+                                              const std::stop_token& stop = {});
 
 }  // namespace unwrapd

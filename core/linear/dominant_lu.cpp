@@ -10,6 +10,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/linear/supernodal.hpp"
 
@@ -109,11 +110,17 @@ class DominantLu {
         local_(nodes.order.size()) {}
 
   /// x by places: b becomes the solution.
-  void solve(std::span<Vec2> x) {
+  void solve(std::span<Vec2> x, const std::stop_token& stop) {
     std::vector<std::vector<double>> upper;  // of each supernode: its pivots' rows
     upper.reserve(nodes_.count());
-    for (std::size_t s = 0; s < nodes_.count(); ++s) upper.push_back(eliminate(s, x));
-    for (std::size_t s = nodes_.count(); s-- > 0;) substitute(s, upper[s], x);
+    for (std::size_t s = 0; s < nodes_.count(); ++s) {
+      throw_if_cancelled(stop);
+      upper.push_back(eliminate(s, x));
+    }
+    for (std::size_t s = nodes_.count(); s-- > 0;) {
+      look_now_and_then(s, stop);
+      substitute(s, upper[s], x);
+    }
   }
 
  private:
@@ -194,24 +201,25 @@ class DominantLu {
   std::vector<Update> waiting_;
 };
 
-void solve_by(Reduce reduce, const SparseMatrix& matrix, std::span<Vec2> b) {
-  const Supernodes nodes = analyse(graph_of(matrix));
+void solve_by(Reduce reduce, const SparseMatrix& matrix, const std::stop_token& stop,
+              std::span<Vec2> b) {
+  const Supernodes nodes = analyse(graph_of(matrix), stop);
   std::vector<Vec2> x;
   x.reserve(b.size());
   for (Index v : nodes.order) x.push_back(b[at(v)]);
-  DominantLu(matrix, nodes, reduce).solve(x);
+  DominantLu(matrix, nodes, reduce).solve(x, stop);
   for (std::size_t k = 0; k < x.size(); ++k) b[at(nodes.order[k])] = x[k];
 }
 
 }  // namespace
 
-void solve_dominant(const SparseMatrix& matrix, std::span<Vec2> b) {
+void solve_dominant(const SparseMatrix& matrix, std::span<Vec2> b, const std::stop_token& stop) {
   static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
-  solve_by(has_avx2 ? reduce_avx2 : reduce_on_baseline, matrix, b);
+  solve_by(has_avx2 ? reduce_avx2 : reduce_on_baseline, matrix, stop, b);
 }
 
 void solve_dominant_on_baseline(const SparseMatrix& matrix, std::span<Vec2> b) {
-  solve_by(reduce_on_baseline, matrix, b);
+  solve_by(reduce_on_baseline, matrix, {}, b);
 }
 
 }  // namespace unwrapd

@@ -3,6 +3,7 @@
 // of convex combination maps are.
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/linear/sparse.hpp"
@@ -11,8 +12,10 @@ namespace unwrapd {
 
 /// Solves A x = b for both coordinates of b at once; b becomes x.
 /// matrix: square, row i diagonally dominant, pattern symmetric (values need not be).
-/// Throws Error{solver_failed} when a pivot vanishes. The same bits on any processor.
-void solve_dominant(const SparseMatrix& matrix, std::span<Vec2> b);
+/// Throws Error{solver_failed} when a pivot vanishes, and Error{cancelled}. The same bits on any
+/// processor.
+void solve_dominant(const SparseMatrix& matrix, std::span<Vec2> b,
+                    const std::stop_token& stop = {});
 
 /// The same with the registers of the x86-64 baseline, whatever the processor has.
 void solve_dominant_on_baseline(const SparseMatrix& matrix, std::span<Vec2> b);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -21,16 +23,19 @@ std::vector<Index> inverse(std::span<const Index> order) {
   return position;
 }
 
-std::vector<Index> parents(const Graph& graph, std::span<const Index> order) {
+std::vector<Index> parents(const Graph& graph, std::span<const Index> order,
+                           const std::stop_token& stop) {
   const std::vector<Index> position = inverse(order);
   std::vector<Index> parent(order.size(), kNoParent), ancestor(order.size(), kNone);
-  for (Index k = 0; k < static_cast<Index>(order.size()); ++k)
+  for (Index k = 0; k < static_cast<Index>(order.size()); ++k) {
+    look_now_and_then(k, stop);
     for (Index v : graph.of(order[at(k)]))
       for (Index j = position[at(v)]; j != kNone && j < k;) {
         const Index next = std::exchange(ancestor[at(j)], k);
         if (next == kNone) parent[at(j)] = k;
         j = next;
       }
+  }
   return parent;
 }
 
@@ -150,10 +155,12 @@ void count_leaves(const Graph& graph, const EliminationTree& tree, Index j, RowS
 }
 
 /// As differences first: a column has what its children have, but for their diagonal entries.
-std::vector<Index> column_counts(const Graph& graph, const EliminationTree& tree) {
+std::vector<Index> column_counts(const Graph& graph, const EliminationTree& tree,
+                                 const std::stop_token& stop) {
   RowSubtrees subtrees(tree.parent);
   std::vector<Index> count(tree.parent.size());
   for (Index j = 0; j < static_cast<Index>(count.size()); ++j) {
+    look_now_and_then(j, stop);
     count[at(j)] += subtrees.is_tree_leaf(j) ? 1 : 0;
     if (tree.parent[at(j)] != kNoParent) --count[at(tree.parent[at(j)])];
     count_leaves(graph, tree, j, subtrees, count);
@@ -166,9 +173,13 @@ std::vector<Index> column_counts(const Graph& graph, const EliminationTree& tree
 
 }  // namespace
 
-EliminationTree elimination_tree(const Graph& graph, std::vector<Index> order) {
-  EliminationTree tree = in_postorder(order, parents(graph, order));
-  tree.count = column_counts(graph, tree);
+EliminationTree elimination_tree(const Graph& graph, std::vector<Index> order,
+                                 const std::stop_token& stop) {
+  const std::vector<Index> parent = parents(graph, order, stop);
+  throw_if_cancelled(stop);
+  EliminationTree tree = in_postorder(order, parent);
+  throw_if_cancelled(stop);
+  tree.count = column_counts(graph, tree, stop);
   return tree;
 }
 

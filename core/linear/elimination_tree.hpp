@@ -20,6 +20,8 @@ struct EliminationTree {
 };
 
 /// order: any order of elimination. The tree's own differs from it, but its fill is the same.
-EliminationTree elimination_tree(const Graph& graph, std::vector<Index> order);
+/// Throws Error{cancelled}.
+EliminationTree elimination_tree(const Graph& graph, std::vector<Index> order,
+                                 const std::stop_token& stop = {});
 
 }  // namespace unwrapd

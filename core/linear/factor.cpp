@@ -53,25 +53,30 @@ SparseMatrix as_pairs(const ComplexMatrix& lower) {
   return pairs;
 }
 
-std::unique_ptr<RealSystem> factor(const SparseMatrix& lower) {
+std::unique_ptr<RealSystem> factor(const SparseMatrix& lower, const std::stop_token& stop) {
   SparseMatrix compressed;
   if (!lower.isCompressed()) {
     compressed = lower;
     compressed.makeCompressed();
   }
   const SparseMatrix& matrix = lower.isCompressed() ? lower : compressed;
-  return definite(try_factor(analyse(matrix), matrix));
+  SerialExecutor serial;
+  JobExecutor job(serial, stop);
+  return definite(try_factor(analyse(matrix, stop), matrix, job));
 }
 
 std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower) {
   return definite(try_factor(lower));
 }
 
-std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower, const MemoryCheck& check) {
+std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower, const MemoryCheck& check,
+                                            const std::stop_token& stop) {
   const SparseMatrix pairs = as_pairs(lower);
-  const auto analysis = analyse_pairs(pairs);
+  const auto analysis = analyse_pairs(pairs, stop);
   if (check) check(analysis->job_bytes());
-  std::unique_ptr<Factor> system = try_factor(analysis, pairs);
+  SerialExecutor serial;
+  JobExecutor job(serial, stop);
+  std::unique_ptr<Factor> system = try_factor(analysis, pairs, job);
   if (!system) return nullptr;
   return std::make_unique<PairsSystem>(std::move(system));
 }

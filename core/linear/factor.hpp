@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <stop_token>
 
 #include "core/linear/sparse.hpp"
 
@@ -31,8 +32,9 @@ using RealSystem = PrefactoredSystem<Vec2>;
 using HermitianSystem = PrefactoredSystem<Complex>;
 
 /// Factors the matrix whose lower triangle is given.
-/// Throws Error{solver_failed} when it is not positive definite in double precision.
-std::unique_ptr<RealSystem> factor(const SparseMatrix& lower);
+/// Throws Error{solver_failed} when it is not positive definite in double precision, and
+/// Error{cancelled}.
+std::unique_ptr<RealSystem> factor(const SparseMatrix& lower, const std::stop_token& stop = {});
 std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower);
 
 /// Told how many bytes a factor will take before they are taken; may throw.
@@ -40,7 +42,8 @@ using MemoryCheck = std::function<void(std::size_t bytes)>;
 
 /// As factor(), but nothing where that throws.
 std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower,
-                                            const MemoryCheck& check = {});
+                                            const MemoryCheck& check = {},
+                                            const std::stop_token& stop = {});
 
 [[noreturn]] void refuse_indefinite();
 

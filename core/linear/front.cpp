@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/cancel.hpp"
 #include "core/linear/front_kernels.hpp"
 
 namespace unwrapd {
@@ -73,6 +74,7 @@ bool factor_front(const FrontView& front, const FrontPhases& phases, double* pan
   const std::size_t pivots = front.shape.pivots;
   for (std::size_t k = 0; k < pivots; k += kBlock) {
     const Columns own{k, std::min(k + kBlock, pivots)};
+    throw_if_cancelled(executor.stop());
     if (!phases.finish(front, own)) return false;
     in_parts(front, {padded(own.end, kPack), front.size()}, executor,
              [&](std::size_t, Columns others) { phases.update(front, own, others); });

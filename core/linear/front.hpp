@@ -51,7 +51,8 @@ class Front {
   /// not positive and finite. The same bits on any processor.
   [[nodiscard]] bool factor(double* panel) const;
 
-  /// The same bits by any executor: large fronts are split among its threads.
+  /// The same bits by any executor: large fronts are split among its threads. Throws
+  /// Error{cancelled} when its job was told to stop.
   [[nodiscard]] bool factor(double* panel, Executor& executor) const;
 
   /// The same with the registers of the x86-64 baseline, whatever the processor has.

@@ -2,6 +2,7 @@
 // In which order to eliminate the vertices of a symmetric matrix, so that its factor stays sparse.
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/linear/sparse.hpp"
@@ -23,10 +24,11 @@ struct Graph {
 };
 
 /// The pattern of a compressed lower triangle, as a graph. begin: column_count + 1 offsets into
-/// row.
-Graph graph_of_lower(std::span<const Index> begin, std::span<const Index> row);
+/// row. Throws Error{cancelled}.
+Graph graph_of_lower(std::span<const Index> begin, std::span<const Index> row,
+                     const std::stop_token& stop = {});
 
-/// order[k]: the vertex to eliminate k-th. Deterministic.
-std::vector<Index> fill_reducing_order(const Graph& graph);
+/// order[k]: the vertex to eliminate k-th. Deterministic. Throws Error{cancelled}.
+std::vector<Index> fill_reducing_order(const Graph& graph, const std::stop_token& stop = {});
 
 }  // namespace unwrapd

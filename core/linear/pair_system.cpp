@@ -30,12 +30,14 @@ Pattern slot_pattern(std::span<const Triangle> faces, const FreeVertices& slots)
 
 }  // namespace
 
-PairSystem::PairSystem(std::span<const Triangle> faces, const FreeVertices& slots) : slots_(slots) {
+PairSystem::PairSystem(std::span<const Triangle> faces, const FreeVertices& slots,
+                       std::stop_token stop)
+    : slots_(slots), stop_(std::move(stop)) {
   assert(slots.count > 0);
   build_pattern(faces);
   target_.reserve(faces.size());
   for (const Triangle& face : faces) target_.push_back(targets(face));
-  factor_.emplace(analyse_pairs(lower_));
+  factor_.emplace(analyse_pairs(lower_, stop_));
 }
 
 PairSystem::FaceTargets PairSystem::targets(const Triangle& face) const {
@@ -98,10 +100,12 @@ void PairSystem::raise_diagonal(double share) {
 }
 
 bool PairSystem::factor() {
-  if (factor_->refill(lower_)) return true;
+  SerialExecutor serial;
+  JobExecutor job(serial, stop_);
+  if (factor_->refill(lower_, job)) return true;
   for (double share : kRaises) {
     raise_diagonal(share);
-    if (factor_->refill(lower_)) return true;
+    if (factor_->refill(lower_, job)) return true;
   }
   return false;
 }

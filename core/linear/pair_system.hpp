@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/linear/eliminate.hpp"
@@ -22,8 +23,8 @@ class PairSystem {
  public:
   /// faces index slots: the unknowns of vertex v are rows 2 slot[v] and 2 slot[v] + 1; vertices may
   /// share a slot, and those whose slot is kFixed have none. slots must outlive the system;
-  /// count > 0.
-  PairSystem(std::span<const Triangle> faces, const FreeVertices& slots);
+  /// count > 0. Throws Error{cancelled}, as factor() does.
+  PairSystem(std::span<const Triangle> faces, const FreeVertices& slots, std::stop_token stop = {});
 
   /// That factoring takes, pattern and targets included.
   [[nodiscard]] std::size_t bytes() const;
@@ -55,6 +56,7 @@ class PairSystem {
   void raise_diagonal(double share);
 
   const FreeVertices& slots_;
+  std::stop_token stop_;
   SparseMatrix lower_;
   std::vector<FaceTargets> target_;
   std::optional<Factor> factor_;

@@ -7,6 +7,8 @@
 #include <cassert>
 #include <utility>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -22,8 +24,8 @@ struct Columns {
   std::vector<double> diagonal;
 };
 
-Columns scatter(std::span<const Triangle> faces, Index vertex_count,
-                std::span<const double> weight) {
+Columns scatter(std::span<const Triangle> faces, Index vertex_count, std::span<const double> weight,
+                const std::stop_token& stop) {
   const auto n = static_cast<std::size_t>(vertex_count);
   Columns c{std::vector<Index>(n + 1, 0), std::vector<Entry>(3 * faces.size()),
             std::vector<double>(n, 0.0)};
@@ -31,11 +33,14 @@ Columns scatter(std::span<const Triangle> faces, Index vertex_count,
     const Triangle& f = faces[h / 3];
     return std::minmax(f[h % 3], f[(h + 1) % 3]);
   };
-  for (std::size_t h = 0; h < 3 * faces.size(); ++h)
+  for (std::size_t h = 0; h < 3 * faces.size(); ++h) {
+    look_now_and_then(h, stop);
     ++c.begin[static_cast<std::size_t>(ends(h).first) + 1];
+  }
   for (std::size_t j = 0; j < n; ++j) c.begin[j + 1] += c.begin[j];
   std::vector<Index> next(c.begin.begin(), c.begin.end() - 1);
   for (std::size_t h = 0; h < 3 * faces.size(); ++h) {
+    look_now_and_then(h, stop);
     const auto [low, high] = ends(h);
     const auto column = static_cast<std::size_t>(low);
     c.entries[static_cast<std::size_t>(next[column]++)] = {high, -weight[h]};
@@ -62,12 +67,13 @@ std::size_t merge(std::span<Entry> column) {
 }  // namespace
 
 SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count,
-                             std::span<const double> weight) {
+                             std::span<const double> weight, const std::stop_token& stop) {
   assert(weight.size() == 3 * faces.size());
-  Columns columns = scatter(faces, vertex_count, weight);
+  Columns columns = scatter(faces, vertex_count, weight, stop);
   SparseMatrix lower(vertex_count, vertex_count);
   lower.reserve(static_cast<Index>(columns.entries.size()) + vertex_count);
   for (Index j = 0; j < vertex_count; ++j) {
+    look_now_and_then(j, stop);
     const auto begin = static_cast<std::size_t>(columns.begin[static_cast<std::size_t>(j)]);
     const auto end = static_cast<std::size_t>(columns.begin[static_cast<std::size_t>(j) + 1]);
     const std::span<Entry> column = std::span(columns.entries).subspan(begin, end - begin);
@@ -80,15 +86,19 @@ SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count
   return lower;
 }
 
-VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count) {
+VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count,
+                             const std::stop_token& stop) {
   VertexCorners list;
   list.begin.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
   list.corner.resize(3 * faces.size());
-  for (const Triangle& face : faces)
-    for (Index v : face) ++list.begin[static_cast<std::size_t>(v) + 1];
+  for (std::size_t t = 0; t < faces.size(); ++t) {
+    look_now_and_then(t, stop);
+    for (Index v : faces[t]) ++list.begin[static_cast<std::size_t>(v) + 1];
+  }
   for (std::size_t v = 1; v < list.begin.size(); ++v) list.begin[v] += list.begin[v - 1];
   std::vector<Index> next(list.begin.begin(), list.begin.end() - 1);
   for (std::size_t c = 0; c < 3 * faces.size(); ++c) {
+    look_now_and_then(c, stop);
     const auto v = static_cast<std::size_t>(faces[c / 3][c % 3]);
     list.corner[static_cast<std::size_t>(next[v]++)] = static_cast<Index>(c);
   }

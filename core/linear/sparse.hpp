@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/tri_mesh.hpp"
@@ -16,7 +17,7 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 /// (L u)_i = sum over half-edges at i of weight (u_i - u_j). weight has 3 entries a face, one for
 /// each side; the two sides of an edge add up. Every vertex has its diagonal entry, stored first.
 SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count,
-                             std::span<const double> weight);
+                             std::span<const double> weight, const std::stop_token& stop = {});
 
 /// Corners by vertex: the corners (3t+i) of vertex v are corner[begin[v]] .. corner[begin[v+1]-1],
 /// ascending. Sums over a vertex in this order are the same for any number of threads.
@@ -24,6 +25,7 @@ struct VertexCorners {
   std::vector<Index> begin;   ///< vertex_count + 1 entries
   std::vector<Index> corner;  ///< 3 * face_count entries
 };
-VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count);
+VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count,
+                             const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -7,6 +7,8 @@
 
 #include <utility>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -101,9 +103,11 @@ class RowLists {
 };
 
 std::vector<Index> rows_of(const Graph& graph, const Supernodes& nodes,
-                           std::span<const Index> supernode, std::span<const Index> parent) {
+                           std::span<const Index> supernode, std::span<const Index> parent,
+                           const std::stop_token& stop) {
   RowLists lists(nodes.row_begin, parent);
   for (Index i = 0; i < static_cast<Index>(supernode.size()); ++i) {
+    look_now_and_then(i, stop);
     lists.start(i, supernode[at(i)]);
     for (Index v : graph.of(nodes.order[at(i)]))
       if (const Index j = nodes.position[at(v)]; j < i) lists.climb(i, supernode[at(j)]);
@@ -113,8 +117,9 @@ std::vector<Index> rows_of(const Graph& graph, const Supernodes& nodes,
 
 }  // namespace
 
-Supernodes analyse(const Graph& graph) {
-  EliminationTree tree = elimination_tree(graph, fill_reducing_order(graph));
+Supernodes analyse(const Graph& graph, const std::stop_token& stop) {
+  EliminationTree tree = elimination_tree(graph, fill_reducing_order(graph, stop), stop);
+  throw_if_cancelled(stop);
   Supernodes nodes;
   nodes.first = relaxed_supernodes(tree);
   const std::vector<Index> supernode = supernode_of_columns(nodes.first);
@@ -131,7 +136,7 @@ Supernodes analyse(const Graph& graph) {
   }
   nodes.order = std::move(tree.order);
   nodes.position = std::move(tree.position);
-  nodes.row = rows_of(graph, nodes, supernode, parent);
+  nodes.row = rows_of(graph, nodes, supernode, parent, stop);
   return nodes;
 }
 

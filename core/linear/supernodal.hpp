@@ -28,7 +28,8 @@ struct Supernodes {
   }
 };
 
-/// Everything about the factor but its numbers, from the pattern of the matrix alone.
-Supernodes analyse(const Graph& graph);
+/// Everything about the factor but its numbers, from the pattern of the matrix alone. Throws
+/// Error{cancelled}.
+Supernodes analyse(const Graph& graph, const std::stop_token& stop = {});
 
 }  // namespace unwrapd

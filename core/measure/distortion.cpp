@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -36,12 +38,13 @@ double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> fac
 }
 
 DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
-                               std::span<const Vec2> uv) {
+                               std::span<const Vec2> uv, const std::stop_token& stop) {
   assert(rest.size() == faces.size());
   DistortionSums sums;
   std::vector<Stretches> stretches;
   stretches.reserve(faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t) {
+    look_now_and_then(t, stop);
     const Jacobian j = jacobian(rest[t], uv_edges(faces[t], uv));
     sums.area += rest[t].area;
     sums.uv_area += rest[t].area * std::abs(j.determinant());

@@ -2,6 +2,7 @@
 // Distortion metrics of Sec. 6, on |sigma|, with flips beside them.
 
 #include <span>
+#include <stop_token>
 
 #include "core/measure/jacobian.hpp"
 #include "core/report.hpp"
@@ -26,7 +27,7 @@ inline constexpr double kMinSingularValue = 1e-6;
 
 /// faces index uv; rest has one entry a face.
 DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
-                               std::span<const Vec2> uv);
+                               std::span<const Vec2> uv, const std::stop_token& stop = {});
 
 /// D_angle, D_area and stretch after the one global scale that makes UV area = 3D area (Sec. 6).
 /// Stretch is the L2 norm of Sander et al. 2001.

@@ -11,6 +11,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -89,10 +91,13 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
   return exact_orientation(a, b, c);
 }
 
-std::vector<Index> flipped_faces(std::span<const Triangle> faces, std::span<const Vec2> uv) {
+std::vector<Index> flipped_faces(std::span<const Triangle> faces, std::span<const Vec2> uv,
+                                 const std::stop_token& stop) {
   std::vector<Index> flipped;
-  for (std::size_t t = 0; t < faces.size(); ++t)
+  for (std::size_t t = 0; t < faces.size(); ++t) {
+    look_now_and_then(t, stop);
     if (orientation(faces[t], uv) <= 0) flipped.push_back(static_cast<Index>(t));
+  }
   return flipped;
 }
 

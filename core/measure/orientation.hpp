@@ -2,6 +2,7 @@
 // On which side of a line a point lies, without a doubt.
 
 #include <span>
+#include <stop_token>
 
 #include "core/mesh/tri_mesh.hpp"
 
@@ -18,6 +19,8 @@ inline int orientation(const Triangle& face, std::span<const Vec2> uv) {
 }
 
 /// Faces whose image is not counter-clockwise, in ascending order: flipped, or of zero area.
-std::vector<Index> flipped_faces(std::span<const Triangle> faces, std::span<const Vec2> uv);
+/// Throws Error{cancelled}.
+std::vector<Index> flipped_faces(std::span<const Triangle> faces, std::span<const Vec2> uv,
+                                 const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -179,8 +179,8 @@ bool overlap(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b) {
 }
 
 bool is_plainly_injective(std::span<const Triangle> faces, std::span<const BoundaryLoop> loops,
-                          std::span<const Vec2> uv) {
-  if (!flipped_faces(faces, uv).empty()) return false;
+                          std::span<const Vec2> uv, const std::stop_token& stop) {
+  if (!flipped_faces(faces, uv, stop).empty()) return false;
   std::vector<Side> sides;
   int outer = 0;
   for (const BoundaryLoop& loop : loops) {

@@ -19,7 +19,7 @@ bool overlap(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b);
 /// each point has as many preimages as loops wind around it, and that is one or none. False means
 /// only that this is no proof.
 bool is_plainly_injective(std::span<const Triangle> faces, std::span<const BoundaryLoop> loops,
-                          std::span<const Vec2> uv);
+                          std::span<const Vec2> uv, const std::stop_token& stop = {});
 
 /// All pairs (s, t), s < t, of faces whose images overlap, in lexicographic order; at most `most`
 /// of them. Near-linear for maps of ordinary triangles. Throws Error{cancelled}.

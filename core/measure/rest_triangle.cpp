@@ -8,6 +8,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -55,10 +57,13 @@ RestTriangle lay_flat(const Corners& c) {
 
 }  // namespace
 
-std::vector<RestTriangle> flatten(const TriMesh& mesh) {
+std::vector<RestTriangle> flatten(const TriMesh& mesh, const std::stop_token& stop) {
   std::vector<RestTriangle> rest;
   rest.reserve(mesh.faces.size());
-  for (const Triangle& face : mesh.faces) rest.push_back(lay_flat(corners_of(mesh, face)));
+  for (const Triangle& face : mesh.faces) {
+    look_now_and_then(rest.size(), stop);
+    rest.push_back(lay_flat(corners_of(mesh, face)));
+  }
   return rest;
 }
 

@@ -2,6 +2,7 @@
 // The reference of every measure: each 3D triangle laid flat, isometrically (Sec. 4, Fig. 2).
 
 #include <array>
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/tri_mesh.hpp"
@@ -20,7 +21,7 @@ struct RestTriangle {
 inline constexpr double kMinHeight = 1e-6;
 
 /// One rest triangle a face. Faces must not have all three corners at one point.
-std::vector<RestTriangle> flatten(const TriMesh& mesh);
+std::vector<RestTriangle> flatten(const TriMesh& mesh, const std::stop_token& stop = {});
 
 /// 3D area of one face, unfloored.
 double face_area(const TriMesh& mesh, const Triangle& face);

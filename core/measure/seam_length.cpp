@@ -22,13 +22,14 @@ bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
 
 }  // namespace
 
-Halfedges halfedges_by_position(const TriMesh& mesh) {
-  return build_halfedges(renumbered(mesh.faces, weld(mesh.positions)), mesh.vertex_count());
+Halfedges halfedges_by_position(const TriMesh& mesh, const std::stop_token& stop) {
+  const std::vector<Triangle> welded = renumbered(mesh.faces, weld(mesh.positions, stop));
+  return build_halfedges(welded, mesh.vertex_count(), stop);
 }
 
 std::vector<double> seam_lengths(const Surface& surface, const UnwrappedSurface& unwrapped,
                                  const std::stop_token& stop) {
-  return seam_lengths(surface.mesh, halfedges_by_position(surface.mesh), unwrapped, stop);
+  return seam_lengths(surface.mesh, halfedges_by_position(surface.mesh, stop), unwrapped, stop);
 }
 
 std::vector<double> seam_lengths(const TriMesh& mesh, const Halfedges& by_position,

@@ -9,7 +9,7 @@
 namespace unwrapd {
 
 /// The twins of a mesh whose vertices at one position are one.
-Halfedges halfedges_by_position(const TriMesh& mesh);
+Halfedges halfedges_by_position(const TriMesh& mesh, const std::stop_token& stop = {});
 
 /// 3D length of the edges between two faces whose UVs differ on both sides, mesh units. Edges are
 /// found by position, so cuts that the input came with count as well; boundaries and non-manifold

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <span>
+#include <stop_token>
 #include <vector>
 
+#include "core/cancel.hpp"
 #include "core/mesh/halfedges.hpp"
 
 namespace unwrapd {
@@ -30,12 +32,14 @@ inline bool repeats_vertex(const Triangle& face) {
   return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
 }
 
-/// The half-edges for which wanted(h) holds, sorted by edge. Their ends must differ.
+/// The half-edges for which wanted(h) holds. Their ends must differ. Throws Error{cancelled}.
 template <class Wanted>
-std::vector<EdgeSide> edge_sides(std::span<const Triangle> faces, Wanted wanted) {
+std::vector<EdgeSide> edge_sides(std::span<const Triangle> faces, Wanted wanted,
+                                 const std::stop_token& stop = {}) {
   std::vector<EdgeSide> sides;
   sides.reserve(3 * faces.size());
   for (Index h = 0; h < static_cast<Index>(3 * faces.size()); ++h) {
+    look_now_and_then(h, stop);
     if (!wanted(h)) continue;
     const Index a = start_of(faces, h), b = end_of(faces, h);
     sides.push_back({std::min(a, b), std::max(a, b), h});
@@ -43,8 +47,10 @@ std::vector<EdgeSide> edge_sides(std::span<const Triangle> faces, Wanted wanted)
   return sides;
 }
 
-/// Sorts by edge, in linear time; sides on one edge keep the order of their half-edges.
-void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count);
+/// Sorts by edge, in linear time; sides on one edge keep the order of their half-edges. Throws
+/// Error{cancelled}.
+void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count,
+                  const std::stop_token& stop = {});
 
 /// The twins that all sides of one edge make, as [first, last) of a sorted list.
 /// Two half-edges can be twins when they run in opposite directions and their faces are not one

@@ -70,9 +70,12 @@ double length(const TriMesh& mesh, const BoundaryLoop& loop) {
 
 }  // namespace
 
-void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count) {
-  counting_sort(sides, vertex_count, [](const EdgeSide& side) { return side.low; });
-  for (auto first = sides.begin(); first != sides.end();) {
+void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count, const std::stop_token& stop) {
+  counting_sort(
+      sides, vertex_count, [](const EdgeSide& side) { return side.low; }, stop);
+  std::size_t step = 0;
+  for (auto first = sides.begin(); first != sides.end(); ++step) {
+    look_now_and_then(step, stop);
     const auto last = std::find_if(first, sides.end(),
                                    [&](const EdgeSide& side) { return side.low != first->low; });
     sort_by_high(std::span(first, last));
@@ -94,20 +97,26 @@ int pair_edge(std::span<const Triangle> faces, std::span<const EdgeSide> sides, 
   return pairs;
 }
 
-Halfedges build_halfedges(std::span<const Triangle> faces, Index vertex_count) {
+Halfedges build_halfedges(std::span<const Triangle> faces, Index vertex_count,
+                          const std::stop_token& stop) {
   Halfedges halfedges{std::vector<Index>(3 * faces.size(), kNoTwin)};
-  auto sides = edge_sides(faces, [&](Index h) { return !repeats_vertex(faces[face_of(h)]); });
-  sort_by_edge(sides, vertex_count);
-  for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
-    pair_edge(faces, {first, last}, halfedges);
-  });
+  auto sides = edge_sides(
+      faces, [&](Index h) { return !repeats_vertex(faces[face_of(h)]); }, stop);
+  sort_by_edge(sides, vertex_count, stop);
+  for_each_run(
+      sides, on_one_edge,
+      [&](const EdgeSide* first, const EdgeSide* last) {
+        pair_edge(faces, {first, last}, halfedges);
+      },
+      stop);
   return halfedges;
 }
 
-std::vector<BoundaryLoop> boundary_loops(const Halfedges& halfedges) {
+std::vector<BoundaryLoop> boundary_loops(const Halfedges& halfedges, const std::stop_token& stop) {
   std::vector<BoundaryLoop> loops;
   std::vector<bool> seen(halfedges.twin.size(), false);
   for (Index start = 0; start < static_cast<Index>(seen.size()); ++start) {
+    look_now_and_then(start, stop);
     if (seen[start] || halfedges.twin[start] != kNoTwin) continue;
     BoundaryLoop& loop = loops.emplace_back();
     for (Index h = start; !seen[h]; h = next_on_boundary(halfedges, h)) {
@@ -130,9 +139,10 @@ void sort_by_length(const TriMesh& mesh, std::vector<BoundaryLoop>& loops) {
   for (std::size_t k = 0; k < loops.size(); ++k) loops[k] = std::move(by_length[k].second);
 }
 
-std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges) {
+std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges,
+                                         const std::stop_token& stop) {
   assert(halfedges.twin.size() == 3 * mesh.faces.size());
-  std::vector<BoundaryLoop> loops = boundary_loops(halfedges);
+  std::vector<BoundaryLoop> loops = boundary_loops(halfedges, stop);
   sort_by_length(mesh, loops);
   return loops;
 }

@@ -5,6 +5,7 @@
 // disk) only removes twins; vertices then are the classes of corners that twins hold together.
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/tri_mesh.hpp"
@@ -23,20 +24,23 @@ struct Halfedges {
 
 /// Pairs the half-edges (i,j) and (j,i) of the faces. An edge where more than two half-edges meet,
 /// or two of the same direction, stays without twins. Linear time (radix or counting sort).
-Halfedges build_halfedges(std::span<const Triangle> faces, Index vertex_count);
+Halfedges build_halfedges(std::span<const Triangle> faces, Index vertex_count,
+                          const std::stop_token& stop = {});
 
 /// A closed chain of twinless half-edges, in the order in which the surface's boundary is walked
 /// (the surface to the left). Each half-edge of the chain starts where the one before ends.
 using BoundaryLoop = std::vector<Index>;
 
 /// All boundary loops, by their lowest half-edge.
-std::vector<BoundaryLoop> boundary_loops(const Halfedges& halfedges);
+std::vector<BoundaryLoop> boundary_loops(const Halfedges& halfedges,
+                                         const std::stop_token& stop = {});
 
 /// The one of greatest 3D length first; those of one length keep their order.
 void sort_by_length(const TriMesh& mesh, std::vector<BoundaryLoop>& loops);
 
 /// All boundary loops, the one of greatest 3D length first (ties: the lowest half-edge).
 /// Needs manifold vertices, as Chart's are: each vertex has one fan.
-std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges);
+std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges,
+                                         const std::stop_token& stop = {});
 
 }  // namespace unwrapd

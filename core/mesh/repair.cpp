@@ -38,28 +38,32 @@ struct Corners {
 };
 
 std::vector<Corners> sorted_corners(std::span<const Triangle> faces, const FaceStates& states,
-                                    Index vertex_count) {
+                                    Index vertex_count, const std::stop_token& stop) {
   std::vector<Corners> list;
   list.reserve(faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t) {
+    look_now_and_then(t, stop);
     if (states.of[t] != FaceState::sound) continue;
     Triangle face = faces[t];
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
     list.push_back({face, static_cast<Index>(t)});
   }
   for (int corner : {2, 1, 0})
-    counting_sort(list, vertex_count, [corner](const Corners& c) { return c.vertex[corner]; });
+    counting_sort(
+        list, vertex_count, [corner](const Corners& c) { return c.vertex[corner]; }, stop);
   return list;
 }
 
 }  // namespace
 
-FaceStates inspect_areas(const TriMesh& mesh, std::span<const Triangle> welded) {
+FaceStates inspect_areas(const TriMesh& mesh, std::span<const Triangle> welded,
+                         const std::stop_token& stop) {
   FaceStates states{std::vector<FaceState>(welded.size(), FaceState::sound),
                     std::vector<Index>(welded.size(), kNoFace)};
   double most = 0;
   for (const Vec3& position : mesh.positions) most = std::max(most, greatest(position));
   for (std::size_t t = 0; t < welded.size(); ++t) {
+    look_now_and_then(t, stop);
     const auto& [a, b, c] = welded[t];
     if (repeats_vertex(welded[t]))
       states.of[t] = FaceState::collapsed;
@@ -69,21 +73,24 @@ FaceStates inspect_areas(const TriMesh& mesh, std::span<const Triangle> welded) 
   return states;
 }
 
-void find_duplicates(std::span<const Triangle> welded, Index vertex_count, FaceStates& states) {
+void find_duplicates(std::span<const Triangle> welded, Index vertex_count,
+                     const std::stop_token& stop, FaceStates& states) {
   for_each_run(
-      sorted_corners(welded, states, vertex_count),
+      sorted_corners(welded, states, vertex_count, stop),
       [](const Corners& a, const Corners& b) { return a.vertex == b.vertex; },
       [&](const Corners* first, const Corners* last) {
         for (const Corners* c = first + 1; c < last; ++c) {
           states.of[c->face] = FaceState::duplicate;
           states.same_as[c->face] = first->face;
         }
-      });
+      },
+      stop);
 }
 
-FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded) {
-  FaceStates states = inspect_areas(mesh, welded);
-  find_duplicates(welded, mesh.vertex_count(), states);
+FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded,
+                         const std::stop_token& stop) {
+  FaceStates states = inspect_areas(mesh, welded, stop);
+  find_duplicates(welded, mesh.vertex_count(), stop, states);
   return states;
 }
 

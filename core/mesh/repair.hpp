@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/tri_mesh.hpp"
@@ -24,13 +25,17 @@ struct FaceStates {
 };
 
 /// Which faces have no area. welded: the faces of mesh over welded vertices (see weld()).
-FaceStates inspect_areas(const TriMesh& mesh, std::span<const Triangle> welded);
+/// Throws Error{cancelled}.
+FaceStates inspect_areas(const TriMesh& mesh, std::span<const Triangle> welded,
+                         const std::stop_token& stop = {});
 
-/// Sets apart which of the sound faces are duplicates.
-void find_duplicates(std::span<const Triangle> welded, Index vertex_count, FaceStates& states);
+/// Sets apart which of the sound faces are duplicates. Throws Error{cancelled}.
+void find_duplicates(std::span<const Triangle> welded, Index vertex_count,
+                     const std::stop_token& stop, FaceStates& states);
 
 /// Both. welded: the faces of mesh over welded vertices (see weld()). The same triangle seen from
 /// behind is no duplicate: both sides of a double-sided sheet stay.
-FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded);
+FaceStates inspect_faces(const TriMesh& mesh, std::span<const Triangle> welded,
+                         const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -27,15 +27,17 @@ void open_edge(Halfedges& halfedges, Index h) {
 }
 
 /// Pairs the sides of every edge; counts what cannot be paired.
-void pair_all(std::span<const Triangle> faces, const std::vector<EdgeSide>& sides, Pairing& out) {
-  for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
+void pair_all(std::span<const Triangle> faces, const std::vector<EdgeSide>& sides,
+              const std::stop_token& stop, Pairing& out) {
+  const auto pair = [&](const EdgeSide* first, const EdgeSide* last) {
     const auto count = last - first;
     if (count == 1 || pair_edge(faces, {first, last}, out.halfedges) > 0) return;
     const Index g = first[0].halfedge, h = first[1].halfedge;
     const bool clash = count == 2 && start_of(faces, g) == start_of(faces, h);
     if (clash) out.clashes.push_back({g, h});
     out.split_edges += clash || count > 2;
-  });
+  };
+  for_each_run(sides, on_one_edge, pair, stop);
 }
 
 /// Takes a collapsed face out: the neighbours across its two long sides become twins.
@@ -112,28 +114,30 @@ class Sides {
 
 }  // namespace
 
-Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states) {
+Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states,
+                    const std::stop_token& stop) {
   Pairing out{{std::vector<Index>(3 * welded.size(), kNoTwin)}, 0, {}};
-  auto sides =
-      edge_sides(welded, [&](Index h) { return states.of[face_of(h)] == FaceState::sound; });
+  auto sides = edge_sides(
+      welded, [&](Index h) { return states.of[face_of(h)] == FaceState::sound; }, stop);
   Index vertex_count = 0;
   for (const EdgeSide& side : sides) vertex_count = std::max(vertex_count, side.high + 1);
-  sort_by_edge(sides, vertex_count);
-  pair_all(welded, sides, out);
+  sort_by_edge(sides, vertex_count, stop);
+  pair_all(welded, sides, stop, out);
   return out;
 }
 
 Pairing pair_keeping_seams(const Surface& surface, std::span<const Triangle> welded,
-                           const FaceStates& states) {
+                           const FaceStates& states, const std::stop_token& stop) {
   const std::vector<Triangle>& faces = surface.mesh.faces;
   Pairing out{{std::vector<Index>(3 * faces.size(), kNoTwin)}, 0, {}};
-  auto sides = edge_sides(faces, [&](Index h) {
+  const auto counts = [&](Index h) {
     const FaceState state = states.of[face_of(h)];
     return state == FaceState::sound ||
            (state == FaceState::collapsed && !repeats_vertex(faces[face_of(h)]));
-  });
-  sort_by_edge(sides, surface.mesh.vertex_count());
-  pair_all(faces, sides, out);
+  };
+  auto sides = edge_sides(faces, counts, stop);
+  sort_by_edge(sides, surface.mesh.vertex_count(), stop);
+  pair_all(faces, sides, stop, out);
   for (Index t = 0; t < surface.mesh.face_count(); ++t)
     if (states.of[t] == FaceState::collapsed) take_out(welded, t, out.halfedges);
   if (spans_parts(surface)) glue_parts(surface, welded, states, out);
@@ -169,13 +173,14 @@ void cut_at_uv_seams(const Surface& surface, Halfedges& halfedges) {
   }
 }
 
-void close_slits(Halfedges& halfedges) {
+void close_slits(Halfedges& halfedges, const std::stop_token& stop) {
   const auto next_open = [&](Index h) {
     Index g = next_halfedge(h);
     while (!is_open(halfedges, g)) g = next_halfedge(halfedges.twin[g]);
     return g;
   };
   for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
+    look_now_and_then(h, stop);
     if (!is_open(halfedges, h)) continue;
     const Index g = next_open(h);
     if (g != h && next_open(g) == h) set_twins(halfedges, g, h);

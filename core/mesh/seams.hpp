@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/halfedges.hpp"
@@ -21,12 +22,13 @@ struct Pairing {
 };
 
 /// By position: welded are the surface's faces over welded vertices.
-Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states);
+Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states,
+                    const std::stop_token& stop = {});
 
 /// By the surface's own vertex numbers; what is left open between two different primitives is
 /// paired by position where just two half-edges meet. A cut inside a primitive stays open.
 Pairing pair_keeping_seams(const Surface& surface, std::span<const Triangle> welded,
-                           const FaceStates& states);
+                           const FaceStates& states, const std::stop_token& stop = {});
 
 /// An edge by its ends, the lower first.
 using EdgeEnds = std::array<Index, 2>;
@@ -42,7 +44,7 @@ void cut_at_uv_seams(const Surface& surface, Halfedges& halfedges);
 
 /// Twins the two half-edges of every boundary loop that has no more than two: the slit that a
 /// non-manifold edge leaves when it is split inside one sheet, of no use to anyone.
-void close_slits(Halfedges& halfedges);
+void close_slits(Halfedges& halfedges, const std::stop_token& stop = {});
 
 /// The component of a one-sided surface (a Moebius strip): one that clashes with itself however
 /// components are turned over. components are those of pairing.halfedges, one a face.

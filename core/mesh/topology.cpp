@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/cancel.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd {
@@ -12,10 +13,12 @@ namespace {
 constexpr Index kNone = -1;
 
 /// Gives the component `id` to every face that twins connect with `start`.
-void flood(const Halfedges& halfedges, Index start, Index id, std::vector<Index>& component_of) {
+void flood(const Halfedges& halfedges, Index start, Index id, const std::stop_token& stop,
+           std::vector<Index>& component_of) {
   std::vector<Index> open{start};
   component_of[start] = id;
-  while (!open.empty()) {
+  for (std::size_t step = 0; !open.empty(); ++step) {
+    look_now_and_then(step, stop);
     const Index t = open.back();
     open.pop_back();
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
@@ -28,12 +31,14 @@ void flood(const Halfedges& halfedges, Index start, Index id, std::vector<Index>
   }
 }
 
-void count_vertices(std::span<const Triangle> faces, Topology& topology) {
+void count_vertices(std::span<const Triangle> faces, const std::stop_token& stop,
+                    Topology& topology) {
   Index vertex_count = 0;
   for (const Triangle& face : faces)
     vertex_count = std::max({vertex_count, face[0], face[1], face[2]});
   std::vector<bool> seen(faces.empty() ? 0 : static_cast<std::size_t>(vertex_count) + 1, false);
   for (std::size_t t = 0; t < faces.size(); ++t) {
+    look_now_and_then(t, stop);
     for (Index v : faces[t]) {
       if (seen[v]) continue;
       seen[v] = true;
@@ -52,10 +57,12 @@ void mark_loop(const Halfedges& halfedges, Index start, std::vector<bool>& seen)
 }
 
 /// Counts boundary loops, and boundary half-edges (twice the edges, less 3 a face) in `sides`.
-std::vector<Index> count_boundaries(const Halfedges& halfedges, Topology& topology) {
+std::vector<Index> count_boundaries(const Halfedges& halfedges, const std::stop_token& stop,
+                                    Topology& topology) {
   std::vector<Index> sides(topology.components.size(), 0);
   std::vector<bool> seen(halfedges.twin.size(), false);
   for (std::size_t h = 0; h < halfedges.twin.size(); ++h) {
+    look_now_and_then(h, stop);
     if (halfedges.twin[h] != kNoTwin) continue;
     const Index component = topology.component_of[h / 3];
     ++sides[component];
@@ -68,18 +75,19 @@ std::vector<Index> count_boundaries(const Halfedges& halfedges, Topology& topolo
 
 }  // namespace
 
-Topology topology(std::span<const Triangle> faces, const Halfedges& halfedges) {
+Topology topology(std::span<const Triangle> faces, const Halfedges& halfedges,
+                  const std::stop_token& stop) {
   assert(halfedges.twin.size() == 3 * faces.size());
   Topology result;
   result.component_of.assign(faces.size(), kNone);
   for (Index t = 0; t < static_cast<Index>(faces.size()); ++t) {
     if (result.component_of[t] != kNone) continue;
-    flood(halfedges, t, static_cast<Index>(result.components.size()), result.component_of);
+    flood(halfedges, t, static_cast<Index>(result.components.size()), stop, result.component_of);
     result.components.emplace_back();
   }
   for (Index id : result.component_of) ++result.components[id].faces;
-  count_vertices(faces, result);
-  const std::vector<Index> boundary_sides = count_boundaries(halfedges, result);
+  count_vertices(faces, stop, result);
+  const std::vector<Index> boundary_sides = count_boundaries(halfedges, stop, result);
   for (std::size_t k = 0; k < result.components.size(); ++k) {
     Component& c = result.components[k];
     const Index edges = (3 * c.faces + boundary_sides[k]) / 2;
@@ -89,12 +97,13 @@ Topology topology(std::span<const Triangle> faces, const Halfedges& halfedges) {
   return result;
 }
 
-CornerVertices corner_vertices(const Halfedges& halfedges) {
+CornerVertices corner_vertices(const Halfedges& halfedges, const std::stop_token& stop) {
   const std::vector<Index>& twin = halfedges.twin;
   CornerVertices result;
   result.faces.assign(twin.size() / 3, {kNone, kNone, kNone});
   const auto vertex_at = [&](Index h) -> Index& { return result.faces[h / 3][h % 3]; };
   for (Index start = 0; start < static_cast<Index>(twin.size()); ++start) {
+    look_now_and_then(start, stop);
     if (vertex_at(start) != kNone) continue;
     const Index id = result.count++;
     Index h = start;

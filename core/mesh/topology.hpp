@@ -1,6 +1,7 @@
 #pragma once
 // What a surface is, topologically: components, Euler characteristic, boundaries, genus.
 
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/halfedges.hpp"
@@ -25,7 +26,8 @@ struct Topology {
 };
 
 /// faces index vertices that each have one fan (see corner_vertices()).
-Topology topology(std::span<const Triangle> faces, const Halfedges& halfedges);
+Topology topology(std::span<const Triangle> faces, const Halfedges& halfedges,
+                  const std::stop_token& stop = {});
 
 /// The vertices that the twins imply: one for each class of corners that twins hold together, so
 /// bow-ties come apart. Returns faces over new vertices 0..count-1, numbered by first use.
@@ -33,6 +35,6 @@ struct CornerVertices {
   std::vector<Triangle> faces;
   Index count = 0;
 };
-CornerVertices corner_vertices(const Halfedges& halfedges);
+CornerVertices corner_vertices(const Halfedges& halfedges, const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -32,20 +32,23 @@ std::uint32_t hash_of(const Vec3& p) {
   return static_cast<std::uint32_t>(mixed(h) >> 32U);
 }
 
-void sort_by_hash(std::vector<Entry>& entries) {
+void sort_by_hash(std::vector<Entry>& entries, const std::stop_token& stop) {
   for (unsigned shift = 0; shift < 32; shift += kDigitBits)
-    counting_sort(entries, 1 << kDigitBits, [shift](const Entry& entry) {
-      return static_cast<Index>((entry.hash >> shift) & ((1U << kDigitBits) - 1));
-    });
+    counting_sort(
+        entries, 1 << kDigitBits,
+        [shift](const Entry& entry) {
+          return static_cast<Index>((entry.hash >> shift) & ((1U << kDigitBits) - 1));
+        },
+        stop);
 }
 
 }  // namespace
 
-std::vector<Index> weld(std::span<const Vec3> positions) {
+std::vector<Index> weld(std::span<const Vec3> positions, const std::stop_token& stop) {
   std::vector<Entry> entries(positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v)
     entries[v] = {hash_of(positions[v]), static_cast<Index>(v)};
-  sort_by_hash(entries);
+  sort_by_hash(entries, stop);
   const auto key = [&](const Entry& entry) {
     const Vec3& p = positions[entry.vertex];
     return std::tuple(entry.hash, p.x(), p.y(), p.z(), entry.vertex);
@@ -57,14 +60,16 @@ std::vector<Index> weld(std::span<const Vec3> positions) {
         const auto begin = entries.begin() + (first - entries.data());
         std::sort(begin, begin + (last - first),
                   [&](const Entry& a, const Entry& b) { return key(a) < key(b); });
-      });
+      },
+      stop);
   std::vector<Index> first_at(positions.size());
   for_each_run(
       entries,
       [&](const Entry& a, const Entry& b) { return positions[a.vertex] == positions[b.vertex]; },
       [&](const Entry* first, const Entry* last) {
         for (const Entry* e = first; e != last; ++e) first_at[e->vertex] = first->vertex;
-      });
+      },
+      stop);
   return first_at;
 }
 

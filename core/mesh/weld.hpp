@@ -2,6 +2,7 @@
 // Vertices at one position taken for one. Only topology uses this: the asset keeps its vertices.
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/mesh/tri_mesh.hpp"
@@ -10,7 +11,7 @@ namespace unwrapd {
 
 /// For each position, the number of the first vertex at exactly that position (-0 equals 0).
 /// Positions are finite. Linear in the usual case, n log n in the worst.
-std::vector<Index> weld(std::span<const Vec3> positions);
+std::vector<Index> weld(std::span<const Vec3> positions, const std::stop_token& stop = {});
 
 /// The faces with every vertex replaced by `of[vertex]`.
 std::vector<Triangle> renumbered(std::span<const Triangle> faces, std::span<const Index> of);

@@ -126,7 +126,8 @@ PairElement AngleSystem::FaceBlock::element() const {
 
 AngleSystem::AngleSystem(const Disk& disk, Executor& executor)
     : disk_(disk), executor_(executor), rings_(make_rings(disk)) {
-  if (rings_.of.count > 0) check_memory(disk, system_.emplace(disk.faces, rings_.of).bytes());
+  if (rings_.of.count > 0)
+    check_memory(disk, system_.emplace(disk.faces, rings_.of, disk.stop).bytes());
   multipliers_.assign(static_cast<std::size_t>(rings_.of.count), Vec2::Zero());
 }
 

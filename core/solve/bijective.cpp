@@ -37,7 +37,7 @@ class Parting {
       : disk_(disk),
         executor_(executor),
         barrier_(disk),
-        system_(disk.faces, free),
+        system_(disk.faces, free, disk.stop),
         uv_(std::move(start)),
         gradient_(uv_.size()),
         blocks_(uv_.size()),

@@ -54,8 +54,8 @@ class SpectralIteration {
       ComplexMatrix shifted = conformal_matrix(disk, softening);
       for (Index v = 0; v < disk.vertex_count(); ++v)
         shifted.coeffRef(v, v) += kShift * on_boundary_[static_cast<std::size_t>(v)];
-      system_ =
-          try_softened(shifted, softening, [&](std::size_t bytes) { check_memory(disk, bytes); });
+      const auto check = [&](std::size_t bytes) { check_memory(disk, bytes); };
+      system_ = try_softened(shifted, softening, check, disk.stop);
     }
   }
 

@@ -35,7 +35,8 @@ ComplexMatrix conformal_matrix(const Disk& disk, double softening) {
   weight.reserve(3 * disk.rest.size());
   for (const RestTriangle& rest : disk.rest)
     for (double cot : rest.cot) weight.push_back((1 + softening) * cot);
-  ComplexMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight).cast<Complex>();
+  ComplexMatrix lower =
+      lower_laplacian(disk.faces, disk.vertex_count(), weight, disk.stop).cast<Complex>();
   for (const BoundaryLoop& loop : disk.loops)
     for (Index h : loop) {
       const auto [i, j] = ends(disk, h);
@@ -48,8 +49,9 @@ ComplexMatrix conformal_matrix(const Disk& disk, double softening) {
 }
 
 std::unique_ptr<HermitianSystem> try_softened(const ComplexMatrix& lower, double softening,
-                                              const MemoryCheck& check) {
-  std::unique_ptr<HermitianSystem> system = try_factor(lower, check);
+                                              const MemoryCheck& check,
+                                              const std::stop_token& stop) {
+  std::unique_ptr<HermitianSystem> system = try_factor(lower, check, stop);
   return softening < kMostSoftening ? std::move(system) : definite(std::move(system));
 }
 
@@ -65,8 +67,8 @@ bool ConformalSystem::try_build(const Disk& disk, const Holds& holds, double sof
   const std::vector<Complex> nowhere(free_.slot.size());  // only the matrix is wanted
   const auto reduced = eliminate<ComplexMatrix, Complex>(lower_, free_, nowhere);
   const auto check = [&](std::size_t bytes) { check_memory(disk, bytes); };
-  system_ =
-      may_throw ? try_softened(reduced.lower, softening, check) : try_factor(reduced.lower, check);
+  system_ = may_throw ? try_softened(reduced.lower, softening, check, disk.stop)
+                      : try_factor(reduced.lower, check, disk.stop);
   return system_ != nullptr;
 }
 

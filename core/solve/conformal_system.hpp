@@ -18,7 +18,8 @@ ComplexMatrix conformal_matrix(const Disk& disk, double softening = 0);
 
 /// As try_factor(), but throws Error{solver_failed} when softening is the most there is to try.
 std::unique_ptr<HermitianSystem> try_softened(const ComplexMatrix& lower, double softening,
-                                              const MemoryCheck& check);
+                                              const MemoryCheck& check,
+                                              const std::stop_token& stop);
 
 /// The softening to try after this one.
 double more_softening(double softening);

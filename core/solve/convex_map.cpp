@@ -95,9 +95,9 @@ UvMap mean_value_map(const Disk& disk) {
 UvMap tutte_map(const Disk& disk, std::span<const FixedPoint> boundary) {
   ConvexMap map = with_boundary(disk, boundary);
   const std::vector<double> equal(3 * disk.faces.size(), 1.0);
-  const SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), equal);
+  const SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), equal, disk.stop);
   auto reduced = eliminate<SparseMatrix, Vec2>(lower, map.inner, map.uv);
-  if (map.inner.count > 0) factor(reduced.lower)->solve(reduced.rhs);
+  if (map.inner.count > 0) factor(reduced.lower, disk.stop)->solve(reduced.rhs);
   place_inner(reduced.rhs, map);
   return std::move(map.uv);
 }
@@ -105,7 +105,7 @@ UvMap tutte_map(const Disk& disk, std::span<const FixedPoint> boundary) {
 UvMap mean_value_map(const Disk& disk, std::span<const FixedPoint> boundary) {
   ConvexMap map = with_boundary(disk, boundary);
   LinearSystem system = mean_value_system(disk, map);
-  if (map.inner.count > 0) solve_dominant(system.matrix, system.rhs);
+  if (map.inner.count > 0) solve_dominant(system.matrix, system.rhs, disk.stop);
   place_inner(system.rhs, map);
   return std::move(map.uv);
 }

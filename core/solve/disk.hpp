@@ -2,6 +2,7 @@
 // What the solver reads of a chart: a disk, holes allowed, recentred and scaled to unit area.
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/linear/sparse.hpp"
@@ -23,12 +24,13 @@ struct Disk {
   SolverCore* core =
       nullptr;  ///< shares what depends on the disk alone with other jobs; null: none
   Digest connectivity{}, content{};  ///< under core: of the faces; of faces and positions
+  std::stop_token stop = {};  ///< of the job: what is made of the disk looks at it (cancel.hpp)
 
   [[nodiscard]] Index vertex_count() const { return static_cast<Index>(positions.size()); }
 };
 
-/// mesh, loops and core must outlive the disk. Throws Error{zero_area}.
-Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops,
-               SolverCore* core = nullptr);
+/// mesh, loops and core must outlive the disk. Throws Error{zero_area, cancelled}.
+Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, SolverCore* core = nullptr,
+               const std::stop_token& stop = {});
 
 }  // namespace unwrapd

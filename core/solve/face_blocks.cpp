@@ -4,6 +4,7 @@
 #include <cassert>
 #include <numeric>
 
+#include "core/cancel.hpp"
 #include "core/mesh/counting_sort.hpp"
 
 namespace unwrapd {
@@ -15,13 +16,14 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// By the lowest rank of their corners, ties as they come.
 std::vector<Index> sorted_faces(std::span<const Triangle> faces, std::span<const Index> rank,
-                                std::vector<Index>& lowest) {
+                                const std::stop_token& stop, std::vector<Index>& lowest) {
   lowest.reserve(faces.size());
   for (const auto& [a, b, c] : faces)
     lowest.push_back(std::min({rank[at(a)], rank[at(b)], rank[at(c)]}));
   std::vector<Index> sorted(faces.size());
   std::iota(sorted.begin(), sorted.end(), 0);
-  counting_sort(sorted, static_cast<Index>(rank.size()), [&](Index t) { return lowest[at(t)]; });
+  counting_sort(
+      sorted, static_cast<Index>(rank.size()), [&](Index t) { return lowest[at(t)]; }, stop);
   return sorted;
 }
 
@@ -31,13 +33,14 @@ class Builder {
           std::span<const Index> rank)
       : rest_(rest), faces_(faces), rank_(rank), number_(rank.size(), kNone) {}
 
-  FaceBlocks build() && {
+  FaceBlocks build(const std::stop_token& stop) && {
     std::vector<Index> lowest;
-    const std::vector<Index> sorted = sorted_faces(faces_, rank_, lowest);
+    const std::vector<Index> sorted = sorted_faces(faces_, rank_, stop, lowest);
     const auto vertex_count = static_cast<Index>(rank_.size());
     auto begin = sorted.begin();
     blocks_.groups.reserve(sorted.size() / kFacesAbreast + at(vertex_count / FaceBlocks::kOwn) + 1);
     for (Index first = 0; first < vertex_count; first += FaceBlocks::kOwn) {
+      throw_if_cancelled(stop);
       const Index own = std::min(FaceBlocks::kOwn, vertex_count - first);
       const auto end = std::partition_point(begin, sorted.end(),
                                             [&](Index t) { return lowest[at(t)] < first + own; });
@@ -94,9 +97,9 @@ class Builder {
 }  // namespace
 
 FaceBlocks face_blocks(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
-                       std::span<const Index> rank) {
+                       std::span<const Index> rank, const std::stop_token& stop) {
   assert(rest.size() == faces.size());
-  return Builder(rest, faces, rank).build();
+  return Builder(rest, faces, rank).build(stop);
 }
 
 }  // namespace unwrapd

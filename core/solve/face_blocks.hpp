@@ -6,6 +6,7 @@
 
 #include <array>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/measure/rest_triangle.hpp"
@@ -47,8 +48,8 @@ struct FaceBlocks {
   static constexpr Index kOwn = 2048;  ///< vertices of a block: fixed, so no sum depends on threads
 };
 
-/// rest: one a face; rank: one a vertex, a permutation.
+/// rest: one a face; rank: one a vertex, a permutation. Throws Error{cancelled}.
 FaceBlocks face_blocks(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
-                       std::span<const Index> rank);
+                       std::span<const Index> rank, const std::stop_token& stop = {});
 
 }  // namespace unwrapd

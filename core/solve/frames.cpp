@@ -15,6 +15,7 @@
 
 #include <complex>
 
+#include "core/cancel.hpp"
 #include "core/linear/factor.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/solve/metric.hpp"
@@ -26,11 +27,13 @@ namespace {
 /// step's matrix, whose analysis then serves for both.
 SparseMatrix with_held_boundary(const Disk& disk, std::span<const char> on_boundary) {
   SparseMatrix lower = cotan_laplacian(disk, disk.rest);
-  for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j)
+  for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j) {
+    look_now_and_then(j, disk.stop);
     for (SparseMatrix::InnerIterator it(lower, j); it; ++it)
       if (on_boundary[static_cast<std::size_t>(it.row())] != 0 ||
           on_boundary[static_cast<std::size_t>(j)] != 0)
         it.valueRef() = it.row() == j ? 1 : 0;
+  }
   return lower;
 }
 
@@ -88,7 +91,8 @@ std::vector<Complex> rotations(const Disk& disk, const GlobalStep& global) {
   std::vector<Index> reached{0};
   reached.reserve(rotation.size());
   rotation[0] = 1;
-  for (std::size_t k = 0; k < reached.size(); ++k)
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    look_now_and_then(k, disk.stop);
     for (Index h = 3 * reached[k]; h < 3 * reached[k] + 3; ++h) {
       const Index twin = twin_of(disk, h);
       if (twin == kNoTwin || rotation[static_cast<std::size_t>(face_of(twin))] != 0.0) continue;
@@ -97,6 +101,7 @@ std::vector<Complex> rotations(const Disk& disk, const GlobalStep& global) {
       rotation[static_cast<std::size_t>(face_of(twin))] = turned / std::sqrt(std::norm(turned));
       reached.push_back(face_of(twin));
     }
+  }
   return rotation;
 }
 
@@ -105,7 +110,8 @@ std::vector<Complex> rotations(const Disk& disk, const GlobalStep& global) {
 UvMap frame_map(const Disk& disk, const GlobalStep& global) {
   const std::vector<Complex> rotation = rotations(disk, global);
   UvMap uv(disk.positions.size(), Vec2::Zero());  // the right-hand side of Eq. (4), then its map
-  for (std::size_t t = 0; t < disk.faces.size(); ++t)
+  for (std::size_t t = 0; t < disk.faces.size(); ++t) {
+    look_now_and_then(t, disk.stop);
     for (std::size_t i = 0; i < 3; ++i) {
       const RestTriangle& rest = disk.rest[t];
       const Complex turned = rotation[t] * Complex(rest.edge[i].x(), rest.edge[i].y());
@@ -113,6 +119,7 @@ UvMap frame_map(const Disk& disk, const GlobalStep& global) {
       uv[static_cast<std::size_t>(disk.faces[t][i])] += pull;
       uv[static_cast<std::size_t>(disk.faces[t][(i + 1) % 3])] -= pull;
     }
+  }
   global.solve(uv);
   return uv;
 }

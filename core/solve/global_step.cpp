@@ -20,7 +20,8 @@ SparseMatrix held_matrix(const Disk& disk, const Holds& holds) {
   weight.reserve(3 * disk.rest.size());
   for (const RestTriangle& rest : disk.rest)
     weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
-  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight);
+  throw_if_cancelled(disk.stop);
+  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight, disk.stop);
   for (const Spring& spring : holds.springs)
     lower.coeffRef(spring.vertex, spring.vertex) += 2 * spring.weight;
   if (holds.empty()) lower.coeffRef(0, 0) *= 2;
@@ -39,7 +40,7 @@ std::shared_ptr<const Factor> factored(const Disk& disk, const Holds& holds,
   const SparseMatrix lower = free_matrix(disk, holds, free);
   throw_if_cancelled(executor.stop());
   const Content pattern = Content("analysis").add(disk.connectivity).add(free.slot);
-  const auto analysis = kept(disk, pattern, [&] { return analyse(lower); });
+  const auto analysis = kept(disk, pattern, [&] { return analyse(lower, disk.stop); });
   throw_if_cancelled(executor.stop());
   check_memory(disk, analysis->job_bytes());
   return definite(try_factor(analysis, lower, executor));

@@ -31,6 +31,7 @@ std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> tr
   for (std::size_t v = 0; v < k.size(); ++v)
     k[v] = (on_boundary[v] != 0 ? 1 : 2) * std::numbers::pi;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
+    look_now_and_then(t, disk.stop);
     const std::array<double, 3> angle = corner_angles(triangles[t]);
     for (std::size_t i = 0; i < 3; ++i) k[static_cast<std::size_t>(disk.faces[t][i])] -= angle[i];
   }
@@ -50,7 +51,7 @@ SparseMatrix cotan_laplacian(const Disk& disk, std::span<const RestTriangle> tri
   weight.reserve(3 * triangles.size());
   for (const RestTriangle& t : triangles)
     for (double cot : t.cot) weight.push_back(cot / 2);
-  return lower_laplacian(disk.faces, disk.vertex_count(), weight);
+  return lower_laplacian(disk.faces, disk.vertex_count(), weight, disk.stop);
 }
 
 std::vector<double> product(const SparseMatrix& laplacian, std::span<const double> x) {
@@ -68,7 +69,7 @@ InnerSystem::InnerSystem(const Disk& disk, const SparseMatrix& lower)
     : inner_(number_free(boundary_vertices(disk))) {
   if (inner_.count == 0) return;
   const std::vector<Vec2> zero(disk.positions.size(), Vec2::Zero());
-  system_ = factor(eliminate<SparseMatrix, Vec2>(lower, inner_, zero).lower);
+  system_ = factor(eliminate<SparseMatrix, Vec2>(lower, inner_, zero).lower, disk.stop);
   for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j)
     for (SparseMatrix::InnerIterator it(lower, j); it; ++it) {
       const auto i = static_cast<Index>(it.row());

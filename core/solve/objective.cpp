@@ -21,7 +21,7 @@ Objective::Objective(const Disk& disk, const Rigidity& rigidity, Holds holds,
     : rigidity_(rigidity),
       holds_(renumbered(std::move(holds), rank)),
       executor_(executor),
-      blocks_(face_blocks(disk.rest, disk.faces, rank)),
+      blocks_(face_blocks(disk.rest, disk.faces, rank, disk.stop)),
       beyond_(blocks_.beyond.size()) {}
 
 double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const {

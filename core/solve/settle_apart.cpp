@@ -37,7 +37,8 @@ class Settling {
         boundary_(disk),
         barrier_{intent.rigidity, 1, 0},
         model_(barrier_pattern(mesh_)),
-        analysis_(analyse(model_.hessian)),
+        stop_(intent.stop),
+        analysis_(analyse(model_.hessian, stop_)),
         uv_(uv) {}
 
   /// Returns the share by which the energy fell.
@@ -45,7 +46,9 @@ class Settling {
     barrier_.weight = weight;
     fill_barrier_model(mesh_, uv_, barrier_, model_);
     add_contacts();
-    const std::unique_ptr<RealSystem> system = try_factor(analysis_, model_.hessian);
+    SerialExecutor serial;
+    JobExecutor job(serial, stop_);
+    const std::unique_ptr<RealSystem> system = try_factor(analysis_, model_.hessian, job);
     if (system == nullptr) return 0;
     std::vector<Vec2> x;  // one entry an unknown, in its first coordinate
     for (const double g : model_.gradient) x.emplace_back(-g, 0);
@@ -95,6 +98,7 @@ class Settling {
   BoundaryBarrier boundary_;
   Barrier barrier_;
   Quadratic model_;
+  std::stop_token stop_;
   std::shared_ptr<const Analysis> analysis_;
   UvMap& uv_;
 };

@@ -78,7 +78,7 @@ class Slim {
       : disk_(disk),
         executor_(executor),
         free_(all_but_the_first(disk)),
-        system_(disk.faces, free_),
+        system_(disk.faces, free_, disk.stop),
         uv_(std::move(start.uv)),
         energy_(start.energy),
         gradient_(uv_.size()),

@@ -149,7 +149,7 @@ UvMap virtual_boundary_map(const Disk& disk, const UvMap& uv) {
   }
   SparseMatrix matrix(static_cast<Index>(p.rim), static_cast<Index>(p.rim));
   matrix.setFromTriplets(entries.begin(), entries.end());
-  solve_dominant(matrix, x);
+  solve_dominant(matrix, x, disk.stop);
   x.resize(uv.size());
   return x;
 }

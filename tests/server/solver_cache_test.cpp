@@ -197,6 +197,18 @@ TEST(SharedCore, GivesTheMapsThatEachJobWouldMakeAlone) {
   EXPECT_GT(counters.hits, counters.misses);
 }
 
+TEST(SharedCore, KeepsNothingThatHearsTheStopOfTheJobThatMadeIt) {
+  SolverCache cache({.cache_bytes = kPlenty, .job_bytes = kPlenty}, 1);
+  const std::vector<Surface> surfaces{shapes::surface_of(shapes::random_disk(15, 3))};
+  std::stop_source source;
+  ThreadExecutor executor(2, &cache);
+  unwrap(surfaces, {}, {.on_stage = {}, .on_iteration = {}, .stop = source.get_token()}, executor);
+  source.request_stop();  // too late for that job
+  for (const Method method : {Method::arap, Method::asap, Method::slim})
+    EXPECT_EQ(maps_of(surfaces, {.method = method}, &cache),
+              maps_of(surfaces, {.method = method}, nullptr));
+}
+
 TEST(SharedCore, RefusesAJobThatNeedsMoreThanItMay) {
   const std::vector<Surface> surfaces{shapes::surface_of(shapes::random_disk(60, 3))};
   for (Method method : {Method::arap, Method::asap, Method::slim, Method::abf}) {

@@ -6,22 +6,10 @@
 #include <random>
 
 #include "core/linear/supernodal.hpp"
-#include "tests/core/shapes.hpp"
+#include "tests/core/linear/graphs.hpp"
 
 namespace unwrapd {
 namespace {
-
-SparseMatrix unit_laplacian(const TriMesh& mesh) {
-  return lower_laplacian(mesh.faces, mesh.vertex_count(),
-                         std::vector<double>(3 * mesh.faces.size(), 1.0));
-}
-
-Graph graph_of(const SparseMatrix& lower) {
-  return graph_of_lower({lower.outerIndexPtr(), std::size_t(lower.cols()) + 1},
-                        {lower.innerIndexPtr(), std::size_t(lower.nonZeros())});
-}
-
-Graph graph_of(const TriMesh& mesh) { return graph_of(unit_laplacian(mesh)); }
 
 std::vector<Index> random_order(Index n, unsigned seed) {
   std::vector<Index> order(static_cast<std::size_t>(n));
@@ -67,21 +55,6 @@ TEST(Graph, ListsEveryEdgeFromBothEnds) {
       EXPECT_NE(w, v);
       EXPECT_NE(lower.coeff(std::max(v, w), std::min(v, w)), 0);
     }
-}
-
-TEST(Ordering, NamesEveryVertexOnceAndKeepsFillLow) {
-  const TriMesh mesh = shapes::grid(40, 40);
-  const Graph graph = graph_of(mesh);
-  std::vector<Index> order = fill_reducing_order(graph);
-  const auto entries = [&](std::vector<Index> of) {
-    const EliminationTree tree = elimination_tree(graph, std::move(of));
-    return std::accumulate(tree.count.begin(), tree.count.end(), 0);
-  };
-  std::vector<Index> as_given(order.size());
-  std::iota(as_given.begin(), as_given.end(), 0);
-  EXPECT_LT(2 * entries(order), entries(as_given));  // 29k against 70k: the band of a grid
-  std::sort(order.begin(), order.end());
-  EXPECT_EQ(order, as_given);
 }
 
 TEST(EliminationTree, PostordersItsParents) {
