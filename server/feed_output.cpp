@@ -4,6 +4,17 @@
 #include "server/result_store.hpp"
 
 namespace unwrapd::server {
+namespace {
+
+constexpr double kStep = 0.005;  // of the fraction
+
+bool is_news(const StageEvent& event, const StageEvent& told) {
+  return event.stage != told.stage || event.chart != told.chart ||
+         event.chart_count != told.chart_count || event.lambda != told.lambda ||
+         event.fraction >= told.fraction + kStep;
+}
+
+}  // namespace
 
 void FeedOutput::stage(const StageEvent& event) {
   job_.feed->set_progress({.stage = event.stage,
@@ -11,6 +22,8 @@ void FeedOutput::stage(const StageEvent& event) {
                            .chart = event.chart,
                            .iteration = 0,
                            .energy = 0});
+  if (told_ && !is_news(event, *told_)) return;
+  told_ = event;
   job_.feed->publish([&](std::int64_t seq) { return api::stage_event(seq, event); });
 }
 
