@@ -19,7 +19,7 @@ std::vector<Index> neighbours(const Sheet& sheet, std::span<const Index> owner, 
     around.push_back(owner[face_of(twin)]);
   }
   std::ranges::sort(around);
-  around.erase(std::ranges::unique(around).begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
   return around;
 }
 
