@@ -115,10 +115,14 @@ void BlobStore::remove(std::string_view job) noexcept {
   room_.give_back(job);
 }
 
-bool BlobStore::share_document(std::string_view mesh, std::string_view upload) noexcept {
+bool BlobStore::share_document(std::string_view mesh, std::string_view upload) {
   std::error_code failed;
   fs::create_hard_link(path(mesh, kDocumentFile), incoming_ / upload / kDocumentFile, failed);
-  return !failed;
+  if (!failed) return true;
+  if (failed == std::errc::no_such_file_or_directory) return false;
+  throw Error(ErrorCode::storage_failed,
+              "The store cannot give one more job a share of this mesh (" + failed.message() +
+                  "); send the mesh itself with the job.");
 }
 
 bool BlobStore::is_shared(std::string_view mesh) const noexcept {

@@ -48,8 +48,9 @@ class BlobStore {
   void write_unsealed(std::string_view job, std::string_view file, std::string_view bytes);
   void remove(std::string_view job) noexcept;
   /// The document of a stored mesh becomes that of an upload, too; its bytes are shared, and count
-  /// for the mesh. False when it is not there.
-  bool share_document(std::string_view mesh, std::string_view upload) noexcept;
+  /// for the mesh. False when it is not there. Throws Error{storage_failed} where the file system
+  /// has no hard links, or no more of this file.
+  bool share_document(std::string_view mesh, std::string_view upload);
   /// Whether a job shares the document of a mesh.
   [[nodiscard]] bool is_shared(std::string_view mesh) const noexcept;
   /// Bytes of all files, without a document that is shared with a mesh.

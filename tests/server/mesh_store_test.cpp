@@ -55,6 +55,19 @@ class StoreOfMeshes : public testing::Test {
   BlobStore blobs_{dir_.path()};
 };
 
+TEST_F(StoreOfMeshes, TellsAMeshThatIsNotThereFromOneThatCannotBeShared) {
+  put(kOne, 2000);
+  blobs_.begin_upload("j_1");
+  EXPECT_FALSE(blobs_.share_document(kTwo, "j_1"));
+  EXPECT_TRUE(blobs_.share_document(kOne, "j_1"));
+  try {
+    blobs_.share_document(kOne, "j_1");  // the name is taken: a link that fails, of a mesh there is
+    FAIL() << "no second document";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::storage_failed);
+  }
+}
+
 TEST_F(StoreOfMeshes, KeepsEveryFieldForTheOwner) {
   put(kOne, 2000);
   const std::optional<MeshRecord> mesh = meshes_.find("a", kOne);

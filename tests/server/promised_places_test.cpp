@@ -50,6 +50,13 @@ TEST(PromisedPlaces, KeepsAPlaceForWhoSendsUntilHeLeaves) {
   EXPECT_FALSE(door.ask(kStart, "another", one_free));
 }
 
+TEST(PromisedPlaces, TakesThePlaceBackFromWhoNeverEndsSending) {
+  PromisedPlaces door;
+  const Line one_free{.places = 4, .waiting = 3, .first = 9, .interval = 9};
+  ASSERT_FALSE(door.ask(kStart, "slow", one_free));
+  EXPECT_FALSE(door.ask(kStart + seconds(31), "another", one_free));
+}
+
 TEST(PromisedPlaces, GivesTheNextPlaceToWhoFoundNoneInTime) {
   PromisedPlaces door;
   const Line full{.places = 2, .waiting = 2, .first = 5, .interval = 5};
@@ -68,6 +75,32 @@ TEST(PromisedPlaces, ForgetsThoseWhoDoNotComeBack) {
   EXPECT_FALSE(door.ask(kStart + seconds(100), "newcomer", half_full));
   const Line idle{.places = 2, .waiting = 0, .first = 0, .interval = 1};
   EXPECT_FALSE(door.ask(kStart + seconds(10), "another newcomer", idle)) << "no worker is idle";
+}
+
+TEST(LineBefore, ReckonsWithJobsThatRunLongerThanOthersDid) {
+  const Lengths two_seconds{.mean = 2, .spread = 1, .count = 9};
+  const auto line = [&](int workers, const std::vector<double>& ran) {
+    return line_before(4, 3, workers, two_seconds, ran);
+  };
+  EXPECT_DOUBLE_EQ(line(1, {.5}).first, 1.5);
+  EXPECT_DOUBLE_EQ(line(1, {.5}).interval, 2);
+  EXPECT_DOUBLE_EQ(line(1, {10}).first, 5);
+  EXPECT_DOUBLE_EQ(line(1, {10}).interval, 10);
+  EXPECT_DOUBLE_EQ(line(2, {10}).first, 0) << "the other worker is free";
+  EXPECT_DOUBLE_EQ(line(2, {10, 0}).first, 2);
+  EXPECT_DOUBLE_EQ(line(2, {10, 0}).interval, 1 / (1 / 10. + 1 / 2.));
+  EXPECT_DOUBLE_EQ(line(2, {0, 0}).spread, .5);
+}
+
+TEST(Lengths, AreOfTheJobsOfLate) {
+  Lengths lengths;
+  lengths.add(3);
+  EXPECT_DOUBLE_EQ(lengths.mean, 3) << "not what was supposed before there was any job";
+  lengths.add(1);
+  EXPECT_DOUBLE_EQ(lengths.mean, 2);
+  for (int k = 0; k < 500; ++k) lengths.add(8);
+  EXPECT_NEAR(lengths.mean, 8, .01);
+  EXPECT_NEAR(lengths.spread, 0, .01);
 }
 
 /// Clients who send jobs one after the other, and come back when they are told, to a queue and its
