@@ -94,7 +94,7 @@ std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& u
                                               const std::stop_token& stop) {
   if (is_plainly_injective(chart.mesh.faces, chart.loops, uv, stop)) return {};
   throw_if_cancelled(stop);
-  return overlapping_pairs(chart.mesh.faces, uv, kMostPairs, stop);
+  return overlapping_pairs(chart.mesh.faces, chart.loops, uv, kMostPairs, stop);
 }
 
 [[noreturn]] void fail(const std::string& why) {

@@ -10,9 +10,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 
 #include "core/cancel.hpp"
 #include "core/measure/orientation.hpp"
+#include "core/measure/winding.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd {
@@ -168,6 +170,31 @@ int turn_of(const std::vector<Side>& loop) {
   return orientation(before.from, loop[first].from, loop[first].to);
 }
 
+/// Pairs of which both are among these, which ascend.
+std::vector<std::array<Index, 2>> pairs_among(const std::vector<Index>& among,
+                                              std::span<const Triangle> faces,
+                                              std::span<const Vec2> uv, std::size_t most,
+                                              const std::stop_token& stop) {
+  std::vector<Bounds> bounds(among.size());
+  for (std::size_t k = 0; k < among.size(); ++k)
+    for (const Vec2& p : corners(faces[among[k]], uv)) bounds[k].add(p);
+  throw_if_cancelled(stop);
+  const BoxTree tree(bounds);
+  std::vector<std::array<Index, 2>> pairs;
+  for (std::size_t k = 0; k < among.size() && pairs.size() < most; ++k) {
+    if (k % kStepsBetweenLooks == 0) throw_if_cancelled(stop);
+    const std::size_t first = pairs.size();
+    tree.query(bounds[k], [&](Index other) {
+      if (static_cast<std::size_t>(other) > k &&
+          overlap(corners(faces[among[k]], uv), corners(faces[among[other]], uv)))
+        pairs.push_back({among[k], among[other]});
+    });
+    std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
+  }
+  pairs.resize(std::min(pairs.size(), most));
+  return pairs;
+}
+
 }  // namespace
 
 bool overlap(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b) {
@@ -198,24 +225,17 @@ bool is_plainly_injective(std::span<const Triangle> faces, std::span<const Bound
 std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> faces,
                                                     std::span<const Vec2> uv, std::size_t most,
                                                     const std::stop_token& stop) {
-  std::vector<Bounds> bounds(faces.size());
-  for (std::size_t t = 0; t < faces.size(); ++t)
-    for (const Vec2& p : corners(faces[t], uv)) bounds[t].add(p);
-  throw_if_cancelled(stop);
-  const BoxTree tree(bounds);
-  std::vector<std::array<Index, 2>> pairs;
-  for (std::size_t t = 0; t < faces.size() && pairs.size() < most; ++t) {
-    if (t % kStepsBetweenLooks == 0) throw_if_cancelled(stop);
-    const std::size_t first = pairs.size();
-    tree.query(bounds[t], [&](Index other) {
-      if (static_cast<std::size_t>(other) > t &&
-          overlap(corners(faces[t], uv), corners(faces[other], uv)))
-        pairs.push_back({static_cast<Index>(t), other});
-    });
-    std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
-  }
-  pairs.resize(std::min(pairs.size(), most));
-  return pairs;
+  std::vector<Index> all(faces.size());
+  std::iota(all.begin(), all.end(), 0);
+  return pairs_among(all, faces, uv, most, stop);
+}
+
+std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> faces,
+                                                    std::span<const BoundaryLoop> loops,
+                                                    std::span<const Vec2> uv, std::size_t most,
+                                                    const std::stop_token& stop) {
+  if (!flipped_faces(faces, uv, stop).empty()) return overlapping_pairs(faces, uv, most, stop);
+  return pairs_among(faces_perhaps_overlapped(faces, loops, uv, stop), faces, uv, most, stop);
 }
 
 }  // namespace unwrapd

@@ -27,4 +27,11 @@ std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> fa
                                                     std::span<const Vec2> uv, std::size_t most,
                                                     const std::stop_token& stop = {});
 
+/// The same; loops: all boundary loops of the faces. Where no face is flipped only those are
+/// compared that the boundary comes near, or winds around more than once (winding.hpp).
+std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> faces,
+                                                    std::span<const BoundaryLoop> loops,
+                                                    std::span<const Vec2> uv, std::size_t most,
+                                                    const std::stop_token& stop = {});
+
 }  // namespace unwrapd

@@ -14,6 +14,7 @@
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
 #include "core/measure/seam_length.hpp"
+#include "core/measure/winding.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/mesh/seams.hpp"
 #include "core/mesh/weld.hpp"
@@ -146,6 +147,8 @@ TEST(Cancel, IsHeardWhileMapsAreMeasuredAndPutBack) {
        {"injective",
         [&](Stop stop) { is_plainly_injective(faces, s.owned.disk.loops, s.uv, stop); }},
        {"overlaps", [&](Stop stop) { overlapping_pairs(faces, s.uv, 9, stop); }},
+       {"winding",
+        [&](Stop stop) { faces_perhaps_overlapped(faces, s.owned.disk.loops, s.uv, stop); }},
        {"distortion", [&](Stop stop) { distortion_sums(s.owned.disk.rest, faces, s.uv, stop); }},
        {"assemble", [&](Stop stop) { assemble(s.surface, charts, maps, stop); }},
        {"seams", [&](Stop stop) { seam_lengths(s.surface, flat, stop); }}});

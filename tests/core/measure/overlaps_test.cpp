@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <random>
 
 #include "core/measure/orientation.hpp"
+#include "core/measure/winding.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
 namespace unwrapd {
@@ -90,9 +92,12 @@ TriMesh bent_strip(double turn) {
   });
 }
 
+std::vector<BoundaryLoop> loops_of(const TriMesh& mesh) {
+  return boundary_loops(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+}
+
 bool is_plainly_injective(const TriMesh& mesh, const UvMap& uv) {
-  const auto loops = boundary_loops(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
-  return unwrapd::is_plainly_injective(mesh.faces, loops, uv);
+  return unwrapd::is_plainly_injective(mesh.faces, loops_of(mesh), uv);
 }
 
 TEST(PlainlyInjective, SeesABoundaryThatCrossesItself) {
@@ -130,6 +135,57 @@ TEST(PlainlyInjective, IsNotFooledByADoubleCover) {
   ASSERT_TRUE(flipped_faces(ring.faces, uv).empty());
   EXPECT_FALSE(is_plainly_injective(ring, uv));
   EXPECT_GE(overlapping_pairs(ring.faces, uv, 1 << 20).size(), ring.faces.size() / 2);
+}
+
+/// A map of a sheet without flips: v goes around `turn`, at radii from 1 on, and is bent besides.
+TriMesh fanned_out(double turn, double wave) {
+  return shapes::mapped_grid(30, 30, shapes::Wrap::none, [&](double u, double v) {
+    const double r = 1 + u + wave * std::sin(9 * v), angle = turn * v;
+    return Vec3(r * std::cos(angle), r * std::sin(angle), 0);
+  });
+}
+
+std::size_t expect_same_pairs(const TriMesh& mesh, const UvMap& uv) {
+  const auto expected = overlapping_pairs(mesh.faces, uv, 1 << 20);
+  const auto loops = loops_of(mesh);
+  EXPECT_EQ(overlapping_pairs(mesh.faces, loops, uv, 1 << 20), expected);
+  EXPECT_EQ(overlapping_pairs(mesh.faces, loops, uv, 5).size(),
+            std::min<std::size_t>(5, expected.size()));
+  return expected.size();
+}
+
+TEST(Overlap, IsSoughtOnlyWhereTheBoundaryWindsMoreThanOnceOrComesNear) {
+  std::size_t found = 0;
+  for (double turn : {3.0, 6.2, 6.3, 7.0, 13.0, 20.0})
+    for (double wave : {0.0, 0.1, 0.3})
+      for (double tilt : {0.0, 0.7, 2.0}) {  // rows and columns of the grid at other places
+        const TriMesh mesh = fanned_out(turn, wave);
+        UvMap uv = from_above(mesh);
+        for (Vec2& u : uv) u = Eigen::Rotation2Dd(tilt) * u;
+        ASSERT_TRUE(flipped_faces(mesh.faces, uv).empty());
+        const std::size_t own = expect_same_pairs(mesh, uv);
+        EXPECT_EQ(own > 0, turn > shapes::kTurn);
+        found += own;
+        const auto perhaps = faces_perhaps_overlapped(mesh.faces, loops_of(mesh), uv);
+        EXPECT_LT(perhaps.size(), (turn < shapes::kTurn ? 0.6 : 1.1) * double(mesh.faces.size()));
+      }
+  EXPECT_GT(found, 10000U);
+}
+
+TEST(Overlap, IsSoughtAroundHolesAndAmongFlipsAsWell) {
+  TriMesh ring = shapes::annulus(48, 8);
+  for (int turns : {1, 2, 3}) {
+    UvMap uv;
+    for (const Vec3& p : ring.positions) {
+      const double angle = turns * std::atan2(p.y(), p.x()), r = std::hypot(p.x(), p.y());
+      uv.emplace_back(r * std::cos(angle), r * std::sin(angle));
+    }
+    if (!flipped_faces(ring.faces, uv).empty())
+      for (Triangle& face : ring.faces) std::swap(face[1], face[2]);
+    ASSERT_TRUE(flipped_faces(ring.faces, uv).empty());
+    EXPECT_EQ(expect_same_pairs(ring, uv) > 0, turns > 1);
+    EXPECT_GT(expect_same_pairs(ring, shapes::shaken(uv, 0.1, 1)), 0U);
+  }
 }
 
 TEST(PlainlyInjective, NeverContradictsTheCount) {
