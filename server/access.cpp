@@ -13,9 +13,9 @@ namespace {
 constexpr std::string_view kScheme = "Bearer ";
 constexpr double kSecondsPerMinute = 60;
 // Open to everybody: what the server is and whether it is well, and no job.
-constexpr std::array<std::string_view, 8> kPublic = {"/v1/methods",   "/v1/limits", "/openapi.yaml",
-                                                     "/openapi.json", "/docs",      "/docs.css",
-                                                     "/healthz",      "/readyz"};
+constexpr auto kPublic = std::to_array<std::string_view>(
+    {"/", "/page.css", "/page.js", "/docs", "/docs.css", "/openapi.yaml", "/openapi.json",
+     "/v1/methods", "/v1/limits", "/healthz", "/readyz"});
 
 /// Schemes have no case (RFC 9110, 11.1).
 bool is_bearer(std::string_view field) {

@@ -16,7 +16,8 @@ const MAY_INCLUDE = {
   "core/asset": ["core/mesh"],
   core: ["core/atlas", "core/solve", "core/linear", "core/measure", "core/mesh"],
   api: [],
-  server: ["api", "core", "core/asset", "core/atlas", "core/figure", "core/measure", "core/mesh", "core/solve", "core/linear"],
+  web: [],
+  server: ["api", "web", "core", "core/asset", "core/atlas", "core/figure", "core/measure", "core/mesh", "core/solve", "core/linear"],
   client: ["api"],
 };
 

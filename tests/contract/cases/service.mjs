@@ -19,7 +19,9 @@ export async function service(run, base) {
   const asJson = await run.json(base, 'getContractAsJson', {status: 200});
   run.expect('the same as JSON', isDeepStrictEqual(asJson, run.contract.document) ? [] : ['it differs']);
   await page(run, base);
-  for (const id of ['getContract', 'getContractAsJson', 'getDocs', 'getDocsStyle']) {
+  const texts = ['getContract', 'getContractAsJson', 'getDocs', 'getDocsStyle', 'getPage', 'getPageStyle',
+                 'getPageScript'];
+  for (const id of texts) {
     const {headers} = await run.call(base, id, {status: 200});
     const same = {'If-None-Match': headers.etag};
     await run.call(base, id, {headers: same, status: 304, name: `${id} that is known`});

@@ -1,0 +1,278 @@
+// The page: builds its form from /v1/methods, sends a mesh, follows the job by its events and shows
+// what came of it. It uses nothing but the API that everybody has; the key stays in the form.
+const FIRST = ["method", "lambda", "guarantee", "max_distortion", "resolution", "padding"];
+const LINE = /\r\n|\r|\n/;
+
+const $ = (id) => document.getElementById(id);
+const wait = (seconds) => new Promise((resolve) => setTimeout(resolve, seconds * 1000));
+const shown = (id, visible) => { $(id).hidden = !visible; };
+
+let methods;
+let jobUrl;       // of the job that is under way or done
+let given = [];   // addresses of blobs on the page
+
+/** What went wrong, as the server's problem document says it. */
+class Problem extends Error {
+  constructor(document, retryAfter) {
+    super(document.detail ?? document.title);
+    Object.assign(this, { document, retryAfter });
+  }
+}
+
+/** A request with the key; throws Problem for any answer that is not one of success. */
+async function call(url, init = {}) {
+  const key = $("key").value.trim();
+  const headers = { ...init.headers, ...(key && { Authorization: `Bearer ${key}` }) };
+  const answer = await fetch(url, { ...init, headers, cache: "no-store" });
+  if (answer.ok) return answer;
+  const fallback = { title: answer.statusText || `Status ${answer.status}`, status: answer.status };
+  const document = await answer.json().catch(() => fallback);
+  throw new Problem(document, Number(answer.headers.get("Retry-After")));
+}
+
+/* ---- the form ---- */
+
+function makeInput(option) {
+  if (!option.enum) {
+    const kind = option.type === "boolean" ? "checkbox" : "number";
+    const input = Object.assign(document.createElement("input"), { type: kind });
+    if (kind === "checkbox") return Object.assign(input, { checked: option.default });
+    const { minimum = "", maximum = "" } = option;
+    return Object.assign(input, { min: minimum, max: maximum, value: option.default ?? "",
+      step: option.type === "integer" ? 1 : "any" });
+  }
+  const select = document.createElement("select");
+  for (const value of option.enum) select.add(new Option(value, value, false, value === option.default));
+  return select;
+}
+
+function addRow(option) {
+  const row = document.createElement("label");
+  const hint = document.createElement("small");
+  hint.textContent = option.description;
+  const input = Object.assign(makeInput(option), { name: option.name });
+  row.append(option.name, " ", input, hint);
+  $(FIRST.includes(option.name) ? "options" : "more").append(row);
+}
+
+/** The rows of what the chosen method has. */
+function showWhatCounts() {
+  const method = methods.methods.find(({ name }) => name === $("form").elements.method.value);
+  for (const row of document.querySelectorAll(".options label")) {
+    const input = row.querySelector("[name]");
+    row.hidden = input.disabled = !method.options.includes(input.name);
+    if (input.name === "method") row.querySelector("small").textContent = method.description;
+  }
+}
+
+function valueOf(option, input) {
+  if (option.type === "boolean") return input.checked;
+  if (option.enum) return input.value;
+  return input.value === "" ? null : Number(input.value);
+}
+
+/** What differs from the defaults, nested as the API has it: {"stop": {"iterations": 10}}. */
+function chosenOptions() {
+  const options = {};
+  for (const option of methods.options) {
+    const input = $("form").elements[option.name];
+    if (!input || input.disabled) continue;
+    const value = valueOf(option, input);
+    if (value === null || value === option.default) continue;
+    const path = option.name.split(".");
+    const last = path.pop();
+    path.reduce((at, name) => (at[name] ??= {}), options)[last] = value;
+  }
+  return options;
+}
+
+function body() {
+  const files = [...$("files").files];
+  const mesh = files.find(({ name }) => /\.(glb|gltf|obj)$/i.test(name)) ?? files[0];
+  const form = new FormData();
+  form.append("options", new Blob([JSON.stringify(chosenOptions())], { type: "application/json" }));
+  form.append("mesh", mesh, mesh.name);
+  for (const file of files) if (file !== mesh) form.append("buffer", file, file.name);
+  return { form, name: mesh.name.replace(/\.[^.]*$/, "") };
+}
+
+/* ---- the job ---- */
+
+function tell(text, fraction) {
+  $("status").textContent = text;
+  if (fraction === undefined) $("fraction").removeAttribute("value");
+  else $("fraction").value = fraction;
+}
+
+/** Sends the mesh; a server that is busy says when to come again. */
+async function submit(form) {
+  for (;;) {
+    tell("Sending the mesh…");
+    try {
+      return await (await call("v1/jobs", { method: "POST", body: form })).json();
+    } catch (error) {
+      if (!(error.retryAfter > 0) || error.document.code === "too_many_jobs") throw error;
+      tell(`The server is busy; sending again in ${error.retryAfter} s.`);
+      await wait(error.retryAfter);
+    }
+  }
+}
+
+/** The events of one connection: {id, event, data}. */
+async function* eventsOf(answer) {
+  const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+  let rest = "";
+  for (;;) {
+    const { value, done } = await reader.read();
+    if (done) return;
+    const blocks = (rest + value).split("\n\n");
+    rest = blocks.pop();
+    for (const block of blocks) {
+      const fields = block.split(LINE).map((line) => line.split(/: ?(.*)/s));
+      const event = Object.fromEntries(fields.filter(([name]) => name));
+      if (event.event) yield event;
+    }
+  }
+}
+
+const SAYS = {
+  queued: ({ position }) => tell(position > 0 ? `Waiting; ${position} before it.` : "Waiting…", 0),
+  started: () => tell("Started.", 0),
+  stage({ name, chart, of, fraction }) {
+    tell(of > 1 ? `${name}, chart ${chart + 1} of ${of}` : name, fraction);
+  },
+  iteration({ i, energy, angle, area, flipped, fraction }) {
+    $("fraction").value = fraction;
+    $("iteration").textContent = `Iteration ${i}: energy ${energy.toPrecision(6)}, ` +
+      `angles ${angle.toFixed(4)}, areas ${area.toFixed(4)}, ${flipped} flipped`;
+  },
+};
+const ENDS = ["succeeded", "failed", "cancelled"];
+
+/** Follows the job to its end, over connections that break as well; resolves to the job. */
+async function follow(job) {
+  let last = "0";
+  for (let failures = 0; failures < 10;) {
+    try {
+      const headers = { Accept: "text/event-stream", "Last-Event-ID": last };
+      for await (const { id, event, data } of eventsOf(await call(job.links.events, { headers }))) {
+        failures = 0;
+        last = id ?? last;
+        if (ENDS.includes(event)) return JSON.parse(data);
+        SAYS[event]?.(JSON.parse(data));
+      }
+    } catch (error) {
+      if (error instanceof Problem && !error.retryAfter) throw error;
+    }
+    failures += 1;
+    await wait(Math.min(failures, 5));
+  }
+  throw new Error(`The connection was lost. The job goes on: ${job.links.self}`);
+}
+
+/* ---- the result ---- */
+
+/** What an address answers, and one of the page's own for it. */
+async function blobOf(url) {
+  const blob = await (await call(url)).blob();
+  given.push(URL.createObjectURL(blob));
+  return { blob, url: given.at(-1) };
+}
+
+function showFigures({ charts, distortion, seam_ratio: seams, fill }) {
+  const figures = { Charts: charts.length, "Angles (2 is ideal)": distortion.angle.toFixed(4),
+    "Areas (2 is ideal)": distortion.area.toFixed(4), Flipped: distortion.flipped,
+    "Seams / √area": seams.toFixed(2), "Page filled": `${(100 * fill).toFixed(1)} %` };
+  $("figures").replaceChildren(...Object.entries(figures).map(([name, value]) => {
+    const pair = document.createElement("div");
+    const make = (tag, text) => Object.assign(document.createElement(tag), { textContent: text });
+    pair.append(make("dt", name), make("dd", value));
+    return pair;
+  }));
+}
+
+const EXTENSION = { "model/gltf-binary": "glb", "model/gltf+json": "gltf", "model/obj": "obj" };
+
+async function showResult({ links }, name) {
+  const [asset, report, layout, preview] = await Promise.all(
+    [links.result, links.report, links.layout_png, links.preview].map(blobOf));
+  showFigures(JSON.parse(await report.blob.text()));
+  const extension = EXTENSION[asset.blob.type] ?? "bin";
+  Object.assign($("asset"), { href: asset.url, download: `${name}.uv.${extension}` });
+  Object.assign($("report"), { href: report.url, download: `${name}.report.json` });
+  $("layout").src = layout.url;
+  $("preview").src = preview.url;
+  shown("result", true);
+}
+
+function showProblem(error) {
+  const { title, code, pointer, status } = error.document ?? {};
+  if (status === 401) shown("key-row", true);
+  const where = pointer ? ` At ${pointer}.` : "";
+  const lines = [title ?? "That did not work", `${error.message}${where}`, code ? `Code: ${code}` : ""];
+  $("problem").replaceChildren(...lines.filter(Boolean).map((text, line) =>
+    Object.assign(document.createElement(line ? "p" : "h2"), { textContent: text })));
+  shown("problem", true);
+}
+
+function clear() {
+  for (const url of given.splice(0)) URL.revokeObjectURL(url);
+  for (const id of ["problem", "result"]) shown(id, false);
+  $("iteration").textContent = "";
+  jobUrl = undefined;
+}
+
+async function unwrap() {
+  const { form, name } = body();
+  const job = await submit(form);
+  jobUrl = job.links.self;
+  shown("cancel", true);
+  const ended = await follow(job);
+  if (ended.state !== "succeeded") throw new Problem(ended.problem);
+  tell("Fetching the result…", 1);
+  await showResult(ended, name);
+  tell("Done.", 1);
+}
+
+async function run() {
+  clear();
+  shown("job", true);
+  $("send").disabled = true;
+  try {
+    await unwrap();
+  } catch (error) {
+    shown("job", false);
+    showProblem(error);
+  } finally {
+    $("send").disabled = false;
+    shown("cancel", false);
+  }
+}
+
+function watchFiles() {
+  const say = () => {
+    const names = [...$("files").files].map(({ name }) => name);
+    $("chosen").textContent = names.length > 1 ? names.join(", ") : "";
+  };
+  $("files").addEventListener("change", say);
+  for (const kind of ["dragover", "dragleave", "drop"])
+    $("drop").addEventListener(kind, (event) => {
+      event.preventDefault();
+      $("drop").classList.toggle("over", kind === "dragover");
+      if (kind !== "drop") return;
+      $("files").files = event.dataTransfer.files;
+      say();
+    });
+}
+
+async function start() {
+  methods = await (await call("v1/methods")).json();
+  methods.options.filter(({ type }) => type !== "array").forEach(addRow);
+  $("form").elements.method.addEventListener("change", showWhatCounts);
+  showWhatCounts();
+  watchFiles();
+  $("form").addEventListener("submit", (event) => { event.preventDefault(); run(); });
+  $("cancel").addEventListener("click", () => call(jobUrl, { method: "DELETE" }).catch(showProblem));
+}
+
+start().catch(showProblem);
