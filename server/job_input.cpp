@@ -56,8 +56,10 @@ class PartWriter {
       start_options();
     } else if (in_document_) {
       start_document();
-    } else {
+    } else if (part.name == "buffer") {
       start_buffer(part);
+    } else {
+      malformed("A part is none of \"options\", \"mesh\" and \"buffer\"; name it as what it is.");
     }
   }
 

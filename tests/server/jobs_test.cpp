@@ -64,12 +64,14 @@ TEST_F(Jobs, AFormWithoutItsMeshOrWithAnythingTwiceIsRefused) {
   const httplib::MultipartFormData buffer = {"buffer", "x", "a.bin", ""};
   const httplib::MultipartFormData options = {"options", "{}", "", ""};
   const httplib::MultipartFormData nameless = {"buffer", "x", "", ""};
+  const httplib::MultipartFormData unknown = {"option", "x", "a.bin", ""};
   for (const httplib::MultipartFormDataItems& parts :
        std::vector<httplib::MultipartFormDataItems>{{options},
                                                     {mesh, mesh},
                                                     {mesh, buffer, buffer},
                                                     {mesh, options, options},
-                                                    {mesh, nameless}})
+                                                    {mesh, nameless},
+                                                    {mesh, unknown}})
     expect_problem(client().Post("/v1/jobs", parts), 400, "malformed_request");
   const httplib::MultipartFormDataItems both = {options, mesh};
   expect_problem(client().Post("/v1/jobs?method=arap", both), 422, "invalid_option");
