@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/atlas/promise.hpp"
@@ -12,6 +13,8 @@
 
 namespace unwrapd {
 namespace {
+
+constexpr double kMostRise = 0.5;  // of a segmented chart's energy, rather than a split
 
 /// Sums in disk units as they are in mesh units, scale UV units in one disk unit.
 DistortionSums in_mesh_units(DistortionSums sums, double unit, double scale) {
@@ -93,6 +96,11 @@ std::vector<MappedChart> finish_parts(const Disk& disk, Kept kept, const ChartHo
   return mapped;
 }
 
+/// Charts that were segmented are many already, and shall be little distorted.
+double most_rise_of(const Chart& chart) {
+  return chart.least == Guarantee::bijective ? kMostRise : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 Guarantee guarantee_of(const Chart& chart, const UnwrapOptions& options) {
@@ -127,7 +135,8 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
                           {.rigidity = rigidity_of(disk, options, lambdas[k]),
                            .held = fixed_vertices(disk.positions.size(), hold.held.holds),
                            .stop = watch.stop(),
-                           .springs = hold.held.holds.springs}};
+                           .springs = hold.held.holds.springs},
+                          most_rise_of(chart)};
     if (options.guarantee != Guarantee::none) watch.tell(Stage::untangle);
     Kept kept = keep_promise(job.chart, disk, std::move(solution.uv), promise);
     maps[k] = finish_parts(disk, std::move(kept), hold, solution);

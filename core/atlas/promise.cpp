@@ -116,12 +116,21 @@ void split(const KeptPart& part, const Seeds& seeds, const std::stop_token& stop
 }
 
 /// A map of the part in which nothing overlaps, in units of which one is `unit` of the mesh's,
-/// drawn by the springs.
-bool unfold(KeptPart& part, double unit, const MapIntent& intent) {
+/// drawn by the springs. The part stays as it is where there is none, or none that is good enough.
+bool unfold(KeptPart& part, double unit, const Promise& promise) {
+  const MapIntent& intent = promise.intent;
   SerialExecutor serial;
   const Disk disk = make_disk(part.chart->mesh, part.chart->loops, nullptr, intent.stop);
-  if (!map_injectively(disk, intent, part.uv, serial)) return false;
-  for (Vec2& u : part.uv) u *= disk.unit / unit;
+  UvMap uv = part.uv;
+  if (!map_injectively(disk, intent, uv, serial)) return false;
+  const bool is_bounded = promise.most_rise < std::numeric_limits<double>::infinity();
+  UvMap before = is_bounded ? part.uv : UvMap();
+  for (Vec2& u : before) u *= unit / disk.unit;
+  if (is_bounded && energy_of(disk, uv, intent.rigidity) >
+                        (1 + promise.most_rise) * energy_of(disk, before, intent.rigidity))
+    return false;
+  for (Vec2& u : uv) u *= disk.unit / unit;
+  part.uv = std::move(uv);
   return overlaps_of(*part.chart, part.uv, intent.stop).empty();
 }
 
@@ -138,7 +147,7 @@ Seeds seeds_needed(KeptPart& part, const std::vector<Index>& flipped, double uni
   if (pairs.empty()) return {};
   mending.overlaps += static_cast<Index>(pairs.size());
   const bool is_small = part.chart->mesh.face_count() <= kMostFacesUnfolded;
-  if (is_small && !holds_any(promise.intent) && unfold(part, unit, promise.intent)) return {};
+  if (is_small && !holds_any(promise.intent) && unfold(part, unit, promise)) return {};
   return seeds_at_overlaps(*part.chart, pairs);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The guarantee kept for one chart: its map mended, and the chart split where nothing else helps.
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -27,6 +28,9 @@ struct Promise {
   Guarantee guarantee = Guarantee::flip_free;
   RepairMethod repair = RepairMethod::untangle;
   MapIntent intent = {};  ///< held vertices stay; a chart that has some, or springs, is not split
+  /// A new map's energy may be higher by this share of the old one's; rather than that the chart is
+  /// split.
+  double most_rise = std::numeric_limits<double>::infinity();
 };
 
 /// uv: the solved map of the chart's disk, in disk units. Afterwards no triangle of a part is

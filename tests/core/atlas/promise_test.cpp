@@ -69,7 +69,7 @@ TEST(Promise, OfNoFlipsIsKeptAndTellsItsPrice) {
   }
 }
 
-TEST(Promise, OfInjectivityPartsAStripThatLiesOnItselfWithoutASplit) {
+TEST(Promise, OfInjectivityPartsAStripThatLiesOnItselfAndSplitsItOnlyWhereThatIsTooDear) {
   const auto owned = disk_of(spiral());
   UvMap uv = from_above(owned.disk);
   if (!flipped_faces(owned.disk.faces, uv).empty())
@@ -85,6 +85,13 @@ TEST(Promise, OfInjectivityPartsAStripThatLiesOnItselfWithoutASplit) {
   EXPECT_GT(kept.mending.overlaps, 0);
   EXPECT_GT(kept.mending.energy_rise, 0);
   EXPECT_EQ(kept.parts.size(), 1U);
+  for (const double share : {0.9, 1.1}) {
+    const Promise dear{.guarantee = Guarantee::bijective,
+                       .most_rise = share * kept.mending.energy_rise};
+    const Kept again = keep_promise(owned.chart, owned.disk, uv, dear);
+    expect_kept(*owned.chart, again, Guarantee::bijective);
+    EXPECT_EQ(again.parts.size() > 1, share < 1);
+  }
 }
 
 /// A tube that no convex map draws in double precision, with two ears on its rim.
