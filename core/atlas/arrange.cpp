@@ -16,6 +16,8 @@ namespace unwrapd {
 namespace {
 
 constexpr std::size_t kFewIslands = 64;  // that look at every row
+constexpr double kSpanning = 0.5;        // the square of an island's length that may span a page,
+                                         // beside the area of all boxes
 constexpr std::size_t kClasses = 60;     // of sizes, four to a doubling
 
 std::size_t class_of(int cells) {
@@ -33,10 +35,13 @@ UvMap points_of(const Outline& outline) {
 
 /// A page as it fills.
 struct Arranger::Page {
+  struct Cell {
+    int x = 0, y = 0;
+  };
   Occupancy cells;
-  std::array<std::array<int, kClasses>, kClasses> lowest{};  ///< row, by width and height
+  std::array<std::array<Cell, kClasses>, kClasses> lowest{};  ///< place, by width and height
 
-  int& lowest_of(const Mask& mask) {
+  Cell& lowest_of(const Mask& mask) {
     return lowest[class_of(mask.width)][class_of(mask.touched.height())];
   }
 };
@@ -44,13 +49,16 @@ struct Arranger::Page {
 Arranger::Arranger(std::span<const Outline> outlines, int turns)
     : outlines_(outlines), turns_(turns) {
   boxes_.reserve(outlines.size());
-  for (const Outline& outline : outlines) boxes_.push_back(smallest_box(points_of(outline)));
-  const auto longest = std::max_element(
-      boxes_.begin(), boxes_.end(),
-      [](const Box& a, const Box& b) { return a.size.maxCoeff() < b.size.maxCoeff(); });
-  if (!boxes_.empty())
-    *longest =
-        squarest_box(points_of(outlines[static_cast<std::size_t>(longest - boxes_.begin())]));
+  for (const Outline& outline : outlines) {
+    const std::optional<Box> straight = straight_box(outline);
+    boxes_.push_back(straight ? *straight : smallest_box(points_of(outline)));
+  }
+  double area = 0;
+  for (const Box& box : boxes_) area += box.size.prod();
+  for (std::size_t k = 0; k < outlines.size(); ++k) {
+    const double length = boxes_[k].size.maxCoeff();
+    if (length * length > kSpanning * area) boxes_[k] = squarest_box(points_of(outlines[k]));
+  }
 }
 
 void Arranger::set_scale(double cells_per_unit, double padding) {
@@ -88,12 +96,13 @@ int Arranger::least_side(const std::stop_token& stop) {
 bool Arranger::lower(std::size_t island, int turn, Page& page, Spot& spot, int& lowest_top) {
   const Mask& mask = mask_of(island, turn);
   const bool few = size() <= kFewIslands;
-  for (int y = few ? 0 : page.lowest_of(mask); y + mask.touched.height() < lowest_top; ++y) {
-    const std::optional<int> x = page.cells.first_free(mask, y);
+  Page::Cell from = few ? Page::Cell() : page.lowest_of(mask);
+  for (; from.y + mask.touched.height() < lowest_top; from = {0, from.y + 1}) {
+    const std::optional<int> x = page.cells.first_free(mask, from.y, from.x);
     if (!x) continue;
-    lowest_top = y + mask.touched.height();
-    spot = {*x, y, turn, spot.page};
-    if (!few) page.lowest_of(mask) = y;
+    lowest_top = from.y + mask.touched.height();
+    spot = {*x, from.y, turn, spot.page};
+    if (!few) page.lowest_of(mask) = {*x, from.y};
     return true;
   }
   return false;

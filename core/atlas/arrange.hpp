@@ -53,7 +53,7 @@ struct Budget {
 class Arranger {
  public:
   /// outlines must outlive this. turns: a full circle is divided into so many; the first puts an
-  /// island's smallest box upright, or the squarest of the longest island: that may span the page.
+  /// island's right angles or its smallest box upright, or the squarest where it may span the page.
   Arranger(std::span<const Outline> outlines, int turns);
 
   /// cells_per_unit: the islands' scale; padding: cells. Forgets masks of other figures.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace unwrapd {
@@ -13,6 +14,9 @@ namespace {
 
 constexpr int kSquareAngles = 180;        // in a quarter turn
 constexpr double kSquareGain = 1 - 1e-6;  // a turn must be worth it
+constexpr std::size_t kStraightTries = 16;
+constexpr double kMostlyStraight = 0.5;  // of the length of all sides
+constexpr double kStraight = 0.01;       // the product of sine and cosine, at most
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -98,6 +102,35 @@ Box squarest_box(std::span<const Vec2> points) {
     if (box.size.maxCoeff() < best.size.maxCoeff() * kSquareGain) best = box;
   }
   return best;
+}
+
+std::optional<Box> straight_box(std::span<const std::array<Vec2, 2>> sides) {
+  const auto way = [](const std::array<Vec2, 2>& side) { return Vec2(side[1] - side[0]); };
+  std::vector<Vec2> longest, points;
+  double all = 0;
+  for (const auto& side : sides) {
+    longest.push_back(way(side));
+    points.push_back(side[0]);
+    all += way(side).norm();
+  }
+  std::ranges::stable_sort(longest, std::greater(), &Vec2::squaredNorm);
+  longest.resize(std::min(longest.size(), kStraightTries));
+  Vec2 best = Vec2::Zero();
+  double most = kMostlyStraight * all;
+  for (const Vec2& along : longest) {
+    double straight = 0;
+    for (const auto& side : sides) {
+      const Vec2 other = way(side);
+      const double both = along.squaredNorm() * other.squaredNorm();
+      if (std::abs(along.dot(other) * cross(along, other)) <= kStraight * both)
+        straight += other.norm();
+    }
+    if (straight <= most) continue;
+    most = straight;
+    best = along;
+  }
+  if (best == Vec2::Zero()) return std::nullopt;
+  return box_along(points, best.normalized());
 }
 
 }  // namespace unwrapd

@@ -1,6 +1,8 @@
 #pragma once
 // The smallest rectangle around an island, at whatever angle.
 
+#include <array>
+#include <optional>
 #include <span>
 
 #include "core/mesh/tri_mesh.hpp"
@@ -29,5 +31,9 @@ Box smallest_box(std::span<const Vec2> points);
 /// The bounding rectangle whose longer side is least, to half a degree of its angle: what a point
 /// set that has the page to itself should be turned to.
 Box squarest_box(std::span<const Vec2> points);
+
+/// The bounding rectangle along or across most of the sides (segments), where half of their length
+/// or more lies so: shapes with right angles fit into each other that way. Nothing otherwise.
+std::optional<Box> straight_box(std::span<const std::array<Vec2, 2>> sides);
 
 }  // namespace unwrapd

@@ -4,6 +4,7 @@
 #include "core/atlas/occupancy.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 
@@ -11,7 +12,7 @@ namespace unwrapd {
 namespace {
 
 constexpr int kWordBits = 64;
-constexpr int kRowsBetweenChecks = 4;
+constexpr std::size_t kWordsAtOnce = 4;
 constexpr std::size_t kRunWork = 4;  // what a run costs beside its words, in words
 
 std::size_t words_for(int bits) {
@@ -40,53 +41,68 @@ const Occupancy::Word* Occupancy::row(int level, int y) const {
 
 /// Marks the places at which a row of the grown mask hits a taken cell.
 template <std::size_t Words>
-void Occupancy::refuse(const Rows& grown, int mask_row, int page_row, std::span<Word> refused) {
-  const std::size_t count = Words > 0 ? Words : refused.size();
+void Occupancy::refuse(const Rows& grown, int mask_row, const Place& place,
+                       std::span<Word> refused) {
   for (const Run& run : grown.row(mask_row)) {
     assert(run.begin < run.end);
     const int level =
         static_cast<int>(std::bit_width(static_cast<unsigned>(run.end - run.begin))) - 1;
-    work_ += static_cast<std::int64_t>(2 * count + kRunWork);
+    work_ += static_cast<std::int64_t>(2 * Words + kRunWork);
     for (const int shift : {run.begin, run.end - (1 << level)}) {
-      const Word* taken = row(level, page_row) + shift / kWordBits;
+      const Word* taken = row(level, place.y + mask_row) + place.word + shift / kWordBits;
       const int bit = shift % kWordBits;
-      for (std::size_t i = 0; i < count; ++i)  // in two steps: a shift by 64 is none
+      for (std::size_t i = 0; i < Words; ++i)  // in two steps: a shift by 64 is none
         refused[i] |= taken[i] >> bit | taken[i + 1] << 1 << (kWordBits - 1 - bit);
     }
   }
 }
 
-/// Words: of a row, where that is known while compiling; 0: any number.
 template <std::size_t Words>
-std::optional<int> Occupancy::first_free_in(const Mask& mask, int y, std::span<Word> refused) {
+std::optional<int> Occupancy::first_free_in(const Mask& mask, const Place& place,
+                                            std::span<Word> refused) {
   const auto is_full = [](Word w) { return w == ~Word{0}; };
   const int height = mask.grown.height();
   for (int k = 0; k < height; ++k) {  // from the middle outwards: the widest rows tell soonest
     const int j = height / 2 + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
-    refuse<Words>(mask.grown, j, y + j, refused);
-    if ((Words > 0 || k % kRowsBetweenChecks == 0) &&
-        std::all_of(refused.begin(), refused.end(), is_full))
-      return std::nullopt;
+    refuse<Words>(mask.grown, j, place, refused);
+    if (std::all_of(refused.begin(), refused.end(), is_full)) return std::nullopt;
   }
   const auto free = std::find_if_not(refused.begin(), refused.end(), is_full);
-  if (free == refused.end()) return std::nullopt;
-  return static_cast<int>(free - refused.begin()) * kWordBits + std::countr_one(*free);
+  return static_cast<int>(place.word + static_cast<std::size_t>(free - refused.begin())) *
+             kWordBits +
+         std::countr_one(*free);
 }
 
-std::optional<int> Occupancy::first_free(const Mask& mask, int y) {
+std::optional<int> Occupancy::first_free(const Mask& mask, int y, int from) {
   const int places = width_ - mask.width + 1;
-  if (places <= 0 || y + mask.touched.height() > height_) return std::nullopt;
-  refused_.assign(words_for(places), 0);
-  if (places % kWordBits != 0) refused_.back() = ~Word{0} << (places % kWordBits);
-  switch (refused_.size()) {
+  if (from >= places || y + mask.touched.height() > height_) return std::nullopt;
+  const std::size_t end = words_for(places);
+  for (auto word = static_cast<std::size_t>(from / kWordBits); word < end;) {
+    const std::size_t count = std::min(end - word, kWordsAtOnce);
+    std::array<Word, kWordsAtOnce> all{};
+    const std::span<Word> refused = std::span(all).first(count);
+    if (from > static_cast<int>(word) * kWordBits) refused[0] = ~(~Word{0} << (from % kWordBits));
+    if (word + count == end && places % kWordBits != 0)
+      refused.back() |= ~Word{0} << (places % kWordBits);
+    const auto found = search(mask, {y, word}, refused);
+    if (found) return found;
+    word += count;
+  }
+  return std::nullopt;
+}
+
+/// How many words there are is known while compiling, which makes it several times as fast.
+std::optional<int> Occupancy::search(const Mask& mask, const Place& place,
+                                     std::span<Word> refused) {
+  switch (refused.size()) {
     case 1:
-      return first_free_in<1>(mask, y, refused_);
+      return first_free_in<1>(mask, place, refused);
     case 2:
-      return first_free_in<2>(mask, y, refused_);
+      return first_free_in<2>(mask, place, refused);
     case 3:
-      return first_free_in<3>(mask, y, refused_);
+      return first_free_in<3>(mask, place, refused);
     default:
-      return first_free_in<0>(mask, y, refused_);
+      return first_free_in<kWordsAtOnce>(mask, place, refused);
   }
 }
 

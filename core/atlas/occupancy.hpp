@@ -17,9 +17,9 @@ class Occupancy {
   /// edge. margin: of all masks; longest_run: of their grown rows, at most.
   Occupancy(int width, int height, int margin, int longest_run);
 
-  /// The leftmost x at which the mask's lower left cell may lie on (x, y); touched cells stay on
-  /// the page. Nothing when the row has no such place.
-  [[nodiscard]] std::optional<int> first_free(const Mask& mask, int y);
+  /// The leftmost x, from `from` on, at which the mask's lower left cell may lie on (x, y); touched
+  /// cells stay on the page. Nothing when the row has no such place.
+  [[nodiscard]] std::optional<int> first_free(const Mask& mask, int y, int from = 0);
 
   /// Takes the touched cells.
   void stamp(const Mask& mask, int x, int y);
@@ -30,20 +30,25 @@ class Occupancy {
 
  private:
   using Word = std::uint64_t;
+  /// A row of the page and the first of its words that are looked at.
+  struct Place {
+    int y = 0;
+    std::size_t word = 0;
+  };
 
   [[nodiscard]] Word* row(int level, int y);
   [[nodiscard]] const Word* row(int level, int y) const;
   template <std::size_t Words>
-  void refuse(const Rows& grown, int mask_row, int page_row, std::span<Word> refused);
+  void refuse(const Rows& grown, int mask_row, const Place& place, std::span<Word> refused);
   template <std::size_t Words>
-  std::optional<int> first_free_in(const Mask& mask, int y, std::span<Word> refused);
+  std::optional<int> first_free_in(const Mask& mask, const Place& place, std::span<Word> refused);
+  std::optional<int> search(const Mask& mask, const Place& place, std::span<Word> refused);
   void spread(int y, int begin, int end);
 
   int width_, height_, margin_, levels_ = 1;
   std::size_t words_;
   std::int64_t work_ = 0;
-  std::vector<Word> bits_;     // bit x of row(k, y): a cell of [x, x + 2^k) is taken
-  std::vector<Word> refused_;  // bit x: the mask cannot lie at x
+  std::vector<Word> bits_;  // bit x of row(k, y): a cell of [x, x + 2^k) is taken
 };
 
 }  // namespace unwrapd

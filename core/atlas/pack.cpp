@@ -10,6 +10,7 @@
 
 #include "core/atlas/pack_search.hpp"
 #include "core/atlas/pack_stacked.hpp"
+#include "core/atlas/page_grid.hpp"
 #include "core/atlas/squeeze.hpp"
 #include "core/error.hpp"
 
@@ -36,9 +37,9 @@ constexpr std::array kSqueezes = {Squeeze{{128, 0, 1, 20}, 20'000'000},
 constexpr std::size_t kSqueezed = 40;                // islands at most
 constexpr int kFineCells = 1024, kMostCells = 4096;  // a side of the grid that decides
 constexpr double kFinePerIsland = 30, kFineHeat = 0.002;
-constexpr std::size_t kSearched = 400;         // islands at most that are searched on a coarse grid
-constexpr double kUsualFill = 0.7;             // of the first guess of a page's side
-constexpr double kSpareSide = 1.01;            // of a page, for which the padding is wide enough
+constexpr std::size_t kSearched = 400;  // islands at most that are searched on a coarse grid
+constexpr double kUsualFill = 0.7, kFullBoxes = 0.9;  // a page: boxes, without and with padding
+constexpr double kSpareSide = 1.005;  // by which islands are made smaller than they seem to fit
 constexpr std::int64_t kFineWork = 1'000'000;  // words a share
 constexpr std::int64_t kRoughWork = 500'000, kRoughSqueezeWork = 1'000'000;
 constexpr double kMostShares = 12;   // of that work
@@ -69,14 +70,6 @@ double box_area(const Arranger& arranger) {
   return area;
 }
 
-/// How the padding and the cells of a page of `side` cells relate.
-struct Grid {
-  double border = 0;  ///< page units
-
-  [[nodiscard]] double cell(int side) const { return (1 - 2 * border) / side; }
-  [[nodiscard]] double padding(double side) const { return border * side / (1 - 2 * border); }
-};
-
 class Packer {
  public:
   Packer(std::span<const Outline> outlines, const PageOptions& page, const std::stop_token& stop)
@@ -96,7 +89,7 @@ class Packer {
     std::vector<Arrangement> starts = usual_arrangements(arranger_);
     const std::size_t n = arranger_.size();
     double side = fine_cells(n);
-    double scale = side * std::sqrt(kUsualFill * page_.packing.max_pages / box_area(arranger_));
+    double scale = usual_scale(side);
     if (n > kSearched) starts.resize(1);
     for (const Level& level : kLevels) {
       if (n > kSearched) break;
@@ -109,9 +102,9 @@ class Packer {
       scale = loose;
       side = found.front().side;
     }
-    const int fine = fine_cells(n);
+    const int fine = grid_.tight_side(fine_cells(n));
     starts.resize(1);
-    return placed(on_grid_exactly(starts, fine, fine * scale / side));
+    return placed(on_grid_exactly(starts, fine, fine * scale / side / kSpareSide));
   }
 
   /// The share of the page that is filled after a short search on coarse grids.
@@ -123,9 +116,9 @@ class Packer {
     if (n > kSearched) starts.resize(1);
     Found found = on_grid(starts, {side, kStart.heat}, scale, work(kRoughWork)).front();
     if (n <= kSqueezed) {
-      const Squeeze rough{kSqueezes.front().rules, kRoughSqueezeWork};
-      const double ratio = double(rough.rules.side) / found.side;
-      const Found tight = squeezed_on(rough, found, scale * ratio);
+      const SqueezeRules& rules = kSqueezes.front().rules;
+      const double ratio = double(rules.side) / found.side;
+      const Found tight = squeezed_on(rules, work(kRoughSqueezeWork), found, scale * ratio);
       if (tight.side > 0) {
         scale *= ratio;
         found = tight;
@@ -136,7 +129,7 @@ class Packer {
 
   /// At the density that is asked for, on as few pages as can be had.
   Packed at_density(double texels_per_unit) {
-    const int side = fine_cells(arranger_.size());
+    const int side = grid_.tight_side(fine_cells(arranger_.size()));
     const double page_per_unit = texels_per_unit / page_.resolution;
     if (is_too_large(page_per_unit))
       refuse(
@@ -168,6 +161,18 @@ class Packer {
     return false;
   }
 
+  /// At which boxes with their padding fill a usual share of the pages of `side` cells.
+  [[nodiscard]] double usual_scale(double side) const {
+    const double margin = grid_.padding(side), all = static_cast<double>(arranger_.size());
+    double area = 0, half = 0;  // of the equation area s^2 + 2 half s + all margin^2 = room
+    for (std::size_t k = 0; k < arranger_.size(); ++k) {
+      area += arranger_.box(k).size.prod();
+      half += arranger_.box(k).size.sum() * margin / 2;
+    }
+    const double room = kFullBoxes * page_.packing.max_pages * side * side - all * margin * margin;
+    return (std::sqrt(half * half + area * std::max(room, 0.2 * side * side)) - half) / area;
+  }
+
   [[nodiscard]] std::int64_t work(std::int64_t a_share) const {
     return static_cast<std::int64_t>(shares_ * static_cast<double>(a_share));
   }
@@ -180,23 +185,27 @@ class Packer {
         on_grid(usual_arrangements(arranger_), {cells, kStart.heat}, scale, work(kStart.work))
             .front();
     for (const Squeeze& grid : kSqueezes) {
-      const double ratio = double(grid.rules.side) / found.side;
-      scale *= ratio;
-      found = squeezed_on(grid, found, scale);
+      SqueezeRules rules = grid.rules;
+      if (rules.reach > 0) rules.side = grid_.tight_side(rules.side);
+      scale *= double(rules.side) / found.side;
+      found = squeezed_on(rules, work(grid.work), found, scale);
       if (found.side == 0) return std::nullopt;
+      scale = arranger_.scale();
     }
     return found;
   }
 
-  /// The last grid's pages must be no larger than those for which the padding was made.
-  Found squeezed_on(const Squeeze& grid, const Found& from, double cells_per_unit) {
-    const bool has_gaps = grid.rules.reach > 0;
-    for (int side = grid.rules.side;;) {
-      arranger_.set_scale(cells_per_unit, has_gaps ? grid_.padding(side) : 0);
-      Budget budget{work(grid.work), stop_};
-      Found found = squeezed(arranger_, from, grid.rules, budget);
-      if (!has_gaps || found.side <= side) return found;
-      side = found.side + 1 + found.side / 100;
+  /// Pages must be no larger than those for which the padding was made: the islands shrink until
+  /// they are.
+  Found squeezed_on(const SqueezeRules& rules, std::int64_t work, const Found& from,
+                    double cells_per_unit) {
+    const bool has_gaps = rules.reach > 0;
+    for (;;) {
+      arranger_.set_scale(cells_per_unit, has_gaps ? grid_.padding(rules.side) : 0);
+      Budget budget{work, stop_};
+      Found found = squeezed(arranger_, from, rules, budget);
+      if (!has_gaps || found.side <= rules.side) return found;
+      cells_per_unit *= double(rules.side) / found.side / kSpareSide;
     }
   }
 
@@ -210,16 +219,13 @@ class Packer {
                : std::vector{smallest_pages(arranger_, starts, page_.packing.max_pages, budget)};
   }
 
-  /// The same where the padding must be kept: should pages come out larger than expected, it is
-  /// made wider and all is done again.
-  Found on_grid_exactly(const std::vector<Arrangement>& starts, double expected,
-                        double cells_per_unit) {
-    for (double spare = kSpareSide;; spare *= kSpareSide) {
-      Found found = on_grid(starts, {static_cast<int>(std::ceil(spare * expected)), kFineHeat},
-                            cells_per_unit, work(kFineWork))
-                        .front();
-      if (found.side <= spare * expected) return found;
-      expected = found.side;
+  /// The same where the padding must be kept: should pages come out larger than `side`, the islands
+  /// shrink and all is done again.
+  Found on_grid_exactly(const std::vector<Arrangement>& starts, int side, double cells_per_unit) {
+    for (;;) {
+      Found found = on_grid(starts, {side, kFineHeat}, cells_per_unit, work(kFineWork)).front();
+      if (found.side <= side) return found;
+      cells_per_unit *= double(side) / found.side / kSpareSide;
     }
   }
 
@@ -241,7 +247,7 @@ class Packer {
   double shares_;
   PageOptions page_;
   double padding_;
-  Grid grid_;
+  PageGrid grid_;
   std::stop_token stop_;
 };
 

@@ -94,33 +94,33 @@ TEST(Mask, GrowsByWhatIsNearerThanThePaddingBruteForce) {
 
 TEST(Occupancy, FindsTheLeftmostFreePlaceBruteForce) {
   std::mt19937 rng(3);
-  const int side = 100, padding = 2;
-  Occupancy page(side, side, padding, side);
-  std::vector<char> taken(std::size_t(side * side), 0);
+  const int width = 400, side = 100, padding = 2;  // cells
+  Occupancy page(width, side, padding, width);
+  std::vector<char> taken(std::size_t(side * width), 0);
   const auto fits = [&](const Mask& mask, int x, int y) {
     for (int v = -padding; v < mask.touched.height() + padding; ++v)
       for (int u = -padding; u < mask.width + padding; ++u) {
-        const bool on_page = x + u >= 0 && x + u < side && y + v >= 0 && y + v < side;
+        const bool on_page = x + u >= 0 && x + u < width && y + v >= 0 && y + v < side;
         if (on_page && has(mask.grown, u + padding, v + padding) &&
-            taken[std::size_t((y + v) * side + x + u)])
+            taken[std::size_t((y + v) * width + x + u)])
           return false;
       }
     return true;
   };
-  for (int k = 0; k < 25; ++k) {
+  for (int k = 0; k < 100; ++k) {
     const Mask mask = make_mask(star(rng, 6, 4 + k % 11), {}, padding);
     const int y = int(rng() % 80);
-    const std::optional<int> found = page.first_free(mask, y);
-    int expected = 0;
-    while (expected + mask.width <= side && !fits(mask, expected, y)) ++expected;
-    const bool any = expected + mask.width <= side && y + mask.touched.height() <= side;
+    int expected = k % 2 == 0 ? 0 : int(rng() % width);
+    const std::optional<int> found = page.first_free(mask, y, expected);
+    while (expected + mask.width <= width && !fits(mask, expected, y)) ++expected;
+    const bool any = expected + mask.width <= width && y + mask.touched.height() <= side;
     ASSERT_EQ(found.has_value(), any);
     if (!any) continue;
     EXPECT_EQ(*found, expected);
     page.stamp(mask, *found, y);
     for (int v = 0; v < mask.touched.height(); ++v)
       for (int u = 0; u < mask.width; ++u)
-        if (has(mask.touched, u, v)) taken[std::size_t((y + v) * side + *found + u)] = 1;
+        if (has(mask.touched, u, v)) taken[std::size_t((y + v) * width + *found + u)] = 1;
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/atlas/box.hpp"
 #include "core/atlas/pack.hpp"
+#include "core/atlas/page_grid.hpp"
 #include "tests/core/outlines.hpp"
 
 namespace unwrapd {
@@ -169,6 +170,48 @@ TEST(PackOutlines, IsRatedAtAGlanceAsItIsPacked) {
   EXPECT_LT(rough_fill(std::vector<Outline>{cross, cross}), 0.4);
   const std::vector<Outline> islands = stars(12, 7);
   EXPECT_NEAR(rough_fill(islands), fill(islands, pack(islands, {.padding = 0}).placements), 0.12);
+}
+
+/// A net of a box as a staircase, turned by the angle: its smallest rectangle lies aslant.
+Outline net(double a, double b, double angle) {
+  const UvMap corners{{0, 0},         {2 * a, 0},     {2 * a, b},     {3 * a, b},
+                      {3 * a, 2 * b}, {4 * a, 2 * b}, {4 * a, 3 * b}, {2 * a, 3 * b},
+                      {2 * a, 2 * b}, {a, 2 * b},     {a, b},         {0, b}};
+  UvMap turned;
+  for (const Vec2& p : corners)
+    turned.emplace_back(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
+                        std::sin(angle) * p.x() + std::cos(angle) * p.y());
+  return polygon(turned);
+}
+
+TEST(PackOutlines, ShapesOfRightAnglesLieAlongThePage) {
+  std::mt19937 rng(8);
+  std::uniform_real_distribution<double> side(0.4, 1), angle(0, 6);
+  std::vector<Outline> nets;
+  for (int k = 0; k < 120; ++k) nets.push_back(net(side(rng), side(rng), angle(rng)));
+  const std::vector<Placement> placements = pack(nets, {}).placements;
+  for (std::size_t k = 0; k < nets.size(); ++k) {
+    const auto& [a, b] = nets[k].front();
+    const Vec2 way = (placements[k](b) - placements[k](a)).normalized();
+    EXPECT_NEAR(way.x() * way.y(), 0, 1e-9);
+  }
+}
+
+TEST(PageGrid, GapsOfWholeCellsAreWideEnoughAndHardlyWider) {
+  for (const int resolution : {256, 1024, 4096})
+    for (const double padding : {1.0, 2.0, 8.0})
+      for (const int wanted : {512, 1024, 3000}) {
+        const PageGrid grid{padding / resolution};
+        const int side = grid.tight_side(wanted);
+        const double cells = grid.padding(side);
+        if (grid.padding(wanted) < 0.5) {
+          EXPECT_EQ(side, wanted);  // no side near to it will do
+          continue;
+        }
+        EXPECT_LE(std::ceil(cells) * grid.cell(side) * resolution, 1.01 * padding);
+        EXPECT_GT(std::ceil(cells) * grid.cell(side) * resolution, padding);
+        EXPECT_NEAR(side, wanted, wanted / std::round(grid.padding(wanted)));
+      }
 }
 
 }  // namespace
