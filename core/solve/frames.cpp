@@ -18,6 +18,7 @@
 #include "core/cancel.hpp"
 #include "core/linear/factor.hpp"
 #include "core/mesh/edges.hpp"
+#include "core/solve/level_scales.hpp"
 #include "core/solve/metric.hpp"
 
 namespace unwrapd {
@@ -37,10 +38,23 @@ SparseMatrix with_held_boundary(const Disk& disk, std::span<const char> on_bound
   return lower;
 }
 
-/// u, one a vertex.
+constexpr std::size_t kWorthLevelling = 8192;  // vertices: below, a factor takes few solves' time
+constexpr double kMostBoundary = 32;           // squared, to the vertices: beyond, steps are many
+constexpr int kMostSolves = 12;
+
+bool is_soon_level(const Disk& disk) {
+  double boundary = 0;
+  for (const BoundaryLoop& loop : disk.loops) boundary += static_cast<double>(loop.size());
+  const std::size_t count = disk.positions.size();
+  return count >= kWorthLevelling && boundary * boundary <= kMostBoundary * double(count);
+}
+
+/// u, one a vertex: level on the boundary, or nearly so where that is had without a factor.
 std::vector<double> log_scales(const Disk& disk, const GlobalStep& global) {
   const std::vector<char> on_boundary = boundary_vertices(disk);
   const std::vector<double> k = curvature(disk, disk.rest);
+  if (is_soon_level(disk))
+    if (auto level = level_scales(disk, global, k, kMostSolves)) return std::move(*level);
   std::vector<Vec2> x(k.size(), Vec2::Zero());
   for (std::size_t v = 0; v < x.size(); ++v)
     if (on_boundary[v] == 0) x[v].x() = -k[v];

@@ -22,6 +22,7 @@
 #include "core/solve/convex_map.hpp"
 #include "core/solve/face_blocks.hpp"
 #include "core/solve/frames.hpp"
+#include "core/solve/level_scales.hpp"
 #include "core/solve/metric.hpp"
 #include "tests/core/linear/graphs.hpp"
 #include "tests/core/linear/systems.hpp"
@@ -122,10 +123,12 @@ TEST(Cancel, IsHeardWhileMapsAreMade) {
   const Sample s;
   const GlobalStep global(s.owned.disk, {});
   const std::vector<Index> rank = shapes::as_listed(s.mesh.positions.size());
+  const std::vector<double> curved(s.mesh.positions.size(), 1);
   expect_all_to_hear(
       {{"disk", [&](Stop stop) { make_disk(s.mesh, s.owned.disk.loops, nullptr, stop); }},
        {"flatten", [&](Stop stop) { flatten(s.mesh, stop); }},
        {"curvature", [&](Stop stop) { curvature(s.disk(stop), s.owned.disk.rest); }},
+       {"level scales", [&](Stop stop) { level_scales(s.disk(stop), global, curved, 99); }},
        {"frames", [&](Stop stop) { frame_map(s.disk(stop), global); }},
        {"global step", [&](Stop stop) { GlobalStep(s.disk(stop), {}); }},
        {"Tutte", [&](Stop stop) { tutte_map(s.disk(stop)); }},
