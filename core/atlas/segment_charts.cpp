@@ -21,9 +21,9 @@ namespace unwrapd {
 namespace {
 
 constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
-constexpr Index kMostFacesSegmented = 36'000, kFacesOfCoarse = 24'000;
+constexpr Index kMostFacesSegmented = 18'000, kFacesOfCoarse = 12'000;
 constexpr double kShareOfCoarse =
-    0.93;  // of the excess allowed: the rest is for what it averages out
+    0.88;  // of the excess allowed: the rest is for what it averages out
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const Chart& component) {
