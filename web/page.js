@@ -5,6 +5,7 @@ const LINE = /\r\n|\r|\n/;
 
 const $ = (id) => document.getElementById(id);
 const wait = (seconds) => new Promise((resolve) => setTimeout(resolve, seconds * 1000));
+const fixed = (number, digits) => (number < Number.MAX_VALUE ? number.toFixed(digits) : "infinite");
 const shown = (id, visible) => { $(id).hidden = !visible; };
 
 let methods;
@@ -143,8 +144,8 @@ const SAYS = {
   },
   iteration({ i, energy, angle, area, flipped, fraction }) {
     $("fraction").value = fraction;
-    $("iteration").textContent = `Iteration ${i}: energy ${energy.toPrecision(6)}, ` +
-      `angles ${angle.toFixed(4)}, areas ${area.toFixed(4)}, ${flipped} flipped`;
+    $("iteration").textContent = `Iteration ${i}: energy ${fixed(energy, 6)}, ` +
+      `angles ${fixed(angle, 4)}, areas ${fixed(area, 4)}, ${flipped} flipped`;
   },
 };
 const ENDS = ["succeeded", "failed", "cancelled"];
@@ -180,9 +181,9 @@ async function blobOf(url) {
 }
 
 function showFigures({ charts, distortion, seam_ratio: seams, fill }) {
-  const figures = { Charts: charts.length, "Angles (2 is ideal)": distortion.angle.toFixed(4),
-    "Areas (2 is ideal)": distortion.area.toFixed(4), Flipped: distortion.flipped,
-    "Seams / √area": seams.toFixed(2), "Page filled": `${(100 * fill).toFixed(1)} %` };
+  const figures = { Charts: charts.length, "Angles (2 is ideal)": fixed(distortion.angle, 4),
+    "Areas (2 is ideal)": fixed(distortion.area, 4), Flipped: distortion.flipped,
+    "Seams / √area": fixed(seams, 2), "Page filled": `${(100 * fill).toFixed(1)} %` };
   $("figures").replaceChildren(...Object.entries(figures).map(([name, value]) => {
     const pair = document.createElement("div");
     const make = (tag, text) => Object.assign(document.createElement(tag), { textContent: text });
