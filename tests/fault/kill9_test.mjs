@@ -8,16 +8,21 @@ import { setTimeout as sleep } from "node:timers/promises";
 
 import { dataDirectory, ENDLESS, filesBelow, QUICK, Server } from "./server.mjs";
 
+const LONG_SIZE = 60; // of a grid on which 10,000 iterations, which are the most, take longer
 const LONG_MS = 4000; // of work: killed long before its end, and not long to wait for
 
-/** The query of a job that takes some seconds on this machine, in this build. */
+/** The query of a job that takes some seconds on this machine, in this build, when it is idle. */
 async function longQuery(t) {
   const server = await Server.start(dataDirectory(t));
-  const job = await server.finished(await server.submit("stop.iterations=50"));
-  const report = await (await fetch(`${server.url}${job.links.report}`)).json();
+  let least = Infinity; // ms of 500 iterations; the machine may be busy with others now and then
+  for (const size of [LONG_SIZE - 1, LONG_SIZE, LONG_SIZE + 1]) {
+    const job = await server.finished(await server.submit("stop.iterations=500", size));
+    const report = await (await fetch(`${server.url}${job.links.report}`)).json();
+    least = Math.min(least, report.timings_ms.solve);
+  }
   await server.end("SIGTERM");
-  const iterations = Math.round((50 * LONG_MS) / report.timings_ms.solve);
-  return `stop.iterations=${Math.min(Math.max(iterations, 50), 10_000)}`;
+  const iterations = Math.round((500 * LONG_MS) / least);
+  return `stop.iterations=${Math.min(Math.max(iterations, 500), 10_000)}`;
 }
 
 /** An upload that stops half-way; resolves when the server has begun to store it. */
@@ -32,19 +37,25 @@ async function beginUpload(server, data) {
   while (filesBelow(join(data, "incoming")).length === 0) await sleep(5);
 }
 
+/** The traces in the lines of a log about a job, and what these lines tell. */
+function linesOf(log, id) {
+  const lines = log.trim().split("\n").map((line) => JSON.parse(line)).filter(({ job }) => job === id);
+  return { events: lines.map(({ event }) => event), traces: new Set(lines.map(({ trace }) => trace)) };
+}
+
 test("kill -9: what ran runs again, what waited waits, nothing partial remains", async (t) => {
   const data = dataDirectory(t);
-  const first = await Server.start(data);
+  const first = await Server.start(data, "--log-level", "info");
   const done = await first.submit(QUICK, 6);
   await first.finished(done);
   const result = await (await fetch(`${first.url}/v1/jobs/${done}/result`)).text();
-  const running = await first.submit(await longQuery(t));
+  const running = await first.submit(await longQuery(t), LONG_SIZE);
   const waiting = [await first.submit(QUICK, 4), await first.submit(QUICK, 5)];
   await first.iterates(running);
   await beginUpload(first, data);
   assert.deepEqual(await first.end("SIGKILL"), [null, "SIGKILL"]);
 
-  const second = await Server.start(data);
+  const second = await Server.start(data, "--log-level", "info");
   assert.deepEqual(filesBelow(join(data, "incoming")), []);
   const again = await second.finished(running);
   assert.equal(again.state, "succeeded");
@@ -59,6 +70,10 @@ test("kill -9: what ran runs again, what waited waits, nothing partial remains",
   assert.equal(await (await fetch(`${second.url}/v1/jobs/${done}/result`)).text(), result);
   assert.deepEqual(filesBelow(join(data, "blobs")).filter((name) => name.endsWith(".part")), []);
   assert.deepEqual(await second.end("SIGTERM"), [0, null]);
+  const [before, after] = [first, second].map(({ log }) => linesOf(log, running));
+  assert.equal(before.traces.size, 1);
+  assert.ok(after.events.includes("job found at nobody's hands, queued again"), `${after.events}`);
+  assert.deepEqual(after.traces, before.traces, "one trace over the crash");
 });
 
 test("a job that was asked to stop is not run again after kill -9", async (t) => {
@@ -90,7 +105,7 @@ test("a harmless job is not to blame for the deaths of its server, however many"
 test("SIGTERM: a running job is finished, then the exit code is 0", async (t) => {
   const data = dataDirectory(t);
   const first = await Server.start(data, "--drain-seconds", "300");
-  const id = await first.submit(await longQuery(t));
+  const id = await first.submit(await longQuery(t), LONG_SIZE);
   await first.iterates(id);
   assert.deepEqual(await first.end("SIGTERM"), [0, null]);
   const second = await Server.start(data);
@@ -102,7 +117,7 @@ test("SIGTERM: a running job is finished, then the exit code is 0", async (t) =>
 test("SIGTERM without patience: the job runs again at the next start", async (t) => {
   const data = dataDirectory(t);
   const first = await Server.start(data, "--drain-seconds", "0");
-  const id = await first.submit(await longQuery(t));
+  const id = await first.submit(await longQuery(t), LONG_SIZE);
   await first.iterates(id);
   assert.deepEqual(await first.end("SIGTERM"), [0, null]);
   const second = await Server.start(data);

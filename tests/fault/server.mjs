@@ -81,7 +81,10 @@ export class Server {
   }
 
   iterates(id) {
-    return this.until(id, (job) => job.state === "running" && job.progress?.iteration > 0);
+    return this.until(id, (job) => {
+      assert.ok(["queued", "running"].includes(job.state), `job ${id} ended before it was seen`);
+      return job.state === "running" && job.progress?.iteration > 0;
+    });
   }
 
   finished(id) {
