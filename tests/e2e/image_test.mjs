@@ -124,7 +124,7 @@ async function unwrapsAndGoesOn() {
   assert.equal(picture.headers.get("content-type"), "image/png");
   assert.equal(obj.match(/^vt /gm).length, 21 * 21);
 
-  const long = await submit("stop.iterations=2500", 100);
+  const long = await submit("stop.iterations=10000", 100);
   await until("an iteration", async () => (await job(long)).progress?.iteration > 0);
   run("stop", "--time", "30", name);
   const [stopped] = JSON.parse(run("inspect", "--type", "container", name));
