@@ -180,7 +180,7 @@ describe("the page", { skip: missing }, () => {
       if (request.url().endsWith("/events")) asked.push(request.headers()["last-event-id"]);
     });
     await page.click("summary");
-    await page.fill("[name='stop.iterations']", "800");
+    await page.fill("[name='stop.iterations']", "4000");
     await unwrap(page, file("middle.obj", obj(100)));
     await page.locator("#iteration", { hasText: "Iteration" }).waitFor();
     door.shut();
