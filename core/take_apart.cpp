@@ -29,6 +29,7 @@ std::vector<Disk> disks_of(const Charts& surface, const std::stop_token& stop, S
   disks.reserve(surface.charts.size());
   for (const Chart& chart : surface.charts) {
     disks.push_back(make_disk(chart.mesh, chart.loops, core, stop));
+    disks.back().twin = chart.halfedges.twin;
     disks.back().stop = {};  // it may be kept for other jobs
   }
   return disks;

@@ -17,6 +17,7 @@ namespace unwrapd {
 namespace {
 
 constexpr Index kUncharted = -1;
+constexpr Index kNone = -1, kSeveral = -2;  // corners
 
 /// The vertices of all charts in one numbering: chart k's begin at first[k].
 struct Numbering {
@@ -100,6 +101,19 @@ void give_corners_to_set_aside(const Surface& surface, const Charts& charts,
   }
 }
 
+/// For each vertex its first corner, kSeveral where its corners show several chart vertices.
+std::vector<Index> first_corners(const std::vector<Triangle>& faces, Index vertex_count,
+                                 const std::vector<Triangle>& at, const std::stop_token& stop) {
+  std::vector<Index> first(vertex_count, kNone);
+  for (Index c = 0; c < static_cast<Index>(3 * faces.size()); ++c) {
+    look_now_and_then(c, stop);
+    Index& own = first[faces[c / 3][c % 3]];
+    if (own == kNone) own = c;
+    if (own != kSeveral && at[own / 3][own % 3] != at[c / 3][c % 3]) own = kSeveral;
+  }
+  return first;
+}
+
 /// For each corner 3t + i, the first corner with the same vertex and the same chart vertex.
 std::vector<Index> first_equal_corners(const std::vector<Triangle>& faces, Index vertex_count,
                                        const std::vector<Triangle>& at, Index chart_vertex_count,
@@ -107,17 +121,20 @@ std::vector<Index> first_equal_corners(const std::vector<Triangle>& faces, Index
   struct Corner {
     Index vertex, shown, corner;
   };
-  std::vector<Corner> corners;
-  corners.reserve(3 * faces.size());
+  std::vector<Index> first_equal(3 * faces.size());
+  const std::vector<Index> first_of = first_corners(faces, vertex_count, at, stop);
+  std::vector<Corner> corners;  // at vertices that show several
   for (Index c = 0; c < static_cast<Index>(3 * faces.size()); ++c) {
     look_now_and_then(c, stop);
-    corners.push_back({faces[c / 3][c % 3], at[c / 3][c % 3] + 1, c});
+    const Index v = faces[c / 3][c % 3];
+    first_equal[c] = first_of[v];
+    if (first_of[v] == kSeveral) corners.push_back({v, at[c / 3][c % 3] + 1, c});
   }
+  if (corners.empty()) return first_equal;
   counting_sort(
       corners, chart_vertex_count + 1, [](const Corner& c) { return c.shown; }, stop);
   counting_sort(
       corners, vertex_count, [](const Corner& c) { return c.vertex; }, stop);
-  std::vector<Index> first_equal(corners.size());
   for_each_run(
       corners,
       [](const Corner& a, const Corner& b) { return a.vertex == b.vertex && a.shown == b.shown; },

@@ -22,6 +22,8 @@
 namespace unwrapd {
 namespace {
 
+constexpr Index kUnnumbered = -1;
+
 void require_two_sides(const Surface& surface, const Pieces& pieces) {
   const auto component = one_sided_component(pieces.clashes, pieces.topology);
   if (!component) return;
@@ -69,30 +71,60 @@ std::size_t bytes_of(const Connected& connected) {
   return bytes;
 }
 
-/// source: the chart's faces as numbers of pieces; rank: their place in source. vertex_source: left
-/// for each of the chart's vertices.
-Chart chart_of(const Surface& surface, const Pieces& pieces, std::span<const Index> source,
-               std::span<const Index> rank, const std::stop_token& stop,
-               std::vector<Index>& vertex_source) {
-  Chart chart;
-  for (const Index t : source) {
-    look_now_and_then(rank[t], stop);
-    chart.face_source.push_back(pieces.source[t]);
+/// The faces of one component.
+struct Members {
+  std::span<const Index> source;  ///< as numbers of pieces
+  std::span<const Index> rank;    ///< of each face of pieces: its place in source
+};
+
+void mark_creases(const Surface& surface, const Pieces& pieces, const Members& members,
+                  const std::stop_token& stop, Chart& chart) {
+  const auto given = [&](Index g) { return 3 * pieces.source[g / 3] + g % 3; };
+  for (const Index t : members.source) {
+    look_now_and_then(members.rank[t], stop);
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
       const Index twin = pieces.halfedges.twin[h];
-      chart.halfedges.twin.push_back(twin == kNoTwin ? kNoTwin : 3 * rank[twin / 3] + twin % 3);
-      const auto given = [&](Index g) { return 3 * pieces.source[g / 3] + g % 3; };
-      chart.crease.push_back(twin != kNoTwin && is_crease(surface, given(h), given(twin)) ? 1 : 0);
+      if (twin != kNoTwin && is_crease(surface, given(h), given(twin)))
+        chart.crease[3 * members.rank[t] + h % 3] = 1;
     }
   }
-  CornerVertices corners = corner_vertices(chart.halfedges, stop);
-  chart.mesh.faces = std::move(corners.faces);
-  vertex_source.resize(corners.count);
-  for (std::size_t t = 0; t < chart.face_source.size(); ++t) {
-    look_now_and_then(t, stop);
-    for (std::size_t i = 0; i < 3; ++i)
-      vertex_source[chart.mesh.faces[t][i]] = surface.mesh.faces[chart.face_source[t]][i];
+}
+
+/// Numbers the chart's vertices by first use. number: of the vertices of pieces, kUnnumbered at
+/// first. vertex_source: left for each of the chart's vertices.
+void number_vertices(const Surface& surface, const Pieces& pieces, const Members& members,
+                     std::vector<Index>& number, std::vector<Index>& vertex_source, Chart& chart) {
+  chart.mesh.faces.resize(members.source.size());
+  for (std::size_t k = 0; k < members.source.size(); ++k)
+    for (std::size_t i = 0; i < 3; ++i) {
+      Index& own = number[pieces.corners.faces[members.source[k]][i]];
+      if (own == kUnnumbered) {
+        own = static_cast<Index>(vertex_source.size());
+        vertex_source.push_back(0);
+      }
+      chart.mesh.faces[k][i] = own;
+      vertex_source[own] = surface.mesh.faces[chart.face_source[k]][i];
+    }
+}
+
+Chart chart_of(const Surface& surface, const Pieces& pieces, const Members& members,
+               const std::stop_token& stop) {
+  Chart chart;
+  const std::size_t count = members.source.size();
+  chart.face_source.resize(count);
+  chart.halfedges.twin.resize(3 * count);
+  chart.crease.assign(3 * count, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    look_now_and_then(k, stop);
+    const Index t = members.source[k];
+    chart.face_source[k] = pieces.source[t];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index twin = pieces.halfedges.twin[3 * t + i];
+      chart.halfedges.twin[3 * k + i] =
+          twin == kNoTwin ? kNoTwin : 3 * members.rank[twin / 3] + twin % 3;
+    }
   }
+  if (pieces.may_crease) mark_creases(surface, pieces, members, stop, chart);
   chart.loops = boundary_loops(chart.halfedges, stop);
   return chart;
 }
@@ -107,14 +139,16 @@ void separate(const Surface& surface, const Pieces& pieces, const std::stop_toke
       order, static_cast<Index>(components.size()), [&](Index t) { return of[t]; }, stop);
   out.charts.charts.reserve(components.size());
   out.vertex_source.resize(components.size());
-  std::vector<Index> rank(order.size());
+  std::vector<Index> rank(order.size()), number(pieces.corners.count, kUnnumbered);
   std::size_t first = 0;
   for (std::size_t k = 0; k < components.size(); ++k) {
     const std::span<const Index> source(order.data() + first, components[k].faces);
     for (std::size_t i = 0; i < source.size(); ++i) rank[source[i]] = static_cast<Index>(i);
     first += source.size();
-    out.charts.charts.push_back(
-        chart_of(surface, pieces, source, rank, stop, out.vertex_source[k]));
+    Chart chart = chart_of(surface, pieces, {source, rank}, stop);
+    number_vertices(surface, pieces, {source, rank}, number, out.vertex_source[k], chart);
+    out.charts.charts.push_back(std::move(chart));
+    throw_if_cancelled(stop);
   }
 }
 
@@ -144,7 +178,8 @@ std::vector<Repair> repairs_of(const FaceStates& states, const Pieces& pieces) {
 
 Connected connect(const Inspected& in, const SeamRules& seams) {
   const Surface& surface = in.surface;
-  const auto [pieces, was_welded] = choose_pieces(in, seams);
+  Pairing by_place = pair_welded(in.welded, in.states, seams.stop);
+  const auto [pieces, was_welded] = choose_pieces(in, by_place, seams);
   require_two_sides(surface, pieces);
   throw_if_cancelled(seams.stop);
   Connected connected;
@@ -157,8 +192,10 @@ Connected connect(const Inspected& in, const SeamRules& seams) {
   }
   charts.input = input_report(surface.mesh, pieces.topology, was_welded);
   charts.repairs = repairs_of(in.states, pieces);
+  const bool all_are_paired = charts.set_aside.empty();
   charts.by_position = std::make_shared<const Halfedges>(
-      build_halfedges(in.welded, surface.mesh.vertex_count(), seams.stop));
+      all_are_paired ? std::move(by_place.halfedges)
+                     : build_halfedges(in.welded, surface.mesh.vertex_count(), seams.stop));
   return connected;
 }
 
@@ -189,8 +226,13 @@ Charts placed(const Connected& connected, const TriMesh& mesh, const std::stop_t
 }  // namespace
 
 bool is_disk(const Chart& component) {
-  const Topology shape = topology(component.mesh.faces, component.halfedges);
-  return shape.components.size() == 1 && shape.components.front().is_disk();
+  std::size_t sides = 0;  // on the boundary
+  for (const BoundaryLoop& loop : component.loops) sides += loop.size();
+  const Index faces = component.mesh.face_count();
+  const Index edges = (3 * faces + static_cast<Index>(sides)) / 2;
+  const Index euler = component.mesh.vertex_count() - edges + faces;
+  const auto boundaries = static_cast<Index>(component.loops.size());
+  return boundaries > 0 && euler == 2 - boundaries;
 }
 
 void cut(Chart& component) {

@@ -55,7 +55,7 @@ Charts components_of(const Surface& surface, const SeamRules& seams);
 /// Bytes that keeping it takes.
 std::size_t bytes_of(const Chart& chart);
 
-/// Whether a component is a disk, holes allowed.
+/// Whether a component is a disk, holes allowed, by its loops and its Euler characteristic.
 bool is_disk(const Chart& component);
 
 /// Makes one disk of a component that is none: see cut_to_disk().

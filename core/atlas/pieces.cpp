@@ -19,7 +19,7 @@ constexpr std::size_t kMostKeptDisksAComponent = 4;  // for each component of th
 constexpr std::size_t kLeastFacesADisk = 8;          // on average
 
 /// Leaves out the faces that are set aside.
-Pieces pieces_of(Pairing pairing, const FaceStates& states, const std::stop_token& stop) {
+Pieces pieces_of(const Pairing& pairing, const FaceStates& states, const std::stop_token& stop) {
   throw_if_cancelled(stop);
   Pieces pieces;
   std::vector<Index> rank(states.of.size(), kNoFace);
@@ -37,7 +37,8 @@ Pieces pieces_of(Pairing pairing, const FaceStates& states, const std::stop_toke
   }
   close_slits(pieces.halfedges, stop);
   throw_if_cancelled(stop);
-  pieces.topology = topology(corner_vertices(pieces.halfedges, stop).faces, pieces.halfedges, stop);
+  pieces.corners = corner_vertices(pieces.halfedges, stop);
+  pieces.topology = topology(pieces.corners.faces, pieces.halfedges, stop);
   pieces.split_edges = pairing.split_edges;
   for (const auto& [g, h] : pairing.clashes)
     if (rank[g / 3] != kNoFace && rank[h / 3] != kNoFace)
@@ -91,30 +92,38 @@ void cut_paths(const Inspected& in, const SeamRules& seams, Halfedges& halfedges
   }
 }
 
-Pieces welded_pieces(const Inspected& in, const SeamRules& seams) {
-  Pairing pairing = pair_welded(in.welded, in.states, seams.stop);
+Pieces welded_pieces(const Inspected& in, Pairing pairing, const SeamRules& seams) {
   if (seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty())
     cut_at_uv_seams(in.surface, pairing.halfedges);
   cut_paths(in, seams, pairing.halfedges);
-  return pieces_of(std::move(pairing), in.states, seams.stop);
+  return pieces_of(pairing, in.states, seams.stop);
 }
 
-Pieces kept_pieces(const Inspected& in, const SeamRules& seams) {
-  Pairing pairing = pair_keeping_seams(in.surface, in.welded, in.states, seams.stop);
+Pieces kept_pieces(const Inspected& in, Pairing pairing, const SeamRules& seams) {
   cut_paths(in, seams, pairing.halfedges);
-  return pieces_of(std::move(pairing), in.states, seams.stop);
+  return pieces_of(pairing, in.states, seams.stop);
 }
 
 }  // namespace
 
-std::pair<Pieces, bool> choose_pieces(const Inspected& in, const SeamRules& seams) {
+std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_place,
+                                      const SeamRules& seams) {
   const bool nothing_to_weld = std::ranges::equal(in.welded, in.surface.mesh.faces);
+  const bool is_plain = nothing_to_weld && !spans_parts(in.surface);  // seams by no rule at all
+  const auto kept = [&] {
+    Pieces pieces = kept_pieces(
+        in, is_plain ? by_place : pair_keeping_seams(in.surface, in.welded, in.states, seams.stop),
+        seams);
+    pieces.may_crease = !is_plain;
+    return pieces;
+  };
   const bool by_uv = seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty();
-  if (seams.mode == SeamMode::none || by_uv) return {welded_pieces(in, seams), !nothing_to_weld};
-  if (seams.mode == SeamMode::keep || nothing_to_weld) return {kept_pieces(in, seams), false};
-  Pieces with_cuts = kept_pieces(in, seams);
+  if (seams.mode == SeamMode::none || by_uv)
+    return {welded_pieces(in, by_place, seams), !nothing_to_weld};
+  if (seams.mode == SeamMode::keep || nothing_to_weld) return {kept(), false};
+  Pieces with_cuts = kept();
   throw_if_cancelled(seams.stop);
-  Pieces without = welded_pieces(in, seams);
+  Pieces without = welded_pieces(in, by_place, seams);
   const bool same = with_cuts.halfedges.twin == without.halfedges.twin;
   if (same || is_a_few_disks(with_cuts, without)) return {std::move(with_cuts), false};
   return {std::move(without), true};

@@ -8,6 +8,7 @@
 
 #include "core/atlas/charts.hpp"
 #include "core/mesh/repair.hpp"
+#include "core/mesh/seams.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace unwrapd {
@@ -16,9 +17,11 @@ namespace unwrapd {
 struct Pieces {
   std::vector<Index> source;  ///< face -> face of the surface
   Halfedges halfedges;
+  CornerVertices corners;  ///< of halfedges
   Topology topology;
   Index split_edges = 0;
   std::vector<std::array<Index, 2>> clashes;
+  bool may_crease = true;  ///< false: twins have the same vertices and the same material
 };
 
 /// A surface with what weld() and inspect_faces() say of it.
@@ -29,8 +32,9 @@ struct Inspected {
   const FaceStates& states;
 };
 
-/// The pieces that the mode asks for, and whether vertices were welded for them.
-/// Throws Error{invalid_option}, see components_of().
-std::pair<Pieces, bool> choose_pieces(const Inspected& in, const SeamRules& seams);
+/// The pieces that the mode asks for, and whether vertices were welded for them. by_place: what
+/// pair_welded() says. Throws Error{invalid_option}, see components_of().
+std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_place,
+                                      const SeamRules& seams);
 
 }  // namespace unwrapd

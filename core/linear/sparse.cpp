@@ -12,6 +12,8 @@
 namespace unwrapd {
 namespace {
 
+constexpr std::size_t kFew = 16;  // entries that are sorted by insertion: no buffer to ask for
+
 struct Entry {
   Index row;
   double value;
@@ -50,10 +52,21 @@ Columns scatter(std::span<const Triangle> faces, Index vertex_count, std::span<c
   return c;
 }
 
-/// Sorts a column by row and adds up entries of the same row; returns how many are left.
+/// By row, entries of one row as they come. A column has about six; one may have all there are.
+void sort_by_row(std::span<Entry> column) {
+  const auto is_lower = [](const Entry& a, const Entry& b) { return a.row < b.row; };
+  if (column.size() > kFew) {
+    std::stable_sort(column.begin(), column.end(), is_lower);
+    return;
+  }
+  for (std::size_t k = 1; k < column.size(); ++k)
+    for (std::size_t i = k; i > 0 && is_lower(column[i], column[i - 1]); --i)
+      std::swap(column[i], column[i - 1]);
+}
+
+/// Adds up entries of the same row, in ascending order; returns how many are left.
 std::size_t merge(std::span<Entry> column) {
-  std::stable_sort(column.begin(), column.end(),
-                   [](const Entry& a, const Entry& b) { return a.row < b.row; });
+  sort_by_row(column);
   std::size_t kept = 0;
   for (const Entry& entry : column) {
     if (kept > 0 && column[kept - 1].row == entry.row)

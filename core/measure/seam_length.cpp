@@ -3,21 +3,22 @@
 #include <numeric>
 
 #include "core/cancel.hpp"
-#include "core/mesh/halfedges.hpp"
+#include "core/mesh/edges.hpp"
 #include "core/mesh/weld.hpp"
 
 namespace unwrapd {
 namespace {
 
-const Vec2& uv_at_start(const UnwrappedSurface& unwrapped, Index h) {
-  const Triangle& face = unwrapped.faces[static_cast<std::size_t>(face_of(h))];
-  return unwrapped.uv[static_cast<std::size_t>(face[static_cast<std::size_t>(h % 3)])];
+/// Whether two corners, given by the half-edges that start there, lie apart on the page.
+bool is_apart(const UnwrappedSurface& unwrapped, Index g, Index h) {
+  const auto a = static_cast<std::size_t>(start_of(unwrapped.faces, g));
+  const auto b = static_cast<std::size_t>(start_of(unwrapped.faces, h));
+  return a != b && unwrapped.uv[a] != unwrapped.uv[b];
 }
 
 /// Whether the two sides of an edge lie apart on the page.
 bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
-  return uv_at_start(unwrapped, h) != uv_at_start(unwrapped, next_halfedge(twin)) ||
-         uv_at_start(unwrapped, next_halfedge(h)) != uv_at_start(unwrapped, twin);
+  return is_apart(unwrapped, h, next_halfedge(twin)) || is_apart(unwrapped, next_halfedge(h), twin);
 }
 
 }  // namespace

@@ -72,12 +72,6 @@ void glue_parts(const Surface& surface, std::span<const Triangle> welded, const 
   });
 }
 
-bool spans_parts(const Surface& surface) {
-  for (Index part : surface.part)
-    if (part != surface.part.front()) return true;
-  return false;
-}
-
 /// Components joined into groups, each with the side it lies on relative to the group's root.
 class Sides {
  public:
@@ -113,6 +107,12 @@ class Sides {
 };
 
 }  // namespace
+
+bool spans_parts(const Surface& surface) {
+  for (Index part : surface.part)
+    if (part != surface.part.front()) return true;
+  return false;
+}
 
 Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states,
                     const std::stop_token& stop) {

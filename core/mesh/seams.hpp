@@ -30,6 +30,9 @@ Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states,
 Pairing pair_keeping_seams(const Surface& surface, std::span<const Triangle> welded,
                            const FaceStates& states, const std::stop_token& stop = {});
 
+/// Whether its faces come from several primitives.
+bool spans_parts(const Surface& surface);
+
 /// An edge by its ends, the lower first.
 using EdgeEnds = std::array<Index, 2>;
 

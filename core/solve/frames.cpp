@@ -83,9 +83,10 @@ Complex turn_across(const Disk& disk, std::span<const double> u, Index h, Index 
   return -rest_edge(disk, h) * std::conj(rest_edge(disk, twin)) * std::polar(1.0, weight * rise);
 }
 
-/// The half-edge on the other side of h, found among those that start at its end; kNoTwin where
-/// there is none, or several.
+/// The half-edge on the other side of h; where twins are not known found among those that start at
+/// its end: kNoTwin where there is none, or several.
 Index twin_of(const Disk& disk, Index h) {
+  if (!disk.twin.empty()) return disk.twin[static_cast<std::size_t>(h)];
   const Index start = start_of(disk.faces, h);
   const auto end = static_cast<std::size_t>(end_of(disk.faces, h));
   Index twin = kNoTwin;

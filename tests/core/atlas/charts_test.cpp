@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "core/measure/seam_length.hpp"
 #include "core/mesh/edges.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/shapes.hpp"
@@ -207,6 +208,20 @@ TEST(Charts, EveryRealMeshBecomesDisks) {
         expect_valid(surface, make_charts(surface, seams), file.path().filename());
     }
   }
+}
+
+TEST(Charts, TellTwinsByPositionOfAllFacesWhateverIsSetAside) {
+  TriMesh repeated = shapes::grid(4, 3);
+  repeated.faces.push_back(repeated.faces[5]);
+  TriMesh flat = shapes::grid(4, 3);
+  flat.positions.push_back((flat.positions[0] + flat.positions[1]) / 2);
+  flat.faces.push_back({1, 0, flat.vertex_count() - 1});
+  const TriMesh whole = shapes::random_disk(6, 2);
+  for (const TriMesh& mesh : {repeated, flat, whole, shapes::soup(whole)})
+    for (const SeamMode mode : {SeamMode::automatic, SeamMode::keep, SeamMode::none}) {
+      const Charts charts = components_of(shapes::surface_of(mesh), {mode});
+      EXPECT_EQ(charts.by_position->twin, halfedges_by_position(mesh).twin);
+    }
 }
 
 }  // namespace

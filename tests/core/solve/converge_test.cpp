@@ -278,5 +278,15 @@ TEST(Starts, FramesDoNotDependOnWhereTheyAreCarriedFrom) {
   EXPECT_LT(gap_up_to_similarity(expected, frames_by_corner(mesh, 0)), 1e-9);
 }
 
+TEST(Starts, FramesAreTheSameWhetherTwinsAreKnownOrSought) {
+  for (const TriMesh& mesh : {shapes::random_disk(15, 6), shapes::cone(24, 8, 2)}) {
+    OwnedDisk d = disk_of(mesh);
+    const GlobalStep global(d.disk, {});
+    const UvMap expected = frame_map(d.disk, global);
+    d.disk.twin = d.chart->halfedges.twin;
+    EXPECT_EQ(frame_map(d.disk, global), expected);
+  }
+}
+
 }  // namespace
 }  // namespace unwrapd
