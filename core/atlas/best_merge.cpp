@@ -35,8 +35,8 @@ constexpr double kShareOfMends = 0.7, kMostMends = 20;  // of how often all coul
 constexpr double kWhimOfMends = 0.3, kTriesOfAMend = 0.3;
 constexpr int kFirstLotOfMends = 100;
 constexpr double kFittingFill = 0.72;  // see MergeRules::least_fill
-constexpr double kCostOfAChart = 0.1;
-constexpr double kWantedFill = 0.7, kCostOfEmptiness = 6;   // for a page that is empty beyond that
+constexpr double kCostOfAChart = 0.15;
+constexpr double kWantedFill = 0.7, kCostOfEmptiness = 14;  // for a page that is empty beyond that
 constexpr double kFacesOfATry = 20, kTriesOfFinishing = 1;  // for each face; see Effort
 constexpr double kMostPage = 1.5;  // of the sheet: with more beside it, others fill the gaps
 

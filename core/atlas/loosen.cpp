@@ -23,6 +23,16 @@ std::vector<Index> neighbours(const Sheet& sheet, std::span<const Index> owner, 
   return around;
 }
 
+/// A region at random, the larger the likelier: small ones change little. lot: any number.
+std::size_t drawn_by_area(std::span<const MappedRegion> patches, std::uint64_t lot) {
+  double all = 0;
+  for (const MappedRegion& patch : patches) all += patch.area;
+  double left = all * static_cast<double>(lot >> 11) * 0x1p-53;
+  std::size_t k = 0;
+  for (; k + 1 < patches.size() && left >= patches[k].area; ++k) left -= patches[k].area;
+  return k;
+}
+
 /// A region at random, and neighbours in random order as long as there is room for them.
 std::vector<char> drawn_regions(const Sheet& sheet, const Partition& merged,
                                 std::span<const Index> owner, std::uint64_t lot) {
@@ -31,7 +41,7 @@ std::vector<char> drawn_regions(const Sheet& sheet, const Partition& merged,
     return static_cast<std::size_t>(scrambled(state += kGoldenStep) % bound);
   };
   std::vector<char> loose(merged.patches.size(), 0);
-  const std::size_t centre = below(loose.size());
+  const std::size_t centre = drawn_by_area(merged.patches, scrambled(state += kGoldenStep));
   loose[centre] = 1;
   double area = merged.patches[centre].area;
   std::vector<Index> around = neighbours(sheet, owner, static_cast<Index>(centre));

@@ -66,6 +66,28 @@ TEST(Loosen, PartsFallBackToTheirPatchesAndTheRestStaysWhole) {
   EXPECT_GT(kinds.size(), 4);
 }
 
+TEST(Loosen, TakesApartTheLargeRatherThanTheSmall) {
+  const Sheet sheet = sheet_of(shapes::sphere(3));
+  const Partition from = in_rows(sheet, 4, 0);
+  Partition merged = in_rows(sheet, 4, 1);
+  for (std::size_t half = merged.patches.size() / 2; merged.patches.size() > half;) {
+    const MappedRegion last = std::move(merged.patches.back());
+    merged.patches.pop_back();
+    Region& large = merged.patches.front().region;
+    large.faces.insert(large.faces.end(), last.region.faces.begin(), last.region.faces.end());
+    large.uv.insert(large.uv.end(), last.region.uv.begin(), last.region.uv.end());
+    merged.patches.front().area += last.area;
+  }
+  const auto small = static_cast<Index>(merged.patches.size()) - 1;
+  int large_ones = 0;
+  for (std::uint64_t lot = 0; lot < 40; ++lot) {
+    const Loosened loose = loosened(sheet, from, merged, lot);
+    const auto whole = std::span(loose.partition.patches).first(std::size_t(loose.whole));
+    large_ones += std::ranges::none_of(whole, [](const MappedRegion& p) { return p.area > 0.4; });
+  }
+  EXPECT_GT(large_ones, 10) << "of 40, by area 20; by number one of " << small + 1;
+}
+
 TEST(Merge, LeavesAloneWhatShallStayWhole) {
   const Sheet sheet = sheet_of(shapes::grid(8, 8));
   const Partition from = in_rows(sheet, 2, 0);
