@@ -1,5 +1,6 @@
 #include "server/blob_store.hpp"
 
+#include <set>
 #include <system_error>
 
 #include "core/error.hpp"
@@ -58,10 +59,25 @@ std::int64_t bytes_below(const fs::path& folder) {
   return bytes;
 }
 
+/// The names of all results, whether noted or there: where both are not the same, not all is whole.
+std::set<std::string> results_in(const fs::path& folder, const Digests& noted) {
+  std::set<std::string> files;
+  for (const auto& [file, digest] : noted)
+    if (!is_input(file)) files.insert(file);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (name != kDigestsFile && !is_unfinished(entry.path()) && !is_input(name)) files.insert(name);
+  }
+  return files;
+}
+
+/// Version 0.1.0 noted no digests; every later one begins a folder with some.
+bool is_of_first_version(const fs::path& folder) { return !fs::exists(folder / kDigestsFile); }
+
 [[noreturn]] void corrupt(std::string_view file) {
   throw Error(ErrorCode::storage_corrupt,
               "The stored file " + std::string(file) +
-                  " is damaged: its SHA-256 is not the one noted; send the job again.");
+                  " is damaged: its SHA-256 is not one that was noted; send the job again.");
 }
 
 }  // namespace
@@ -158,21 +174,24 @@ void BlobStore::on_noted(std::function<void(std::string_view job, std::int64_t b
   noted_ = std::move(told);
 }
 
+/// What is checked is the link: it stays what it is when the other's file is made again meanwhile.
 bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
+  Digests adopted;
   try {
-    const std::lock_guard lock(noting_);
-    Digests digests = read_digests(blobs_ / job);
     const Digests theirs = read_digests(blobs_ / from);
     if (!theirs.contains(kReportFile)) return false;
-    for (const auto& [file, digest] : theirs) {
-      if (is_input(file)) continue;
+    for (const std::string& file : results_in(blobs_ / from, theirs)) {
+      adopted[file] = theirs.at(file);
       fs::create_hard_link(path(from, file), path(job, file));
-      digests[file] = digest;
+      if (sha256_of(File::open(path(job, file))) != theirs.at(file)) corrupt(file);
     }
+    Digests digests = read_digests(blobs_ / job);
+    digests.merge(Digests(adopted));
     write_digests(blobs_ / job, digests);
     room_.set(job, bytes_below(blobs_ / job));
     return true;
   } catch (const std::exception&) {  // then the job is run like any other
+    for (const auto& [file, digest] : adopted) remove_tree(path(job, file));
     return false;
   }
 }
@@ -181,7 +200,9 @@ std::shared_ptr<const File> BlobStore::open(std::string_view job, std::string_vi
   auto opened = std::make_shared<const File>(File::open(path(job, file)));
   const Digests digests = read_digests(blobs_ / job);
   const auto noted = digests.find(file);
-  if (noted != digests.end() && noted->second != sha256_of(*opened)) corrupt(file);
+  const bool whole = noted != digests.end() ? noted->second == sha256_of(*opened)
+                                            : is_of_first_version(blobs_ / job);
+  if (!whole) corrupt(file);
   return opened;
 }
 

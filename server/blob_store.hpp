@@ -63,11 +63,12 @@ class BlobStore {
   std::int64_t seal(std::string_view job);
   /// Notes the digest of a file that was written after seal(), and returns it.
   std::string note(std::string_view job, const std::string& file);
-  /// Gives a job the results of another; the bytes are shared, not copied. False when they are not
-  /// whole.
+  /// Gives a job, which nobody else knows yet, the results of another; the bytes are shared, not
+  /// copied. Every file is read and checked: false, and none is given, when one is not whole.
   bool adopt(std::string_view job, std::string_view from) noexcept;
 
-  /// A file whose bytes are those that were noted. Throws Error{storage_corrupt} when they are not.
+  /// A file whose bytes are those that were noted. Throws Error{storage_corrupt} when they are not,
+  /// or none were.
   [[nodiscard]] std::shared_ptr<const File> open(std::string_view job, std::string_view file) const;
   /// The same, read whole.
   [[nodiscard]] std::string read(std::string_view job, std::string_view file) const;

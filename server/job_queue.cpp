@@ -118,7 +118,7 @@ JobRecord JobQueue::submit(Submission submission) {
   }
   blobs_.keep_upload(submission.upload, job.id);
   try {
-    enqueue(job, submission);
+    enqueue(job, submission, submission.anew ? std::nullopt : find_answer(job));
   } catch (...) {
     blobs_.remove(job.id);
     throw;
@@ -127,7 +127,7 @@ JobRecord JobQueue::submit(Submission submission) {
   return std::move(job);
 }
 
-void JobQueue::enqueue(JobRecord& job, const Submission& submission) {
+void JobQueue::enqueue(JobRecord& job, const Submission& submission, const Answer& answer) {
   const std::lock_guard lock(mutex_);
   check_open();
   door_.check_place(submission.sender, share_, at_work());
@@ -135,19 +135,22 @@ void JobQueue::enqueue(JobRecord& job, const Submission& submission) {
     door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
   door_.leave(submission.sender);
   job.seq = store_.insert(job);
-  if (submission.anew || !answer_from_store(job)) wait_again(job);
+  if (!answer || !answer_from_store(job, *answer)) wait_again(job);
 }
 
-/// The answer is the one that the same question has had; its files are shared.
-bool JobQueue::answer_from_store(const JobRecord& job) {
-  const std::optional<JobRecord> same = store_.find_same(job.owner, job.content_key);
-  if (!same || !blobs_.adopt(job.id, same->id)) return false;
+/// If its files are whole; they are then this job's, too. Not under mutex_: it reads all of them.
+JobQueue::Answer JobQueue::find_answer(const JobRecord& job) {
+  Answer same = store_.find_same(job.owner, job.content_key);
+  if (same && !blobs_.adopt(job.id, same->id)) same.reset();
+  return same;
+}
+
+bool JobQueue::answer_from_store(const JobRecord& job, const JobRecord& answer) {
   events_.open(job.id, job.attempt);
-  JobOutcome outcome;
-  outcome.result_format = same->result_format;
-  outcome.stored_bytes = blobs_.bytes(job.id);
   try {
-    end_job(job, std::move(outcome));
+    end_job(job, {.result_format = answer.result_format,
+                  .problem = {},
+                  .stored_bytes = blobs_.bytes(job.id)});
     return true;
   } catch (const Error&) {  // the job is stored and waits, as it would without the answer
     return false;

@@ -108,8 +108,10 @@ class JobQueue {
   void check_open() const;
   [[nodiscard]] std::vector<AtWork> at_work() const;
   [[nodiscard]] std::optional<JobRecord> same_name(const JobRecord& job);
-  void enqueue(JobRecord& job, const Submission& submission);
-  [[nodiscard]] bool answer_from_store(const JobRecord& job);
+  using Answer = std::optional<JobRecord>;  // the job that has had the same question
+  [[nodiscard]] Answer find_answer(const JobRecord& job);
+  void enqueue(JobRecord& job, const Submission& submission, const Answer& answer);
+  [[nodiscard]] bool answer_from_store(const JobRecord& job, const JobRecord& answer);
   enum class Found { lapsed, by_death, thrice_by_death };
   void take_up(const JobRecord& job, Found found);
   void give_up(const JobRecord& job, const Error& why);

@@ -52,6 +52,33 @@ test("a damaged result is made again from the map, and refused when that is dama
   await server.end("SIGTERM");
 });
 
+const REPORT_AND_ALL = ["report.json", "totals.json", "uv.bin", "result.obj", "digests"];
+
+test("a damaged result answers no later job: the same question is then worked out anew", async (t) => {
+  const data = dataDirectory(t);
+  const server = await Server.start(data);
+  const read = async (link) => {
+    const answer = await fetch(`${server.url}${link}`);
+    return { status: answer.status, text: await answer.text() };
+  };
+  let last = await server.finished(await server.submit(QUICK, 5));
+  const right = (await read(last.links.result)).text;
+  for (const file of REPORT_AND_ALL) {
+    damage(join(data, "blobs", last.id, file));
+    const next = await server.finished(await server.submit(QUICK, 5));
+    assert.deepEqual([next.state, next.attempt], ["succeeded", 1], file);
+    assert.equal((await read(next.links.report)).status, 200, file);
+    assert.equal((await read(next.links.result)).text, right, file);
+    last = next;
+  }
+  const same = await server.finished(await server.submit(QUICK, 5));
+  assert.deepEqual([same.state, same.attempt], ["succeeded", 0], "what is whole is an answer");
+  writeFileSync(join(data, "blobs", same.id, "digests"), "");
+  const report = await problemOf(await fetch(`${server.url}${same.links.report}`));
+  assert.deepEqual(report, { status: 500, code: "storage_corrupt" });
+  await server.end("SIGTERM");
+});
+
 /** A small file system of its own, or undefined where this user may not mount one. */
 function smallDisk(t, megabytes) {
   const folder = mkdtempSync(join(tmpdir(), "unwrapd-disk-"));

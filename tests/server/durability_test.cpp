@@ -115,6 +115,48 @@ TEST_F(Durability, SharedResultsOutliveTheJobTheyCameFrom) {
   EXPECT_FALSE(blobs.adopt("j_2", "j_1"));
 }
 
+TEST_F(Durability, ResultsThatAreNotWholeAreGivenToNobody) {
+  for (const std::string_view file : {kReportFile, kTotalsFile, kUvFile, kDigestsFile}) {
+    BlobStore blobs(dir_.path());
+    add_job(blobs, "j_1");
+    blobs.write("j_1", kTotalsFile, "{}");
+    blobs.write("j_1", kUvFile, "uv");
+    blobs.seal("j_1");
+    write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+    blobs.keep_upload("u", "j_2");
+    damage(blobs.path("j_1", file));
+    EXPECT_FALSE(blobs.adopt("j_2", "j_1")) << file;
+    for (const std::string_view given : {kReportFile, kTotalsFile, kUvFile})
+      EXPECT_FALSE(std::filesystem::exists(blobs.path("j_2", given))) << given;
+    EXPECT_EQ(blobs.read("j_2", kDocumentFile), "v 0 0 0");
+    blobs.remove("j_1");
+    blobs.remove("j_2");
+  }
+}
+
+TEST_F(Durability, AFileThatWasMadeButNotNotedIsNotGivenToAnother) {
+  BlobStore blobs(dir_.path());
+  add_job(blobs, "j_1");
+  blobs.write("j_1", "uv.bin.layout.area.svg", "<svg");
+  write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+  blobs.keep_upload("u", "j_2");
+  EXPECT_FALSE(blobs.adopt("j_2", "j_1"));
+  blobs.note("j_1", "uv.bin.layout.area.svg");
+  EXPECT_TRUE(blobs.adopt("j_2", "j_1"));
+  EXPECT_EQ(blobs.read("j_2", "uv.bin.layout.area.svg"), "<svg");
+}
+
+TEST_F(Durability, WithoutItsDigestAFileIsNotHandedOut) {
+  BlobStore blobs(dir_.path());
+  add_job(blobs, "j_1");
+  write_file(blobs.path("j_1", kDigestsFile), "");
+  for (const std::string_view file : {kDocumentFile, kReportFile}) {
+    EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", file)); }).code(),
+              ErrorCode::storage_corrupt)
+        << file;
+  }
+}
+
 TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
   BlobStore blobs(dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0});
   std::vector<std::string> evicted;
