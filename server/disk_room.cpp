@@ -7,6 +7,17 @@
 #include "server/files.hpp"
 
 namespace unwrapd::server {
+namespace {
+
+constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+
+[[noreturn]] void full() { throw Error(ErrorCode::storage_full, std::string(kStorageFull)); }
+
+}  // namespace
+
+std::int64_t DiskRoom::upload_limit() const {
+  return limits_.max_bytes > 0 ? limits_.max_bytes / 4 * 3 : kNoLimit;
+}
 
 bool DiskRoom::try_take(std::string_view job, std::int64_t bytes, std::int64_t limit) {
   const std::lock_guard lock(mutex_);
@@ -18,23 +29,44 @@ bool DiskRoom::try_take(std::string_view job, std::int64_t bytes, std::int64_t l
 
 void DiskRoom::take_below(std::string_view job, std::int64_t bytes, std::int64_t limit) {
   while (!try_take(job, bytes, limit)) {
-    if (!evict_ || !evict_()) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
+    if (!evictions_.evict || !evictions_.evict()) full();
   }
 }
 
-void DiskRoom::take_for_upload(std::string_view job, std::int64_t bytes) {
+void DiskRoom::check_free(std::int64_t bytes) const {
   std::error_code ignored;
   const auto free = std::filesystem::space(folder_, ignored).available;
   const bool known = free != static_cast<std::uintmax_t>(-1);
-  if (known && static_cast<std::int64_t>(free) - bytes < limits_.min_free_bytes)
-    throw Error(ErrorCode::storage_full, std::string(kStorageFull));
-  const std::int64_t most = std::numeric_limits<std::int64_t>::max();
-  take_below(job, bytes, limits_.max_bytes > 0 ? limits_.max_bytes / 4 * 3 : most);
+  if (known && static_cast<std::int64_t>(free) - bytes < limits_.min_free_bytes) full();
+}
+
+void DiskRoom::check_upload(std::int64_t bytes) const {
+  if (bytes > upload_limit()) full();
+}
+
+/// Of the room, all is taken that neither this upload has nor anything that can be given up.
+void DiskRoom::check_evictions(std::string_view job, std::int64_t whole) const {
+  const std::int64_t evictable = evictions_.bytes ? evictions_.bytes() : 0;
+  const std::lock_guard lock(mutex_);
+  const auto found = by_job_.find(job);
+  const std::int64_t own = found == by_job_.end() ? 0 : found->second;
+  if (used_ - own - evictable > upload_limit() - whole) full();
+}
+
+bool DiskRoom::try_take_for_upload(std::string_view job, std::int64_t bytes) {
+  check_free(bytes);
+  return try_take(job, bytes, upload_limit());
+}
+
+void DiskRoom::take_for_upload(std::string_view job, std::int64_t bytes, std::int64_t whole) {
+  if (try_take_for_upload(job, bytes)) return;
+  check_upload(whole);
+  check_evictions(job, whole);
+  take_below(job, bytes, upload_limit());
 }
 
 void DiskRoom::take(std::string_view job, std::int64_t bytes) {
-  const std::int64_t most = std::numeric_limits<std::int64_t>::max();
-  take_below(job, bytes, limits_.max_bytes > 0 ? limits_.max_bytes : most);
+  take_below(job, bytes, limits_.max_bytes > 0 ? limits_.max_bytes : kNoLimit);
 }
 
 void DiskRoom::set(std::string_view job, std::int64_t bytes) {

@@ -92,6 +92,18 @@ OwnerUsage JobStore::usage(std::string_view owner) {
   return {.live_jobs = statement.number(0), .stored_bytes = statement.number(1)};
 }
 
+std::int64_t JobStore::evictable_bytes() {
+  const std::lock_guard lock(mutex_);
+  Statement statement(database_,
+                      "SELECT (SELECT COALESCE(SUM(stored_bytes), 0) FROM jobs"
+                      " WHERE state IN ('succeeded', 'failed', 'cancelled') AND expired = 0)"
+                      " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes AS mesh"
+                      " WHERE NOT EXISTS (SELECT 1 FROM jobs WHERE owner = mesh.owner"
+                      " AND sha256 = mesh.sha256 AND state IN ('queued', 'running')))");
+  statement.step();
+  return statement.number(0);
+}
+
 std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t lease_ms) {
   const std::lock_guard lock(mutex_);
   Statement statement(database_,

@@ -65,6 +65,8 @@ class JobStore {
   std::vector<JobRecord> all(api::JobState state);
   std::vector<JobRecord> list(const JobFilter& filter);
   OwnerUsage usage(std::string_view owner);
+  /// Bytes of finished jobs, and of stored meshes that no other job is about.
+  std::int64_t evictable_bytes();
 
   /// The most urgent, and of those the oldest, queued job of this owner, now running and on lease
   /// until then, its attempt counted.

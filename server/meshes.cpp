@@ -7,6 +7,7 @@
 #include "server/media_types.hpp"
 #include "server/queue_errors.hpp"
 #include "server/result_store.hpp"
+#include "server/upload_room.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -66,10 +67,14 @@ SentMesh Meshes::receive(const Request& request, const std::string& sha256) {
   mesh.owner = request.caller.owner;
   mesh.media_type = media_type_of(request);
   const std::string upload = mesh.id;
+  const std::optional<MeshRecord> known = store_.find(mesh.owner, sha256);
+  UploadRoom room(blobs_.room(), upload,
+                  allowance_of(jobs_, request.caller, known ? known->bytes : 0),
+                  request.declared_bytes);
+  room.check_declared();
   try {
-    const UploadFolder folder{.path = blobs_.begin_upload(upload), .take = [&](std::int64_t bytes) {
-                                blobs_.room().take_for_upload(upload, bytes);
-                              }};
+    const UploadFolder folder{.path = blobs_.begin_upload(upload),
+                              .take = [&](std::int64_t bytes) { room.take(bytes); }};
     const JobInput came = receive_asset(*request.body, folder).input;
     check_digest(came.sha256, sha256);
     mesh.sha256 = came.sha256;

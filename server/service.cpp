@@ -96,7 +96,7 @@ struct Service::Parts {
         webhooks(config.data / kStoreFile, secret, config.webhooks, log),
         renderer(blobs, config.limits, log, isolation, making_limits(config, solver_cache), duties),
         meshes(mesh_store, store, blobs, renderer),
-        submissions(queue, blobs, config.limits, config.webhooks, meshes),
+        submissions(queue, store, blobs, config.limits, config.webhooks, meshes),
         results(blobs, renderer),
         sweeper(store, mesh_store, blobs, log, std::chrono::seconds(config.keep_seconds)),
         pictures(blobs, renderer),
@@ -113,7 +113,8 @@ struct Service::Parts {
     blobs.sweep([&](const std::string& owner) {
       return is_mesh_id(owner) ? mesh_store.has(owner) : store.keeps_files(owner);
     });
-    blobs.room().on_shortage([this] { return evict_oldest(store, mesh_store, blobs); });
+    blobs.room().on_shortage({.evict = [this] { return evict_oldest(store, mesh_store, blobs); },
+                              .bytes = [this] { return store.evictable_bytes(); }});
     blobs.on_noted([this](std::string_view owner, auto bytes) {
       is_mesh_id(owner) ? mesh_store.set_stored_bytes(owner, bytes)
                         : store.set_stored_bytes(owner, bytes);

@@ -34,6 +34,11 @@ std::string content_key(const JobRecord& job) {
   return hash.finish();
 }
 
+/// By which the sender can send it again; empty when it has none.
+std::string request_name(const Request& request) {
+  return request.id.empty() ? idempotency_key(request) : request.id;
+}
+
 /// What tells a request from others before its body is read: the same when it is sent again.
 std::string sender_of(const Request& request) {
   Sha256 hash;
@@ -68,10 +73,23 @@ JobRecord Submissions::accept(const Request& request, bool synchronous) {
   }
 }
 
+/// What the request brings; the same may come again when its sender has no bytes left. A form is
+/// more than its files: what it declares tells nothing then.
+UploadRoom Submissions::room_for(const Request& request, BodyKind kind, const std::string& upload) {
+  const std::string name = request_name(request);
+  std::optional<JobRecord> known;
+  if (!name.empty()) known = store_.find_request(request.caller.owner, name);
+  const bool tells = kind == BodyKind::asset || !known;
+  return {blobs_.room(), upload,
+          allowance_of(store_, request.caller, known ? known->input.bytes : 0),
+          tells ? request.declared_bytes : 0};
+}
+
 Upload Submissions::bring(const Request& request, BodyKind kind, const std::string& upload) {
-  const UploadFolder folder{.path = blobs_.begin_upload(upload), .take = [&](std::int64_t bytes) {
-                              blobs_.room().take_for_upload(upload, bytes);
-                            }};
+  UploadRoom room = room_for(request, kind, upload);
+  if (kind == BodyKind::asset) room.check_declared();
+  const UploadFolder folder{.path = blobs_.begin_upload(upload),
+                            .take = [&](std::int64_t bytes) { room.take(bytes); }};
   if (kind == BodyKind::asset) return receive_asset(*request.body, folder);
   if (kind == BodyKind::multipart) return receive_parts(*request.body, folder);
   MeshReference named = receive_mesh_reference(*request.body);
@@ -89,7 +107,7 @@ Submission Submissions::receive(const Request& request, const std::string& uploa
                         .anew = wants_new_answer(request)};
   JobRecord& job = submission.job;
   job.id = request.id.empty() ? upload : request.id;
-  job.request_key = request.id.empty() ? idempotency_key(request) : request.id;
+  job.request_key = request_name(request);
   job.owner = request.caller.owner;
   job.urgency = urgency(request);
   job.trace = current_trace();

@@ -10,15 +10,21 @@
 #include "server/job_queue.hpp"
 #include "server/media_types.hpp"
 #include "server/meshes.hpp"
+#include "server/upload_room.hpp"
 #include "server/webhook_url.hpp"
 
 namespace unwrapd::server {
 
 class Submissions {
  public:
-  Submissions(JobQueue& queue, BlobStore& blobs, const api::Limits& limits,
+  Submissions(JobQueue& queue, JobStore& store, BlobStore& blobs, const api::Limits& limits,
               const WebhookConfig& webhooks, Meshes& meshes)
-      : queue_(queue), blobs_(blobs), limits_(limits), webhooks_(webhooks), meshes_(meshes) {}
+      : queue_(queue),
+        store_(store),
+        blobs_(blobs),
+        limits_(limits),
+        webhooks_(webhooks),
+        meshes_(meshes) {}
 
   /// synchronous: the sender waits, so the mesh must be small. Where the path has an id, it becomes
   /// the job's; a request by Idempotency-Key or by such an id may come again and gets the same job.
@@ -28,10 +34,13 @@ class Submissions {
   JobRecord accept(const Request& request, bool synchronous);
 
  private:
+  [[nodiscard]] UploadRoom room_for(const Request& request, BodyKind kind,
+                                    const std::string& upload);
   [[nodiscard]] Upload bring(const Request& request, BodyKind kind, const std::string& upload);
   [[nodiscard]] Submission receive(const Request& request, const std::string& upload);
 
   JobQueue& queue_;
+  JobStore& store_;
   BlobStore& blobs_;
   const api::Limits& limits_;
   const WebhookConfig& webhooks_;

@@ -149,6 +149,46 @@ test("the disk quota gives up the results that ended first, and refuses what can
     body: grid(250),
   });
   assert.deepEqual(await problemOf(tooLarge), { status: 507, code: "storage_full" });
+  const form = new FormData();
+  form.set("mesh", new Blob([grid(200)], { type: "model/obj" }), "grid.obj");
+  const tooLargeForm = await fetch(`${server.url}/v1/jobs`, { method: "POST", body: form });
+  assert.deepEqual(await problemOf(tooLargeForm), { status: 507, code: "storage_full" });
+  assert.equal(await status(ids[7]), 200, "nothing is given up for what is refused");
+  await server.end("SIGTERM");
+});
+
+test("what is beyond a key's quota takes nobody's result away, and the same may be sent again", async (t) => {
+  const data = dataDirectory(t);
+  const server = await Server.start(data, "--max-disk-bytes", "2000000", "--require-keys");
+  const keyOf = (name, ...limits) => {
+    const add = ["keys", "add", "--data", data, "--name", name, ...limits];
+    const key = execFileSync(process.env.UNWRAPD, add, { encoding: "utf8" }).trim().split("\n").at(-1);
+    return { Authorization: `Bearer ${key}`, "Content-Type": "model/obj" };
+  };
+  const modest = keyOf("modest");
+  const greedy = keyOf("greedy", "--max-bytes", "100000");
+  const send = async (headers, path, method, body) => {
+    const duplex = body instanceof ReadableStream ? "half" : undefined;
+    return problemOf(await fetch(`${server.url}${path}`, { method, headers, body, duplex }));
+  };
+  const run = { method: "POST", headers: { ...modest, "Cache-Control": "no-cache" }, body: grid(50) };
+  for (let k = 0; k < 6; ++k) assert.equal((await fetch(`${server.url}/v1/unwrap?${QUICK}`, run)).status, 200);
+  const { jobs } = await (await fetch(`${server.url}/v1/jobs`, { headers: modest })).json();
+  const statuses = () => Promise.all(jobs.map(async ({ links }) =>
+    (await fetch(`${server.url}${links.result}`, { headers: modest })).status));
+  const before = await statuses();
+  assert.ok(before.includes(200));
+  const large = grid(120);
+  const beyond = { status: 507, code: "quota_exceeded" };
+  assert.deepEqual(await send(greedy, "/v1/jobs", "POST", large), beyond);
+  assert.deepEqual(await send(greedy, "/v1/jobs", "POST", new Blob([large]).stream()), beyond);
+  assert.deepEqual(await send(greedy, `/v1/meshes/${"0".repeat(64)}`, "PUT", large), beyond);
+  assert.deepEqual(await statuses(), before);
+  const named = { ...greedy, "Idempotency-Key": "one", Prefer: "wait=60" };
+  const post = () => fetch(`${server.url}/v1/jobs?${QUICK}`, { method: "POST", headers: named, body: grid(28) });
+  const first = await (await post()).json();
+  assert.equal(first.state, "succeeded");
+  assert.equal((await (await post()).json()).id, first.id, "beyond the quota, were it another");
   await server.end("SIGTERM");
 });
 

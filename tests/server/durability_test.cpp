@@ -160,18 +160,19 @@ TEST_F(Durability, WithoutItsDigestAFileIsNotHandedOut) {
 TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
   BlobStore blobs(dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0});
   std::vector<std::string> evicted;
-  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 751); }).code(),
+  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 751, 751); }).code(),
             ErrorCode::storage_full);
-  blobs.room().take_for_upload("u", 750);
-  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 1); }).code(),
+  blobs.room().take_for_upload("u", 750, 750);
+  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 1, 1); }).code(),
             ErrorCode::storage_full);
   blobs.room().take("j_1", 250);
   EXPECT_EQ(error_of([&] { blobs.room().take("j_1", 1); }).code(), ErrorCode::storage_full);
-  blobs.room().on_shortage([&] {
+  const auto evict = [&] {
     evicted.emplace_back("u");
     blobs.room().give_back("u");
     return evicted.size() == 1;
-  });
+  };
+  blobs.room().on_shortage({.evict = evict, .bytes = [] { return 750; }});
   blobs.room().take("j_2", 400);
   EXPECT_EQ(evicted.size(), 1U);
   EXPECT_EQ(blobs.room().used_bytes(), 650);
@@ -181,7 +182,7 @@ TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
 TEST_F(Durability, UploadsLeaveTheDiskSomeRoom) {
   const std::int64_t more_than_any_disk = std::int64_t{1} << 60;
   BlobStore blobs(dir_.path(), {.max_bytes = 0, .min_free_bytes = more_than_any_disk});
-  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 1); }).code(),
+  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 1, 1); }).code(),
             ErrorCode::storage_full);
   EXPECT_NO_THROW(blobs.room().take("j_1", 1));
 }
