@@ -71,8 +71,16 @@ std::set<std::string> results_in(const fs::path& folder, const Digests& noted) {
   return files;
 }
 
-/// Version 0.1.0 noted no digests; every later one begins a folder with some.
-bool is_of_first_version(const fs::path& folder) { return !fs::exists(folder / kDigestsFile); }
+/// Once: version 0.1.0 noted no digests. Every later one begins a folder with some, so that one
+/// which has lost them is told from one that never had any.
+void note_first_version(const fs::path& blobs, const fs::path& done) {
+  if (fs::exists(done)) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(blobs)) {
+    const bool has_none = entry.is_directory() && !fs::exists(entry.path() / kDigestsFile);
+    if (has_none) seal_files(entry.path(), [](std::string_view) { return true; });
+  }
+  write_file(done, "Every folder of blobs/ has its file `digests`.\n");
+}
 
 [[noreturn]] void corrupt(std::string_view file) {
   throw Error(ErrorCode::storage_corrupt,
@@ -90,6 +98,7 @@ BlobStore::BlobStore(const fs::path& data, const DiskLimits& limits)
     : incoming_(data / "incoming"), blobs_(data / "blobs"), room_(data, limits) {
   make_directories(incoming_);
   make_directories(blobs_);
+  note_first_version(blobs_, data / "digests-noted");
 }
 
 fs::path BlobStore::begin_upload(std::string_view upload) {
@@ -200,9 +209,7 @@ std::shared_ptr<const File> BlobStore::open(std::string_view job, std::string_vi
   auto opened = std::make_shared<const File>(File::open(path(job, file)));
   const Digests digests = read_digests(blobs_ / job);
   const auto noted = digests.find(file);
-  const bool whole = noted != digests.end() ? noted->second == sha256_of(*opened)
-                                            : is_of_first_version(blobs_ / job);
-  if (!whole) corrupt(file);
+  if (noted == digests.end() || noted->second != sha256_of(*opened)) corrupt(file);
   return opened;
 }
 

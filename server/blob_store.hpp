@@ -4,7 +4,7 @@
 // upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is written under
 // another name and renamed, and synced before the job counts as done. What a crash leaves behind is
 // swept at the next start. `digests` has the SHA-256 of each file (digests.hpp): what is read is
-// checked against it.
+// checked against it. DIR/digests-noted says that all folders have one, which 0.1.0 did not write.
 
 #include <cstdint>
 #include <filesystem>
@@ -72,7 +72,7 @@ class BlobStore {
   [[nodiscard]] std::shared_ptr<const File> open(std::string_view job, std::string_view file) const;
   /// The same, read whole.
   [[nodiscard]] std::string read(std::string_view job, std::string_view file) const;
-  /// The noted digest; of a file without one (of an older version), computed.
+  /// The noted digest; of a file without one, computed.
   [[nodiscard]] std::string digest(std::string_view job, std::string_view file) const;
 
   /// told: of the bytes of all files of a job whenever note() was called.

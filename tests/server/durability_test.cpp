@@ -149,12 +149,29 @@ TEST_F(Durability, AFileThatWasMadeButNotNotedIsNotGivenToAnother) {
 TEST_F(Durability, WithoutItsDigestAFileIsNotHandedOut) {
   BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
+  const auto expect_refused = [&](std::string_view why) {
+    for (const std::string_view file : {kDocumentFile, kReportFile}) {
+      EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", file)); }).code(),
+                ErrorCode::storage_corrupt)
+          << file << why;
+    }
+  };
   write_file(blobs.path("j_1", kDigestsFile), "");
-  for (const std::string_view file : {kDocumentFile, kReportFile}) {
-    EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", file)); }).code(),
-              ErrorCode::storage_corrupt)
-        << file;
-  }
+  expect_refused(" whose digests are empty");
+  std::filesystem::remove(blobs.path("j_1", kDigestsFile));
+  expect_refused(" whose digests are gone");
+  const BlobStore reopened(dir_.path());
+  expect_refused(" whose digests are gone, after another start");
+}
+
+TEST_F(Durability, WhatTheFirstVersionStoredIsNotedOnce) {
+  make_directories(dir_.path() / "blobs" / "j_1");
+  write_file(dir_.path() / "blobs" / "j_1" / kReportFile, "{}");
+  const BlobStore blobs(dir_.path());
+  EXPECT_EQ(blobs.read("j_1", kReportFile), "{}");
+  damage(blobs.path("j_1", kReportFile));
+  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", kReportFile)); }).code(),
+            ErrorCode::storage_corrupt);
 }
 
 TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
