@@ -1,8 +1,15 @@
 #include "server/webhook_http.hpp"
 
 #include <httplib.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <array>
 #include <chrono>
+#include <string_view>
+#include <thread>
+#include <utility>
 
 #include "server/deadline.hpp"
 
@@ -11,8 +18,69 @@ namespace {
 
 constexpr std::chrono::seconds kConnectTime{5};
 constexpr std::chrono::seconds kWholeTime{15};
+constexpr std::size_t kMostAnswer = std::size_t{64} * 1024;  // bytes, certificates included
 
-/// A Client or an SSLClient.
+/// A Client or an SSLClient that gets no more than so many bytes of an answer: they come to it
+/// through a pipe that counts them. httplib itself reads lines without end.
+template <class Client>
+class Bounded : public Client {
+ public:
+  using Client::Client;
+  Bounded(const Bounded&) = delete;
+  Bounded& operator=(const Bounded&) = delete;
+  ~Bounded() override {
+    for (const int end : {far_, near_}) ::shutdown(end, SHUT_RDWR);
+    if (pump_.joinable()) pump_.join();
+    for (const int end : {far_, near_}) ::close(end);
+  }
+
+ private:
+  bool create_and_connect_socket(typename Client::Socket& socket, httplib::Error& error) override {
+    std::array<int, 2> pipe{};
+    if (far_ >= 0 || !httplib::ClientImpl::create_and_connect_socket(socket, error)) return false;
+    far_ = std::exchange(socket.sock, INVALID_SOCKET);
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pipe.data()) != 0) return false;
+    near_ = pipe[0];
+    socket.sock = pipe[1];
+    pump_ = std::jthread([this] { pump(); });
+    return true;
+  }
+
+  void pump() {
+    std::array<char, 4096> bytes{};
+    std::size_t answered = 0;
+    std::array<pollfd, 2> ends{{{near_, POLLIN, 0}, {far_, POLLIN, 0}}};
+    while (answered <= kMostAnswer && ::poll(ends.data(), ends.size(), -1) >= 0) {
+      for (const std::size_t from : {0U, 1U}) {
+        if (ends.at(from).revents == 0) continue;
+        const ssize_t count = ::recv(ends.at(from).fd, bytes.data(), bytes.size(), 0);
+        if (count <= 0) return cut();
+        if (from == 1) answered += static_cast<std::size_t>(count);
+        if (!pass_on(ends.at(1 - from).fd, {bytes.data(), static_cast<std::size_t>(count)}))
+          return cut();
+      }
+    }
+    cut();
+  }
+
+  static bool pass_on(int to, std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ssize_t count = ::send(to, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (count <= 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+    return true;
+  }
+
+  void cut() const {
+    for (const int end : {far_, near_}) ::shutdown(end, SHUT_RDWR);
+  }
+
+  int far_ = -1;
+  int near_ = -1;
+  std::jthread pump_;
+};
+
 template <class Client>
 std::string post(Client& client, const WebhookCall& call, const std::stop_token& stop) {
   client.set_hostname_addr_map({{call.url.host, call.address}});
@@ -44,10 +112,10 @@ std::string post(Client& client, const WebhookCall& call, const std::stop_token&
 
 std::string post_webhook(const WebhookCall& call, const std::stop_token& stop) {
   if (call.url.is_https) {
-    httplib::SSLClient client(call.url.host, call.url.port);
+    Bounded<httplib::SSLClient> client(call.url.host, call.url.port);
     return post(client, call, stop);
   }
-  httplib::ClientImpl client(call.url.host, call.url.port);
+  Bounded<httplib::ClientImpl> client(call.url.host, call.url.port);
   return post(client, call, stop);
 }
 

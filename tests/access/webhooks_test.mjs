@@ -5,6 +5,7 @@ import { execFileSync } from "node:child_process";
 import { createHmac } from "node:crypto";
 import { once } from "node:events";
 import { createServer } from "node:http";
+import { createServer as createNetServer } from "node:net";
 import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
@@ -115,6 +116,32 @@ test("an address of this machine is never called unless that is allowed", async 
   while (server.log.split("not public").length < 3) await sleep(10);
   assert.equal(hook.calls.length, 0);
   await server.end("SIGTERM");
+});
+
+test("a receiver that talks without end is cut off", async (t) => {
+  let sent = 0;
+  let gone;
+  const cut = new Promise((resolve) => (gone = resolve));
+  const endless = createNetServer((socket) => {
+    const line = "a".repeat(65_536);
+    const talk = () => {
+      while (!socket.destroyed && socket.write(line, () => (sent += line.length)));
+    };
+    socket.on("error", () => {}).on("close", gone).on("drain", talk);
+    socket.once("data", () => {
+      socket.write("HTTP/1.1 200 OK\r\nX: ");
+      talk();
+    });
+  });
+  await new Promise((resolve) => endless.listen(0, "127.0.0.1", resolve));
+  t.after(() => endless.close());
+  const server = await Server.start(dataDirectory(t), "--webhook-hosts", "127.0.0.1", "--webhook-private");
+  const began = Date.now();
+  assert.equal((await submit(server, `http://127.0.0.1:${endless.address().port}/`)).status, 202);
+  await cut;
+  assert.ok(Date.now() - began < 12_000, "before the time of a call is over");
+  assert.ok(sent < 32e6, `${sent} bytes`); // what the kernel holds for both, not what can be sent
+  await server.end("SIGKILL");
 });
 
 test("a receiver that hangs delays its own calls only, and not the end", async (t) => {
