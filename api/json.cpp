@@ -58,7 +58,7 @@ class Path {
 /// The first pass. Throws what parse_json() throws.
 class Checker : public nlohmann::json_sax<Json> {
  public:
-  explicit Checker(int max_depth) : max_depth_(max_depth) {}
+  explicit Checker(const JsonLimits& limits) : limits_(limits) {}
 
   bool null() override { return leave(); }
   bool boolean(bool) override { return leave(); }
@@ -72,6 +72,7 @@ class Checker : public nlohmann::json_sax<Json> {
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
+    count();
     path_.enter(name);
     return true;
   }
@@ -87,14 +88,20 @@ class Checker : public nlohmann::json_sax<Json> {
  private:
   static constexpr int kNumberOutOfRange = 406;  // of the library's list of exceptions
 
+  void count() {
+    if (++count_ > limits_.max_values)
+      throw Error(ErrorCode::malformed_request, "The JSON has too many values: send at most " +
+                                                    std::to_string(limits_.max_values) + ".");
+  }
   bool leave() {
+    count();
     path_.leave();
     return true;
   }
   bool open(bool is_array) {
-    if (path_.depth() >= max_depth_)
+    if (path_.depth() >= limits_.max_depth)
       throw Error(ErrorCode::malformed_request, "The JSON is nested too deeply: use at most " +
-                                                    std::to_string(max_depth_) + " levels.");
+                                                    std::to_string(limits_.max_depth) + " levels.");
     path_.open(is_array);
     return true;
   }
@@ -103,7 +110,8 @@ class Checker : public nlohmann::json_sax<Json> {
     return leave();
   }
 
-  const int max_depth_;
+  const JsonLimits& limits_;
+  std::size_t count_ = 0;
   Path path_;
 };
 
@@ -114,7 +122,7 @@ Json parse_json(std::string_view text, const JsonLimits& limits) {
     throw Error(ErrorCode::malformed_request, "The JSON is too long: send at most " +
                                                   std::to_string(limits.max_bytes) + " bytes.");
   }
-  Checker checker(limits.max_depth);
+  Checker checker(limits);
   Json::sax_parse(text, &checker);
   return Json::parse(text);
 }

@@ -15,9 +15,10 @@ using Json = nlohmann::ordered_json;
 struct JsonLimits {
   std::size_t max_bytes = 65'536;
   int max_depth = 16;
+  std::size_t max_values = 2'000'000;  ///< and names of members: some 80 bytes of memory each
 };
 
-/// Parses one JSON value. Throws Error: malformed_request (syntax, depth, size), invalid_option
+/// Parses one JSON value. Throws Error: malformed_request (syntax, depth, size, count), invalid_option
 /// with its JSON pointer (a member given twice, a number beyond the range of a double).
 Json parse_json(std::string_view text, const JsonLimits& limits = {});
 

@@ -7,6 +7,7 @@
 #include <exception>
 #include <optional>
 
+#include "server/media_types.hpp"
 #include "server/trace.hpp"
 
 namespace unwrapd::server {
@@ -216,11 +217,15 @@ class Exchange::Http final : public httplib::Server {
   }
 
   /// The stream has no framing any more, and ranges, encodings and who waits for 100 are not
-  /// httplib's business.
+  /// httplib's business. Of a form it knows one spelling.
   static void unframe(httplib::Request& request) {
     for (const char* name : {"Content-Length", "Transfer-Encoding", "Accept-Encoding", "Expect"})
       request.headers.erase(name);
     request.ranges.clear();
+    const std::string boundary = multipart_boundary(request.get_header_value("Content-Type"));
+    if (boundary.empty()) return;
+    request.headers.erase("Content-Type");
+    request.set_header("Content-Type", "multipart/form-data; boundary=" + boundary);
   }
 
   /// Gives a body to the errors that httplib itself answers with. A Range that it cannot read is

@@ -8,9 +8,12 @@
 #include "server/map_choice.hpp"
 #include "server/media_types.hpp"
 #include "server/result_routes.hpp"
+#include "server/retry_later.hpp"
 
 namespace unwrapd::server {
 namespace {
+
+constexpr int kRetryAfterSeconds = 5;
 
 /// The job with its live progress.
 Response job_response(int status, const JobRecord& record, const EventFeed& events) {
@@ -48,9 +51,11 @@ Response post_watched(const JobServices& services, const Request& request) {
 Response post_job(const JobServices& services, const Request& request) {
   if (prefers_events(request.header("Accept"))) return post_watched(services, request);
   const std::string id = services.submissions.accept(request, false).id;
-  const std::optional<int> wait = preferred_wait(request.header("Prefer"));
+  std::optional<int> wait = preferred_wait(request.header("Prefer"));
   const int seconds = std::min(wait.value_or(0), services.limits.max_wait_seconds);
-  if (seconds > 0) wait_for(services.events, id, std::chrono::seconds(seconds));
+  const auto place = seconds > 0 ? services.waiters.let_in(request.caller.owner) : nullptr;
+  if (!place && seconds > 0) wait.reset();  // a preference (RFC 7240), not a promise
+  if (place) wait_for(services.events, id, std::chrono::seconds(seconds));
   const JobRecord job = stored_job(services.store, id);
   const bool finished = wait && api::is_final(job.state);
   Response response = job_response(finished ? 200 : 202, job, services.events);
@@ -76,7 +81,17 @@ Response sync_response(const JobServices& services, const JobRecord& job, const 
   return response;
 }
 
+/// For who wants to wait and finds no place. It is told before the body is read.
+RetryLater too_many_wait() {
+  return {ErrorCode::rate_limited,
+          "Too many requests wait for the ends of their jobs; come back after Retry-After, or send "
+          "the mesh to /v1/jobs, which does not wait.",
+          kRetryAfterSeconds};
+}
+
 Response post_unwrap(const JobServices& services, const Request& request) {
+  const auto place = services.waiters.let_in(request.caller.owner);
+  if (!place) throw too_many_wait();
   const std::string id = services.submissions.accept(request, true).id;
   wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds));
   const JobRecord job = stored_job(services.store, id);

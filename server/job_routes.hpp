@@ -10,6 +10,7 @@
 #include "server/router.hpp"
 #include "server/signed_link.hpp"
 #include "server/submissions.hpp"
+#include "server/waiters.hpp"
 
 namespace unwrapd::server {
 
@@ -24,6 +25,7 @@ struct JobServices {
   ResultStore& results;
   const LinkSigner& links;
   const api::Limits& limits;
+  Waiters& waiters;
 };
 
 /// The job of the path. Throws Error{not_found} when there is none, or none of the caller's.

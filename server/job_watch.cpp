@@ -23,6 +23,10 @@ void JobWatch::see(const api::Event& event) {
     enter({});
     become({});
     metrics_.count(Metric::jobs_ended, {{"state", event.name}});
+    if (event.name == "failed") {
+      const std::string& code = event.data.at("problem").at("code").get_ref<const std::string&>();
+      metrics_.count(Metric::job_errors, {{"code", code}});
+    }
   }
 }
 

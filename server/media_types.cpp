@@ -119,6 +119,20 @@ BodyKind body_kind(std::string_view content_type) {
               "application/json; say which of them the body is.");
 }
 
+std::string multipart_boundary(std::string_view content_type) {
+  const std::vector<std::string_view> fields = split(content_type, ';');
+  if (fields.empty() || lower(fields.front()) != "multipart/form-data") return {};
+  for (const std::string_view field : fields) {
+    const std::size_t equals = field.find('=');
+    if (equals == std::string_view::npos || lower(trim(field.substr(0, equals))) != "boundary")
+      continue;
+    std::string_view value = trim(field.substr(equals + 1));
+    const bool quoted = value.size() >= 2 && value.front() == '"' && value.back() == '"';
+    return std::string(quoted ? value.substr(1, value.size() - 2) : value);
+  }
+  return {};
+}
+
 std::string_view media_type(std::string_view format) {
   const auto found = std::ranges::find(kRepresentations, format, &Representation::format);
   return found == kRepresentations.end() ? "application/octet-stream" : found->type;

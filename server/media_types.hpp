@@ -14,6 +14,9 @@ enum class BodyKind { asset, multipart, reference };
 /// JSON, which names a stored mesh.
 BodyKind body_kind(std::string_view content_type);
 
+/// The boundary of a form's parts, without quotes; empty for other types, and where none is told.
+std::string multipart_boundary(std::string_view content_type);
+
 /// Of a result format: glb, gltf, obj or json.
 std::string_view media_type(std::string_view format);
 

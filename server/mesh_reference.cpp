@@ -46,14 +46,14 @@ MeshReference parse_mesh_reference(std::string_view text) {
   return reference;
 }
 
-MeshReference receive_mesh_reference(BodyReader& body) {
+std::string receive_reference_text(BodyReader& body) {
   std::string text;
   body.read([&](std::string_view bytes) {
     if (text.size() + bytes.size() > kMaxBytes)
       throw Error(ErrorCode::body_too_large, "The JSON exceeds 16 MiB; shorten the options.");
     text += bytes;
   });
-  return parse_mesh_reference(text);
+  return text;
 }
 
 }  // namespace unwrapd::server

@@ -18,7 +18,7 @@ struct MeshReference {
 /// member that is missing, unknown, given twice or of another type.
 MeshReference parse_mesh_reference(std::string_view text);
 
-/// The same from a body. Throws what BodyReader throws, too.
-MeshReference receive_mesh_reference(BodyReader& body);
+/// Such a text, unread. Throws what BodyReader throws.
+std::string receive_reference_text(BodyReader& body);
 
 }  // namespace unwrapd::server

@@ -37,6 +37,8 @@ constexpr std::array kFamilies = {
     FamilyRow{Metric::jobs, "unwrapd_jobs", "gauge", "Jobs that are queued or running."},
     FamilyRow{Metric::jobs_ended, "unwrapd_jobs_ended_total", "counter",
               "Jobs that came to an end, by state."},
+    FamilyRow{Metric::job_errors, "unwrapd_job_errors_total", "counter",
+              "Problems that jobs failed of, by code."},
     FamilyRow{Metric::stage_seconds, "unwrapd_job_stage_seconds", "histogram",
               "Time of each stage of jobs; the first is queue."},
     FamilyRow{Metric::iterations, "unwrapd_iterations_total", "counter",

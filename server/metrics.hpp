@@ -27,6 +27,7 @@ enum class Metric {
   connections,
   jobs,
   jobs_ended,
+  job_errors,
   stage_seconds,
   iterations,
   event_streams,

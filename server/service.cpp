@@ -202,8 +202,8 @@ struct Service::Parts {
   }
 
   std::vector<Route> routes() {
-    const JobServices services{store,       queue,   blobs, events,       streams,
-                               submissions, results, links, config.limits};
+    const JobServices services{store,       queue,   blobs, events,        streams,
+                               submissions, results, links, config.limits, waiters};
     std::vector<Route> all;
     add_job_routes(all, services);
     add_unwrap_route(all, services);
@@ -221,6 +221,7 @@ struct Service::Parts {
   BlobStore blobs;
   JobStore store;
   MeshStore mesh_store;
+  Waiters waiters{std::max(1, config.edge.max_requests / 2)};
   Metrics metrics;
   const std::shared_ptr<Doorbell> news = std::make_shared<Doorbell>();
   EventFeed events{kEventsKept, kFeedsKept, &metrics, news};

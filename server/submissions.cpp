@@ -9,6 +9,8 @@
 namespace unwrapd::server {
 namespace {
 
+constexpr std::size_t kSmallText = std::size_t{64} * 1024;
+
 /// The options of a body that may bring some: those, or the query when there are none.
 api::JobOptions options_of(const Upload& upload, const Request& request,
                            const api::Limits& limits) {
@@ -85,6 +87,10 @@ UploadRoom Submissions::room_for(const Request& request, BodyKind kind, const st
           tells ? request.declared_bytes : 0};
 }
 
+std::unique_lock<std::mutex> Submissions::turn_to_read(std::size_t bytes) {
+  return bytes > kSmallText ? std::unique_lock(reading_) : std::unique_lock<std::mutex>();
+}
+
 Upload Submissions::bring(const Request& request, BodyKind kind, const std::string& upload) {
   UploadRoom room = room_for(request, kind, upload);
   if (kind == BodyKind::asset) room.check_declared();
@@ -92,7 +98,9 @@ Upload Submissions::bring(const Request& request, BodyKind kind, const std::stri
                             .take = [&](std::int64_t bytes) { room.take(bytes); }};
   if (kind == BodyKind::asset) return receive_asset(*request.body, folder);
   if (kind == BodyKind::multipart) return receive_parts(*request.body, folder);
-  MeshReference named = receive_mesh_reference(*request.body);
+  const std::string text = receive_reference_text(*request.body);
+  const auto turn = turn_to_read(text.size());
+  MeshReference named = parse_mesh_reference(text);
   return {.input = meshes_.share(request.caller.owner, named.sha256, upload),
           .options = std::move(named.options)};
 }
@@ -114,7 +122,10 @@ Submission Submissions::receive(const Request& request, const std::string& uploa
   job.webhook = request.header("Unwrapd-Webhook");
   if (!job.webhook.empty()) static_cast<void>(parse_webhook(job.webhook, webhooks_));
   Upload came = bring(request, kind, upload);
-  if (kind != BodyKind::asset) options = options_of(came, request, limits_);
+  if (kind != BodyKind::asset) {
+    const auto turn = turn_to_read(came.options ? came.options->size() : 0);
+    options = options_of(came, request, limits_);
+  }
   job.created_ms = now_ms();
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);

@@ -2,6 +2,8 @@
 // From a request with a mesh, or the name of a stored one, to a queued job: cheap checks before the
 // body is read, the body straight to disk, and the job in the queue when all of it is there.
 
+#include <mutex>
+
 #include "api/limits.hpp"
 #include "api/options.hpp"
 #include "server/blob_store.hpp"
@@ -36,6 +38,8 @@ class Submissions {
  private:
   [[nodiscard]] UploadRoom room_for(const Request& request, BodyKind kind,
                                     const std::string& upload);
+  /// JSON in memory is many times its text: long ones are read one at a time.
+  [[nodiscard]] std::unique_lock<std::mutex> turn_to_read(std::size_t bytes);
   [[nodiscard]] Upload bring(const Request& request, BodyKind kind, const std::string& upload);
   [[nodiscard]] Submission receive(const Request& request, const std::string& upload);
 
@@ -45,6 +49,7 @@ class Submissions {
   const api::Limits& limits_;
   const WebhookConfig& webhooks_;
   Meshes& meshes_;
+  std::mutex reading_;
 };
 
 }  // namespace unwrapd::server

@@ -64,6 +64,8 @@ TEST(ParseJson, KeepsItsLimitsOfDepthAndSize) {
   EXPECT_EQ(refusal(nested(1'000'000), {.max_bytes = 4'000'000, .max_depth = 16}).code(),
             ErrorCode::malformed_request);
   EXPECT_NO_THROW(parse_json("[1]", {.max_bytes = 3, .max_depth = 4}));
+  EXPECT_NO_THROW(parse_json(R"([1, {"a": []}])", {.max_values = 5}));
+  EXPECT_EQ(refusal(R"([1, {"a": []}])", {.max_values = 4}).code(), ErrorCode::malformed_request);
   EXPECT_EQ(refusal("[1] ", {.max_bytes = 3, .max_depth = 4}).code(), ErrorCode::malformed_request);
 }
 

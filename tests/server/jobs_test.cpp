@@ -58,6 +58,15 @@ TEST_F(Jobs, AFormBringsOptionsMeshAndBuffers) {
   EXPECT_THAT(get(job.at("id"), "result")->body, StartsWith("glTF"));
 }
 
+TEST_F(Jobs, AFormIsKnownHoweverItsTypeIsWritten) {
+  start();
+  const std::string body = "--q\r\nContent-Disposition: form-data; name=\"mesh\"\r\n\r\n" +
+                           grid_obj(2) + "\r\n--q--\r\n";
+  for (const char* type : {"Multipart/form-data; boundary=q", "multipart/form-data; Boundary=q",
+                           "multipart/form-data; boundary=\"q\"; charset=utf-8"})
+    EXPECT_EQ(client().Post("/v1/unwrap", body, type)->status, 200) << type;
+}
+
 TEST_F(Jobs, AFormWithoutItsMeshOrWithAnythingTwiceIsRefused) {
   start();
   const httplib::MultipartFormData mesh = {"mesh", grid_obj(2), "grid.obj", "model/obj"};

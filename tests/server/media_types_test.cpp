@@ -33,6 +33,16 @@ TEST(MediaTypes, BodiesAreAssetsOrForms) {
   EXPECT_THROW(body_kind("application/x-www-form-urlencoded"), Error);
 }
 
+TEST(MediaTypes, ABoundaryIsFoundHoweverItIsWritten) {
+  for (const char* form :
+       {"multipart/form-data; boundary=q", "Multipart/Form-Data;Boundary=\"q\"",
+        "multipart/form-data; boundary=q; charset=utf-8", "multipart/form-data;; x; BOUNDARY = q"})
+    EXPECT_EQ(multipart_boundary(form), "q") << form;
+  for (const char* none : {"", ";", "multipart/form-data", "multipart/form-data; boundary",
+                           "text/plain; boundary=q", "multipart/form-data; boundary="})
+    EXPECT_EQ(multipart_boundary(none), "") << none;
+}
+
 TEST(MediaTypes, EventsAreForWhoNamesThem) {
   for (const char* events : {"text/event-stream", "Text/Event-Stream; charset=utf-8", "text/*",
                              "text/event-stream, */*", "application/json;q=0.5, text/event-stream"})

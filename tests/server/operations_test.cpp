@@ -133,6 +133,10 @@ TEST_F(Operations, MetricsTellWhatHasHappened) {
   client().Delete("/v1/jobs/" + running);
   await_state(waiting, "succeeded");
   EXPECT_EQ(metric("unwrapd_jobs_ended_total{state=\"cancelled\"}"), 1);
+  const httplib::Headers wait = {{"Prefer", "wait=60"}};
+  client().Post("/v1/jobs", wait, "v 0 0 zero\n", "model/obj");
+  EXPECT_EQ(metric("unwrapd_jobs_ended_total{state=\"failed\"}"), 1);
+  EXPECT_EQ(metric("unwrapd_job_errors_total{code=\"malformed_obj\"}"), 1);
   client().Post("/v1/jobs?method=none", "x", "model/obj");
   await([this] { return metric("unwrapd_errors_total{code=\"invalid_option\"}") == 1; });
   const std::string refused = R"({method="POST",route="/v1/jobs",status="422"})";

@@ -1,0 +1,24 @@
+#include "server/waiters.hpp"
+
+#include <algorithm>
+
+namespace unwrapd::server {
+
+std::shared_ptr<void> Waiters::let_in(const std::string& owner) {
+  const std::lock_guard lock(mutex_);
+  const int most_of_one = owner.empty() ? most_ : std::max(1, most_ / 2);
+  const auto found = of_owner_.find(owner);
+  const int his = found == of_owner_.end() ? 0 : found->second;
+  if (count_ >= most_ || his >= most_of_one) return nullptr;
+  ++count_;
+  ++of_owner_[owner];
+  return {this, [owner](Waiters* waiters) { waiters->leave(owner); }};
+}
+
+void Waiters::leave(const std::string& owner) {
+  const std::lock_guard lock(mutex_);
+  --count_;
+  if (--of_owner_[owner] == 0) of_owner_.erase(owner);
+}
+
+}  // namespace unwrapd::server

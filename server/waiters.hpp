@@ -1,0 +1,31 @@
+#pragma once
+// Who may hold a request open until a job ends: each holds a thread of the server, so there are
+// fewer of them than threads, and an API key has no more than half of these.
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace unwrapd::server {
+
+/// Thread-safe.
+class Waiters {
+ public:
+  /// most: at a time, in all.
+  explicit Waiters(int most) : most_(most) {}
+
+  /// A place, the caller's while it keeps what is returned; nothing where all are taken. owner: id
+  /// of the API key, empty without one.
+  [[nodiscard]] std::shared_ptr<void> let_in(const std::string& owner);
+
+ private:
+  void leave(const std::string& owner);
+
+  const int most_;
+  std::mutex mutex_;
+  int count_ = 0;
+  std::map<std::string, int> of_owner_;
+};
+
+}  // namespace unwrapd::server
