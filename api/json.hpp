@@ -18,8 +18,9 @@ struct JsonLimits {
   std::size_t max_values = 2'000'000;  ///< and names of members: some 80 bytes of memory each
 };
 
-/// Parses one JSON value. Throws Error: malformed_request (syntax, depth, size, count), invalid_option
-/// with its JSON pointer (a member given twice, a number beyond the range of a double).
+/// Parses one JSON value. Throws Error: malformed_request (syntax, depth, size, count),
+/// invalid_option with its JSON pointer (a member given twice, a number beyond the range of a
+/// double).
 Json parse_json(std::string_view text, const JsonLimits& limits = {});
 
 /// value as JSON can hold it: an infinite or undefined figure becomes the largest double of its
