@@ -4,9 +4,11 @@
 
 #include <complex>
 #include <span>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
+#include "core/cancel.hpp"
 #include "core/linear/sparse.hpp"
 
 namespace unwrapd {
@@ -36,10 +38,10 @@ struct Reduced {
 };
 
 /// lower: the lower triangle of the full matrix A with A u = 0 wanted at the free vertices;
-/// value[v]: the values of the fixed ones (others are not read).
+/// value[v]: the values of the fixed ones (others are not read). Throws Error{cancelled}.
 template <typename Matrix, typename Value>
 Reduced<Matrix, Value> eliminate(const Matrix& lower, const FreeVertices& free,
-                                 std::span<const Value> value) {
+                                 std::span<const Value> value, const std::stop_token& stop = {}) {
   Reduced<Matrix, Value> r;
   r.lower.resize(free.count, free.count);
   r.rhs.assign(static_cast<std::size_t>(free.count), Value(value[0] * 0.0));
@@ -48,6 +50,7 @@ Reduced<Matrix, Value> eliminate(const Matrix& lower, const FreeVertices& free,
     r.rhs[static_cast<std::size_t>(row)] -= entry * value[static_cast<std::size_t>(fixed)];
   };
   for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j) {
+    look_now_and_then(j, stop);
     const Index column = free.slot[static_cast<std::size_t>(j)];
     if (column != kFixed) r.lower.startVec(column);
     for (typename Matrix::InnerIterator it(lower, j); it; ++it) {

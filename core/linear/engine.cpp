@@ -39,22 +39,18 @@ void Factor::solve_in_order(std::span<Vec2> b, Executor& executor) const {
   solve_panels(*analysis_, panels_.get(), b, executor);
 }
 
-void Factor::solve(std::span<Vec2> b) const {
+void Factor::solve(std::span<Vec2> b, const std::stop_token& stop) const {
   SerialExecutor serial;
-  solve(b, serial);
+  JobExecutor job(serial, stop);
+  solve(b, job);
 }
 
-void Factor::solve_pairs(std::span<Vec2> b, Executor& executor) const {
+void Factor::solve_pairs(std::span<Vec2> b, const std::stop_token& stop) const {
   std::vector<Vec2> x;
   x.reserve(2 * b.size());
   for (const Vec2& pair : b) x.emplace_back(pair.x(), 0), x.emplace_back(pair.y(), 0);
-  solve(x, executor);
+  solve(x, stop);
   for (std::size_t v = 0; v < b.size(); ++v) b[v] = {x[2 * v].x(), x[2 * v + 1].x()};
-}
-
-void Factor::solve_pairs(std::span<Vec2> b) const {
-  SerialExecutor serial;
-  solve_pairs(b, serial);
 }
 
 std::unique_ptr<Factor> try_factor(std::shared_ptr<const Analysis> analysis,

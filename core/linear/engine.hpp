@@ -24,7 +24,7 @@ class Factor final : public RealSystem {
 
   /// The same bits for any executor. Thread-safe, but for an executor that is not.
   void solve(std::span<Vec2> b, Executor& executor) const;
-  void solve(std::span<Vec2> b) const override;
+  void solve(std::span<Vec2> b, const std::stop_token& stop = {}) const override;
 
   /// As solve(), of unknowns listed in the order of elimination (analysis()->nodes.order).
   void solve_in_order(std::span<Vec2> b, Executor& executor) const;
@@ -38,9 +38,8 @@ class Factor final : public RealSystem {
   [[nodiscard]] std::size_t bytes() const { return analysis_->bytes() + analysis_->panel_bytes(); }
 
   /// One right-hand side of a matrix of pairs (analyse_pairs()): b[v] has the unknowns 2v, 2v + 1.
-  /// Thread-safe.
-  void solve_pairs(std::span<Vec2> b, Executor& executor) const;
-  void solve_pairs(std::span<Vec2> b) const;
+  /// Thread-safe. Throws Error{cancelled}.
+  void solve_pairs(std::span<Vec2> b, const std::stop_token& stop = {}) const;
 
  private:
   std::shared_ptr<const Analysis> analysis_;

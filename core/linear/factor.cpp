@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/linear/engine.hpp"
 
@@ -16,11 +17,11 @@ class PairsSystem final : public HermitianSystem {
  public:
   explicit PairsSystem(std::unique_ptr<Factor> factor) : factor_(std::move(factor)) {}
 
-  void solve(std::span<Complex> b) const override {
+  void solve(std::span<Complex> b, const std::stop_token& stop) const override {
     std::vector<Vec2> x;
     x.reserve(b.size());
     for (const Complex& z : b) x.emplace_back(z.real(), z.imag());
-    factor_->solve_pairs(x);
+    factor_->solve_pairs(x, stop);
     for (std::size_t v = 0; v < b.size(); ++v) b[v] = {x[v].x(), x[v].y()};
   }
 
@@ -36,11 +37,12 @@ void refuse_indefinite() {
               "zero-area triangles and try again");
 }
 
-SparseMatrix as_pairs(const ComplexMatrix& lower) {
+SparseMatrix as_pairs(const ComplexMatrix& lower, const std::stop_token& stop) {
   const auto n = static_cast<Index>(lower.cols());
   SparseMatrix pairs(2 * n, 2 * n);
   pairs.reserve(4 * lower.nonZeros());
   for (Index j = 0; j < 2 * n; ++j) {
+    look_now_and_then(j, stop);
     pairs.startVec(j);
     for (ComplexMatrix::InnerIterator it(lower, j / 2); it; ++it) {
       const Complex entry = j % 2 == 0 ? it.value() : it.value() * Complex(0, 1);
@@ -71,7 +73,7 @@ std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower) {
 
 std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower, const MemoryCheck& check,
                                             const std::stop_token& stop) {
-  const SparseMatrix pairs = as_pairs(lower);
+  const SparseMatrix pairs = as_pairs(lower, stop);
   const auto analysis = analyse_pairs(pairs, stop);
   if (check) check(analysis->job_bytes());
   SerialExecutor serial;

@@ -23,8 +23,9 @@ class PrefactoredSystem {
   PrefactoredSystem& operator=(const PrefactoredSystem&) = delete;
   virtual ~PrefactoredSystem() = default;
 
-  /// Replaces b by the solution of A x = b. Thread-safe.
-  virtual void solve(std::span<Rhs> b) const = 0;
+  /// Replaces b by the solution of A x = b. Thread-safe. Throws Error{cancelled}: b is then of no
+  /// use.
+  virtual void solve(std::span<Rhs> b, const std::stop_token& stop = {}) const = 0;
 };
 
 /// Two right-hand sides at once: the n-by-2 block of Eq. (4).
@@ -55,7 +56,8 @@ System definite(System system) {
 }
 
 /// The real matrix of the real and imaginary parts, rows 2v and 2v + 1: a block [a -b; b a] for
-/// each entry a + b i; the lower triangle of what lower is the lower triangle of.
-SparseMatrix as_pairs(const ComplexMatrix& lower);
+/// each entry a + b i; the lower triangle of what lower is the lower triangle of. Throws
+/// Error{cancelled}.
+SparseMatrix as_pairs(const ComplexMatrix& lower, const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -4,39 +4,92 @@
 #include <cassert>
 #include <utility>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
 constexpr Index kNowhere = -1;
 constexpr std::array kRaises{1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2};  // of the diagonal
 
-using Pattern = Eigen::SparseMatrix<char, Eigen::ColMajor, Index>;
+/// Which slots lie below which others: of column s the rows row[begin[s]] .. row[end[s] - 1],
+/// ascending.
+struct SlotGraph {
+  std::vector<Index> begin, end, row;
+};
 
-/// The vertex graph's lower triangle, diagonal included, over slots.
-Pattern slot_pattern(std::span<const Triangle> faces, const FreeVertices& slots) {
-  std::vector<Eigen::Triplet<char, Index>> entries;
-  entries.reserve(3 * faces.size() + static_cast<std::size_t>(slots.count));
-  for (Index s = 0; s < slots.count; ++s) entries.emplace_back(s, s, 1);
-  for (const Triangle& face : faces)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Index a = slots.slot[static_cast<std::size_t>(face[i])];
-      const Index b = slots.slot[static_cast<std::size_t>(face[(i + 1) % 3])];
-      if (a != kFixed && b != kFixed) entries.emplace_back(std::max(a, b), std::min(a, b), 1);
-    }
-  Pattern pattern(slots.count, slots.count);
-  pattern.setFromTriplets(entries.begin(), entries.end(), [](char, char) { return char(1); });
-  return pattern;
+template <class Visit>
+void for_each_side(std::span<const Triangle> faces, const FreeVertices& slots,
+                   const std::stop_token& stop, Visit visit) {
+  for (std::size_t h = 0; h < 3 * faces.size(); ++h) {
+    look_now_and_then(h, stop);
+    const Triangle& face = faces[h / 3];
+    const Index a = slots.slot[static_cast<std::size_t>(face[h % 3])];
+    const Index b = slots.slot[static_cast<std::size_t>(face[(h + 1) % 3])];
+    if (a != kFixed && b != kFixed && a != b)
+      visit(static_cast<std::size_t>(std::min(a, b)), std::max(a, b));
+  }
+}
+
+SlotGraph slot_graph(std::span<const Triangle> faces, const FreeVertices& slots,
+                     const std::stop_token& stop) {
+  const auto count = static_cast<std::size_t>(slots.count);
+  SlotGraph graph{std::vector<Index>(count + 1, 0), {}, {}};
+  for_each_side(faces, slots, stop, [&](std::size_t column, Index) { ++graph.begin[column + 1]; });
+  for (std::size_t s = 0; s < count; ++s) graph.begin[s + 1] += graph.begin[s];
+  graph.row.resize(static_cast<std::size_t>(graph.begin.back()));
+  graph.end.assign(graph.begin.begin(), graph.begin.end() - 1);
+  for_each_side(faces, slots, stop, [&](std::size_t column, Index row) {
+    graph.row[static_cast<std::size_t>(graph.end[column]++)] = row;
+  });
+  for (std::size_t s = 0; s < count; ++s) {
+    look_now_and_then(s, stop);
+    const auto first = graph.row.begin() + graph.begin[s], last = graph.row.begin() + graph.end[s];
+    std::sort(first, last);
+    graph.end[s] = static_cast<Index>(std::unique(first, last) - graph.row.begin());
+  }
+  return graph;
 }
 
 }  // namespace
 
+SparseMatrix pair_pattern(std::span<const Triangle> faces, const FreeVertices& slots,
+                          const std::stop_token& stop) {
+  const SlotGraph graph = slot_graph(faces, slots, stop);
+  const Index n = 2 * slots.count;
+  SparseMatrix lower(n, n);
+  lower.reserve(4 * static_cast<Index>(graph.row.size()) + 3 * slots.count);
+  for (Index j = 0; j < n; ++j) {
+    look_now_and_then(j, stop);
+    const auto s = static_cast<std::size_t>(j / 2);
+    lower.startVec(j);
+    for (Index i = j; i < 2 * (j / 2) + 2; ++i) lower.insertBack(i, j) = 0;
+    for (auto k = static_cast<std::size_t>(graph.begin[s]);
+         k < static_cast<std::size_t>(graph.end[s]); ++k) {
+      lower.insertBack(2 * graph.row[k], j) = 0;
+      lower.insertBack(2 * graph.row[k] + 1, j) = 0;
+    }
+  }
+  lower.finalize();
+  return lower;
+}
+
+Index entry_of(const SparseMatrix& lower, Index a, Index b) {
+  const auto [column, row] = std::minmax(a, b);
+  const Index* begin = lower.innerIndexPtr() + lower.outerIndexPtr()[column];
+  const Index* end = lower.innerIndexPtr() + lower.outerIndexPtr()[column + 1];
+  return static_cast<Index>(std::lower_bound(begin, end, row) - lower.innerIndexPtr());
+}
+
 PairSystem::PairSystem(std::span<const Triangle> faces, const FreeVertices& slots,
                        std::stop_token stop)
-    : slots_(slots), stop_(std::move(stop)) {
+    : slots_(slots), stop_(std::move(stop)), lower_(pair_pattern(faces, slots, stop_)) {
   assert(slots.count > 0);
-  build_pattern(faces);
   target_.reserve(faces.size());
-  for (const Triangle& face : faces) target_.push_back(targets(face));
+  for (std::size_t t = 0; t < faces.size(); ++t) {
+    look_now_and_then(t, stop_);
+    target_.push_back(targets(faces[t]));
+  }
   factor_.emplace(analyse_pairs(lower_, stop_));
 }
 
@@ -51,30 +104,10 @@ PairSystem::FaceTargets PairSystem::targets(const Triangle& face) const {
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
       const bool is_inside = row[i] != kNowhere && row[j] != kNowhere;
-      targets[next++] = {is_inside ? entry(row[i], row[j]) : kNowhere, i != j && row[i] == row[j]};
+      targets[next++] = {is_inside ? entry_of(lower_, row[i], row[j]) : kNowhere,
+                         i != j && row[i] == row[j]};
     }
   return targets;
-}
-
-void PairSystem::build_pattern(std::span<const Triangle> faces) {
-  const Pattern pattern = slot_pattern(faces, slots_);
-  const Index n = 2 * slots_.count;
-  lower_.resize(n, n);
-  lower_.reserve(4 * pattern.nonZeros());
-  for (Index j = 0; j < n; ++j) {
-    lower_.startVec(j);
-    for (Pattern::InnerIterator it(pattern, j / 2); it; ++it)
-      for (Eigen::Index i = 2 * it.row(); i < 2 * it.row() + 2; ++i)
-        if (i >= j) lower_.insertBack(i, j) = 0;
-  }
-  lower_.finalize();
-}
-
-Index PairSystem::entry(Index a, Index b) const {
-  const auto [column, row] = std::minmax(a, b);
-  const Index* begin = lower_.innerIndexPtr() + lower_.outerIndexPtr()[column];
-  const Index* end = lower_.innerIndexPtr() + lower_.outerIndexPtr()[column + 1];
-  return static_cast<Index>(std::lower_bound(begin, end, row) - lower_.innerIndexPtr());
 }
 
 std::size_t PairSystem::bytes() const {
@@ -86,6 +119,7 @@ std::size_t PairSystem::bytes() const {
 void PairSystem::clear() { std::fill_n(lower_.valuePtr(), lower_.nonZeros(), 0.0); }
 
 void PairSystem::add(std::size_t t, const PairElement& element) {
+  look_now_and_then(t, stop_);
   std::size_t next = 0;
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
@@ -110,6 +144,6 @@ bool PairSystem::factor() {
   return false;
 }
 
-void PairSystem::solve(std::vector<Vec2>& b) const { factor_->solve_pairs(b); }
+void PairSystem::solve(std::vector<Vec2>& b) const { factor_->solve_pairs(b, stop_); }
 
 }  // namespace unwrapd

@@ -19,6 +19,15 @@ namespace unwrapd {
 /// Row and column 2i + c belong to unknown c of corner i. Only the lower triangle is read.
 using PairElement = std::array<std::array<double, 6>, 6>;
 
+/// The lower triangle, all zeros, of such a matrix: row 2s + c for unknown c of slot s, blocks
+/// whole. Vertices may share a slot; those whose slot is kFixed are not in it. Throws
+/// Error{cancelled}.
+SparseMatrix pair_pattern(std::span<const Triangle> faces, const FreeVertices& slots,
+                          const std::stop_token& stop = {});
+
+/// Where (a, b) or (b, a), which the pattern has, lies among the values.
+Index entry_of(const SparseMatrix& lower, Index a, Index b);
+
 class PairSystem {
  public:
   /// faces index slots: the unknowns of vertex v are rows 2 slot[v] and 2 slot[v] + 1; vertices may
@@ -31,14 +40,14 @@ class PairSystem {
 
   void clear();
 
-  /// Adds the element of face t.
+  /// Adds the element of face t. Throws Error{cancelled} now and then.
   void add(std::size_t t, const PairElement& element);
 
   /// Factors what was added since clear(). Where that is not positive definite in double precision
   /// the diagonal is raised, by a hundredth of it at most: false when that does not help either.
   [[nodiscard]] bool factor();
 
-  /// Replaces b, one pair a slot, by the solution.
+  /// Replaces b, one pair a slot, by the solution. Throws Error{cancelled}.
   void solve(std::vector<Vec2>& b) const;
 
  private:
@@ -50,9 +59,7 @@ class PairSystem {
   };
   using FaceTargets = std::array<Target, 21>;  ///< of a face's lower triangle, by rows
 
-  void build_pattern(std::span<const Triangle> faces);
   [[nodiscard]] FaceTargets targets(const Triangle& face) const;
-  [[nodiscard]] Index entry(Index a, Index b) const;
   void raise_diagonal(double share);
 
   const FreeVertices& slots_;

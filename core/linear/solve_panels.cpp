@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -40,8 +42,8 @@ class Sweep {
     sums_.assign(branches.all.size() * shared, Vec2::Zero());
     executor.for_each_block(count,
                             [&](int b) { down_branch(at(b), sums_.data() + at(b) * shared); });
-    down_trunk();
-    up_trunk();
+    down_trunk(executor.stop());
+    up_trunk(executor.stop());
     executor.for_each_block(count, [&](int b) { up_branch(at(b)); });
   }
 
@@ -68,7 +70,7 @@ class Sweep {
     }
   }
 
-  void down_trunk() const {
+  void down_trunk(const std::stop_token& stop) const {
     const Branches& branches = analysis_.branches;
     for (std::size_t b = 0; b < branches.all.size(); ++b)
       for (Index row : nodes_.below(branches.all[b].root()))
@@ -77,19 +79,23 @@ class Sweep {
     branches.for_each_of_trunk(
         nodes_.count(),
         [&](std::size_t s) {
+          throw_if_cancelled(stop);
           eliminate(s, work);
           subtract(nodes_.below(s), work, analysis_.shape(s).pivots);
         },
         [](std::size_t) {});
   }
 
-  void up_trunk() const {
+  void up_trunk(const std::stop_token& stop) const {
     Workspace work = workspace({0, nodes_.count()});
     const std::vector<Branch>& all = analysis_.branches.all;
     std::size_t end = nodes_.count();
     for (std::size_t b = all.size() + 1; b-- > 0;) {
       const std::size_t first = b > 0 ? all[b - 1].end : 0;
-      for (std::size_t s = end; s-- > first;) substitute(s, work);
+      for (std::size_t s = end; s-- > first;) {
+        throw_if_cancelled(stop);
+        substitute(s, work);
+      }
       if (b > 0) end = all[b - 1].first;
     }
   }

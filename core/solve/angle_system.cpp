@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/solve/kept.hpp"
 #include "core/solve/lay_out.hpp"
@@ -135,6 +136,7 @@ Misfit AngleSystem::misfit(std::span<const FaceAngles> angles) const {
   Misfit misfit{std::vector<double>(angles.size()), std::vector<Vec2>(rings_.turn.size())};
   for (std::size_t r = 0; r < misfit.ring.size(); ++r) misfit.ring[r] = Vec2(-rings_.turn[r], 0);
   for (std::size_t t = 0; t < angles.size(); ++t) {
+    look_now_and_then(t, disk_.stop);
     const FaceAngles& a = angles[t];
     misfit.triangle[t] = a[0] + a[1] + a[2] - kPi;
     for_ring_corners(disk_.faces[t], rings_, [&](std::size_t v, std::size_t i) {
@@ -169,6 +171,7 @@ std::vector<FaceAngles> AngleSystem::step(std::span<const FaceAngles> angles,
   const std::vector<FaceBlock> block = blocks(angles, model);
   Misfit left = misfit(angles);
   for (std::size_t t = 0; t < angles.size(); ++t) {
+    look_now_and_then(t, disk_.stop);
     for_ring_corners(disk_.faces[t], rings_, [&](std::size_t v, std::size_t i) {
       left.ring[v] += Vec2(dot(block[t].gradient[2 * i], block[t].change),
                            dot(block[t].gradient[2 * i + 1], block[t].change));
@@ -181,6 +184,7 @@ std::vector<FaceAngles> AngleSystem::step(std::span<const FaceAngles> angles,
   }
   std::vector<FaceAngles> change(angles.size());
   for (std::size_t t = 0; t < angles.size(); ++t) {
+    look_now_and_then(t, disk_.stop);
     FaceAngles pull{};
     for_ring_corners(disk_.faces[t], rings_, [&](std::size_t v, std::size_t i) {
       for (std::size_t j = 0; j < 3; ++j)

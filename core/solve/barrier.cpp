@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/cancel.hpp"
+#include "core/linear/pair_system.hpp"
 #include "core/measure/orientation.hpp"
 
 namespace unwrapd {
@@ -165,20 +167,6 @@ Index unknown(const BarrierMesh& mesh, std::size_t t, Index k) {
   return slot == kFixed ? kFixed : 2 * slot + k % 2;
 }
 
-/// visit(t, k, row, column) for every entry k of the lower triangle of face t's Hessian, by rows,
-/// that is among the unknowns; column <= row.
-template <typename Visit>
-void for_each_entry(const BarrierMesh& mesh, Visit visit) {
-  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
-    std::size_t k = 0;
-    for (Index a = 0; a < 6; ++a)
-      for (Index b = 0; b <= a; ++b, ++k) {
-        const auto [column, row] = std::minmax({unknown(mesh, t, a), unknown(mesh, t, b)});
-        if (column != kFixed) visit(t, k, row, column);
-      }
-  }
-}
-
 /// The diagonal comes first in every column.
 void add_springs(const BarrierMesh& mesh, std::span<const Vec2> uv, Quadratic& model) {
   for (const Spring& spring : mesh.springs) {
@@ -205,6 +193,7 @@ void add_lower(const Eigen::Matrix<double, 6, 6>& hessian, const std::array<Inde
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier) {
   double energy = spring_energy(mesh.springs, uv);
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    look_now_and_then(t, mesh.stop);
     const Jacobian j = jacobian_of(mesh, t, uv);
     if (barrier.epsilon == 0 && !is_positive(j, mesh.faces[t], uv)) return kFar;
     energy += mesh.rest[t].area * profile(j, mesh.rest[t].area, barrier).value;
@@ -214,28 +203,26 @@ double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const B
 
 double least_determinant(const BarrierMesh& mesh, std::span<const Vec2> uv) {
   double least = kFar;
-  for (std::size_t t = 0; t < mesh.faces.size(); ++t)
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    look_now_and_then(t, mesh.stop);
     least = std::min(least, jacobian_of(mesh, t, uv).determinant());
+  }
   return least;
 }
 
 Quadratic barrier_pattern(const BarrierMesh& mesh) {
   const Index size = 2 * mesh.free.count;
-  Quadratic model{Eigen::VectorXd::Zero(size), SparseMatrix(size, size), {}};
-  std::vector<Eigen::Triplet<double, Index>> entries;
-  entries.reserve(21 * mesh.faces.size());
-  for_each_entry(mesh, [&](std::size_t, std::size_t, Index row, Index column) {
-    entries.emplace_back(row, column, 0.0);
-  });
-  model.hessian.setFromTriplets(entries.begin(), entries.end());
+  Quadratic model{Eigen::VectorXd::Zero(size), pair_pattern(mesh.faces, mesh.free, mesh.stop), {}};
   model.place.resize(mesh.faces.size());
-  for (auto& places : model.place) places.fill(kFixed);
-  for_each_entry(mesh, [&](std::size_t t, std::size_t k, Index row, Index column) {
-    const Index* rows = model.hessian.innerIndexPtr();
-    const Index* begin = rows + model.hessian.outerIndexPtr()[column];
-    const Index* end = rows + model.hessian.outerIndexPtr()[column + 1];
-    model.place[t][k] = static_cast<Index>(std::lower_bound(begin, end, row) - rows);
-  });
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    look_now_and_then(t, mesh.stop);
+    std::size_t k = 0;
+    for (Index a = 0; a < 6; ++a)
+      for (Index b = 0; b <= a; ++b, ++k) {
+        const auto [column, row] = std::minmax({unknown(mesh, t, a), unknown(mesh, t, b)});
+        model.place[t][k] = column == kFixed ? kFixed : entry_of(model.hessian, row, column);
+      }
+  }
   return model;
 }
 
@@ -245,6 +232,7 @@ void fill_barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const
   double* values = model.hessian.valuePtr();
   std::fill_n(values, model.hessian.nonZeros(), 0.0);
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    look_now_and_then(t, mesh.stop);
     const Element e = element(jacobian_of(mesh, t, uv), mesh.rest[t], barrier);
     for (Index a = 0; a < 6; ++a) {
       const Index row = unknown(mesh, t, a);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/linear/eliminate.hpp"
@@ -27,8 +28,10 @@ struct BarrierMesh {
   std::vector<RestTriangle> rest;  ///< one a face: the shape and size that it should have
   FreeVertices free;               ///< one slot a vertex
   std::vector<Spring> springs = {};
+  std::stop_token stop = {};  ///< of the job: what goes over all faces looks at it (cancel.hpp)
 };
 
+/// Throws Error{cancelled}, as all below.
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier);
 
 /// The least determinant of the triangles' Jacobians.

@@ -92,12 +92,12 @@ UvMap conjugates(const Disk& disk, const SparseMatrix& laplacian, const Chain& c
   fixed[chain.vertex.front()] = 1;  // conjugates are defined up to a constant
   const FreeVertices free = number_free(fixed);
   UvMap map(fixed.size(), Vec2::Zero());
-  auto [lower, rhs] = eliminate<SparseMatrix, Vec2>(laplacian, free, map);
+  auto [lower, rhs] = eliminate<SparseMatrix, Vec2>(laplacian, free, map, disk.stop);
   const std::size_t count = point.size();
   for (std::size_t i = 1; i < count; ++i)
     rhs[static_cast<std::size_t>(free.slot[chain.vertex[i]])] +=
         (point[i - 1] - point[(i + 1) % count]) / 2;
-  factor(lower)->solve(rhs);
+  factor(lower, disk.stop)->solve(rhs, disk.stop);
   for (std::size_t v = 0; v < map.size(); ++v)
     if (free.slot[v] != kFixed) map[v] = rhs[static_cast<std::size_t>(free.slot[v])];
   return map;

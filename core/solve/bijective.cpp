@@ -126,6 +126,7 @@ std::optional<UvMap> start_from(const Disk& disk, Map map) {
     uv = to_best_scale(disk, std::move(uv));
     if (is_plainly_injective(disk.faces, disk.loops, uv)) return uv;
   } catch (const Error&) {  // no such map of this mesh: there is another
+    throw_if_cancelled(disk.stop);
   }
   return std::nullopt;
 }

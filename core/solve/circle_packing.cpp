@@ -13,6 +13,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/cancel.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/solve/metric.hpp"
 
@@ -71,7 +72,8 @@ Demand demand(double r, double s, double length) {
 void fit(const Disk& disk, std::span<const EdgeLengths> length, std::span<const double> start,
          std::vector<double>& radius) {
   std::vector<double> pull(radius.size(), 0.0), stiffness(radius.size(), 0.0);
-  for (std::size_t t = 0; t < length.size(); ++t)
+  for (std::size_t t = 0; t < length.size(); ++t) {
+    look_now_and_then(t, disk.stop);
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t a = index(disk.faces[t][i]), b = index(disk.faces[t][(i + 1) % 3]);
       const Demand of_a = demand(radius[a], radius[b], length[t][i]);
@@ -79,6 +81,7 @@ void fit(const Disk& disk, std::span<const EdgeLengths> length, std::span<const 
       pull[a] -= of_a.residual * of_a.slope, stiffness[a] += of_a.slope * of_a.slope;
       pull[b] -= of_b.residual * of_b.slope, stiffness[b] += of_b.slope * of_b.slope;
     }
+  }
   for (std::size_t v = 0; v < radius.size(); ++v)
     if (stiffness[v] > 0)
       radius[v] = std::clamp(radius[v] + kDamping * pull[v] / stiffness[v], start[v] / kMostRefit,
@@ -96,8 +99,9 @@ std::vector<double> least_crossing(const Disk& disk) {
     if (on_boundary[apex] != 0 || valence > 4) continue;
     least[index(h)] = valence == 4 ? kLinkOfFour : kLinkOfThree;
   }
-  std::vector<EdgeSide> sides = edge_sides(disk.faces, [](Index) { return true; });
-  sort_by_edge(sides, disk.vertex_count());
+  std::vector<EdgeSide> sides = edge_sides(
+      disk.faces, [](Index) { return true; }, disk.stop);
+  sort_by_edge(sides, disk.vertex_count(), disk.stop);
   for (std::size_t k = 1; k < sides.size(); ++k) {
     if (!on_one_edge(sides[k - 1], sides[k])) continue;
     double& a = least[index(sides[k - 1].halfedge)];
@@ -179,6 +183,7 @@ PackedAngles packed_angles(const Disk& disk, const CirclePacking& packing) {
   for (char on_boundary : boundary_vertices(disk))
     packed.curvature.push_back((on_boundary != 0 ? 1 : 2) * std::numbers::pi);
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
+    look_now_and_then(t, disk.stop);
     const CircleTriangle triangle = circles(disk.faces[t], packing, t);
     const double twice_area = triangle.twice_area();
     std::array<double, 3> angle{};

@@ -46,7 +46,7 @@ Holds pinned_at_diameter(const Disk& disk) {
 class SpectralIteration {
  public:
   explicit SpectralIteration(const Disk& disk)
-      : on_boundary_(static_cast<std::size_t>(disk.vertex_count()), 0.0) {
+      : on_boundary_(static_cast<std::size_t>(disk.vertex_count()), 0.0), stop_(disk.stop) {
     for (const BoundaryLoop& loop : disk.loops)
       for (Index h : loop) on_boundary_[static_cast<std::size_t>(start_vertex(disk, h))] = 1;
     boundary_count_ = std::accumulate(on_boundary_.begin(), on_boundary_.end(), 0.0);
@@ -66,7 +66,7 @@ class SpectralIteration {
     for (int k = 0; k < kMaxIterations; ++k) {
       std::vector<Complex> next(z.size());
       for (std::size_t v = 0; v < z.size(); ++v) next[v] = on_boundary_[v] * z[v];
-      system_->solve(next);
+      system_->solve(next, stop_);
       normalise(next);
       const double turned = 1 - std::abs(product(z, next));
       z = std::move(next);
@@ -100,6 +100,7 @@ class SpectralIteration {
   std::vector<double> on_boundary_;
   double boundary_count_ = 0;
   std::unique_ptr<HermitianSystem> system_;
+  std::stop_token stop_;
 };
 
 UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {

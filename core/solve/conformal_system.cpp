@@ -59,13 +59,14 @@ double more_softening(double softening) { return std::max(100 * softening, kLeas
 
 bool ConformalSystem::try_build(const Disk& disk, const Holds& holds, double softening,
                                 bool may_throw) {
+  stop_ = disk.stop;
   lower_ = conformal_matrix(disk, softening);
   for (const Spring& spring : holds.springs)
     lower_.coeffRef(spring.vertex, spring.vertex) += 4 * spring.weight;
   free_ = free_vertices(disk.positions.size(), holds);
   if (free_.count == 0) return true;
   const std::vector<Complex> nowhere(free_.slot.size());  // only the matrix is wanted
-  const auto reduced = eliminate<ComplexMatrix, Complex>(lower_, free_, nowhere);
+  const auto reduced = eliminate<ComplexMatrix, Complex>(lower_, free_, nowhere, stop_);
   const auto check = [&](std::size_t bytes) { check_memory(disk, bytes); };
   system_ = may_throw ? try_softened(reduced.lower, softening, check, disk.stop)
                       : try_factor(reduced.lower, check, disk.stop);
@@ -95,7 +96,7 @@ UvMap ConformalSystem::solve(const Holds& holds) const {
   for (std::size_t v = 0; v < free_.slot.size(); ++v)
     if (free_.slot[v] != kFixed)
       rhs[static_cast<std::size_t>(free_.slot[v])] = pull[static_cast<Eigen::Index>(v)];
-  if (system_) system_->solve(rhs);
+  if (system_) system_->solve(rhs, stop_);
   UvMap uv;
   uv.reserve(free_.slot.size());
   for (std::size_t v = 0; v < free_.slot.size(); ++v) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "core/linear/eliminate.hpp"
@@ -36,7 +37,8 @@ class ConformalSystem {
   static std::optional<ConformalSystem> exact(const Disk& disk, const Holds& holds);
 
   /// The map of least E + sum of weight |u_v - at|^2 over the springs, fixed vertices at their
-  /// places. holds: the same vertices and weights as those of the constructor. Thread-safe.
+  /// places. holds: the same vertices and weights as those of the constructor. Thread-safe. Throws
+  /// Error{cancelled}, as the disk's job.
   [[nodiscard]] UvMap solve(const Holds& holds) const;
 
  private:
@@ -46,6 +48,7 @@ class ConformalSystem {
   ComplexMatrix lower_;
   FreeVertices free_;
   std::unique_ptr<HermitianSystem> system_;
+  std::stop_token stop_;
 };
 
 }  // namespace unwrapd

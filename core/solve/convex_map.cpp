@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/cancel.hpp"
 #include "core/linear/dominant_lu.hpp"
 #include "core/linear/eliminate.hpp"
 #include "core/linear/factor.hpp"
@@ -67,6 +68,7 @@ LinearSystem mean_value_system(const Disk& disk, const ConvexMap& map) {
   };
   for (std::size_t t = 0; t < disk.faces.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) {
+      look_now_and_then(3 * t + i, disk.stop);
       const RestTriangle& rest = disk.rest[t];
       const Triangle& face = disk.faces[t];
       const double tangent = half_angle_tangent(rest, i);
@@ -96,8 +98,8 @@ UvMap tutte_map(const Disk& disk, std::span<const FixedPoint> boundary) {
   ConvexMap map = with_boundary(disk, boundary);
   const std::vector<double> equal(3 * disk.faces.size(), 1.0);
   const SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), equal, disk.stop);
-  auto reduced = eliminate<SparseMatrix, Vec2>(lower, map.inner, map.uv);
-  if (map.inner.count > 0) factor(reduced.lower, disk.stop)->solve(reduced.rhs);
+  auto reduced = eliminate<SparseMatrix, Vec2>(lower, map.inner, map.uv, disk.stop);
+  if (map.inner.count > 0) factor(reduced.lower, disk.stop)->solve(reduced.rhs, disk.stop);
   place_inner(reduced.rhs, map);
   return std::move(map.uv);
 }

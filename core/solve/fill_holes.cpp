@@ -1,5 +1,6 @@
 #include "core/solve/fill_holes.hpp"
 
+#include "core/cancel.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/solve/lay_out.hpp"
 
@@ -36,12 +37,15 @@ FilledDisk fill_holes(const Disk& disk) {
   filled.faces.assign(disk.faces.begin(), disk.faces.end());
   filled.loops = {disk.loops.front()};
   filled.disk.positions = disk.positions;
+  filled.disk.stop = disk.stop;
+  throw_if_cancelled(disk.stop);
   filled.disk.rest = disk.rest;
+  throw_if_cancelled(disk.stop);
   filled.disk.unit = disk.unit;
   for (const BoundaryLoop& loop : disk.loops.subspan(1)) close(filled, loop);
   filled.disk.faces = filled.faces;
   filled.disk.loops = filled.loops;
-  filled.disk.corners = vertex_corners(filled.faces, filled.disk.vertex_count());
+  filled.disk.corners = vertex_corners(filled.faces, filled.disk.vertex_count(), disk.stop);
   return filled;
 }
 

@@ -32,7 +32,7 @@ SparseMatrix free_matrix(const Disk& disk, const Holds& holds, const FreeVertice
   SparseMatrix lower = held_matrix(disk, holds);
   if (holds.fixed.empty()) return lower;
   const std::vector<Vec2> nowhere(free.slot.size(), Vec2::Zero());  // only the matrix is wanted
-  return eliminate<SparseMatrix, Vec2>(lower, free, nowhere).lower;
+  return eliminate<SparseMatrix, Vec2>(lower, free, nowhere, disk.stop).lower;
 }
 
 std::shared_ptr<const Factor> factored(const Disk& disk, const Holds& holds,

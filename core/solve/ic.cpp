@@ -71,7 +71,8 @@ class Flow {
   [[nodiscard]] std::vector<double> newton_direction() const {
     std::vector<double> weight = packed_.weight;
     for (double& w : weight) w = std::max(w, kLeastWeight);
-    const InnerSystem jacobian(disk_, lower_laplacian(disk_.faces, disk_.vertex_count(), weight));
+    const InnerSystem jacobian(
+        disk_, lower_laplacian(disk_.faces, disk_.vertex_count(), weight, disk_.stop));
     return flat_scales(disk_, jacobian, packed_.curvature);
   }
 

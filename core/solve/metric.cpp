@@ -66,11 +66,12 @@ std::vector<double> product(const SparseMatrix& laplacian, std::span<const doubl
 }
 
 InnerSystem::InnerSystem(const Disk& disk, const SparseMatrix& lower)
-    : inner_(number_free(boundary_vertices(disk))) {
+    : inner_(number_free(boundary_vertices(disk))), stop_(disk.stop) {
   if (inner_.count == 0) return;
   const std::vector<Vec2> zero(disk.positions.size(), Vec2::Zero());
-  system_ = factor(eliminate<SparseMatrix, Vec2>(lower, inner_, zero).lower, disk.stop);
-  for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j)
+  system_ = factor(eliminate<SparseMatrix, Vec2>(lower, inner_, zero, stop_).lower, stop_);
+  for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j) {
+    look_now_and_then(j, stop_);
     for (SparseMatrix::InnerIterator it(lower, j); it; ++it) {
       const auto i = static_cast<Index>(it.row());
       const Index row = inner_.slot[static_cast<std::size_t>(i)];
@@ -78,6 +79,7 @@ InnerSystem::InnerSystem(const Disk& disk, const SparseMatrix& lower)
       if (row != kFixed && column == kFixed) coupling_.push_back({row, j, it.value()});
       if (row == kFixed && column != kFixed) coupling_.push_back({column, i, it.value()});
     }
+  }
 }
 
 void InnerSystem::solve(std::span<Vec2> x) const {
@@ -87,7 +89,7 @@ void InnerSystem::solve(std::span<Vec2> x) const {
     if (inner_.slot[v] != kFixed) rhs[static_cast<std::size_t>(inner_.slot[v])] = x[v];
   for (const Coupling& c : coupling_)
     rhs[static_cast<std::size_t>(c.row)] -= c.value * x[static_cast<std::size_t>(c.boundary)];
-  system_->solve(rhs);
+  system_->solve(rhs, stop_);
   for (std::size_t v = 0; v < x.size(); ++v)
     if (inner_.slot[v] != kFixed) x[v] = rhs[static_cast<std::size_t>(inner_.slot[v])];
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/linear/eliminate.hpp"
@@ -42,11 +43,12 @@ std::vector<double> product(const SparseMatrix& laplacian, std::span<const doubl
 /// The rows of a Laplacian that belong to inner vertices, factored once.
 class InnerSystem {
  public:
-  /// lower: as from cotan_laplacian(). Throws Error{solver_failed}.
+  /// lower: as from cotan_laplacian(). Throws Error{solver_failed, cancelled}.
   InnerSystem(const Disk& disk, const SparseMatrix& lower);
 
   /// x: one entry a vertex. Values on the boundary stay; inside, x becomes the solution of L x =
-  /// what was there. Zeros inside give the harmonic extension of the boundary. Thread-safe.
+  /// what was there. Zeros inside give the harmonic extension of the boundary. Thread-safe. Throws
+  /// Error{cancelled}, as the disk's job.
   void solve(std::span<Vec2> x) const;
 
  private:
@@ -59,6 +61,7 @@ class InnerSystem {
   FreeVertices inner_;
   std::vector<Coupling> coupling_;
   std::unique_ptr<RealSystem> system_;
+  std::stop_token stop_;
 };
 
 /// The log scale factors, 0 on the boundary, that make the metric flat inside to first order:

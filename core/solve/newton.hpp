@@ -15,7 +15,7 @@ class Newton {
   explicit Newton(const BarrierMesh& mesh) : mesh_(mesh), model_(barrier_pattern(mesh)) {}
 
   /// One step. Returns the share by which the energy fell: 0 when it can fall no further. With
-  /// epsilon 0 the triangles must be positive, and remain so.
+  /// epsilon 0 the triangles must be positive, and remain so. Throws Error{cancelled}.
   double step(UvMap& uv, const Barrier& barrier);
 
  private:

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/cancel.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -20,10 +22,12 @@ std::vector<char> near_vertices(const Disk& disk, std::span<const Index> faces, 
   for (Index t : faces) reach(t);
   std::size_t first = 0;
   for (int ring = 0; ring < rings; ++ring)
-    for (const std::size_t last = front.size(); first < last; ++first)
+    for (const std::size_t last = front.size(); first < last; ++first) {
+      look_now_and_then(first, disk.stop);
       for (Index c = disk.corners.begin[front[first]]; c < disk.corners.begin[front[first] + 1];
            ++c)
         reach(disk.corners.corner[c] / 3);
+    }
   if (static_cast<double>(front.size()) > kMost * static_cast<double>(near.size()))
     std::fill(near.begin(), near.end(), 1);
   return near;
@@ -51,7 +55,8 @@ class Cutter {
   std::vector<Index> faces_from(Index seed, std::vector<char>& open) {
     std::vector<Index> faces, inside{seed};
     open[seed] = 0;
-    for (std::size_t k = 0; k < inside.size(); ++k)
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      look_now_and_then(k, disk_.stop);
       for (Index c = disk_.corners.begin[inside[k]]; c < disk_.corners.begin[inside[k] + 1]; ++c) {
         const Index t = disk_.corners.corner[c] / 3;
         if (taken_[t] != 0) continue;
@@ -60,6 +65,7 @@ class Cutter {
         for (Index v : disk_.faces[t])
           if (open[v] != 0) open[v] = 0, inside.push_back(v);
       }
+    }
     std::sort(faces.begin(), faces.end());
     return faces;
   }
@@ -68,6 +74,7 @@ class Cutter {
     Patch patch{.mesh = {}, .face = std::move(faces), .vertex = {}};
     std::vector<char> fixed;
     for (Index t : patch.face) {
+      look_now_and_then(patch.mesh.rest.size(), disk_.stop);
       patch.mesh.rest.push_back(disk_.rest[t]);
       Triangle& corners = patch.mesh.faces.emplace_back();
       for (std::size_t i = 0; i < 3; ++i) {
@@ -82,6 +89,7 @@ class Cutter {
     }
     for (Index v : patch.vertex) number_[v] = kFixed;
     patch.mesh.free = number_free(fixed);
+    patch.mesh.stop = disk_.stop;
     return patch;
   }
 

@@ -24,16 +24,17 @@ constexpr int kMostSteps = 30;                                 // for each weigh
 constexpr double kTolerance = 1e-3;                            // relative fall in one step
 constexpr double kShift = 1e-10;  // of the mean of the diagonal: translations and turns are free
 
-BarrierMesh loose(const Disk& disk, const std::vector<Spring>& springs) {
+BarrierMesh loose(const Disk& disk, const std::vector<Spring>& springs,
+                  const std::stop_token& stop) {
   const std::vector<char> fixed(disk.positions.size(), 0);
-  return {{disk.faces.begin(), disk.faces.end()}, disk.rest, number_free(fixed), springs};
+  return {{disk.faces.begin(), disk.faces.end()}, disk.rest, number_free(fixed), springs, stop};
 }
 
 class Settling {
  public:
   Settling(const Disk& disk, const MapIntent& intent, UvMap& uv)
       : disk_(disk),
-        mesh_(loose(disk, intent.springs)),
+        mesh_(loose(disk, intent.springs, intent.stop)),
         boundary_(disk),
         barrier_{intent.rigidity, 1, 0},
         model_(barrier_pattern(mesh_)),
@@ -52,7 +53,7 @@ class Settling {
     if (system == nullptr) return 0;
     std::vector<Vec2> x;  // one entry an unknown, in its first coordinate
     for (const double g : model_.gradient) x.emplace_back(-g, 0);
-    system->solve(x);
+    system->solve(x, stop_);
     std::vector<Vec2> step;
     for (std::size_t k = 0; k < x.size(); k += 2) step.emplace_back(x[k].x(), x[k + 1].x());
     double slope = 0;

@@ -41,6 +41,7 @@ Start start_from(const Disk& disk, Map map, Executor& executor) {
     const double energy = symmetric_dirichlet_energy(disk, uv, executor);
     return {std::move(uv), energy};
   } catch (const Error&) {  // no such map of this mesh: there are others
+    throw_if_cancelled(disk.stop);
     return {{}, std::numeric_limits<double>::infinity()};
   }
 }

@@ -104,7 +104,7 @@ BarrierMesh fitted(const BarrierMesh& mesh, const UvMap& uv) {
 }
 
 bool is_untangled(const BarrierMesh& mesh, const UvMap& uv) {
-  return least_determinant(mesh, uv) > 0 && flipped_faces(mesh.faces, uv).empty();
+  return least_determinant(mesh, uv) > 0 && flipped_faces(mesh.faces, uv, mesh.stop).empty();
 }
 
 /// Turns the triangles of a patch over until at most `enough` are flipped. Gives up where they do
@@ -115,7 +115,7 @@ void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t en
   std::size_t target = mesh.faces.size();
   double floor = kFirstEpsilon;
   for (int k = 0; k < kMostTurning; ++k, floor = std::max(kLeastEpsilon, floor / 2)) {
-    const std::size_t flips = flipped_faces(mesh.faces, uv).size();
+    const std::size_t flips = flipped_faces(mesh.faces, uv, mesh.stop).size();
     const double worst = least_determinant(mesh, uv);
     if (flips <= enough && (flips > 0 || worst > 0)) return;
     if (k > 0 && k % kPatience == 0 && flips > std::exchange(target, flips / 2)) return;
@@ -193,10 +193,10 @@ struct Left {
 /// then it has yet to settle.
 void mend(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv, Left& left) {
   UvMap own = map_of(patch, uv);
-  const std::size_t before = flipped_faces(patch.mesh.faces, own).size();
+  const std::size_t before = flipped_faces(patch.mesh.faces, own, disk.stop).size();
   turn_over(patch.mesh, intent, 0, own);
   const bool is_mended = is_untangled(patch.mesh, own);
-  if (!is_mended && flipped_faces(patch.mesh.faces, own).size() > before / 2) return;
+  if (!is_mended && flipped_faces(patch.mesh.faces, own, disk.stop).size() > before / 2) return;
   put_back(patch, own, uv);
   if (is_mended) settle(disk, intent, patch, uv);
   left.mark(patch, is_mended ? 0 : 1);
@@ -230,9 +230,9 @@ void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) 
   const auto few = static_cast<std::size_t>(kFew * static_cast<double>(before));
   UvMap own = map_of(patch, uv);
   turn_over(patch.mesh, intent, few, own);
-  if (flipped_faces(patch.mesh.faces, own).size() > few) return;
+  if (flipped_faces(patch.mesh.faces, own, disk.stop).size() > few) return;
   put_back(patch, own, uv);
-  left.flipped = flipped_faces(disk.faces, uv);
+  left.flipped = flipped_faces(disk.faces, uv, disk.stop);
   left.mark(patch, 1);
 }
 
@@ -252,7 +252,7 @@ void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& le
       if (may_grow && is_crowded(patch, uv)) continue;
       mend(disk, intent, patch, uv, left);
     }
-    left.flipped = flipped_faces(disk.faces, uv);
+    left.flipped = flipped_faces(disk.faces, uv, disk.stop);
     if (rings >= kMostRings) break;
   }
 }
@@ -276,7 +276,7 @@ bool start_over(const Disk& disk, const MapIntent& intent, UvMap& uv) {
 
 bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv) {
   start = at_its_place(disk, intent, std::move(start));
-  if (!flipped_faces(disk.faces, start).empty()) return false;
+  if (!flipped_faces(disk.faces, start, disk.stop).empty()) return false;
   uv = std::move(start);
   Patch patch = whole(disk);
   settle(disk, intent, patch, uv);
@@ -285,7 +285,7 @@ bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& u
 
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   assert(intent.rings >= 1);
-  Left left{flipped_faces(disk.faces, uv), std::vector<char>(disk.faces.size(), 0)};
+  Left left{flipped_faces(disk.faces, uv, disk.stop), std::vector<char>(disk.faces.size(), 0)};
   thin_out(disk, intent, uv, left);
   if (exceeds(left.flipped.size(), kMany, disk.faces.size()) && start_over(disk, intent, uv))
     return 0;

@@ -21,7 +21,7 @@ class Reference final : public RealSystem {
  public:
   explicit Reference(const SparseMatrix& lower) : llt_(lower) {}
   [[nodiscard]] bool is_definite() const { return llt_.info() == Eigen::Success; }
-  void solve(std::span<Vec2> b) const override {
+  void solve(std::span<Vec2> b, const std::stop_token& = {}) const override {
     Eigen::Map<Eigen::Matrix2Xd> x(b.front().data(), 2, Eigen::Index(b.size()));
     x = llt_.solve(x.transpose()).transpose().eval();
   }
