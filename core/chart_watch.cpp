@@ -18,8 +18,8 @@ double share_done(int iterations, const Stop& stop) {
   return 1 - std::exp2(-iterations / kHalfWay);
 }
 
-IterationEvent describe(const Disk& disk, const Solution& s) {
-  const Distortion d = distortion(distortion_sums(disk.rest, disk.faces, s.uv));
+IterationEvent describe(const Disk& disk, const Solution& s, Executor& executor) {
+  const Distortion d = distortion(distortion_sums(disk.rest, disk.faces, s.uv, executor));
   const double before = s.energy[s.energy.size() - 2], now = s.energy.back();
   return {.iteration = s.iterations,
           .energy = now,
@@ -32,8 +32,9 @@ IterationEvent describe(const Disk& disk, const Solution& s) {
 }  // namespace
 
 ChartWatch::ChartWatch(const Progress& progress, Index chart_count, std::size_t face_count,
-                       double begin)
+                       double begin, Executor& executor)
     : progress_(progress),
+      executor_(executor),
       chart_count_(chart_count),
       faces_total_(static_cast<double>(std::max<std::size_t>(face_count, 1))),
       begin_(begin) {}
@@ -82,7 +83,7 @@ SolveWatch ChartWatch::solve_watch(const Disk& disk, const Stop& stop,
   watch.on_stage = [this](Stage stage) { tell(stage); };
   if (is_followed())
     watch.loop.on_iteration = [this, &disk, &stop, &told](const Solution& s) {
-      told.push_back(describe(disk, s));
+      told.push_back(describe(disk, s, executor_));
       progress_.on_iteration(placed(told.back(), stop));
     };
   return watch;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/executor.hpp"
 #include "core/progress.hpp"
 #include "core/solve/solve.hpp"
 
@@ -17,8 +18,10 @@ inline constexpr double kChartsBegin = 0.05, kSolveBegin = 0.10, kSolveEnd = 0.9
 /// faces, the lambdas of a chart weigh alike.
 class ChartWatch {
  public:
-  /// progress must outlive the watch. begin: the share of the job that is behind us.
-  ChartWatch(const Progress& progress, Index chart_count, std::size_t face_count, double begin);
+  /// progress and executor, which runs what is measured of iterations, must outlive the watch.
+  /// begin: the share of the job that is behind us.
+  ChartWatch(const Progress& progress, Index chart_count, std::size_t face_count, double begin,
+             Executor& executor);
 
   void begin_chart(std::size_t faces, std::size_t lambda_count);
   /// lambda is told with every event of the run; empty when there is but one map.
@@ -43,6 +46,7 @@ class ChartWatch {
   [[nodiscard]] IterationEvent placed(IterationEvent event, const Stop& stop) const;
 
   const Progress& progress_;
+  Executor& executor_;
   Index chart_ = 0, chart_count_;
   double faces_total_, faces_done_ = 0, faces_now_ = 0;
   double begin_;

@@ -54,10 +54,10 @@ Held held_or_begun(const Chart& chart, const Disk& disk, const UnwrapOptions& op
 
 /// Scales a free map to UV area = 3D area in mesh units: all charts then share one texel density.
 /// One under position constraints goes to its place on the page.
-MappedChart finish(const Disk& disk, KeptPart part, const ChartHold& hold,
-                   const Solution& solution) {
+MappedChart finish(const Disk& disk, KeptPart part, const ChartHold& hold, const Solution& solution,
+                   Executor& executor) {
   MappedChart mapped;
-  const DistortionSums own = distortion_sums(disk.rest, disk.faces, part.uv, disk.stop);
+  const DistortionSums own = distortion_sums(disk.rest, disk.faces, part.uv, executor);
   const double even = std::sqrt(own.area / own.uv_area);
   if (!std::isfinite(even))
     throw Error(ErrorCode::solver_failed,
@@ -81,14 +81,14 @@ MappedChart finish(const Disk& disk, KeptPart part, const ChartHold& hold,
 /// The parts that keep the promise, each with its share of the map. What mending took is told with
 /// the first of them.
 std::vector<MappedChart> finish_parts(const Disk& disk, Kept kept, const ChartHold& hold,
-                                      const Solution& solution) {
+                                      const Solution& solution, Executor& executor) {
   std::vector<MappedChart> mapped;
   if (kept.parts.size() == 1) {
-    mapped.push_back(finish(disk, std::move(kept.parts.front()), hold, solution));
+    mapped.push_back(finish(disk, std::move(kept.parts.front()), hold, solution, executor));
   } else {
     for (KeptPart& part : kept.parts) {
       const Disk own = make_disk(part.chart->mesh, part.chart->loops, nullptr, disk.stop);
-      mapped.push_back(finish(own, std::move(part), {}, solution));
+      mapped.push_back(finish(own, std::move(part), {}, solution, executor));
       mapped.back().report.mending.parts = kept.mending.parts;
     }
   }
@@ -139,7 +139,7 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
                           most_rise_of(chart)};
     if (options.guarantee != Guarantee::none) watch.tell(Stage::untangle);
     Kept kept = keep_promise(job.chart, disk, std::move(solution.uv), promise);
-    maps[k] = finish_parts(disk, std::move(kept), hold, solution);
+    maps[k] = finish_parts(disk, std::move(kept), hold, solution, executor);
     watch.end_run();
   }
   watch.end_chart();

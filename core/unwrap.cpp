@@ -62,14 +62,14 @@ void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
   layout.held[surface].push_back(std::move(mapped.held));
 }
 
-ChartWatch chart_watch(const TakenApart& taken, const Progress& progress) {
+ChartWatch chart_watch(const TakenApart& taken, const Progress& progress, Executor& executor) {
   std::size_t chart_count = 0, face_count = 0;
   for (const Charts& part : taken.all->surfaces) {
     chart_count += part.charts.size();
     for (const Chart& chart : part.charts) face_count += chart.mesh.faces.size();
   }
   require_area(taken.all->surfaces);
-  return {progress, static_cast<Index>(chart_count), face_count, taken.solve_begin};
+  return {progress, static_cast<Index>(chart_count), face_count, taken.solve_begin, executor};
 }
 
 /// page: the position constraints of every chart of every surface.
@@ -77,7 +77,7 @@ std::vector<Layout> map_charts(const TakenApart& taken, const std::vector<std::v
                                const UnwrapOptions& options, const Progress& progress,
                                Executor& executor) {
   const Prepared& all = *taken.all;
-  ChartWatch watch = chart_watch(taken, progress);
+  ChartWatch watch = chart_watch(taken, progress, executor);
   std::vector<Layout> layouts = empty_layouts(all.surfaces, lambdas_of(options).size());
   if (!all.note.empty())
     for (Layout& layout : layouts) layout.report.notes.push_back(all.note);

@@ -5,17 +5,72 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <vector>
-
-#include "core/cancel.hpp"
 
 namespace unwrapd {
 namespace {
 
-/// Of one face: its singular values, by which it counts among all, and the area it counts with.
-struct Stretches {
-  double sigma_max, sigma_min, area;
+constexpr std::size_t kBlock = 4096;  // faces: fixed, so that no sum depends on threads
+
+/// A part of the faces, and the map of all.
+struct Faces {
+  std::span<const RestTriangle> rest;
+  std::span<const Triangle> corners;
+  std::span<const Vec2> uv;
+
+  [[nodiscard]] Faces block(std::size_t k) const {
+    const std::size_t begin = k * kBlock, count = std::min(kBlock, corners.size() - begin);
+    return {rest.subspan(begin, count), corners.subspan(begin, count), uv};
+  }
+  [[nodiscard]] Jacobian jacobian_of(std::size_t t) const {
+    return jacobian(rest[t], uv_edges(corners[t], uv));
+  }
 };
+
+/// The sums of a block as if no singular value were below the floor, and what tells whether.
+struct Block {
+  DistortionSums sums;
+  double least_determinant = std::numeric_limits<double>::infinity(), greatest_norm = 0;
+
+  /// sigma_min >= det J / |J|
+  [[nodiscard]] bool is_above(double floor) const {
+    return least_determinant > floor * std::sqrt(greatest_norm);
+  }
+};
+
+/// No roots: sigma_max / sigma_min + sigma_min / sigma_max = |J|^2 / det J.
+Block sum_up(const Faces& faces) {
+  Block block;
+  DistortionSums& sums = block.sums;
+  for (std::size_t t = 0; t < faces.rest.size(); ++t) {
+    const Jacobian j = faces.jacobian_of(t);
+    const double a = faces.rest[t].area, determinant = j.determinant(), norm = j.squared_norm();
+    const double inverse = 1 / determinant, shape = norm * inverse;
+    sums.area += a;
+    sums.uv_area += a * std::abs(determinant);
+    sums.angle += a * shape;
+    sums.inverse += a * inverse;
+    sums.stretch += a * (shape * inverse) / 2;
+    if (!(determinant > 0)) ++sums.flipped;
+    block.least_determinant = std::min(block.least_determinant, determinant);
+    block.greatest_norm = std::max(block.greatest_norm, norm);
+  }
+  return block;
+}
+
+/// The same of a block where something is flipped or below the floor.
+void add_floored(const Faces& faces, double floor, DistortionSums& sums) {
+  for (std::size_t t = 0; t < faces.rest.size(); ++t) {
+    const Jacobian j = faces.jacobian_of(t);
+    const double a = faces.rest[t].area, sigma_min = j.sigma_min();
+    const double s1 = std::max(j.sigma_max(), floor), s2 = std::max(std::abs(sigma_min), floor);
+    sums.angle += a * (s1 / s2 + s2 / s1);
+    sums.inverse += a / (s1 * s2);
+    sums.stretch += a * (1 / (s1 * s1) + 1 / (s2 * s2)) / 2;
+    if (!(sigma_min > 0)) ++sums.flipped;
+  }
+}
 
 }  // namespace
 
@@ -38,27 +93,36 @@ double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> fac
 }
 
 DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
-                               std::span<const Vec2> uv, const std::stop_token& stop) {
+                               std::span<const Vec2> uv, Executor& executor) {
   assert(rest.size() == faces.size());
+  const Faces all{rest, faces, uv};
+  std::vector<Block> blocks((faces.size() + kBlock - 1) / kBlock);
+  const auto for_each_block = [&](const auto& visit) {
+    executor.for_each_block(static_cast<int>(blocks.size()),
+                            [&](int k) { visit(static_cast<std::size_t>(k)); });
+  };
+  for_each_block([&](std::size_t k) { blocks[k] = sum_up(all.block(k)); });
+  DistortionSums areas;
+  for (const Block& block : blocks)
+    areas.area += block.sums.area, areas.uv_area += block.sums.uv_area;
+  const double floor = std::max(kMinSingularValue * std::sqrt(areas.uv_area / areas.area), 1e-150);
+  const auto is_above = [&](const Block& block) { return block.is_above(floor); };
+  if (!std::ranges::all_of(blocks, is_above))
+    for_each_block([&](std::size_t k) {
+      if (is_above(blocks[k])) return;
+      blocks[k].sums = {.area = blocks[k].sums.area, .uv_area = blocks[k].sums.uv_area};
+      add_floored(all.block(k), floor, blocks[k].sums);
+    });
   DistortionSums sums;
-  std::vector<Stretches> stretches;
-  stretches.reserve(faces.size());
-  for (std::size_t t = 0; t < faces.size(); ++t) {
-    look_now_and_then(t, stop);
-    const Jacobian j = jacobian(rest[t], uv_edges(faces[t], uv));
-    sums.area += rest[t].area;
-    sums.uv_area += rest[t].area * std::abs(j.determinant());
-    stretches.push_back({j.sigma_max(), j.sigma_min(), rest[t].area});
-  }
-  const double floor = std::max(kMinSingularValue * std::sqrt(sums.uv_area / sums.area), 1e-150);
-  for (const auto& [sigma_max, sigma_min, a] : stretches) {
-    const double s1 = std::max(sigma_max, floor), s2 = std::max(std::abs(sigma_min), floor);
-    sums.angle += a * (s1 / s2 + s2 / s1);
-    sums.inverse += a / (s1 * s2);
-    sums.stretch += a * (1 / (s1 * s1) + 1 / (s2 * s2)) / 2;
-    if (!(sigma_min > 0)) ++sums.flipped;
-  }
+  for (const Block& block : blocks) sums += block.sums;
   return sums;
+}
+
+DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+                               std::span<const Vec2> uv, const std::stop_token& stop) {
+  SerialExecutor serial;
+  JobExecutor job(serial, stop);
+  return distortion_sums(rest, faces, uv, job);
 }
 
 Distortion distortion(const DistortionSums& sums) {

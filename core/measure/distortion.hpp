@@ -4,6 +4,7 @@
 #include <span>
 #include <stop_token>
 
+#include "core/executor.hpp"
 #include "core/measure/jacobian.hpp"
 #include "core/report.hpp"
 
@@ -25,7 +26,12 @@ struct DistortionSums {
 /// stretch, and so does sigma_max. A chart that reaches the floor shows D in the thousands.
 inline constexpr double kMinSingularValue = 1e-6;
 
-/// faces index uv; rest has one entry a face.
+/// faces index uv; rest has one entry a face. The same bits by any executor. Throws
+/// Error{cancelled}.
+DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+                               std::span<const Vec2> uv, Executor& executor);
+
+/// The same on the calling thread.
 DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                                std::span<const Vec2> uv, const std::stop_token& stop = {});
 

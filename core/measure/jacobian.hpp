@@ -24,6 +24,7 @@ struct Jacobian {
   [[nodiscard]] double sigma_max() const { return turn_scale() + deformation(); }
   [[nodiscard]] double sigma_min() const { return turn_scale() - deformation(); }  ///< < 0: flipped
   [[nodiscard]] double determinant() const { return e * e + h * h - f * f - g * g; }
+  [[nodiscard]] double squared_norm() const { return 2 * (e * e + h * h + f * f + g * g); }
 };
 
 inline UvEdges uv_edges(const Triangle& face, std::span<const Vec2> uv) {

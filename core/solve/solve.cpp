@@ -35,11 +35,16 @@ constexpr double kTrustedLambda = 0.02;
 constexpr double kOpenShare = 0.9;
 constexpr int kTrialIterations = 2;
 
-UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
-  const double area = uv_area(disk.rest, disk.faces, uv);
+/// area: that of uv.
+UvMap scaled_to_unit_area(UvMap uv, double area) {
   if (area > 0)
     for (Vec2& u : uv) u /= std::sqrt(area);
   return uv;
+}
+
+UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
+  const double area = uv_area(disk.rest, disk.faces, uv);
+  return scaled_to_unit_area(std::move(uv), area);
 }
 
 Rigidity rigidity_of(const Disk& disk, double lambda, LambdaUnits units) {
@@ -76,8 +81,9 @@ Solution direct(const Disk& disk, const Holds& holds, UvMap uv) {
 std::optional<UvMap> usable_frame_map(const Disk& disk, const GlobalStep& global) {
   UvMap start = kept_value(disk, Content("frame map").add(disk.content), [&] {
     UvMap uv = frame_map(disk, global);
-    if (!(uv_area(disk.rest, disk.faces, uv) > kMinAreaShare)) return UvMap();
-    return scaled_to_unit_area(disk, std::move(uv));
+    const double area = uv_area(disk.rest, disk.faces, uv);
+    if (!(area > kMinAreaShare)) return UvMap();
+    return scaled_to_unit_area(std::move(uv), area);
   });
   if (start.empty()) return std::nullopt;
   return start;

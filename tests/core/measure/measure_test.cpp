@@ -6,6 +6,7 @@
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
 #include "tests/core/shapes.hpp"
+#include "tests/core/two_threads.hpp"
 
 namespace unwrapd {
 namespace {
@@ -113,6 +114,76 @@ TEST(Distortion, OfACollapsedMapIsFinite) {
   const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, point));
   EXPECT_TRUE(std::isfinite(d.angle) && std::isfinite(d.area) && std::isfinite(d.stretch));
   EXPECT_EQ(d.flipped, mesh.face_count());
+}
+
+/// A map of more faces than are summed up at once, some of which it flips or flattens.
+UvMap bent(const TriMesh& mesh, double wildness, std::mt19937& rng) {
+  std::normal_distribution<double> any;
+  UvMap uv = flattened(mesh);
+  for (Vec2& u : uv) u += wildness * Vec2(any(rng), any(rng)) / 100;
+  return uv;
+}
+
+DistortionSums sums_by_svd(const TriMesh& mesh, const UvMap& uv) {
+  const std::vector<RestTriangle> rest = flatten(mesh);
+  std::vector<Eigen::Vector2d> sigma;
+  DistortionSums sums;
+  for (std::size_t t = 0; t < rest.size(); ++t) {
+    const UvEdges u = uv_edges(mesh.faces[t], uv);
+    Eigen::Matrix2d from, to;
+    from << rest[t].edge[0], rest[t].edge[1];
+    to << u[0], u[1];
+    const Eigen::Matrix2d dense = to * from.inverse();
+    sigma.emplace_back(Eigen::JacobiSVD<Eigen::Matrix2d>(dense).singularValues());
+    sums.area += rest[t].area;
+    sums.uv_area += rest[t].area * sigma.back().prod();
+    sums.flipped += dense.determinant() <= 0 ? 1 : 0;
+  }
+  const double floor = kMinSingularValue * std::sqrt(sums.uv_area / sums.area);
+  for (std::size_t t = 0; t < rest.size(); ++t) {
+    const double a = rest[t].area, s1 = std::max(sigma[t][0], floor),
+                 s2 = std::max(sigma[t][1], floor);
+    sums.angle += a * (s1 / s2 + s2 / s1);
+    sums.inverse += a / (s1 * s2);
+    sums.stretch += a * (1 / (s1 * s1) + 1 / (s2 * s2)) / 2;
+  }
+  return sums;
+}
+
+TEST(Distortion, SumsUpWhatAnSvdOfEachFaceTells) {
+  std::mt19937 rng(5);
+  const TriMesh mesh = shapes::grid(80, 80);
+  for (const double wildness : {0.0, 0.1, 30.0}) {
+    UvMap uv = bent(mesh, wildness, rng);
+    const auto at = [&](std::size_t i) -> Vec2& { return uv[std::size_t(mesh.faces[7000][i])]; };
+    if (wildness < 1)  // one face alone, far below the floor, yet not flipped
+      at(0) += (1 - 1e-9) * ((at(1) + at(2)) / 2 - at(0));
+    const DistortionSums got = distortion_sums(flatten(mesh), mesh.faces, uv);
+    const DistortionSums want = sums_by_svd(mesh, uv);
+    EXPECT_NEAR(got.area / want.area, 1, 1e-12);
+    EXPECT_NEAR(got.uv_area / want.uv_area, 1, 1e-12);
+    EXPECT_NEAR(got.angle / want.angle, 1, 1e-6) << wildness;
+    EXPECT_NEAR(got.inverse / want.inverse, 1, 1e-6) << wildness;
+    EXPECT_NEAR(got.stretch / want.stretch, 1, 1e-6) << wildness;
+    EXPECT_EQ(got.flipped, want.flipped) << wildness;
+  }
+}
+
+TEST(Distortion, HasTheSameBitsOnTwoThreads) {
+  std::mt19937 rng(6);
+  const TriMesh mesh = shapes::grid(80, 80);
+  const std::vector<RestTriangle> rest = flatten(mesh);
+  for (const double wildness : {0.1, 30.0}) {
+    const UvMap uv = bent(mesh, wildness, rng);
+    TwoThreads two;
+    const DistortionSums one = distortion_sums(rest, mesh.faces, uv);
+    const DistortionSums both = distortion_sums(rest, mesh.faces, uv, two);
+    EXPECT_EQ(one.angle, both.angle);
+    EXPECT_EQ(one.inverse, both.inverse);
+    EXPECT_EQ(one.stretch, both.stretch);
+    EXPECT_EQ(one.uv_area, both.uv_area);
+    EXPECT_EQ(one.flipped, both.flipped);
+  }
 }
 
 TEST(Energy, IsZeroForAnIsometryAndKnownForAStretch) {  // Eqs. (A2), (A3)
