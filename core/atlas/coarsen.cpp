@@ -145,14 +145,12 @@ class Contraction {
     const Index v = start(h), w = end(h);
     ++now_;
     const bool w_is_rim = for_each_neighbour(w, [&](Index other) { stamp_[other] = now_; });
-    int common = 0, parallel = 0;
-    const bool v_is_rim = for_each_neighbour(v, [&](Index other) {
-      common += stamp_[other] == now_ ? 1 : 0;
-      parallel += other == w ? 1 : 0;
-    });
+    int common = 0;
+    const bool v_is_rim =
+        for_each_neighbour(v, [&](Index other) { common += stamp_[other] == now_ ? 1 : 0; });
     const bool is_inner = twin_[h] != kNoTwin;
     if (is_inner && v_is_rim && w_is_rim) return false;
-    return parallel == 1 && common == (is_inner ? 2 : 1);
+    return common == (is_inner ? 2 : 1);
   }
 
   /// Whether no face that stays would turn over.

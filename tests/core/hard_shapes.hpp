@@ -91,4 +91,15 @@ inline std::vector<NamedMesh> broken_surfaces() {
           {"a torus", torus(12, 8)}};
 }
 
+/// Every vertex moved along x, y and z by up to `most`, by a hash of its number.
+inline TriMesh noisy(TriMesh mesh, double most) {
+  std::uint32_t state = 1;
+  for (Vec3& p : mesh.positions)
+    for (int i = 0; i < 3; ++i) {
+      state = state * 1664525U + 1013904223U;
+      p[i] += most * (state / 2147483648.0 - 1);
+    }
+  return mesh;
+}
+
 }  // namespace unwrapd::shapes

@@ -1,34 +1,22 @@
 #include "core/atlas/coarsen.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <tuple>
 
 #include "core/atlas/carry.hpp"
-#include "core/atlas/region_charts.hpp"
 #include "core/error.hpp"
-#include "core/measure/orientation.hpp"
 #include "core/mesh/topology.hpp"
 #include "tests/core/hard_shapes.hpp"
-#include "tests/core/two_threads.hpp"
 
 namespace unwrapd {
 namespace {
 
 using namespace shapes;
-
-/// Every vertex moved along x, y and z by up to `most`, by a hash of its number.
-TriMesh noisy(TriMesh mesh, double most) {
-  std::uint32_t state = 1;
-  for (Vec3& p : mesh.positions)
-    for (int i = 0; i < 3; ++i) {
-      state = state * 1664525U + 1013904223U;
-      p[i] += most * (state / 2147483648.0 - 1);
-    }
-  return mesh;
-}
 
 std::vector<NamedMesh> surfaces() {
   return {{"sphere", sphere(4)},
@@ -83,6 +71,76 @@ TEST(Coarsen, PutsEachVertexInTheMiddleOfItsClusterAndKeepsOneFaceForThree) {
                 coarse.mesh.faces[t][i]);
 }
 
+struct Contracted {
+  Component before, after;
+};
+
+/// What contracting as far as it goes leaves of a surface.
+Contracted contracted(const Chart& c) {
+  const Coarse coarse = coarsen(c.mesh, c.halfedges, 1, {});
+  return {component_of(c.mesh.faces, c.halfedges),
+          component_of(corner_vertices(coarse.halfedges).faces, coarse.halfedges)};
+}
+
+Chart component(const TriMesh& mesh) {
+  return std::move(components_of(surface_of(mesh), {}).charts.front());
+}
+
+/// Where an edge's ends have a third neighbour in common, where an edge runs from rim to rim, and
+/// where there are two edges between the same ends.
+TEST(Coarsen, StopsBeforeItPinches) {
+  TriMesh pillow = grid(1, 1);
+  for (std::size_t t : {0U, 1U}) {
+    const Triangle face = pillow.faces[t];
+    pillow.faces.push_back({face[0], face[2], face[1]});
+  }
+  const std::vector<NamedMesh> thin{{"thin ring", torus(80, 3, 1, 0.05)},
+                                    {"sphere", sphere(2)},
+                                    {"ribbon", annulus(200, 2, 0.96, 1)},
+                                    {"strip", grid(80, 2, 1, 0.02)},
+                                    {"pillow", pillow}};
+  for (const auto& [name, mesh] : thin) {
+    const Contracted kept = contracted(component(mesh));
+    EXPECT_EQ(kept.after.genus, kept.before.genus) << name;
+    EXPECT_EQ(kept.after.boundaries, kept.before.boundaries) << name;
+  }
+}
+
+/// All of them look up, whatever bends the border.
+TEST(Coarsen, TurnsNoFaceOver) {
+  TriMesh comb = grid(60, 40);
+  std::erase_if(comb.faces, [&](const Triangle& face) {
+    const Vec3& p = comb.positions[std::size_t(face[0])];
+    return p.y() > 0.3 && std::fmod(p.x() * 15, 2) > 1;
+  });
+  for (Vec3& p : comb.positions) p += 0.006 * Vec3(std::sin(900 * p.y()), std::sin(700 * p.x()), 0);
+  const Chart chart = component(comb);
+  const Coarse coarse = coarsen(chart.mesh, chart.halfedges, 60, {});
+  const Vec3 up = Vec3::UnitZ();
+  for (const Triangle& face : coarse.mesh.faces) {
+    const auto at = [&](std::size_t i) { return coarse.mesh.positions[std::size_t(face[i])]; };
+    EXPECT_GT((at(1) - at(0)).cross(at(2) - at(0)).dot(up), 0);
+  }
+}
+
+/// Whatever the triangles were: near the pole of a cap they are a hundred times smaller.
+TEST(Coarsen, MakesClustersOfOneArea) {
+  const TriMesh mesh = sphere_cap(96, 60, 2.5);
+  const Coarse coarse = coarsen(mesh, build_halfedges(mesh.faces, mesh.vertex_count()), 600, {});
+  std::vector<double> area(coarse.mesh.positions.size(), 0);
+  double total = 0;
+  for (const Triangle& face : mesh.faces) {
+    const auto at = [&](std::size_t i) { return mesh.positions[std::size_t(face[i])]; };
+    const double own = (at(1) - at(0)).cross(at(2) - at(0)).norm() / 2;
+    total += own;
+    for (const Index v : face) area[std::size_t(coarse.cluster[std::size_t(v)])] += own / 3;
+  }
+  const double mean = total / double(area.size());
+  double spread = 0;
+  for (const double own : area) spread += (own / mean - 1) * (own / mean - 1);
+  EXPECT_LT(std::sqrt(spread / double(area.size())), 0.3);
+}
+
 /// Slabs of the small surface along x, and a slit where y changes its sign.
 std::vector<char> slabs(const Coarse& coarse, double width) {
   const auto slab = [&](Index t) {
@@ -132,6 +190,57 @@ TEST(Carry, CutsTheLargeSurfaceIntoPartsOfTheSameGenusAndBoundaries) {
     }
 }
 
+double seam_length(const TriMesh& mesh, const Halfedges& cut, const Halfedges& uncut) {
+  double length = 0;
+  for (Index h = 0; h < Index(cut.twin.size()); ++h)
+    if (cut.twin[std::size_t(h)] != uncut.twin[std::size_t(h)])
+      length += (mesh.positions[std::size_t(end_of(mesh.faces, h))] -
+                 mesh.positions[std::size_t(start_of(mesh.faces, h))])
+                    .norm();
+  return length / 2;
+}
+
+TEST(Carry, TakesTheShortestWay) {
+  for (const auto& [name, mesh] : surfaces()) {
+    const Halfedges halfedges = build_halfedges(mesh.faces, mesh.vertex_count());
+    const Coarse coarse = coarsen(mesh, halfedges, 300, {});
+    const std::vector<char> seam = slabs(coarse, 0.7);
+    Halfedges cut = coarse.halfedges;
+    for (std::size_t h = 0; h < seam.size(); ++h)
+      if (seam[h] != 0) cut.twin[h] = kNoTwin;
+    const Carried carried = carry(mesh, halfedges, coarse, seam, {});
+    const double large = seam_length(mesh, carried.cut, halfedges);
+    const double small = seam_length(coarse.mesh, cut, coarse.halfedges);
+    EXPECT_LT(large, 1.15 * small) << name;
+  }
+}
+
+/// Any edges are seams: rings around a vertex, tips, forks.
+std::vector<char> seams_by_lot(const Coarse& coarse, std::mt19937& rng) {
+  std::vector<char> seam(coarse.halfedges.twin.size(), 0);
+  const auto share = 1 + rng() % 60;
+  for (Index h = 0; h < Index(seam.size()); ++h) {
+    const Index twin = coarse.halfedges.twin[std::size_t(h)];
+    if (twin > h && rng() % 64 < share) seam[std::size_t(h)] = seam[std::size_t(twin)] = 1;
+  }
+  return seam;
+}
+
+/// A row of seams may enclose faces between two that the small surface has: they are no part.
+TEST(Carry, LeavesNoPartWithoutAFaceOfTheSmallSurface) {
+  std::mt19937 rng(1);
+  for (const auto& [name, mesh] : surfaces()) {
+    const Halfedges halfedges = build_halfedges(mesh.faces, mesh.vertex_count());
+    for (const int target : {20, 60, 300}) {
+      const Coarse coarse = coarsen(mesh, halfedges, target, {});
+      for (int k = 0; k < 80; ++k) {
+        const Carried carried = carry(mesh, halfedges, coarse, seams_by_lot(coarse, rng), {});
+        EXPECT_GE(std::ranges::min(carried.near), 0) << name << ' ' << target << ' ' << k;
+      }
+    }
+  }
+}
+
 TEST(Carry, CutsNothingWhereThereIsNoSeam) {
   const TriMesh mesh = sphere(4);
   const Halfedges halfedges = build_halfedges(mesh.faces, mesh.vertex_count());
@@ -147,32 +256,6 @@ TEST(Coarsen, StopsWhenTold) {
   EXPECT_THROW(
       coarsen(mesh, build_halfedges(mesh.faces, mesh.vertex_count()), 200, source.get_token()),
       Error);
-}
-
-std::vector<Chart> charts_through_a_small_surface(const Chart& component, Executor& executor) {
-  const Coarse coarse = coarsen(component.mesh, component.halfedges, 2000, {});
-  const Sheet sheet = make_sheet(coarse.mesh, coarse.halfedges);
-  return region_charts(component, coarse, segment(sheet, {}, executor), {});
-}
-
-TEST(RegionCharts, TakeANoisySurfaceApartIntoAFewDisksTheSameOnTwoThreads) {
-  const TriMesh mesh = noisy(torus(150, 75, 1, 0.4), 0.004);  // edges of 0.04
-  const Charts whole = components_of(surface_of(mesh), {});
-  SerialExecutor one;
-  TwoThreads two;
-  const std::vector<Chart> charts = charts_through_a_small_surface(whole.charts.front(), one);
-  const std::vector<Chart> again = charts_through_a_small_surface(whole.charts.front(), two);
-  EXPECT_LE(charts.size(), 4U);
-  ASSERT_EQ(again.size(), charts.size());
-  std::size_t faces = 0;
-  for (std::size_t k = 0; k < charts.size(); ++k) {
-    EXPECT_TRUE(is_disk(charts[k]));
-    EXPECT_LE(flipped_faces(charts[k].mesh.faces, charts[k].start).size(),
-              charts[k].mesh.faces.size() / 100);
-    EXPECT_EQ(again[k].start, charts[k].start);
-    faces += charts[k].mesh.faces.size();
-  }
-  EXPECT_EQ(faces, mesh.faces.size());
 }
 
 }  // namespace

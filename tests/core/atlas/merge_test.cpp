@@ -82,6 +82,30 @@ TEST(Merge, RefusesALargeUnionThatFillsItsHullTooLittle) {
 }
 
 /// Six sides of a cube lie flat as a cross, but only with slits, which are told.
+/// Sixteen squares: which unions come first is all the same by their borders.
+TEST(Merge, DrawsLotsWhereItHasAWhim) {
+  const Sheet sheet = sheet_of(shapes::grid(8, 8));
+  const double side = sheet.mesh.positions.back().x() - sheet.mesh.positions.front().x();
+  const Vec3 corner = sheet.mesh.positions.front();
+  const Partition squares = parted(sheet, [&](const Vec3& m) {
+    const auto cell = [&](int axis) { return int(4 * (m[axis] - corner[axis]) / side); };
+    return 4 * cell(1) + cell(0);
+  });
+  const auto merged = [&](double whim, int lot) {
+    SerialExecutor serial;
+    std::vector<std::vector<Index>> faces;
+    const MergeRules rules{.budget = 0.02, .cap = 0.02, .whim = whim, .lot = lot, .enough = 6};
+    for (const MappedRegion& patch :
+         merge_patches(Joiner(sheet), sheet, squares, rules, serial).patches)
+      faces.push_back(patch.region.faces);
+    return faces;
+  };
+  EXPECT_EQ(merged(0, 1), merged(0, 2));
+  EXPECT_EQ(merged(0.3, 1), merged(0.3, 1));
+  EXPECT_NE(merged(0.3, 1), merged(0.3, 2));
+  EXPECT_NE(merged(0.3, 1), merged(0, 1));
+}
+
 TEST(Merge, TellsOfSlitsOnBothSides) {
   const TriMesh mesh = shapes::cube(1);
   const Sheet sheet = sheet_of(mesh);
