@@ -39,6 +39,16 @@ void Factor::solve_in_order(std::span<Vec2> b, Executor& executor) const {
   solve_panels(*analysis_, panels_.get(), b, executor);
 }
 
+void Factor::descend_in_order(std::span<Vec2> b, std::span<const char> over,
+                              Executor& executor) const {
+  descend_panels(*analysis_, panels_.get(), b, over, executor);
+}
+
+void Factor::ascend_in_order(std::span<Vec2> b, std::span<const char> over,
+                             Executor& executor) const {
+  ascend_panels(*analysis_, panels_.get(), b, over, executor);
+}
+
 void Factor::solve(std::span<Vec2> b, const std::stop_token& stop) const {
   SerialExecutor serial;
   JobExecutor job(serial, stop);

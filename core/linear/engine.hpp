@@ -29,6 +29,11 @@ class Factor final : public RealSystem {
   /// As solve(), of unknowns listed in the order of elimination (analysis()->nodes.order).
   void solve_in_order(std::span<Vec2> b, Executor& executor) const;
 
+  /// The halves of solve_in_order(), one after the other; of those supernodes only that are among
+  /// `over` (supernodes_over()), or of all where it is empty: see descend_panels().
+  void descend_in_order(std::span<Vec2> b, std::span<const char> over, Executor& executor) const;
+  void ascend_in_order(std::span<Vec2> b, std::span<const char> over, Executor& executor) const;
+
   [[nodiscard]] const std::shared_ptr<const Analysis>& analysis() const { return analysis_; }
 
   /// While it is refilled, its analysis included.

@@ -32,22 +32,28 @@ class Workspace {
 
 class Sweep {
  public:
-  Sweep(const Analysis& analysis, const double* panels, std::span<Vec2> x)
-      : analysis_(analysis), nodes_(analysis.nodes), panels_(panels), x_(x) {}
+  Sweep(const Analysis& analysis, const double* panels, std::span<Vec2> x,
+        std::span<const char> over)
+      : analysis_(analysis), nodes_(analysis.nodes), panels_(panels), x_(x), over_(over) {}
 
-  void run(Executor& executor) {
+  void down(Executor& executor) {
     const Branches& branches = analysis_.branches;
-    const auto count = static_cast<int>(branches.all.size());
     const std::size_t shared = branches.shared_count;
     sums_.assign(branches.all.size() * shared, Vec2::Zero());
-    executor.for_each_block(count,
+    executor.for_each_block(static_cast<int>(branches.all.size()),
                             [&](int b) { down_branch(at(b), sums_.data() + at(b) * shared); });
     down_trunk(executor.stop());
+  }
+
+  void up(Executor& executor) const {
     up_trunk(executor.stop());
-    executor.for_each_block(count, [&](int b) { up_branch(at(b)); });
+    executor.for_each_block(static_cast<int>(analysis_.branches.all.size()),
+                            [&](int b) { up_branch(at(b)); });
   }
 
  private:
+  [[nodiscard]] bool is_visited(std::size_t s) const { return over_.empty() || over_[s] != 0; }
+
   [[nodiscard]] Workspace workspace(Branch branch) const {
     std::size_t height = 0;
     for (std::size_t s = branch.first; s < branch.end; ++s)
@@ -60,6 +66,7 @@ class Sweep {
     Workspace work = workspace(branch);
     const Index end = nodes_.first[branch.end];
     for (std::size_t s = branch.first; s < branch.end; ++s) {
+      if (!is_visited(s)) continue;
       eliminate(s, work);
       const std::span<const Index> rows = nodes_.below(s);
       const auto outer = std::lower_bound(rows.begin(), rows.end(), end);
@@ -80,6 +87,7 @@ class Sweep {
         nodes_.count(),
         [&](std::size_t s) {
           throw_if_cancelled(stop);
+          if (!is_visited(s)) return;
           eliminate(s, work);
           subtract(nodes_.below(s), work, analysis_.shape(s).pivots);
         },
@@ -94,7 +102,7 @@ class Sweep {
       const std::size_t first = b > 0 ? all[b - 1].end : 0;
       for (std::size_t s = end; s-- > first;) {
         throw_if_cancelled(stop);
-        substitute(s, work);
+        if (is_visited(s)) substitute(s, work);
       }
       if (b > 0) end = all[b - 1].first;
     }
@@ -103,7 +111,8 @@ class Sweep {
   void up_branch(std::size_t b) const {
     const Branch branch = analysis_.branches.all[b];
     Workspace work = workspace(branch);
-    for (std::size_t s = branch.end; s-- > branch.first;) substitute(s, work);
+    for (std::size_t s = branch.end; s-- > branch.first;)
+      if (is_visited(s)) substitute(s, work);
   }
 
   /// y1 = L11^-1 b1; work then has L21 y1 below the pivots.
@@ -135,14 +144,39 @@ class Sweep {
   const double* panels_;
   const PanelKernels kernels_ = panel_kernels();
   std::span<Vec2> x_;
-  std::vector<Vec2> sums_;  ///< of each branch: what it subtracts from the columns above
+  std::span<const char> over_;  ///< which supernodes are visited; empty: all
+  std::vector<Vec2> sums_;      ///< of each branch: what it subtracts from the columns above
 };
 
 }  // namespace
 
+std::vector<char> supernodes_over(const Analysis& analysis, std::span<const Index> columns) {
+  const Supernodes& nodes = analysis.nodes;
+  std::vector<char> over(nodes.count(), 0);
+  const auto owner = [&](Index column) -> char& {
+    const auto next = std::upper_bound(nodes.first.begin(), nodes.first.end(), column);
+    return over[static_cast<std::size_t>(next - nodes.first.begin()) - 1];
+  };
+  for (const Index column : columns) owner(column) = 1;
+  for (std::size_t s = 0; s < over.size(); ++s)
+    if (over[s] != 0 && !nodes.below(s).empty()) owner(nodes.below(s).front()) = 1;
+  return over;
+}
+
+void descend_panels(const Analysis& analysis, const double* panels, std::span<Vec2> x,
+                    std::span<const char> over, Executor& executor) {
+  Sweep(analysis, panels, x, over).down(executor);
+}
+
+void ascend_panels(const Analysis& analysis, const double* panels, std::span<Vec2> x,
+                   std::span<const char> over, Executor& executor) {
+  Sweep(analysis, panels, x, over).up(executor);
+}
+
 void solve_panels(const Analysis& analysis, const double* panels, std::span<Vec2> x,
                   Executor& executor) {
-  Sweep(analysis, panels, x).run(executor);
+  descend_panels(analysis, panels, x, {}, executor);
+  ascend_panels(analysis, panels, x, {}, executor);
 }
 
 }  // namespace unwrapd

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/cancel.hpp"
+#include "core/linear/solve_panels.hpp"
 #include "core/solve/kept.hpp"
 
 namespace unwrapd {
@@ -103,6 +104,26 @@ void GlobalStep::solve_by_rank(std::span<Vec2> force) const {
   const auto free_count = static_cast<std::size_t>(free_.count);
   if (system_) system_->solve_in_order(force.first(free_count), runs);
   std::ranges::fill(force.subspan(free_count), Vec2::Zero());
+}
+
+void GlobalStep::descend_by_rank(std::span<Vec2> force, std::span<const char> over) const {
+  assert(free_.count == static_cast<Index>(force.size()));
+  SerialExecutor serial;
+  Executor& runs = executor_ != nullptr ? *executor_ : serial;
+  throw_if_cancelled(runs.stop());
+  system_->descend_in_order(force, over, runs);
+}
+
+void GlobalStep::ascend_by_rank(std::span<Vec2> force, std::span<const char> over) const {
+  assert(free_.count == static_cast<Index>(force.size()));
+  SerialExecutor serial;
+  Executor& runs = executor_ != nullptr ? *executor_ : serial;
+  throw_if_cancelled(runs.stop());
+  system_->ascend_in_order(force, over, runs);
+}
+
+std::vector<char> GlobalStep::over(std::span<const Index> ranks) const {
+  return supernodes_over(*system_->analysis(), ranks);
 }
 
 void GlobalStep::solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const {

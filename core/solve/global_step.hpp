@@ -34,6 +34,15 @@ class GlobalStep {
   /// As solve(), of a force listed by ranks, which saves sorting it.
   void solve_by_rank(std::span<Vec2> force) const;
 
+  /// The two halves of solve_by_rank() where nothing is held: after the first, forces on vertices
+  /// among those that `over` was made for may be added up with those of another first half. Only
+  /// what lies over them is read: the change elsewhere is not found. over: empty for all vertices.
+  void descend_by_rank(std::span<Vec2> force, std::span<const char> over) const;
+  void ascend_by_rank(std::span<Vec2> force, std::span<const char> over) const;
+
+  /// For these vertices, given by ranks.
+  [[nodiscard]] std::vector<char> over(std::span<const Index> ranks) const;
+
   /// Replaces b by the solution for another positive definite matrix of the same pattern, of which
   /// the lower triangle is given; nothing is held. Throws Error{solver_failed}.
   void solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const;

@@ -120,6 +120,7 @@ class Boundary {
   }
 
   [[nodiscard]] std::size_t size() const { return rank_.size(); }
+  [[nodiscard]] std::span<const Index> ranks() const { return rank_; }
 
   /// The values at the boundary, less their mean. u: by ranks.
   [[nodiscard]] std::vector<double> unevenness(std::span<const Vec2> u) const {
@@ -168,28 +169,38 @@ std::vector<Vec2> first_fluxes(const Disk& disk, const Boundary& boundary,
 std::optional<std::vector<double>> level_scales(const Disk& disk, const GlobalStep& global,
                                                 std::span<const double> curvature, int most) {
   Boundary boundary(disk, global.rank());
+  const std::vector<char> over = global.over(boundary.ranks());
   std::vector<Vec2> u = first_fluxes(disk, boundary, global.rank(), curvature), change(u.size());
-  global.solve_by_rank(u);
-  std::vector<double> left = boundary.unevenness(u);
+  global.descend_by_rank(u, {});
+  change = u;
+  global.ascend_by_rank(change, over);
+  std::vector<double> left = boundary.unevenness(change), all(left.size(), 0.0);
   std::vector<double> way = boundary.preconditioned(left);
   double slope = dot(left, way);
   const double enough = std::max(kLevel * kLevel * dot(left, left),
                                  kRounding * kRounding * static_cast<double>(boundary.size()));
+  const auto descend = [&](std::span<const double> flux) {
+    std::ranges::fill(change, Vec2::Zero());
+    boundary.add_fluxes(flux, change);
+    global.descend_by_rank(change, over);
+  };
   for (int solves = 1; dot(left, left) > enough; ++solves) {
     if (solves == most) return std::nullopt;
     throw_if_cancelled(disk.stop);
-    std::ranges::fill(change, Vec2::Zero());
-    boundary.add_fluxes(way, change);
-    global.solve_by_rank(change);
+    descend(way);
+    global.ascend_by_rank(change, over);
     const std::vector<double> answer = boundary.unevenness(change);
     const double length = slope / dot(way, answer);
-    for (std::size_t r = 0; r < u.size(); ++r) u[r].x() -= length * change[r].x();
+    add(length, way, all);
     add(-length, answer, left);
     std::vector<double> next = boundary.preconditioned(left);
     const double slope_before = std::exchange(slope, dot(left, next));
     add(slope / slope_before, way, next);
     way.swap(next);
   }
+  descend(all);
+  for (std::size_t r = 0; r < u.size(); ++r) u[r].x() -= change[r].x();
+  global.ascend_by_rank(u, {});
   std::vector<double> by_vertex;
   by_vertex.reserve(u.size());
   for (const Index r : global.rank()) by_vertex.push_back(u[at(r)].x());
