@@ -3,11 +3,7 @@
 #include <charconv>
 
 namespace unwrapd::server {
-namespace {
-
-constexpr int kMaxPort = 65535;
-
-}  // namespace
+namespace {}  // namespace
 
 std::optional<Address> parse_address(std::string_view text) {
   const std::size_t colon = text.rfind(':');

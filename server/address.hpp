@@ -7,6 +7,8 @@
 
 namespace unwrapd::server {
 
+inline constexpr int kMaxPort = 65535;
+
 struct Address {
   std::string host;
   int port = 0;  ///< 0: a free one

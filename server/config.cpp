@@ -172,6 +172,7 @@ void Reading::read_flags(const CLI::App& app) {
 void Reading::finish() {
   if (!sources_.contains("admin-listen")) {
     const int port = config_.listen.port;
+    if (port == kMaxPort) wrong("--listen has the last port; give --admin-listen one of its own.");
     config_.admin = Address{"127.0.0.1", port == 0 ? 0 : port + 1};
   }
   check_together(config_);

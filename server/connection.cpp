@@ -109,7 +109,7 @@ bool Connection::next_request() {
   if (head_end_ > kMaxHeadBytes)
     throw Error(ErrorCode::headers_too_large, "The header is longer than 32 KiB; shorten it.");
   framing_ = vet_head(std::string_view(buffer_).substr(0, head_end_));
-  head_end_ -= static_cast<std::size_t>(to_origin_form(buffer_, framing_));
+  head_end_ -= static_cast<std::size_t>(simplify(buffer_, framing_));
   if (buffer_.size() > head_end_) framing_.awaits_continue = false;  // it did not wait
   left_ = framing_.content_length;
   body_done_ = !framing_.has_body();

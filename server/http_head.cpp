@@ -147,6 +147,24 @@ void vet_counts(const Counts& counts, std::string_view method) {
   }
 }
 
+void to_origin_form(std::string& head, const Framing& framing) {
+  const char next = head.at(framing.target + framing.authority);
+  head.replace(framing.target, framing.authority, next == '/' ? "" : "/");  // no path is the root
+}
+
+void drop_ranges(std::string& head) {
+  std::size_t line = head.find(kLineEnd) + kLineEnd.size();
+  for (std::size_t end = head.find(kLineEnd, line); end != line; end = head.find(kLineEnd, line)) {
+    const std::string_view field = std::string_view(head).substr(line, end - line);
+    const std::size_t next = end + kLineEnd.size();
+    if (same(field.substr(0, field.find(':')), "range")) {
+      head.erase(line, next - line);
+    } else {
+      line = next;
+    }
+  }
+}
+
 }  // namespace
 
 Framing vet_head(std::string_view head) {
@@ -169,16 +187,16 @@ Framing vet_head(std::string_view head) {
               counts);
   }
   vet_counts(counts, method);
+  framing.brings_body = needs_length(method);
   if (counts.version_1_0) framing.awaits_continue = false;  // it knows no 100 (RFC 9110, 10.1.1)
   return framing;
 }
 
-std::ptrdiff_t to_origin_form(std::string& head, const Framing& framing) {
-  if (framing.authority == 0) return 0;
-  const char next = head.at(framing.target + framing.authority);
-  const std::string_view path = next == '/' ? "" : "/";  // an empty one is the root
-  head.replace(framing.target, framing.authority, path);
-  return static_cast<std::ptrdiff_t>(framing.authority) - static_cast<std::ptrdiff_t>(path.size());
+std::ptrdiff_t simplify(std::string& head, const Framing& framing) {
+  const std::ptrdiff_t before = std::ssize(head);
+  if (framing.brings_body) drop_ranges(head);
+  if (framing.authority > 0) to_origin_form(head, framing);
+  return before - std::ssize(head);
 }
 
 }  // namespace unwrapd::server

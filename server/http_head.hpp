@@ -20,6 +20,7 @@ struct Framing {
   bool awaits_continue = false;     ///< the sender waits for 100 before it sends the body
   std::size_t target = 0;           ///< where the request line's target begins
   std::size_t authority = 0;        ///< bytes of scheme and host before its path
+  bool brings_body = false;         ///< by its method
 
   [[nodiscard]] bool has_body() const { return chunked || content_length > 0; }
 };
@@ -28,8 +29,9 @@ struct Framing {
 /// length_required, headers_too_large, unsupported_media_type (a Content-Encoding).
 Framing vet_head(std::string_view head);
 
-/// Makes "GET http://host/path" "GET /path" in a head that was vetted (RFC 9112, 3.2.2). Returns by
-/// how many bytes it is shorter.
-std::ptrdiff_t to_origin_form(std::string& head, const Framing& framing);
+/// Makes "GET http://host/path" "GET /path" in a head that was vetted (RFC 9112, 3.2.2), and leaves
+/// out the Range of a request that brings something: it means nothing there (RFC 9110, 14.2).
+/// Returns by how many bytes the head, which more may follow, is shorter.
+std::ptrdiff_t simplify(std::string& head, const Framing& framing);
 
 }  // namespace unwrapd::server

@@ -19,12 +19,6 @@ constexpr std::chrono::seconds kLongestPauseWhenFull{60};
 
 }  // namespace
 
-void RunningJob::request_stop(StopCause why) {
-  StopCause none = StopCause::none;
-  cause.compare_exchange_strong(none, why);
-  stop.request_stop();
-}
-
 JobQueue::JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const Log& log,
                    const QueueConfig& config)
     : store_(store),
@@ -227,6 +221,7 @@ void JobQueue::finish(const RunningJob& job, JobOutcome outcome) {
   share_.end(job.record.owner, job.seconds());
   if (outcome.state == JobState::cancelled && job.cause == StopCause::draining) {
     store_.requeue(job.record.id, false);
+    wait_again(job.record);  // its readers are told so
     return;
   }
   if (wait_for_room(job, outcome)) return;

@@ -47,7 +47,11 @@ struct RunningJob {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   }
   /// Asks the worker to stop; the first cause counts.
-  void request_stop(StopCause why);
+  void request_stop(StopCause why) {
+    StopCause none = StopCause::none;
+    cause.compare_exchange_strong(none, why);
+    stop.request_stop();
+  }
 };
 
 struct QueueConfig {

@@ -1,4 +1,4 @@
-// unwrapd: reads its command line, serves until SIGTERM or SIGINT, drains, exits with 0.
+// unwrapd: reads its command line, serves until SIGTERM, SIGINT or SIGHUP, drains, exits with 0.
 #include "server/program.hpp"
 
 int main(int argc, char** argv) { return unwrapd::server::run_program(argc, argv); }

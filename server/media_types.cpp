@@ -44,6 +44,11 @@ std::string lower(std::string_view text) {
   return result;
 }
 
+std::string_view unquoted(std::string_view text) {
+  const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
 template <class Number>
 std::optional<Number> number(std::string_view text) {
   Number value{};
@@ -126,9 +131,7 @@ std::string multipart_boundary(std::string_view content_type) {
     const std::size_t equals = field.find('=');
     if (equals == std::string_view::npos || lower(trim(field.substr(0, equals))) != "boundary")
       continue;
-    std::string_view value = trim(field.substr(equals + 1));
-    const bool quoted = value.size() >= 2 && value.front() == '"' && value.back() == '"';
-    return std::string(quoted ? value.substr(1, value.size() - 2) : value);
+    return std::string(unquoted(trim(field.substr(equals + 1))));
   }
   return {};
 }
@@ -162,8 +165,10 @@ bool prefers_events(std::string_view accept) {
 
 std::optional<int> preferred_wait(std::string_view prefer) {
   for (const std::string_view preference : split(prefer, ',')) {
-    if (!lower(preference).starts_with("wait=")) continue;
-    const std::optional<int> seconds = number<int>(preference.substr(5));
+    const std::string_view named = preference.substr(0, preference.find(';'));  // its parameters
+    const std::size_t equals = std::min(named.find('='), named.size());
+    if (lower(trim(named.substr(0, equals))) != "wait" || equals == named.size()) continue;
+    const std::optional<int> seconds = number<int>(unquoted(trim(named.substr(equals + 1))));
     if (seconds && *seconds >= 0) return seconds;
   }
   return std::nullopt;

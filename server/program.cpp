@@ -38,6 +38,7 @@ sigset_t block_end_signals() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGHUP);  // the terminal is gone
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   return signals;
 }
@@ -79,7 +80,8 @@ int run_program(int argc, char** argv, Duties duties) {
     serve(line.config, log, duties);
     return 0;
   } catch (const std::exception& error) {
-    log.error("unwrapd cannot run", {{"reason", error.what()}});
+    log.error("unwrapd cannot run",
+              {{"reason", error.what()}, {"data", line.config.data.string()}});
     return 1;
   }
 }

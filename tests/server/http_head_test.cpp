@@ -76,9 +76,9 @@ TEST(HttpHead, RefusesWhatIsNoRequestLine) {
     EXPECT_EQ(refusal(head(line)), ErrorCode::malformed_request) << line;
 }
 
-/// The head as it is parsed once its target is a path.
-std::string in_origin_form(std::string text) {
-  to_origin_form(text, vet_head(text));
+/// The head as it is parsed.
+std::string simplified(std::string text) {
+  simplify(text, vet_head(text));
   return text;
 }
 
@@ -90,8 +90,20 @@ TEST(HttpHead, ReadsAbsoluteTargetsAsTheirPaths) {  // RFC 9112, 3.2.2
                                      {"http://host?b=/c", "/?b=/c"},
                                      {"http://host//x", "//x"},
                                      {"/http://host/a", "/http://host/a"}})
-    EXPECT_EQ(in_origin_form(head("POST " + std::string(target) + " HTTP/1.1", fields)),
+    EXPECT_EQ(simplified(head("POST " + std::string(target) + " HTTP/1.1", fields)),
               head("POST " + std::string(path) + " HTTP/1.1", fields));
+}
+
+TEST(HttpHead, HasNoRangeWhereABodyComes) {
+  const std::string range = "Range: items=0-5\r\n";
+  const std::string body = "\r\nRange: stays\r\n";  // it is no field
+  for (const char* line : {"POST / HTTP/1.1", "PUT http://x/ HTTP/1.1"}) {
+    const std::string length = "Content-Length: 3\r\n";
+    const std::string plain = simplified(head(line, length) + body);
+    EXPECT_EQ(simplified(head(line, "rAnGe:\r\n" + range + length + range) + body), plain);
+    EXPECT_TRUE(plain.ends_with(body));
+  }
+  EXPECT_EQ(simplified(head("GET / HTTP/1.1", range)), head("GET / HTTP/1.1", range));
 }
 
 TEST(HttpHead, HoldsTheHostOfATargetToTheRulesOfHosts) {

@@ -55,9 +55,12 @@ TEST(MediaTypes, EventsAreForWhoNamesThem) {
 
 TEST(MediaTypes, ReadsThePreferredWait) {
   EXPECT_EQ(preferred_wait("wait=10"), 10);
+  EXPECT_EQ(preferred_wait("wait = \"10\""), 10);
+  EXPECT_EQ(preferred_wait("respond-async, wait=10; foo=1"), 10);
   EXPECT_EQ(preferred_wait("respond-async, Wait=3"), 3);
   EXPECT_EQ(preferred_wait("wait=99999999999"), std::numeric_limits<int>::max());
-  for (const char* none : {"", "wait", "wait=", "wait=x", "wait=-1", "wait=1.5", "return=minimal"})
+  for (const char* none : {"", "wait", "wait=", "wait=\"", "waits=1", "foo; wait=1", "wait=x",
+                           "wait=-1", "wait=1.5", "return=minimal"})
     EXPECT_FALSE(preferred_wait(none)) << none;
 }
 

@@ -61,6 +61,26 @@ TEST_F(Shutdown, AJobThatIsNotDoneInTimeRunsAgainAtTheNextStart) {
   await_state(waiting, "succeeded");
 }
 
+TEST_F(Shutdown, AnInterruptedJobTellsItsReadersThatItWaits) {
+  config_.drain_seconds = 0;
+  start();
+  const std::string id = submit_endless();
+  await_state(id, "running");
+  std::string seen;
+  std::atomic<bool> is_reading = false;
+  std::jthread reader([&, client = std::make_shared<httplib::Client>(client())] {
+    client->Get("/v1/jobs/" + id + "/events", [&](const char* data, std::size_t size) {
+      seen.append(data, size);
+      return is_reading = true;
+    });
+  });
+  await([&] { return is_reading.load(); });
+  service_->drain();
+  reader.join();
+  const std::size_t started = seen.find("event: started");
+  EXPECT_THAT(seen.substr(std::min(started, seen.size())), HasSubstr("event: queued"));
+}
+
 TEST_F(Shutdown, WaitingRequestsAreAnswered) {
   config_.drain_seconds = 0;
   start();
