@@ -16,7 +16,7 @@ constexpr std::string_view kBufferPrefix = "buffer_";
 
 /// What the sender brought: it stays as it came.
 bool is_input(std::string_view file) {
-  return file == kDocumentFile || file.starts_with(kBufferPrefix);
+  return file == kDocumentFile || file == kOptionsFile || file.starts_with(kBufferPrefix);
 }
 
 void remove_unfinished(const fs::path& folder) {
@@ -152,6 +152,10 @@ bool BlobStore::share_document(std::string_view mesh, std::string_view upload) {
 
 bool BlobStore::is_shared(std::string_view mesh) const noexcept {
   return is_shared_file(path(mesh, kDocumentFile));
+}
+
+bool BlobStore::has(std::string_view job, std::string_view file) const {
+  return read_digests(blobs_ / job).contains(file);
 }
 
 std::int64_t BlobStore::bytes(std::string_view job) const { return bytes_below(blobs_ / job); }

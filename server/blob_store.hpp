@@ -1,6 +1,6 @@
 #pragma once
-// The files of jobs: DIR/blobs/<job>/{document,buffer_N,digests,result.*,report.json*,uv.bin*}; and
-// of stored meshes, alike: DIR/blobs/<mesh>/{document,digests,analysis.json}. An
+// The files of jobs: DIR/blobs/<job>/{document,buffer_N,options.json,digests,result.*,report.json*,
+// uv.bin*}; and of stored meshes, alike: DIR/blobs/<mesh>/{document,digests,analysis.json}. An
 // upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is written under
 // another name and renamed, and synced before the job counts as done. What a crash leaves behind is
 // swept at the next start. `digests` has the SHA-256 of each file (digests.hpp): what is read is
@@ -20,6 +20,7 @@
 namespace unwrapd::server {
 
 inline constexpr std::string_view kDocumentFile = "document";
+inline constexpr std::string_view kOptionsFile = "options.json";  ///< of long options alone
 inline constexpr std::string_view kReportFile = "report.json";
 inline constexpr std::string_view kTotalsFile = "totals.json";
 inline constexpr std::string_view kUvFile = "uv.bin";
@@ -53,6 +54,8 @@ class BlobStore {
   bool share_document(std::string_view mesh, std::string_view upload);
   /// Whether a job shares the document of a mesh.
   [[nodiscard]] bool is_shared(std::string_view mesh) const noexcept;
+  /// Whether a file is noted: it is there, or was.
+  [[nodiscard]] bool has(std::string_view job, std::string_view file) const;
   /// Bytes of all files, without a document that is shared with a mesh.
   [[nodiscard]] std::int64_t bytes(std::string_view job) const;
   /// Removes one file that was written only to be handed out once.

@@ -1,15 +1,18 @@
 #include "server/job_input.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "api/options.hpp"
 #include "core/error.hpp"
+#include "server/long_options.hpp"
 
 namespace unwrapd::server {
 namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
 constexpr std::size_t kMaxBuffers = 1000;
+constexpr std::string_view kSentOptionsFile = "options.sent";  // until they are read
 
 /// A file that grows in pieces worth a system call each.
 class GrowingFile {
@@ -79,13 +82,13 @@ class PartWriter {
  private:
   void start_options() {
     if (upload_.options) malformed("There are two parts named \"options\"; send one.");
-    upload_.options.emplace();
+    upload_.options = std::make_unique<SpooledText>(folder_.path / kSentOptionsFile);
   }
 
   void append_option_text(std::string_view bytes) {
-    upload_.options->append(bytes);
-    if (upload_.options->size() > api::kMaxOptionsBytes)
+    if (upload_.options->size() + bytes.size() > api::kMaxOptionsBytes)
       throw Error(ErrorCode::body_too_large, "The part \"options\" exceeds 16 MiB; shorten it.");
+    upload_.options->append(bytes);
   }
 
   void start_document() {
@@ -155,7 +158,8 @@ Upload receive_parts(BodyReader& body, const UploadFolder& folder) {
 }
 
 LoadedInput::LoadedInput(const BlobStore& blobs, const JobRecord& job)
-    : document_(blobs.read(job.id, kDocumentFile)) {
+    : record_(job), document_(blobs.read(job.id, kDocumentFile)) {
+  record_.options = whole_options(blobs, job);
   buffers_.reserve(job.input.buffers.size());
   for (const StoredBuffer& buffer : job.input.buffers)
     buffers_.emplace_back(buffer.uri, blobs.read(job.id, buffer.file));

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,13 +13,14 @@
 #include "server/http.hpp"
 #include "server/identity.hpp"
 #include "server/job_record.hpp"
+#include "server/spooled_text.hpp"
 
 namespace unwrapd::server {
 
 /// What a request has brought; its files are in the upload's folder, synced.
 struct Upload {
   JobInput input;
-  std::optional<std::string> options;  ///< JSON text of the part `options`
+  std::unique_ptr<SpooledText> options;  ///< JSON text of the part `options`, where there is one
 };
 
 /// Told of bytes before they are written; throws Error{storage_full} when there is no room.
@@ -39,14 +40,16 @@ Upload receive_asset(BodyReader& body, const UploadFolder& folder);
 /// malformed_request when a part is missing, given twice or without a filename.
 Upload receive_parts(BodyReader& body, const UploadFolder& folder);
 
-/// A job's input in memory, checked against its digests; the views of input() live as long as this.
-/// Throws Error{storage_corrupt}.
+/// A job's input in memory, and its record with all its options, checked against their digests; the
+/// views of input() live as long as this. Throws Error{storage_corrupt}.
 class LoadedInput {
  public:
   LoadedInput(const BlobStore& blobs, const JobRecord& job);
   [[nodiscard]] asset::Input input() const;
+  [[nodiscard]] const JobRecord& record() const { return record_; }
 
  private:
+  JobRecord record_;
   std::string document_;
   std::vector<std::pair<std::string, std::string>> buffers_;  // URI, bytes
 };

@@ -43,7 +43,8 @@ bool is_answer_file(std::string_view name) {
         return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.' || c == '_';
       });
   return plain && !name.starts_with(kDocumentFile) && !name.starts_with("buffer") &&
-         !name.starts_with("digests") && !name.starts_with("result.");
+         !name.starts_with("digests") && !name.starts_with("options") &&
+         !name.starts_with("result.");
 }
 
 bool is_format(std::string_view name) { return name == "glb" || name == "gltf" || name == "obj"; }

@@ -41,7 +41,7 @@ JobRecord stored_job(JobStore& store, const std::string& id) {
 /// Who has no place among the streams is told so before anything is accepted.
 Response post_watched(const JobServices& services, const Request& request) {
   Watcher watcher = services.streams.let_in(request.header("Last-Event-ID"));
-  const std::string id = services.submissions.accept(request, false).id;
+  const std::string id = services.submissions.accept(request, false);
   const JobRecord job = stored_job(services.store, id);
   Response response = services.streams.open_accepted(job, std::move(watcher));
   response.headers.emplace_back("Location", api::job_path(id));
@@ -50,7 +50,7 @@ Response post_watched(const JobServices& services, const Request& request) {
 
 Response post_job(const JobServices& services, const Request& request) {
   if (prefers_events(request.header("Accept"))) return post_watched(services, request);
-  const std::string id = services.submissions.accept(request, false).id;
+  const std::string id = services.submissions.accept(request, false);
   std::optional<int> wait = preferred_wait(request.header("Prefer"));
   const int seconds = std::min(wait.value_or(0), services.limits.max_wait_seconds);
   const auto place = seconds > 0 ? services.waiters.let_in(request.caller.owner) : nullptr;
@@ -92,7 +92,7 @@ RetryLater too_many_wait() {
 Response post_unwrap(const JobServices& services, const Request& request) {
   const auto place = services.waiters.let_in(request.caller.owner);
   if (!place) throw too_many_wait();
-  const std::string id = services.submissions.accept(request, true).id;
+  const std::string id = services.submissions.accept(request, true);
   wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds));
   const JobRecord job = stored_job(services.store, id);
   Response response;

@@ -95,11 +95,12 @@ OwnerUsage JobStore::usage(std::string_view owner) {
 std::int64_t JobStore::evictable_bytes() {
   const std::lock_guard lock(mutex_);
   Statement statement(database_,
-                      "SELECT (SELECT COALESCE(SUM(stored_bytes), 0) FROM jobs"
+                      "SELECT (SELECT COALESCE(SUM(stored_bytes), 0)"
+                      " FROM jobs INDEXED BY jobs_by_bytes"
                       " WHERE state IN ('succeeded', 'failed', 'cancelled') AND expired = 0)"
-                      " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes AS mesh"
-                      " WHERE NOT EXISTS (SELECT 1 FROM jobs WHERE owner = mesh.owner"
-                      " AND sha256 = mesh.sha256 AND state IN ('queued', 'running')))");
+                      " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes"
+                      " WHERE (owner, sha256) NOT IN (SELECT owner, sha256 FROM jobs"
+                      " WHERE state IN ('queued', 'running')))");
   statement.step();
   return statement.number(0);
 }

@@ -46,14 +46,12 @@ MeshReference parse_mesh_reference(std::string_view text) {
   return reference;
 }
 
-std::string receive_reference_text(BodyReader& body) {
-  std::string text;
+void receive_reference_text(BodyReader& body, SpooledText& text) {
   body.read([&](std::string_view bytes) {
     if (text.size() + bytes.size() > kMaxBytes)
       throw Error(ErrorCode::body_too_large, "The JSON exceeds 16 MiB; shorten the options.");
-    text += bytes;
+    text.append(bytes);
   });
-  return text;
 }
 
 }  // namespace unwrapd::server

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "server/http.hpp"
+#include "server/spooled_text.hpp"
 
 namespace unwrapd::server {
 
@@ -18,7 +19,7 @@ struct MeshReference {
 /// member that is missing, unknown, given twice or of another type.
 MeshReference parse_mesh_reference(std::string_view text);
 
-/// Such a text, unread. Throws what BodyReader throws.
-std::string receive_reference_text(BodyReader& body);
+/// Such a text, unread. Throws what BodyReader and SpooledText throw.
+void receive_reference_text(BodyReader& body, SpooledText& text);
 
 }  // namespace unwrapd::server

@@ -7,7 +7,6 @@
 #include "server/media_types.hpp"
 #include "server/queue_errors.hpp"
 #include "server/result_store.hpp"
-#include "server/upload_room.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -68,9 +67,9 @@ SentMesh Meshes::receive(const Request& request, const std::string& sha256) {
   mesh.media_type = media_type_of(request);
   const std::string upload = mesh.id;
   const std::optional<MeshRecord> known = store_.find(mesh.owner, sha256);
-  UploadRoom room(blobs_.room(), upload,
-                  allowance_of(jobs_, request.caller, known ? known->bytes : 0),
-                  request.declared_bytes);
+  UploadRoom room(
+      rooms_, request.caller, upload,
+      {.known_bytes = known ? known->bytes : 0, .declared_bytes = request.declared_bytes});
   room.check_declared();
   try {
     const UploadFolder folder{.path = blobs_.begin_upload(upload),

@@ -14,6 +14,7 @@
 #include "server/job_store.hpp"
 #include "server/mesh_store.hpp"
 #include "server/renderer.hpp"
+#include "server/upload_room.hpp"
 
 namespace unwrapd::server {
 
@@ -25,8 +26,8 @@ struct SentMesh {
 /// Thread-safe.
 class Meshes {
  public:
-  Meshes(MeshStore& store, JobStore& jobs, BlobStore& blobs, Renderer& renderer)
-      : store_(store), jobs_(jobs), blobs_(blobs), renderer_(renderer) {}
+  Meshes(MeshStore& store, JobStore& jobs, BlobStore& blobs, UploadRooms& rooms, Renderer& renderer)
+      : store_(store), jobs_(jobs), blobs_(blobs), rooms_(rooms), renderer_(renderer) {}
 
   /// Stores the body of a request as the mesh of this digest. Throws Error: digest_mismatch and
   /// what BodyReader throws, unsupported_media_type, unknown_format (of an empty body),
@@ -52,6 +53,7 @@ class Meshes {
   MeshStore& store_;
   JobStore& jobs_;
   BlobStore& blobs_;
+  UploadRooms& rooms_;
   Renderer& renderer_;
   std::mutex settling_;  // one upload at a time takes its name
   FileCounts counts_;

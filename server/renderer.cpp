@@ -35,13 +35,14 @@ std::string Renderer::render(const JobRecord& job, const Rendering& rendering) c
   std::string report;
   if (!rendering.picture && !rendering.format)
     report = blobs_.read(job.id, map_file(kReportFile, rendering.map));
-  return make(rendering, {.record = job, .asset = loaded.input(), .uvs = uvs, .report = report});
+  return make(rendering,
+              {.record = loaded.record(), .asset = loaded.input(), .uvs = uvs, .report = report});
 }
 
 std::string Renderer::analyse(const JobRecord& mesh) const {
   const LoadedInput loaded(blobs_, mesh);
   return make({.map = 0, .picture = {}, .format = {}, .analysis = job_bytes_},
-              {.record = mesh, .asset = loaded.input(), .uvs = {}, .report = {}});
+              {.record = loaded.record(), .asset = loaded.input(), .uvs = {}, .report = {}});
 }
 
 std::string Renderer::make(const Rendering& rendering, RenderingInput input) const {

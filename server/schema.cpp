@@ -8,7 +8,7 @@ namespace unwrapd::server {
 namespace {
 
 /// Step k makes version k + 1 out of version k. Steps that were released are never edited.
-constexpr std::array<const char*, 4> kSteps = {
+constexpr std::array<const char*, 5> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -77,6 +77,10 @@ CREATE TABLE meshes (
   UNIQUE (owner, sha256)
 ) STRICT;
 CREATE INDEX meshes_by_time ON meshes (kept_since_ms);
+)sql",
+    R"sql(
+CREATE INDEX jobs_by_bytes ON jobs (state, stored_bytes) WHERE expired = 0;
+CREATE INDEX jobs_of_owner ON jobs (owner, state, stored_bytes);
 )sql"};
 
 constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());

@@ -95,8 +95,8 @@ struct Service::Parts {
         cors(config.cors_origins),
         webhooks(config.data / kStoreFile, secret, config.webhooks, log),
         renderer(blobs, config.limits, log, isolation, making_limits(config, solver_cache), duties),
-        meshes(mesh_store, store, blobs, renderer),
-        submissions(queue, store, blobs, config.limits, config.webhooks, meshes),
+        meshes(mesh_store, store, blobs, rooms, renderer),
+        submissions(queue, store, blobs, config.limits, config.webhooks, meshes, rooms),
         results(blobs, renderer),
         sweeper(store, mesh_store, blobs, log, std::chrono::seconds(config.keep_seconds)),
         pictures(blobs, renderer),
@@ -221,6 +221,7 @@ struct Service::Parts {
   BlobStore blobs;
   JobStore store;
   MeshStore mesh_store;
+  UploadRooms rooms{store, blobs.room()};
   Waiters waiters{std::max(1, config.edge.max_requests / 2)};
   Metrics metrics;
   const std::shared_ptr<Doorbell> news = std::make_shared<Doorbell>();

@@ -2,6 +2,7 @@
 
 #include "server/clock.hpp"
 #include "server/identity.hpp"
+#include "server/long_options.hpp"
 #include "server/mesh_reference.hpp"
 #include "server/request_headers.hpp"
 #include "server/trace.hpp"
@@ -9,13 +10,10 @@
 namespace unwrapd::server {
 namespace {
 
-constexpr std::size_t kSmallText = std::size_t{64} * 1024;
-
-/// The options of a body that may bring some: those, or the query when there are none.
-api::JobOptions options_of(const Upload& upload, const Request& request,
+/// The options that a body brings.
+api::JobOptions options_of(const std::string& text, const Request& request,
                            const api::Limits& limits) {
-  if (!upload.options) return api::parse_options(request.query, limits);
-  if (request.query.empty()) return api::parse_options_text(*upload.options, limits);
+  if (request.query.empty()) return api::parse_options_text(text, limits);
   throw Error(ErrorCode::invalid_option,
               "Options are given in the query and in the body; give them once.",
               "/" + request.query.begin()->first);
@@ -59,15 +57,19 @@ std::string sender_of(const Request& request) {
 
 }  // namespace
 
-JobRecord Submissions::accept(const Request& request, bool synchronous) {
+std::string Submissions::accept(const Request& request, bool synchronous) {
   const std::string sender = sender_of(request);
   queue_.check_room(sender);
   const std::string upload = random_job_id();
   try {
-    Submission submission = receive(request, upload);
-    submission.job.synchronous = synchronous;
-    submission.job.content_key = content_key(submission.job);
-    return queue_.submit(std::move(submission));
+    UploadRoom room(rooms_, request.caller, upload, size_of(request));
+    Submission submission{.job = begin_job(request, upload, synchronous),
+                          .sender = sender,
+                          .upload = upload,
+                          .quota = request.caller.quota,
+                          .anew = wants_new_answer(request)};
+    receive(request, submission.job, room, upload);
+    return queue_.submit(std::move(submission)).id;
   } catch (...) {
     queue_.give_back(sender);
     blobs_.drop_upload(upload);
@@ -77,61 +79,74 @@ JobRecord Submissions::accept(const Request& request, bool synchronous) {
 
 /// What the request brings; the same may come again when its sender has no bytes left. A form is
 /// more than its files: what it declares tells nothing then.
-UploadRoom Submissions::room_for(const Request& request, BodyKind kind, const std::string& upload) {
+UploadSize Submissions::size_of(const Request& request) {
   const std::string name = request_name(request);
   std::optional<JobRecord> known;
   if (!name.empty()) known = store_.find_request(request.caller.owner, name);
-  const bool tells = kind == BodyKind::asset || !known;
-  return {blobs_.room(), upload,
-          allowance_of(store_, request.caller, known ? known->input.bytes : 0),
-          tells ? request.declared_bytes : 0};
+  const bool tells = body_kind(request.header("Content-Type")) == BodyKind::asset || !known;
+  return {.known_bytes = known ? known->input.bytes : 0,
+          .declared_bytes = tells ? request.declared_bytes : 0};
 }
 
-std::unique_lock<std::mutex> Submissions::turn_to_read(std::size_t bytes) {
-  return bytes > kSmallText ? std::unique_lock(reading_) : std::unique_lock<std::mutex>();
-}
-
-Upload Submissions::bring(const Request& request, BodyKind kind, const std::string& upload) {
-  UploadRoom room = room_for(request, kind, upload);
-  if (kind == BodyKind::asset) room.check_declared();
-  const UploadFolder folder{.path = blobs_.begin_upload(upload),
-                            .take = [&](std::int64_t bytes) { room.take(bytes); }};
-  if (kind == BodyKind::asset) return receive_asset(*request.body, folder);
-  if (kind == BodyKind::multipart) return receive_parts(*request.body, folder);
-  const std::string text = receive_reference_text(*request.body);
-  const auto turn = turn_to_read(text.size());
-  MeshReference named = parse_mesh_reference(text);
-  return {.input = meshes_.share(request.caller.owner, named.sha256, upload),
-          .options = std::move(named.options)};
-}
-
-Submission Submissions::receive(const Request& request, const std::string& upload) {
-  const BodyKind kind = body_kind(request.header("Content-Type"));
-  api::JobOptions options = api::parse_options(request.query, limits_);  // before the body is read
-  Submission submission{.job = {},
-                        .sender = sender_of(request),
-                        .upload = upload,
-                        .quota = request.caller.quota,
-                        .anew = wants_new_answer(request)};
-  JobRecord& job = submission.job;
+/// What the head of the request says of it.
+JobRecord Submissions::begin_job(const Request& request, const std::string& upload,
+                                 bool synchronous) const {
+  JobRecord job;
   job.id = request.id.empty() ? upload : request.id;
   job.request_key = request_name(request);
   job.owner = request.caller.owner;
   job.urgency = urgency(request);
   job.trace = current_trace();
+  job.synchronous = synchronous;
   job.webhook = request.header("Unwrapd-Webhook");
   if (!job.webhook.empty()) static_cast<void>(parse_webhook(job.webhook, webhooks_));
-  Upload came = bring(request, kind, upload);
-  if (kind != BodyKind::asset) {
-    const auto turn = turn_to_read(came.options ? came.options->size() : 0);
-    options = options_of(came, request, limits_);
-  }
+  return job;
+}
+
+/// JSON in memory is many times its text: long ones are read, and put away, one at a time.
+Submissions::Sent Submissions::read_whole(SpooledText& text) {
+  Sent sent;
+  if (text.is_long()) sent.turn = std::unique_lock(reading_);
+  sent.options = text.read();
+  return sent;
+}
+
+Submissions::Sent Submissions::bring(const Request& request, const UploadFolder& folder,
+                                     JobRecord& job) {
+  const BodyKind kind = body_kind(request.header("Content-Type"));
+  if (kind == BodyKind::reference) return bring_reference(request, folder, job);
+  Upload came = kind == BodyKind::asset ? receive_asset(*request.body, folder)
+                                        : receive_parts(*request.body, folder);
+  job.input = std::move(came.input);
+  job.stored_bytes = job.input.bytes;
+  return came.options ? read_whole(*came.options) : Sent();
+}
+
+Submissions::Sent Submissions::bring_reference(const Request& request, const UploadFolder& folder,
+                                               JobRecord& job) {
+  SpooledText text(folder.path / "reference.sent");
+  receive_reference_text(*request.body, text);
+  Sent sent = read_whole(text);
+  MeshReference named = parse_mesh_reference(*sent.options);
+  job.input = meshes_.share(request.caller.owner, named.sha256, folder.path.filename());
+  sent.options = std::move(named.options);
+  return sent;
+}
+
+void Submissions::receive(const Request& request, JobRecord& job, UploadRoom& room,
+                          const std::string& upload) {
+  const BodyKind kind = body_kind(request.header("Content-Type"));
+  api::JobOptions options = api::parse_options(request.query, limits_);  // before the body is read
+  if (kind == BodyKind::asset) room.check_declared();
+  const UploadFolder folder{.path = blobs_.begin_upload(upload),
+                            .take = [&](std::int64_t bytes) { room.take(bytes); }};
+  const Sent sent = bring(request, folder, job);
+  if (sent.options) options = options_of(*sent.options, request, limits_);
   job.created_ms = now_ms();
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);
-  job.input = std::move(came.input);
-  job.stored_bytes = kind == BodyKind::reference ? 0 : job.input.bytes;
-  return submission;
+  job.content_key = content_key(job);
+  shorten_options(job, folder);
 }
 
 }  // namespace unwrapd::server

@@ -3,6 +3,8 @@
 // body is read, the body straight to disk, and the job in the queue when all of it is there.
 
 #include <mutex>
+#include <optional>
+#include <string>
 
 #include "api/limits.hpp"
 #include "api/options.hpp"
@@ -20,32 +22,42 @@ namespace unwrapd::server {
 class Submissions {
  public:
   Submissions(JobQueue& queue, JobStore& store, BlobStore& blobs, const api::Limits& limits,
-              const WebhookConfig& webhooks, Meshes& meshes)
+              const WebhookConfig& webhooks, Meshes& meshes, UploadRooms& rooms)
       : queue_(queue),
         store_(store),
         blobs_(blobs),
+        rooms_(rooms),
         limits_(limits),
         webhooks_(webhooks),
         meshes_(meshes) {}
 
-  /// synchronous: the sender waits, so the mesh must be small. Where the path has an id, it becomes
-  /// the job's; a request by Idempotency-Key or by such an id may come again and gets the same job.
-  /// Throws Error: queue_full, draining, unsupported_media_type, invalid_option, malformed_request,
-  /// body_too_large, idempotency_conflict, too_many_jobs, quota_exceeded, storage_full,
-  /// storage_failed, webhook_refused, mesh_not_found.
-  JobRecord accept(const Request& request, bool synchronous);
+  /// Returns the job's id. synchronous: the sender waits, so the mesh must be small. Where the path
+  /// has an id, it becomes the job's; a request by Idempotency-Key or by such an id may come again
+  /// and gets the same job. Throws Error: queue_full, draining, unsupported_media_type,
+  /// invalid_option, malformed_request, body_too_large, idempotency_conflict, too_many_jobs,
+  /// quota_exceeded, storage_full, storage_failed, webhook_refused, mesh_not_found.
+  std::string accept(const Request& request, bool synchronous);
 
  private:
-  [[nodiscard]] UploadRoom room_for(const Request& request, BodyKind kind,
-                                    const std::string& upload);
-  /// JSON in memory is many times its text: long ones are read one at a time.
-  [[nodiscard]] std::unique_lock<std::mutex> turn_to_read(std::size_t bytes);
-  [[nodiscard]] Upload bring(const Request& request, BodyKind kind, const std::string& upload);
-  [[nodiscard]] Submission receive(const Request& request, const std::string& upload);
+  /// What a body says beside the mesh, and the turn to do something about it where that is much.
+  struct Sent {
+    std::unique_lock<std::mutex> turn;
+    std::optional<std::string> options;  // JSON text
+  };
+
+  [[nodiscard]] UploadSize size_of(const Request& request);
+  [[nodiscard]] JobRecord begin_job(const Request& request, const std::string& upload,
+                                    bool synchronous) const;
+  [[nodiscard]] Sent read_whole(SpooledText& text);
+  [[nodiscard]] Sent bring(const Request& request, const UploadFolder& folder, JobRecord& job);
+  [[nodiscard]] Sent bring_reference(const Request& request, const UploadFolder& folder,
+                                     JobRecord& job);
+  void receive(const Request& request, JobRecord& job, UploadRoom& room, const std::string& upload);
 
   JobQueue& queue_;
   JobStore& store_;
   BlobStore& blobs_;
+  UploadRooms& rooms_;
   const api::Limits& limits_;
   const WebhookConfig& webhooks_;
   Meshes& meshes_;

@@ -95,7 +95,7 @@ std::string WorkerPool::run(const RunningJob& job, Executor& executor) {
   const LoadedInput loaded(blobs_, job.record);
   FeedOutput output(job, blobs_);
   const auto queue_ms = static_cast<double>(job.started_ms - job.record.created_ms);
-  const JobTask task{.record = job.record,
+  const JobTask task{.record = loaded.record(),
                      .queue_ms = std::max(0.0, queue_ms),
                      .began = job.began,
                      .stop = job.stop.get_token()};

@@ -53,11 +53,19 @@ std::string text(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+/// The members that a job always shows.
+std::vector<std::string> short_members() {
+  std::vector<std::string> found = members();
+  for (const OptionRow& row : option_table())
+    if (type_of(row) == "array") std::erase(found, std::string(row.name));
+  return found;
+}
+
 TEST(OptionTable, IsTheContractsListOfOptions) {
   EXPECT_THAT(keys({"components", "schemas", "Options", "properties"}),
               ElementsAreArray(members()));
   EXPECT_THAT(list({"components", "schemas", "ResolvedOptions"}, "required"),
-              ElementsAreArray(members()));
+              ElementsAreArray(short_members()));
   std::vector<std::string> of_stop;
   for (const std::string& name : names())
     if (first_part(name) == "stop") of_stop.push_back(name.substr(5));

@@ -36,10 +36,11 @@ void head(std::string_view bytes) {
 }
 
 std::vector<std::string> head_seeds() {
-  return {"GET /v1/jobs?a=b HTTP/1.1\r\nHost: x\r\nAccept: */*\r\n",
-          "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 12\r\nExpect: 100-continue\r\n",
-          "GET http://[::1]:80?a=b HTTP/1.1\r\nHost: x\r\n",
-          "PUT / HTTP/1.0\r\nRange: x\r\nTransfer-Encoding: chunked\r\nContent-Encoding: identity\r\n"};
+  return {
+      "GET /v1/jobs?a=b HTTP/1.1\r\nHost: x\r\nAccept: */*\r\n",
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 12\r\nExpect: 100-continue\r\n",
+      "GET http://[::1]:80?a=b HTTP/1.1\r\nHost: x\r\n",
+      "PUT / HTTP/1.0\r\nRange: x\r\nTransfer-Encoding: chunked\r\nContent-Encoding: identity\r\n"};
 }
 
 /// Reads a request whole, as the handlers of uploads do. No more can come out than went in.

@@ -120,7 +120,6 @@ TEST_F(Jobs, ConstraintsMayBeManyButNoMoreThanTheLimit) {
   for (int k = 1; k < 2000; ++k) list += R"(,{"vertex":0,"uv":[0.5,0.5],"weight":1})";
   const auto most = send();
   EXPECT_EQ(most->status, 202) << most->body;
-  EXPECT_EQ(api::Json::parse(most->body).at("options").at("constraints").size(), 2000U);
   list += R"(,{"vertex":0,"uv":[0.5,0.5],"weight":1})";
   const auto more = send();
   expect_problem(more, 422, "invalid_option");

@@ -14,76 +14,23 @@ namespace {
 class RoomOfAnUpload : public testing::Test {
  protected:
   RoomOfAnUpload() {
-    room_.set("finished", 400);
+    disk_.set("finished", 400);
     const auto evict = [this] {
       if (evicted_) return false;
       evicted_ = true;
-      room_.give_back("finished");
+      disk_.give_back("finished");
       return true;
     };
-    room_.on_shortage({.evict = evict, .bytes = [this] { return evicted_ ? 0 : 400; }});
+    disk_.on_shortage({.evict = evict, .bytes = [this] { return evicted_ ? 0 : 400; }});
   }
 
-  static ErrorCode refusal(const std::function<void()>& act) { return error_of(act).code(); }
-
-  TempDir dir_;
-  DiskRoom room_{dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0}};
-  bool evicted_ = false;
-};
-
-TEST_F(RoomOfAnUpload, IsMadeForOneThatFits) {
-  UploadRoom upload(room_, "u", {}, 750);
-  upload.check_declared();
-  upload.take(350);
-  EXPECT_FALSE(evicted_);
-  upload.take(400);
-  EXPECT_TRUE(evicted_);
-  EXPECT_EQ(room_.used_bytes(), 750);
-}
-
-TEST_F(RoomOfAnUpload, IsRefusedBeforeItsBytesWhenTheyCanNeverFit) {
-  const UploadRoom upload(room_, "u", {}, 751);
-  EXPECT_EQ(refusal([&] { upload.check_declared(); }), ErrorCode::storage_full);
-}
-
-TEST_F(RoomOfAnUpload, IsRefusedBeforeItsBytesByTheQuota) {
-  const UploadRoom upload(room_, "u", {.left = 10, .most = 10}, 11);
-  EXPECT_EQ(refusal([&] { upload.check_declared(); }), ErrorCode::quota_exceeded);
-}
-
-TEST_F(RoomOfAnUpload, IsNotMadeForAFormThatIsTooLarge) {
-  UploadRoom too_large(room_, "u", {}, 751);
-  too_large.take(350);
-  EXPECT_EQ(refusal([&] { too_large.take(1); }), ErrorCode::storage_full);
-  room_.give_back("u");
-  UploadRoom beyond_quota(room_, "u", {.left = 700, .most = 700}, 701);
-  beyond_quota.take(350);
-  EXPECT_EQ(refusal([&] { beyond_quota.take(1); }), ErrorCode::quota_exceeded);
-  EXPECT_FALSE(evicted_);
-}
-
-TEST_F(RoomOfAnUpload, IsNotMadeForThePieceThatIsTooLarge) {
-  UploadRoom beyond_quota(room_, "u", {.left = 500, .most = 500}, 0);
-  EXPECT_EQ(refusal([&] { beyond_quota.take(501); }), ErrorCode::quota_exceeded);
-  UploadRoom too_large(room_, "u", {}, 0);
-  EXPECT_EQ(refusal([&] { too_large.take(751); }), ErrorCode::storage_full);
-  EXPECT_FALSE(evicted_);
-}
-
-TEST_F(RoomOfAnUpload, IsNotMadeWhereThatWouldNotDo) {
-  room_.set("at work", 300);
-  UploadRoom upload(room_, "u", {}, 451);
-  upload.take(50);
-  EXPECT_EQ(refusal([&] { upload.take(1); }), ErrorCode::storage_full);
-  EXPECT_FALSE(evicted_);
-  room_.give_back("u");
-  UploadRoom smaller(room_, "u", {}, 450);
-  smaller.take(450);
-  EXPECT_TRUE(evicted_);
-}
-
-class AllowanceOfAnOwner : public testing::Test {
- protected:
+  static Caller caller(std::int64_t most) {
+    return {.owner = "his", .sees_all = false, .quota = {.max_bytes = most}};
+  }
+  UploadRoom upload(std::int64_t declared, std::int64_t most = 0, std::int64_t known = 0) {
+    const std::string name = "u" + std::to_string(++uploads_);
+    return {rooms_, caller(most), name, {.known_bytes = known, .declared_bytes = declared}};
+  }
   void add(const std::string& id, std::int64_t bytes) {
     JobRecord job;
     job.id = id;
@@ -94,25 +41,115 @@ class AllowanceOfAnOwner : public testing::Test {
     store_.insert(job);
   }
 
+  static ErrorCode refusal(const std::function<void()>& act) { return error_of(act).code(); }
+
   TempDir dir_;
   JobStore store_{dir_.path() / "jobs.sqlite"};
-  Caller his_{.owner = "his", .sees_all = false, .quota = {.max_bytes = 100}};
+  DiskRoom disk_{dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0}};
+  UploadRooms rooms_{store_, disk_};
+  bool evicted_ = false;
+  int uploads_ = 0;
 };
 
-TEST_F(AllowanceOfAnOwner, IsWhatTheQuotaLeaves) {
-  add("j_1", 70);
-  EXPECT_EQ(allowance_of(store_, his_, 0).left, 30);
-  EXPECT_EQ(allowance_of(store_, his_, 0).most, 100);
-  his_.quota = {};
-  EXPECT_EQ(allowance_of(store_, his_, 0).left, std::numeric_limits<std::int64_t>::max());
+TEST_F(RoomOfAnUpload, IsMadeForOneThatFits) {
+  UploadRoom room = upload(750);
+  room.check_declared();
+  room.take(350);
+  EXPECT_FALSE(evicted_);
+  room.take(400);
+  EXPECT_TRUE(evicted_);
+  EXPECT_EQ(disk_.used_bytes(), 750);
 }
 
-TEST_F(AllowanceOfAnOwner, IsEnoughToSendTheSameAgain) {
-  add("j_1", 70);
-  EXPECT_EQ(allowance_of(store_, his_, 70).left, 70);
+TEST_F(RoomOfAnUpload, IsRefusedBeforeItsBytesWhenTheyCanNeverFit) {
+  UploadRoom room = upload(751);
+  EXPECT_EQ(refusal([&] { room.check_declared(); }), ErrorCode::storage_full);
 }
 
-TEST_F(AllowanceOfAnOwner, CountsAsEvictableWhatNoLiveJobNeeds) {
+TEST_F(RoomOfAnUpload, IsRefusedBeforeItsBytesByTheQuota) {
+  UploadRoom room = upload(11, 10);
+  EXPECT_EQ(refusal([&] { room.check_declared(); }), ErrorCode::quota_exceeded);
+}
+
+TEST_F(RoomOfAnUpload, IsNotMadeForAFormThatIsTooLarge) {
+  UploadRoom too_large = upload(751);
+  too_large.take(350);
+  EXPECT_EQ(refusal([&] { too_large.take(1); }), ErrorCode::storage_full);
+  disk_.give_back("u1");
+  UploadRoom beyond_quota = upload(701, 700);
+  beyond_quota.take(350);
+  EXPECT_EQ(refusal([&] { beyond_quota.take(1); }), ErrorCode::quota_exceeded);
+  EXPECT_FALSE(evicted_);
+}
+
+TEST_F(RoomOfAnUpload, IsNotMadeForThePieceThatIsTooLarge) {
+  UploadRoom beyond_quota = upload(0, 500);
+  EXPECT_EQ(refusal([&] { beyond_quota.take(501); }), ErrorCode::quota_exceeded);
+  UploadRoom too_large = upload(0);
+  EXPECT_EQ(refusal([&] { too_large.take(751); }), ErrorCode::storage_full);
+  EXPECT_FALSE(evicted_);
+}
+
+TEST_F(RoomOfAnUpload, IsNotMadeWhereThatWouldNotDo) {
+  disk_.set("at work", 300);
+  UploadRoom room = upload(451);
+  room.take(50);
+  EXPECT_EQ(refusal([&] { room.take(1); }), ErrorCode::storage_full);
+  EXPECT_FALSE(evicted_);
+  disk_.give_back("u1");
+  UploadRoom smaller = upload(450);
+  smaller.take(450);
+  EXPECT_TRUE(evicted_);
+}
+
+TEST_F(RoomOfAnUpload, IsWhatTheQuotaLeaves) {
+  add("j_1", 70);
+  UploadRoom fits = upload(30, 100);
+  fits.check_declared();
+  fits.take(30);
+  EXPECT_EQ(refusal([&] { fits.take(1); }), ErrorCode::quota_exceeded);
+}
+
+TEST_F(RoomOfAnUpload, CountsWhatItsOwnerSendsBeside) {
+  for (const bool declared : {true, false}) {
+    UploadRoom second = upload(0, 100);
+    {
+      UploadRoom first = upload(declared ? 60 : 0, 100);
+      declared ? first.check_declared() : first.take(60);
+      EXPECT_EQ(refusal([&] { second.take(41); }), ErrorCode::quota_exceeded);
+    }
+    second.take(59);  // the first has come to nothing
+  }
+}
+
+TEST_F(RoomOfAnUpload, LearnsWhatWasStoredMeanwhileBeforeAnythingIsGivenUp) {
+  UploadRoom room = upload(0, 500);
+  room.take(200);  // twice as much is claimed
+  add("j_1", 151);
+  room.take(150);
+  EXPECT_EQ(refusal([&] { room.take(1); }), ErrorCode::quota_exceeded);
+  EXPECT_FALSE(evicted_);
+}
+
+TEST_F(RoomOfAnUpload, IsMadeForAllThatTheQuotaLeaves) {
+  UploadRoom room = upload(0, 500);
+  room.take(200);
+  add("j_1", 149);
+  room.take(150);
+  room.take(1);
+  EXPECT_TRUE(evicted_);
+}
+
+TEST_F(RoomOfAnUpload, IsEnoughToSendTheSameAgainOnceAtATime) {
+  add("j_1", 100);
+  UploadRoom again = upload(70, 100, 70);
+  again.check_declared();
+  UploadRoom twice = upload(70, 100, 70);
+  EXPECT_EQ(refusal([&] { twice.check_declared(); }), ErrorCode::quota_exceeded);
+  EXPECT_EQ(refusal([&] { again.take(71); }), ErrorCode::quota_exceeded);
+}
+
+TEST_F(RoomOfAnUpload, CanBeMadeOfWhatNoLiveJobNeeds) {
   MeshStore meshes(dir_.path() / "jobs.sqlite");
   meshes.put({.id = "m_1", .owner = "his", .sha256 = "j_1", .media_type = "", .stored_bytes = 5});
   meshes.put({.id = "m_2", .owner = "his", .sha256 = "ab", .media_type = "", .stored_bytes = 2});

@@ -1,0 +1,39 @@
+#pragma once
+// A text that comes slowly and may be long: in memory while it is short, then in a file, so that
+// many who send long ones at once take no memory.
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/files.hpp"
+
+namespace unwrapd::server {
+
+class SpooledText {
+ public:
+  /// file: created when it is needed, removed with this.
+  explicit SpooledText(std::filesystem::path file) : path_(std::move(file)) {}
+  SpooledText(const SpooledText&) = delete;
+  SpooledText& operator=(const SpooledText&) = delete;
+  ~SpooledText();
+
+  /// Throws Error: storage_failed, storage_full.
+  void append(std::string_view bytes);
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool is_long() const { return file_.has_value(); }
+  /// The whole text. Throws Error{storage_failed}.
+  [[nodiscard]] std::string read();
+
+ private:
+  void spill();
+
+  const std::filesystem::path path_;
+  std::string unwritten_;
+  std::size_t size_ = 0;
+  std::optional<File> file_;
+};
+
+}  // namespace unwrapd::server
