@@ -2,6 +2,8 @@
 // Core has no threads of its own: it splits its loops into blocks and hands them to an Executor.
 // Through it a job also reaches what it shares with others.
 
+#include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <stop_token>
 #include <utility>
@@ -30,6 +32,22 @@ class Executor {
   /// Of the job whose blocks these are: long work looks at it (cancel.hpp).
   [[nodiscard]] virtual std::stop_token stop() const { return {}; }
 };
+
+/// How many steps of a loop are a block: fixed, so that no sum depends on threads.
+inline constexpr std::size_t kPartSize = 4096;
+
+/// How many parts `count` steps come to.
+constexpr std::size_t part_count(std::size_t count) { return (count + kPartSize - 1) / kPartSize; }
+
+/// Calls body(part, begin, end) for every part of [0, count), as blocks.
+template <class Body>
+void for_each_part(std::size_t count, Executor& executor, Body body) {
+  executor.for_each_block(static_cast<int>(part_count(count)), [&](int block) {
+    const auto part = static_cast<std::size_t>(block);
+    const std::size_t begin = part * kPartSize;
+    body(part, begin, std::min(begin + kPartSize, count));
+  });
+}
 
 /// Another executor, for one job that may be told to stop.
 class JobExecutor final : public Executor {

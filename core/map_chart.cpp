@@ -87,7 +87,7 @@ std::vector<MappedChart> finish_parts(const Disk& disk, Kept kept, const ChartHo
     mapped.push_back(finish(disk, std::move(kept.parts.front()), hold, solution, executor));
   } else {
     for (KeptPart& part : kept.parts) {
-      const Disk own = make_disk(part.chart->mesh, part.chart->loops, nullptr, disk.stop);
+      const Disk own = make_disk(part.chart->mesh, part.chart->loops, disk.stop);
       mapped.push_back(finish(own, std::move(part), {}, solution, executor));
       mapped.back().report.mending.parts = kept.mending.parts;
     }

@@ -24,11 +24,11 @@ SegmentOptions segment_options(const UnwrapOptions& options) {
       .one_chart_each = !options.constraints.empty() || options.boundary != BoundaryShape::free};
 }
 
-std::vector<Disk> disks_of(const Charts& surface, const std::stop_token& stop, SolverCore* core) {
+std::vector<Disk> disks_of(const Charts& surface, Executor& executor) {
   std::vector<Disk> disks;
   disks.reserve(surface.charts.size());
   for (const Chart& chart : surface.charts) {
-    disks.push_back(make_disk(chart.mesh, chart.loops, core, stop));
+    disks.push_back(make_disk(chart.mesh, chart.loops, executor));
     disks.back().twin = chart.halfedges.twin;
     disks.back().stop = {};  // it may be kept for other jobs
   }
@@ -58,7 +58,7 @@ std::shared_ptr<const Prepared> prepare(std::span<const Surface> surfaces,
   prepared->note = segment_charts(prepared->surfaces, segment_options(options), watch, executor);
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const Charts& own = prepared->surfaces[s];
-    prepared->disks.push_back(disks_of(own, watch.stop, executor.shared_core()));
+    prepared->disks.push_back(disks_of(own, executor));
     throw_if_cancelled(watch.stop);
     prepared->plans.push_back(plan_of(surfaces[s], own, executor.shared_core(), watch.stop));
   }

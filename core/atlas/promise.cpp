@@ -120,7 +120,7 @@ void split(const KeptPart& part, const Seeds& seeds, const std::stop_token& stop
 bool unfold(KeptPart& part, double unit, const Promise& promise) {
   const MapIntent& intent = promise.intent;
   SerialExecutor serial;
-  const Disk disk = make_disk(part.chart->mesh, part.chart->loops, nullptr, intent.stop);
+  const Disk disk = make_disk(part.chart->mesh, part.chart->loops, intent.stop);
   UvMap uv = part.uv;
   if (!map_injectively(disk, intent, uv, serial)) return false;
   const bool is_bounded = promise.most_rise < std::numeric_limits<double>::infinity();
@@ -156,7 +156,7 @@ Seeds seeds_needed(KeptPart& part, const std::vector<Index>& flipped, double uni
 std::vector<Index> flips_left(KeptPart& part, const MapIntent& intent) {
   std::vector<Index> flipped = flipped_faces(part.chart->mesh.faces, part.uv, intent.stop);
   if (flipped.empty()) return flipped;
-  const Disk disk = make_disk(part.chart->mesh, part.chart->loops, nullptr, intent.stop);
+  const Disk disk = make_disk(part.chart->mesh, part.chart->loops, intent.stop);
   untangle(disk, {.rigidity = intent.rigidity, .held = {}, .stop = intent.stop}, part.uv);
   return flipped_faces(part.chart->mesh.faces, part.uv);
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 #include "core/cancel.hpp"
@@ -80,23 +81,41 @@ std::size_t merge(std::span<Entry> column) {
 }  // namespace
 
 SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count,
-                             std::span<const double> weight, const std::stop_token& stop) {
+                             std::span<const double> weight, Executor& executor) {
   assert(weight.size() == 3 * faces.size());
-  Columns columns = scatter(faces, vertex_count, weight, stop);
+  Columns columns = scatter(faces, vertex_count, weight, executor.stop());
+  const auto n = static_cast<std::size_t>(vertex_count);
+  const auto column = [&](std::size_t j) {
+    return std::span(columns.entries.begin() + columns.begin[j],
+                     columns.entries.begin() + columns.begin[j + 1]);
+  };
   SparseMatrix lower(vertex_count, vertex_count);
-  lower.reserve(static_cast<Index>(columns.entries.size()) + vertex_count);
-  for (Index j = 0; j < vertex_count; ++j) {
-    look_now_and_then(j, stop);
-    const auto begin = static_cast<std::size_t>(columns.begin[static_cast<std::size_t>(j)]);
-    const auto end = static_cast<std::size_t>(columns.begin[static_cast<std::size_t>(j) + 1]);
-    const std::span<Entry> column = std::span(columns.entries).subspan(begin, end - begin);
-    const std::size_t kept = merge(column);
-    lower.startVec(j);
-    lower.insertBack(j, j) = columns.diagonal[static_cast<std::size_t>(j)];
-    for (const Entry& entry : column.first(kept)) lower.insertBack(entry.row, j) = entry.value;
-  }
-  lower.finalize();
+  const std::span<Index> begin(lower.outerIndexPtr(), n + 1);
+  for_each_part(n, executor, [&](std::size_t, std::size_t first, std::size_t end) {
+    for (std::size_t j = first; j < end; ++j)
+      begin[j + 1] = 1 + static_cast<Index>(merge(column(j)));
+  });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  lower.resizeNonZeros(begin.back());
+  for_each_part(n, executor, [&](std::size_t, std::size_t first, std::size_t end) {
+    for (std::size_t j = first; j < end; ++j) {
+      Index to = begin[j];
+      const auto put = [&](Index row, double value) {
+        lower.innerIndexPtr()[to] = row, lower.valuePtr()[to++] = value;
+      };
+      put(static_cast<Index>(j), columns.diagonal[j]);
+      for (const Entry& e : column(j).first(static_cast<std::size_t>(begin[j + 1] - to)))
+        put(e.row, e.value);
+    }
+  });
   return lower;
+}
+
+SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count,
+                             std::span<const double> weight, const std::stop_token& stop) {
+  SerialExecutor serial;
+  JobExecutor job(serial, stop);
+  return lower_laplacian(faces, vertex_count, weight, job);
 }
 
 VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count,

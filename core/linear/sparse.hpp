@@ -7,6 +7,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/executor.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd {
@@ -16,6 +17,9 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 /// The lower triangle of the Laplacian of the faces' edges, vertex_count square:
 /// (L u)_i = sum over half-edges at i of weight (u_i - u_j). weight has 3 entries a face, one for
 /// each side; the two sides of an edge add up. Every vertex has its diagonal entry, stored first.
+/// The same bits by any executor. Throws Error{cancelled}.
+SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count,
+                             std::span<const double> weight, Executor& executor);
 SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count,
                              std::span<const double> weight, const std::stop_token& stop = {});
 

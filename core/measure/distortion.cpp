@@ -6,12 +6,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 namespace unwrapd {
 namespace {
-
-constexpr std::size_t kBlock = 4096;  // faces: fixed, so that no sum depends on threads
 
 /// A part of the faces, and the map of all.
 struct Faces {
@@ -19,9 +18,8 @@ struct Faces {
   std::span<const Triangle> corners;
   std::span<const Vec2> uv;
 
-  [[nodiscard]] Faces block(std::size_t k) const {
-    const std::size_t begin = k * kBlock, count = std::min(kBlock, corners.size() - begin);
-    return {rest.subspan(begin, count), corners.subspan(begin, count), uv};
+  [[nodiscard]] Faces part(std::size_t begin, std::size_t end) const {
+    return {rest.subspan(begin, end - begin), corners.subspan(begin, end - begin), uv};
   }
   [[nodiscard]] Jacobian jacobian_of(std::size_t t) const {
     return jacobian(rest[t], uv_edges(corners[t], uv));
@@ -85,33 +83,39 @@ DistortionSums& DistortionSums::operator+=(const DistortionSums& other) {
 }
 
 double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+               std::span<const Vec2> uv, Executor& executor) {
+  std::vector<double> sums(part_count(faces.size()), 0.0);
+  for_each_part(faces.size(), executor, [&](std::size_t k, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      sums[k] += rest[t].area * std::abs(jacobian(rest[t], uv_edges(faces[t], uv)).determinant());
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                std::span<const Vec2> uv) {
-  double sum = 0;
-  for (std::size_t t = 0; t < faces.size(); ++t)
-    sum += rest[t].area * std::abs(jacobian(rest[t], uv_edges(faces[t], uv)).determinant());
-  return sum;
+  SerialExecutor serial;
+  return uv_area(rest, faces, uv, serial);
 }
 
 DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                                std::span<const Vec2> uv, Executor& executor) {
   assert(rest.size() == faces.size());
   const Faces all{rest, faces, uv};
-  std::vector<Block> blocks((faces.size() + kBlock - 1) / kBlock);
-  const auto for_each_block = [&](const auto& visit) {
-    executor.for_each_block(static_cast<int>(blocks.size()),
-                            [&](int k) { visit(static_cast<std::size_t>(k)); });
-  };
-  for_each_block([&](std::size_t k) { blocks[k] = sum_up(all.block(k)); });
+  std::vector<Block> blocks(part_count(faces.size()));
+  for_each_part(faces.size(), executor, [&](std::size_t k, std::size_t begin, std::size_t end) {
+    blocks[k] = sum_up(all.part(begin, end));
+  });
   DistortionSums areas;
   for (const Block& block : blocks)
     areas.area += block.sums.area, areas.uv_area += block.sums.uv_area;
   const double floor = std::max(kMinSingularValue * std::sqrt(areas.uv_area / areas.area), 1e-150);
   const auto is_above = [&](const Block& block) { return block.is_above(floor); };
   if (!std::ranges::all_of(blocks, is_above))
-    for_each_block([&](std::size_t k) {
+    for_each_part(faces.size(), executor, [&](std::size_t k, std::size_t begin, std::size_t end) {
       if (is_above(blocks[k])) return;
       blocks[k].sums = {.area = blocks[k].sums.area, .uv_area = blocks[k].sums.uv_area};
-      add_floored(all.block(k), floor, blocks[k].sums);
+      add_floored(all.part(begin, end), floor, blocks[k].sums);
     });
   DistortionSums sums;
   for (const Block& block : blocks) sums += block.sums;

@@ -39,7 +39,10 @@ DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<con
 /// Stretch is the L2 norm of Sander et al. 2001.
 Distortion distortion(const DistortionSums& sums);
 
-/// Sum of A_t |det J|: the area that the images cover, counted with multiplicity, mesh units^2.
+/// Sum of A_t |det J|: the area that the images cover, counted with multiplicity, mesh units^2. The
+/// same bits by any executor.
+double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+               std::span<const Vec2> uv, Executor& executor);
 double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                std::span<const Vec2> uv);
 

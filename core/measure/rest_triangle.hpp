@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/executor.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd {
@@ -21,12 +22,15 @@ struct RestTriangle {
 inline constexpr double kMinHeight = 1e-6;
 
 /// One rest triangle a face. Faces must not have all three corners at one point.
+/// Throws Error{cancelled}.
+std::vector<RestTriangle> flatten(const TriMesh& mesh, Executor& executor);
 std::vector<RestTriangle> flatten(const TriMesh& mesh, const std::stop_token& stop = {});
 
 /// 3D area of one face, unfloored.
 double face_area(const TriMesh& mesh, const Triangle& face);
 
-/// Sum of face_area() over all faces.
+/// Sum of face_area() over all faces. The same bits by any executor.
+double surface_area(const TriMesh& mesh, Executor& executor);
 double surface_area(const TriMesh& mesh);
 
 }  // namespace unwrapd

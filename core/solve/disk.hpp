@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/executor.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/halfedges.hpp"
@@ -30,8 +31,12 @@ struct Disk {
   [[nodiscard]] Index vertex_count() const { return static_cast<Index>(positions.size()); }
 };
 
-/// mesh, loops and core must outlive the disk. Throws Error{zero_area, cancelled}.
-Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, SolverCore* core = nullptr,
+/// mesh, loops and what the executor's jobs share must outlive the disk. The same bits by any
+/// executor. Throws Error{zero_area, cancelled}.
+Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, Executor& executor);
+
+/// The same on the calling thread, of a disk that nothing is shared of.
+Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops,
                const std::stop_token& stop = {});
 
 }  // namespace unwrapd

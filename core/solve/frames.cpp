@@ -52,7 +52,7 @@ bool is_soon_level(const Disk& disk) {
 /// u, one a vertex: level on the boundary, or nearly so where that is had without a factor.
 std::vector<double> log_scales(const Disk& disk, const GlobalStep& global) {
   const std::vector<char> on_boundary = boundary_vertices(disk);
-  const std::vector<double> k = curvature(disk, disk.rest);
+  const std::vector<double> k = curvature(disk, disk.rest, global.executor());
   if (is_soon_level(disk))
     if (auto level = level_scales(disk, global, k, kMostSolves)) return std::move(*level);
   std::vector<Vec2> x(k.size(), Vec2::Zero());

@@ -16,21 +16,22 @@
 namespace unwrapd {
 namespace {
 
-SparseMatrix held_matrix(const Disk& disk, const Holds& holds) {
+SparseMatrix held_matrix(const Disk& disk, const Holds& holds, Executor& executor) {
   std::vector<double> weight;
   weight.reserve(3 * disk.rest.size());
   for (const RestTriangle& rest : disk.rest)
     weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
   throw_if_cancelled(disk.stop);
-  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight, disk.stop);
+  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight, executor);
   for (const Spring& spring : holds.springs)
     lower.coeffRef(spring.vertex, spring.vertex) += 2 * spring.weight;
   if (holds.empty()) lower.coeffRef(0, 0) *= 2;
   return lower;
 }
 
-SparseMatrix free_matrix(const Disk& disk, const Holds& holds, const FreeVertices& free) {
-  SparseMatrix lower = held_matrix(disk, holds);
+SparseMatrix free_matrix(const Disk& disk, const Holds& holds, const FreeVertices& free,
+                         Executor& executor) {
+  SparseMatrix lower = held_matrix(disk, holds, executor);
   if (holds.fixed.empty()) return lower;
   const std::vector<Vec2> nowhere(free.slot.size(), Vec2::Zero());  // only the matrix is wanted
   return eliminate<SparseMatrix, Vec2>(lower, free, nowhere, disk.stop).lower;
@@ -38,7 +39,7 @@ SparseMatrix free_matrix(const Disk& disk, const Holds& holds, const FreeVertice
 
 std::shared_ptr<const Factor> factored(const Disk& disk, const Holds& holds,
                                        const FreeVertices& free, Executor& executor) {
-  const SparseMatrix lower = free_matrix(disk, holds, free);
+  const SparseMatrix lower = free_matrix(disk, holds, free, executor);
   throw_if_cancelled(executor.stop());
   const Content pattern = Content("analysis").add(disk.connectivity).add(free.slot);
   const auto analysis = kept(disk, pattern, [&] { return analyse(lower, disk.stop); });
@@ -83,9 +84,7 @@ GlobalStep::GlobalStep(const Disk& disk, const Holds& holds, Executor* executor)
   for (const Spring& s : holds.springs) spring.push_back(s.vertex), weight.push_back(s.weight);
   const Content content =
       Content("global step").add(disk.content).add(free_.slot).add(spring).add(weight);
-  SerialExecutor serial;
-  Executor& runs = executor_ != nullptr ? *executor_ : serial;
-  system_ = kept(disk, content, [&] { return factored(disk, holds, free_, runs); });
+  system_ = kept(disk, content, [&] { return factored(disk, holds, free_, this->executor()); });
   rank_ = ranks(free_, system_->analysis()->nodes.position);
 }
 
@@ -98,28 +97,22 @@ void GlobalStep::solve(std::span<Vec2> force) const {
 
 void GlobalStep::solve_by_rank(std::span<Vec2> force) const {
   assert(force.size() == rank_.size());
-  SerialExecutor serial;
-  Executor& runs = executor_ != nullptr ? *executor_ : serial;
-  throw_if_cancelled(runs.stop());
+  throw_if_cancelled(executor().stop());
   const auto free_count = static_cast<std::size_t>(free_.count);
-  if (system_) system_->solve_in_order(force.first(free_count), runs);
+  if (system_) system_->solve_in_order(force.first(free_count), executor());
   std::ranges::fill(force.subspan(free_count), Vec2::Zero());
 }
 
 void GlobalStep::descend_by_rank(std::span<Vec2> force, std::span<const char> over) const {
   assert(free_.count == static_cast<Index>(force.size()));
-  SerialExecutor serial;
-  Executor& runs = executor_ != nullptr ? *executor_ : serial;
-  throw_if_cancelled(runs.stop());
-  system_->descend_in_order(force, over, runs);
+  throw_if_cancelled(executor().stop());
+  system_->descend_in_order(force, over, executor());
 }
 
 void GlobalStep::ascend_by_rank(std::span<Vec2> force, std::span<const char> over) const {
   assert(free_.count == static_cast<Index>(force.size()));
-  SerialExecutor serial;
-  Executor& runs = executor_ != nullptr ? *executor_ : serial;
-  throw_if_cancelled(runs.stop());
-  system_->ascend_in_order(force, over, runs);
+  throw_if_cancelled(executor().stop());
+  system_->ascend_in_order(force, over, executor());
 }
 
 std::vector<char> GlobalStep::over(std::span<const Index> ranks) const {
@@ -128,13 +121,11 @@ std::vector<char> GlobalStep::over(std::span<const Index> ranks) const {
 
 void GlobalStep::solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const {
   assert(free_.count == static_cast<Index>(b.size()));
-  SerialExecutor serial;
-  Executor& runs = executor_ != nullptr ? *executor_ : serial;
-  throw_if_cancelled(runs.stop());
-  const auto other = definite(try_factor(system_->analysis(), lower, runs));
-  throw_if_cancelled(runs.stop());
-  other->solve(b, runs);
-  throw_if_cancelled(runs.stop());
+  throw_if_cancelled(executor().stop());
+  const auto other = definite(try_factor(system_->analysis(), lower, executor()));
+  throw_if_cancelled(executor().stop());
+  other->solve(b, executor());
+  throw_if_cancelled(executor().stop());
 }
 
 }  // namespace unwrapd

@@ -22,6 +22,9 @@ class GlobalStep {
   /// Error{solver_failed, too_much_memory}.
   GlobalStep(const Disk& disk, const Holds& holds, Executor* executor = nullptr);
 
+  /// What runs its solves.
+  [[nodiscard]] Executor& executor() const { return executor_ != nullptr ? *executor_ : serial_; }
+
   /// Replaces force (Objective::evaluate()) by the change of the map A^-1 force; fixed vertices do
   /// not move. Solving for the change, not for the map, keeps full precision near convergence.
   /// The same for any executor. Thread-safe where its executor is.
@@ -52,6 +55,7 @@ class GlobalStep {
   std::shared_ptr<const Factor> system_;  // null where no vertex is free
   std::vector<Index> rank_;
   Executor* executor_;
+  mutable SerialExecutor serial_;
 };
 
 /// One entry a vertex, listed by ranks; and back.

@@ -25,17 +25,27 @@ std::vector<char> boundary_vertices(const Disk& disk) {
   return on;
 }
 
-std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> triangles) {
+std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> triangles,
+                              Executor& executor) {
+  std::vector<std::array<double, 3>> angles(triangles.size());
+  for_each_part(angles.size(), executor, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) angles[t] = corner_angles(triangles[t]);
+  });
   const std::vector<char> on_boundary = boundary_vertices(disk);
   std::vector<double> k(on_boundary.size());
   for (std::size_t v = 0; v < k.size(); ++v)
     k[v] = (on_boundary[v] != 0 ? 1 : 2) * std::numbers::pi;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     look_now_and_then(t, disk.stop);
-    const std::array<double, 3> angle = corner_angles(triangles[t]);
-    for (std::size_t i = 0; i < 3; ++i) k[static_cast<std::size_t>(disk.faces[t][i])] -= angle[i];
+    for (std::size_t i = 0; i < 3; ++i)
+      k[static_cast<std::size_t>(disk.faces[t][i])] -= angles[t][i];
   }
   return k;
+}
+
+std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> triangles) {
+  SerialExecutor serial;
+  return curvature(disk, triangles, serial);
 }
 
 double inner_curvature(const Disk& disk, std::span<const double> curvature) {

@@ -25,6 +25,8 @@ std::array<double, 3> corner_angles(const RestTriangle& triangle);
 /// pi - that sum on the boundary. triangles: one a face. All together: 2 pi times the Euler
 /// characteristic (Gauss, Bonnet).
 std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> triangles);
+std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> triangles,
+                              Executor& executor);
 
 /// The greatest |curvature| of an inner vertex; 0 where there is none.
 double inner_curvature(const Disk& disk, std::span<const double> curvature);

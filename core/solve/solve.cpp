@@ -81,7 +81,7 @@ Solution direct(const Disk& disk, const Holds& holds, UvMap uv) {
 std::optional<UvMap> usable_frame_map(const Disk& disk, const GlobalStep& global) {
   UvMap start = kept_value(disk, Content("frame map").add(disk.content), [&] {
     UvMap uv = frame_map(disk, global);
-    const double area = uv_area(disk.rest, disk.faces, uv);
+    const double area = uv_area(disk.rest, disk.faces, uv, global.executor());
     if (!(area > kMinAreaShare)) return UvMap();
     return scaled_to_unit_area(std::move(uv), area);
   });

@@ -125,7 +125,7 @@ TEST(Cancel, IsHeardWhileMapsAreMade) {
   const std::vector<Index> rank = shapes::as_listed(s.mesh.positions.size());
   const std::vector<double> curved(s.mesh.positions.size(), 1);
   expect_all_to_hear(
-      {{"disk", [&](Stop stop) { make_disk(s.mesh, s.owned.disk.loops, nullptr, stop); }},
+      {{"disk", [&](Stop stop) { make_disk(s.mesh, s.owned.disk.loops, stop); }},
        {"flatten", [&](Stop stop) { flatten(s.mesh, stop); }},
        {"curvature", [&](Stop stop) { curvature(s.disk(stop), s.owned.disk.rest); }},
        {"level scales", [&](Stop stop) { level_scales(s.disk(stop), global, curved, 99); }},
