@@ -9,9 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/atlas/glue_slits.hpp"
+#include "core/atlas/halve.hpp"
 #include "core/atlas/labels.hpp"
 #include "core/atlas/loosen.hpp"
 #include "core/atlas/pack.hpp"
@@ -37,6 +39,7 @@ constexpr int kFirstLotOfMends = 100;
 constexpr double kFittingFill = 0.72;  // see MergeRules::least_fill
 constexpr double kCostOfAChart = 0.15;
 constexpr double kWantedFill = 0.7, kCostOfEmptiness = 14;  // for a page that is empty beyond that
+constexpr double kLargeRegion = 0.1, kEnoughFill = 0.645;  // that is worth cutting across; for what
 constexpr double kFacesOfATry = 20, kTriesOfFinishing = 1;  // for each face; see Effort
 constexpr double kMostPage = 1.5;  // of the sheet: with more beside it, others fill the gaps
 
@@ -69,15 +72,16 @@ double seam_of(const Sheet& sheet, const Partition& partition, const std::vector
 
 /// What a partition costs: its seams (the sheet's area is 1), and something for each chart and for
 /// the page that it leaves empty.
-double cost_of(const Sheet& sheet, const Partition& partition, const MergeRules& rules) {
+double cost_of(const Sheet& sheet, const Partition& partition, const MergeRules& rules,
+               double wanted_fill = kWantedFill) {
   const std::vector<Index> owner = owners(sheet, partition);
   const double seam = seam_of(sheet, partition, owner);
   if (seam <= 0) return 0;  // what needs no cut is left whole
   double cost = seam + kCostOfAChart * static_cast<double>(partition.patches.size());
   const bool has_page = rules.page_area <= kMostPage;
   const double fill =
-      has_page ? rough_fill(outlines(sheet, partition, owner), rules.stop) : kWantedFill;
-  cost += kCostOfEmptiness * std::max(0.0, kWantedFill - fill);
+      has_page ? rough_fill(outlines(sheet, partition, owner), rules.stop) : wanted_fill;
+  cost += kCostOfEmptiness * std::max(0.0, wanted_fill - fill);
   return rounded(cost);
 }
 
@@ -152,6 +156,24 @@ class Search {
     return all;
   }
 
+  /// The region is cut across whose halves make the partition cheapest, again and again as long as
+  /// that helps: few charts that merged into rings and stars leave a page emptier than it need be.
+  [[nodiscard]] Partition taken_apart(Partition partition) const {
+    Candidate best{cost_of(sheet_, partition, rules_, kEnoughFill), std::move(partition)};
+    while (true) {
+      const Candidate from = best;
+      for (std::size_t k = 0; k < from.partition.patches.size(); ++k) {
+        if (from.partition.patches[k].area < kLargeRegion) continue;
+        std::optional<Partition> apart = halved(sheet_, from.partition, k, rules_);
+        if (!apart) continue;
+        straighten(sheet_, rules_, *apart);
+        const double cost = cost_of(sheet_, *apart, rules_, kEnoughFill);
+        if (cost < best.cost) best = {cost, std::move(*apart)};
+      }
+      if (best.cost >= from.cost) return std::move(best.partition);
+    }
+  }
+
  private:
   /// A part of the work begins that takes as long as so many tries, of which the last one tells.
   void begin(double tries) {
@@ -195,6 +217,7 @@ Partition best_merge(const Sheet& sheet, const Partition& from, const MergeRules
     for (Candidate& own : search.finished(std::move(mended.partition)))
       if (own.cost < best.cost) best = std::move(own);
   }
+  best.partition = search.taken_apart(std::move(best.partition));
   glue_slits(sheet, rules, best.partition);
   return std::move(best.partition);
 }

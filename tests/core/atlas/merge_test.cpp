@@ -81,7 +81,6 @@ TEST(Merge, RefusesALargeUnionThatFillsItsHullTooLittle) {
   EXPECT_EQ(count(0.9, 30), 1U);  // too small a share of the page to matter
 }
 
-/// Six sides of a cube lie flat as a cross, but only with slits, which are told.
 /// Sixteen squares: which unions come first is all the same by their borders.
 TEST(Merge, DrawsLotsWhereItHasAWhim) {
   const Sheet sheet = sheet_of(shapes::grid(8, 8));
@@ -106,6 +105,7 @@ TEST(Merge, DrawsLotsWhereItHasAWhim) {
   EXPECT_NE(merged(0.3, 1), merged(0, 1));
 }
 
+/// Six sides of a cube lie flat as a cross, but only with slits, which are told.
 TEST(Merge, TellsOfSlitsOnBothSides) {
   const TriMesh mesh = shapes::cube(1);
   const Sheet sheet = sheet_of(mesh);

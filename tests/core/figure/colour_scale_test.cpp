@@ -9,8 +9,8 @@
 namespace unwrapd {
 namespace {
 
-constexpr std::array kAll = {Colouring::stretch, Colouring::angle, Colouring::area,
-                             Colouring::flips};
+constexpr std::array kEveryColouring = {Colouring::stretch, Colouring::angle, Colouring::area,
+                                        Colouring::flips};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The Jacobian diag(a, d).
@@ -26,7 +26,7 @@ double luminance(const Rgb& colour) {
 }
 
 TEST(ColourScale, NamesAndColouringsAnswerEachOther) {
-  for (const Colouring colouring : kAll) {
+  for (const Colouring colouring : kEveryColouring) {
     const std::string_view name = kColouringNames[static_cast<std::size_t>(colouring)];
     EXPECT_EQ(colouring_named(name), colouring);
     EXPECT_EQ(colour_scale(colouring).title, name);
@@ -70,7 +70,7 @@ TEST(ColourScale, GreyPicturesKeepTheOrder) {
 }
 
 TEST(ColourScale, EveryTickLiesOnItsBar) {
-  for (const Colouring colouring : kAll) {
+  for (const Colouring colouring : kEveryColouring) {
     const ColourScale& scale = colour_scale(colouring);
     ASSERT_FALSE(scale.ticks.empty());
     EXPECT_FALSE(scale.caption.empty());
