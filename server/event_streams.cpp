@@ -37,21 +37,26 @@ StreamPiece next_piece(Reader& reader) {
   return {.bytes = std::move(reading.frames), .end = reading.end};
 }
 
+Watcher watcher_of(const Request& request) {
+  return {.owner = request.caller.owner,
+          .seen = parse_event_id(request.header("Last-Event-ID")),
+          .place = {}};
+}
+
 std::string last_frame(const JobRecord& job) {
   return api::sse_frame(api::final_event(job.last_event, to_job(job)));
 }
 
 }  // namespace
 
-std::shared_ptr<void> EventStreams::take_place() {
-  if (open_->fetch_add(1) >= max_streams_) {
-    open_->fetch_sub(1);
-    throw RetryLater(ErrorCode::too_many_streams,
-                     "All " + std::to_string(max_streams_) +
-                         " event streams are taken; come back after Retry-After.",
-                     kRetrySeconds);
-  }
-  return {open_.get(), [open = open_](void*) { open->fetch_sub(1); }};
+std::shared_ptr<void> EventStreams::take_place(const std::string& owner) {
+  std::shared_ptr<void> place = places_.let_in(owner);
+  if (place) return place;
+  throw RetryLater(ErrorCode::too_many_streams,
+                   "All " + std::to_string(max_streams_) +
+                       " event streams are taken, or half of them by this API key; come back after "
+                       "Retry-After.",
+                   kRetrySeconds);
 }
 
 Response EventStreams::stream(const JobRecord& job, Watcher watcher, std::string greeting) {
@@ -63,7 +68,7 @@ Response EventStreams::stream(const JobRecord& job, Watcher watcher, std::string
     response.body = greeting + last_frame(job);
     return response;
   }
-  if (!watcher.place) watcher.place = take_place();
+  if (!watcher.place) watcher.place = take_place(watcher.owner);
   auto reader = std::make_shared<Reader>(Reader{.feed = feed,
                                                 .after = feed->resume_after(watcher.seen),
                                                 .place = std::move(watcher.place),
@@ -72,12 +77,14 @@ Response EventStreams::stream(const JobRecord& job, Watcher watcher, std::string
   return response;
 }
 
-Response EventStreams::open(const JobRecord& job, const std::string& last_event_id) {
-  return stream(job, {.seen = parse_event_id(last_event_id), .place = {}}, {});
+Response EventStreams::open(const JobRecord& job, const Request& request) {
+  return stream(job, watcher_of(request), {});
 }
 
-Watcher EventStreams::let_in(const std::string& last_event_id) {
-  return {.seen = parse_event_id(last_event_id), .place = take_place()};
+Watcher EventStreams::let_in(const Request& request) {
+  Watcher watcher = watcher_of(request);
+  watcher.place = take_place(watcher.owner);
+  return watcher;
 }
 
 Response EventStreams::open_accepted(const JobRecord& job, Watcher watcher) {

@@ -40,7 +40,7 @@ JobRecord stored_job(JobStore& store, const std::string& id) {
 
 /// Who has no place among the streams is told so before anything is accepted.
 Response post_watched(const JobServices& services, const Request& request) {
-  Watcher watcher = services.streams.let_in(request.header("Last-Event-ID"));
+  Watcher watcher = services.streams.let_in(request);
   const std::string id = services.submissions.accept(request, false);
   const JobRecord job = stored_job(services.store, id);
   Response response = services.streams.open_accepted(job, std::move(watcher));
@@ -134,7 +134,7 @@ void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
   routes.push_back({"DELETE", "/v1/jobs/{id}",
                     [services](const Request& request) { return delete_job(services, request); }});
   routes.push_back({"GET", "/v1/jobs/{id}/events", [services, find](const Request& request) {
-                      return services.streams.open(find(request), request.header("Last-Event-ID"));
+                      return services.streams.open(find(request), request);
                     }});
   routes.push_back({"GET", "/v1/jobs/{id}/result", [services, find](const Request& request) {
                       const JobRecord job = find(request);

@@ -15,6 +15,11 @@ std::shared_ptr<void> Waiters::let_in(const std::string& owner) {
   return {this, [owner](Waiters* waiters) { waiters->leave(owner); }};
 }
 
+int Waiters::count() const {
+  const std::lock_guard lock(mutex_);
+  return count_;
+}
+
 void Waiters::leave(const std::string& owner) {
   const std::lock_guard lock(mutex_);
   --count_;

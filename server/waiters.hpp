@@ -1,6 +1,7 @@
 #pragma once
-// Who may hold a request open until a job ends: each holds a thread of the server, so there are
-// fewer of them than threads, and an API key has no more than half of these.
+// Who may hold open what there is little of: a request until a job ends (each holds a thread of the
+// server, so there are fewer of them than threads), an event stream. An API key has no more than
+// half of the places.
 
 #include <map>
 #include <memory>
@@ -9,7 +10,7 @@
 
 namespace unwrapd::server {
 
-/// Thread-safe.
+/// Thread-safe. Outlives the places.
 class Waiters {
  public:
   /// most: at a time, in all.
@@ -18,12 +19,13 @@ class Waiters {
   /// A place, the caller's while it keeps what is returned; nothing where all are taken. owner: id
   /// of the API key, empty without one.
   [[nodiscard]] std::shared_ptr<void> let_in(const std::string& owner);
+  [[nodiscard]] int count() const;
 
  private:
   void leave(const std::string& owner);
 
   const int most_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   int count_ = 0;
   std::map<std::string, int> of_owner_;
 };

@@ -6,6 +6,8 @@
 #include <atomic>
 #include <thread>
 
+#include "server/key_store.hpp"
+
 namespace unwrapd::server {
 namespace {
 
@@ -23,10 +25,11 @@ class Events : public RunningServer {
   }
 
   /// A reader that has received its first bytes and stays until the stream ends.
-  std::jthread stay(const std::string& id, std::atomic<int>& begun) {
-    return std::jthread([this, id, &begun] {
+  std::jthread stay(const std::string& id, std::atomic<int>& begun,
+                    const httplib::Headers& headers = {}) {
+    return std::jthread([this, id, headers, &begun] {
       bool first = true;
-      client().Get("/v1/jobs/" + id + "/events", [&](const char*, std::size_t) {
+      client().Get("/v1/jobs/" + id + "/events", headers, [&](const char*, std::size_t) {
         if (first) ++begun;
         first = false;
         return true;
@@ -101,6 +104,34 @@ TEST_F(Events, StreamsAreLimitedAndStarveNoOtherRequest) {
   client().Delete("/v1/jobs/" + id);
   readers.clear();
   await([&] { return get(id, "events")->status == 200; });
+}
+
+TEST_F(Events, OfOneKeyLeaveHalfOfTheStreamsToOthers) {
+  config_.access.require_keys = true;
+  start();
+  KeyStore keys(config_.data);
+  const auto holder = [&] {
+    ApiKey key;
+    key.scopes = {.submit = true, .read = true};
+    return httplib::Headers{{"Authorization", "Bearer " + keys.add(key)}};
+  };
+  const auto submit_as = [this](const httplib::Headers& key) {
+    const auto job =
+        client().Post("/v1/jobs?stop.iterations=10000", key, grid_obj(40), "model/obj");
+    return api::Json::parse(job->body).at("id").get<std::string>();
+  };
+  const httplib::Headers greedy = holder(), modest = holder();
+  const std::string id = submit_as(greedy), other = submit_as(modest);
+  std::atomic<int> begun = 0;
+  std::vector<std::jthread> readers;
+  const int half = config_.limits.max_streams / 2;
+  for (int r = 0; r < half; ++r) readers.push_back(stay(id, begun, greedy));
+  await([&] { return begun == half; });
+  expect_problem(get(id, "events", greedy), 503, "too_many_streams");
+  for (int r = 0; r < half; ++r) readers.push_back(stay(other, begun, modest));
+  await([&] { return begun == 2 * half; });
+  client().Delete("/v1/jobs/" + id, greedy);
+  client().Delete("/v1/jobs/" + other, modest);
 }
 
 }  // namespace
