@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "server/job_queue.hpp"
+#include "server/job_store.hpp"
 #include "server/metrics.hpp"
 #include "server/router.hpp"
 
 namespace unwrapd::server {
 
 /// GET /healthz, /readyz, /metrics, /version.
-std::vector<Route> admin_routes(const JobQueue& queue, const Metrics& metrics);
+std::vector<Route> admin_routes(const JobQueue& queue, JobStore& store, const Metrics& metrics);
 
 /// The first two alone, which the service's own port has as well.
-void add_probe_routes(std::vector<Route>& routes, const JobQueue& queue);
+void add_probe_routes(std::vector<Route>& routes, const JobQueue& queue, JobStore& store);
 
 }  // namespace unwrapd::server

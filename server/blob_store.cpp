@@ -1,5 +1,6 @@
 #include "server/blob_store.hpp"
 
+#include <iterator>
 #include <set>
 #include <system_error>
 
@@ -228,18 +229,25 @@ std::string BlobStore::digest(std::string_view job, std::string_view file) const
   return noted != digests.end() ? noted->second : sha256_of(File::open(path(job, file)));
 }
 
-void BlobStore::sweep(const std::function<bool(const std::string& job)>& keeps_files) {
+int BlobStore::folder_count() const {
+  return static_cast<int>(std::distance(fs::directory_iterator(blobs_), fs::directory_iterator()));
+}
+
+int BlobStore::sweep(const std::function<bool(const std::string& job)>& keeps_files) {
+  int removed = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(incoming_))
     remove_tree(entry.path());
   for (const fs::directory_entry& entry : fs::directory_iterator(blobs_)) {
     const std::string job = entry.path().filename();
     if (!keeps_files(job)) {
       remove_tree(entry.path());
+      ++removed;
       continue;
     }
     remove_unfinished(entry.path());
     room_.set(job, bytes_below(entry.path()));
   }
+  return removed;
 }
 
 }  // namespace unwrapd::server

@@ -81,8 +81,11 @@ class BlobStore {
   /// told: of the bytes of all files of a job whenever note() was called.
   void on_noted(std::function<void(std::string_view job, std::int64_t bytes)> told);
 
-  /// Removes unfinished uploads and files, and the folders of jobs that keeps_files refuses.
-  void sweep(const std::function<bool(const std::string& job)>& keeps_files);
+  /// Folders of jobs and meshes.
+  [[nodiscard]] int folder_count() const;
+  /// Removes unfinished uploads and files, and the folders of jobs that keeps_files refuses;
+  /// returns how many of these.
+  int sweep(const std::function<bool(const std::string& job)>& keeps_files);
 
   DiskRoom& room() { return room_; }
 

@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include <cerrno>
+
 #include "core/error.hpp"
 #include "server/files.hpp"
 
@@ -10,12 +12,32 @@ namespace {
 
 constexpr int kBusyTimeoutMs = 10'000;
 
-[[noreturn]] void fail(sqlite3* handle) {
+/// Whether there is no room: SQLite knows ENOSPC alone.
+bool is_full(sqlite3* handle, int code) {
+  if (code != SQLITE_IOERR) return code == SQLITE_FULL;
+  const int reason = sqlite3_system_errno(handle);
+  return reason == EFBIG || reason == EDQUOT;
+}
+
+/// What passes by itself, and what somebody must see to. Users read it: the folder stays out of it.
+std::string_view advice(int code) {
+  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) return "put a whole copy of it back";
+  if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY || code == SQLITE_PERM)
+    return "the server's user must be able to write it and its folder";
+  return "try again later";
+}
+
+[[noreturn]] void fail(sqlite3* handle, const std::string& file) {
   const std::string reason = handle != nullptr ? sqlite3_errmsg(handle) : "out of memory";
   const int code = handle != nullptr ? sqlite3_errcode(handle) : SQLITE_NOMEM;
-  if (code == SQLITE_FULL) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
-  throw Error(ErrorCode::storage_failed,
-              "The server's job store failed (" + reason + "); try again later.");
+  if (is_full(handle, code)) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
+  throw Error(ErrorCode::storage_failed, "The server's file " + file + " failed (" + reason +
+                                             "); " + std::string(advice(code)) + ".");
+}
+
+[[noreturn]] void fail(sqlite3* handle) {
+  const char* path = sqlite3_db_filename(handle, nullptr);
+  fail(handle, path == nullptr ? "" : std::filesystem::path(path).filename().string());
 }
 
 }  // namespace
@@ -27,7 +49,7 @@ Database::Database(const std::filesystem::path& path) {
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
   const int result = sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
   handle_.reset(handle);
-  if (result != SQLITE_OK) fail(handle);
+  if (result != SQLITE_OK) fail(handle, path.filename().string());
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
   run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
 }

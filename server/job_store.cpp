@@ -1,5 +1,8 @@
 #include "server/job_store.hpp"
 
+#include <exception>
+#include <limits>
+
 #include "api/error_table.hpp"
 #include "server/job_rows.hpp"
 #include "server/schema.hpp"
@@ -10,6 +13,8 @@ namespace {
 using api::JobState;
 using api::state_name;
 
+constexpr auto kAnySeq = std::numeric_limits<std::int64_t>::max();
+
 /// What a reader of a job's row finds there of its input.
 std::string insert_statement() {
   return "INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256, bytes,"
@@ -17,6 +22,15 @@ std::string insert_statement() {
          " trace)"
          " VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, NULLIF(?, ''), ?, ?, ?, ?) RETURNING "
          "seq";
+}
+
+/// One for each case, so that an index serves it in its order: what is kept of others, or in other
+/// states, is not looked at.
+std::string list_statement(const JobFilter& filter) {
+  std::string where = "WHERE ";
+  if (filter.owner) where += "owner = ?1 AND ";
+  if (filter.state) where += "state = ?2 AND ";
+  return select_jobs(where + "seq < ?3 ORDER BY seq DESC LIMIT ?4");
 }
 
 }  // namespace
@@ -28,7 +42,38 @@ JobOutcome ended(JobState state, const Error& why, std::string_view job) {
   return outcome;
 }
 
-JobStore::JobStore(const std::filesystem::path& path) : database_(path) { migrate(database_); }
+/// The store while it is written: it remembers whether that came about.
+class JobStore::Writing {
+ public:
+  explicit Writing(JobStore& store)
+      : store_(store), lock_(store.mutex_), errors_(std::uncaught_exceptions()) {}
+  Writing(const Writing&) = delete;
+  Writing& operator=(const Writing&) = delete;
+  ~Writing() { store_.write_failed_ = std::uncaught_exceptions() > errors_; }
+
+ private:
+  JobStore& store_;
+  const std::lock_guard<std::mutex> lock_;
+  const int errors_;
+};
+
+JobStore::JobStore(const std::filesystem::path& path) : database_(path) {
+  migrate(database_);
+  check_writable();
+}
+
+void JobStore::check_writable() {
+  if (!write_failed_) return;
+  try {
+    const Writing writing(*this);
+    Transaction both(database_);
+    database_.run("UPDATE jobs SET lease_ms = 0 WHERE seq < 0");
+    database_.run("UPDATE written SET times = times + 1");
+    both.commit();
+  } catch (const Error& error) {  // results are read from a full disk, too, and removed from it
+    if (error.code() != ErrorCode::storage_full) throw;
+  }
+}
 
 template <class... Values>
 std::optional<JobRecord> JobStore::first(std::string_view rest, const Values&... values) {
@@ -40,7 +85,7 @@ std::optional<JobRecord> JobStore::first(std::string_view rest, const Values&...
 }
 
 std::int64_t JobStore::insert(const JobRecord& job) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement statement(database_, insert_statement());
   statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, text_of(job.options),
                  text_of(job.notes), job.input.sha256, job.input.bytes,
@@ -61,7 +106,8 @@ std::optional<JobRecord> JobStore::find_request(std::string_view owner,
 
 std::optional<JobRecord> JobStore::find_same(std::string_view owner, std::string_view content_key) {
   return first(
-      "WHERE owner = ? AND content_key = ? AND state = 'succeeded' AND expired = 0"
+      "INDEXED BY jobs_by_content"
+      " WHERE owner = ? AND content_key = ? AND state = 'succeeded' AND expired = 0"
       " ORDER BY seq DESC LIMIT 1",
       owner, content_key);
 }
@@ -74,20 +120,20 @@ std::vector<JobRecord> JobStore::all(JobState state) {
 
 std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_,
-                      select_jobs("WHERE (?1 OR owner = ?2) AND (?3 = '' OR state = ?3)"
-                                  " AND (?4 = 0 OR seq < ?4) ORDER BY seq DESC LIMIT ?5"));
+  Statement statement(database_, list_statement(filter));
   const std::string state(filter.state ? state_name(*filter.state) : "");
-  return job_rows(statement.with(std::int64_t{!filter.owner}, filter.owner.value_or(""), state,
-                                 filter.before_seq, std::int64_t{filter.limit}));
+  const std::int64_t before = filter.before_seq > 0 ? filter.before_seq : kAnySeq;
+  return job_rows(
+      statement.with(filter.owner.value_or(""), state, before, std::int64_t{filter.limit}));
 }
 
 OwnerUsage JobStore::usage(std::string_view owner) {
   const std::lock_guard lock(mutex_);
   Statement statement(database_,
-                      "SELECT COALESCE(SUM(state IN ('queued', 'running')), 0),"
-                      " COALESCE(SUM(stored_bytes), 0) + (SELECT COALESCE(SUM(stored_bytes), 0)"
-                      " FROM meshes WHERE owner = ?1) FROM jobs WHERE owner = ?1");
+                      "SELECT (SELECT COUNT(*) FROM jobs"
+                      " WHERE owner = ?1 AND state IN ('queued', 'running')),"
+                      " COALESCE((SELECT bytes FROM stored WHERE owner = ?1), 0)"
+                      " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes WHERE owner = ?1)");
   statement.with(owner).step();
   return {.live_jobs = statement.number(0), .stored_bytes = statement.number(1)};
 }
@@ -95,9 +141,9 @@ OwnerUsage JobStore::usage(std::string_view owner) {
 std::int64_t JobStore::evictable_bytes() {
   const std::lock_guard lock(mutex_);
   Statement statement(database_,
-                      "SELECT (SELECT COALESCE(SUM(stored_bytes), 0)"
-                      " FROM jobs INDEXED BY jobs_by_bytes"
-                      " WHERE state IN ('succeeded', 'failed', 'cancelled') AND expired = 0)"
+                      "SELECT (SELECT COALESCE(SUM(bytes), 0) FROM stored)"
+                      " - (SELECT COALESCE(SUM(stored_bytes), 0) FROM jobs"
+                      " WHERE state IN ('queued', 'running'))"
                       " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes"
                       " WHERE (owner, sha256) NOT IN (SELECT owner, sha256 FROM jobs"
                       " WHERE state IN ('queued', 'running')))");
@@ -106,7 +152,7 @@ std::int64_t JobStore::evictable_bytes() {
 }
 
 std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t lease_ms) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement statement(database_,
                       "UPDATE jobs SET state = 'running', attempt = attempt + 1, lease_ms = ?2"
                       " WHERE seq = (SELECT seq FROM jobs WHERE state = 'queued' AND owner = ?1"
@@ -118,7 +164,7 @@ std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t lea
 }
 
 void JobStore::renew(std::string_view id, std::int64_t lease_ms) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement(database_, "UPDATE jobs SET lease_ms = ?2 WHERE id = ?1 AND state = 'running'")
       .with(id, lease_ms)
       .run();
@@ -132,7 +178,7 @@ std::vector<JobRecord> JobStore::lapsed(std::int64_t now_ms) {
 }
 
 bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Transaction both(database_);
   Statement statement(database_,
                       "UPDATE jobs SET state = ?4, result_format = ?5, problem = ?6,"
@@ -157,12 +203,12 @@ bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
 }
 
 void JobStore::request_cancel(std::string_view id) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement(database_, "UPDATE jobs SET cancel_requested = 1 WHERE id = ?").with(id).run();
 }
 
 void JobStore::requeue(std::string_view id, bool crashed) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement(database_,
             "UPDATE jobs SET state = 'queued', crashes = crashes + ?2"
             " WHERE id = ?1 AND state = 'running'")
@@ -188,26 +234,26 @@ std::vector<std::string> JobStore::finished_before(std::int64_t epoch_ms, int li
 }
 
 void JobStore::set_stored_bytes(std::string_view id, std::int64_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement(database_, "UPDATE jobs SET stored_bytes = ?2 WHERE id = ?1 AND expired = 0")
       .with(id, bytes)
       .run();
 }
 
 void JobStore::set_expired(std::string_view id) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement(database_, "UPDATE jobs SET expired = 1, stored_bytes = 0 WHERE id = ?").with(id).run();
 }
 
 void JobStore::forget_before(std::int64_t epoch_ms) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement(database_, "DELETE FROM jobs WHERE expired = 1 AND kept_since_ms < ?")
       .with(epoch_ms)
       .run();
 }
 
 void JobStore::shift_kept_since(std::int64_t by_ms) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement(database_,
             "UPDATE jobs SET kept_since_ms = kept_since_ms + ? WHERE state IN"
             " ('succeeded', 'failed', 'cancelled')")
@@ -216,7 +262,7 @@ void JobStore::shift_kept_since(std::int64_t by_ms) {
 }
 
 void JobStore::remove(std::string_view id) {
-  const std::lock_guard lock(mutex_);
+  const Writing writing(*this);
   Statement(database_, "DELETE FROM jobs WHERE id = ?").with(id).run();
 }
 

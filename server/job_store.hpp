@@ -6,6 +6,7 @@
 // A running job is on lease to this process, on the clock of elapsed time: setting the time of day
 // neither ends a lease nor prolongs it.
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
@@ -52,7 +53,11 @@ struct OwnerUsage {
 /// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
 class JobStore {
  public:
+  /// Throws when it cannot be written.
   explicit JobStore(const std::filesystem::path& path);
+
+  /// Writes to it when the last write has failed, or none was tried; does not throw storage_full.
+  void check_writable();
 
   /// Adds a queued job and returns its seq.
   std::int64_t insert(const JobRecord& job);
@@ -99,8 +104,11 @@ class JobStore {
   template <class... Values>
   std::optional<JobRecord> first(std::string_view rest, const Values&... values);
 
+  class Writing;
+
   std::mutex mutex_;
   Database database_;
+  std::atomic<bool> write_failed_ = true;  // or was not tried
 };
 
 }  // namespace unwrapd::server

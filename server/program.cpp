@@ -44,6 +44,7 @@ sigset_t block_end_signals() {
 }
 
 void serve(const Config& config, const Log& log, const Duties& duties) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is then EFBIG, as no room is ENOSPC
   allow_open_files(config.edge.max_connections, log);
   const sigset_t signals = block_end_signals();
   Service service(config, log, duties);

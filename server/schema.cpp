@@ -8,7 +8,7 @@ namespace unwrapd::server {
 namespace {
 
 /// Step k makes version k + 1 out of version k. Steps that were released are never edited.
-constexpr std::array<const char*, 5> kSteps = {
+constexpr std::array<const char*, 6> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -81,6 +81,30 @@ CREATE INDEX meshes_by_time ON meshes (kept_since_ms);
     R"sql(
 CREATE INDEX jobs_by_bytes ON jobs (state, stored_bytes) WHERE expired = 0;
 CREATE INDEX jobs_of_owner ON jobs (owner, state, stored_bytes);
+)sql",
+    R"sql(
+DROP INDEX jobs_by_bytes;
+DROP INDEX jobs_of_owner;
+CREATE INDEX jobs_of_owner ON jobs (owner, state, seq);
+CREATE INDEX jobs_in_state ON jobs (state, seq);
+CREATE INDEX jobs_by_end ON jobs (expired, kept_since_ms);
+CREATE TABLE written (times INTEGER NOT NULL) STRICT;
+INSERT INTO written VALUES (0);
+CREATE TABLE stored (
+  owner TEXT PRIMARY KEY,
+  bytes INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+INSERT INTO stored SELECT owner, SUM(stored_bytes) FROM jobs GROUP BY owner;
+CREATE TRIGGER jobs_stored AFTER INSERT ON jobs BEGIN
+  INSERT INTO stored VALUES (NEW.owner, NEW.stored_bytes)
+    ON CONFLICT (owner) DO UPDATE SET bytes = bytes + excluded.bytes;
+END;
+CREATE TRIGGER jobs_changed AFTER UPDATE OF stored_bytes ON jobs BEGIN
+  UPDATE stored SET bytes = bytes + NEW.stored_bytes - OLD.stored_bytes WHERE owner = NEW.owner;
+END;
+CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
+  UPDATE stored SET bytes = bytes - OLD.stored_bytes WHERE owner = OLD.owner;
+END;
 )sql"};
 
 constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());
@@ -92,6 +116,8 @@ std::int64_t version_of(const Database& database) {
 }
 
 }  // namespace
+
+bool has_tables(const Database& database) { return version_of(database) > 0; }
 
 void migrate(Database& database) {
   const std::int64_t found = version_of(database);

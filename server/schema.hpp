@@ -7,6 +7,9 @@
 
 namespace unwrapd::server {
 
+/// Whether any version has made its tables in this file.
+bool has_tables(const Database& database);
+
 /// Brings the tables to this version, from an empty file or one of any version before. Throws
 /// Error{storage_failed} when they are of a later version.
 void migrate(Database& database);

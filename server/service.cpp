@@ -19,6 +19,7 @@
 #include "server/mesh_routes.hpp"
 #include "server/periodic.hpp"
 #include "server/picture_routes.hpp"
+#include "server/store_file.hpp"
 #include "server/sweeper.hpp"
 #include "server/webhooks.hpp"
 #include "server/worker_pool.hpp"
@@ -26,7 +27,6 @@
 namespace unwrapd::server {
 namespace {
 
-constexpr const char* kStoreFile = "jobs.sqlite";
 constexpr std::chrono::seconds kHeartbeat{10};
 constexpr std::chrono::seconds kWebhookPause{1};
 constexpr std::chrono::seconds kTrimPause{10};
@@ -83,7 +83,7 @@ struct Service::Parts {
         isolation(isolation_of(config, solver_cache, duties)),
         lock(config.data),
         blobs(config.data, config.disk),
-        store(config.data / kStoreFile),
+        store(store_in(config.data, blobs)),
         mesh_store(config.data / kStoreFile),
         queue(store, blobs, events, log,
               {.max_queue = config.limits.max_queue, .workers = config.workers}),
@@ -103,16 +103,14 @@ struct Service::Parts {
         router(routes(), log,
                [this](Request& request, std::string_view route) { access.admit(request, route); }),
         http(http_config(config), main_uses(log), log),
-        admin_router(admin_routes(queue, metrics), log) {
+        admin_router(admin_routes(queue, store, metrics), log) {
     if (config.admin) {
       const auto told = [this](const Request& request) { return admin_router.answer(request); };
       admin.emplace(admin_config(*config.admin), uses(told, log, LogLevel::debug), log);
     }
     tell_state();
     queue.recover(isolation.possible);
-    blobs.sweep([&](const std::string& owner) {
-      return is_mesh_id(owner) ? mesh_store.has(owner) : store.keeps_files(owner);
-    });
+    sweep_blobs(log);
     blobs.room().on_shortage({.evict = [this] { return evict_oldest(store, mesh_store, blobs); },
                               .bytes = [this] { return store.evictable_bytes(); }});
     blobs.on_noted([this](std::string_view owner, auto bytes) {
@@ -160,6 +158,13 @@ struct Service::Parts {
         "calling webhooks", kWebhookPause, [this] { webhooks.call_due(now_ms()); }, log);
     trimming.emplace(  // what large jobs leave free in the heaps of their threads
         "giving memory back", kTrimPause, [] { ::malloc_trim(0); }, log);
+  }
+
+  void sweep_blobs(const Log& log) {
+    const int removed = blobs.sweep([&](const std::string& owner) {
+      return is_mesh_id(owner) ? mesh_store.has(owner) : store.keeps_files(owner);
+    });
+    if (removed > 0) log.warning("folders of no job removed", {{"folders", removed}});
   }
 
   void tell_state() {
@@ -210,7 +215,7 @@ struct Service::Parts {
     add_mesh_routes(all, meshes, std::chrono::seconds(config.keep_seconds));
     add_picture_routes(all, store, pictures);
     add_info_routes(all, config.limits);
-    add_probe_routes(all, queue);
+    add_probe_routes(all, queue, store);
     return all;
   }
 

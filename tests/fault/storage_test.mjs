@@ -1,7 +1,7 @@
 // Disks that are full or return other bytes than were written, and clocks that are set: jobs wait,
 // or say what is wrong, and what was stored stays right.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmdirSync, rmSync, statfsSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -129,6 +129,35 @@ test("a full disk refuses with 507, and every accepted job ends well once there 
   const again = await Server.start(data, "--min-free-bytes", "0");
   for (const id of [first.id, ...ids]) assert.equal((await again.job(id)).state, "succeeded");
   await again.end("SIGTERM");
+});
+
+test("a file beyond `ulimit -f` is refused with 507, and the server goes on", async (t) => {
+  const server = await Server.start(dataDirectory(t));
+  execFileSync("prlimit", ["--pid", String(server.process.pid), "--fsize=400000"]);
+  const post = (size) => fetch(`${server.url}/v1/jobs?${QUICK}`, {
+    method: "POST",
+    headers: { "Content-Type": "model/obj" },
+    body: grid(size),
+  });
+  assert.deepEqual(await problemOf(await post(120)), { status: 507, code: "storage_full" });
+  assert.equal((await server.finished((await (await post(5)).json()).id)).state, "succeeded");
+  await server.end("SIGTERM");
+});
+
+test("a server whose store cannot be written does not start, and names it", async (t) => {
+  const data = dataDirectory(t);
+  await (await Server.start(data)).end("SIGTERM");
+  const store = join(data, "jobs.sqlite");
+  const mount = (...args) => spawnSync("mount", [...args, store]).status === 0;
+  if (!mount("--bind", store)) return t.skip("this user may not mount a file system");
+  assert.ok(mount("-o", "remount,bind,ro"));
+  const run = spawnSync(process.env.UNWRAPD, ["--listen", "127.0.0.1:0", "--data", data], {
+    encoding: "utf8",
+    timeout: 60_000,
+  });
+  execFileSync("umount", [store]);
+  assert.equal(run.status, 1, run.stderr);
+  assert.match(run.stderr, /jobs\.sqlite.*readonly/);
 });
 
 test("the disk quota gives up the results that ended first, and refuses what can never fit", async (t) => {

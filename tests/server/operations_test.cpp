@@ -9,8 +9,10 @@
 #include <sstream>
 #include <thread>
 
+#include "server/database.hpp"
 #include "server/http_probe.hpp"
 #include "server/metrics.hpp"
+#include "server/store_file.hpp"
 #include "server/trace.hpp"
 
 namespace unwrapd::server {
@@ -102,6 +104,21 @@ TEST_F(Operations, TheAdminPortAnswersProbesAndNothingElse) {
   expect_problem(admin().Get("/v1/limits"), 404, "not_found");
   expect_problem(client().Get("/metrics"), 404, "not_found");
   expect_problem(admin().Post("/healthz"), 405, "method_not_allowed");
+}
+
+TEST_F(Operations, TheServerIsNotReadyWhileNothingCanBeStored) {
+  start();
+  Database behind(config_.data / kStoreFile);
+  behind.run("ALTER TABLE jobs RENAME TO away");
+  EXPECT_EQ(admin().Get("/readyz")->status, 200) << "nobody has tried";
+  const httplib::Headers anew = {{"Cache-Control", "no-cache"}};
+  expect_problem(client().Post("/v1/jobs", anew, grid_obj(2), "model/obj"), 500, "storage_failed");
+  expect_problem(admin().Get("/readyz"), 500, "storage_failed");
+  expect_problem(client().Get("/readyz"), 500, "storage_failed");
+  EXPECT_EQ(admin().Get("/healthz")->status, 200);
+  behind.run("ALTER TABLE away RENAME TO jobs");
+  EXPECT_EQ(admin().Get("/readyz")->status, 200);
+  await_state(submit(), "succeeded");
 }
 
 TEST_F(Operations, TheHealthCheckOfTheProgramAsksTheAdminPort) {
