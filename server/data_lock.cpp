@@ -3,6 +3,9 @@
 #include <fcntl.h>
 #include <sys/file.h>
 
+#include <cerrno>
+#include <system_error>
+
 #include "core/error.hpp"
 
 namespace unwrapd::server {
@@ -10,9 +13,20 @@ namespace {
 
 constexpr mode_t kFileMode = 0640;
 
+[[noreturn]] void cannot_open(const std::filesystem::path& path, const std::error_code& reason) {
+  throw Error(ErrorCode::storage_failed,
+              path.string() + " cannot be opened (" + reason.message() +
+                  "): the data directory must be one in which the server's user may write.");
+}
+
 int open_lock(const std::filesystem::path& data) {
-  make_directories(data);
-  return ::open((data / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kFileMode);
+  std::error_code failed;
+  std::filesystem::create_directories(data, failed);
+  if (failed) cannot_open(data, failed);
+  const std::filesystem::path path = data / "lock";
+  const int lock = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kFileMode);
+  if (lock < 0) cannot_open(path, {errno, std::generic_category()});
+  return lock;
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ HttpServer::HttpServer(const HttpConfig& config, HttpUses uses, const Log& log)
       uses_(std::move(uses)),
       log_(log),
       tls_(tls_of(config)),
-      listener_(config.address.host, config.address.port),
+      listener_(config.address.host, config.address.port, config.option),
       places_(config.max_connections, config.max_connections_per_address),
       parking_(listener_,
                {.accept = [this] { return let_in(); },

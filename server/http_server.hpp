@@ -35,6 +35,7 @@ namespace unwrapd::server {
 
 struct HttpConfig {
   Address address{"127.0.0.1", 8080};     ///< port 0: a free one
+  std::string_view option = "--listen";   ///< which asks for it
   int max_requests = 320;                 ///< answered at once, a thread each; others wait
   int max_connections = 4096;             ///< open at once; more are turned away
   int max_connections_per_address = 0;    ///< not of loopback nor trusted proxies; 0: no limit

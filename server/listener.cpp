@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "server/address.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -28,18 +29,27 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
-[[noreturn]] void fail(const std::string& host, int port, const std::string& reason) {
-  throw Error(ErrorCode::internal, "Cannot listen on " + host + ":" + std::to_string(port) + " (" +
-                                       reason + "); choose another --listen.");
+/// An address that cannot be had, and the option that asks for it.
+struct Wanted {
+  std::string host;
+  int port = 0;
+  std::string_view option;
+};
+
+[[noreturn]] void fail(const Wanted& wanted, const std::string& reason) {
+  throw Error(ErrorCode::internal, "Cannot listen on " + to_text({wanted.host, wanted.port}) +
+                                       " (" + reason + "); choose another " +
+                                       std::string(wanted.option) + ".");
 }
 
-Addresses resolve(const std::string& host, int port) {
+Addresses resolve(const Wanted& wanted) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
   addrinfo* list = nullptr;
-  const int result = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
-  if (result != 0) fail(host, port, ::gai_strerror(result));
+  const int result =
+      ::getaddrinfo(wanted.host.c_str(), std::to_string(wanted.port).c_str(), &hints, &list);
+  if (result != 0) fail(wanted, ::gai_strerror(result));
   return Addresses(list);
 }
 
@@ -75,11 +85,12 @@ int listen_on(const addrinfo& address) {
 
 }  // namespace
 
-Listener::Listener(const std::string& host, int port) {
-  const Addresses addresses = resolve(host, port);
+Listener::Listener(const std::string& host, int port, std::string_view option) {
+  const Wanted wanted{.host = host, .port = port, .option = option};
+  const Addresses addresses = resolve(wanted);
   for (const addrinfo* at = addresses.get(); at != nullptr && socket_ < 0; at = at->ai_next)
     socket_ = listen_on(*at);
-  if (socket_ < 0) fail(host, port, std::generic_category().message(errno));
+  if (socket_ < 0) fail(wanted, std::generic_category().message(errno));
   stop_ = ::eventfd(0, EFD_CLOEXEC);
 }
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace unwrapd::server {
 
@@ -16,8 +17,8 @@ struct Accepted {
 class Listener {
  public:
   /// host: a name or address; port 0 takes a free one. Throws Error{internal}
-  /// saying why not.
-  Listener(const std::string& host, int port);
+  /// saying why not, and which option is to be given another.
+  Listener(const std::string& host, int port, std::string_view option = "--listen");
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
   ~Listener();

@@ -53,6 +53,7 @@ HttpConfig http_config(const Config& config) {
 HttpConfig admin_config(const Address& address) {
   HttpConfig http;
   http.address = address;
+  http.option = "--admin-listen";
   http.max_requests = kAdminThreads;
   http.max_connections = kAdminConnections;
   return http;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "core/error.hpp"
@@ -69,14 +70,38 @@ class TlsTransport final : public Transport {
   bool broken_ = false;
 };
 
+/// Of the first thing that went wrong: the rest follows from it.
+std::string reason_of_failure() {
+  const unsigned long code = ERR_peek_error();
+  if (ERR_SYSTEM_ERROR(code)) return std::generic_category().message(ERR_GET_REASON(code));
+  const char* text = ERR_reason_error_string(code);
+  return text ? text : "no reason is known";
+}
+
 [[noreturn]] void unusable(const std::filesystem::path& file, const std::string& option) {
-  std::string reason = "no reason is known";
-  if (const unsigned long code = ERR_peek_last_error()) {
-    const char* text = ERR_reason_error_string(code);
-    if (text) reason = text;
-  }
   throw Error(ErrorCode::internal, "The file " + file.string() + " of " + option +
-                                       " cannot be used (" + reason + "); give a PEM file.");
+                                       " cannot be used (" + reason_of_failure() +
+                                       "); give a PEM file that the server's user may read.");
+}
+
+/// Nobody is asked for a pass phrase: a server starts without a terminal.
+int no_pass_phrase(char*, int, int, void* asked) {
+  *static_cast<bool*>(asked) = true;
+  return -1;
+}
+
+void use_key(SSL_CTX* context, const std::filesystem::path& key) {
+  bool asked = false;
+  SSL_CTX_set_default_passwd_cb(context, no_pass_phrase);
+  SSL_CTX_set_default_passwd_cb_userdata(context, &asked);
+  const int used = SSL_CTX_use_PrivateKey_file(context, key.c_str(), SSL_FILETYPE_PEM);
+  SSL_CTX_set_default_passwd_cb_userdata(context, nullptr);
+  if (asked) {
+    throw Error(ErrorCode::internal, "The file " + key.string() +
+                                         " of --tls-key is encrypted; give the key without a pass "
+                                         "phrase (openssl pkey -in FILE -out PLAIN).");
+  }
+  if (used != 1 || SSL_CTX_check_private_key(context) != 1) unusable(key, "--tls-key");
 }
 
 }  // namespace
@@ -94,9 +119,7 @@ TlsContext::TlsContext(const std::filesystem::path& certificate, const std::file
                                 SSL_MODE_RELEASE_BUFFERS);
   if (SSL_CTX_use_certificate_chain_file(context, certificate.c_str()) != 1)
     unusable(certificate, "--tls-cert");
-  if (SSL_CTX_use_PrivateKey_file(context, key.c_str(), SSL_FILETYPE_PEM) != 1 ||
-      SSL_CTX_check_private_key(context) != 1)
-    unusable(key, "--tls-key");
+  use_key(context, key);
 }
 
 std::unique_ptr<Transport> TlsContext::accept(int socket) const {
