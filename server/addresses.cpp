@@ -26,6 +26,11 @@ std::optional<Bytes> parse(std::string_view text) {
   return std::nullopt;
 }
 
+bool is_mapped(const Bytes& address) {
+  static const Bytes mapped = *parse("0.0.0.0");
+  return std::equal(mapped.begin(), mapped.begin() + kV4Bits / 8, address.begin());
+}
+
 bool same_start(const Bytes& left, const Bytes& right, int bits) {
   const auto whole = static_cast<std::size_t>(bits / 8);
   if (!std::equal(left.begin(), left.begin() + whole, right.begin())) return false;
@@ -50,6 +55,17 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(space) - first + 1);
 }
 
+/// The address of "10.0.0.1", "10.0.0.1:80", "::1", "[::1]" and "[::1]:80": some proxies tell
+/// ports.
+std::string_view without_port(std::string_view text) {
+  const std::size_t bracket = text.find(']');
+  if (text.starts_with('[') && bracket != std::string_view::npos)
+    return text.substr(1, bracket - 1);
+  const std::size_t colon = text.find(':');
+  const bool has_port = colon != std::string_view::npos && text.rfind(':') == colon;
+  return has_port ? text.substr(0, colon) : text;
+}
+
 /// What connections are counted by.
 std::string counted_by(const std::string& address) {
   const std::optional<Bytes> bytes = parse(address);
@@ -68,6 +84,11 @@ AddressSet::AddressSet(const std::vector<std::string>& ranges) {
         prefix_bits(std::string_view(text).substr(slash), is_v4 ? kAllBits - kV4Bits : kAllBits);
     if (!bytes || !bits)
       throw Error(ErrorCode::invalid_option, "addresses and ranges such as 10.0.0.0/8 or ::1");
+    if (!is_v4 && is_mapped(*bytes) && *bits < kV4Bits) {
+      throw Error(ErrorCode::invalid_option,
+                  "IPv4 ranges as 10.0.0.0/8 or ::ffff:10.0.0.0/104: with fewer than 96 bits a "
+                  "mapped one is every IPv4 address");
+    }
     ranges_.push_back({*bytes, *bits + (is_v4 ? kV4Bits : 0)});
   }
 }
@@ -85,7 +106,7 @@ std::string client_behind(const std::string& peer, std::string_view forwarded,
   while (!forwarded.empty() && trusted.contains(client)) {
     const std::size_t comma = forwarded.rfind(',');
     const std::size_t start = comma == std::string_view::npos ? 0 : comma + 1;
-    const std::string_view next = trimmed(forwarded.substr(start));
+    const std::string_view next = without_port(trimmed(forwarded.substr(start)));
     if (!parse(next)) break;
     client = next;
     forwarded = forwarded.substr(0, comma == std::string_view::npos ? 0 : comma);

@@ -91,7 +91,9 @@ ConfigGroup working() {
                   "Each job in a process of its own, without files or network: a crash costs that "
                   "job alone"},
                  &Config::isolate),
-          number({"drain-seconds", "N", "How long running jobs may go on after SIGTERM"},
+          number({"drain-seconds", "N",
+                  "How long running jobs may go on after SIGTERM; jobs that do not stop and last "
+                  "answers may take 20 s more"},
                  {0, kMaxCount}, &Config::drain_seconds)}};
 }
 
@@ -116,7 +118,7 @@ bool has_capital(const std::string& text) {
 void check_origin(const std::string& item) {
   const std::size_t scheme = item.find("://");
   const bool whole = scheme != std::string::npos && item.size() > scheme + 3 &&
-                     item.find('/', scheme + 3) == std::string::npos;
+                     item.find_first_of("/*", scheme + 3) == std::string::npos;
   if (item != "*" && (!whole || has_capital(item)))
     expected("origins like https://example.com, in small letters, or *");
 }

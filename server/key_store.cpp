@@ -40,7 +40,7 @@ constexpr int kDigestColumn = 7;
 
 std::filesystem::path file_in(const std::filesystem::path& data) {
   make_directories(data);
-  return data / "keys.sqlite";
+  return data / kKeysFile;
 }
 
 ApiKey key_of(const Statement& row) {
@@ -57,6 +57,11 @@ bool same(const std::string& left, const std::string& right) {
          CRYPTO_memcmp(left.data(), right.data(), left.size()) == 0;  // in constant time
 }
 
+std::string_view without_space(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+  return text.substr(0, text.find_last_not_of(kSpace) + 1);
+}
+
 std::string read_given(const std::filesystem::path& file) {
   try {
     return read_file(file);
@@ -67,9 +72,8 @@ std::string read_given(const std::filesystem::path& file) {
 
 /// What the file holds, when that can be a key (the characters of RFC 6750) and none to be guessed.
 std::string key_in(const std::filesystem::path& file) {
-  std::string text = read_given(file);
-  text.erase(0, std::min(text.find_first_not_of(kSpace), text.size()));
-  text.erase(text.find_last_not_of(kSpace) + 1);
+  const std::string given = read_given(file);
+  const std::string text(without_space(given));
   const bool of_form = std::ranges::all_of(text, [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
            kSigns.find(c) != std::string_view::npos;
@@ -83,10 +87,17 @@ std::string key_in(const std::filesystem::path& file) {
 
 ApiKey given_key() {
   ApiKey key;
-  key.id = "k_file";
+  key.id = kGivenKeyId;
   key.name = "that of --key-file";
   key.scopes.admin = true;
   return key;
+}
+
+void check_name(const std::string& name) {
+  const auto is_control = [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; };
+  if (std::ranges::none_of(name, is_control)) return;
+  throw Error(ErrorCode::invalid_option,
+              "A key's name has control characters; give one of letters, digits and signs.");
 }
 
 void set_scope(Scopes& scopes, std::string_view name) {
@@ -108,7 +119,7 @@ Scopes parse_scopes(std::string_view text) {
   Scopes scopes;
   while (true) {
     const std::size_t comma = text.find(',');
-    set_scope(scopes, text.substr(0, comma));
+    set_scope(scopes, without_space(text.substr(0, comma)));
     if (comma == std::string_view::npos) return scopes;
     text.remove_prefix(comma + 1);
   }
@@ -131,6 +142,7 @@ KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::pat
 }
 
 std::string KeyStore::add(ApiKey key) {
+  check_name(key.name);
   const std::string digits = random_hex(kIdDigits / 2);
   const std::string text = std::string(kPrefix) + digits + "_" + random_hex(kSecretDigits / 2);
   const std::lock_guard lock(mutex_);

@@ -18,6 +18,9 @@
 
 namespace unwrapd::server {
 
+inline constexpr const char* kKeysFile = "keys.sqlite";
+inline constexpr const char* kGivenKeyId = "k_file";
+
 /// What a key may be used for.
 struct Scopes {
   bool submit = false;  ///< send, cancel and remove jobs
@@ -36,7 +39,8 @@ struct ApiKey {
   std::int64_t created_ms = 0;
 };
 
-/// "submit,read". Throws Error{invalid_option} when a name is none of submit, read and admin.
+/// "submit,read", with or without spaces. Throws Error{invalid_option} when a name is none of
+/// submit, read and admin.
 Scopes parse_scopes(std::string_view text);
 std::string to_text(const Scopes& scopes);
 
@@ -44,11 +48,12 @@ std::string to_text(const Scopes& scopes);
 class KeyStore {
  public:
   /// data: the data directory, made when missing. given: the file of a key of the operator's own,
-  /// of the scope admin and the id "k_file"; empty: none. Throws Error{invalid_option} when that
+  /// of the scope admin and the id kGivenKeyId; empty: none. Throws Error{invalid_option} when that
   /// holds no key: 32 to 512 letters, digits and -._~+/=, and white space around them.
   explicit KeyStore(const std::filesystem::path& data, const std::filesystem::path& given = {});
 
-  /// Stores a key with a new id and returns what its holder sends; it cannot be had again.
+  /// Stores a key with a new id and returns what its holder sends; it cannot be had again. Throws
+  /// Error{invalid_option} for a name with control characters, which a list could not show.
   std::string add(ApiKey key);
   /// The key of this text, if it is one.
   std::optional<ApiKey> find(std::string_view text);

@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
+#include <vector>
 
 #include "server/clock.hpp"
 #include "server/key_store.hpp"
@@ -19,6 +21,10 @@ struct Asked {
   std::string id;
 };
 
+[[noreturn]] void unknown_key(const std::string& id) {
+  throw Error(ErrorCode::not_found, "There is no key " + id + "; see unwrapd keys list.");
+}
+
 void add_key(const Asked& asked) {
   ApiKey key = asked.key;
   key.scopes = parse_scopes(asked.scopes);
@@ -26,8 +32,16 @@ void add_key(const Asked& asked) {
   std::fprintf(stderr, "This is the key; it is not stored and cannot be shown again.\n");
 }
 
+/// Of a data directory that there is: a misspelt one is not made.
+KeyStore opened(const Asked& asked) {
+  const std::filesystem::path file = std::filesystem::path(asked.data) / kKeysFile;
+  if (std::filesystem::exists(file)) return KeyStore(asked.data);
+  throw Error(ErrorCode::not_found,
+              "There is no " + file.string() + "; give the --data directory of a server.");
+}
+
 void list_keys(const Asked& asked) {
-  for (const ApiKey& key : KeyStore(asked.data).all()) {
+  for (const ApiKey& key : opened(asked).all()) {
     std::printf("%s  %s  scopes=%s  requests-per-minute=%lld  max-jobs=%lld  max-bytes=%lld  %s\n",
                 key.id.c_str(), rfc3339(key.created_ms).c_str(), to_text(key.scopes).c_str(),
                 static_cast<long long>(key.requests_per_minute),
@@ -37,11 +51,14 @@ void list_keys(const Asked& asked) {
 }
 
 void remove_key(const Asked& asked) {
-  if (!KeyStore(asked.data).remove(asked.id))
-    throw Error(ErrorCode::not_found, "There is no key " + asked.id + "; see unwrapd keys list.");
+  if (!opened(asked).remove(asked.id)) unknown_key(asked.id);
 }
 
 void tell_webhook_secret(const Asked& asked) {
+  const std::vector<ApiKey> keys = opened(asked).all();
+  const bool known = asked.id.empty() || asked.id == kGivenKeyId ||
+                     std::ranges::find(keys, asked.id, &ApiKey::id) != keys.end();
+  if (!known) unknown_key(asked.id);
   const std::string secret = secret_in(std::filesystem::path(asked.data) / kSecretFile);
   std::printf("%s\n", webhook_secret(secret, asked.id).c_str());
 }
@@ -72,7 +89,8 @@ void declare(CLI::App& app, Asked& asked) {
   remove->add_option("ID", asked.id, "Of unwrapd keys list")->required();
   remove->callback([&] { remove_key(asked); });
   CLI::App* secret = command(app, "webhook-secret", "Print what webhooks are signed with", asked);
-  secret->add_option("ID", asked.id, "The key's; none where keys are not asked for");
+  secret->add_option("ID", asked.id,
+                     "The key's, k_file for that of --key-file; none where keys are not asked for");
   secret->callback([&] { tell_webhook_secret(asked); });
 }
 

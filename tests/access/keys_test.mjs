@@ -1,9 +1,9 @@
 // The real server with API keys: who has none, or one of too little, is told so; nobody sees the
 // jobs of another; and no key comes into the log.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { createHash } from "node:crypto";
-import { readdirSync, statSync } from "node:fs";
+import { existsSync, readdirSync, statSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 
@@ -111,6 +111,26 @@ test("a key sees its own jobs alone; admin sees all; a removed key sees nothing"
   assert.ok(server.log.length > 0);
   for (const secret of [...keys, adminKey, signature])
     for (const text of [server.log, list]) assert.ok(!text.includes(secret.slice(-40)), "a secret");
+});
+
+test("the command makes no directory, secret or key for a slip of the pen", (t) => {
+  const data = dataDirectory(t);
+  const keys = (...args) => spawnSync(process.env.UNWRAPD, ["keys", ...args], { encoding: "utf8" });
+  const missing = join(data, "typo");
+  for (const args of [["list"], ["remove", "k_0"], ["webhook-secret"], ["webhook-secret", "k_file"]]) {
+    const { status, stderr } = keys(...args, "--data", missing);
+    assert.deepEqual([status, stderr.includes(join(missing, "keys.sqlite"))], [1, true], `${args}: ${stderr}`);
+  }
+  assert.ok(!existsSync(missing));
+  addKey(data, "a");
+  const { status, stdout } = keys("webhook-secret", "k_nope", "--data", data);
+  assert.deepEqual([status, stdout], [1, ""]);
+  assert.ok(!existsSync(join(data, "secret")));
+  const id = keys("list", "--data", data).stdout.split(" ")[0];
+  const secrets = [[id], ["k_file"], []].map((of) => keys("webhook-secret", ...of, "--data", data).stdout);
+  assert.equal(new Set(secrets).size, 3);
+  for (const secret of secrets) assert.match(secret, /^whsec_/);
+  assert.equal(keys("add", "--name", "a\nk_1", "--data", data).status, 1);
 });
 
 test("a key's meshes are its own, and count once", async (t) => {

@@ -69,6 +69,12 @@ TEST_F(Keys, AreStoredAsADigestAlone) {
     EXPECT_EQ(read_file(entry.path()).find(secret), std::string::npos) << entry.path();
 }
 
+TEST_F(Keys, HaveNamesThatAListCanShow) {
+  for (const char* name : {"a\nk_1", "\x1b[2J", "tab\t", "\x7f"})
+    EXPECT_EQ(error_of([&] { add(name, {.read = true}); }).code(), ErrorCode::invalid_option);
+  EXPECT_NO_THROW(add("Ä ☺", {.read = true}));
+}
+
 TEST_F(Keys, OfAFileCountBesideTheOthersAndAreNotStored) {
   const std::string secret(32, 'k');
   write_file(dir_.path() / "secret", "\n" + secret + " \r\n");
@@ -120,7 +126,9 @@ TEST_F(Keys, DoWhatTheirScopesSayAndNoMore) {
   EXPECT_FALSE(admit(read, "HEAD").sees_all);
   EXPECT_TRUE(admit(admin, "DELETE").sees_all);
   EXPECT_EQ(to_text(parse_scopes("read,submit")), "submit,read");
-  EXPECT_EQ(error_of([] { parse_scopes("root"); }).code(), ErrorCode::invalid_option);
+  EXPECT_EQ(to_text(parse_scopes("submit, read ")), "submit,read");
+  for (const char* wrong : {"root", "", "read,", "read submit"})
+    EXPECT_EQ(error_of([&] { parse_scopes(wrong); }).code(), ErrorCode::invalid_option) << wrong;
 }
 
 TEST(Links, AreNotSignedWithWhatIsLeftOfASecret) {

@@ -168,6 +168,7 @@ TEST(Config, MistakesEndTheProgram) {
                                              {"--log-level", "loud"},
                                              {"--cors-origins", "https://Example.com"},
                                              {"--cors-origins", "https://"},
+                                             {"--cors-origins", "https://*.example.com"},
                                              {"--webhook-hosts", "*.*"},
                                              {"--webhook-hosts", "Example.com"},
                                              {"--webhook-hosts", "*."},

@@ -24,7 +24,8 @@ TEST(Addresses, ASetHoldsAddressesAndRangesOfBothKinds) {
     EXPECT_TRUE(set.contains(in)) << in;
   for (const char* out : {"10.2.0.0", "192.168.1.8", "fd80::", "::2", "", "x", "10.1.1"})
     EXPECT_FALSE(set.contains(out)) << out;
-  for (const char* wrong : {"10.0.0.0/33", "10.0.0/8", "::/129", "10.0.0.0/", "a", "1.2.3.4/8x"})
+  for (const char* wrong : {"10.0.0.0/33", "10.0.0/8", "::/129", "10.0.0.0/", "a", "1.2.3.4/8x",
+                            "::ffff:10.0.0.0/8", "::ffff:0:0/95"})
     EXPECT_THROW(AddressSet({wrong}), Error) << wrong;
 }
 
@@ -37,6 +38,11 @@ TEST(Addresses, ForwardedAddressesCountAsFarAsTheChainOfTrustedProxiesReaches) {
   EXPECT_EQ(client_behind("10.0.0.1", "", proxies), "10.0.0.1");
   EXPECT_EQ(client_behind("10.0.0.1", "3.3.3.3, nonsense", proxies), "10.0.0.1");
   EXPECT_EQ(client_behind("10.0.0.1", "10.0.0.2", proxies), "10.0.0.2");
+  EXPECT_EQ(client_behind("10.0.0.1", "1.1.1.1:1234", proxies), "1.1.1.1");
+  EXPECT_EQ(client_behind("10.0.0.1", "2001:db8::1, 10.0.0.2:80", proxies), "2001:db8::1");
+  EXPECT_EQ(client_behind("10.0.0.1", "[2001:db8::1]", proxies), "2001:db8::1");
+  EXPECT_EQ(client_behind("10.0.0.1", "[2001:db8::1]:443", proxies), "2001:db8::1");
+  EXPECT_EQ(client_behind("10.0.0.1", "[2001:db8::1", proxies), "10.0.0.1");
 }
 
 TEST(Addresses, PlacesAreCountedInAllAndByNetworkAndGivenBack) {
