@@ -25,8 +25,9 @@ bool UploadRoom::try_claim(std::int64_t bytes) {
   claimed_ = bytes;
   const std::int64_t all = rooms_.claim(owner_, claimed_ - before);
   const std::int64_t left = quota_ - rooms_.store_.usage(owner_).stored_bytes;
-  const std::int64_t new_bytes = bytes <= size_.known_bytes ? all - bytes : all;
-  if (new_bytes <= left) return true;
+  const bool comes_again = size_.known_bytes > 0 && bytes <= size_.known_bytes;
+  const std::int64_t new_bytes = comes_again ? all - bytes : all;
+  if (new_bytes <= left || (comes_again && new_bytes == 0)) return true;
   rooms_.claim(owner_, before - claimed_);
   claimed_ = before;
   return false;
