@@ -15,6 +15,10 @@ const of = (kind) => objects.find((object) => object.kind === kind);
 const scratch = mkdtempSync(join(tmpdir(), "unwrapd_deployment_"));
 after(() => rmSync(scratch, { recursive: true }));
 
+const LONGEST_END = 20; // s after the drain: for jobs that do not stop, and for last answers
+const image = Object.fromEntries(
+  [...read("Dockerfile").matchAll(/(UNWRAPD_\w+)=(\S+)/g)].map(([, name, value]) => [name, value]));
+
 /** The options as the server sees them; fails when it would not start with them. */
 function accepted(flags, environment = {}) {
   const told = spawnSync(process.env.UNWRAPD, [...flags, "--print-config"], {
@@ -76,22 +80,23 @@ test("what is shipped asks for a key, which it finds where it is mounted", () =>
   assert.ok(ignored.includes(`/docker/${file}`), "the key could be committed");
 });
 
-test("the server takes the options of the ConfigMap, and is given time to drain", () => {
+test("the server takes all options of the ConfigMap beside the image's, and is given time to end", () => {
   const file = join(scratch, "unwrapd.toml");
-  writeFileSync(file, of("ConfigMap").data["unwrapd.toml"]);
-  const told = accepted(["--config", file]);
+  const toml = of("ConfigMap").data["unwrapd.toml"];
+  writeFileSync(file, toml);
+  const told = accepted(["--config", file], image);
+  for (const [, name] of toml.matchAll(/^([\w-]+) =/gm))
+    assert.match(told, new RegExp(`^${name} = .*# from ${file}$`, "m"));
   const drain = Number(/^drain-seconds = (\d+)/m.exec(told)[1]);
-  assert.ok(of("Deployment").spec.template.spec.terminationGracePeriodSeconds > drain);
+  assert.ok(of("Deployment").spec.template.spec.terminationGracePeriodSeconds > drain + LONGEST_END);
   assert.match(told, /^listen = "0.0.0.0:8080"/m);
 });
 
-test("the server takes the options of the compose file, and is given time to drain", () => {
+test("the server takes the options of the compose file, and is given time to end", () => {
   const { unwrapd } = yaml.load(read("compose.yaml")).services;
-  const image = Object.fromEntries(
-    [...read("Dockerfile").matchAll(/(UNWRAPD_\w+)=(\S+)/g)].map(([, name, value]) => [name, value]));
   const told = accepted([], { ...image, ...unwrapd.environment });
   const drain = Number(/^drain-seconds = (\d+)/m.exec(told)[1]);
-  assert.ok(parseInt(unwrapd.stop_grace_period) > drain);
+  assert.ok(parseInt(unwrapd.stop_grace_period) > drain + LONGEST_END);
   for (const port of unwrapd.ports) assert.match(port, /^127\.0\.0\.1:/); // as long as it is plain HTTP
 });
 
