@@ -117,7 +117,7 @@ TEST_F(Events, OfOneKeyLeaveHalfOfTheStreamsToOthers) {
   };
   const auto submit_as = [this](const httplib::Headers& key) {
     const auto job =
-        client().Post("/v1/jobs?stop.iterations=10000", key, grid_obj(40), "model/obj");
+        client().Post("/v1/jobs?stop.iterations=10000", key, grid_obj(120), "model/obj");
     return api::Json::parse(job->body).at("id").get<std::string>();
   };
   const httplib::Headers greedy = holder(), modest = holder();

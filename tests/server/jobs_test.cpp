@@ -90,7 +90,7 @@ TEST_F(Jobs, WaitingIsAnsweredEarlyWhenTheJobIsNotDone) {
   config_.limits.max_wait_seconds = 1;
   start();
   const auto answer = client().Post("/v1/jobs?stop.iterations=10000", {{"Prefer", "wait=100"}},
-                                    grid_obj(40), "model/obj");
+                                    grid_obj(120), "model/obj");
   EXPECT_EQ(answer->status, 202);
   EXPECT_EQ(answer->get_header_value("Preference-Applied"), "wait=1");
   EXPECT_THAT(answer->get_header_value("Location"), StartsWith("/v1/jobs/j_"));

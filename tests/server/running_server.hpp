@@ -38,7 +38,7 @@ class RunningServer : public testing::Test {
   /// Sends an OBJ; the answer must be a job. Returns its id.
   std::string submit(const std::string& query = "", int size = 4);
   /// A job that goes on until it is stopped.
-  std::string submit_endless() { return submit("?stop.iterations=10000", 40); }
+  std::string submit_endless() { return submit("?stop.iterations=10000", 120); }
   api::Json job(const std::string& id);
   std::string state(const std::string& id) { return job(id).at("state"); }
   void await_state(const std::string& id, const std::string& expected);

@@ -89,7 +89,7 @@ TEST_F(Shutdown, WaitingRequestsAreAnswered) {
     const httplib::Headers wait = {{"Prefer", "wait=60"}};
     client->set_read_timeout(std::chrono::minutes(2));
     status =
-        client->Post("/v1/jobs?stop.iterations=10000", wait, grid_obj(40), "model/obj")->status;
+        client->Post("/v1/jobs?stop.iterations=10000", wait, grid_obj(120), "model/obj")->status;
   });
   const std::filesystem::path blobs = dir_.path() / "blobs";
   await([&] { return !std::filesystem::is_empty(blobs); });

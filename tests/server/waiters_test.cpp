@@ -42,7 +42,7 @@ TEST_F(WaitingRequests, LeaveRoomForOthers) {
   const httplib::Headers wait = {{"Prefer", "wait=60"}};
   const std::string endless = "/v1/jobs?stop.iterations=10000";
   std::thread waiting([&] {
-    const auto first = client().Post(endless, wait, grid_obj(40), "model/obj");
+    const auto first = client().Post(endless, wait, grid_obj(120), "model/obj");
     EXPECT_EQ(first->get_header_value("Preference-Applied"), "wait=60");
   });
   await([this] { return api::Json::parse(client().Get("/v1/jobs")->body).at("jobs").size() == 1; });
