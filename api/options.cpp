@@ -3,6 +3,7 @@
 #include "api/options.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -157,6 +158,17 @@ JobOptions parse_options(const Json& object, const Limits& limits) {
   Gathering gathering(limits);
   gathering.add_all(object);
   return gathering.finish();
+}
+
+JobOptions parse_stored_options(Json object) {
+  const auto plain_iterations = object.find("iterations");  // of 0.1.0
+  if (plain_iterations != object.end()) {
+    object["stop"]["iterations"] = *plain_iterations;
+    object.erase("iterations");
+  }
+  Limits any;
+  any.max_iterations = any.max_constraints = std::numeric_limits<int>::max();
+  return parse_options(object, any);
 }
 
 JobOptions parse_options_text(std::string_view text, const Limits& limits) {

@@ -96,6 +96,9 @@ JobOptions parse_options(const Json& object, const Limits& limits);
 /// The same from JSON text, strictly: also throws malformed_request for what is no JSON.
 JobOptions parse_options_text(std::string_view text, const Limits& limits);
 
+/// Resolved options that were accepted once: by a server of any limits, by any version since 0.1.0.
+JobOptions parse_stored_options(Json object);
+
 /// The longest JSON text of options that is read: room for as many constraints as may be given.
 inline constexpr std::size_t kMaxOptionsBytes = std::size_t{16} * 1024 * 1024;
 

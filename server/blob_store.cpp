@@ -125,15 +125,16 @@ fs::path BlobStore::path(std::string_view job, std::string_view file) const {
   return blobs_ / job / file;
 }
 
-void BlobStore::write(std::string_view job, std::string_view file, std::string_view bytes) {
-  room_.take(job, static_cast<std::int64_t>(bytes.size()));
-  write_file(path(job, file), bytes);
-}
-
 void BlobStore::write_unsealed(std::string_view job, std::string_view file,
                                std::string_view bytes) {
-  room_.take(job, static_cast<std::int64_t>(bytes.size()));
-  write_file_unsynced(path(job, file), bytes);
+  const auto count = static_cast<std::int64_t>(bytes.size());
+  room_.take(job, count);
+  try {
+    write_file_unsynced(path(job, file), bytes);
+  } catch (...) {
+    room_.put_back(job, count);
+    throw;
+  }
 }
 
 void BlobStore::remove(std::string_view job) noexcept {
@@ -161,11 +162,6 @@ bool BlobStore::has(std::string_view job, std::string_view file) const {
 
 std::int64_t BlobStore::bytes(std::string_view job) const { return bytes_below(blobs_ / job); }
 
-void BlobStore::discard(std::string_view job, std::string_view file) noexcept {
-  remove_tree(path(job, file));
-  room_.set(job, bytes_below(blobs_ / job));
-}
-
 std::int64_t BlobStore::seal(std::string_view job) {
   const std::lock_guard lock(noting_);
   seal_files(blobs_ / job, [](std::string_view file) { return !is_input(file); });
@@ -174,19 +170,45 @@ std::int64_t BlobStore::seal(std::string_view job) {
   return bytes;
 }
 
-std::string BlobStore::note(std::string_view job, const std::string& file) {
+void BlobStore::note(std::string_view job, const std::string& file) {
   const std::lock_guard lock(noting_);
   Digests digests = read_digests(blobs_ / job);
-  const std::string digest = sha256_of(File::open(path(job, file)));
-  digests[file] = digest;
+  digests[file] = sha256_of(File::open(path(job, file)));
   write_digests(blobs_ / job, digests);
-  if (noted_) noted_(job, bytes_below(blobs_ / job));
-  return digest;
+  if (keeping_.kept) keeping_.kept(job, bytes_below(blobs_ / job));
 }
 
-void BlobStore::on_noted(std::function<void(std::string_view job, std::int64_t bytes)> told) {
-  noted_ = std::move(told);
+bool BlobStore::try_keep(std::string_view job, const std::string& file, std::string_view bytes) {
+  const auto count = static_cast<std::int64_t>(bytes.size());
+  if (keeping_.may && !keeping_.may(std::string(job), count)) return false;
+  if (!room_.try_take(job, count)) return false;
+  try {
+    write_file(path(job, file), bytes);
+    note(job, file);
+    return true;
+  } catch (const Error& error) {
+    remove_tree(path(job, file));
+    room_.put_back(job, count);
+    if (error.code() == ErrorCode::storage_full) return false;
+    throw;
+  }
 }
+
+std::shared_ptr<const File> BlobStore::lend(std::string_view bytes) const {
+  room_.check_free(static_cast<std::int64_t>(bytes.size()));
+  const fs::path path = incoming_ / ("lent_" + random_job_id());
+  try {
+    write_file_unsynced(path, bytes);
+    auto lent = std::make_shared<const File>(File::open(path));
+    remove_tree(path);
+    return lent;
+  } catch (...) {
+    remove_tree(path);
+    throw;
+  }
+}
+
+bool BlobStore::holds(std::string_view job) const { return fs::exists(blobs_ / job); }
 
 /// What is checked is the link: it stays what it is when the other's file is made again meanwhile.
 bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {

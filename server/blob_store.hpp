@@ -31,6 +31,14 @@ std::string result_file(std::string_view format);
 /// "buffer_0": the file of an upload's k-th buffer.
 std::string buffer_file(std::size_t k);
 
+/// What try_keep() asks and tells of.
+struct Keeping {
+  /// Whether the job's owner may have so many bytes more.
+  std::function<bool(const std::string& job, std::int64_t bytes)> may = {};
+  /// The bytes of all the job's files now.
+  std::function<void(std::string_view job, std::int64_t bytes)> kept = {};
+};
+
 class BlobStore {
  public:
   /// Creates the directories below data where they are missing.
@@ -43,9 +51,8 @@ class BlobStore {
   void drop_upload(std::string_view upload) noexcept;
 
   [[nodiscard]] std::filesystem::path path(std::string_view job, std::string_view file) const;
-  /// Throws Error{storage_full} when there is no room, or storage_failed.
-  void write(std::string_view job, std::string_view file, std::string_view bytes);
-  /// The same for a file of a job at work: seal() syncs it.
+  /// A file of a job at work, which seal() syncs. Throws Error{storage_full} when there is no room,
+  /// or storage_failed.
   void write_unsealed(std::string_view job, std::string_view file, std::string_view bytes);
   void remove(std::string_view job) noexcept;
   /// The document of a stored mesh becomes that of an upload, too; its bytes are shared, and count
@@ -58,14 +65,18 @@ class BlobStore {
   [[nodiscard]] bool has(std::string_view job, std::string_view file) const;
   /// Bytes of all files, without a document that is shared with a mesh.
   [[nodiscard]] std::int64_t bytes(std::string_view job) const;
-  /// Removes one file that was written only to be handed out once.
-  void discard(std::string_view job, std::string_view file) noexcept;
 
   /// Syncs all results and notes their digests, replacing those of an attempt before: on return
   /// they survive a loss of power. Returns the bytes of all files of the job.
   std::int64_t seal(std::string_view job);
-  /// Notes the digest of a file that was written after seal(), and returns it.
-  std::string note(std::string_view job, const std::string& file);
+  /// Keeps a file that was made after seal() and can be made again, and notes its digest. False
+  /// when that would take something from others: there is no room for it, or its owner may not
+  /// have so much. Throws Error{storage_failed}.
+  [[nodiscard]] bool try_keep(std::string_view job, const std::string& file,
+                              std::string_view bytes);
+  /// A file without a name, for what is handed out once. Throws Error: storage_full,
+  /// storage_failed.
+  [[nodiscard]] std::shared_ptr<const File> lend(std::string_view bytes) const;
   /// Gives a job, which nobody else knows yet, the results of another; the bytes are shared, not
   /// copied. Every file is read and checked: false, and none is given, when one is not whole.
   bool adopt(std::string_view job, std::string_view from) noexcept;
@@ -78,8 +89,7 @@ class BlobStore {
   /// The noted digest; of a file without one, computed.
   [[nodiscard]] std::string digest(std::string_view job, std::string_view file) const;
 
-  /// told: of the bytes of all files of a job whenever note() was called.
-  void on_noted(std::function<void(std::string_view job, std::int64_t bytes)> told);
+  void on_keeping(Keeping keeping) { keeping_ = std::move(keeping); }
 
   /// Folders of jobs and meshes.
   [[nodiscard]] int folder_count() const;
@@ -88,12 +98,15 @@ class BlobStore {
   int sweep(const std::function<bool(const std::string& job)>& keeps_files);
 
   DiskRoom& room() { return room_; }
+  [[nodiscard]] bool holds(std::string_view job) const;
 
  private:
   std::filesystem::path incoming_;
   std::filesystem::path blobs_;
   DiskRoom room_;
-  std::function<void(std::string_view job, std::int64_t bytes)> noted_;
+  void note(std::string_view job, const std::string& file);
+
+  Keeping keeping_;
   mutable std::mutex noting_;  // one writer of `digests` at a time
 };
 

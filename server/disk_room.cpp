@@ -1,5 +1,6 @@
 #include "server/disk_room.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <system_error>
 
@@ -33,11 +34,15 @@ void DiskRoom::take_below(std::string_view job, std::int64_t bytes, std::int64_t
   }
 }
 
-void DiskRoom::check_free(std::int64_t bytes) const {
+bool DiskRoom::is_free(std::int64_t bytes) const {
   std::error_code ignored;
   const auto free = std::filesystem::space(folder_, ignored).available;
   const bool known = free != static_cast<std::uintmax_t>(-1);
-  if (known && static_cast<std::int64_t>(free) - bytes < limits_.min_free_bytes) full();
+  return !known || static_cast<std::int64_t>(free) - bytes >= limits_.min_free_bytes;
+}
+
+void DiskRoom::check_free(std::int64_t bytes) const {
+  if (!is_free(bytes)) full();
 }
 
 void DiskRoom::check_upload(std::int64_t bytes) const {
@@ -67,6 +72,19 @@ void DiskRoom::take_for_upload(std::string_view job, std::int64_t bytes, std::in
 
 void DiskRoom::take(std::string_view job, std::int64_t bytes) {
   take_below(job, bytes, limits_.max_bytes > 0 ? limits_.max_bytes : kNoLimit);
+}
+
+bool DiskRoom::try_take(std::string_view job, std::int64_t bytes) {
+  return is_free(bytes) && try_take(job, bytes, upload_limit());
+}
+
+void DiskRoom::put_back(std::string_view job, std::int64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  const auto found = by_job_.find(job);
+  if (found == by_job_.end()) return;  // given back whole meanwhile
+  const std::int64_t back = std::min(bytes, found->second);
+  used_ -= back;
+  if ((found->second -= back) == 0) by_job_.erase(found);
 }
 
 void DiskRoom::set(std::string_view job, std::int64_t bytes) {

@@ -43,6 +43,13 @@ class DiskRoom {
   void take_for_upload(std::string_view job, std::int64_t bytes, std::int64_t whole);
   /// Counts bytes of an accepted job's results. Throws Error{storage_full}.
   void take(std::string_view job, std::int64_t bytes);
+  /// Counts bytes of what can be made again at any time: nothing is given up for it. False when
+  /// there is no room.
+  [[nodiscard]] bool try_take(std::string_view job, std::int64_t bytes);
+  /// Bytes that were taken, and could not be written.
+  void put_back(std::string_view job, std::int64_t bytes);
+  /// Throws Error{storage_full} when the disk has no room for so many bytes.
+  void check_free(std::int64_t bytes) const;
   /// What a job's files take is now known to be this.
   void set(std::string_view job, std::int64_t bytes);
   void give_back(std::string_view job);
@@ -51,7 +58,7 @@ class DiskRoom {
 
  private:
   [[nodiscard]] std::int64_t upload_limit() const;
-  void check_free(std::int64_t bytes) const;
+  [[nodiscard]] bool is_free(std::int64_t bytes) const;
   void check_evictions(std::string_view job, std::int64_t whole) const;
   bool try_take(std::string_view job, std::int64_t bytes, std::int64_t limit);
   void take_below(std::string_view job, std::int64_t bytes, std::int64_t limit);

@@ -28,11 +28,20 @@ constexpr std::string_view kPartSuffix = ".part";
 
 std::filesystem::path part_of(std::filesystem::path path) { return path += kPartSuffix; }
 
-File create_whole(const std::filesystem::path& path, std::string_view bytes) {
-  remove_tree(path);
-  File file = File::create(path);
-  file.append(bytes);
-  return file;
+/// The file of these bytes under another name, given its own once `finish` has done with it; not
+/// left behind when that fails.
+template <class Finish>
+void write_part(const std::filesystem::path& path, std::string_view bytes, const Finish& finish) {
+  const std::filesystem::path part = part_of(path);
+  remove_tree(part);
+  try {
+    File file = File::create(part);
+    file.append(bytes);
+    finish(file, part);
+  } catch (...) {
+    remove_tree(part);
+    throw;
+  }
 }
 
 void give_name(const std::filesystem::path& from, const std::filesystem::path& to) {
@@ -101,15 +110,17 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
-  const std::filesystem::path part = part_of(path);
-  create_whole(part, bytes).sync();
-  rename_durably(part, path);
+  write_part(path, bytes, [&](File& file, const std::filesystem::path& part) {
+    file.sync();
+    rename_durably(part, path);
+  });
 }
 
 void write_file_unsynced(const std::filesystem::path& path, std::string_view bytes) {
-  const std::filesystem::path part = part_of(path);
-  create_whole(part, bytes).begin_sync();
-  give_name(part, path);
+  write_part(path, bytes, [&](File& file, const std::filesystem::path& part) {
+    file.begin_sync();
+    give_name(part, path);
+  });
 }
 
 void sync_file(const std::filesystem::path& path) { File::open(path).sync(); }

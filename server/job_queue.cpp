@@ -80,7 +80,7 @@ std::vector<AtWork> JobQueue::at_work() const {
   return all;
 }
 
-void JobQueue::check_room(std::string_view sender) {
+void JobQueue::check_room(const Asker& sender) {
   const std::lock_guard lock(mutex_);
   check_open();
   door_.check_place(sender, share_, at_work());
@@ -97,7 +97,9 @@ std::optional<JobRecord> JobQueue::same_name(const JobRecord& job) {
   if (!known) known = store_.find(job.id);
   if (!known) return std::nullopt;
   if (known->owner != job.owner) throw unknown_job();
-  if (known->content_key == job.content_key) return known;
+  const bool same =
+      known->asked.empty() ? known->input.sha256 == job.input.sha256 : known->asked == job.asked;
+  if (same) return known;
   throw another_question();
 }
 
@@ -124,7 +126,7 @@ JobRecord JobQueue::submit(Submission submission) {
 void JobQueue::enqueue(JobRecord& job, const Submission& submission, const Answer& answer) {
   const std::lock_guard lock(mutex_);
   check_open();
-  door_.check_place(submission.sender, share_, at_work());
+  door_.check_place({.who = submission.sender, .owner = job.owner}, share_, at_work());
   if (const Quota& quota = submission.quota; quota.max_jobs > 0 || quota.max_bytes > 0)
     door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
   door_.leave(submission.sender);

@@ -84,7 +84,7 @@ class JobQueue {
   /// Throws RetryLater{queue_full, draining} when a submission would be refused now, else keeps a
   /// place for it until submit() or give_back(). sender: the same for a request that is sent again
   /// when told so, if possible another for each other request.
-  void check_room(std::string_view sender);
+  void check_room(const Asker& sender);
   void give_back(std::string_view sender);
   /// Stores a job; one of the same name that is there already is returned instead. A question that
   /// this owner has had answered is answered from the store. Throws like check_room(), and

@@ -47,7 +47,8 @@ struct JobRecord {
   std::string owner;              ///< id of the API key that sent it; empty without keys
   int urgency = kUsualUrgency;    ///< 0 (first) to 7, among the jobs of its owner
   std::string request_key;        ///< the sender's own name of the request, empty without one
-  std::string content_key;        ///< the same for the same question: mesh, options, version
+  std::string asked;              ///< the same for the same request; empty when 0.1.0 stored it
+  std::string content_key;        ///< the same for the same answer: mesh, resolved options, version
   std::int64_t stored_bytes = 0;  ///< of its files, as far as quotas count them
   std::string webhook;            ///< called at its end, empty for none
   std::string trace;              ///< id of the trace that it came in and all is done in

@@ -105,6 +105,24 @@ Response post_unwrap(const JobServices& services, const Request& request) {
   return response;
 }
 
+void add_files(std::vector<Route>& routes, const JobServices& services) {
+  const auto add = [&](std::string_view path, auto answer) {
+    routes.push_back({"GET", path, [services, answer](const Request& request) {
+                        return answer_with_files(
+                            services.store, request, [&](const JobRecord& job) {
+                              return answer(job, only_chosen_map(job, request.query), request);
+                            });
+                      }});
+  };
+  add("/v1/jobs/{id}/result",
+      [services](const JobRecord& job, std::size_t map, const Request& request) {
+        return get_result(services.results, job, map, request);
+      });
+  add("/v1/jobs/{id}/report", [services](const JobRecord& job, std::size_t map, const Request&) {
+    return get_file(services.blobs, job, map_file(kReportFile, map), "application/json");
+  });
+}
+
 }  // namespace
 
 JobRecord find_job(JobStore& store, const Request& request) {
@@ -112,6 +130,17 @@ JobRecord find_job(JobStore& store, const Request& request) {
   const bool seen = job && (request.caller.sees_all || job->owner == request.caller.owner);
   if (!seen) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
   return std::move(*job);
+}
+
+Response answer_with_files(JobStore& store, const Request& request,
+                           const std::function<Response(const JobRecord& job)>& answer) {
+  const JobRecord job = find_job(store, request);
+  try {
+    return answer(job);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::storage_failed) require_result(find_job(store, request));
+    throw;
+  }
 }
 
 void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
@@ -136,17 +165,7 @@ void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
   routes.push_back({"GET", "/v1/jobs/{id}/events", [services, find](const Request& request) {
                       return services.streams.open(find(request), request);
                     }});
-  routes.push_back({"GET", "/v1/jobs/{id}/result", [services, find](const Request& request) {
-                      const JobRecord job = find(request);
-                      const std::size_t map = only_chosen_map(job, request.query);
-                      return get_result(services.results, job, map, request);
-                    }});
-  routes.push_back({"GET", "/v1/jobs/{id}/report", [services, find](const Request& request) {
-                      const JobRecord job = find(request);
-                      const std::size_t map = only_chosen_map(job, request.query);
-                      return get_file(services.blobs, job, map_file(kReportFile, map),
-                                      "application/json");
-                    }});
+  add_files(routes, services);
 }
 
 void add_unwrap_route(std::vector<Route>& routes, const JobServices& services) {

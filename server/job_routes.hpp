@@ -1,6 +1,7 @@
 #pragma once
 // The calls on jobs: thin handlers that turn a Request into one call and its value into a Response.
 
+#include <functional>
 #include <vector>
 
 #include "server/event_streams.hpp"
@@ -30,6 +31,11 @@ struct JobServices {
 
 /// The job of the path. Throws Error{not_found} when there is none, or none of the caller's.
 JobRecord find_job(JobStore& store, const Request& request);
+
+/// What is answered with files of the job of the path. Throws not_found, or what require_result()
+/// throws, when they went meanwhile.
+Response answer_with_files(JobStore& store, const Request& request,
+                           const std::function<Response(const JobRecord& job)>& answer);
 
 /// POST /v1/jobs and everything below /v1/jobs/{id} but the pictures.
 void add_job_routes(std::vector<Route>& routes, const JobServices& services);

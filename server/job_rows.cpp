@@ -8,7 +8,7 @@ using api::JobState;
 constexpr std::string_view kColumns =
     " seq, id, state, created_ms, finished_ms, attempt, crashes, cancel_requested, synchronous,"
     " expired, options, notes, sha256, bytes, buffers, result_format, problem, last_event, owner,"
-    " urgency, request_key, content_key, stored_bytes, webhook, trace ";
+    " urgency, request_key, content_key, stored_bytes, webhook, trace, asked ";
 
 std::vector<StoredBuffer> buffers_of(const api::Json& json) {
   std::vector<StoredBuffer> buffers;
@@ -60,6 +60,7 @@ JobRecord record_of(const Statement& row) {
   job.stored_bytes = next.number();
   job.webhook = next.text();
   job.trace = next.text();
+  job.asked = next.text();
   return job;
 }
 

@@ -19,8 +19,8 @@ constexpr auto kAnySeq = std::numeric_limits<std::int64_t>::max();
 std::string insert_statement() {
   return "INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256, bytes,"
          " buffers, owner, urgency, request_key, content_key, stored_bytes, webhook,"
-         " trace)"
-         " VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, NULLIF(?, ''), ?, ?, ?, ?) RETURNING "
+         " trace, asked)"
+         " VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, NULLIF(?, ''), ?, ?, ?, ?, ?) RETURNING "
          "seq";
 }
 
@@ -90,7 +90,8 @@ std::int64_t JobStore::insert(const JobRecord& job) {
   statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, text_of(job.options),
                  text_of(job.notes), job.input.sha256, job.input.bytes,
                  text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
-                 job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace);
+                 job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace,
+                 job.asked);
   statement.step();
   const std::int64_t seq = statement.number(0);
   statement.run();
@@ -259,6 +260,7 @@ void JobStore::shift_kept_since(std::int64_t by_ms) {
             " ('succeeded', 'failed', 'cancelled')")
       .with(by_ms)
       .run();
+  Statement(database_, "UPDATE deliveries SET due_ms = due_ms + ?").with(by_ms).run();
 }
 
 void JobStore::remove(std::string_view id) {

@@ -95,7 +95,8 @@ class JobStore {
   void set_expired(std::string_view id);
   /// Removes the rows of expired jobs that ended before this time.
   void forget_before(std::int64_t epoch_ms);
-  /// The time of day was set: the time for which jobs are kept goes on as if it had not been.
+  /// The time of day was set: the time for which jobs are kept, and to the next call of a webhook,
+  /// goes on as if it had not been.
   void shift_kept_since(std::int64_t by_ms);
   void remove(std::string_view id);
 

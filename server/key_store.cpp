@@ -168,6 +168,13 @@ std::optional<ApiKey> KeyStore::find(std::string_view text) {
   return key_of(statement);
 }
 
+std::optional<ApiKey> KeyStore::with_id(std::string_view id) {
+  const std::lock_guard lock(mutex_);
+  Statement statement(database_, std::string(kSelect) + "WHERE id = ?");
+  if (!statement.with(id).step()) return std::nullopt;
+  return key_of(statement);
+}
+
 std::vector<ApiKey> KeyStore::all() {
   const std::lock_guard lock(mutex_);
   Statement statement(database_, std::string(kSelect) + "ORDER BY seq");

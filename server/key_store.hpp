@@ -57,6 +57,7 @@ class KeyStore {
   std::string add(ApiKey key);
   /// The key of this text, if it is one.
   std::optional<ApiKey> find(std::string_view text);
+  [[nodiscard]] std::optional<ApiKey> with_id(std::string_view id);
   /// In the order in which they were added.
   std::vector<ApiKey> all();
   /// False when there is none of this id. Its jobs stay.

@@ -60,7 +60,9 @@ Picture picture_of(PictureKind kind, const std::multimap<std::string, std::strin
 void add_picture_routes(std::vector<Route>& routes, JobStore& jobs, PictureStore& pictures) {
   const auto add = [&](std::string_view path, PictureKind kind) {
     routes.push_back({"GET", path, [&jobs, &pictures, kind](const Request& request) {
-                        return get_picture(pictures, find_job(jobs, request), kind, request);
+                        return answer_with_files(jobs, request, [&](const JobRecord& job) {
+                          return get_picture(pictures, job, kind, request);
+                        });
                       }});
   };
   add("/v1/jobs/{id}/layout.svg", PictureKind::layout_svg);

@@ -2,7 +2,6 @@
 
 #include <bit>
 
-#include "server/identity.hpp"
 #include "server/map_choice.hpp"
 
 namespace unwrapd::server {
@@ -46,12 +45,7 @@ StoredResult PictureStore::open(const JobRecord& job, std::size_t map, const Pic
   }
   const std::string bytes = renderer_.render(job, {.map = map, .picture = picture, .format = {}});
   counts_.made(bytes);
-  if (is_kept(picture)) return keep(blobs_, job.id, name, bytes);
-  blobs_.write(job.id, name, bytes);
-  StoredResult once{.file = std::make_shared<const File>(File::open(blobs_.path(job.id, name))),
-                    .sha256 = sha256(bytes)};
-  blobs_.discard(job.id, name);
-  return once;
+  return is_kept(picture) ? keep(blobs_, job.id, name, bytes) : lend(blobs_, bytes);
 }
 
 }  // namespace unwrapd::server

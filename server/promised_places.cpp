@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace unwrapd::server {
 namespace {
@@ -83,19 +84,36 @@ Line line_before(std::int64_t places, std::int64_t waiting, int workers, const L
   return line;
 }
 
-std::optional<int> PromisedPlaces::ask(Clock::time_point now, std::string_view who,
+std::optional<int> PromisedPlaces::ask(Clock::time_point now, const Asker& asker,
                                        const Line& line) {
   forget(now);
-  const auto mine = due_to(now, who);
+  const auto mine = due_to(now, asker.who);
   if (mine == promises_.end()) {
-    if (!newcomer_fits(now, line)) return promise(now, who, line, false);
+    if (!newcomer_fits(now, asker, line)) return promise(now, asker, line, false);
   } else {
-    const bool free = line.waiting + (mine - promises_.begin()) < line.places;
+    const std::vector<const Promise*> counted = before(asker.owner);
+    const auto ahead = std::ranges::find(counted, &*mine) - counted.begin();
+    const bool free = line.waiting + ahead < line.places;
     promises_.erase(mine);
-    if (!free) return promise(now, who, line, true);
+    if (!free) return promise(now, asker, line, true);
   }
-  keep({.who = std::string(who), .due = now, .until = now + kSending, .inside = true});
+  keep({.who = std::string(asker.who),
+        .owner = std::string(asker.owner),
+        .due = now,
+        .until = now + kSending,
+        .inside = true});
   return std::nullopt;
+}
+
+/// Of all promises those that count for one of this owner, by due: his own, those of who sends
+/// already, and the first of each other owner.
+std::vector<const PromisedPlaces::Promise*> PromisedPlaces::before(std::string_view owner) const {
+  std::set<std::string_view> others;
+  std::vector<const Promise*> found;
+  for (const Promise& promise : promises_)
+    if (promise.owner == owner || promise.inside || others.insert(promise.owner).second)
+      found.push_back(&promise);
+  return found;
 }
 
 void PromisedPlaces::leave(std::string_view who) {
@@ -115,30 +133,32 @@ PromisedPlaces::Promises::iterator PromisedPlaces::due_to(Clock::time_point now,
   return std::ranges::find_if(promises_, his);
 }
 
-bool PromisedPlaces::newcomer_fits(Clock::time_point now, const Line& line) const {
+bool PromisedPlaces::newcomer_fits(Clock::time_point now, const Asker& asker,
+                                   const Line& line) const {
   if (line.waiting == 0 && std::ranges::count(promises_, true, &Promise::inside) == 0) return true;
   Moving moving(line);
   if (!moving.come_in(0)) return false;
-  return std::ranges::all_of(promises_, [&](const Promise& promise) {
-    return moving.come_in(seconds_until(promise.due, now));
+  return std::ranges::all_of(before(asker.owner), [&](const Promise* promise) {
+    return moving.come_in(seconds_until(promise->due, now));
   });
 }
 
 /// again: he was promised one before, so that only others of whom that is true are ahead of him.
-int PromisedPlaces::promise(Clock::time_point now, std::string_view who, const Line& line,
+int PromisedPlaces::promise(Clock::time_point now, const Asker& asker, const Line& line,
                             bool again) {
   Moving moving(line);
   double last = 0;
-  for (const Promise& other : promises_) {
-    if (again && !other.again) continue;
-    last = seconds_until(other.due, now);
+  for (const Promise* other : before(asker.owner)) {
+    if (again && !other->again) continue;
+    last = seconds_until(other->due, now);
     moving.come_in(last);
   }
   const double wait = std::max({last, moving.next_place(), 1.0});
   const std::chrono::seconds whole(static_cast<std::int64_t>(std::ceil(wait)));
   const auto most = static_cast<std::size_t>(std::max(kFewestPromises, 4 * line.places));
   if (promises_.size() < most)
-    keep({.who = std::string(who),
+    keep({.who = std::string(asker.who),
+          .owner = std::string(asker.owner),
           .due = now + whole,
           .until = now + whole + kLate,
           .again = again});

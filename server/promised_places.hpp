@@ -14,6 +14,12 @@
 
 namespace unwrapd::server {
 
+/// Who asks for a place.
+struct Asker {
+  std::string_view who;         ///< whatever tells him from others
+  std::string_view owner = {};  ///< the key that he has; keys take turns
+};
+
 /// A queue as seen from its door. Times in seconds.
 struct Line {
   std::int64_t places = 1;
@@ -42,11 +48,12 @@ class PromisedPlaces {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// A place for `who`, whatever tells him from others, when this is nothing: it is kept for the
+  /// A place for who asks, when this is nothing: it is kept for the
   /// half minute in which he sends what he has to send, or until leave(). Else he is to come back
   /// after this many seconds, at least 1. Who was promised a place and comes in time finds it where
-  /// the line went on as told; if not, he is the next.
-  std::optional<int> ask(Clock::time_point now, std::string_view who, const Line& line);
+  /// the line went on as told; if not, he is the next. All that an owner was promised stands back
+  /// behind the first of each other owner.
+  std::optional<int> ask(Clock::time_point now, const Asker& asker, const Line& line);
   /// The place that `who` was given is his no longer: taken for good, or given up.
   void leave(std::string_view who);
 
@@ -55,6 +62,7 @@ class PromisedPlaces {
  private:
   struct Promise {
     std::string who;
+    std::string owner;
     Clock::time_point due;
     Clock::time_point until;
     bool inside = false;  ///< he came, and sends
@@ -64,8 +72,10 @@ class PromisedPlaces {
 
   void forget(Clock::time_point now);
   [[nodiscard]] Promises::iterator due_to(Clock::time_point now, std::string_view who);
-  [[nodiscard]] bool newcomer_fits(Clock::time_point now, const Line& line) const;
-  int promise(Clock::time_point now, std::string_view who, const Line& line, bool again);
+  [[nodiscard]] std::vector<const Promise*> before(std::string_view owner) const;
+  [[nodiscard]] bool newcomer_fits(Clock::time_point now, const Asker& asker,
+                                   const Line& line) const;
+  int promise(Clock::time_point now, const Asker& asker, const Line& line, bool again);
   void keep(Promise promise);
 
   Promises promises_;  // by due, the earliest first

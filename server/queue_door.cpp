@@ -14,7 +14,7 @@ Line QueueDoor::line(const FairShare& share, const std::vector<AtWork>& running)
   return line_before(places_, share.waiting(), workers_, share.lengths(), ran);
 }
 
-void QueueDoor::check_place(std::string_view sender, const FairShare& share,
+void QueueDoor::check_place(const Asker& sender, const FairShare& share,
                             const std::vector<AtWork>& running) {
   if (const auto later = promised_.ask(Clock::now(), sender, line(share, running)))
     throw queue_full(places_, *later);
@@ -36,7 +36,7 @@ void QueueDoor::check_quota(std::string_view sender, const Quota& quota, const O
   if (std::ranges::count(running, job.owner, &AtWork::owner) == 0)
     his.first += his.interval + share.lengths().mean;
   PromisedPlaces& promised = promised_to_owner_[job.owner];
-  const auto later = promised.ask(Clock::now(), sender, his);
+  const auto later = promised.ask(Clock::now(), {.who = sender}, his);
   promised.leave(sender);
   std::erase_if(promised_to_owner_, [](const auto& entry) { return entry.second.empty(); });
   if (later) throw too_many_jobs(quota.max_jobs, *later);

@@ -27,8 +27,7 @@ class QueueDoor {
 
   /// Keeps a place in the queue for the sender until leave(), for half a minute; throws
   /// RetryLater{queue_full} when there is none.
-  void check_place(std::string_view sender, const FairShare& share,
-                   const std::vector<AtWork>& running);
+  void check_place(const Asker& sender, const FairShare& share, const std::vector<AtWork>& running);
   /// Throws quota_exceeded, and RetryLater{too_many_jobs}, when its owner has what he may have.
   void check_quota(std::string_view sender, const Quota& quota, const OwnerUsage& usage,
                    const JobRecord& job, const FairShare& share,

@@ -30,8 +30,15 @@ std::shared_ptr<void> Renderer::enter(const JobRecord& job, std::size_t map,
 }
 
 std::string Renderer::render(const JobRecord& job, const Rendering& rendering) const {
+  const std::string uv_file = map_file(kUvFile, rendering.map);
+  if (blobs_.holds(job.id) && !blobs_.has(job.id, uv_file) &&
+      !std::filesystem::exists(blobs_.path(job.id, uv_file))) {
+    throw Error(ErrorCode::result_expired,
+                "An earlier version did this job, and kept no map that could be drawn or written "
+                "anew; send it again for that.");
+  }
   const LoadedInput loaded(blobs_, job);
-  const std::string uvs = blobs_.read(job.id, map_file(kUvFile, rendering.map));
+  const std::string uvs = blobs_.read(job.id, uv_file);
   std::string report;
   if (!rendering.picture && !rendering.format)
     report = blobs_.read(job.id, map_file(kReportFile, rendering.map));

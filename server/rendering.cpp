@@ -35,7 +35,7 @@ std::string render(const Rendering& rendering, const RenderingInput& input,
                    const api::Limits& limits) {
   if (rendering.analysis) return mesh_analysis(input, *rendering.analysis, limits);
   const asset::Asset asset = asset::read(input.asset, read_limits(input.record, limits),
-                                         api::parse_options(input.record.options, limits).asset);
+                                         api::parse_stored_options(input.record.options).asset);
   const Surfaces unwrapped = decode_uvs(input.uvs);
   if (rendering.picture) return draw(*rendering.picture, asset, unwrapped);
   if (rendering.format) return asset::write(asset, unwrapped, *rendering.format);

@@ -40,8 +40,10 @@ void require_result(const JobRecord& job) {
   }
   if (job.state != api::JobState::succeeded) throw Error(api::error_from_problem(job.problem));
   if (job.expired) {
-    throw Error(ErrorCode::result_expired,
-                "The result has been kept for its time and is gone; send the job again.");
+    throw Error(
+        ErrorCode::result_expired,
+        "The result has been kept for its time and is gone; send the job again, under a new name "
+        "if it had one.");
   }
 }
 

@@ -1,6 +1,7 @@
 #include "server/result_store.hpp"
 
 #include "core/error.hpp"
+#include "server/identity.hpp"
 #include "server/map_choice.hpp"
 
 namespace unwrapd::server {
@@ -45,9 +46,12 @@ std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string
 
 StoredResult keep(BlobStore& blobs, const std::string& job, const std::string& file,
                   std::string_view bytes) {
-  blobs.write(job, file, bytes);
-  const std::string digest = blobs.note(job, file);
-  return {.file = blobs.open(job, file), .sha256 = digest};
+  if (!blobs.try_keep(job, file, bytes)) return lend(blobs, bytes);
+  return {.file = blobs.open(job, file), .sha256 = blobs.digest(job, file)};
+}
+
+StoredResult lend(const BlobStore& blobs, std::string_view bytes) {
+  return {.file = blobs.lend(bytes), .sha256 = sha256(bytes)};
 }
 
 StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::string_view format) {

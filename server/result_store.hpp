@@ -31,9 +31,11 @@ struct StoredResult {
 /// A file of a job that is there and whole.
 std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string& job,
                                        const std::string& file);
-/// Stores a file that was made after the end of its job.
+/// A file that was made after the end of its job, kept where that takes nothing from others.
 StoredResult keep(BlobStore& blobs, const std::string& job, const std::string& file,
                   std::string_view bytes);
+/// One that is handed out once.
+StoredResult lend(const BlobStore& blobs, std::string_view bytes);
 
 /// Thread-safe.
 class ResultStore {

@@ -100,7 +100,7 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   StageClock clock(task.began);
   const Progress progress = progress_of(task, output, clock);
   progress.on_stage({.stage = Stage::read, .chart = 0, .chart_count = 0, .fraction = 0});
-  const api::JobOptions options = api::parse_options(record.options, limits);
+  const api::JobOptions options = api::parse_stored_options(record.options);
   asset::Input watched = input;
   watched.stop = task.stop;
   asset::Asset asset = asset::read(watched, read_limits(record, limits), options.asset);

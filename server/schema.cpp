@@ -8,7 +8,7 @@ namespace unwrapd::server {
 namespace {
 
 /// Step k makes version k + 1 out of version k. Steps that were released are never edited.
-constexpr std::array<const char*, 6> kSteps = {
+constexpr std::array<const char*, 7> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -105,6 +105,9 @@ END;
 CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
   UPDATE stored SET bytes = bytes - OLD.stored_bytes WHERE owner = OLD.owner;
 END;
+)sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN asked TEXT NOT NULL DEFAULT '';
 )sql"};
 
 constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());

@@ -114,10 +114,13 @@ struct Service::Parts {
     sweep_blobs(log);
     blobs.room().on_shortage({.evict = [this] { return evict_oldest(store, mesh_store, blobs); },
                               .bytes = [this] { return store.evictable_bytes(); }});
-    blobs.on_noted([this](std::string_view owner, auto bytes) {
-      is_mesh_id(owner) ? mesh_store.set_stored_bytes(owner, bytes)
-                        : store.set_stored_bytes(owner, bytes);
-    });
+    blobs.on_keeping(
+        {.may = [this](const std::string& id, std::int64_t bytes) { return may_keep(id, bytes); },
+         .kept =
+             [this](std::string_view id, std::int64_t bytes) {
+               is_mesh_id(id) ? mesh_store.set_stored_bytes(id, bytes)
+                              : store.set_stored_bytes(id, bytes);
+             }});
     start_periodic(log);
     workers.emplace(queue, blobs, config.limits, log,
                     WorkerConfig{.workers = config.workers,
@@ -127,6 +130,16 @@ struct Service::Parts {
                                  .duties = duties});
     serving = std::jthread([this] { http.serve(); });
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
+  }
+
+  /// Whether a job's owner may store so many bytes more. A mesh's analysis is short.
+  bool may_keep(const std::string& id, std::int64_t bytes) {
+    if (is_mesh_id(id)) return true;
+    const std::optional<JobRecord> job = store.find(id);
+    if (!job) return false;
+    const std::optional<ApiKey> key = keys.with_id(job->owner);
+    const std::int64_t most = key ? key->quota.max_bytes : 0;
+    return most == 0 || store.usage(job->owner).stored_bytes + bytes <= most;
   }
 
   HttpUses main_uses(const Log& log) {

@@ -10,22 +10,21 @@
 namespace unwrapd::server {
 namespace {
 
-/// The options that a body brings.
-api::JobOptions options_of(const std::string& text, const Request& request,
-                           const api::Limits& limits) {
-  if (request.query.empty()) return api::parse_options_text(text, limits);
+/// The options that are asked for, in the body or in the query.
+api::Json options_of(const std::optional<std::string>& text, const Request& request) {
+  if (!text) return api::options_object(request.query);
+  if (request.query.empty()) return api::parse_json(*text, {.max_bytes = api::kMaxOptionsBytes});
   throw Error(ErrorCode::invalid_option,
               "Options are given in the query and in the body; give them once.",
               "/" + request.query.begin()->first);
 }
 
-/// The same for the same question to the same version: what is asked, and of what.
-std::string content_key(const JobRecord& job) {
+/// The same for the same question: these options, and of what.
+std::string key_of(const api::Json& options, const JobRecord& job) {
   Sha256 hash;
   const auto add = [&](const std::string& text) { hash.add(text + '\0'); };
-  add(UNWRAPD_VERSION);
   add(job.synchronous ? "small" : "any size");
-  add(job.options.dump());
+  add(options.dump());
   add(job.input.sha256);
   for (const StoredBuffer& buffer : job.input.buffers) {
     add(buffer.uri);
@@ -59,7 +58,7 @@ std::string sender_of(const Request& request) {
 
 std::string Submissions::accept(const Request& request, bool synchronous) {
   const std::string sender = sender_of(request);
-  queue_.check_room(sender);
+  queue_.check_room({.who = sender, .owner = request.caller.owner});
   const std::string upload = random_job_id();
   try {
     UploadRoom room(rooms_, request.caller, upload, size_of(request));
@@ -141,11 +140,13 @@ void Submissions::receive(const Request& request, JobRecord& job, UploadRoom& ro
   const UploadFolder folder{.path = blobs_.begin_upload(upload),
                             .take = [&](std::int64_t bytes) { room.take(bytes); }};
   const Sent sent = bring(request, folder, job);
-  if (sent.options) options = options_of(*sent.options, request, limits_);
+  const api::Json asked = options_of(sent.options, request);
+  if (sent.options) options = api::parse_options(asked, limits_);
   job.created_ms = now_ms();
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);
-  job.content_key = content_key(job);
+  job.asked = key_of(asked, job);
+  job.content_key = UNWRAPD_VERSION " " + key_of(job.options, job);
   shorten_options(job, folder);
 }
 

@@ -69,7 +69,14 @@ Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret
       config_(std::move(config)),
       log_(log),
       database_(store),
-      pool_(kAtOnce, kPerHost, [this] { go_on(); }) {}
+      pool_(kAtOnce, kPerHost, [this] { go_on(); }) {
+  // Whoever set the clock back while no server ran did not mean to put calls off.
+  Statement(database_,
+            "UPDATE deliveries SET due_ms ="
+            " MIN(due_ms, ?1 + MIN(?2 << MAX(tries - 1, 0), ?3))")
+      .with(now_ms(), config_.retry_seconds * kMsPerSecond, kLongestPauseMs)
+      .run();
+}
 
 /// Without those that are being made.
 std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {

@@ -51,7 +51,7 @@ class Durability : public testing::Test {
     const std::filesystem::path folder = blobs.begin_upload("u");
     write_file(folder / kDocumentFile, "v 0 0 0");
     blobs.keep_upload("u", id);
-    blobs.write(id, kReportFile, "{}");
+    blobs.write_unsealed(id, kReportFile, "{}");
     blobs.seal(id);
   }
 
@@ -97,7 +97,7 @@ TEST_F(Durability, SealingDoesNotPassOverADamagedInput) {
   BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
   damage(blobs.path("j_1", kDocumentFile));
-  blobs.write("j_1", kReportFile, "{\"attempt\": 2}");
+  blobs.write_unsealed("j_1", kReportFile, "{\"attempt\": 2}");
   blobs.seal("j_1");
   EXPECT_EQ(blobs.read("j_1", kReportFile), "{\"attempt\": 2}");
   EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", kDocumentFile)); }).code(),
@@ -119,8 +119,8 @@ TEST_F(Durability, ResultsThatAreNotWholeAreGivenToNobody) {
   for (const std::string_view file : {kReportFile, kTotalsFile, kUvFile, kDigestsFile}) {
     BlobStore blobs(dir_.path());
     add_job(blobs, "j_1");
-    blobs.write("j_1", kTotalsFile, "{}");
-    blobs.write("j_1", kUvFile, "uv");
+    blobs.write_unsealed("j_1", kTotalsFile, "{}");
+    blobs.write_unsealed("j_1", kUvFile, "uv");
     blobs.seal("j_1");
     write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
     blobs.keep_upload("u", "j_2");
@@ -137,11 +137,11 @@ TEST_F(Durability, ResultsThatAreNotWholeAreGivenToNobody) {
 TEST_F(Durability, AFileThatWasMadeButNotNotedIsNotGivenToAnother) {
   BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
-  blobs.write("j_1", "uv.bin.layout.area.svg", "<svg");
+  blobs.write_unsealed("j_1", "uv.bin.layout.area.svg", "<svg");
   write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
   blobs.keep_upload("u", "j_2");
   EXPECT_FALSE(blobs.adopt("j_2", "j_1"));
-  blobs.note("j_1", "uv.bin.layout.area.svg");
+  ASSERT_TRUE(blobs.try_keep("j_1", "uv.bin.layout.area.svg", "<svg"));
   EXPECT_TRUE(blobs.adopt("j_2", "j_1"));
   EXPECT_EQ(blobs.read("j_2", "uv.bin.layout.area.svg"), "<svg");
 }
@@ -220,6 +220,8 @@ TEST_F(Durability, ResultsAreKeptForTheirTimeWhenTheClockIsSet) {
   JobOutcome outcome;
   outcome.finished_ms = 50 * kDay;
   store.finish(*store.take("", 1), outcome);
+  Database deliveries(path());
+  deliveries.run("INSERT INTO deliveries (job, url, body, due_ms) VALUES ('j_1', 'x', '', 7000)");
   const auto kept = [&] { return !store.find("j_1")->expired && meshes.has("m_1"); };
   const auto gone = [&] { return store.find("j_1")->expired && !meshes.has("m_1"); };
   sweeper.sweep_once(50 * kDay, 7000);
@@ -227,6 +229,9 @@ TEST_F(Durability, ResultsAreKeptForTheirTimeWhenTheClockIsSet) {
   EXPECT_TRUE(kept()) << "ten days forward";
   sweeper.sweep_once(40 * kDay, 9000);
   EXPECT_TRUE(kept()) << "twenty days back";
+  Statement due(deliveries, "SELECT due_ms FROM deliveries");
+  EXPECT_TRUE(due.step() && due.number(0) == 5000 - 10 * kDay) << "a call's time was set, too";
+  due.step();
   sweeper.sweep_once(40 * kDay + 97'000, 106'000);
   EXPECT_TRUE(kept()) << "99 s have passed";
   sweeper.sweep_once(40 * kDay + 99'000, 108'000);

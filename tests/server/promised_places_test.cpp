@@ -19,62 +19,87 @@ constexpr Clock::time_point kStart{seconds(1'000'000)};
 TEST(PromisedPlaces, TellsEachOfManyAPlaceOfHisOwn) {
   PromisedPlaces door;
   const Line full{.places = 4, .waiting = 4, .first = 2.5, .interval = 3};
-  EXPECT_EQ(door.ask(kStart, "a", full), 3);
-  EXPECT_EQ(door.ask(kStart, "b", full), 6);
-  EXPECT_EQ(door.ask(kStart, "c", full), 9);
+  EXPECT_EQ(door.ask(kStart, {.who = "a"}, full), 3);
+  EXPECT_EQ(door.ask(kStart, {.who = "b"}, full), 6);
+  EXPECT_EQ(door.ask(kStart, {.who = "c"}, full), 9);
 }
 
 TEST(PromisedPlaces, KeepsThePlaceFromNewcomers) {
   PromisedPlaces door;
-  ASSERT_EQ(door.ask(kStart, "a", {.places = 2, .waiting = 2, .first = 3, .interval = 3}), 3);
+  ASSERT_EQ(door.ask(kStart, {.who = "a"}, {.places = 2, .waiting = 2, .first = 3, .interval = 3}),
+            3);
   const Line one_free{.places = 2, .waiting = 1, .first = 2.9, .interval = 3};
   const auto soon = kStart + milliseconds(3100);
-  EXPECT_TRUE(door.ask(soon, "newcomer", one_free));
-  EXPECT_FALSE(door.ask(soon, "a", one_free));
+  EXPECT_TRUE(door.ask(soon, {.who = "newcomer"}, one_free));
+  EXPECT_FALSE(door.ask(soon, {.who = "a"}, one_free));
 }
 
 TEST(PromisedPlaces, LetsANewcomerInWhoIsInNobodysWay) {
   PromisedPlaces door;
-  ASSERT_EQ(door.ask(kStart, "a", {.places = 3, .waiting = 3, .first = 30, .interval = 1}), 30);
+  ASSERT_EQ(door.ask(kStart, {.who = "a"}, {.places = 3, .waiting = 3, .first = 30, .interval = 1}),
+            30);
   const Line one_free{.places = 3, .waiting = 2, .first = 1, .interval = 1};
-  EXPECT_FALSE(door.ask(kStart + seconds(10), "newcomer", one_free));
+  EXPECT_FALSE(door.ask(kStart + seconds(10), {.who = "newcomer"}, one_free));
 }
 
 TEST(PromisedPlaces, KeepsAPlaceForWhoSendsUntilHeLeaves) {
   PromisedPlaces door;
   const Line one_free{.places = 4, .waiting = 3, .first = 9, .interval = 9};
-  ASSERT_FALSE(door.ask(kStart, "sender", one_free));
-  EXPECT_TRUE(door.ask(kStart, "newcomer", one_free));
-  EXPECT_FALSE(door.ask(kStart + seconds(20), "sender", one_free)) << "the same upload, complete";
+  ASSERT_FALSE(door.ask(kStart, {.who = "sender"}, one_free));
+  EXPECT_TRUE(door.ask(kStart, {.who = "newcomer"}, one_free));
+  EXPECT_FALSE(door.ask(kStart + seconds(20), {.who = "sender"}, one_free))
+      << "the same upload, complete";
   door.leave("sender");
-  EXPECT_FALSE(door.ask(kStart, "another", one_free));
+  EXPECT_FALSE(door.ask(kStart, {.who = "another"}, one_free));
 }
 
 TEST(PromisedPlaces, TakesThePlaceBackFromWhoNeverEndsSending) {
   PromisedPlaces door;
   const Line one_free{.places = 4, .waiting = 3, .first = 9, .interval = 9};
-  ASSERT_FALSE(door.ask(kStart, "slow", one_free));
-  EXPECT_FALSE(door.ask(kStart + seconds(31), "another", one_free));
+  ASSERT_FALSE(door.ask(kStart, {.who = "slow"}, one_free));
+  EXPECT_FALSE(door.ask(kStart + seconds(31), {.who = "another"}, one_free));
+}
+
+TEST(PromisedPlaces, LetOwnersTakeTurns) {
+  PromisedPlaces door;
+  const Line full{.places = 4, .waiting = 4, .first = 2.5, .interval = 3};
+  std::vector<std::string> names;
+  for (int k = 0; k < 60; ++k) {
+    names.push_back("many" + std::to_string(k));
+    EXPECT_EQ(door.ask(kStart, {.who = names.back(), .owner = "k_1"}, full), 3 * (k + 1));
+  }
+  EXPECT_EQ(door.ask(kStart, {.who = "one", .owner = "k_2"}, full), 6);
+  EXPECT_EQ(door.ask(kStart, {.who = "two", .owner = "k_2"}, full), 9);
+  const Line half_full{.places = 4, .waiting = 2, .first = 2.5, .interval = 3};
+  const auto then = kStart + seconds(6);  // the first of k_1 did not come
+  EXPECT_FALSE(door.ask(then, {.who = "one", .owner = "k_2"}, half_full));
+  EXPECT_TRUE(door.ask(then, {.who = "another", .owner = "k_1"}, half_full));
+  const Line nearly_empty{.places = 4, .waiting = 1, .first = 2.5, .interval = 3};
+  EXPECT_FALSE(door.ask(then, {.who = "third", .owner = "k_3"}, nearly_empty))
+      << "the promises of k_1 would fill the rest";
 }
 
 TEST(PromisedPlaces, GivesTheNextPlaceToWhoFoundNoneInTime) {
   PromisedPlaces door;
   const Line full{.places = 2, .waiting = 2, .first = 5, .interval = 5};
-  ASSERT_EQ(door.ask(kStart, "a", full), 5);
-  ASSERT_EQ(door.ask(kStart, "b", full), 10);
-  EXPECT_EQ(door.ask(kStart + seconds(5), "a", full), 5) << "ahead of b, who comes in 5 s, too";
+  ASSERT_EQ(door.ask(kStart, {.who = "a"}, full), 5);
+  ASSERT_EQ(door.ask(kStart, {.who = "b"}, full), 10);
+  EXPECT_EQ(door.ask(kStart + seconds(5), {.who = "a"}, full), 5)
+      << "ahead of b, who comes in 5 s, too";
 }
 
 TEST(PromisedPlaces, ForgetsThoseWhoDoNotComeBack) {
   PromisedPlaces door;
   const Line full{.places = 2, .waiting = 2, .first = 1, .interval = 1};
   for (int k = 0; k < 10'000; ++k)
-    EXPECT_LE(door.ask(kStart, std::to_string(k), full), 70) << "what is promised is bounded";
+    EXPECT_LE(door.ask(kStart, {.who = std::to_string(k)}, full), 70)
+        << "what is promised is bounded";
   const Line half_full{.places = 2, .waiting = 1, .first = 1, .interval = 1};
-  EXPECT_TRUE(door.ask(kStart + seconds(10), "newcomer", half_full));
-  EXPECT_FALSE(door.ask(kStart + seconds(100), "newcomer", half_full));
+  EXPECT_TRUE(door.ask(kStart + seconds(10), {.who = "newcomer"}, half_full));
+  EXPECT_FALSE(door.ask(kStart + seconds(100), {.who = "newcomer"}, half_full));
   const Line idle{.places = 2, .waiting = 0, .first = 0, .interval = 1};
-  EXPECT_FALSE(door.ask(kStart + seconds(10), "another newcomer", idle)) << "no worker is idle";
+  EXPECT_FALSE(door.ask(kStart + seconds(10), {.who = "another newcomer"}, idle))
+      << "no worker is idle";
 }
 
 TEST(LineBefore, ReckonsWithJobsThatRunLongerThanOthersDid) {
@@ -171,7 +196,7 @@ class Crowd {
     const Line line =
         line_before(setting_.places, std::ssize(queue_), setting_.workers, lengths_, ran());
     const auto now = kStart + milliseconds(ms_);
-    if (const std::optional<int> later = door_.ask(now, client.name, line)) {
+    if (const std::optional<int> later = door_.ask(now, {.who = client.name}, line)) {
       client.comes = ms_ + std::int64_t{1000} * *later;
       return;
     }

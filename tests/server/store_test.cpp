@@ -216,7 +216,7 @@ TEST_F(Store, FilesExpireFirstAndTheJobAfterAsLongAgain) {
   blobs.keep_upload("j_1", "j_1");
   store_->finish(*store_->take("", kLeaseMs), succeeded(1000));
   const auto file = blobs.path("j_1", kReportFile);
-  blobs.write("j_1", kReportFile, "{}");
+  blobs.write_unsealed("j_1", kReportFile, "{}");
 
   sweep(*store_, blobs, 10'999, std::chrono::seconds(10));
   EXPECT_TRUE(std::filesystem::exists(file));
@@ -233,7 +233,7 @@ TEST_F(Store, WhatACrashLeavesBehindIsSwept) {
   for (const char* job : {"j_known", "j_orphan"}) {
     blobs.begin_upload(job);
     blobs.keep_upload(job, job);
-    blobs.write(job, kDocumentFile, "v");
+    blobs.write_unsealed(job, kDocumentFile, "v");
   }
   blobs.begin_upload("j_upload");
   const auto part = blobs.path("j_known", "result.glb.part");

@@ -1,0 +1,65 @@
+// What the files of jobs are counted for, when they cannot be written or can be made again.
+#include "server/disk_room.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "server/blob_store.hpp"
+#include "temp_dir.hpp"
+#include "tests/api/error_of.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+/// A job with a document and a result.
+void add_sealed(BlobStore& blobs, const std::string& id) {
+  write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+  blobs.keep_upload("u", id);
+  blobs.write_unsealed(id, kReportFile, "{}");
+  blobs.seal(id);
+}
+
+class FilesOfJobs : public testing::Test {
+ protected:
+  TempDir dir_;
+};
+
+TEST_F(FilesOfJobs, ThatCanBeMadeAgainTakeNothingFromOthers) {
+  BlobStore blobs(dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0});
+  add_sealed(blobs, "j_1");
+  const std::int64_t before = blobs.room().used_bytes();
+  blobs.room().on_shortage({.evict =
+                                [] {
+                                  ADD_FAILURE() << "something was given up";
+                                  return false;
+                                },
+                            .bytes = [] { return 1000; }});
+  EXPECT_FALSE(blobs.try_keep("j_1", "picture", std::string(751, 'x')));
+  EXPECT_TRUE(blobs.try_keep("j_1", "picture", std::string(500, 'x')));
+  EXPECT_EQ(blobs.room().used_bytes(), before + 500);
+  const std::shared_ptr<const File> lent = blobs.lend(std::string(2000, 'y'));
+  EXPECT_EQ(lent->read(0, 3000), std::string(2000, 'y'));
+  EXPECT_EQ(blobs.room().used_bytes(), before + 500);
+  EXPECT_TRUE(std::filesystem::is_empty(dir_.path() / "incoming"));
+}
+
+TEST_F(FilesOfJobs, ThatCannotBeWrittenTakesNoRoom) {
+  BlobStore blobs(dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0});
+  add_sealed(blobs, "j_1");
+  const std::int64_t before = blobs.room().used_bytes();
+  std::filesystem::create_directories(blobs.path("j_1", "taken") / "by a folder");
+  EXPECT_EQ(error_of([&] { blobs.write_unsealed("j_1", "taken", "1234"); }).code(),
+            ErrorCode::storage_failed);
+  EXPECT_EQ(error_of([&] { blobs.write_unsealed("j_gone", "file", "1234"); }).code(),
+            ErrorCode::storage_failed);
+  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.try_keep("j_gone", "file", "1234")); }).code(),
+            ErrorCode::storage_failed);
+  EXPECT_EQ(blobs.room().used_bytes(), before);
+  for (const auto& entry : std::filesystem::directory_iterator(blobs.path("j_1", "")))
+    EXPECT_FALSE(is_unfinished(entry.path())) << entry.path();
+}
+
+}  // namespace
+}  // namespace unwrapd::server
