@@ -236,10 +236,14 @@ std::int64_t Connection::fail(ErrorCode code, const std::string& message) {
 /// slowly: a byte now and then must not hold a thread. An event stream is not slow while there are
 /// no events.
 short Connection::wait_to_send(short events) {
+  const bool crowded = limits_.senders && ++limits_.senders->waiting > limits_.senders->many;
+  const auto leave = [](Senders* senders) { --senders->waiting; };
+  const std::unique_ptr<Senders, decltype(leave)> counted(limits_.senders.get());
+  const milliseconds grace = crowded ? limits_.crowded : limits_.rate_grace;
   const double expected = kept_waiting_.count() * static_cast<double>(limits_.min_bytes_per_second);
-  if (kept_waiting_ > limits_.rate_grace && static_cast<double>(sent_bytes_) < expected) return 0;
+  if (kept_waiting_ > grace && static_cast<double>(sent_bytes_) < expected) return 0;
   const Clock::time_point began = Clock::now();
-  const short ready = wait_for(socket(), events, -1, limits_.write);
+  const short ready = wait_for(socket(), events, -1, crowded ? limits_.crowded : limits_.write);
   kept_waiting_ += Clock::now() - began;
   return ready;
 }

@@ -4,8 +4,10 @@
 // body meets its end and its limit, not chunk sizes. The body is counted here,
 // so that chunked bodies keep the limit as well.
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +18,13 @@
 
 namespace unwrapd::server {
 
+/// The threads that wait for clients to take what they are sent. Clients that never read must not
+/// hold all of them: where many wait, none waits long.
+struct Senders {
+  int many = 0;
+  std::atomic<int> waiting = 0;
+};
+
 struct ConnectionLimits {
   std::int64_t max_body_bytes = 0;
   std::chrono::milliseconds idle{15'000};    ///< between two requests
@@ -24,6 +33,8 @@ struct ConnectionLimits {
   std::chrono::milliseconds write{20'000};   ///< for the client to take more bytes
   std::int64_t min_bytes_per_second = 1024;  ///< of a body, and of an answer while we wait for it
   std::chrono::milliseconds rate_grace{20'000};  ///< until that counts
+  std::chrono::milliseconds crowded{500};  ///< instead of write and rate_grace where many wait
+  std::shared_ptr<Senders> senders = {};   ///< of one server; none: never many
 };
 
 class Connection {
