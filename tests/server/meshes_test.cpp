@@ -186,7 +186,7 @@ TEST_F(StoredMeshes, ThatAreNotThereAreNamedByAPointer) {
 TEST_F(StoredMeshes, ShareTheirBytesWithTheirJobsAndStayAsLongAsThey) {
   config_.keep_seconds = 2;
   start();
-  const std::string mesh = grid_obj(40);
+  const std::string mesh = grid_obj(120);
   put(mesh);
   const std::string endless =
       api::Json::parse(client()
