@@ -111,7 +111,9 @@ TEST_F(Smuggling, AHundredMegabytesAreReceivedInAFewOfMemory) {
   config_.workers = 1;
   start();
   const std::string busy = submit_endless();  // so that nobody reads the upload
-  await_state(busy, "running");
+  await([&] {                                 // and it has what memory it takes
+    return job(busy).value(api::Json::json_pointer("/progress/iteration"), 0) > 0;
+  });
   const std::size_t size = 100'000'000;
   const std::string piece = "# " + std::string(65'533, '.') + "\n";
   std::ofstream("/proc/self/clear_refs") << "5";  // the high-water mark begins anew
