@@ -183,7 +183,7 @@ test("scopes, rates and quotas are kept, each by its code", async (t) => {
     rare: add("--requests-per-minute", "2"),
     one: add("--max-jobs", "1"),
     small: add("--max-bytes", "9000"),
-    drawing: add("--max-bytes", "40000"), // three jobs without pictures
+    drawing: add("--max-bytes", "40000"), // two jobs, and a picture of 21 kB
   };
   const server = await Server.start(data, "--require-keys");
   const as = (name) => new Holder(server, keys[name]);
@@ -202,9 +202,14 @@ test("scopes, rates and quotas are kept, each by its code", async (t) => {
   await as("small").fetch(`/v1/jobs/${kept}`, { method: "DELETE" });
   assert.equal((await as("small").post(QUICK, 5)).status, 202);
   const drawn = await as("drawing").done(QUICK, 5);
-  assert.equal((await as("drawing").post(QUICK, 5)).status, 202);
-  await as("drawing").fetch(`/v1/jobs/${drawn}/preview.png?size=256`); // kept with the job
-  await refused(await as("drawing").post(QUICK, 5), 507, "quota_exceeded");
+  await as("drawing").done(QUICK, 5);
+  for (const size of [128, 64]) { // the first is kept with the job, and then there is no room
+    const answer = await as("drawing").fetch(`/v1/jobs/${drawn}/preview.png?size=${size}`);
+    assert.equal(answer.status, 200);
+  }
+  const pictures = readdirSync(join(data, "blobs", drawn)).filter((file) => file.includes("png"));
+  assert.deepEqual(pictures, ["uv.bin.preview.128.png"]);
+  await refused(await as("drawing").post(QUICK, 12), 507, "quota_exceeded");
   await server.end("SIGTERM");
 });
 
