@@ -83,8 +83,13 @@ UploadSize Submissions::size_of(const Request& request) {
   std::optional<JobRecord> known;
   if (!name.empty()) known = store_.find_request(request.caller.owner, name);
   const bool tells = body_kind(request.header("Content-Type")) == BodyKind::asset || !known;
-  return {.known_bytes = known ? known->input.bytes : 0,
-          .declared_bytes = tells ? request.declared_bytes : 0};
+  std::error_code none;  // short options are no file
+  std::int64_t known_bytes = known ? known->input.bytes : 0;
+  if (known) {
+    const auto options = std::filesystem::file_size(blobs_.path(known->id, kOptionsFile), none);
+    if (!none) known_bytes += static_cast<std::int64_t>(options);
+  }
+  return {.known_bytes = known_bytes, .declared_bytes = tells ? request.declared_bytes : 0};
 }
 
 /// What the head of the request says of it.

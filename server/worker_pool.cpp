@@ -102,7 +102,13 @@ std::string WorkerPool::run(const RunningJob& job, Executor& executor) {
   const bool suspected = job.record.crashes > 0 && isolation_.possible;
   if (!isolation_.on && !suspected)
     return duties_.run(task, loaded.input(), output, limits_, executor);
-  return run_job_isolated(task, loaded.input(), output, limits_, isolation_);
+  try {
+    return run_job_isolated(task, loaded.input(), output, limits_, isolation_);
+  } catch (const Error& error) {
+    const bool asked = error.code() != ErrorCode::cancelled || job.stop.stop_requested();
+    if (!asked) throw WorkerCrashed("somebody else told it to stop");
+    throw;
+  }
 }
 
 /// Again after a crash, which may have been an accident: the memory of the machine, an operator.
