@@ -1,6 +1,8 @@
 #include "server/connection.hpp"
 
+#include <linux/sockios.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -36,6 +38,12 @@ short wait_for(int descriptor, short events, int stop, milliseconds patience) {
   }
 }
 
+/// Bytes that the kernel has taken and the client has not.
+int unsent_bytes(int socket) {
+  int bytes = 0;
+  return ::ioctl(socket, SIOCOUTQ, &bytes) == 0 ? bytes : 0;
+}
+
 /// Nothing, or what follows a semicolon, without the control characters that
 /// others may take for the end of the line.
 bool is_chunk_extension(std::string_view text) {
@@ -65,9 +73,10 @@ bool Connection::has_next() const { return buffer_.find("\r\n\r\n", used_) != st
 /// Raw bytes, be they TLS or not: nobody reads them.
 void Connection::linger() const {
   client_.transport->end();
+  const Waiting among(limits_.crowd.get());
   const Clock::time_point until = Clock::now() + kLingerTime;
   std::array<char, kReadBytes> waste;
-  while (!body_done_ && Clock::now() < until) {
+  while (!body_done_ && !among.many() && Clock::now() < until) {
     if (wait_for(socket(), POLLIN, stop_, kLingerSilence) == 0) return;
     if (::recv(socket(), waste.data(), waste.size(), 0) <= 0) return;
   }
@@ -219,10 +228,15 @@ bool Connection::fill_body() {
   buffer_.erase(0, used_);
   used_ = 0;
   head_end_ = 0;
+  const Waiting among(limits_.crowd.get());
+  const bool many = among.many();
   const std::chrono::duration<double> elapsed = Clock::now() - body_began_;
-  const double expected = elapsed.count() * static_cast<double>(limits_.min_bytes_per_second);
-  const bool slow = elapsed > limits_.rate_grace && static_cast<double>(body_bytes_) < expected;
-  if (!slow && fill(limits_.read)) return true;
+  const double expected =
+      elapsed.count() *
+      static_cast<double>(many ? limits_.crowded_bytes_per_second : limits_.min_bytes_per_second);
+  const bool slow = elapsed > (many ? limits_.crowded : limits_.rate_grace) &&
+                    static_cast<double>(body_bytes_) < expected;
+  if (!slow && fill(many ? limits_.crowded : limits_.read)) return true;
   fail(ErrorCode::request_timeout, "The body did not arrive in time; send it faster.");
   return false;
 }
@@ -236,14 +250,18 @@ std::int64_t Connection::fail(ErrorCode code, const std::string& message) {
 /// slowly: a byte now and then must not hold a thread. An event stream is not slow while there are
 /// no events.
 short Connection::wait_to_send(short events) {
-  const bool crowded = limits_.senders && ++limits_.senders->waiting > limits_.senders->many;
-  const auto leave = [](Senders* senders) { --senders->waiting; };
-  const std::unique_ptr<Senders, decltype(leave)> counted(limits_.senders.get());
-  const milliseconds grace = crowded ? limits_.crowded : limits_.rate_grace;
   const double expected = kept_waiting_.count() * static_cast<double>(limits_.min_bytes_per_second);
-  if (kept_waiting_ > grace && static_cast<double>(sent_bytes_) < expected) return 0;
+  if (kept_waiting_ > limits_.rate_grace && static_cast<double>(sent_bytes_) < expected) return 0;
+  const Waiting among(limits_.crowd.get());
   const Clock::time_point began = Clock::now();
-  const short ready = wait_for(socket(), events, -1, crowded ? limits_.crowded : limits_.write);
+  int unsent = unsent_bytes(socket());
+  short ready = 0;
+  while (ready == 0 && Clock::now() - began < limits_.write) {
+    ready = wait_for(socket(), events, -1, std::min(limits_.crowded, limits_.write));
+    const int left = unsent_bytes(socket());
+    if (ready == 0 && among.many() && left >= unsent) break;  // it takes nothing at all
+    unsent = left;
+  }
   kept_waiting_ += Clock::now() - began;
   return ready;
 }

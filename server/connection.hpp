@@ -4,7 +4,6 @@
 // body meets its end and its limit, not chunk sizes. The body is counted here,
 // so that chunked bodies keep the limit as well.
 
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -13,17 +12,11 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "server/crowd.hpp"
 #include "server/http_head.hpp"
 #include "server/transport.hpp"
 
 namespace unwrapd::server {
-
-/// The threads that wait for clients to take what they are sent. Clients that never read must not
-/// hold all of them: where many wait, none waits long.
-struct Senders {
-  int many = 0;
-  std::atomic<int> waiting = 0;
-};
 
 struct ConnectionLimits {
   std::int64_t max_body_bytes = 0;
@@ -33,8 +26,9 @@ struct ConnectionLimits {
   std::chrono::milliseconds write{20'000};   ///< for the client to take more bytes
   std::int64_t min_bytes_per_second = 1024;  ///< of a body, and of an answer while we wait for it
   std::chrono::milliseconds rate_grace{20'000};  ///< until that counts
-  std::chrono::milliseconds crowded{500};  ///< instead of write and rate_grace where many wait
-  std::shared_ptr<Senders> senders = {};   ///< of one server; none: never many
+  std::shared_ptr<Crowd> crowd = {};             ///< of one server; none: never many
+  std::chrono::milliseconds crowded{2'000};  ///< instead of read, write and rate_grace in a crowd
+  std::int64_t crowded_bytes_per_second = 16'384;  ///< of a body in a crowd
 };
 
 class Connection {

@@ -49,17 +49,17 @@ std::optional<TlsContext> tls_of(const HttpConfig& config) {
   return std::optional<TlsContext>(std::in_place, config.tls_certificate, config.tls_key);
 }
 
-/// A quarter of the threads may wait long for clients to read.
-HttpConfig with_senders(HttpConfig config) {
-  config.limits.senders = std::make_shared<Senders>();
-  config.limits.senders->many = config.max_requests / 4;
+/// Half of the threads may wait for clients that are slow.
+HttpConfig with_crowd(HttpConfig config) {
+  config.limits.crowd = std::make_shared<Crowd>();
+  config.limits.crowd->many = config.max_requests / 2;
   return config;
 }
 
 }  // namespace
 
 HttpServer::HttpServer(const HttpConfig& config, HttpUses uses, const Log& log)
-    : config_(with_senders(config)),
+    : config_(with_crowd(config)),
       uses_(std::move(uses)),
       log_(log),
       tls_(tls_of(config)),

@@ -5,9 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
-#include <list>
 #include <random>
-#include <thread>
 
 #include "raw_client.hpp"
 
@@ -180,21 +178,6 @@ TEST_F(Edge, OneConnectionCarriesManyRequests) {
   const std::size_t first = answers.find("HTTP/1.1 200");
   const std::size_t second = answers.find("HTTP/1.1 202", first + 1);
   EXPECT_NE(answers.find("HTTP/1.1 200", second + 1), std::string::npos) << answers;
-}
-
-TEST_F(Edge, ClientsThatNeverReadDoNotHoldAllThreads) {
-  config_.edge.max_requests = 4;
-  start();
-  std::string many;
-  for (int k = 0; k < 300; ++k) many += "GET /openapi.json HTTP/1.1\r\nHost: x\r\n\r\n";
-  std::list<RawClient> deaf;
-  for (int k = 0; k < 8; ++k) deaf.emplace_back(service_->port()).send(many);
-  for (int k = 0; k < 10; ++k) {
-    httplib::Client other = client();
-    other.set_read_timeout(std::chrono::seconds(8));  // less than one of them is waited for
-    EXPECT_TRUE(other.Get("/healthz")) << k;
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
 }
 
 TEST_F(Edge, KnownPathsTellTheirMethodsAndUnknownOnesAreNotFound) {

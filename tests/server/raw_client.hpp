@@ -57,6 +57,11 @@ class RawClient {
     received_.erase(0, until.size());
     return until;
   }
+  /// What has come, up to so many bytes; 0 when the server has closed.
+  std::size_t receive(char* data, std::size_t size) const {
+    const ssize_t got = ::recv(socket_, data, size, 0);
+    return got > 0 ? static_cast<std::size_t>(got) : 0;
+  }
   /// Everything until the server closes.
   std::string read_to_end() const {
     std::string all;
