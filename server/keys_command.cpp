@@ -2,9 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cstdio>
-#include <vector>
 
 #include "server/clock.hpp"
 #include "server/key_store.hpp"
@@ -55,10 +53,9 @@ void remove_key(const Asked& asked) {
 }
 
 void tell_webhook_secret(const Asked& asked) {
-  const std::vector<ApiKey> keys = opened(asked).all();
-  const bool known = asked.id.empty() || asked.id == kGivenKeyId ||
-                     std::ranges::find(keys, asked.id, &ApiKey::id) != keys.end();
-  if (!known) unknown_key(asked.id);
+  KeyStore keys = opened(asked);
+  const bool is_stored = !asked.id.empty() && asked.id != kGivenKeyId;
+  if (is_stored && !keys.with_id(asked.id)) unknown_key(asked.id);
   const std::string secret = secret_in(std::filesystem::path(asked.data) / kSecretFile);
   std::printf("%s\n", webhook_secret(secret, asked.id).c_str());
 }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <thread>
 
@@ -15,7 +16,24 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-class Shutdown : public RunningServer {};
+class Shutdown : public RunningServer {
+ protected:
+  /// What a reader of a job's events, there before `act` begins, has seen when they end.
+  std::string events_during(const std::string& id, const std::function<void()>& act) {
+    std::string seen;
+    std::atomic<bool> is_reading = false;
+    std::jthread reader([&, client = std::make_shared<httplib::Client>(client())] {
+      client->Get("/v1/jobs/" + id + "/events", [&](const char* data, std::size_t size) {
+        seen.append(data, size);
+        return is_reading = true;
+      });
+    });
+    await([&] { return is_reading.load(); });
+    act();
+    reader.join();
+    return seen;
+  }
+};
 
 TEST_F(Shutdown, DrainingRefusesJobsAndFinishesThoseThatRun) {
   config_.drain_seconds = 100;
@@ -42,17 +60,7 @@ TEST_F(Shutdown, AJobThatIsNotDoneInTimeRunsAgainAtTheNextStart) {
   const std::string running = submit_endless();
   const std::string waiting = submit();
   await_state(running, "running");
-  std::string seen;
-  std::atomic<bool> is_reading = false;
-  std::jthread reader([&, client = std::make_shared<httplib::Client>(client())] {
-    client->Get("/v1/jobs/" + waiting + "/events", [&](const char* data, std::size_t size) {
-      seen.append(data, size);
-      return is_reading = true;
-    });
-  });
-  await([&] { return is_reading.load(); });
-  restart();
-  reader.join();
+  const std::string seen = events_during(waiting, [&] { restart(); });
   EXPECT_THAT(seen, Not(HasSubstr("succeeded")));
   await([&] { return job(running).value("attempt", 0) == 2; });
   EXPECT_EQ(state(running), "running");
@@ -66,17 +74,7 @@ TEST_F(Shutdown, AnInterruptedJobTellsItsReadersThatItWaits) {
   start();
   const std::string id = submit_endless();
   await_state(id, "running");
-  std::string seen;
-  std::atomic<bool> is_reading = false;
-  std::jthread reader([&, client = std::make_shared<httplib::Client>(client())] {
-    client->Get("/v1/jobs/" + id + "/events", [&](const char* data, std::size_t size) {
-      seen.append(data, size);
-      return is_reading = true;
-    });
-  });
-  await([&] { return is_reading.load(); });
-  service_->drain();
-  reader.join();
+  const std::string seen = events_during(id, [&] { service_->drain(); });
   const std::size_t started = seen.find("event: started");
   EXPECT_THAT(seen.substr(std::min(started, seen.size())), HasSubstr("event: queued"));
 }
