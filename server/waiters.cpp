@@ -6,10 +6,11 @@ namespace unwrapd::server {
 
 std::shared_ptr<void> Waiters::let_in(const std::string& owner) {
   const std::lock_guard lock(mutex_);
-  const int most_of_one = owner.empty() ? most_ : std::max(1, most_ / 2);
   const auto found = of_owner_.find(owner);
   const int his = found == of_owner_.end() ? 0 : found->second;
-  if (count_ >= most_ || his >= most_of_one) return nullptr;
+  const int left_by_others = most_ - (count_ - his);
+  const int most_of_one = owner.empty() ? left_by_others : (left_by_others + 1) / 2;
+  if (his >= most_of_one) return nullptr;
   ++count_;
   ++of_owner_[owner];
   return {this, [owner](Waiters* waiters) { waiters->leave(owner); }};

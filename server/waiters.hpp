@@ -1,7 +1,7 @@
 #pragma once
 // Who may hold open what there is little of: a request until a job ends (each holds a thread of the
-// server, so there are fewer of them than threads), an event stream. An API key has no more than
-// half of the places.
+// server, so there are fewer of them than threads), an event stream. An API key takes
+// no more than half of what the others leave it, so that no few of them take all.
 
 #include <map>
 #include <memory>

@@ -70,6 +70,13 @@ bool is_host_letter(char letter) {
          letter == '-' || letter == ':';
 }
 
+/// In numbers, in any of the notations that resolving it knows: 127.1 and 0x7f000001, too.
+bool is_address(const std::string& host) {
+  in_addr v4{};
+  std::array<std::uint8_t, 16> v6{};
+  return inet_aton(host.c_str(), &v4) == 1 || inet_pton(AF_INET6, host.c_str(), v6.data()) == 1;
+}
+
 bool is_printable(char letter) { return letter > ' ' && letter < '\x7f'; }
 
 /// Takes the scheme off a URL and says whether it is https.
@@ -138,6 +145,8 @@ WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config) {
     refuse("This server calls no webhooks at " + url.host +
            "; its operator can allow the host by --webhook-hosts.");
   }
+  if (!config.allow_private && is_address(url.host) && !is_public_address(url.host))
+    refuse("The webhook's address is not a public one; give another.");
   return url;
 }
 

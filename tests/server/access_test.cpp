@@ -229,12 +229,24 @@ TEST(Webhook, AddressesAreTakenApart) {
   EXPECT_EQ(url.target, "/a/b?c=d");
   EXPECT_EQ(parse_webhook("http://a.b", any).port, 80);
   EXPECT_EQ(parse_webhook("http://a.b?x", any).target, "/?x");
-  EXPECT_EQ(parse_webhook("http://[::1]:8080/", any).host, "::1");
+  EXPECT_EQ(parse_webhook("http://[2606:4700:4700::1111]:8080/", any).host, "2606:4700:4700::1111");
   for (const char* text : {"", "ftp://a.b/", "https://", "https://user@a.b/", "https://a.b:0/",
                            "https://a.b:99999/", "https://a.b:/", "https://a b/", "https://a.b/#x",
                            "https://a.b/\r\nX: y", "//a.b/", "https://a.b\\c/"})
     EXPECT_EQ(error_of([&] { parse_webhook(text, any); }).code(), ErrorCode::webhook_refused)
         << text;
+}
+
+TEST(Webhook, AddressesOfPrivateNetworksAreRefusedBeforeAJobIsTaken) {
+  WebhookConfig any{.allowed_hosts = {"*"}};
+  for (const std::string host : {"10.1.2.3", "127.0.0.1", "127.1", "0x7f000001", "2130706433",
+                                 "[::1]", "[fe80::1]", "[::ffff:10.1.2.3]", "169.254.169.254"}) {
+    const std::string url = "http://" + host + ":81/x";
+    any.allow_private = false;
+    EXPECT_EQ(error_of([&] { parse_webhook(url, any); }).code(), ErrorCode::webhook_refused) << url;
+    any.allow_private = true;
+    EXPECT_NO_THROW(parse_webhook(url, any)) << url;
+  }
 }
 
 TEST(Webhook, GoOnlyToHostsThatAreAllowed) {

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <thread>
+#include <vector>
 
 #include "running_server.hpp"
 
@@ -25,6 +26,24 @@ TEST(Waiters, AreSoManyAndOfOneKeyHalfAsMany) {
   EXPECT_NE(three, nullptr);
   EXPECT_NE(four, nullptr);
   EXPECT_EQ(waiters.let_in("c"), nullptr) << "all places are taken";
+}
+
+TEST(Waiters, OfFewKeysDoNotTakeAll) {
+  Waiters waiters(16);
+  std::vector<std::shared_ptr<void>> held;
+  const auto take_all = [&](const std::string& owner) {
+    int got = 0;
+    while (auto place = waiters.let_in(owner)) {
+      held.push_back(std::move(place));
+      ++got;
+    }
+    return got;
+  };
+  EXPECT_EQ(take_all("a"), 8);
+  EXPECT_EQ(take_all("b"), 4);
+  EXPECT_EQ(take_all("c"), 2);
+  EXPECT_EQ(take_all("d"), 1);
+  EXPECT_NE(waiters.let_in("e"), nullptr);
 }
 
 TEST(Waiters, WithoutKeysAreAllAlike) {
