@@ -92,8 +92,8 @@ ConfigGroup working() {
                   "job alone"},
                  &Config::isolate),
           number({"drain-seconds", "N",
-                  "How long running jobs may go on after SIGTERM; jobs that do not stop and last "
-                  "answers may take 20 s more"},
+                  "How long running jobs may go on after SIGTERM, or until a second one; jobs that "
+                  "do not stop and last answers may take 20 s more"},
                  {0, kMaxCount}, &Config::drain_seconds)}};
 }
 

@@ -1,7 +1,6 @@
 #include "server/feed_output.hpp"
 
 #include "api/events.hpp"
-#include "server/result_store.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -15,6 +14,11 @@ bool is_news(const StageEvent& event, const StageEvent& told) {
 }
 
 }  // namespace
+
+FeedOutput::FeedOutput(const RunningJob& job, BlobStore& blobs, ResultClaim room)
+    : job_(job), blobs_(blobs), room_(room) {
+  room_.claim.give_up();
+}
 
 void FeedOutput::stage(const StageEvent& event) {
   job_.feed->set_progress({.stage = event.stage,
@@ -38,10 +42,13 @@ void FeedOutput::iteration(const IterationEvent& event, double elapsed_ms) {
 }
 
 void FeedOutput::result(std::string_view format, std::string_view bytes) {
-  write_result(blobs_, job_.record.id, format, bytes);
+  keep(result_file(format), bytes);
 }
 
-void FeedOutput::file(std::string_view name, std::string_view bytes) {
+void FeedOutput::file(std::string_view name, std::string_view bytes) { keep(name, bytes); }
+
+void FeedOutput::keep(std::string_view name, std::string_view bytes) {
+  room_.claim.add(static_cast<std::int64_t>(bytes.size()), room_.most_bytes(job_.record.owner));
   blobs_.write_unsealed(job_.record.id, name, bytes);
 }
 

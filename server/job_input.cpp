@@ -17,8 +17,8 @@ constexpr std::string_view kSentOptionsFile = "options.sent";  // until they are
 /// A file that grows in pieces worth a system call each.
 class GrowingFile {
  public:
-  GrowingFile(const std::filesystem::path& path, const TakeRoom& take)
-      : file_(File::create(path)), take_(take) {}
+  GrowingFile(const std::filesystem::path& path, const TakeRoom& room)
+      : file_(File::create(path)), room_(room) {}
 
   void append(std::string_view bytes) {
     pending_.append(bytes);
@@ -32,13 +32,13 @@ class GrowingFile {
 
  private:
   void flush() {
-    take_(static_cast<std::int64_t>(pending_.size()));
+    room_.take(static_cast<std::int64_t>(pending_.size()));
     file_.append(pending_);
     pending_.clear();
   }
 
   File file_;
-  const TakeRoom& take_;
+  const TakeRoom& room_;
   std::string pending_;
 };
 
@@ -82,7 +82,7 @@ class PartWriter {
  private:
   void start_options() {
     if (upload_.options) malformed("There are two parts named \"options\"; send one.");
-    upload_.options = std::make_unique<SpooledText>(folder_.path / kSentOptionsFile);
+    upload_.options = std::make_unique<SpooledText>(folder_.path / kSentOptionsFile, folder_.room);
   }
 
   void append_option_text(std::string_view bytes) {
@@ -110,7 +110,7 @@ class PartWriter {
 
   /// The next bytes go to this file; its digest will be put there.
   void open(std::string_view file, std::string& digest) {
-    file_.emplace(folder_.path / file, folder_.take);
+    file_.emplace(folder_.path / file, folder_.room);
     hash_.emplace();
     digest_ = &digest;
   }
@@ -137,7 +137,7 @@ class PartWriter {
 Upload receive_asset(BodyReader& body, const UploadFolder& folder) {
   Upload upload;
   Sha256 hash;
-  GrowingFile file(folder.path / kDocumentFile, folder.take);
+  GrowingFile file(folder.path / kDocumentFile, folder.room);
   body.read([&](std::string_view bytes) {
     hash.add(bytes);
     upload.input.bytes += static_cast<std::int64_t>(bytes.size());

@@ -14,6 +14,7 @@
 #include "server/identity.hpp"
 #include "server/job_record.hpp"
 #include "server/spooled_text.hpp"
+#include "server/take_room.hpp"
 
 namespace unwrapd::server {
 
@@ -23,13 +24,10 @@ struct Upload {
   std::unique_ptr<SpooledText> options;  ///< JSON text of the part `options`, where there is one
 };
 
-/// Told of bytes before they are written; throws Error{storage_full} when there is no room.
-using TakeRoom = std::function<void(std::int64_t bytes)>;
-
 /// Where an upload goes.
 struct UploadFolder {
   std::filesystem::path path;
-  TakeRoom take = [](std::int64_t) {};
+  TakeRoom room = {};
 };
 
 /// The whole body is the document. Throws what BodyReader throws, and unknown_format when it is

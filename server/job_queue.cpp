@@ -1,10 +1,9 @@
 #include "server/job_queue.hpp"
 
-#include <algorithm>
-
 #include "api/error_table.hpp"
 #include "server/clock.hpp"
 #include "server/job_rows.hpp"
+#include "server/question.hpp"
 #include "server/queue_errors.hpp"
 #include "server/trace.hpp"
 
@@ -15,7 +14,6 @@ using api::JobState;
 
 constexpr int kMaxCrashes = 3;
 constexpr int kMaxAttemptsWhenFull = 20;
-constexpr std::chrono::seconds kLongestPauseWhenFull{60};
 
 }  // namespace
 
@@ -68,10 +66,7 @@ void JobQueue::wait_again(const JobRecord& job) {
 
 void JobQueue::check_open() const {
   if (closed_) throw server::draining();
-  const auto now = std::chrono::steady_clock::now();
-  if (now >= paused_until_) return;
-  const auto left = std::chrono::ceil<std::chrono::seconds>(paused_until_ - now);
-  throw no_room(static_cast<int>(left.count()));
+  if (const int seconds = pause_.seconds_left(); seconds > 0) throw no_room(seconds);
 }
 
 std::vector<AtWork> JobQueue::at_work() const {
@@ -97,10 +92,8 @@ std::optional<JobRecord> JobQueue::same_name(const JobRecord& job) {
   if (!known) known = store_.find(job.id);
   if (!known) return std::nullopt;
   if (known->owner != job.owner) throw unknown_job();
-  const bool same =
-      known->asked.empty() ? known->input.sha256 == job.input.sha256 : known->asked == job.asked;
-  if (same) return known;
-  throw another_question();
+  if (!is_same_question(*known, job)) throw another_question();
+  return known;
 }
 
 JobRecord JobQueue::submit(Submission submission) {
@@ -134,19 +127,20 @@ void JobQueue::enqueue(JobRecord& job, const Submission& submission, const Answe
   if (!answer || !answer_from_store(job, *answer)) wait_again(job);
 }
 
-/// If its files are whole; they are then this job's, too. Not under mutex_: it reads all of them.
-JobQueue::Answer JobQueue::find_answer(const JobRecord& job) {
+/// If its files are whole: they become this job's, too, and count as such. Reads all of them.
+JobQueue::Answer JobQueue::find_answer(JobRecord& job) {
   Answer same = store_.find_same(job.owner, job.content_key);
   if (same && !blobs_.adopt(job.id, same->id)) same.reset();
+  if (same) job.stored_bytes = blobs_.bytes(job.id);
   return same;
 }
 
 bool JobQueue::answer_from_store(const JobRecord& job, const JobRecord& answer) {
   events_.open(job.id, job.attempt);
   try {
-    end_job(job, {.result_format = answer.result_format,
-                  .problem = {},
-                  .stored_bytes = blobs_.bytes(job.id)});
+    end_job(
+        job,
+        {.result_format = answer.result_format, .problem = {}, .stored_bytes = job.stored_bytes});
     return true;
   } catch (const Error&) {  // the job is stored and waits, as it would without the answer
     return false;
@@ -158,8 +152,8 @@ bool JobQueue::await_turn(std::unique_lock<std::mutex>& lock) {
   while (!closed_) {
     if (share_.waiting() == 0) {
       changed_.wait(lock);
-    } else if (std::chrono::steady_clock::now() < paused_until_) {
-      changed_.wait_until(lock, paused_until_);
+    } else if (pause_.seconds_left() > 0) {
+      changed_.wait_until(lock, pause_.until());
     } else {
       return true;
     }
@@ -195,10 +189,9 @@ void JobQueue::beat() {
 bool JobQueue::wait_for_room(const RunningJob& job, const JobOutcome& outcome) {
   const bool full = outcome.state == JobState::failed &&
                     api::error_from_problem(outcome.problem).code() == ErrorCode::storage_full;
-  full_in_a_row_ = full ? full_in_a_row_ + 1 : 0;
-  if (!full || closed_ || job.record.attempt >= kMaxAttemptsWhenFull) return false;
-  const std::chrono::seconds pause(std::int64_t{1} << std::min(full_in_a_row_ - 1, 6));
-  paused_until_ = std::chrono::steady_clock::now() + std::min(pause, kLongestPauseWhenFull);
+  const bool again = full && !closed_ && job.record.attempt < kMaxAttemptsWhenFull;
+  pause_.note(again);
+  if (!again) return false;
   log_.warning("the disk is full, the job waits", {{"job", job.record.id}});
   store_.requeue(job.record.id, false);
   wait_again(job.record);
@@ -215,7 +208,8 @@ JobOutcome JobQueue::sealed(const std::string& id, JobOutcome outcome) {
   }
 }
 
-void JobQueue::finish(const RunningJob& job, JobOutcome outcome) {
+void JobQueue::finish(const RunningJob& job, JobOutcome outcome,
+                      const std::function<void()>& stored) {
   if (outcome.state == JobState::succeeded) outcome = sealed(job.record.id, std::move(outcome));
   const std::lock_guard lock(mutex_);
   running_.erase(job.record.id);
@@ -227,10 +221,11 @@ void JobQueue::finish(const RunningJob& job, JobOutcome outcome) {
     return;
   }
   if (wait_for_room(job, outcome)) return;
-  end_job(job.record, std::move(outcome));
+  end_job(job.record, std::move(outcome), stored);
 }
 
-void JobQueue::end_job(const JobRecord& job, JobOutcome outcome) {
+void JobQueue::end_job(const JobRecord& job, JobOutcome outcome,
+                       const std::function<void()>& stored) {
   const std::shared_ptr<JobFeed> feed = events_.find(job.id);
   outcome.last_event = feed->next_seq();
   outcome.finished_ms = now_ms();
@@ -239,6 +234,7 @@ void JobQueue::end_job(const JobRecord& job, JobOutcome outcome) {
   record.problem = outcome.problem;
   if (!job.webhook.empty()) outcome.delivery = text_of(api::to_json(to_job(record)));
   if (!store_.finish(job, outcome)) return;
+  if (stored) stored();
   feed->publish([&](std::int64_t seq) { return api::final_event(seq, to_job(record)); });
   events_.retire(job.id);
   if (outcome.state != JobState::succeeded) blobs_.remove(job.id);
@@ -280,11 +276,18 @@ void JobQueue::close() {
   changed_.notify_all();
 }
 
+void JobQueue::hurry() {
+  const std::lock_guard lock(mutex_);
+  hurried_ = true;
+  changed_.notify_all();
+}
+
 bool JobQueue::drain(std::chrono::seconds patience) {
   close();
   std::unique_lock lock(mutex_);
   const auto idle = [&] { return running_.empty(); };
-  if (changed_.wait_for(lock, patience, idle)) return true;
+  changed_.wait_for(lock, patience, [&] { return idle() || hurried_; });
+  if (idle()) return true;
   for (const auto& [id, job] : running_) {
     log_.warning("job interrupted by the shutdown, queued again", {{"job", id}});
     job->request_stop(StopCause::draining);

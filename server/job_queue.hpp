@@ -10,6 +10,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -22,6 +23,7 @@
 #include "core/error.hpp"
 #include "server/blob_store.hpp"
 #include "server/caller.hpp"
+#include "server/disk_pause.hpp"
 #include "server/event_feed.hpp"
 #include "server/fair_share.hpp"
 #include "server/job_store.hpp"
@@ -92,8 +94,9 @@ class JobQueue {
   JobRecord submit(Submission submission);
   /// Waits for the job whose turn it is; nullptr when the queue is closed.
   std::shared_ptr<RunningJob> take();
-  /// Ends what take() returned. Its files are complete when it has succeeded.
-  void finish(const RunningJob& job, JobOutcome outcome);
+  /// Ends what take() returned. Its files are complete when it has succeeded. stored: called when
+  /// the store has its end, and before anybody is told of it.
+  void finish(const RunningJob& job, JobOutcome outcome, const std::function<void()>& stored = {});
 
   /// Prolongs the leases of the jobs at work, and queues those whose lease has ended.
   void beat();
@@ -106,6 +109,8 @@ class JobQueue {
   /// Waits for the running jobs; those that are not done by then go back to the queue. False when
   /// some have not even stopped: then they are in the queue, too, but their threads do not end.
   bool drain(std::chrono::seconds patience);
+  /// Takes all patience from drain().
+  void hurry();
   [[nodiscard]] bool draining() const { return closed_; }
 
  private:
@@ -113,7 +118,7 @@ class JobQueue {
   [[nodiscard]] std::vector<AtWork> at_work() const;
   [[nodiscard]] std::optional<JobRecord> same_name(const JobRecord& job);
   using Answer = std::optional<JobRecord>;  // the job that has had the same question
-  [[nodiscard]] Answer find_answer(const JobRecord& job);
+  [[nodiscard]] Answer find_answer(JobRecord& job);
   void enqueue(JobRecord& job, const Submission& submission, const Answer& answer);
   [[nodiscard]] bool answer_from_store(const JobRecord& job, const JobRecord& answer);
   enum class Found { lapsed, by_death, thrice_by_death };
@@ -124,7 +129,7 @@ class JobQueue {
   [[nodiscard]] JobOutcome sealed(const std::string& id, JobOutcome outcome);
   [[nodiscard]] bool wait_for_room(const RunningJob& job, const JobOutcome& outcome);
   void cancel_live(const JobRecord& job);
-  void end_job(const JobRecord& job, JobOutcome outcome);
+  void end_job(const JobRecord& job, JobOutcome outcome, const std::function<void()>& stored = {});
 
   JobStore& store_;
   BlobStore& blobs_;
@@ -135,11 +140,11 @@ class JobQueue {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::atomic<bool> closed_ = false;
+  bool hurried_ = false;
   std::mutex naming_;  // one request with a name of its own at a time
   FairShare share_;
   QueueDoor door_;
-  std::chrono::steady_clock::time_point paused_until_{};  // while the disk is full
-  int full_in_a_row_ = 0;                                 // jobs that found the disk full
+  DiskPause pause_;
   std::map<std::string, std::shared_ptr<RunningJob>, std::less<>> running_;
 };
 

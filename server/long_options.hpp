@@ -14,8 +14,11 @@ inline constexpr std::size_t kLongOptions = std::size_t{4} * 1024;
 inline constexpr std::size_t kLongMember = 1024;
 
 /// Puts the options of a job that is about to be stored into its upload's folder, when they are
-/// long. Throws what UploadFolder::take throws, and storage_failed.
+/// long. Throws what TakeRoom throws, and storage_failed.
 void shorten_options(JobRecord& job, const UploadFolder& folder);
+
+/// Options as they are repeated: the same when they are short, or have been through this.
+api::Json without_long_members(const api::Json& options);
 
 /// All options of a stored job. Throws Error{storage_corrupt}.
 api::Json whole_options(const BlobStore& blobs, const JobRecord& job);

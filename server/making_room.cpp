@@ -7,7 +7,7 @@
 namespace unwrapd::server {
 namespace {
 
-constexpr int kRetryAfterSeconds = 5;
+constexpr int kMakingRetrySeconds = 5;
 
 int half_of(int count) { return std::max(1, count / 2); }
 
@@ -37,7 +37,7 @@ void MakingRoom::check_waiting(const std::string& holder) const {
     return;
   throw RetryLater(ErrorCode::rate_limited,
                    "Too many pictures and formats wait to be made; come back after Retry-After.",
-                   kRetryAfterSeconds);
+                   kMakingRetrySeconds);
 }
 
 /// Whether it waits for its like, so that who came later need not wait for it.

@@ -72,8 +72,7 @@ SentMesh Meshes::receive(const Request& request, const std::string& sha256) {
       {.known_bytes = known ? known->bytes : 0, .declared_bytes = request.declared_bytes});
   room.check_declared();
   try {
-    const UploadFolder folder{.path = blobs_.begin_upload(upload),
-                              .take = [&](std::int64_t bytes) { room.take(bytes); }};
+    const UploadFolder folder{.path = blobs_.begin_upload(upload), .room = room.counter()};
     const JobInput came = receive_asset(*request.body, folder).input;
     check_digest(came.sha256, sha256);
     mesh.sha256 = came.sha256;

@@ -26,7 +26,8 @@ struct SentMesh {
 /// Thread-safe.
 class Meshes {
  public:
-  Meshes(MeshStore& store, JobStore& jobs, BlobStore& blobs, UploadRooms& rooms, Renderer& renderer)
+  Meshes(MeshStore& store, JobStore& jobs, BlobStore& blobs, const UploadRooms& rooms,
+         Renderer& renderer)
       : store_(store), jobs_(jobs), blobs_(blobs), rooms_(rooms), renderer_(renderer) {}
 
   /// Stores the body of a request as the mesh of this digest. Throws Error: digest_mismatch and
@@ -53,7 +54,7 @@ class Meshes {
   MeshStore& store_;
   JobStore& jobs_;
   BlobStore& blobs_;
-  UploadRooms& rooms_;
+  const UploadRooms& rooms_;
   Renderer& renderer_;
   std::mutex settling_;  // one upload at a time takes its name
   FileCounts counts_;

@@ -7,8 +7,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <string_view>
+#include <thread>
 
 #include "server/config.hpp"
 #include "server/http_probe.hpp"
@@ -20,7 +22,8 @@
 namespace unwrapd::server {
 namespace {
 
-constexpr mode_t kNotOfOthers = 0027;  // meshes, results and the databases
+constexpr mode_t kNotOfOthers = 0027;                           // meshes, results and the databases
+constexpr timespec kLook{.tv_sec = 0, .tv_nsec = 200'000'000};  // for a second signal
 
 /// As many files as the kernel lets us have: the default is less than --max-connections.
 void allow_open_files(int connections, const Log& log) {
@@ -43,6 +46,18 @@ sigset_t block_end_signals() {
   return signals;
 }
 
+/// A second signal leaves the jobs at work no more time.
+std::jthread hurry_at_next(const sigset_t& signals, Service& service, const Log& log) {
+  return std::jthread([signals, &service, &log](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      if (::sigtimedwait(&signals, nullptr, &kLook) < 0) continue;
+      log.info("hurrying");
+      service.hurry();
+      return;
+    }
+  });
+}
+
 void serve(const Config& config, const Log& log, const Duties& duties) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is then EFBIG, as no room is ENOSPC
   allow_open_files(config.edge.max_connections, log);
@@ -59,6 +74,7 @@ void serve(const Config& config, const Log& log, const Duties& duties) {
   int signal = 0;
   sigwait(&signals, &signal);
   log.info("draining", {{"signal", signal}});
+  const std::jthread watching = hurry_at_next(signals, service, log);
   if (!service.drain()) {
     log.warning("ended while jobs do not stop");
     std::_Exit(EXIT_SUCCESS);  // without their threads; what they do is no longer wanted

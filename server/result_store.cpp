@@ -28,11 +28,6 @@ std::string_view format_name(asset::Format format) {
   return "glb";
 }
 
-void write_result(BlobStore& blobs, std::string_view job, std::string_view format,
-                  std::string_view bytes) {
-  blobs.write_unsealed(job, result_file(format), bytes);
-}
-
 std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string& job,
                                        const std::string& file) {
   if (!std::filesystem::exists(blobs.path(job, file))) return std::nullopt;

@@ -19,10 +19,6 @@ namespace unwrapd::server {
 /// "glb", "gltf" or "obj".
 std::string_view format_name(asset::Format format);
 
-/// Stores a result of a job's first map.
-void write_result(BlobStore& blobs, std::string_view job, std::string_view format,
-                  std::string_view bytes);
-
 struct StoredResult {
   std::shared_ptr<const File> file;  ///< stays readable when the job is removed meanwhile
   std::string sha256;                ///< becomes the ETag

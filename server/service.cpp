@@ -17,6 +17,7 @@
 #include "server/info_routes.hpp"
 #include "server/job_routes.hpp"
 #include "server/mesh_routes.hpp"
+#include "server/parts_config.hpp"
 #include "server/periodic.hpp"
 #include "server/picture_routes.hpp"
 #include "server/store_file.hpp"
@@ -30,51 +31,8 @@ namespace {
 constexpr std::chrono::seconds kHeartbeat{10};
 constexpr std::chrono::seconds kWebhookPause{1};
 constexpr std::chrono::seconds kTrimPause{10};
-constexpr int kLeastMakers = 4;
-constexpr int kAdminThreads = 4;
-constexpr int kAdminConnections = 64;
 constexpr std::size_t kEventsKept = 1024;  // of each job
 constexpr std::size_t kFeedsKept = 64;     // of finished jobs
-
-HttpConfig http_config(const Config& config) {
-  const EdgeConfig& edge = config.edge;
-  HttpConfig http;
-  http.address = config.listen;
-  http.max_requests = edge.max_requests;
-  http.max_connections = edge.max_connections;
-  http.max_connections_per_address = edge.max_connections_per_address;
-  http.parking.max_idle = edge.max_idle_connections;
-  http.tls_certificate = edge.tls_cert;
-  http.tls_key = edge.tls_key;
-  http.limits.max_body_bytes = config.limits.max_body_bytes;
-  return http;
-}
-
-HttpConfig admin_config(const Address& address) {
-  HttpConfig http;
-  http.address = address;
-  http.option = "--admin-listen";
-  http.max_requests = kAdminThreads;
-  http.max_connections = kAdminConnections;
-  return http;
-}
-
-/// Processes for all jobs when they are asked for, else for the suspects, if they can be had.
-Isolation isolation_of(const Config& config, const SolverCache& cache, const Duties& duties) {
-  Isolation isolation{.on = config.isolate, .program = duties.program};
-  isolation.threads = config.threads;
-  isolation.memory_bytes = static_cast<std::int64_t>(cache.memory_limit());
-  isolation.possible = isolation.on || (!isolation.program.empty() && can_isolate(isolation));
-  if (isolation.on) check_isolation(isolation);
-  return isolation;
-}
-
-/// Waiting takes a thread that answers: half of them are never taken so.
-MakingLimits making_limits(const Config& config, const SolverCache& cache) {
-  return {.places = std::max(kLeastMakers, config.workers),
-          .waiting = std::max(1, config.edge.max_requests / 2),
-          .bytes = cache.memory_limit()};
-}
 
 }  // namespace
 
@@ -126,20 +84,25 @@ struct Service::Parts {
                     WorkerConfig{.workers = config.workers,
                                  .threads = config.threads,
                                  .core = &solver_cache,
+                                 .claims = &claims,
+                                 .most_bytes = [this](const auto& id) { return most_bytes(id); },
                                  .isolation = isolation,
                                  .duties = duties});
     serving = std::jthread([this] { http.serve(); });
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
   }
 
+  /// Of an owner's quota; 0: none.
+  std::int64_t most_bytes(const std::string& owner) {
+    const std::optional<ApiKey> key = keys.with_id(owner);
+    return key ? key->quota.max_bytes : 0;
+  }
+
   /// Whether a job's owner may store so many bytes more. A mesh's analysis is short.
   bool may_keep(const std::string& id, std::int64_t bytes) {
     if (is_mesh_id(id)) return true;
     const std::optional<JobRecord> job = store.find(id);
-    if (!job) return false;
-    const std::optional<ApiKey> key = keys.with_id(job->owner);
-    const std::int64_t most = key ? key->quota.max_bytes : 0;
-    return most == 0 || store.usage(job->owner).stored_bytes + bytes <= most;
+    return job && Claim(claims, job->owner).try_set(bytes, most_bytes(job->owner));
   }
 
   HttpUses main_uses(const Log& log) {
@@ -240,7 +203,8 @@ struct Service::Parts {
   BlobStore blobs;
   JobStore store;
   MeshStore mesh_store;
-  UploadRooms rooms{store, blobs.room()};
+  Claims claims{store};
+  const UploadRooms rooms{claims, blobs.room()};
   Waiters waiters{std::max(1, config.edge.max_requests / 2)};
   Metrics metrics;
   const std::shared_ptr<Doorbell> news = std::make_shared<Doorbell>();
@@ -288,6 +252,8 @@ std::optional<int> Service::admin_port() const {
   if (!parts_->admin) return std::nullopt;
   return parts_->admin->port();
 }
+
+void Service::hurry() { parts_->queue.hurry(); }
 
 bool Service::drain() {
   const bool is_idle = parts_->queue.drain(std::chrono::seconds(parts_->config.drain_seconds));

@@ -27,6 +27,8 @@ class Service {
   /// streams end; then nothing is served any more. Call once. False when a job does not stop: the
   /// next start runs it again, but this would not be destroyed before it ends.
   bool drain();
+  /// Leaves the jobs that drain() waits for no more time.
+  void hurry();
 
  private:
   struct Parts;

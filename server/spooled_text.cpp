@@ -9,6 +9,7 @@ constexpr std::size_t kMostInMemory = std::size_t{64} * 1024;
 
 SpooledText::~SpooledText() {
   if (file_) remove_tree(path_);
+  if (taken_ > 0) room_.put_back(taken_);
 }
 
 void SpooledText::append(std::string_view bytes) {
@@ -18,6 +19,9 @@ void SpooledText::append(std::string_view bytes) {
 }
 
 void SpooledText::spill() {
+  const auto bytes = static_cast<std::int64_t>(unwritten_.size());
+  room_.take(bytes);
+  taken_ += bytes;
   if (!file_) file_.emplace(File::create(path_));
   file_->append(unwritten_);
   unwritten_.clear();

@@ -3,24 +3,27 @@
 // many who send long ones at once take no memory.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "server/files.hpp"
+#include "server/take_room.hpp"
 
 namespace unwrapd::server {
 
 class SpooledText {
  public:
   /// file: created when it is needed, removed with this.
-  explicit SpooledText(std::filesystem::path file) : path_(std::move(file)) {}
+  explicit SpooledText(std::filesystem::path file, TakeRoom room = {})
+      : path_(std::move(file)), room_(std::move(room)) {}
   SpooledText(const SpooledText&) = delete;
   SpooledText& operator=(const SpooledText&) = delete;
   ~SpooledText();
 
-  /// Throws Error: storage_failed, storage_full.
+  /// Throws what TakeRoom throws, and storage_failed.
   void append(std::string_view bytes);
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool is_long() const { return file_.has_value(); }
@@ -31,8 +34,10 @@ class SpooledText {
   void spill();
 
   const std::filesystem::path path_;
+  const TakeRoom room_;
   std::string unwritten_;
   std::size_t size_ = 0;
+  std::int64_t taken_ = 0;  // of room
   std::optional<File> file_;
 };
 

@@ -4,6 +4,7 @@
 #include "server/identity.hpp"
 #include "server/long_options.hpp"
 #include "server/mesh_reference.hpp"
+#include "server/question.hpp"
 #include "server/request_headers.hpp"
 #include "server/trace.hpp"
 
@@ -17,20 +18,6 @@ api::Json options_of(const std::optional<std::string>& text, const Request& requ
   throw Error(ErrorCode::invalid_option,
               "Options are given in the query and in the body; give them once.",
               "/" + request.query.begin()->first);
-}
-
-/// The same for the same question: these options, and of what.
-std::string key_of(const api::Json& options, const JobRecord& job) {
-  Sha256 hash;
-  const auto add = [&](const std::string& text) { hash.add(text + '\0'); };
-  add(job.synchronous ? "small" : "any size");
-  add(options.dump());
-  add(job.input.sha256);
-  for (const StoredBuffer& buffer : job.input.buffers) {
-    add(buffer.uri);
-    add(buffer.sha256);
-  }
-  return hash.finish();
 }
 
 /// By which the sender can send it again; empty when it has none.
@@ -76,20 +63,17 @@ std::string Submissions::accept(const Request& request, bool synchronous) {
   }
 }
 
-/// What the request brings; the same may come again when its sender has no bytes left. A form is
-/// more than its files: what it declares tells nothing then.
+/// What the request brings; the same may come again when its sender has no bytes left, and its
+/// options in many more. A form is more than its files: what it declares tells nothing then.
 UploadSize Submissions::size_of(const Request& request) {
   const std::string name = request_name(request);
   std::optional<JobRecord> known;
   if (!name.empty()) known = store_.find_request(request.caller.owner, name);
-  const bool tells = body_kind(request.header("Content-Type")) == BodyKind::asset || !known;
-  std::error_code none;  // short options are no file
-  std::int64_t known_bytes = known ? known->input.bytes : 0;
-  if (known) {
-    const auto options = std::filesystem::file_size(blobs_.path(known->id, kOptionsFile), none);
-    if (!none) known_bytes += static_cast<std::int64_t>(options);
-  }
-  return {.known_bytes = known_bytes, .declared_bytes = tells ? request.declared_bytes : 0};
+  if (!known) return {.known_bytes = 0, .declared_bytes = request.declared_bytes};
+  if (body_kind(request.header("Content-Type")) == BodyKind::asset)
+    return {.known_bytes = known->input.bytes, .declared_bytes = request.declared_bytes};
+  constexpr auto kOptionBytes = static_cast<std::int64_t>(api::kMaxOptionsBytes);
+  return {.known_bytes = known->input.bytes + kOptionBytes, .declared_bytes = 0};
 }
 
 /// What the head of the request says of it.
@@ -128,7 +112,7 @@ Submissions::Sent Submissions::bring(const Request& request, const UploadFolder&
 
 Submissions::Sent Submissions::bring_reference(const Request& request, const UploadFolder& folder,
                                                JobRecord& job) {
-  SpooledText text(folder.path / "reference.sent");
+  SpooledText text(folder.path / "reference.sent", folder.room);
   receive_reference_text(*request.body, text);
   Sent sent = read_whole(text);
   MeshReference named = parse_mesh_reference(*sent.options);
@@ -142,16 +126,15 @@ void Submissions::receive(const Request& request, JobRecord& job, UploadRoom& ro
   const BodyKind kind = body_kind(request.header("Content-Type"));
   api::JobOptions options = api::parse_options(request.query, limits_);  // before the body is read
   if (kind == BodyKind::asset) room.check_declared();
-  const UploadFolder folder{.path = blobs_.begin_upload(upload),
-                            .take = [&](std::int64_t bytes) { room.take(bytes); }};
+  const UploadFolder folder{.path = blobs_.begin_upload(upload), .room = room.counter()};
   const Sent sent = bring(request, folder, job);
   const api::Json asked = options_of(sent.options, request);
   if (sent.options) options = api::parse_options(asked, limits_);
   job.created_ms = now_ms();
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);
-  job.asked = key_of(asked, job);
-  job.content_key = UNWRAPD_VERSION " " + key_of(job.options, job);
+  job.asked = question_key(asked, job);
+  job.content_key = UNWRAPD_VERSION " " + question_key(job.options, job);
   shorten_options(job, folder);
 }
 

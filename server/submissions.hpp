@@ -22,7 +22,7 @@ namespace unwrapd::server {
 class Submissions {
  public:
   Submissions(JobQueue& queue, JobStore& store, BlobStore& blobs, const api::Limits& limits,
-              const WebhookConfig& webhooks, Meshes& meshes, UploadRooms& rooms)
+              const WebhookConfig& webhooks, Meshes& meshes, const UploadRooms& rooms)
       : queue_(queue),
         store_(store),
         blobs_(blobs),
@@ -57,7 +57,7 @@ class Submissions {
   JobQueue& queue_;
   JobStore& store_;
   BlobStore& blobs_;
-  UploadRooms& rooms_;
+  const UploadRooms& rooms_;
   const api::Limits& limits_;
   const WebhookConfig& webhooks_;
   Meshes& meshes_;

@@ -1,36 +1,24 @@
 #pragma once
 // The room of an upload, taken as its bytes come: in its owner's quota, and on the disk. Room that
 // others' results must be given up for is taken only by an upload that, as far as can be told by
-// then, will be accepted: its owner may have that many bytes beside all that he is sending, and
-// there is room for all of them. Whatever becomes of uploads, an owner's never cost others more
-// than his quota at a time.
+// then, will be accepted: its owner may have that many bytes beside all that is his, and there is
+// room for all of them. Whatever becomes of uploads, an owner's never cost others more than his
+// quota at a time.
 
 #include <cstdint>
-#include <map>
-#include <mutex>
 #include <string>
 
 #include "server/caller.hpp"
+#include "server/claims.hpp"
 #include "server/disk_room.hpp"
-#include "server/job_store.hpp"
+#include "server/take_room.hpp"
 
 namespace unwrapd::server {
 
-/// What all uploads share. Thread-safe.
-class UploadRooms {
- public:
-  UploadRooms(JobStore& store, DiskRoom& disk) : store_(store), disk_(disk) {}
-
- private:
-  friend class UploadRoom;
-
-  /// Returns all bytes that the owner's uploads claim, with these.
-  std::int64_t claim(const std::string& owner, std::int64_t bytes);
-
-  JobStore& store_;
-  DiskRoom& disk_;
-  std::mutex mutex_;
-  std::map<std::string, std::int64_t> claimed_;  // by owner; these bytes are not stored yet
+/// What all uploads share.
+struct UploadRooms {
+  Claims& claims;
+  DiskRoom& disk;
 };
 
 struct UploadSize {
@@ -43,32 +31,33 @@ struct UploadSize {
 /// Of one upload, until it is stored or dropped. Not for use by two threads at once.
 class UploadRoom {
  public:
-  UploadRoom(UploadRooms& rooms, const Caller& caller, std::string upload, const UploadSize& size)
-      : rooms_(rooms),
-        owner_(caller.owner),
+  UploadRoom(const UploadRooms& rooms, const Caller& caller, std::string upload,
+             const UploadSize& size)
+      : disk_(rooms.disk),
         quota_(caller.quota.max_bytes),
         upload_(std::move(upload)),
-        size_(size) {}
-  UploadRoom(const UploadRoom&) = delete;
-  UploadRoom& operator=(const UploadRoom&) = delete;
-  ~UploadRoom();
+        size_(size),
+        claim_(rooms.claims, caller.owner) {}
 
   /// For a body that is stored as it comes: throws what take() would come to throw.
   void check_declared();
   /// Counts bytes that are about to be written. Throws Error: quota_exceeded, storage_full.
   void take(std::int64_t bytes);
+  /// Of them, some are gone again.
+  void put_back(std::int64_t bytes);
+  /// The same two, for who writes. Not beyond the life of this.
+  [[nodiscard]] TakeRoom counter();
 
  private:
-  void check_quota();
   [[nodiscard]] bool try_claim(std::int64_t bytes);
   void claim(std::int64_t bytes);
+  void claim_ahead(std::int64_t all);
 
-  UploadRooms& rooms_;
-  const std::string owner_;
+  DiskRoom& disk_;
   const std::int64_t quota_;  // 0: none
   const std::string upload_;
   const UploadSize size_;
-  std::int64_t claimed_ = 0;  // of the quota
+  Claim claim_;
   std::int64_t taken_ = 0;
 };
 

@@ -53,20 +53,14 @@ Error too_many_crashes() {
 
 WorkerPool::WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
                        const WorkerConfig& config)
-    : queue_(queue),
-      blobs_(blobs),
-      limits_(limits),
-      log_(log),
-      isolation_(config.isolation),
-      duties_(config.duties) {
+    : queue_(queue), blobs_(blobs), limits_(limits), log_(log), config_(config) {
   threads_.reserve(static_cast<std::size_t>(config.workers));
-  for (int worker = 0; worker < config.workers; ++worker)
-    threads_.emplace_back([this, config] { work(config); });
+  for (int worker = 0; worker < config.workers; ++worker) threads_.emplace_back([this] { work(); });
 }
 
-void WorkerPool::work(const WorkerConfig& config) {
+void WorkerPool::work() {
   give_way();
-  ThreadExecutor executor(config.threads, config.core);
+  ThreadExecutor executor(config_.threads, config_.core);
   while (true) {
     try {
       const std::shared_ptr<RunningJob> job = queue_.take();
@@ -82,28 +76,29 @@ void WorkerPool::work(const WorkerConfig& config) {
 void WorkerPool::work_on(RunningJob& job, Executor& executor) {
   const TraceScope trace(job.feed->trace());
   log_.info("job started", {{"job", job.record.id}, {"attempt", job.record.attempt}});
+  Claim claim(*config_.claims, job.record.owner);  // until the store counts the results
   JobOutcome outcome;
   {
     const Deadline deadline(std::chrono::seconds(limits_.max_job_seconds),
                             [&] { job.request_stop(StopCause::time_limit); });
-    outcome = attempt(job, executor);
+    outcome = attempt(job, {executor, claim});
   }
-  queue_.finish(job, std::move(outcome));
+  queue_.finish(job, std::move(outcome), [&] { claim.give_up(); });
 }
 
-std::string WorkerPool::run(const RunningJob& job, Executor& executor) {
+std::string WorkerPool::run(const RunningJob& job, const Means& means) {
   const LoadedInput loaded(blobs_, job.record);
-  FeedOutput output(job, blobs_);
+  FeedOutput output(job, blobs_, {means.claim, config_.most_bytes});
   const auto queue_ms = static_cast<double>(job.started_ms - job.record.created_ms);
   const JobTask task{.record = loaded.record(),
                      .queue_ms = std::max(0.0, queue_ms),
                      .began = job.began,
                      .stop = job.stop.get_token()};
-  const bool suspected = job.record.crashes > 0 && isolation_.possible;
-  if (!isolation_.on && !suspected)
-    return duties_.run(task, loaded.input(), output, limits_, executor);
+  const bool suspected = job.record.crashes > 0 && config_.isolation.possible;
+  if (!config_.isolation.on && !suspected)
+    return config_.duties.run(task, loaded.input(), output, limits_, means.executor);
   try {
-    return run_job_isolated(task, loaded.input(), output, limits_, isolation_);
+    return run_job_isolated(task, loaded.input(), output, limits_, config_.isolation);
   } catch (const Error& error) {
     const bool asked = error.code() != ErrorCode::cancelled || job.stop.stop_requested();
     if (!asked) throw WorkerCrashed("somebody else told it to stop");
@@ -112,10 +107,10 @@ std::string WorkerPool::run(const RunningJob& job, Executor& executor) {
 }
 
 /// Again after a crash, which may have been an accident: the memory of the machine, an operator.
-std::string WorkerPool::run_patiently(const RunningJob& job, Executor& executor) {
+std::string WorkerPool::run_patiently(const RunningJob& job, const Means& means) {
   for (int crashes = 1;; ++crashes) {
     try {
-      return run(job, executor);
+      return run(job, means);
     } catch (const WorkerCrashed& crash) {
       log_.warning("a worker process ended",
                    {{"job", job.record.id}, {"how", crash.what()}, {"crashes", crashes}});
@@ -124,10 +119,10 @@ std::string WorkerPool::run_patiently(const RunningJob& job, Executor& executor)
   }
 }
 
-JobOutcome WorkerPool::attempt(const RunningJob& job, Executor& executor) {
+JobOutcome WorkerPool::attempt(const RunningJob& job, const Means& means) {
   try {
     JobOutcome outcome;
-    outcome.result_format = run_patiently(job, executor);
+    outcome.result_format = run_patiently(job, means);
     return outcome;
   } catch (const Error& error) {
     return outcome_of(error, job, limits_.max_job_seconds);

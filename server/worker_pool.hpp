@@ -4,6 +4,8 @@
 // machine. A job that was at work when a server died is suspected, and tried in a process of its
 // own where that can be had: only if it ends that, too, three times, is it to blame (`poison`).
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "core/executor.hpp"
 #include "core/solver_core.hpp"
 #include "server/blob_store.hpp"
+#include "server/claims.hpp"
 #include "server/duties.hpp"
 #include "server/job_process.hpp"
 #include "server/job_queue.hpp"
@@ -23,6 +26,9 @@ struct WorkerConfig {
   int workers = 1;
   int threads = 1;             ///< for each worker's job
   SolverCore* core = nullptr;  ///< that their jobs share; outlives the pool
+  Claims* claims = nullptr;    ///< of their results; outlives the pool
+  /// Bytes that an owner may have; 0: any.
+  std::function<std::int64_t(const std::string& owner)> most_bytes;
   Isolation isolation = {};
   Duties duties = {};
 };
@@ -34,18 +40,23 @@ class WorkerPool {
              const WorkerConfig& config);
 
  private:
-  void work(const WorkerConfig& config);
+  /// What a job is run with.
+  struct Means {
+    Executor& executor;
+    Claim& claim;
+  };
+
+  void work();
   void work_on(RunningJob& job, Executor& executor);
-  JobOutcome attempt(const RunningJob& job, Executor& executor);
-  std::string run_patiently(const RunningJob& job, Executor& executor);
-  std::string run(const RunningJob& job, Executor& executor);
+  JobOutcome attempt(const RunningJob& job, const Means& means);
+  std::string run_patiently(const RunningJob& job, const Means& means);
+  std::string run(const RunningJob& job, const Means& means);
 
   JobQueue& queue_;
   BlobStore& blobs_;
   const api::Limits& limits_;
   const Log& log_;
-  const Isolation isolation_;
-  const Duties duties_;
+  const WorkerConfig config_;
   std::vector<std::jthread> threads_;
 };
 

@@ -213,6 +213,49 @@ test("scopes, rates and quotas are kept, each by its code", async (t) => {
   await server.end("SIGTERM");
 });
 
+test("results count for their key before they are written, and take nothing from others", async (t) => {
+  const data = dataDirectory(t);
+  const most = 150_000;
+  const [small, other] = [String(most), "0"].map((bytes) => addKey(data, bytes, "--max-bytes", bytes));
+  const server = await Server.start(data, "--require-keys", "--max-disk-bytes", "1000000");
+  const [his, another] = [small, other].map((key) => new Holder(server, key));
+  const kept = await another.done(QUICK, 20);
+  const curve = `method=hybrid&${QUICK}&lambda=${Array.from({ length: 32 }, (_, k) => k + 1)}`;
+  const beyond = await (await his.fetch(`/v1/jobs/${await his.done(curve, 20)}`)).json();
+  assert.deepEqual([beyond.state, beyond.problem.code], ["failed", "quota_exceeded"], JSON.stringify(beyond));
+  while (existsSync(join(data, "blobs", beyond.id))) await new Promise((done) => setTimeout(done, 5));
+  assert.equal((await another.fetch(`/v1/jobs/${kept}/result`)).status, 200);
+  const fits = await his.done(QUICK, 20);
+  const size = readdirSync(join(data, "blobs", fits))
+    .reduce((sum, file) => sum + statSync(join(data, "blobs", fits, file)).size, 0);
+  const answers = [];
+  for (let k = 0; k * size < most; ++k) answers.push(await his.post(QUICK, 20, { "Cache-Control": "max-age=60" }));
+  await refused(answers.at(-1), 507, "quota_exceeded");
+  assert.equal(answers[0].status, 2 * size <= most ? 202 : 507);
+  await server.end("SIGTERM");
+});
+
+test("a request with long options is known again though its key may store no more", async (t) => {
+  const data = dataDirectory(t);
+  const server = await Server.start(data, "--require-keys");
+  const held = Array.from({ length: 3000 }, (_, v) => ({ vertex: v, uv: [v / 3000, (v % 7) / 7] }));
+  const options = JSON.stringify({ constraints: held, stop: { iterations: 1 } }, null, 1);
+  const his = new Holder(server, addKey(data, "a", "--max-bytes", String(grid(60).length + options.length + 1)));
+  const send = () => {
+    const body = new FormData();
+    body.append("options", new Blob([options], { type: "application/json" }));
+    body.append("mesh", new Blob([grid(60)], { type: "model/obj" }), "grid.obj");
+    return his.fetch("/v1/jobs", { method: "POST", headers: { "Idempotency-Key": "one" }, body });
+  };
+  const first = await send();
+  const job = await first.json();
+  assert.equal(first.status, 202, JSON.stringify(job));
+  await refused(await his.post(QUICK, 60), 507, "quota_exceeded");
+  const again = await (await send()).json();
+  assert.equal(again.id, job.id, JSON.stringify(again));
+  await server.end("SIGTERM");
+});
+
 test("keys take turns, and a key's own jobs go by their priority", async (t) => {
   const data = dataDirectory(t);
   const [greedy, modest] = ["greedy", "modest"].map((name) => addKey(data, name));

@@ -125,3 +125,16 @@ test("SIGTERM without patience: the job runs again at the next start", async (t)
   assert.deepEqual([job.state, job.attempt], ["succeeded", 2]);
   await second.end("SIGTERM");
 });
+
+test("a second SIGTERM: nothing is waited for any more, and the job runs again at the next start", async (t) => {
+  const data = dataDirectory(t);
+  const first = await Server.start(data, "--drain-seconds", "300");
+  const id = await first.submit(...ENDLESS);
+  await first.iterates(id);
+  first.process.kill("SIGTERM");
+  while ((await fetch(`${first.url}/readyz`)).status !== 503) await sleep(5);
+  assert.deepEqual(await first.end("SIGTERM"), [0, null]);
+  const second = await Server.start(data);
+  assert.equal((await second.iterates(id)).attempt, 2);
+  await second.end("SIGKILL");
+});

@@ -168,6 +168,20 @@ test('a worker that does not stop when it is asked to is killed', async () => {
   assert.equal(await state(), 'cancelled');
 });
 
+test('somebody else who ends a worker cancels no job', async () => {
+  const {body} = await request(isolated.base, {
+    method: 'POST', path: '/v1/jobs?stop.iterations=10000', headers: kObj, body: meshes.obj(100)});
+  const {id} = JSON.parse(body.toString());
+  const job = async () => JSON.parse(await get(isolated, `/v1/jobs/${id}`));
+  while (!((await job()).progress?.iteration > 0)) await sleep(5);
+  const [worker] = children(isolated.pid);
+  process.kill(Number(worker), 'SIGTERM');
+  while (children(isolated.pid).includes(worker)) await sleep(5);
+  while (children(isolated.pid).length === 0) assert.equal((await job()).state, 'running');
+  assert.equal((await job()).state, 'running');
+  await request(isolated.base, {method: 'DELETE', path: `/v1/jobs/${id}`});
+});
+
 test('no process is left when no job is', async () => {
   while (children(isolated.pid).length > 0) await sleep(20);
 });

@@ -69,7 +69,11 @@ TEST_F(Upgrade, ARequestIsKnownAgainByItsName) {
     restart_with("UPDATE jobs SET content_key = 'of another version', asked = " + asked);
     EXPECT_EQ(id_of(send("one", 4)), id);
     expect_problem(send("one", 5), 409, "idempotency_conflict");
+    expect_problem(send("one", 4, "?resolution=512"), 409, "idempotency_conflict");
   }
+  restart_with("UPDATE jobs SET options = '" + std::string(kFirstOptions) + "'");
+  EXPECT_EQ(id_of(send("one", 4, "?stop.iterations=7")), id) << "as 0.1.0 wrote them";
+  expect_problem(send("one", 4), 409, "idempotency_conflict");
   restart_with("DELETE FROM jobs");
   static_cast<void>(send("two", 4));
   expect_problem(send("two", 4, "?resolution=512"), 409, "idempotency_conflict");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "server/mesh_store.hpp"
+#include "server/spooled_text.hpp"
 #include "temp_dir.hpp"
 #include "tests/api/error_of.hpp"
 
@@ -46,7 +47,8 @@ class RoomOfAnUpload : public testing::Test {
   TempDir dir_;
   JobStore store_{dir_.path() / "jobs.sqlite"};
   DiskRoom disk_{dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0}};
-  UploadRooms rooms_{store_, disk_};
+  Claims claims_{store_};
+  const UploadRooms rooms_{claims_, disk_};
   bool evicted_ = false;
   int uploads_ = 0;
 };
@@ -159,6 +161,48 @@ TEST_F(RoomOfAnUpload, CanBeMadeOfWhatNoLiveJobNeeds) {
   EXPECT_EQ(store_.evictable_bytes(), 87);
   store_.set_expired("j_1");
   EXPECT_EQ(store_.evictable_bytes(), 7);
+}
+
+TEST_F(RoomOfAnUpload, IsSharedWithResultsThatAreMade) {
+  add("j_1", 40);
+  Claim results(claims_, "his");
+  results.add(50, 100);
+  UploadRoom beside = upload(11, 100);
+  EXPECT_EQ(refusal([&] { beside.check_declared(); }), ErrorCode::quota_exceeded);
+  EXPECT_EQ(refusal([&] { results.add(11, 100); }), ErrorCode::quota_exceeded);
+  results.add(10, 100);
+  results.give_up();  // made again
+  beside.check_declared();
+  EXPECT_NO_THROW(results.add(1000, 0)) << "without a quota";
+}
+
+TEST_F(RoomOfAnUpload, CountsALongTextWhileItIsThere) {
+  UploadRoom room = upload(0, 500);
+  {
+    SpooledText text(dir_.path() / "text", room.counter());
+    text.append(std::string(400, 'x'));
+    EXPECT_EQ(disk_.used_bytes(), 400) << "short ones are in memory";
+  }
+  const std::string piece(70'000, 'x');
+  disk_.give_back("finished");
+  {
+    UploadRoom large = upload(0, 100'000);
+    SpooledText text(dir_.path() / "text", large.counter());
+    EXPECT_EQ(refusal([&] { text.append(piece); }), ErrorCode::storage_full);
+  }
+  EXPECT_EQ(disk_.used_bytes(), 0);
+  DiskRoom wide(dir_.path(), {.max_bytes = 200'000, .min_free_bytes = 0});
+  const UploadRooms rooms{claims_, wide};
+  UploadRoom his(rooms, caller(150'000), "u", {});
+  {
+    SpooledText text(dir_.path() / "text", his.counter());
+    text.append(piece);
+    EXPECT_EQ(wide.used_bytes(), 70'000);
+    text.append(piece);
+    EXPECT_EQ(refusal([&] { text.append(piece); }), ErrorCode::quota_exceeded);
+  }
+  EXPECT_EQ(wide.used_bytes(), 0);
+  his.take(140'000);  // what the text told of, put away
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+#include "server/parts_config.hpp"
+
+#include <algorithm>
+
+namespace unwrapd::server {
+namespace {
+
+constexpr int kLeastMakers = 4;
+constexpr int kAdminThreads = 4;
+constexpr int kAdminConnections = 64;
+
+}  // namespace
+
+HttpConfig http_config(const Config& config) {
+  const EdgeConfig& edge = config.edge;
+  HttpConfig http;
+  http.address = config.listen;
+  http.max_requests = edge.max_requests;
+  http.max_connections = edge.max_connections;
+  http.max_connections_per_address = edge.max_connections_per_address;
+  http.parking.max_idle = edge.max_idle_connections;
+  http.tls_certificate = edge.tls_cert;
+  http.tls_key = edge.tls_key;
+  http.limits.max_body_bytes = config.limits.max_body_bytes;
+  return http;
+}
+
+HttpConfig admin_config(const Address& address) {
+  HttpConfig http;
+  http.address = address;
+  http.option = "--admin-listen";
+  http.max_requests = kAdminThreads;
+  http.max_connections = kAdminConnections;
+  return http;
+}
+
+Isolation isolation_of(const Config& config, const SolverCache& cache, const Duties& duties) {
+  Isolation isolation{.on = config.isolate, .program = duties.program};
+  isolation.threads = config.threads;
+  isolation.memory_bytes = static_cast<std::int64_t>(cache.memory_limit());
+  isolation.possible = isolation.on || (!isolation.program.empty() && can_isolate(isolation));
+  if (isolation.on) check_isolation(isolation);
+  return isolation;
+}
+
+MakingLimits making_limits(const Config& config, const SolverCache& cache) {
+  return {.places = std::max(kLeastMakers, config.workers),
+          .waiting = std::max(1, config.edge.max_requests / 2),
+          .bytes = cache.memory_limit()};
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,23 @@
+#pragma once
+// What the parts of the server are told, made of what the server is told.
+
+#include "server/config.hpp"
+#include "server/duties.hpp"
+#include "server/http_server.hpp"
+#include "server/job_process.hpp"
+#include "server/making_room.hpp"
+#include "server/solver_cache.hpp"
+
+namespace unwrapd::server {
+
+HttpConfig http_config(const Config& config);
+HttpConfig admin_config(const Address& address);
+
+/// Processes for all jobs when they are asked for, else for the suspects, if they can be had.
+/// Throws Error where they are asked for and cannot be had.
+Isolation isolation_of(const Config& config, const SolverCache& cache, const Duties& duties);
+
+/// Waiting takes a thread that answers: half of them are never taken so.
+MakingLimits making_limits(const Config& config, const SolverCache& cache);
+
+}  // namespace unwrapd::server
