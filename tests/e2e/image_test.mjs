@@ -3,7 +3,7 @@
 // the next start.
 // UNWRAPD_ENGINE names docker or podman, UNWRAPD_IMAGE the image.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { randomBytes } from "node:crypto";
 import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:net";
@@ -155,7 +155,7 @@ test("podman plays the Kubernetes objects", async (context) => {
     await until("the pod", async () => run("exec", `${name}-pod-0-${name}`, "unwrapd", "--healthcheck",
       "--admin-listen", "127.0.0.1:8081") === "");
   } finally {
-    run("play", "kube", "--down", file);
-    run("volume", "rm", "--force", `${name}-data`, `${name}-config`, `${name}-key`);
+    spawnSync(engine, ["play", "kube", "--down", file]);  // where it was not played, that is the error to tell
+    spawnSync(engine, ["volume", "rm", "--force", `${name}-data`, `${name}-config`, `${name}-key`]);
   }
 });
