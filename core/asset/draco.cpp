@@ -111,8 +111,10 @@ bool decode(std::string_view bytes, const ReadLimits& limits, draco::Mesh& mesh)
              : false;
 }
 
-/// Every point has a value, and the values lie in the attribute's memory.
+/// Every point has a value, and the values lie in the attribute's memory. glTF has no booleans,
+/// whose bytes Draco takes for ones whatever they are.
 bool is_sound(const draco::PointAttribute& attribute, std::uint32_t points) {
+  if (attribute.data_type() == draco::DT_BOOL) return false;
   const auto bytes = static_cast<std::uint64_t>(attribute.byte_stride()) * attribute.size();
   if (attribute.buffer() == nullptr || bytes > attribute.buffer()->data_size()) return false;
   if (attribute.is_mapping_identity()) return points <= attribute.size();

@@ -159,6 +159,15 @@ TEST(Draco, APointCloudAndAForeignAttributeAreRefused) {
   EXPECT_EQ(error_of(file).code(), ErrorCode::malformed_draco);
 }
 
+TEST(Draco, BooleansAreRefused) {
+  std::string bools = draco_bitstream(3, draco::MESH_SEQUENTIAL_ENCODING);
+  constexpr std::size_t type =
+      11 + 57 + 3;  // after the header, the faces and what attributes there are
+  ASSERT_EQ(bools[type], draco::DT_FLOAT32);
+  bools[type] = draco::DT_BOOL;
+  EXPECT_EQ(error_of(wrapped(bools, 16, 54)).code(), ErrorCode::malformed_draco);
+}
+
 /// The grid with every view compressed; the uncompressed bytes are nowhere.
 Builder meshopt_grid(int n, const std::string& name) {
   Builder b = grid(n);
