@@ -52,8 +52,9 @@ std::int64_t bytes_below(const fs::path& folder) {
   std::int64_t bytes = 0;
   std::error_code gone;  // what somebody removes meanwhile counts nothing
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, gone)) {
-    const bool of_mesh = of_job && is_input(entry.path().filename().native());
-    if (of_mesh && is_shared_file(entry.path())) continue;  // it counts there
+    const std::string name = entry.path().filename();
+    if (name == kDigestsFile) continue;  // ours, not the owner's
+    if (of_job && is_input(name) && is_shared_file(entry.path())) continue;  // it counts there
     const std::uintmax_t size = entry.file_size(gone);
     if (!gone) bytes += static_cast<std::int64_t>(size);
   }
@@ -180,7 +181,8 @@ void BlobStore::note(std::string_view job, const std::string& file) {
 
 bool BlobStore::try_keep(std::string_view job, const std::string& file, std::string_view bytes) {
   const auto count = static_cast<std::int64_t>(bytes.size());
-  if (keeping_.may && !keeping_.may(std::string(job), count)) return false;
+  std::shared_ptr<void> claim;  // until the bytes count
+  if (keeping_.claim && !(claim = keeping_.claim(std::string(job), count))) return false;
   if (!room_.try_take(job, count)) return false;
   try {
     write_file(path(job, file), bytes);

@@ -33,8 +33,9 @@ std::string buffer_file(std::size_t k);
 
 /// What try_keep() asks and tells of.
 struct Keeping {
-  /// Whether the job's owner may have so many bytes more.
-  std::function<bool(const std::string& job, std::int64_t bytes)> may = {};
+  /// So many bytes more, claimed for the job's owner while the caller keeps what is returned;
+  /// nothing where he may not have them.
+  std::function<std::shared_ptr<void>(const std::string& job, std::int64_t bytes)> claim = {};
   /// The bytes of all the job's files now.
   std::function<void(std::string_view job, std::int64_t bytes)> kept = {};
 };
@@ -63,7 +64,7 @@ class BlobStore {
   [[nodiscard]] bool is_shared(std::string_view mesh) const noexcept;
   /// Whether a file is noted: it is there, or was.
   [[nodiscard]] bool has(std::string_view job, std::string_view file) const;
-  /// Bytes of all files, without a document that is shared with a mesh.
+  /// Bytes of all files, without `digests`, and a document that is shared with a mesh.
   [[nodiscard]] std::int64_t bytes(std::string_view job) const;
 
   /// Syncs all results and notes their digests, replacing those of an attempt before: on return

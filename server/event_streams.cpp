@@ -43,8 +43,12 @@ Watcher watcher_of(const Request& request) {
           .place = {}};
 }
 
-std::string last_frame(const JobRecord& job) {
-  return api::sse_frame(api::final_event(job.last_event, to_job(job)));
+/// What is left to tell of a job whose events are no longer kept.
+std::string last_frames(const JobRecord& job, std::int64_t seen) {
+  std::string frames;
+  if (seen + 1 < job.last_event)
+    frames = api::sse_frame(api::gap_event(seen + 1, job.last_event - 1));
+  return frames + api::sse_frame(api::final_event(job.last_event, to_job(job)));
 }
 
 }  // namespace
@@ -66,7 +70,7 @@ Response EventStreams::stream(const JobRecord& job, Watcher watcher, std::string
   response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
   const std::shared_ptr<JobFeed> feed = events_.find(job.id);
   if (!feed) {
-    response.body = greeting + last_frame(job);
+    response.body = greeting + last_frames(job, watcher.seen.value_or(0));
     return response;
   }
   if (!watcher.place) watcher.place = take_place(watcher.owner);

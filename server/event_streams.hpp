@@ -27,7 +27,8 @@ class EventStreams {
       : events_(events), max_streams_(max_streams), places_(max_streams) {}
 
   /// The events of a job after Last-Event-ID. A job whose feed is gone is final: its last event is
-  /// made from the record. Throws RetryLater{too_many_streams}, Error{malformed_request}.
+  /// made from the record, after a gap for all that were before it. Throws
+  /// RetryLater{too_many_streams}, Error{malformed_request}.
   Response open(const JobRecord& job, const Request& request);
 
   /// Lets somebody in who is about to submit a job and will watch it. Throws like open().

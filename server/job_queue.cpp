@@ -13,6 +13,7 @@ namespace {
 using api::JobState;
 
 constexpr int kMaxCrashes = 3;
+constexpr int kMaxCrashesApart = 10;  // where one that is to blame should end its own process alone
 constexpr int kMaxAttemptsWhenFull = 20;
 
 }  // namespace
@@ -29,17 +30,16 @@ JobQueue::JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const L
 void JobQueue::recover(bool tried_apart) {
   const std::lock_guard lock(mutex_);
   for (const JobRecord& job : store_.all(JobState::queued)) wait_again(job);
-  for (const JobRecord& job : store_.all(JobState::running)) {
-    const bool to_blame = !tried_apart && job.crashes + 1 >= kMaxCrashes;
-    take_up(job, to_blame ? Found::thrice_by_death : Found::by_death);
-  }
+  const int most = tried_apart ? kMaxCrashesApart : kMaxCrashes;
+  for (const JobRecord& job : store_.all(JobState::running))
+    take_up(job, job.crashes + 1 >= most ? Found::too_often_by_death : Found::by_death);
 }
 
 void JobQueue::take_up(const JobRecord& job, Found found) {
   const TraceScope trace(job.trace);
   if (job.cancel_requested) {
     give_up(job, cancelled_by_owner());
-  } else if (found == Found::thrice_by_death) {
+  } else if (found == Found::too_often_by_death) {
     give_up(job, poison());
   } else {
     store_.requeue(job.id, found == Found::by_death);

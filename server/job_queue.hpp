@@ -79,8 +79,8 @@ class JobQueue {
            const QueueConfig& config);
 
   /// Once, before any worker: what the last process left running waits again. Its death is held
-  /// against those jobs when they are not tried apart from this process from now on: at the third
-  /// they are given up.
+  /// against those jobs: they are given up at the third, where they are tried apart from this
+  /// process from now on, at the tenth.
   void recover(bool tried_apart);
 
   /// Throws RetryLater{queue_full, draining} when a submission would be refused now, else keeps a
@@ -121,7 +121,7 @@ class JobQueue {
   [[nodiscard]] Answer find_answer(JobRecord& job);
   void enqueue(JobRecord& job, const Submission& submission, const Answer& answer);
   [[nodiscard]] bool answer_from_store(const JobRecord& job, const JobRecord& answer);
-  enum class Found { lapsed, by_death, thrice_by_death };
+  enum class Found { lapsed, by_death, too_often_by_death };
   void take_up(const JobRecord& job, Found found);
   void give_up(const JobRecord& job, const Error& why);
   void wait_again(const JobRecord& job);

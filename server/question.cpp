@@ -20,6 +20,7 @@ std::string question_key(const api::Json& options, const JobRecord& job) {
 }
 
 bool is_same_question(const JobRecord& stored, const JobRecord& sent) {
+  if (sent.request_key == sent.id && stored.id != sent.id) return false;
   if (!stored.asked.empty()) return stored.asked == sent.asked;
   const api::Json resolved = api::to_json(api::parse_stored_options(stored.options));
   return stored.input.sha256 == sent.input.sha256 &&

@@ -53,9 +53,10 @@ Error cancelled_by_owner() {
 }
 
 Error poison() {
-  return {ErrorCode::poison,
-          "The server ended three times while it worked on this job; it is not tried again. Check "
-          "the mesh, or send a smaller part of it."};
+  return {
+      ErrorCode::poison,
+      "The server ended several times while it worked on this job; it is not tried again. Check "
+      "the mesh, or send a smaller part of it."};
 }
 
 }  // namespace unwrapd::server

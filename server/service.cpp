@@ -72,13 +72,13 @@ struct Service::Parts {
     sweep_blobs(log);
     blobs.room().on_shortage({.evict = [this] { return evict_oldest(store, mesh_store, blobs); },
                               .bytes = [this] { return store.evictable_bytes(); }});
-    blobs.on_keeping(
-        {.may = [this](const std::string& id, std::int64_t bytes) { return may_keep(id, bytes); },
-         .kept =
-             [this](std::string_view id, std::int64_t bytes) {
-               is_mesh_id(id) ? mesh_store.set_stored_bytes(id, bytes)
-                              : store.set_stored_bytes(id, bytes);
-             }});
+    blobs.on_keeping({.claim = [this](const std::string& id,
+                                      std::int64_t bytes) { return claim_to_keep(id, bytes); },
+                      .kept =
+                          [this](std::string_view id, std::int64_t bytes) {
+                            is_mesh_id(id) ? mesh_store.set_stored_bytes(id, bytes)
+                                           : store.set_stored_bytes(id, bytes);
+                          }});
     start_periodic(log);
     workers.emplace(queue, blobs, config.limits, log,
                     WorkerConfig{.workers = config.workers,
@@ -98,11 +98,13 @@ struct Service::Parts {
     return key ? key->quota.max_bytes : 0;
   }
 
-  /// Whether a job's owner may store so many bytes more. A mesh's analysis is short.
-  bool may_keep(const std::string& id, std::int64_t bytes) {
-    if (is_mesh_id(id)) return true;
+  /// So many bytes more for a job's owner, if he may store them. A mesh's analysis is short.
+  std::shared_ptr<void> claim_to_keep(const std::string& id, std::int64_t bytes) {
     const std::optional<JobRecord> job = store.find(id);
-    return job && Claim(claims, job->owner).try_set(bytes, most_bytes(job->owner));
+    if (!job && !is_mesh_id(id)) return nullptr;
+    auto claim = std::make_shared<Claim>(claims, job ? job->owner : std::string());
+    if (job && !claim->try_set(bytes, most_bytes(job->owner))) return nullptr;
+    return claim;
   }
 
   HttpUses main_uses(const Log& log) {

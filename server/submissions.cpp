@@ -41,14 +41,25 @@ std::string sender_of(const Request& request) {
   return hash.finish();
 }
 
+/// What the request brings; the same may come again when its sender has no bytes left, and its
+/// options in many more. A form is more than its files: what it declares tells nothing then.
+UploadSize size_of(const Request& request, const std::optional<JobRecord>& known) {
+  if (!known) return {.known_bytes = 0, .declared_bytes = request.declared_bytes};
+  if (body_kind(request.header("Content-Type")) == BodyKind::asset)
+    return {.known_bytes = known->input.bytes, .declared_bytes = request.declared_bytes};
+  constexpr auto kOptionBytes = static_cast<std::int64_t>(api::kMaxOptionsBytes);
+  return {.known_bytes = known->input.bytes + kOptionBytes, .declared_bytes = 0};
+}
+
 }  // namespace
 
 std::string Submissions::accept(const Request& request, bool synchronous) {
   const std::string sender = sender_of(request);
-  queue_.check_room({.who = sender, .owner = request.caller.owner});
+  const std::optional<JobRecord> known = known_job(request);
+  if (!known) queue_.check_room({.who = sender, .owner = request.caller.owner});
   const std::string upload = random_job_id();
   try {
-    UploadRoom room(rooms_, request.caller, upload, size_of(request));
+    UploadRoom room(rooms_, request.caller, upload, size_of(request, known));
     Submission submission{.job = begin_job(request, upload, synchronous),
                           .sender = sender,
                           .upload = upload,
@@ -63,17 +74,10 @@ std::string Submissions::accept(const Request& request, bool synchronous) {
   }
 }
 
-/// What the request brings; the same may come again when its sender has no bytes left, and its
-/// options in many more. A form is more than its files: what it declares tells nothing then.
-UploadSize Submissions::size_of(const Request& request) {
+/// The job that this request has made, should it be sent again: it needs no place, then.
+std::optional<JobRecord> Submissions::known_job(const Request& request) {
   const std::string name = request_name(request);
-  std::optional<JobRecord> known;
-  if (!name.empty()) known = store_.find_request(request.caller.owner, name);
-  if (!known) return {.known_bytes = 0, .declared_bytes = request.declared_bytes};
-  if (body_kind(request.header("Content-Type")) == BodyKind::asset)
-    return {.known_bytes = known->input.bytes, .declared_bytes = request.declared_bytes};
-  constexpr auto kOptionBytes = static_cast<std::int64_t>(api::kMaxOptionsBytes);
-  return {.known_bytes = known->input.bytes + kOptionBytes, .declared_bytes = 0};
+  return name.empty() ? std::nullopt : store_.find_request(request.caller.owner, name);
 }
 
 /// What the head of the request says of it.

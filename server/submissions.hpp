@@ -45,7 +45,7 @@ class Submissions {
     std::optional<std::string> options;  // JSON text
   };
 
-  [[nodiscard]] UploadSize size_of(const Request& request);
+  [[nodiscard]] std::optional<JobRecord> known_job(const Request& request);
   [[nodiscard]] JobRecord begin_job(const Request& request, const std::string& upload,
                                     bool synchronous) const;
   [[nodiscard]] Sent read_whole(SpooledText& text);

@@ -2,20 +2,21 @@
 
 #include <algorithm>
 
+#include "server/files.hpp"
 #include "server/queue_errors.hpp"
 
 namespace unwrapd::server {
 
-bool UploadRoom::try_claim(std::int64_t bytes) {
-  return claim_.try_set(bytes, quota_, size_.known_bytes);
-}
-
-void UploadRoom::claim(std::int64_t bytes) {
-  if (!try_claim(bytes)) throw quota_exceeded(quota_);
+/// False where what comes again finds no quota: then nothing is given up for it. Throws
+/// Error{quota_exceeded} for anything else.
+bool UploadRoom::claim(std::int64_t bytes) {
+  if (claim_.try_set(bytes, quota_, size_.known_bytes)) return true;
+  if (bytes > size_.known_bytes) throw quota_exceeded(quota_);
+  return false;
 }
 
 void UploadRoom::check_declared() {
-  claim(size_.declared_bytes);
+  static_cast<void>(claim(size_.declared_bytes));
   disk_.check_upload(size_.declared_bytes);
 }
 
@@ -23,7 +24,7 @@ void UploadRoom::check_declared() {
 /// store is not asked for each piece.
 void UploadRoom::claim_ahead(std::int64_t all) {
   if (all <= claim_.bytes()) return;
-  if (!try_claim(2 * all)) claim(all);
+  if (!claim_.try_set(2 * all, quota_)) static_cast<void>(claim(all));
 }
 
 void UploadRoom::take(std::int64_t bytes) {
@@ -31,7 +32,7 @@ void UploadRoom::take(std::int64_t bytes) {
   claim_ahead(all);
   if (!disk_.try_take_for_upload(upload_, bytes)) {
     const std::int64_t whole = std::max(all, size_.declared_bytes);
-    claim(whole);
+    if (!claim(whole)) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
     disk_.take_for_upload(upload_, bytes, whole);
   }
   taken_ = all;

@@ -22,8 +22,8 @@ struct UploadRooms {
 };
 
 struct UploadSize {
-  /// Of what is there already, should the upload turn out to be the same: that takes nothing from
-  /// the quota.
+  /// Of what is there already, should the upload turn out to be the same: that is beyond the quota
+  /// once at a time, and more often where nothing must be given up for it.
   std::int64_t known_bytes = 0;
   std::int64_t declared_bytes = 0;  ///< of the body, 0 when not told beforehand
 };
@@ -49,8 +49,7 @@ class UploadRoom {
   [[nodiscard]] TakeRoom counter();
 
  private:
-  [[nodiscard]] bool try_claim(std::int64_t bytes);
-  void claim(std::int64_t bytes);
+  [[nodiscard]] bool claim(std::int64_t bytes);
   void claim_ahead(std::int64_t all);
 
   DiskRoom& disk_;

@@ -61,5 +61,27 @@ TEST_F(FilesOfJobs, ThatCannotBeWrittenTakesNoRoom) {
     EXPECT_FALSE(is_unfinished(entry.path())) << entry.path();
 }
 
+TEST_F(FilesOfJobs, AreClaimedUntilTheyCount) {
+  BlobStore blobs(dir_.path());
+  add_sealed(blobs, "j_1");
+  bool allowed = false;
+  std::int64_t claimed = 0, counted = 0;
+  const auto claim = [&](const std::string&, std::int64_t bytes) -> std::shared_ptr<void> {
+    if (!allowed) return nullptr;
+    claimed = bytes;
+    return {&claimed, [&](void*) { claimed = 0; }};
+  };
+  const auto kept = [&](std::string_view, std::int64_t bytes) {
+    EXPECT_EQ(claimed, 7);
+    counted = bytes;
+  };
+  blobs.on_keeping({.claim = claim, .kept = kept});
+  EXPECT_FALSE(blobs.try_keep("j_1", "picture", "1234567"));
+  allowed = true;
+  EXPECT_TRUE(blobs.try_keep("j_1", "picture", "1234567"));
+  EXPECT_EQ(counted, 16) << "the document, the report and the picture: digests are ours";
+  EXPECT_EQ(claimed, 0);
+}
+
 }  // namespace
 }  // namespace unwrapd::server

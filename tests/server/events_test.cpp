@@ -74,15 +74,6 @@ TEST_F(Events, OfALongJobHaveAGapForWhoeverComesLate) {
   EXPECT_THAT(late, HasSubstr("event: succeeded"));
 }
 
-TEST_F(Events, AfterARestartTheEndIsStillTold) {
-  start();
-  const std::string id = submit();
-  const std::string whole = events(id);
-  restart();
-  const std::string last = events(id);
-  EXPECT_EQ(last, whole.substr(whole.rfind("id: ")));
-}
-
 TEST_F(Events, AReaderThatLeavesCancelsNothing) {
   start();
   const std::string id = submit("?stop.iterations=2000", 8);
@@ -132,6 +123,24 @@ TEST_F(Events, OfOneKeyLeaveHalfOfTheStreamsToOthers) {
   await([&] { return begun == 2 * half; });
   client().Delete("/v1/jobs/" + id, greedy);
   client().Delete("/v1/jobs/" + other, modest);
+}
+
+TEST_F(Events, ThatAreNoLongerKeptAreTold) {
+  start();
+  const std::string id = submit("?stop.iterations=3");
+  await_state(id, "succeeded");
+  const std::string all = events(id);
+  EXPECT_THAT(all, Not(HasSubstr("event: gap")));
+  const std::string last = all.substr(all.rfind("id: "));
+  const std::int64_t end = std::stoll(last.substr(4));
+  restart();
+  const auto gap = [&](std::int64_t first) {
+    return api::sse_frame(api::gap_event(first, end - 1));
+  };
+  EXPECT_EQ(events(id), gap(1) + last);
+  EXPECT_EQ(events(id, {{"Last-Event-ID", "2"}}), gap(3) + last);
+  for (const std::int64_t seen : {end - 1, end})
+    EXPECT_EQ(events(id, {{"Last-Event-ID", std::to_string(seen)}}), last);
 }
 
 }  // namespace

@@ -262,5 +262,19 @@ TEST_F(Store, AJobThatDoesNotStopIsLeftToTheNextStartAndNotBlamed) {
   EXPECT_EQ(store_->find("j_1")->crashes, 0);
 }
 
+TEST_F(Store, AJobAtWorkAtTenDeathsIsGivenUpThoughItWasTriedApart) {
+  store_->insert(some_job("j_1"));
+  BlobStore blobs(dir_.path());
+  const Log log(LogLevel::off);
+  for (int death = 1; death <= 10; ++death) {
+    ASSERT_EQ(store_->find("j_1")->state, JobState::queued) << death;
+    store_->take("", 1);
+    EventFeed events;
+    JobQueue(*store_, blobs, events, log, {}).recover(true);
+  }
+  EXPECT_EQ(store_->find("j_1")->state, JobState::failed);
+  EXPECT_EQ(store_->find("j_1")->problem.at("code"), "poison");
+}
+
 }  // namespace
 }  // namespace unwrapd::server

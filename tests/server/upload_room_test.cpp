@@ -142,13 +142,19 @@ TEST_F(RoomOfAnUpload, IsMadeForAllThatTheQuotaLeaves) {
   EXPECT_TRUE(evicted_);
 }
 
-TEST_F(RoomOfAnUpload, IsEnoughToSendTheSameAgainOnceAtATime) {
+TEST_F(RoomOfAnUpload, IsEnoughToSendTheSameAgain) {
   add("j_1", 130);  // what was made of it counts, too, and may go beyond the quota
   UploadRoom again = upload(70, 100, 70);
   again.check_declared();
   UploadRoom twice = upload(70, 100, 70);
-  EXPECT_EQ(refusal([&] { twice.check_declared(); }), ErrorCode::quota_exceeded);
+  twice.check_declared();
+  twice.take(70);
   EXPECT_EQ(refusal([&] { again.take(71); }), ErrorCode::quota_exceeded);
+  disk_.set("at work", 250);
+  EXPECT_EQ(refusal([&] { UploadRoom(upload(70, 100, 70)).take(70); }), ErrorCode::storage_full);
+  EXPECT_FALSE(evicted_) << "only the first may take from others";
+  again.take(70);
+  EXPECT_TRUE(evicted_);
 }
 
 TEST_F(RoomOfAnUpload, CanBeMadeOfWhatNoLiveJobNeeds) {

@@ -154,5 +154,46 @@ TEST_F(WatchedSubmission, AnAnswerFromTheStoreIsToldAtOnce) {
   EXPECT_EQ(data_of(second, "succeeded").at("id"), job.at("id"));
 }
 
+class Replays : public RunningServer {
+ protected:
+  Replays() {
+    config_.workers = 1;
+    config_.limits.max_queue = 1;
+    config_.drain_seconds = 100;
+  }
+  httplib::Result post(const std::string& name, int size) {
+    return client().Post("/v1/jobs?stop.iterations=10000", {{"Idempotency-Key", name}},
+                         grid_obj(size), "model/obj");
+  }
+  static std::string id_of(const httplib::Result& answer) {
+    return api::Json::parse(answer->body).at("id");
+  }
+};
+
+TEST_F(Replays, NeedNoPlaceInTheQueue) {
+  start();
+  const std::string running = id_of(post("one", 120));
+  await_state(running, "running");
+  const std::string waiting = id_of(post("two", 4));
+  expect_problem(post("three", 4), 429, "queue_full");
+  EXPECT_EQ(id_of(post("one", 120)), running);
+  EXPECT_EQ(id_of(post("two", 4)), waiting);
+  expect_problem(post("two", 5), 409, "idempotency_conflict");
+  std::jthread drain([&] { service_->drain(); });
+  await([&] { return client().Get("/readyz")->status == 503; });
+  EXPECT_EQ(id_of(post("one", 120)), running);
+  expect_problem(post("three", 4), 503, "draining");
+  client().Delete("/v1/jobs/" + running);
+}
+
+TEST_F(Replays, OfAnIdAreOfThatIdAlone) {
+  start();
+  const std::string name = "j_" + std::string(32, 'a');
+  static_cast<void>(post(name, 4));
+  const auto put =
+      client().Put("/v1/jobs/" + name + "?stop.iterations=10000", grid_obj(4), "model/obj");
+  expect_problem(put, 409, "idempotency_conflict");
+}
+
 }  // namespace
 }  // namespace unwrapd::server
