@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "core/error.hpp"
-#include "server/digests.hpp"
 #include "server/identity.hpp"
 
 namespace unwrapd::server {
@@ -26,18 +25,32 @@ void remove_unfinished(const fs::path& folder) {
   }
 }
 
-/// Syncs the files that are chosen, and replaces their digests.
-void seal_files(const fs::path& folder, const std::function<bool(std::string_view)>& chosen) {
-  Digests digests = read_digests(folder);
-  std::erase_if(digests, [&](const auto& noted) { return chosen(noted.first); });
+std::vector<fs::path> chosen_files(const fs::path& folder,
+                                   const std::function<bool(std::string_view)>& chosen) {
+  std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
     const bool is_content = name != kDigestsFile && !is_unfinished(entry.path());
-    if (!is_content || !chosen(name)) continue;
-    sync_file(entry.path());
-    digests[name] = sha256_of(File::open(entry.path()));
+    if (is_content && chosen(name)) files.push_back(entry.path());
   }
-  write_digests(folder, digests);  // which syncs the folder
+  return files;
+}
+
+/// Syncs the files that are chosen, and replaces their digests: by those that are known, or by
+/// those of the bytes that are there. Digests have their name when all files are on the disk. The
+/// folder is not synced.
+void seal_files(const fs::path& folder, const std::function<bool(std::string_view)>& chosen,
+                const Digests& known = {}) {
+  const std::vector<fs::path> files = chosen_files(folder, chosen);
+  Syncs syncs(files);
+  Digests digests = read_digests(folder);
+  std::erase_if(digests, [&](const auto& noted) { return chosen(noted.first); });
+  for (const fs::path& file : files) {
+    const std::string name = file.filename();
+    const auto found = known.find(name);
+    digests[name] = found != known.end() ? found->second : sha256_of(File::open(file));
+  }
+  write_digests(folder, digests, [&] { syncs.finish(); });
 }
 
 /// Whether a document has several names: a mesh's and those of the jobs that share it.
@@ -79,7 +92,9 @@ void note_first_version(const fs::path& blobs, const fs::path& done) {
   if (fs::exists(done)) return;
   for (const fs::directory_entry& entry : fs::directory_iterator(blobs)) {
     const bool has_none = entry.is_directory() && !fs::exists(entry.path() / kDigestsFile);
-    if (has_none) seal_files(entry.path(), [](std::string_view) { return true; });
+    if (!has_none) continue;
+    seal_files(entry.path(), [](std::string_view) { return true; });
+    sync_directory(entry.path());
   }
   write_file(done, "Every folder of blobs/ has its file `digests`.\n");
 }
@@ -109,9 +124,10 @@ fs::path BlobStore::begin_upload(std::string_view upload) {
   return folder;
 }
 
-void BlobStore::keep_upload(std::string_view upload, std::string_view job) {
-  seal_files(incoming_ / upload, is_input);
-  rename_durably(incoming_ / upload, blobs_ / job);
+void BlobStore::keep_upload(std::string_view upload, std::string_view job, const Digests& known) {
+  seal_files(incoming_ / upload, is_input, known);
+  rename_unsynced(incoming_ / upload, blobs_ / job);
+  Syncs({blobs_ / job, blobs_, incoming_}).finish();
   room_.give_back(upload);
   room_.set(job, bytes_below(blobs_ / job));
 }
@@ -166,6 +182,7 @@ std::int64_t BlobStore::bytes(std::string_view job) const { return bytes_below(b
 std::int64_t BlobStore::seal(std::string_view job) {
   const std::lock_guard lock(noting_);
   seal_files(blobs_ / job, [](std::string_view file) { return !is_input(file); });
+  sync_directory(blobs_ / job);
   const std::int64_t bytes = bytes_below(blobs_ / job);
   room_.set(job, bytes);
   return bytes;
@@ -176,6 +193,7 @@ void BlobStore::note(std::string_view job, const std::string& file) {
   Digests digests = read_digests(blobs_ / job);
   digests[file] = sha256_of(File::open(path(job, file)));
   write_digests(blobs_ / job, digests);
+  sync_directory(blobs_ / job);
   if (keeping_.kept) keeping_.kept(job, bytes_below(blobs_ / job));
 }
 
@@ -226,6 +244,7 @@ bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
     Digests digests = read_digests(blobs_ / job);
     digests.merge(Digests(adopted));
     write_digests(blobs_ / job, digests);
+    sync_directory(blobs_ / job);
     room_.set(job, bytes_below(blobs_ / job));
     return true;
   } catch (const std::exception&) {  // then the job is run like any other
@@ -243,8 +262,11 @@ std::shared_ptr<const File> BlobStore::open(std::string_view job, std::string_vi
 }
 
 std::string BlobStore::read(std::string_view job, std::string_view file) const {
-  const std::shared_ptr<const File> opened = open(job, file);
-  return opened->read(0, static_cast<std::size_t>(opened->size()));
+  std::string bytes = read_file(path(job, file));
+  const Digests digests = read_digests(blobs_ / job);
+  const auto noted = digests.find(file);
+  if (noted == digests.end() || noted->second != sha256(bytes)) corrupt(file);
+  return bytes;
 }
 
 std::string BlobStore::digest(std::string_view job, std::string_view file) const {

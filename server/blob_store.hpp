@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/digests.hpp"
 #include "server/disk_room.hpp"
 #include "server/files.hpp"
 
@@ -47,8 +48,9 @@ class BlobStore {
 
   /// A new empty folder for an upload.
   std::filesystem::path begin_upload(std::string_view upload);
-  /// The upload, its files synced and their digests noted, becomes the job's folder.
-  void keep_upload(std::string_view upload, std::string_view job);
+  /// The upload, its files synced and their digests noted, becomes the job's folder. known: digests
+  /// of files as they came, which are noted as they are.
+  void keep_upload(std::string_view upload, std::string_view job, const Digests& known = {});
   void drop_upload(std::string_view upload) noexcept;
 
   [[nodiscard]] std::filesystem::path path(std::string_view job, std::string_view file) const;

@@ -27,10 +27,11 @@ Digests read_digests(const std::filesystem::path& folder) {
   return digests;
 }
 
-void write_digests(const std::filesystem::path& folder, const Digests& digests) {
+void write_digests(const std::filesystem::path& folder, const Digests& digests,
+                   const std::function<void()>& before_naming) {
   std::string text;
   for (const auto& [file, digest] : digests) text += digest + std::string(kSeparator) + file + "\n";
-  write_file(folder / kDigestsFile, text);
+  write_file_unlisted(folder / kDigestsFile, text, before_naming);
 }
 
 std::string sha256_of(const File& file) {

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -16,6 +17,7 @@ namespace {
 
 constexpr mode_t kFileMode = 0640;
 constexpr std::string_view kPartSuffix = ".part";
+constexpr std::size_t kSyncsAtOnce = 4;
 
 /// Throws with the text of errno; the path stays out of it, since users read it.
 [[noreturn]] void fail(std::string_view doing) {
@@ -42,10 +44,6 @@ void write_part(const std::filesystem::path& path, std::string_view bytes, const
     remove_tree(part);
     throw;
   }
-}
-
-void give_name(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (::rename(from.c_str(), to.c_str()) != 0) fail("name a file");
 }
 
 }  // namespace
@@ -110,20 +108,45 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
+  write_file_unlisted(path, bytes, [] {});
+  sync_directory(path.parent_path());
+}
+
+void write_file_unlisted(const std::filesystem::path& path, std::string_view bytes,
+                         const std::function<void()>& before_naming) {
   write_part(path, bytes, [&](File& file, const std::filesystem::path& part) {
     file.sync();
-    rename_durably(part, path);
+    before_naming();
+    rename_unsynced(part, path);
   });
 }
 
 void write_file_unsynced(const std::filesystem::path& path, std::string_view bytes) {
   write_part(path, bytes, [&](File& file, const std::filesystem::path& part) {
     file.begin_sync();
-    give_name(part, path);
+    rename_unsynced(part, path);
   });
 }
 
 void sync_file(const std::filesystem::path& path) { File::open(path).sync(); }
+
+/// Where no thread is left to be had, a share waits for finish().
+Syncs::Syncs(const std::vector<std::filesystem::path>& files) {
+  const std::size_t count = std::min(files.size(), kSyncsAtOnce);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<std::filesystem::path> share;
+    for (std::size_t i = k; i < files.size(); i += count) share.push_back(files[i]);
+    shares_.push_back(
+        std::async(std::launch::async | std::launch::deferred, [share = std::move(share)] {
+          for (const std::filesystem::path& file : share) sync_file(file);
+        }));
+  }
+}
+
+void Syncs::finish() {
+  for (std::future<void>& share : shares_) share.get();
+  shares_.clear();
+}
 
 bool is_unfinished(const std::filesystem::path& path) { return path.extension() == kPartSuffix; }
 
@@ -132,10 +155,8 @@ void sync_directory(const std::filesystem::path& directory) {
   if (::fsync(handle.descriptor()) != 0) fail("write a directory");
 }
 
-void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {
-  give_name(from, to);
-  sync_directory(to.parent_path());
-  if (from.parent_path() != to.parent_path()) sync_directory(from.parent_path());
+void rename_unsynced(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) fail("name a file");
 }
 
 void make_directories(const std::filesystem::path& directory) {

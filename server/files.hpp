@@ -5,9 +5,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace unwrapd::server {
 
@@ -46,11 +49,28 @@ std::string read_file(const std::filesystem::path& path);
 /// Replaces path by a file with these bytes; readers see the old one or the new one.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// The same, but its name need not survive a loss of power before sync_directory() of its
+/// directory. before_naming: done when the bytes are on the disk and have no name yet.
+void write_file_unlisted(const std::filesystem::path& path, std::string_view bytes,
+                         const std::function<void()>& before_naming);
+
 /// The same, but what is written need not survive a loss of power before sync_file(path) and
 /// sync_directory() of its directory, so that several files wait for the disk but once.
 void write_file_unsynced(const std::filesystem::path& path, std::string_view bytes);
 
 void sync_file(const std::filesystem::path& path);
+
+/// Files and directories that are being synced while the caller goes on: what waits for the disk at
+/// the same time waits but once.
+class Syncs {
+ public:
+  explicit Syncs(const std::vector<std::filesystem::path>& files);
+  /// On return all of them survive a loss of power. Throws as sync_file() does.
+  void finish();
+
+ private:
+  std::vector<std::future<void>> shares_;
+};
 
 /// Whether path is what write_file() leaves behind when the machine stops in the middle of it.
 bool is_unfinished(const std::filesystem::path& path);
@@ -58,8 +78,8 @@ bool is_unfinished(const std::filesystem::path& path);
 /// Makes the names in a directory survive a loss of power.
 void sync_directory(const std::filesystem::path& directory);
 
-/// Renames, and syncs the directories of both names.
-void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
+/// Renames; no directory is synced.
+void rename_unsynced(const std::filesystem::path& from, const std::filesystem::path& to);
 
 void make_directories(const std::filesystem::path& directory);
 

@@ -105,7 +105,7 @@ JobRecord JobQueue::submit(Submission submission) {
     blobs_.drop_upload(submission.upload);
     return std::move(*known);
   }
-  blobs_.keep_upload(submission.upload, job.id);
+  blobs_.keep_upload(submission.upload, job.id, digests_of(job.input));
   try {
     enqueue(job, submission, submission.anew ? std::nullopt : find_answer(job));
   } catch (...) {

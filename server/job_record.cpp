@@ -1,5 +1,6 @@
 #include "server/job_record.hpp"
 
+#include "server/blob_store.hpp"
 #include "server/clock.hpp"
 
 namespace unwrapd::server {
@@ -12,6 +13,16 @@ api::Job to_job(const JobRecord& record) {
           .options = record.options,
           .progress = {},
           .problem = record.problem};
+}
+
+Digests digests_of(const JobInput& input) {
+  Digests digests;
+  const auto add = [&](std::string_view file, const std::string& sha256) {
+    if (!sha256.empty()) digests.emplace(file, sha256);
+  };
+  add(kDocumentFile, input.sha256);
+  for (const StoredBuffer& buffer : input.buffers) add(buffer.file, buffer.sha256);
+  return digests;
 }
 
 }  // namespace unwrapd::server

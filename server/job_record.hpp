@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "api/job.hpp"
+#include "server/digests.hpp"
 
 namespace unwrapd::server {
 
@@ -25,6 +26,9 @@ struct JobInput {
   std::int64_t bytes = 0;             ///< of the document and its buffers
   std::vector<StoredBuffer> buffers;  ///< beside the document
 };
+
+/// Of an upload that has just come: all its files but long options.
+Digests digests_of(const JobInput& input);
 
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct JobRecord {

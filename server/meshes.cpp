@@ -97,7 +97,7 @@ SentMesh Meshes::settle(const Request& request, MeshRecord mesh, const std::stri
   const std::int64_t most = request.caller.quota.max_bytes;
   if (most > 0 && jobs_.usage(mesh.owner).stored_bytes + mesh.bytes > most)
     throw quota_exceeded(most);
-  blobs_.keep_upload(upload, mesh.id);
+  blobs_.keep_upload(upload, mesh.id, {{std::string(kDocumentFile), mesh.sha256}});
   try {
     store_.put(mesh);
   } catch (...) {

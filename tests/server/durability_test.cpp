@@ -93,6 +93,16 @@ TEST_F(Durability, ADamagedFileIsNeverHandedOut) {
   }
 }
 
+TEST_F(Durability, AnUploadDamagedBeforeItIsAJobIsNotTakenForWhatCame) {
+  BlobStore blobs(dir_.path());
+  const std::filesystem::path folder = blobs.begin_upload("u");
+  write_file(folder / kDocumentFile, "v 0 0 0");
+  damage(folder / kDocumentFile);
+  blobs.keep_upload("u", "j_1", {{std::string(kDocumentFile), sha256("v 0 0 0")}});
+  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", kDocumentFile)); }).code(),
+            ErrorCode::storage_corrupt);
+}
+
 TEST_F(Durability, SealingDoesNotPassOverADamagedInput) {
   BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");

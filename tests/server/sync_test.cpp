@@ -1,12 +1,19 @@
 // What has to be on the disk before an answer says so: every fsync of the process is noted here,
 // and the file that it is of must not have changed since.
+#include <fcntl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
 #include <map>
 #include <mutex>
+#include <string>
+#include <vector>
 
 #include "server/blob_store.hpp"
 #include "server/digests.hpp"
@@ -31,21 +38,15 @@ Synced state_of(const struct stat& status) {
 
 std::mutex noting;
 std::map<FileId, Synced> synced;
+std::vector<std::filesystem::path> noted_early;  // files whose digests were named before they were
+bool is_digests_turn = false;  // the other files are synced after the next digests only
+std::condition_variable turned;
 
-}  // namespace
-
-/// In the place of the C library's, for the whole of this program.
-extern "C" int fsync(int descriptor) {
-  struct stat status {};
-  if (::fstat(descriptor, &status) == 0) {
-    const std::lock_guard lock(noting);
-    synced.insert_or_assign(id_of(status), state_of(status));
-  }
-  return static_cast<int>(::syscall(SYS_fsync, descriptor));
+bool is_of_digests(int descriptor) {
+  const std::filesystem::path link = "/proc/self/fd/" + std::to_string(descriptor);
+  std::error_code none;
+  return std::filesystem::read_symlink(link, none).filename() == "digests.part";
 }
-
-namespace unwrapd::server {
-namespace {
 
 bool is_synced(const std::filesystem::path& path) {
   struct stat status {};
@@ -56,6 +57,34 @@ bool is_synced(const std::filesystem::path& path) {
   const Synced now = state_of(status);
   return found->second.changed == now.changed && found->second.size == now.size;
 }
+
+}  // namespace
+
+/// In the place of the C library's, for the whole of this program, as the next one.
+extern "C" int fsync(int descriptor) {
+  const bool of_digests = is_of_digests(descriptor);
+  if (std::unique_lock lock(noting); !of_digests)
+    turned.wait_for(lock, std::chrono::seconds(10), [] { return !is_digests_turn; });
+  struct stat before {};
+  const bool is_known = ::fstat(descriptor, &before) == 0;
+  const auto result = static_cast<int>(::syscall(SYS_fsync, descriptor));
+  const std::lock_guard lock(noting);
+  if (is_known && result == 0) synced.insert_or_assign(id_of(before), state_of(before));
+  if (of_digests) is_digests_turn = false;
+  turned.notify_all();
+  return result;
+}
+
+extern "C" int rename(const char* from, const char* to) {
+  const std::filesystem::path path(to);
+  if (path.filename() == unwrapd::server::kDigestsFile)
+    for (const auto& entry : std::filesystem::directory_iterator(path.parent_path()))
+      if (entry.path() != path && !is_synced(entry.path())) noted_early.push_back(entry.path());
+  return ::renameat(AT_FDCWD, from, AT_FDCWD, to);
+}
+
+namespace unwrapd::server {
+namespace {
 
 /// A folder, and all that is in it.
 void expect_synced(const std::filesystem::path& folder) {
@@ -79,6 +108,9 @@ class TextBody final : public BodyReader {
 
 class Synchronising : public testing::Test {
  protected:
+  void SetUp() override { noted_early.clear(); }
+  void TearDown() override { EXPECT_THAT(noted_early, testing::IsEmpty()); }
+
   TempDir dir_;
 };
 
@@ -89,7 +121,7 @@ TEST_F(Synchronising, AnUploadIsOnTheDiskBeforeItIsAJob) {
     TextBody body;
     const Upload upload = in_parts ? receive_parts(body, folder) : receive_asset(body, folder);
     const std::string job = in_parts ? "j_parts" : "j_whole";
-    blobs.keep_upload("u", job);
+    blobs.keep_upload("u", job, digests_of(upload.input));
     EXPECT_EQ(blobs.read(job, kDocumentFile), "v 0 0 0");
     EXPECT_EQ(blobs.digest(job, kDocumentFile), upload.input.sha256);
     expect_synced(blobs.path(job, ""));
@@ -102,11 +134,14 @@ TEST_F(Synchronising, ResultsAreOnTheDiskWhenTheyAreSealed) {
   write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
   blobs.keep_upload("u", "j_1");
   blobs.write_unsealed("j_1", kReportFile, "{}");
+  for (const char* format : {"gltf", "obj", "json", "stl", "ply"})  // more than are synced at once
+    blobs.write_unsealed("j_1", result_file(format), format);
   blobs.write_unsealed("j_1", result_file("glb"), std::string(3'000'000, 'x'));
   EXPECT_FALSE(is_synced(blobs.path("j_1", kReportFile)));  // or the next line tells nothing
+  is_digests_turn = true;  // who does not wait for the others gives it its name too early
   blobs.seal("j_1");
   expect_synced(blobs.path("j_1", ""));
-  EXPECT_EQ(read_digests(blobs.path("j_1", "")).size(), 3U);
+  EXPECT_EQ(read_digests(blobs.path("j_1", "")).size(), 8U);
 }
 
 TEST_F(Synchronising, AFileWrittenByItselfIsOnTheDiskAtOnce) {
