@@ -56,15 +56,16 @@ Disk page_disk(const Chart& chart, const UvMap& uv) {
   return {.faces = chart.mesh.faces,
           .loops = chart.loops,
           .positions = std::vector<Vec3>(uv.size(), Vec3::Zero()),
-          .rest = std::vector<RestTriangle>(chart.mesh.faces.size()),
+          .rest = {},
           .corners = vertex_corners(chart.mesh.faces, chart.mesh.vertex_count())};
 }
 
 void set_least_height(double least_height, const UvMap& uv, Disk& disk) {
-  for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    const auto& [a, b, c] = disk.faces[t];
-    disk.rest[t] = roomy({uv[a], uv[b], uv[c]}, least_height);
-  }
+  std::vector<RestTriangle> rest;
+  rest.reserve(disk.faces.size());
+  for (const auto& [a, b, c] : disk.faces)
+    rest.push_back(roomy({uv[a], uv[b], uv[c]}, least_height));
+  disk.rest = std::move(rest);
 }
 
 }  // namespace

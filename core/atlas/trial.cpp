@@ -56,15 +56,15 @@ bool is_disk(const Part& part) {
 
 /// In the units of the sheet: what the solver reads of a part does not ask for area 1.
 Disk disk_of(const Sheet& sheet, std::span<const Index> faces, const Part& part) {
-  Disk disk{.faces = part.mesh.faces,
-            .loops = part.loops,
-            .positions = part.mesh.positions,
-            .rest = {},
-            .corners = vertex_corners(part.mesh.faces, part.mesh.vertex_count()),
-            .unit = 1};
-  disk.rest.reserve(faces.size());
-  for (const Index t : faces) disk.rest.push_back(sheet.rest[t]);
-  return disk;
+  std::vector<RestTriangle> rest;
+  rest.reserve(faces.size());
+  for (const Index t : faces) rest.push_back(sheet.rest[t]);
+  return {.faces = part.mesh.faces,
+          .loops = part.loops,
+          .positions = part.mesh.positions,
+          .rest = std::move(rest),
+          .corners = vertex_corners(part.mesh.faces, part.mesh.vertex_count()),
+          .unit = 1};
 }
 
 /// The global step from the rotations of triangles that need not hold together.

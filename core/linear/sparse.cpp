@@ -120,21 +120,20 @@ SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count
 
 VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count,
                              const std::stop_token& stop) {
-  VertexCorners list;
-  list.begin.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
-  list.corner.resize(3 * faces.size());
+  std::vector<Index> begin(static_cast<std::size_t>(vertex_count) + 1, 0);
+  std::vector<Index> corner(3 * faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t) {
     look_now_and_then(t, stop);
-    for (Index v : faces[t]) ++list.begin[static_cast<std::size_t>(v) + 1];
+    for (Index v : faces[t]) ++begin[static_cast<std::size_t>(v) + 1];
   }
-  for (std::size_t v = 1; v < list.begin.size(); ++v) list.begin[v] += list.begin[v - 1];
-  std::vector<Index> next(list.begin.begin(), list.begin.end() - 1);
+  for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  std::vector<Index> next(begin.begin(), begin.end() - 1);
   for (std::size_t c = 0; c < 3 * faces.size(); ++c) {
     look_now_and_then(c, stop);
     const auto v = static_cast<std::size_t>(faces[c / 3][c % 3]);
-    list.corner[static_cast<std::size_t>(next[v]++)] = static_cast<Index>(c);
+    corner[static_cast<std::size_t>(next[v]++)] = static_cast<Index>(c);
   }
-  return list;
+  return {std::move(begin), std::move(corner)};
 }
 
 }  // namespace unwrapd

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/executor.hpp"
+#include "core/mesh/shared_list.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd {
@@ -26,8 +27,8 @@ SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count
 /// Corners by vertex: the corners (3t+i) of vertex v are corner[begin[v]] .. corner[begin[v+1]-1],
 /// ascending. Sums over a vertex in this order are the same for any number of threads.
 struct VertexCorners {
-  std::vector<Index> begin;   ///< vertex_count + 1 entries
-  std::vector<Index> corner;  ///< 3 * face_count entries
+  SharedList<Index> begin;   ///< vertex_count + 1 entries
+  SharedList<Index> corner;  ///< 3 * face_count entries
 };
 VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count,
                              const std::stop_token& stop = {});

@@ -3,23 +3,23 @@
 
 #include <span>
 #include <stop_token>
-#include <vector>
 
 #include "core/executor.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/halfedges.hpp"
+#include "core/mesh/shared_list.hpp"
 #include "core/solver_core.hpp"
 
 namespace unwrapd {
 
 /// Views into a chart, plus its geometry in units in which the surface area is 1: results do not
-/// depend on the scale or the place of the input.
+/// depend on the scale or the place of the input. Copies share their lists.
 struct Disk {
   std::span<const Triangle> faces;
   std::span<const BoundaryLoop> loops;  ///< the longest first
-  std::vector<Vec3> positions;          ///< one a vertex, centroid at the origin
-  std::vector<RestTriangle> rest;       ///< one a face, areas add up to 1 (up to the height floor)
+  SharedList<Vec3> positions;           ///< one a vertex, centroid at the origin
+  SharedList<RestTriangle> rest;        ///< one a face, areas add up to 1 (up to the height floor)
   VertexCorners corners;
   double unit = 1;  ///< mesh units in one disk unit of length
   SolverCore* core =

@@ -13,6 +13,10 @@ template <typename T>
 std::size_t bytes_of(const std::vector<T>& list) {
   return sizeof(T) * list.size();
 }
+template <typename T>
+std::size_t bytes_of(const SharedList<T>& list) {
+  return sizeof(T) * list.size();
+}
 inline std::size_t bytes_of(const Halfedges& halfedges) { return bytes_of(halfedges.twin); }
 inline std::size_t bytes_of(const Analysis& analysis) { return analysis.bytes(); }
 inline std::size_t bytes_of(const Factor& factor) { return factor.bytes(); }

@@ -27,7 +27,11 @@ constexpr double kShift = 1e-10;  // of the mean of the diagonal: translations a
 BarrierMesh loose(const Disk& disk, const std::vector<Spring>& springs,
                   const std::stop_token& stop) {
   const std::vector<char> fixed(disk.positions.size(), 0);
-  return {{disk.faces.begin(), disk.faces.end()}, disk.rest, number_free(fixed), springs, stop};
+  return {{disk.faces.begin(), disk.faces.end()},
+          {disk.rest.begin(), disk.rest.end()},
+          number_free(fixed),
+          springs,
+          stop};
 }
 
 class Settling {

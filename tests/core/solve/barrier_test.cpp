@@ -20,7 +20,9 @@ constexpr double kRigid = std::numeric_limits<double>::infinity();
 
 BarrierMesh loose_mesh(const Disk& disk, std::vector<char> fixed = {}) {
   fixed.resize(disk.positions.size(), 0);
-  return {{disk.faces.begin(), disk.faces.end()}, disk.rest, number_free(fixed)};
+  return {{disk.faces.begin(), disk.faces.end()},
+          {disk.rest.begin(), disk.rest.end()},
+          number_free(fixed)};
 }
 
 /// The energy of the header's formula, by the singular values of a matrix.

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <random>
+#include <span>
 #include <utility>
 
 #include "core/atlas/charts.hpp"
@@ -26,7 +27,7 @@ inline OwnedDisk disk_of(TriMesh mesh) {
 }
 
 /// The map that drops the third coordinate.
-inline UvMap from_above(const std::vector<Vec3>& positions) {
+inline UvMap from_above(std::span<const Vec3> positions) {
   UvMap uv;
   for (const Vec3& p : positions) uv.emplace_back(p.x(), p.y());
   return uv;

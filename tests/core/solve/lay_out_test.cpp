@@ -153,7 +153,7 @@ TEST(LayOut, NeedsTheAnglesOnly) {
 
 TEST(LayOut, OfTheDiskItselfIsTheConformalMap) {
   const OwnedDisk d = disk_of(shapes::sphere_cap(20, 8));
-  const UvMap uv = lay_out(d.disk, d.disk.rest);
+  const UvMap uv = lay_out(d.disk, {d.disk.rest.begin(), d.disk.rest.end()});
   EXPECT_LT(distortion(distortion_sums(d.disk.rest, d.disk.faces, uv)).angle, 2.01);
 }
 

@@ -19,7 +19,7 @@ using Triplet = Eigen::Triplet<double, Index>;
 /// Of more vertices and faces than one part has, numbered at random.
 TriMesh several_parts() { return shapes::shuffled(shapes::random_disk(100, 3), 4); }
 
-std::vector<double> weights_of(const std::vector<RestTriangle>& rest) {
+std::vector<double> weights_of(std::span<const RestTriangle> rest) {
   std::vector<double> weight;
   for (const RestTriangle& t : rest) weight.insert(weight.end(), t.cot.begin(), t.cot.end());
   return weight;
@@ -88,7 +88,7 @@ TEST(SetUp, HasTheSameBitsOnTwoThreads) {
   const Disk& one = owned.disk;
   const Disk both = make_disk(owned.chart->mesh, one.loops, two);
   EXPECT_EQ(one.unit, both.unit);
-  EXPECT_EQ(one.positions, both.positions);
+  EXPECT_TRUE(std::ranges::equal(one.positions, both.positions));
   EXPECT_TRUE(std::ranges::equal(
       one.rest, both.rest,
       [](const RestTriangle& a, const RestTriangle& b) { return are_equal(a, b); }));
@@ -98,6 +98,14 @@ TEST(SetUp, HasTheSameBitsOnTwoThreads) {
                         lower_laplacian(one.faces, one.vertex_count(), weight, two)));
   const UvMap uv = shapes::from_above(one);
   EXPECT_EQ(uv_area(one.rest, one.faces, uv), uv_area(one.rest, one.faces, uv, two));
+}
+
+TEST(SetUp, ADisksCopyHasItsLists) {
+  const shapes::OwnedDisk owned = shapes::disk_of(shapes::random_disk(5, 3));
+  const Disk copy = owned.disk;
+  EXPECT_EQ(copy.positions.data(), owned.disk.positions.data());
+  EXPECT_EQ(copy.rest.data(), owned.disk.rest.data());
+  EXPECT_EQ(copy.corners.corner.data(), owned.disk.corners.corner.data());
 }
 
 }  // namespace
