@@ -48,6 +48,11 @@ struct FaceBlocks {
   static constexpr Index kOwn = 2048;  ///< vertices of a block: fixed, so no sum depends on threads
 };
 
+inline std::size_t bytes_of(const FaceBlocks& blocks) {
+  return sizeof(FaceBlock) * blocks.all.size() + sizeof(FaceGroup) * blocks.groups.size() +
+         sizeof(Index) * blocks.beyond.size();
+}
+
 /// rest: one a face; rank: one a vertex, a permutation. Throws Error{cancelled}.
 FaceBlocks face_blocks(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                        std::span<const Index> rank, const std::stop_token& stop = {});

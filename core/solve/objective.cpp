@@ -3,6 +3,8 @@
 #include <cassert>
 #include <utility>
 
+#include "core/solve/kept.hpp"
+
 namespace unwrapd {
 namespace {
 
@@ -14,6 +16,13 @@ Holds renumbered(Holds holds, std::span<const Index> rank) {
   return holds;
 }
 
+std::shared_ptr<const FaceBlocks> kept_blocks(const Disk& disk, std::span<const Index> rank) {
+  const Content content = Content("face blocks").add(disk.content).add(rank);
+  return kept(disk, content, [&] {
+    return std::make_shared<const FaceBlocks>(face_blocks(disk.rest, disk.faces, rank, disk.stop));
+  });
+}
+
 }  // namespace
 
 Objective::Objective(const Disk& disk, const Rigidity& rigidity, Holds holds,
@@ -21,8 +30,8 @@ Objective::Objective(const Disk& disk, const Rigidity& rigidity, Holds holds,
     : rigidity_(rigidity),
       holds_(renumbered(std::move(holds), rank)),
       executor_(executor),
-      blocks_(face_blocks(disk.rest, disk.faces, rank, disk.stop)),
-      beyond_(blocks_.beyond.size()) {}
+      blocks_(kept_blocks(disk, rank)),
+      beyond_(blocks_->beyond.size()) {}
 
 double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const {
   double energy = 0;
@@ -36,7 +45,7 @@ double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) 
 }
 
 double Objective::evaluate(std::span<const Vec2> uv, std::span<Vec2> force) {
-  const LocalSums fits = LocalStep{blocks_, uv, rigidity_, force, beyond_}.run(executor_);
+  const LocalSums fits = LocalStep{*blocks_, uv, rigidity_, force, beyond_}.run(executor_);
   uv_area_ = fits.uv_area;
   const double springs = pull_springs(uv, force);
   for (const FixedPoint& point : holds_.fixed) force[at(point.vertex)].setZero();

@@ -2,6 +2,7 @@
 // What the iterations of ARAP and Hybrid minimise: the energy of the method, each triangle's fit
 // being the best there is (min over L of Eq. 2, 5), plus that of the springs (Sec. 7).
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -32,7 +33,7 @@ class Objective {
   Rigidity rigidity_;
   Holds holds_;  // by ranks
   Executor& executor_;
-  FaceBlocks blocks_;
+  std::shared_ptr<const FaceBlocks> blocks_;
   std::vector<Vec2> beyond_;  // scratch of the local step
   double uv_area_ = 0;
 };
