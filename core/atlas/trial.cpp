@@ -55,7 +55,8 @@ bool is_disk(const Part& part) {
 }
 
 /// In the units of the sheet: what the solver reads of a part does not ask for area 1.
-Disk disk_of(const Sheet& sheet, std::span<const Index> faces, const Part& part) {
+Disk disk_of(const Sheet& sheet, std::span<const Index> faces, const Part& part,
+             const std::stop_token& stop) {
   std::vector<RestTriangle> rest;
   rest.reserve(faces.size());
   for (const Index t : faces) rest.push_back(sheet.rest[t]);
@@ -64,7 +65,8 @@ Disk disk_of(const Sheet& sheet, std::span<const Index> faces, const Part& part)
           .positions = part.mesh.positions,
           .rest = std::move(rest),
           .corners = vertex_corners(part.mesh.faces, part.mesh.vertex_count()),
-          .unit = 1};
+          .unit = 1,
+          .stop = stop};
 }
 
 /// The global step from the rotations of triangles that need not hold together.
@@ -89,10 +91,11 @@ UvMap stitched(const Disk& disk, std::span<const CornerUv> seed, const GlobalSte
 
 UvMap arap_map(const Disk& disk, const TrialRules& rules, std::span<const CornerUv> seed) {
   const Holds nothing;
-  const GlobalStep global(disk, nothing);
-  UvMap uv = stitched(disk, seed, global);
   SerialExecutor serial;
-  Objective objective(disk, {}, nothing, global.rank(), serial);
+  JobExecutor job(serial, rules.stop);
+  const GlobalStep global(disk, nothing, &job);
+  UvMap uv = stitched(disk, seed, global);
+  Objective objective(disk, {}, nothing, global.rank(), job);
   uv = by_rank(uv, global.rank());
   std::vector<Vec2> step(uv.size());
   for (int k = 1; k < rules.iterations && !is_cancelled(rules.stop); ++k) {
@@ -112,7 +115,8 @@ Verdict verdict_on(const Disk& disk, const DistortionSums& sums, const TrialRule
                    const UvMap& uv) {
   if (sums.flipped > 0) return Verdict::flawed;
   if (!(excess_of(sums).worst() <= rules.most_excess)) return Verdict::distorted;
-  return is_plainly_injective(disk.faces, disk.loops, uv) ? Verdict::sound : Verdict::flawed;
+  return is_plainly_injective(disk.faces, disk.loops, uv, disk.stop) ? Verdict::sound
+                                                                     : Verdict::flawed;
 }
 
 }  // namespace
@@ -122,7 +126,7 @@ TrialResult try_map(const Sheet& sheet, std::span<const char> open, const TrialR
   Part part = part_of(sheet, open, region.faces);
   if (!is_disk(part)) return {};
   part.loops = boundary_loops(part.mesh, part.halfedges);
-  const Disk disk = disk_of(sheet, region.faces, part);
+  const Disk disk = disk_of(sheet, region.faces, part, rules.stop);
   UvMap uv = arap_map(disk, rules, region.uv);
   const DistortionSums sums = distortion_sums(disk.rest, disk.faces, uv);
   const TrialResult result{verdict_on(disk, sums, rules, uv), excess_of(sums)};
@@ -130,7 +134,7 @@ TrialResult try_map(const Sheet& sheet, std::span<const char> open, const TrialR
   for (std::size_t t = 0; t < disk.faces.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) region.uv[t][i] = scale * uv[disk.faces[t][i]];
   return result;
-} catch (const Error&) {  // the system was too ill-conditioned to factor
+} catch (const Error&) {  // told to stop, or the system was too ill-conditioned to factor
   return {Verdict::flawed, {}};
 }
 

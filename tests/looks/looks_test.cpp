@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "core/atlas/trial.hpp"
 #include "core/error.hpp"
 #include "core/solve/barrier.hpp"
 #include "core/solve/conformal.hpp"
@@ -127,6 +128,25 @@ void expect_to_stop_at_any_look(const TriMesh& mesh, const UnwrapOptions& option
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ErrorCode::cancelled) << e.what() << ", look " << last << " of " << all;
     }
+}
+
+/// A try is as long as a union is large: its order, factor, solutions and overlap test look, too.
+TEST(Looks, ComeWithEveryTryOfAUnion) {
+  const TriMesh mesh = shapes::annulus(160, 50);
+  const Sheet sheet = make_sheet(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+  Region region;
+  for (Index t = 0; t < sheet.face_count(); ++t) region.faces.push_back(t);
+  region.uv = projected(sheet, region.faces);
+  const std::stop_source source;
+  const TrialRules rules{.most_excess = 1, .stop = source.get_token()};
+  const auto work = [&] {
+    Region own = region;
+    return try_map(sheet, {}, rules, own).verdict;
+  };
+  const long all = looks_of([&] { EXPECT_EQ(work(), Verdict::sound); });
+  EXPECT_GE(all, 40);
+  for (long last = 3; last < all; last += all / 5)
+    EXPECT_LE(looks_of(work, last), last + 40);  // it goes on nowhere
 }
 
 TEST(Looks, AreObeyedByEveryMethod) {
