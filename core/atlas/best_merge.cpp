@@ -8,16 +8,19 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "core/atlas/glue_slits.hpp"
 #include "core/atlas/halve.hpp"
-#include "core/atlas/labels.hpp"
 #include "core/atlas/loosen.hpp"
-#include "core/atlas/pack.hpp"
+#include "core/atlas/partition_cost.hpp"
 #include "core/atlas/straighten.hpp"
+#include "core/atlas/trial_memory.hpp"
 
 namespace unwrapd {
 namespace {
@@ -37,145 +40,138 @@ constexpr double kShareOfMends = 0.7, kMostMends = 20;  // of how often all coul
 constexpr double kWhimOfMends = 0.3, kTriesOfAMend = 0.3;
 constexpr int kFirstLotOfMends = 100;
 constexpr double kFittingFill = 0.72;  // see MergeRules::least_fill
-constexpr double kCostOfAChart = 0.15;
-constexpr double kWantedFill = 0.7, kCostOfEmptiness = 14;  // for a page that is empty beyond that
-constexpr double kLargeRegion = 0.1, kEnoughFill = 0.645;  // that is worth cutting across; for what
-constexpr double kFacesOfATry = 20, kTriesOfFinishing = 1;  // for each face; see Effort
-constexpr double kMostPage = 1.5;  // of the sheet: with more beside it, others fill the gaps
+constexpr double kLargeRegion = 0.1;   // that is worth cutting across
+const CostRules kUsual{.chart = 0.15, .wanted_fill = 0.7};
+const CostRules kAcross{.chart = 0.15, .wanted_fill = 0.645};  // to cut across for
+constexpr double kFacesOfATry = 20, kTriesOfFinishing = 1;     // for each face; see Effort
+constexpr std::size_t kAbreast = 4;                            // tries at once, on as many threads
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::vector<Outline> outlines(const Sheet& sheet, const Partition& partition,
-                              const std::vector<Index>& owner) {
-  std::vector<Outline> all(partition.patches.size());
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const Region& region = partition.patches[k].region;
-    for (std::size_t f = 0; f < region.faces.size(); ++f)
-      for (Index i = 0; i < 3; ++i) {
-        const Index h = 3 * region.faces[f] + i, twin = sheet.halfedges.twin[h];
-        const CornerUv& uv = region.uv[f];
-        if (twin == kNoTwin || partition.open[h] != 0 ||
-            owner[face_of(twin)] != static_cast<Index>(k))
-          all[k].push_back({uv[i], uv[(i + 1) % 3]});
-      }
-  }
-  return all;
-}
-
-double seam_of(const Sheet& sheet, const Partition& partition, const std::vector<Index>& owner) {
-  double seam = 0;
-  for (std::size_t h = 0; h < partition.open.size(); ++h) {
-    const Index twin = sheet.halfedges.twin[h];
-    if (twin == kNoTwin) continue;
-    if (partition.open[h] != 0 || owner[face_of(twin)] != owner[h / 3]) seam += sheet.length[h] / 2;
-  }
-  return seam;
-}
-
-/// What a partition costs: its seams (the sheet's area is 1), and something for each chart and for
-/// the page that it leaves empty.
-double cost_of(const Sheet& sheet, const Partition& partition, const MergeRules& rules,
-               double wanted_fill = kWantedFill) {
-  const std::vector<Index> owner = owners(sheet, partition);
-  const double seam = seam_of(sheet, partition, owner);
-  if (seam <= 0) return 0;  // what needs no cut is left whole
-  double cost = seam + kCostOfAChart * static_cast<double>(partition.patches.size());
-  const bool has_page = rules.page_area <= kMostPage;
-  const double fill =
-      has_page ? rough_fill(outlines(sheet, partition, owner), rules.stop) : wanted_fill;
-  cost += kCostOfEmptiness * std::max(0.0, wanted_fill - fill);
-  return rounded(cost);
-}
-
-/// A partition and its cost_of().
+/// A partition and what it costs.
 struct Candidate {
-  double cost = 0;
-  Partition partition;
+  Partition partition = {};
+  PartitionCost cost = {};
+  double tried_faces = 0;     ///< to come to it; see Effort
+  TrialMemory failures = {};  ///< on the way to it
 };
+
+double all_of(const Candidate& own) { return own.cost.all; }
+
+/// What some number of searches come to, on any threads.
+std::vector<Candidate> side_by_side(std::size_t count, Executor& executor,
+                                    const std::function<Candidate(std::size_t)>& search) {
+  std::vector<Candidate> found(count);
+  std::vector<std::exception_ptr> failure(count);
+  executor.for_each_block(static_cast<int>(count), [&](int block) {
+    const auto k = static_cast<std::size_t>(block);
+    try {
+      found[k] = search(k);
+    } catch (...) {  // told to stop
+      failure[k] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& own : failure)
+    if (own) std::rethrow_exception(own);
+  return found;
+}
 
 class Search {
  public:
-  Search(const Sheet& sheet, const MergeRules& rules, Executor& executor)
-      : sheet_(sheet), rules_(rules), executor_(executor), joiner_(sheet) {
+  Search(const Sheet& sheet, const Partition& from, const MergeRules& rules, Executor& executor)
+      : sheet_(sheet), from_(from), rules_(rules), executor_(executor), joiner_(sheet) {
     const double rounds = kFacesOfSearch / (sheet_.face_count() * std::max(1.0, rules_.page_area));
     const double wanted = std::max(std::min(rounds / 2, kFewTries), rounds / 4);
     tries_ = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(kTries.size())));
-    mends_ = static_cast<int>(std::clamp(kShareOfMends * rounds, 0.0, kMostMends));
+    mends_ = static_cast<std::size_t>(std::clamp(kShareOfMends * rounds, 0.0, kMostMends));
     kept_ = std::clamp(tries_ / 2, std::size_t{1}, kFinished);
     weight_left_ = static_cast<double>(tries_) +
-                   (kTriesOfAMend * mends_ + kTriesOfFinishing) * static_cast<double>(kept_);
+                   (kTriesOfAMend * static_cast<double>(mends_) + kTriesOfFinishing) *
+                       static_cast<double>(kept_);
     try_faces_ = kFacesOfATry * sheet_.face_count();
   }
 
   /// The cheapest of the tries, the best first.
-  std::vector<Candidate> greedy(const Partition& from) {
+  std::vector<Candidate> greedy() {
     std::vector<Candidate> best;
-    for (std::size_t k = 0; k < tries_; ++k) {
-      begin(1);
-      add(merge_patches(joiner_, sheet_, from, rules_of(k), executor_), best);
-      try_faces_ = rules_.effort->done();
-      std::ranges::stable_sort(best, std::less(), &Candidate::cost);
-      if (best.size() > kept_) best.pop_back();
+    for (std::size_t first = 0; first < tries_; first += kAbreast) {
+      const std::size_t count = std::min(kAbreast, tries_ - first);
+      const double limit = best.size() < kept_ ? kInfinity : best.back().cost.all;
+      begin(static_cast<double>(count));
+      std::vector<Candidate> found = side_by_side(count, executor_, [&](std::size_t k) {
+        return weighed(merged(from_, rules_of(first + k)), limit);
+      });
+      learn(found);
+      try_faces_ = rules_.effort->done() / static_cast<double>(count);
+      for (Candidate& own : found) best.push_back(std::move(own));
+      std::ranges::stable_sort(best, std::less(), all_of);
+      const auto cost_alike = [](const Candidate& x, const Candidate& y) {
+        return all_of(x) == all_of(y);
+      };
+      best.erase(std::unique(best.begin(), best.end(), cost_alike), best.end());
+      best.resize(std::min(best.size(), kept_));
+      if (all_of(best.front()) <= 0) break;  // it needs no cut
     }
     return best;
   }
 
-  /// Again and again a part is taken apart and merged anew; what is cheaper stays (large
+  /// Again and again a part of each is taken apart and merged anew; what is cheaper stays (large
   /// neighbourhood search, Shaw 1998).
-  [[nodiscard]] Candidate mended(const Partition& from, Candidate best) {
-    for (int k = 0; k < mends_ && best.partition.patches.size() > 1; ++k) {
-      begin(kTriesOfAMend);
-      MergeRules rules = rules_of(static_cast<std::size_t>(k) % kTries.size());
-      rules.lot = kFirstLotOfMends + k;
-      rules.whim = kWhimOfMends;
-      Loosened loose = loosened(sheet_, from, best.partition, static_cast<std::uint64_t>(k));
-      rules.whole = loose.whole;
-      Partition again =
-          merge_patches(joiner_, sheet_, std::move(loose.partition), rules, executor_);
-      const double cost = cost_of(sheet_, again, rules_);
-      if (cost < best.cost) best = {cost, std::move(again)};
+  void mend(std::vector<Candidate>& best) {
+    const auto count = static_cast<double>(best.size());
+    for (std::size_t number = 0; number < mends_; ++number) {
+      begin(kTriesOfAMend * count);
+      std::vector<Candidate> found = side_by_side(
+          best.size(), executor_, [&](std::size_t k) { return mended(best[k], number); });
+      learn(found);
+      for (std::size_t k = 0; k < found.size(); ++k)
+        if (all_of(found[k]) < all_of(best[k])) best[k] = std::move(found[k]);
     }
-    return best;
   }
 
-  /// With borders drawn straight; and with what then fits together merged, of any shape or not.
-  std::vector<Candidate> finished(Partition partition) {
-    begin(kTriesOfFinishing);
-    std::vector<Candidate> all;
-    if (partition.patches.size() == 1) {
-      add(std::move(partition), all);
-      return all;
-    }
-    straighten(sheet_, rules_, partition);
-    for (const double least_fill : {0.0, kFittingFill}) {
-      MergeRules rules = rules_;
-      rules.least_fill = least_fill;
-      Partition merged = merge_patches(joiner_, sheet_, partition, rules, executor_);
-      straighten(sheet_, rules, merged);
-      add(std::move(merged), all);
-    }
-    add(std::move(partition), all);
-    return all;
+  /// The cheapest after borders were drawn straight; and after what then fits together was merged,
+  /// of any shape or not.
+  Candidate finished(std::vector<Candidate> all) {
+    begin(kTriesOfFinishing * static_cast<double>(all.size()));
+    all = side_by_side(all.size(), executor_,
+                       [&](std::size_t k) { return straightened(std::move(all[k].partition)); });
+    learn(all);
+    constexpr std::array kLeastFills = {0.0, kFittingFill};
+    std::vector<Candidate> found =
+        side_by_side(all.size() * kLeastFills.size(), executor_, [&](std::size_t k) {
+          const Candidate& own = all[k / kLeastFills.size()];
+          if (own.partition.patches.size() == 1) return Candidate{};
+          MergeRules rules = rules_;
+          rules.least_fill = kLeastFills[k % kLeastFills.size()];
+          return noted(rules, [&](const MergeRules& by) {
+            SerialExecutor serial;
+            Partition next = merge_patches(joiner_, sheet_, own.partition, by, serial);
+            straighten(sheet_, by, next);
+            return next;
+          });
+        });
+    learn(found);
+    for (Candidate& own : found) all.push_back(std::move(own));
+    return cheapest(std::move(all));
   }
 
   /// The region is cut across whose halves make the partition cheapest, again and again as long as
   /// that helps: few charts that merged into rings and stars leave a page emptier than it need be.
-  [[nodiscard]] Partition taken_apart(Partition partition) const {
-    Candidate best{cost_of(sheet_, partition, rules_, kEnoughFill), std::move(partition)};
-    while (true) {
-      const Candidate from = best;
-      for (std::size_t k = 0; k < from.partition.patches.size(); ++k) {
-        if (from.partition.patches[k].area < kLargeRegion) continue;
-        std::optional<Partition> apart = halved(sheet_, from.partition, k, rules_);
-        if (!apart) continue;
-        straighten(sheet_, rules_, *apart);
-        const double cost = cost_of(sheet_, *apart, rules_, kEnoughFill);
-        if (cost < best.cost) best = {cost, std::move(*apart)};
-      }
-      if (best.cost >= from.cost) return std::move(best.partition);
+  [[nodiscard]] Partition taken_apart(Candidate whole) {
+    Candidate best = weighed(std::move(whole), kInfinity, kAcross);
+    while (best.cost.all > best.cost.seams) {
+      std::vector<Candidate> found =
+          side_by_side(best.partition.patches.size(), executor_,
+                       [&](std::size_t k) { return cut_across(best, k); });
+      learn(found);
+      auto next = std::ranges::min_element(found, std::less(), all_of);
+      if (!(next->cost.all < best.cost.all)) break;
+      best = std::move(*next);
     }
+    return std::move(best.partition);
   }
 
  private:
-  /// A part of the work begins that takes as long as so many tries, of which the last one tells.
+  /// A part of the work begins that takes as long as so many tries, of which the last ones tell.
   void begin(double tries) {
     rules_.effort->begin(tries / weight_left_, tries * try_faces_);
     weight_left_ = std::max(weight_left_ - tries, tries);
@@ -191,35 +187,113 @@ class Search {
     return rules;
   }
 
-  void add(Partition partition, std::vector<Candidate>& to) const {
-    const double cost = cost_of(sheet_, partition, rules_);
-    to.push_back({cost, std::move(partition)});
+  /// What was tried on the way, told and remembered: searches side by side know nothing of each
+  /// other.
+  void learn(std::vector<Candidate>& found) {
+    double faces = 0;
+    for (Candidate& own : found) {
+      faces += own.tried_faces;
+      failures_.take(std::move(own.failures));
+      own.failures = {};
+    }
+    rules_.effort->add(static_cast<std::size_t>(faces));
+  }
+
+  /// search(rules) makes the partition by them; its failures and faces are noted on the way.
+  template <class Work>
+  [[nodiscard]] Candidate noted(MergeRules rules, Work search) const {
+    Candidate found;
+    Effort own({});
+    found.failures = TrialMemory(&failures_);
+    rules.effort = &own;
+    rules.memory = &found.failures;
+    found.partition = search(rules);
+    found.tried_faces = own.done();
+    return found;
+  }
+
+  [[nodiscard]] Candidate merged(Partition partition, const MergeRules& by) const {
+    return noted(by, [&](const MergeRules& rules) {
+      SerialExecutor serial;
+      return merge_patches(joiner_, sheet_, std::move(partition), rules, serial);
+    });
+  }
+
+  /// Without a look at the page.
+  [[nodiscard]] Candidate straightened(Partition partition) const {
+    return noted(rules_, [&](const MergeRules& rules) {
+      straighten(sheet_, rules, partition);
+      return std::move(partition);
+    });
+  }
+
+  /// Some of `best` merged anew: its cost, where that is lower.
+  [[nodiscard]] Candidate mended(const Candidate& best, std::size_t number) const {
+    if (best.partition.patches.size() <= 1) return {};
+    MergeRules rules = rules_of(number % kTries.size());
+    rules.lot = kFirstLotOfMends + static_cast<int>(number);
+    rules.whim = kWhimOfMends;
+    Loosened loose = loosened(sheet_, from_, best.partition, number);
+    rules.whole = loose.whole;
+    Candidate again = merged(std::move(loose.partition), rules);
+    return weighed(std::move(again), best.cost.all);
+  }
+
+  [[nodiscard]] Candidate cut_across(const Candidate& whole, std::size_t k) const {
+    if (whole.partition.patches[k].area < kLargeRegion) return {};
+    Candidate apart = noted(rules_, [&](const MergeRules& rules) {
+      std::optional<Partition> cut = halved(sheet_, whole.partition, k, rules);
+      if (!cut) return Partition{};
+      straighten(sheet_, rules, *cut);
+      return std::move(*cut);
+    });
+    if (apart.partition.patches.empty()) return apart;
+    return weighed(std::move(apart), whole.cost.all, kAcross);
+  }
+
+  [[nodiscard]] Candidate cheapest(std::vector<Candidate> all) const {
+    std::erase_if(all, [](const Candidate& own) { return own.partition.patches.empty(); });
+    for (Candidate& own : all) own = weighed(std::move(own), 0);
+    std::ranges::stable_sort(all, std::less(), [](const Candidate& own) { return own.cost.seams; });
+    Candidate best;
+    for (Candidate& own : all) {
+      own = weighed(std::move(own), best.cost.all);
+      if (own.cost.all < best.cost.all || best.partition.patches.empty()) best = std::move(own);
+    }
+    return best;
+  }
+
+  /// With its cost, if that is below the limit.
+  [[nodiscard]] Candidate weighed(Candidate own, double limit, CostRules rules = kUsual) const {
+    rules.page_area = rules_.page_area;
+    rules.limit = limit;
+    rules.stop = rules_.stop;
+    own.cost = partition_cost(sheet_, own.partition, rules);
+    return own;
   }
 
   const Sheet& sheet_;
+  const Partition& from_;
   const MergeRules& rules_;
   Executor& executor_;
   Joiner joiner_;
+  TrialMemory failures_;  ///< of all searches that have ended
   std::size_t tries_ = 1, kept_ = 1;
-  int mends_ = 0;           ///< of each that is kept
+  std::size_t mends_ = 0;   ///< of each that is kept
   double weight_left_ = 1;  ///< of the work, in tries
-  double try_faces_ = 0;    ///< that the last try took, or the first is thought to take
+  double try_faces_ = 0;    ///< that a try took, or the first ones are thought to take
 };
 
 }  // namespace
 
 Partition best_merge(const Sheet& sheet, const Partition& from, const MergeRules& rules,
                      Executor& executor) {
-  Search search(sheet, rules, executor);
-  Candidate best{std::numeric_limits<double>::infinity(), {}};
-  for (Candidate& greedy : search.greedy(from)) {
-    Candidate mended = search.mended(from, std::move(greedy));
-    for (Candidate& own : search.finished(std::move(mended.partition)))
-      if (own.cost < best.cost) best = std::move(own);
-  }
-  best.partition = search.taken_apart(std::move(best.partition));
-  glue_slits(sheet, rules, best.partition);
-  return std::move(best.partition);
+  Search search(sheet, from, rules, executor);
+  std::vector<Candidate> best = search.greedy();
+  search.mend(best);
+  Partition partition = search.taken_apart(search.finished(std::move(best)));
+  glue_slits(sheet, rules, partition);
+  return partition;
 }
 
 }  // namespace unwrapd

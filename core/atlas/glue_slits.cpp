@@ -95,7 +95,8 @@ class Gluing {
     set_open(0);
     MappedRegion now = old;
     const TrialRules rules{.most_excess = std::max(rules_.cap * old.area, old.excess.worst()),
-                           .stop = rules_.stop};
+                           .stop = rules_.stop,
+                           .memory = rules_.memory};
     const TrialResult result = try_map(sheet_, partition_.open, rules, now.region);
     if (rules_.effort != nullptr) rules_.effort->add(now.region.faces.size());
     const Excess after = total_ + result.excess - old.excess;

@@ -89,7 +89,8 @@ std::optional<Partition> halved(const Sheet& sheet, const Partition& partition, 
   for (MappedRegion& part : parts) {
     if (part.region.faces.empty()) return std::nullopt;
     const TrialRules trial{.most_excess = std::numeric_limits<double>::infinity(),
-                           .stop = rules.stop};
+                           .stop = rules.stop,
+                           .memory = rules.memory};
     const TrialResult result = try_map(sheet, partition.open, trial, part.region);
     if (rules.effort != nullptr) rules.effort->add(part.region.faces.size());
     if (result.verdict != Verdict::sound) return std::nullopt;

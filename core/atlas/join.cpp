@@ -120,11 +120,11 @@ std::vector<Index> Joiner::slit_of(std::span<const Index> border) const {
 }
 
 Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<const char> open,
-                    double cap, const std::stop_token& stop) const {
+                    double cap, const TrialRules& trial) const {
   const std::vector<Index> common = border(a.region, b.region, open);
   const double area = a.area + b.area;
-  const TrialRules rules{.most_excess = std::max(cap * area, (a.excess + b.excess).worst()),
-                         .stop = stop};
+  TrialRules rules = trial;
+  rules.most_excess = std::max(cap * area, (a.excess + b.excess).worst());
   Joined joined;
   const auto attempt = [&](std::span<const Index> glued, std::span<const char> cut) {
     joined.patch = {beside(sheet_, a.region, b.region, glued), {}, area, false};
@@ -134,7 +134,7 @@ Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<cons
     joined.patch.is_sound = result.verdict == Verdict::sound;
   };
   attempt(common, open);
-  if (joined.patch.is_sound || is_cancelled(stop)) return joined;
+  if (joined.patch.is_sound || is_cancelled(trial.stop)) return joined;
   joined.slit = slit_of(common);
   if (joined.slit.empty()) return joined;
   std::vector<char> cut(open.begin(), open.end());

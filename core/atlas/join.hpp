@@ -33,10 +33,10 @@ class Joiner {
   /// b laid beside a, turned and moved as their common border asks, then mapped together. Where
   /// that has no sound map, only the longest stretch of the border is glued: stretches end at
   /// vertices that are far from flat. cap: most excess over area, where joining adds some.
-  /// open: one a half-edge of the sheet, 1: not glued. A stop request ends it early.
+  /// open: one a half-edge of the sheet, 1: not glued. trial: but for the excess. A
+  /// stop request ends it early.
   [[nodiscard]] Joined join(const MappedRegion& a, const MappedRegion& b,
-                            std::span<const char> open, double cap,
-                            const std::stop_token& stop) const;
+                            std::span<const char> open, double cap, const TrialRules& trial) const;
 
  private:
   [[nodiscard]] std::vector<Index> border(const Region& a, const Region& b,

@@ -143,8 +143,9 @@ class Merging {
     }
     executor.for_each_block(static_cast<int>(batch.size()), [&](int k) {
       Union& own = batch[static_cast<std::size_t>(k)];
-      own.tried = std::make_shared<Joined>(
-          joiner_.join(patches_[own.a], patches_[own.b], open_, rules_.cap, rules_.stop));
+      own.tried =
+          std::make_shared<Joined>(joiner_.join(patches_[own.a], patches_[own.b], open_, rules_.cap,
+                                                {.stop = rules_.stop, .memory = rules_.memory}));
     });
     throw_if_cancelled(rules_.stop);
     for (Union& both : batch) {

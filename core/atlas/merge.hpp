@@ -21,7 +21,8 @@ struct MergeRules {
   int lot = 0;             ///< which of the draws; each is the same for everybody
   Index whole = 0;         ///< so many patches at the front merge only by way of others
   Index enough = 1;        ///< ends when there are no more patches than this
-  Effort* effort = nullptr;  ///< told of the faces that are tried, from this thread; null: nobody
+  Effort* effort = nullptr;       ///< told of the faces that are tried; null: nobody
+  TrialMemory* memory = nullptr;  ///< see TrialRules; with an executor of one thread alone
   std::stop_token stop = {};
 };
 

@@ -107,22 +107,23 @@ class Packer {
     return placed(on_grid_exactly(starts, fine, fine * scale / side / kSpareSide));
   }
 
-  /// The share of the page that is filled after a short search on coarse grids.
-  double rough_fill(double area) {
+  /// The share of the page that is filled after a short search on coarse grids, which ends where it
+  /// is `enough`. area: of all islands.
+  double rough_fill(double area, double enough) {
     const std::size_t n = arranger_.size();
     const int side = cells_for(n, kStart.per_island, kStart.cells);
     double scale = side * std::sqrt(kUsualFill / box_area(arranger_));
     std::vector<Arrangement> starts = usual_arrangements(arranger_);
     if (n > kSearched) starts.resize(1);
-    Found found = on_grid(starts, {side, kStart.heat}, scale, work(kRoughWork)).front();
-    if (n <= kSqueezed) {
-      const SqueezeRules& rules = kSqueezes.front().rules;
+    const double tightest = std::sqrt(area / enough);  // page, in the islands' units
+    const StripRules strip{side, kStart.heat, static_cast<int>(scale * tightest)};
+    Found found = on_grid(starts, strip, scale, work(kRoughWork)).front();
+    if (n <= kSqueezed && found.side > strip.enough) {
+      SqueezeRules rules = kSqueezes.front().rules;
       const double ratio = double(rules.side) / found.side;
+      rules.enough = static_cast<int>(scale * ratio * tightest);
       const Found tight = squeezed_on(rules, work(kRoughSqueezeWork), found, scale * ratio);
-      if (tight.side > 0) {
-        scale *= ratio;
-        found = tight;
-      }
+      if (tight.side > 0) scale *= ratio, found = tight;
     }
     return area * scale * scale / (double(found.side) * found.side);
   }
@@ -282,11 +283,11 @@ double area_of(const Outline& outline) {
 
 }  // namespace
 
-double rough_fill(std::span<const Outline> islands, const std::stop_token& stop) {
+double rough_fill(std::span<const Outline> islands, double enough, const std::stop_token& stop) {
   if (islands.empty() || !has_extent(points_of(islands))) return 1;
   double area = 0;
   for (const Outline& island : islands) area += area_of(island);
-  return Packer(islands, {.padding = 0}, stop).rough_fill(area);
+  return Packer(islands, {.padding = 0}, stop).rough_fill(area, enough);
 }
 
 Packed pack(std::span<const Outline> islands, const PageOptions& page,

@@ -55,8 +55,9 @@ Packed pack(std::span<const Outline> islands, const PageOptions& page,
             const std::stop_token& stop = {});
 
 /// The share of a page that the islands would fill, at a glance and without padding; 1 where they
-/// have no extent. Throws Error{cancelled}.
-double rough_fill(std::span<const Outline> islands, const std::stop_token& stop = {});
+/// have no extent. The search ends where it has come to `enough`. Throws Error{cancelled}.
+double rough_fill(std::span<const Outline> islands, double enough = 1,
+                  const std::stop_token& stop = {});
 
 /// How charts' vertices become vertices of the surface: see assemble().
 struct VertexPlan {

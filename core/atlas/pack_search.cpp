@@ -66,19 +66,18 @@ class Strip {
   Strip(Arranger& arranger, Budget& budget, Sequence& sequence)
       : arranger_(arranger), budget_(budget), sequence_(sequence) {}
 
-  /// heat: by what share of the width the strip may rise for a change, to begin with.
-  Found search(const Arrangement& start, int width, double heat) {
+  Found search(const Arrangement& start, const StripRules& rules) {
     least_ = arranger_.least_side(budget_.stop);
-    width_ = std::max(width, least_);
+    width_ = std::max(rules.width, least_);
     const auto words = static_cast<double>(budget_.words);
     now_ = start;
     for (lay_again(width_); best_.side == 0;) lay_again(width_ + 1 + width_ / kWidening);
     balance();
-    while (budget_.words > 0 && narrow()) {
+    while (budget_.words > 0 && best_.side > rules.enough && narrow()) {
       Arrangement next = now_;
       for (std::size_t k = 0; k <= sequence_.below(2); ++k)
         change(next, arranger_.turns(), sequence_);
-      try_it(next, heat * width_ * static_cast<double>(budget_.words) / words);
+      try_it(next, rules.heat * width_ * static_cast<double>(budget_.words) / words);
     }
     return std::move(best_);
   }
@@ -196,8 +195,9 @@ std::vector<Found> smallest_page(Arranger& arranger, const std::vector<Arrangeme
   for (std::size_t k = 0; k < starts.size(); ++k) {
     Budget own{budget.words / static_cast<std::int64_t>(starts.size() - k), budget.stop};
     budget.words -= own.words;
-    all.push_back(Strip(arranger, own, sequence).search(starts[k], rules.width, rules.heat));
+    all.push_back(Strip(arranger, own, sequence).search(starts[k], rules));
     budget.words += std::min<std::int64_t>(own.words, 0);
+    if (all.back().side <= rules.enough) break;
   }
   std::ranges::stable_sort(all, std::less(), &Found::side);
   return all;

@@ -21,6 +21,7 @@ std::vector<Arrangement> usual_arrangements(const Arranger& arranger);
 struct StripRules {
   int width = 0;    ///< cells, to begin with
   double heat = 0;  ///< share of the width by which a change may make things worse at first
+  int enough = 0;   ///< cells a side: a page no larger ends the search
 };
 
 /// Looks for the smallest page that holds all, within the budget. What was found from each start,

@@ -29,6 +29,7 @@ constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach ar
 constexpr double kMargin = 0.97;  // of what is allowed: solving on may shift some between the two
 constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a number of regions
 constexpr double kPatchesShare = 0.1, kFacesOfPatches = 6;  // of the work; for each face
+constexpr std::size_t kPatchesAtOnce = 16;                  // then progress is told
 constexpr double kCapOfOnePatch = 4;                        // in shares of what is allowed of all
 
 /// How the work is watched and done.
@@ -49,9 +50,9 @@ std::vector<MappedRegion> map_patches(const Sheet& sheet, std::vector<Index>& la
                                       const Work& work) {
   std::vector<std::vector<Index>> faces = faces_by_label(label, renumber(label));
   std::vector<MappedRegion> patches(faces.size());
-  work.executor.for_each_block(static_cast<int>(faces.size()), [&](int block) {
-    MappedRegion& patch = patches[static_cast<std::size_t>(block)];
-    patch.region.faces = std::move(faces[static_cast<std::size_t>(block)]);
+  const auto map = [&](std::size_t k) {
+    MappedRegion& patch = patches[k];
+    patch.region.faces = std::move(faces[k]);
     patch.region.uv = projected(sheet, patch.region.faces);
     const TrialRules rules{.most_excess = std::numeric_limits<double>::infinity(),
                            .stop = work.stop};
@@ -59,9 +60,16 @@ std::vector<MappedRegion> map_patches(const Sheet& sheet, std::vector<Index>& la
     patch.excess = result.excess;
     patch.is_sound = result.verdict == Verdict::sound;
     for (const Index t : patch.region.faces) patch.area += sheet.area(t);
-  });
-  throw_if_cancelled(work.stop);
-  work.effort.add(label.size());
+  };
+  for (std::size_t first = 0; first < patches.size(); first += kPatchesAtOnce) {
+    const std::size_t count = std::min(kPatchesAtOnce, patches.size() - first);
+    work.executor.for_each_block(static_cast<int>(count),
+                                 [&](int block) { map(first + static_cast<std::size_t>(block)); });
+    throw_if_cancelled(work.stop);
+    std::size_t mapped = 0;
+    for (std::size_t k = first; k < first + count; ++k) mapped += patches[k].region.faces.size();
+    work.effort.add(mapped);
+  }
   return patches;
 }
 

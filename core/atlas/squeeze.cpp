@@ -275,7 +275,8 @@ Found squeezed(Arranger& arranger, const Found& from, const SqueezeRules& rules,
     spots = stretched(from.spots, double(side) / from.side);
   }
   Found best{from.arrangement, spots, side, 1};
-  for (int failures = 0; failures < rules.failures && budget.words > 0;) {
+  for (int failures = 0;
+       failures < rules.failures && budget.words > 0 && best.side > rules.enough;) {
     side = best.side - (failures == 0 ? rules.step : 1);
     if (page.separate(spots, side)) {
       best.spots = spots;

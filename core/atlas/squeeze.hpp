@@ -10,6 +10,7 @@ struct SqueezeRules {
   int reach = 0;     ///< cells that an island may move at once, each way; 0: anywhere, in any turn
   int step = 1;      ///< cells by which the page shrinks while that goes well
   int failures = 1;  ///< pages in a row on which islands found no place, then it ends
+  int enough = 0;    ///< cells a side: a page no larger ends it too
 };
 
 /// from: one page, of any side: it is stretched to the one to begin with, and beyond where islands

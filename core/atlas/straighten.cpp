@@ -203,7 +203,8 @@ class Straightening {
     }
     patch.region.faces = std::move(faces);
     const TrialRules rules{.most_excess = std::max(rules_.cap * patch.area, most),
-                           .stop = rules_.stop};
+                           .stop = rules_.stop,
+                           .memory = rules_.memory};
     const TrialResult result = try_map(sheet_, partition_.open, rules, patch.region);
     if (rules_.effort != nullptr) rules_.effort->add(patch.region.faces.size());
     patch.excess = result.excess;

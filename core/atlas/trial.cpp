@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/atlas/trial_memory.hpp"
 #include "core/cancel.hpp"
 #include "core/error.hpp"
 #include "core/measure/distortion.hpp"
@@ -119,10 +120,8 @@ Verdict verdict_on(const Disk& disk, const DistortionSums& sums, const TrialRule
                                                                      : Verdict::flawed;
 }
 
-}  // namespace
-
-TrialResult try_map(const Sheet& sheet, std::span<const char> open, const TrialRules& rules,
-                    Region& region) try {
+TrialResult tried(const Sheet& sheet, std::span<const char> open, const TrialRules& rules,
+                  Region& region) try {
   Part part = part_of(sheet, open, region.faces);
   if (!is_disk(part)) return {};
   part.loops = boundary_loops(part.mesh, part.halfedges);
@@ -136,6 +135,18 @@ TrialResult try_map(const Sheet& sheet, std::span<const char> open, const TrialR
   return result;
 } catch (const Error&) {  // told to stop, or the system was too ill-conditioned to factor
   return {Verdict::flawed, {}};
+}
+
+}  // namespace
+
+TrialResult try_map(const Sheet& sheet, std::span<const char> open, const TrialRules& rules,
+                    Region& region) {
+  if (rules.memory == nullptr) return tried(sheet, open, rules, region);
+  const std::uint64_t key = trial_key(open, rules, region);
+  if (const auto known = rules.memory->find(key)) return *known;
+  const TrialResult result = tried(sheet, open, rules, region);
+  if (!is_cancelled(rules.stop)) rules.memory->keep(key, result);
+  return result;
 }
 
 }  // namespace unwrapd

@@ -38,15 +38,19 @@ struct Region {
   std::vector<CornerUv> uv;  ///< one a face: its map so far, or a seed for it
 };
 
+class TrialMemory;
+
 struct TrialRules {
   int iterations = 4;
   double most_excess = 0;  ///< worst() of a sound map is at most this
   std::stop_token stop = {};
+  TrialMemory* memory = nullptr;  ///< of failures, that need no second trial; null: none
 };
 
-/// A few iterations of ARAP from the rotations of region.uv, which need not hold together. Where a
-/// map was made, region.uv becomes it, with UV area = 3D area. open: one a half-edge of the sheet,
-/// 1: not glued; empty: none. A stop request ends it early, with any verdict.
+/// A few iterations of ARAP from the rotations of region.uv, which need not hold together. Where
+/// the map is sound, region.uv becomes it, with UV area = 3D area; else it is of no use. open: one
+/// a half-edge of the sheet, 1: not glued; empty: none. A stop request ends it early, with any
+/// verdict.
 struct TrialResult {
   Verdict verdict = Verdict::impossible;
   Excess excess;

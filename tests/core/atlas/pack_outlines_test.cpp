@@ -168,8 +168,21 @@ TEST(PackOutlines, IsRatedAtAGlanceAsItIsPacked) {
                                  {0, 1},
                                  {1, 1}});
   EXPECT_LT(rough_fill(std::vector<Outline>{cross, cross}), 0.4);
+  EXPECT_EQ(rough_fill(std::vector<Outline>{cross, cross}, 0.9),  // never comes to that
+            rough_fill(std::vector<Outline>{cross, cross}));
   const std::vector<Outline> islands = stars(12, 7);
   EXPECT_NEAR(rough_fill(islands), fill(islands, pack(islands, {.padding = 0}).placements), 0.12);
+}
+
+TEST(PackOutlines, AreRatedNoLongerThanUntilThePageIsFullEnough) {
+  const std::vector<Outline> islands = stars(12, 7);
+  const double all = rough_fill(islands);
+  for (const double enough : {0.5 * all, 0.8 * all, 0.999 * all}) {
+    EXPECT_GE(rough_fill(islands, enough), enough);
+    EXPECT_LE(rough_fill(islands, enough), all);
+  }
+  EXPECT_LT(rough_fill(islands, 0.5 * all), rough_fill(islands, 0.94 * all));
+  EXPECT_LT(rough_fill(islands, 0.97 * all), all);
 }
 
 /// A net of a box as a staircase, turned by the angle: its smallest rectangle lies aslant.

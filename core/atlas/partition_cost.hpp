@@ -1,0 +1,30 @@
+#pragma once
+// What a partition of a sheet costs: what its user would see of it.
+
+#include <limits>
+#include <stop_token>
+
+#include "core/atlas/merge.hpp"
+
+namespace unwrapd {
+
+struct PartitionCost {
+  double seams = std::numeric_limits<double>::infinity();  ///< and charts; area of the sheet: 1
+  double all = std::numeric_limits<double>::infinity();    ///< and what the page leaves empty
+};
+
+struct CostRules {
+  double chart = 0;        ///< what each chart costs, in length of seams
+  double page_area = 1;    ///< of all that comes onto the page, in units of the sheet's
+  double wanted_fill = 1;  ///< share of the page; a page that is fuller costs nothing
+  double limit = std::numeric_limits<double>::infinity();  ///< from here on it is all the same
+  std::stop_token stop = {};
+};
+
+/// Seams by their lengths, so much for each chart, and more for each share of a rough packing
+/// that is wanted and left empty; nothing for what needs no cut. Where `all` is not below the limit
+/// it may be infinite instead. Rounded: equal costs tie. Throws Error{cancelled}.
+PartitionCost partition_cost(const Sheet& sheet, const Partition& partition,
+                             const CostRules& rules);
+
+}  // namespace unwrapd

@@ -1,0 +1,83 @@
+#include "core/atlas/trial.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/atlas/trial_memory.hpp"
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+Sheet sheet_of(const TriMesh& mesh) {
+  return make_sheet(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+}
+
+Region all_of(const Sheet& sheet) {
+  Region region;
+  for (Index t = 0; t < sheet.face_count(); ++t) region.faces.push_back(t);
+  region.uv = projected(sheet, region.faces);
+  return region;
+}
+
+/// A dome has a sound map of some distortion.
+struct Dome {
+  Sheet sheet = sheet_of(shapes::sphere_cap(12, 6, 1));
+  Region region = all_of(sheet);
+  std::vector<char> open = std::vector<char>(sheet.length.size(), 0);
+};
+
+TEST(TrialMemory, KeepsFailuresAlone) {
+  const Dome dome;
+  TrialMemory memory;
+  for (const auto& [most_excess, verdict] :
+       {std::pair{1.0, Verdict::sound}, {1e-9, Verdict::distorted}}) {
+    const TrialRules rules{.most_excess = most_excess, .memory = &memory};
+    const std::uint64_t key = trial_key(dome.open, rules, dome.region);
+    Region region = dome.region;
+    const TrialResult first = try_map(dome.sheet, dome.open, rules, region);
+    EXPECT_EQ(first.verdict, verdict);
+    EXPECT_GT(first.excess.worst(), 1e-9);
+    EXPECT_EQ(memory.find(key).has_value(), verdict != Verdict::sound);
+    Region again = dome.region;
+    const TrialResult second = try_map(dome.sheet, dome.open, rules, again);
+    EXPECT_EQ(second.verdict, verdict);
+    EXPECT_EQ(second.excess.angle, first.excess.angle);
+    EXPECT_EQ(second.excess.area, first.excess.area);
+    if (verdict == Verdict::sound) {
+      EXPECT_EQ(again.uv, region.uv);
+    }
+  }
+}
+
+TEST(TrialMemory, AnswersInPlaceOfATrial) {
+  const Dome dome;
+  TrialMemory memory;
+  const TrialRules rules{.most_excess = 1, .memory = &memory};
+  memory.keep(trial_key(dome.open, rules, dome.region), {Verdict::distorted, {3, 4}});
+  Region region = dome.region;
+  const TrialResult result = try_map(dome.sheet, dome.open, rules, region);
+  EXPECT_EQ(result.verdict, Verdict::distorted);
+  EXPECT_EQ(result.excess.worst(), 4);
+}
+
+TEST(TrialMemory, TellsTrialsApartByAllThatTheyRead) {
+  const Dome dome;
+  const TrialRules rules{.most_excess = 1};
+  const std::uint64_t key = trial_key(dome.open, rules, dome.region);
+  EXPECT_EQ(trial_key(dome.open, rules, dome.region), key);
+  EXPECT_EQ(trial_key({}, rules, dome.region), key);  // nothing is open either way
+  EXPECT_NE(trial_key(dome.open, {.most_excess = 2}, dome.region), key);
+  EXPECT_NE(trial_key(dome.open, {.iterations = 5, .most_excess = 1}, dome.region), key);
+  std::vector<char> slit = dome.open;
+  slit[7] = 1;
+  EXPECT_NE(trial_key(slit, rules, dome.region), key);
+  Region moved = dome.region;
+  moved.uv[3][1].x() += 1e-12;
+  EXPECT_NE(trial_key(dome.open, rules, moved), key);
+  Region other = dome.region;
+  std::swap(other.faces[0], other.faces[1]);
+  EXPECT_NE(trial_key(dome.open, rules, other), key);
+}
+
+}  // namespace
+}  // namespace unwrapd
