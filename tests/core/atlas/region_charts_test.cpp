@@ -30,8 +30,9 @@ TEST(RegionCharts, ShallNotOverlapThemselves) {
   const Chart& cube = whole.charts.front();
   SerialExecutor serial;
   const Segments segments = segment(make_sheet(cube.mesh, cube.halfedges), {}, serial);
-  for (const Chart& chart : region_charts(cube, segments))
-    EXPECT_EQ(chart.least, Guarantee::bijective);
+  const std::vector<Chart> charts = region_charts(cube, segments);
+  ASSERT_FALSE(charts.empty());
+  for (const Chart& chart : charts) EXPECT_EQ(chart.least, Guarantee::bijective);
 }
 
 TEST(RegionCharts, TakeANoisySurfaceApartIntoAFewDisksTheSameOnTwoThreads) {
