@@ -41,7 +41,7 @@ constexpr double kWhimOfMends = 0.3, kTriesOfAMend = 0.3;
 constexpr int kFirstLotOfMends = 100;
 constexpr double kFittingFill = 0.72;  // see MergeRules::least_fill
 constexpr double kLargeRegion = 0.1;   // that is worth cutting across
-const CostRules kUsual{.chart = 0.15, .wanted_fill = 0.7};
+const CostRules kUsual{.chart = 0.45, .wanted_fill = 0.7};
 const CostRules kAcross{.chart = 0.15, .wanted_fill = 0.645};  // to cut across for
 constexpr double kFacesOfATry = 20, kTriesOfFinishing = 1;     // for each face; see Effort
 constexpr std::size_t kAbreast = 4;                            // tries at once, on as many threads
