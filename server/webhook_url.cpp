@@ -122,13 +122,8 @@ void read_authority(std::string_view authority, WebhookUrl& url) {
     refuse("The host of the webhook's address is not one; correct it.");
 }
 
-struct FreeAddresses {
-  void operator()(addrinfo* list) const { freeaddrinfo(list); }
-};
-
-}  // namespace
-
-WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config) {
+/// Of any host. Throws Error{webhook_refused}.
+WebhookUrl read_webhook(const std::string& text) {
   const bool readable = text.size() <= kLongestUrl && std::ranges::all_of(text, is_printable) &&
                         text.find('#') == std::string::npos;
   if (!readable)
@@ -141,6 +136,17 @@ WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config) {
   read_authority(rest.substr(0, end), url);
   const std::string_view target = rest.substr(end);
   url.target = target.starts_with('/') ? std::string(target) : "/" + std::string(target);
+  return url;
+}
+
+struct FreeAddresses {
+  void operator()(addrinfo* list) const { freeaddrinfo(list); }
+};
+
+}  // namespace
+
+WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config) {
+  WebhookUrl url = read_webhook(text);
   if (!is_allowed(url.host, config.allowed_hosts)) {
     refuse("This server calls no webhooks at " + url.host +
            "; its operator can allow the host by --webhook-hosts.");
@@ -148,6 +154,14 @@ WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config) {
   if (!config.allow_private && is_address(url.host) && !is_public_address(url.host))
     refuse("The webhook's address is not a public one; give another.");
   return url;
+}
+
+std::string webhook_host(const std::string& text) {
+  try {
+    return read_webhook(text).host;
+  } catch (const Error&) {
+    return text;
+  }
 }
 
 bool is_public_address(const std::string& address) {

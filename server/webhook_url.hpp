@@ -30,6 +30,9 @@ struct WebhookUrl {
 /// allowed.
 WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config);
 
+/// The host of a webhook's address as parse_webhook() reads it; the text itself where it is none.
+std::string webhook_host(const std::string& text);
+
 /// Whether an address in numbers is one of the public internet: not of this machine, of a private
 /// or shared network, link-local, multicast or reserved (RFC 6890); false for what is no address.
 bool is_public_address(const std::string& address);

@@ -41,16 +41,6 @@ std::string from_base64(std::string_view text) {
   return bytes;
 }
 
-/// Of a URL: what is between "//" and the port, path or query, in small letters.
-std::string host_of(const std::string& url) {
-  const std::size_t slashes = url.find("//");
-  std::string host = url.substr(slashes == std::string::npos ? 0 : slashes + 2);
-  host.resize(std::min(host.find_first_of(":/?#"), host.size()));
-  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-  std::ranges::transform(host, host.begin(), small);
-  return host;
-}
-
 }  // namespace
 
 std::string webhook_secret(std::string_view server_secret, std::string_view owner) {
@@ -160,7 +150,7 @@ bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
 }
 
 void Webhooks::begin(const Due& due) {
-  const std::string host = host_of(due.url);
+  const std::string host = webhook_host(due.url);
   if (!pool_.has_room(host)) return;
   Delivery delivery = load(due.seq);
   being_made_.insert(due.seq);

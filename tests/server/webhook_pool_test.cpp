@@ -6,6 +6,8 @@
 #include <atomic>
 #include <latch>
 
+#include "server/webhook_url.hpp"
+
 namespace unwrapd::server {
 namespace {
 
@@ -53,6 +55,15 @@ TEST_F(WebhookPlaces, HostsThatHangHaveHalfOfThePlacesHoweverManyTheyAre) {
   hang("proven");
   EXPECT_FALSE(pool_.has_room("proven"));
   EXPECT_FALSE(pool_.is_full());
+}
+
+TEST_F(WebhookPlaces, AHostIsWhatTheAddressNamesHoweverItIsWritten) {
+  for (const auto& [url, host] : {std::pair{"http://[fd00:1::1]:81/x", "fd00:1::1"},
+                                  {"http://[fd00:2::2]/", "fd00:2::2"},
+                                  {"https://Example.com:8443?a:b", "example.com"},
+                                  {"http://a.b/http://c", "a.b"}})
+    EXPECT_EQ(webhook_host(url), host);
+  EXPECT_EQ(webhook_host("no address"), "no address");
 }
 
 TEST_F(WebhookPlaces, AHostThatFailsHasToProveItselfAgain) {
