@@ -197,8 +197,9 @@ bool Connection::end_trailers() {
       body_done_ = true;
       return false;
     }
-    if (line->find(':') == std::string::npos) {
-      fail(ErrorCode::malformed_request, "A trailer field has no colon; check the client.");
+    if (!is_trailer(*line)) {
+      fail(ErrorCode::malformed_request,
+           "A trailer is not of the form \"Name: value\"; send none.");
       return false;
     }
   }

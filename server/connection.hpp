@@ -66,8 +66,8 @@ class Connection {
   [[nodiscard]] int socket() const { return client_.transport->socket(); }
   /// Its address.
   [[nodiscard]] const std::string& client() const { return client_.address; }
-  /// Bytes of the current request's body as its head tells, 0 where it does not.
-  [[nodiscard]] std::int64_t declared_bytes() const { return framing_.content_length; }
+  /// Of the current request.
+  [[nodiscard]] const Framing& framing() const { return framing_; }
   /// Bytes of the current request's body, without framing.
   [[nodiscard]] std::int64_t body_bytes() const { return body_bytes_; }
   /// Bytes sent since the current request's head was vetted.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 
 #include "api/error_table.hpp"
 #include "server/job_queue.hpp"
@@ -20,8 +21,12 @@ bool IgnoreCase::operator()(std::string_view left, std::string_view right) const
 }
 
 std::string Request::header(std::string_view name) const {
-  const auto found = headers.find(name);
-  return found == headers.end() ? std::string() : found->second;
+  const auto [first, end] = headers.equal_range(name);
+  if (first == end) return {};
+  std::string all = first->second;
+  for (auto before = first, at = std::next(first); at != end; before = at++)
+    if (at->second != before->second) all.append(", ").append(at->second);
+  return all;
 }
 
 Response json_response(int status, std::string_view json) {

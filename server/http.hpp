@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -51,14 +52,16 @@ struct Request {
   std::string path;  ///< percent-decoded
   std::multimap<std::string, std::string> query;
   std::multimap<std::string, std::string, IgnoreCase> headers;
-  std::string id;                   ///< the {id} of the path, once a route has matched
-  std::string sha256;               ///< the {sha256} of the path, the same
-  Caller caller;                    ///< who asks, once that has been found out
-  std::string client;               ///< the address of who asks
-  BodyReader* body = nullptr;       ///< of POST, PUT and PATCH
-  std::int64_t declared_bytes = 0;  ///< of the body; 0 when not told beforehand
+  std::string id;                               ///< the {id} of the path, once a route has matched
+  std::string sha256;                           ///< the {sha256} of the path, the same
+  Caller caller;                                ///< who asks, once that has been found out
+  std::string client;                           ///< the address of who asks
+  BodyReader* body = nullptr;                   ///< of POST, PUT and PATCH
+  std::int64_t declared_bytes = 0;              ///< of the body; 0 when not told beforehand
+  std::optional<Error> refusal = std::nullopt;  ///< what its head has against it, to be answered
 
-  /// The first header of this name, empty when there is none.
+  /// The headers of this name as one list (RFC 9110, 5.3), one that repeats the one before left
+  /// out; empty when there is none.
   [[nodiscard]] std::string header(std::string_view name) const;
 };
 

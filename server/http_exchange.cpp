@@ -168,7 +168,7 @@ class Exchange::Http final : public httplib::Server {
     began_ = std::chrono::steady_clock::now();
     connection_ = &connection;
     svr_sock_ = connection.socket();  // httplib writes only while it has one
-    last_ = last;
+    last_ = last || connection.framing().last || connection.framing().refusal;
     done_ = {};
     done_.client = connection.client();
     bool closed = false;
@@ -190,7 +190,8 @@ class Exchange::Http final : public httplib::Server {
                       .done = done_,
                       .trace = told_trace_,
                       .began = began_,
-                      .last = last_};
+                      .last = last_,
+                      .chunked = !connection_->framing().version_1_0};
     begun_.reset();
     return stream;
   }
@@ -198,7 +199,8 @@ class Exchange::Http final : public httplib::Server {
  private:
   void answer(const httplib::Request& from, BodyReader* body, httplib::Response& out) {
     Request request = to_request(from, body);
-    request.declared_bytes = connection_->declared_bytes();
+    request.declared_bytes = connection_->framing().content_length;
+    request.refusal = connection_->framing().refusal;
     request.client =
         client_behind(connection_->client(), forwarded_for(request), uses_.trusted_proxies);
     const Trace trace = continue_trace(request.header("traceparent"));
@@ -214,6 +216,10 @@ class Exchange::Http final : public httplib::Server {
     done_.route = response.route;
     done_.problem = response.problem;
     put(response, begun_, out);
+    if (out.is_chunked_content_provider_ && connection_->framing().version_1_0) {
+      out.is_chunked_content_provider_ = false;  // it ends with the connection
+      last_ = true;
+    }
   }
 
   /// The stream has no framing any more, and ranges, encodings and who waits for 100 are not

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <string>
 
-#include "core/error.hpp"
 #include "server/http.hpp"
 
 namespace unwrapd::server {
@@ -15,13 +14,20 @@ constexpr std::string_view kLineEnd = "\r\n";
 constexpr std::string_view kTokenSymbols = "!#$%&'*+-.^_`|~";
 constexpr std::string_view kHostSymbols = "-._~%!$&'()*+,;=:[]";  // RFC 3986, 3.2.2 and 3.2.3
 constexpr std::size_t kMaxLengthDigits = 18;
+// Fields that are no lists (RFC 9110, 5.3), and by which a request is judged.
+constexpr auto kSingle =
+    std::to_array<std::string_view>({"authorization", "content-type", "idempotency-key", "if-range",
+                                     "last-event-id", "origin", "unwrapd-webhook"});
+constexpr auto kNoTrailers =
+    std::to_array<std::string_view>({"content-length", "host", "transfer-encoding"});
 
 struct Counts {
   int fields = 0;
   int hosts = 0;
   int lengths = 0;
   int codings = 0;
-  bool version_1_0 = false;
+  bool stays = false;  // HTTP/1.0 that asks for it
+  std::array<std::optional<std::string_view>, kSingle.size()> single = {};
 };
 
 [[noreturn]] void malformed(const std::string& what) {
@@ -50,10 +56,27 @@ bool is_token(std::string_view text) { return !text.empty() && is_made_of(text, 
 
 bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; }
 
+/// Of the form "Name: value".
+bool is_field(std::string_view line) {
+  const std::size_t colon = line.find(':');
+  return colon != std::string_view::npos && is_token(line.substr(0, colon)) &&
+         std::ranges::none_of(line.substr(colon), is_control);
+}
+
 std::string_view trim(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t");
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+/// Whether a list, whose items are parted by commas, has this word.
+bool lists(std::string_view list, std::string_view word) {
+  while (true) {
+    const std::size_t comma = list.find(',');
+    if (same(trim(list.substr(0, comma)), word)) return true;
+    if (comma == std::string_view::npos) return false;
+    list.remove_prefix(comma + 1);
+  }
 }
 
 std::int64_t length_of(std::string_view digits) {
@@ -106,9 +129,24 @@ std::string_view vet_request_line(std::string_view line, Framing& framing) {
   return line.substr(0, first);
 }
 
+/// The first one counts.
+void refuse(Framing& framing, ErrorCode code, const std::string& what) {
+  if (!framing.refusal) framing.refusal.emplace(code, what);
+}
+
+void vet_single(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
+  const auto is_it = [&](std::string_view single) { return same(name, single); };
+  const auto at = std::ranges::find_if(kSingle, is_it) - kSingle.begin();
+  if (at == std::ssize(kSingle)) return;
+  std::optional<std::string_view>& before = counts.single.at(static_cast<std::size_t>(at));
+  if (before.value_or(value) != value)
+    refuse(framing, ErrorCode::malformed_request,
+           "There are two of the header " + std::string(name) + "; send one.");
+  before = value;
+}
+
 void vet_field(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
-  if (!is_token(name) || std::ranges::any_of(value, is_control))
-    malformed("A header field is not of the form \"Name: value\"; check the client.");
+  vet_single(name, value, framing, counts);
   if (same(name, "host")) {
     ++counts.hosts;
     if (!is_made_of(value, kHostSymbols))
@@ -124,26 +162,29 @@ void vet_field(std::string_view name, std::string_view value, Framing& framing, 
     if (!same(value, "chunked")) malformed("Transfer-Encoding is not \"chunked\"; use that.");
   }
   if (same(name, "expect")) framing.awaits_continue = same(value, "100-continue");
+  if (same(name, "connection")) {
+    framing.last = framing.last || lists(value, "close");
+    counts.stays = counts.stays || value == "Keep-Alive";  // as httplib spells it
+  }
   if (same(name, "content-encoding") && !same(value, "identity")) {
-    throw Error(ErrorCode::unsupported_media_type,
-                "The body has a Content-Encoding; send it uncompressed.");
+    refuse(framing, ErrorCode::unsupported_media_type,
+           "The body has a Content-Encoding; send it uncompressed.");
   }
 }
 
-void vet_counts(const Counts& counts, std::string_view method) {
+void vet_counts(const Counts& counts, std::string_view method, Framing& framing) {
   if (counts.hosts > 1) malformed("There is more than one Host header; send one.");
-  if (counts.hosts == 0 && !counts.version_1_0)
+  if (counts.hosts == 0 && !framing.version_1_0)
     malformed("There is no Host header, which HTTP/1.1 asks for; send one.");
   if (counts.lengths + counts.codings > 1)
     malformed("The length of the body is told more than once; tell it once.");
-  if (counts.version_1_0 && counts.codings > 0)
+  if (framing.version_1_0 && counts.codings > 0)
     malformed(
         "HTTP/1.0 has no Transfer-Encoding; use HTTP/1.1, or send "
         "Content-Length.");
   if (needs_length(method) && counts.lengths + counts.codings == 0) {
-    throw Error(ErrorCode::length_required,
-                "The length of the body is not told; send Content-Length, or "
-                "send it chunked.");
+    refuse(framing, ErrorCode::length_required,
+           "The length of the body is not told; send Content-Length, or send it chunked.");
   }
 }
 
@@ -172,7 +213,7 @@ Framing vet_head(std::string_view head) {
   Framing framing;
   const std::string_view method = vet_request_line(head.substr(0, end), framing);
   Counts counts;
-  counts.version_1_0 = head.substr(0, end).ends_with("1.0");
+  framing.version_1_0 = head.substr(0, end).ends_with("1.0");
   while (true) {
     head.remove_prefix(end + kLineEnd.size());
     end = head.find(kLineEnd);
@@ -182,14 +223,25 @@ Framing vet_head(std::string_view head) {
       throw Error(ErrorCode::headers_too_large, "There are over 100 header fields; send fewer.");
     if (line.size() > kMaxLineBytes)
       throw Error(ErrorCode::headers_too_large, "A header field is longer than 8 KiB; shorten it.");
-    const std::size_t colon = std::min(line.find(':'), line.size());
-    vet_field(line.substr(0, colon), trim(line.substr(std::min(colon + 1, line.size()))), framing,
-              counts);
+    if (!is_field(line))
+      malformed("A header field is not of the form \"Name: value\"; check the client.");
+    const std::size_t colon = line.find(':');
+    vet_field(line.substr(0, colon), trim(line.substr(colon + 1)), framing, counts);
   }
-  vet_counts(counts, method);
+  vet_counts(counts, method, framing);
   framing.brings_body = needs_length(method);
-  if (counts.version_1_0) framing.awaits_continue = false;  // it knows no 100 (RFC 9110, 10.1.1)
+  if (framing.version_1_0) {
+    framing.awaits_continue = false;  // it knows no 100 (RFC 9110, 10.1.1)
+    framing.last = framing.last || !counts.stays;
+  }
   return framing;
+}
+
+bool is_trailer(std::string_view line) {
+  const std::string_view name = line.substr(0, line.find(':'));
+  return is_field(line) && std::ranges::none_of(kNoTrailers, [&](std::string_view other) {
+           return same(name, other);
+         });
 }
 
 std::ptrdiff_t simplify(std::string& head, const Framing& framing) {

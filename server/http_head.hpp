@@ -4,8 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "core/error.hpp"
 
 namespace unwrapd::server {
 
@@ -21,13 +24,23 @@ struct Framing {
   std::size_t target = 0;           ///< where the request line's target begins
   std::size_t authority = 0;        ///< bytes of scheme and host before its path
   bool brings_body = false;         ///< by its method
+  bool version_1_0 = false;         ///< knows no chunks
+  bool last = false;                ///< the sender wants no other answer on this connection
+  /// Why a request that can be read is not taken: length_required, unsupported_media_type (a
+  /// Content-Encoding), malformed_request (two values of what has one). What follows it is no
+  /// other.
+  std::optional<Error> refusal = std::nullopt;
 
   [[nodiscard]] bool has_body() const { return chunked || content_length > 0; }
 };
 
 /// Reads the framing from a head that ends with the empty line. Throws Error: malformed_request,
-/// length_required, headers_too_large, unsupported_media_type (a Content-Encoding).
+/// headers_too_large.
 Framing vet_head(std::string_view head);
+
+/// Whether a line after the last chunk, without its end, is a field under the rules of the head,
+/// and none that tells where a request ends or whose it is.
+bool is_trailer(std::string_view line);
 
 /// Makes "GET http://host/path" "GET /path" in a head that was vetted (RFC 9112, 3.2.2), and leaves
 /// out the Range of a request that brings something: it means nothing there (RFC 9110, 14.2).

@@ -89,6 +89,7 @@ Response Router::dispatch(Request& request, std::string_view& matched) const {
     if (route.method == method) {
       request.id = names->id;
       request.sha256 = names->sha256;
+      if (request.refusal) throw Error(*request.refusal);
       if (admit_) admit_(request, route.path);
       return route.handler(request);
     }

@@ -16,8 +16,9 @@ constexpr int kLookMs = 250;       // how late a ping may be, or a slow client b
 constexpr int kPiecesInARow = 16;  // for one client, before the others get theirs
 constexpr std::string_view kLastChunk = "0\r\n\r\n";
 
-/// A chunk of chunked transfer coding (RFC 9112, section 7.1).
-std::string chunk_of(std::string_view bytes) {
+/// As a chunk of chunked transfer coding (RFC 9112, section 7.1) where the stream has it.
+std::string framed(std::string_view bytes, const OpenStream& open) {
+  if (!open.chunked) return std::string(bytes);
   std::array<char, 16> size{};
   const auto [end, error] = std::to_chars(size.data(), size.data() + size.size(), bytes.size(), 16);
   return std::string(size.data(), end).append("\r\n").append(bytes).append("\r\n");
@@ -121,7 +122,7 @@ void StreamWriter::go_on(Streams::iterator at) {
 StreamWriter::Progress StreamWriter::send_next(Stream& stream) const {
   try {
     if (stream.unsent.empty()) fetch(stream);
-    if (stream.unsent.empty()) return Progress::none;
+    if (stream.unsent.empty() && !stream.ended) return Progress::none;
     return send_unsent(stream) ? Progress::some : Progress::failed;
   } catch (const std::exception&) {  // there is no memory for it
     return Progress::failed;
@@ -130,8 +131,8 @@ StreamWriter::Progress StreamWriter::send_next(Stream& stream) const {
 
 void StreamWriter::fetch(Stream& stream) {
   const StreamPiece piece = stream.open.body.next();
-  if (!piece.bytes.empty()) stream.unsent = chunk_of(piece.bytes);
-  if (piece.end) stream.unsent += kLastChunk;
+  if (!piece.bytes.empty()) stream.unsent = framed(piece.bytes, stream.open);
+  if (piece.end && stream.open.chunked) stream.unsent += kLastChunk;
   stream.ended = piece.end;
 }
 
@@ -162,7 +163,7 @@ void StreamWriter::look_after(Clock::time_point now) {
     if (stream.waiting_since) {
       if (is_too_slow(stream, now)) finish(here, false);
     } else if (now - stream.last_sent >= ping_) {
-      stream.unsent = chunk_of(stream.open.body.ping);
+      stream.unsent = framed(stream.open.body.ping, stream.open);
       go_on(here);
     }
   }

@@ -30,6 +30,7 @@ struct OpenStream {
   std::string trace = {};
   std::chrono::steady_clock::time_point began = {};  ///< of the exchange
   bool last = false;                                 ///< the connection ends with it
+  bool chunked = true;                               ///< or the body as it is, for HTTP/1.0
 };
 
 class StreamWriter {

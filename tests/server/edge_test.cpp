@@ -157,6 +157,37 @@ TEST_F(Edge, RefusalsAreProblemsAndCloseTheConnection) {
               StartsWith("HTTP/1.1 431"));
 }
 
+TEST_F(Edge, RefusalsOfWhatCanBeReadTellTheirTraceToThePageThatAsked) {
+  config_.cors_origins = {"*"};
+  start();
+  const std::string trace = "00-0af7651916cd43dd8448eb211c80319c-";
+  const std::string sent = "Origin: https://x\r\ntraceparent: " + trace + "b7ad6b7169203331-01\r\n";
+  for (const auto& [fields, status] :
+       {std::pair{"", "HTTP/1.1 411"},
+        {"Content-Encoding: gzip\r\nContent-Length: 1\r\n", "HTTP/1.1 415"},
+        {"Content-Length: 1\r\nContent-Type: a/b\r\nContent-Type: c/d\r\n", "HTTP/1.1 400"}})
+    EXPECT_THAT(post(sent + fields, "x"),
+                AllOf(StartsWith(status), HasSubstr("application/problem+json"),
+                      HasSubstr("traceparent: " + trace), HasSubstr("Connection: close"),
+                      HasSubstr("Access-Control-Allow-Origin: https://x")));
+}
+
+TEST_F(Edge, FieldsOfOneNameAreOneList) {  // RFC 9110, 5.3
+  start();
+  const std::string job = submit();
+  await_state(job, "succeeded");
+  const auto get_result = [&](const std::string& fields) {
+    return exchange("GET /v1/jobs/" + job + "/result HTTP/1.1\r\nHost: x\r\n" + fields + "\r\n");
+  };
+  const std::string etag = get(job, "result")->get_header_value("ETag");
+  EXPECT_THAT(get_result("Accept: text/html\r\nAccept: model/obj\r\n"), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(get_result("If-None-Match: \"x\"\r\nIf-None-Match: " + etag + "\r\n"),
+              StartsWith("HTTP/1.1 304"));
+  const std::string length = "Content-Length: " + std::to_string(grid_obj(3).size()) + "\r\n";
+  EXPECT_THAT(post("Prefer: respond-async\r\nPrefer: wait=60\r\n" + length, grid_obj(3)),
+              StartsWith("HTTP/1.1 200"));
+}
+
 TEST_F(Edge, ARefusedBodyIsNeverReadAsTheNextRequest) {
   start();
   const std::string hidden = "GET /v1/limits HTTP/1.1\r\nHost: x\r\n\r\n";

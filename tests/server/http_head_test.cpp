@@ -18,8 +18,8 @@ std::string head(const std::string& line, const std::string& fields = "") {
 /// The code of the error, or nothing when the head passes.
 std::optional<ErrorCode> refusal(const std::string& text) {
   try {
-    vet_head(text);
-    return std::nullopt;
+    const Framing framing = vet_head(text);
+    return framing.refusal ? std::optional(framing.refusal->code()) : std::nullopt;
   } catch (const Error& error) {
     return error.code();
   }
@@ -42,7 +42,7 @@ TEST(HttpHead, RefusesEveryAmbiguousLength) {
         "Content-Length:\r\n", "Content-Length: 99999999999999999999\r\n",
         "Transfer-Encoding: gzip, chunked\r\n", "Transfer-Encoding: identity\r\n",
         "Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked\r\n", "Content-Length : 5\r\n",
-        " Content-Length: 5\r\n", "Content-Length: 5\nX: y\r\n"})
+        " Content-Length: 5\r\n", "Content-Length: 5\nX: y\r\n", "Content-Length: 5\r\nX\r\n"})
     EXPECT_EQ(refusal(head(kPost, fields)), ErrorCode::malformed_request) << fields;
 }
 
@@ -115,6 +115,36 @@ TEST(HttpHead, HoldsTheHostOfATargetToTheRulesOfHosts) {
         << target;
   EXPECT_EQ(refusal("GET http://host/ HTTP/1.1\r\n\r\n"), ErrorCode::malformed_request)
       << "without a Host header";
+}
+
+TEST(HttpHead, RefusesTwoValuesOfWhatHasOne) {
+  const std::string type = "Content-Type: model/obj\r\n";
+  const auto refused = [](const std::string& fields) {
+    return refusal(head("GET / HTTP/1.1", fields));
+  };
+  EXPECT_EQ(refused(type + "content-type: text/csv\r\n"), ErrorCode::malformed_request);
+  EXPECT_EQ(refused("Authorization: Bearer a\r\nAuthorization: Bearer b\r\n"),
+            ErrorCode::malformed_request);
+  EXPECT_EQ(refused(type + "X: y\r\n" + type), std::nullopt) << "twice the same";
+  EXPECT_EQ(refused("Accept: a/b\r\nAccept: c/d\r\n"), std::nullopt) << "a list";
+}
+
+TEST(HttpHead, KnowsWhoWantsNoOtherAnswer) {
+  const auto last = [](const std::string& version, const std::string& fields) {
+    return vet_head(head("GET / HTTP/" + version, fields)).last;
+  };
+  EXPECT_FALSE(last("1.1", ""));
+  EXPECT_FALSE(last("1.1", "Connection: keep-alive, closed\r\n"));
+  EXPECT_TRUE(last("1.1", "Connection: TE ,Close\r\n"));
+  EXPECT_TRUE(last("1.0", ""));
+  EXPECT_FALSE(last("1.0", "Connection: Keep-Alive\r\n"));
+}
+
+TEST(HttpHead, TrailersAreFieldsThatDelimitNothing) {
+  for (const char* line : {"X: y", "x:", "Digest: a:b\t"}) EXPECT_TRUE(is_trailer(line)) << line;
+  for (const char* line : {"", "X", ": y", "X : y", " X: y", "GET / x: 1", "X: a\nY: b", "X: a\rb",
+                           "content-length: 5", "Transfer-Encoding: chunked", "Host: x"})
+    EXPECT_FALSE(is_trailer(line)) << line;
 }
 
 TEST(HttpHead, KnowsWhoWaitsFor100) {

@@ -69,6 +69,18 @@ std::vector<Shape> shapes() {
       {"a chunk longer than it says", post + chunked, "1\r\nabc\r\n0\r\n\r\n"},
       {"a chunk that ends with a line feed", post + chunked, "1\r\na\n0\r\n\r\n"},
       {"a trailer that never ends", post + chunked, "0\r\nX: y\r\n"},
+      {"trailers that end with line feeds", post + chunked, "0\r\nX: y\n\n"},
+      {"a bare return in a trailer", post + chunked, "0\r\nX: y\rZ: z\r\n\r\n"},
+      {"a null in a trailer", post + chunked, std::string("0\r\nX\0: y\r\n\r\n", 12)},
+      {"a space before a trailer's colon", post + chunked, "0\r\nX : y\r\n\r\n"},
+      {"a folded trailer", post + chunked, "0\r\n X: y\r\n\r\n"},
+      {"a trailer without a name", post + chunked, "0\r\n: y\r\n\r\n"},
+      {"a request as a trailer", post + chunked, "0\r\nGET / x: 1\r\n\r\n"},
+      {"a length as a trailer", post + chunked, "0\r\nContent-Length: 5\r\n\r\n"},
+      {"a body of no length", post},
+      {"two types",
+       post + "Content-Length: 0\r\nContent-Type: model/obj\r\nContent-Type: text/csv\r\n"},
+      {"a word among the fields", post + "Content-Length: 0\r\nX\r\n"},
   };
 }
 

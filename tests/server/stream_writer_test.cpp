@@ -163,11 +163,27 @@ TEST_F(StreamWriting, AfterTheEndTheConnectionTakesAnotherRequest) {
 }
 
 TEST_F(StreamWriting, WhoAskedForTheEndOfTheConnectionGetsIt) {
+  config_.parking.idle = std::chrono::hours(1);
   start();
   story_.tell("all", true);
   const auto reader = connect();
   reader->send("GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
-  EXPECT_THAT(reader->read_to_end(), EndsWith("all\r\n0\r\n\r\n"));
+  EXPECT_THAT(reader->read_until("0\r\n\r\n"), EndsWith("all\r\n0\r\n\r\n"));
+  await([&] { return server_->open() == 0; });
+}
+
+TEST_F(StreamWriting, ForHttp10IsTheBodyAsItIsAndEndsWithTheConnection) {  // RFC 9112, 6.1
+  config_.parking.idle = std::chrono::hours(1);
+  start();
+  story_.tell("all");
+  const auto reader = connect();
+  reader->send("GET / HTTP/1.0\r\nConnection: Keep-Alive\r\n\r\n");
+  const std::string head = reader->read_until("\r\n\r\n");
+  EXPECT_THAT(head, AllOf(Not(HasSubstr("Transfer-Encoding")), HasSubstr("Connection: close")));
+  EXPECT_EQ(reader->read_until("all"), "all");
+  story_.tell(" and the end", true);
+  EXPECT_EQ(reader->read_until(" end"), " and the end");
+  await([&] { return server_->open() == 0; });
 }
 
 TEST_F(StreamWriting, WhoLeavesIsLetGoAtOnce) {
