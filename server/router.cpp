@@ -44,6 +44,11 @@ std::optional<PathNames> match(std::string_view route, std::string_view path) {
   return names;
 }
 
+/// Whether an operator should know of it; that a key has used up its quota is its owner's matter.
+bool is_ours(ErrorCode code) {
+  return api::error_row(code).status >= 500 && code != ErrorCode::quota_exceeded;
+}
+
 /// The answer to OPTIONS, and to what is not allowed.
 Response tell_allowed(const Request& request, const std::string& allowed) {
   Response response;
@@ -69,7 +74,7 @@ Response Router::guarded(Request& request, std::string_view& route) const noexce
   try {
     return dispatch(request, route);
   } catch (const Error& error) {
-    if (api::error_row(error.code()).status >= 500)
+    if (is_ours(error.code()))
       log_.error("request failed", {{"job", request.id}, {"reason", error.what()}});
     return error_response(error, request.id);
   } catch (const std::exception& error) {  // the caller learns nothing of our insides

@@ -8,6 +8,7 @@
 
 #include "server/clock.hpp"
 #include "server/identity.hpp"
+#include "server/router.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -27,6 +28,23 @@ TEST(Log, EveryLineIsOneJsonObjectWhateverItSays) {
   EXPECT_EQ(parsed[0].at("job"), "j_1");
   EXPECT_EQ(parsed[0].at("event").get<std::string>().substr(0, 8), nasty.substr(0, 8));
   EXPECT_EQ(parsed[1].at("level"), "error");
+}
+
+TEST(Log, OfServerErrorsLeavesOutThatAKeyHasUsedUpItsQuota) {
+  testing::internal::CaptureStderr();
+  const Log log(LogLevel::info);
+  const auto fail = [&log](ErrorCode code) {
+    const Handler handler = [code](const Request&) -> Response { throw Error(code, "why"); };
+    Request request;
+    request.method = "GET";
+    request.path = "/";
+    return Router({{"GET", "/", handler}}, log).answer(request).status;
+  };
+  EXPECT_EQ(fail(ErrorCode::quota_exceeded), 507);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(fail(ErrorCode::storage_full), 507);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("request failed"), std::string::npos);
 }
 
 TEST(Clock, WritesRfc3339InUtc) {
