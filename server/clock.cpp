@@ -19,6 +19,16 @@ std::int64_t elapsed_ms() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(since_boot).count();
 }
 
+Times read_clocks() {
+  constexpr std::int64_t kLongestMs = 1000;  // this process may be held between any two reads
+  while (true) {
+    const std::int64_t before_ms = elapsed_ms();
+    const std::int64_t of_day_ms = now_ms();
+    const std::int64_t after_ms = elapsed_ms();
+    if (after_ms - before_ms < kLongestMs) return {of_day_ms, after_ms};
+  }
+}
+
 std::string rfc3339(std::int64_t epoch_ms) {
   const std::time_t seconds = epoch_ms / 1000;
   std::tm utc{};

@@ -13,6 +13,15 @@ std::int64_t now_ms();
 /// Milliseconds since some moment before this process began.
 std::int64_t elapsed_ms();
 
+/// What both clocks show.
+struct Times {
+  std::int64_t of_day_ms = 0;
+  std::int64_t elapsed_ms = 0;
+};
+
+/// Of one moment, within a second.
+Times read_clocks();
+
 /// RFC 3339 in UTC with milliseconds: "2026-01-31T23:59:58.123Z".
 std::string rfc3339(std::int64_t epoch_ms);
 

@@ -34,15 +34,15 @@ void DiskRoom::take_below(std::string_view job, std::int64_t bytes, std::int64_t
   }
 }
 
-bool DiskRoom::is_free(std::int64_t bytes) const {
+bool DiskRoom::is_free(std::int64_t bytes, std::int64_t left_free) const {
   std::error_code ignored;
   const auto free = std::filesystem::space(folder_, ignored).available;
   const bool known = free != static_cast<std::uintmax_t>(-1);
-  return !known || static_cast<std::int64_t>(free) - bytes >= limits_.min_free_bytes;
+  return !known || static_cast<std::int64_t>(free) - bytes >= left_free;
 }
 
 void DiskRoom::check_free(std::int64_t bytes) const {
-  if (!is_free(bytes)) full();
+  if (!is_free(bytes, limits_.min_free_bytes)) full();
 }
 
 void DiskRoom::check_upload(std::int64_t bytes) const {
@@ -71,11 +71,12 @@ void DiskRoom::take_for_upload(std::string_view job, std::int64_t bytes, std::in
 }
 
 void DiskRoom::take(std::string_view job, std::int64_t bytes) {
+  if (!is_free(bytes, limits_.min_free_bytes / 2)) full();
   take_below(job, bytes, limits_.max_bytes > 0 ? limits_.max_bytes : kNoLimit);
 }
 
 bool DiskRoom::try_take(std::string_view job, std::int64_t bytes) {
-  return is_free(bytes) && try_take(job, bytes, upload_limit());
+  return is_free(bytes, limits_.min_free_bytes) && try_take(job, bytes, upload_limit());
 }
 
 void DiskRoom::put_back(std::string_view job, std::int64_t bytes) {
@@ -100,6 +101,15 @@ void DiskRoom::give_back(std::string_view job) {
   if (found == by_job_.end()) return;
   used_ -= found->second;
   by_job_.erase(found);
+}
+
+void DiskRoom::free_by(const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::storage_full || !reserve_.give_up()) throw;
+    write();
+  }
 }
 
 std::int64_t DiskRoom::used_bytes() const {

@@ -11,11 +11,14 @@
 #include <string>
 #include <string_view>
 
+#include "server/disk_reserve.hpp"
+
 namespace unwrapd::server {
 
 struct DiskLimits {
   std::int64_t max_bytes = 0;  ///< of all jobs' files; 0: no limit
-  std::int64_t min_free_bytes = std::int64_t{16} * 1024 * 1024;  ///< that uploads leave on the disk
+  std::int64_t min_free_bytes =
+      std::int64_t{16} * 1024 * 1024;  ///< that uploads leave on the disk, and results half of it
 };
 
 /// What can be given up where there is no room.
@@ -28,7 +31,7 @@ struct Evictions {
 class DiskRoom {
  public:
   DiskRoom(std::filesystem::path folder, const DiskLimits& limits)
-      : folder_(std::move(folder)), limits_(limits) {}
+      : folder_(std::move(folder)), limits_(limits), reserve_(folder_ / "reserve") {}
 
   void on_shortage(Evictions evictions) { evictions_ = std::move(evictions); }
 
@@ -54,17 +57,24 @@ class DiskRoom {
   void set(std::string_view job, std::int64_t bytes);
   void give_back(std::string_view job);
 
+  /// Writes what says that something is removed: on a full disk, in the room kept for that. May
+  /// call it twice. Throws what it throws.
+  void free_by(const std::function<void()>& write);
+  /// Keeps that room again, if there is some.
+  void make_reserve() noexcept { reserve_.make(); }
+
   [[nodiscard]] std::int64_t used_bytes() const;
 
  private:
   [[nodiscard]] std::int64_t upload_limit() const;
-  [[nodiscard]] bool is_free(std::int64_t bytes) const;
+  [[nodiscard]] bool is_free(std::int64_t bytes, std::int64_t left_free) const;
   void check_evictions(std::string_view job, std::int64_t whole) const;
   bool try_take(std::string_view job, std::int64_t bytes, std::int64_t limit);
   void take_below(std::string_view job, std::int64_t bytes, std::int64_t limit);
 
   const std::filesystem::path folder_;
   const DiskLimits limits_;
+  DiskReserve reserve_;
   Evictions evictions_;
   mutable std::mutex mutex_;
   std::int64_t used_ = 0;

@@ -12,8 +12,6 @@ namespace {
 
 using api::JobState;
 
-constexpr int kMaxCrashes = 3;
-constexpr int kMaxCrashesApart = 10;  // where one that is to blame should end its own process alone
 constexpr int kMaxAttemptsWhenFull = 20;
 
 }  // namespace
@@ -26,34 +24,6 @@ JobQueue::JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const L
       log_(log),
       config_(config),
       door_(config.max_queue, config.workers) {}
-
-void JobQueue::recover(bool tried_apart) {
-  const std::lock_guard lock(mutex_);
-  for (const JobRecord& job : store_.all(JobState::queued)) wait_again(job);
-  const int most = tried_apart ? kMaxCrashesApart : kMaxCrashes;
-  for (const JobRecord& job : store_.all(JobState::running))
-    take_up(job, job.crashes + 1 >= most ? Found::too_often_by_death : Found::by_death);
-}
-
-void JobQueue::take_up(const JobRecord& job, Found found) {
-  const TraceScope trace(job.trace);
-  if (job.cancel_requested) {
-    give_up(job, cancelled_by_owner());
-  } else if (found == Found::too_often_by_death) {
-    give_up(job, poison());
-  } else {
-    store_.requeue(job.id, found == Found::by_death);
-    wait_again(job);
-    log_.warning("job found at nobody's hands, queued again",
-                 {{"job", job.id}, {"attempt", job.attempt}});
-  }
-}
-
-void JobQueue::give_up(const JobRecord& job, const Error& why) {
-  events_.open(job.id, job.attempt);
-  const bool cancelled = why.code() == ErrorCode::cancelled;
-  end_job(job, ended(cancelled ? JobState::cancelled : JobState::failed, why, job.id));
-}
 
 void JobQueue::wait_again(const JobRecord& job) {
   const TraceScope trace(job.trace);
@@ -178,13 +148,6 @@ std::shared_ptr<RunningJob> JobQueue::take() {
   return job;
 }
 
-void JobQueue::beat() {
-  const std::lock_guard lock(mutex_);
-  const std::int64_t now = elapsed_ms();
-  for (const auto& [id, job] : running_) store_.renew(id, now + config_.lease.count());
-  for (const JobRecord& job : store_.lapsed(now)) take_up(job, Found::lapsed);
-}
-
 /// Whether the job, whose results found no room, waits until there is some.
 bool JobQueue::wait_for_room(const RunningJob& job, const JobOutcome& outcome) {
   const bool full = outcome.state == JobState::failed &&
@@ -228,7 +191,9 @@ void JobQueue::end_job(const JobRecord& job, JobOutcome outcome,
                        const std::function<void()>& stored) {
   const std::shared_ptr<JobFeed> feed = events_.find(job.id);
   outcome.last_event = feed->next_seq();
-  outcome.finished_ms = now_ms();
+  const Moment now = store_.now();
+  outcome.finished_ms = now.of_day_ms;
+  outcome.set_by_ms = now.set_by_ms;
   JobRecord record = job;
   record.state = outcome.state;
   record.problem = outcome.problem;
@@ -252,7 +217,7 @@ bool JobQueue::cancel_or_remove(const std::string& id) {
     cancel_live(*job);
     return true;
   }
-  store_.remove(id);
+  blobs_.room().free_by([&] { store_.remove(id); });
   events_.forget(id);
   blobs_.remove(id);
   log_.info("job removed", {{"job", id}});
@@ -261,11 +226,12 @@ bool JobQueue::cancel_or_remove(const std::string& id) {
 
 void JobQueue::cancel_live(const JobRecord& job) {
   if (job.state == JobState::queued) {
+    blobs_.room().free_by(
+        [&] { end_job(job, ended(JobState::cancelled, cancelled_by_owner(), job.id)); });
     share_.remove(job.owner);
-    end_job(job, ended(JobState::cancelled, cancelled_by_owner(), job.id));
     return;
   }
-  store_.request_cancel(job.id);
+  blobs_.room().free_by([&] { store_.request_cancel(job.id); });
   const auto running = running_.find(job.id);
   if (running != running_.end()) running->second->request_stop(StopCause::cancelled);
 }

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -80,7 +81,8 @@ class JobQueue {
 
   /// Once, before any worker: what the last process left running waits again. Its death is held
   /// against those jobs: they are given up at the third, where they are tried apart from this
-  /// process from now on, at the tenth.
+  /// process from now on, at the tenth. Those that find no room on the disk for that wait for a
+  /// beat() that does.
   void recover(bool tried_apart);
 
   /// Throws RetryLater{queue_full, draining} when a submission would be refused now, else keeps a
@@ -122,6 +124,7 @@ class JobQueue {
   void enqueue(JobRecord& job, const Submission& submission, const Answer& answer);
   [[nodiscard]] bool answer_from_store(const JobRecord& job, const JobRecord& answer);
   enum class Found { lapsed, by_death, too_often_by_death };
+  void take_up_left();
   void take_up(const JobRecord& job, Found found);
   void give_up(const JobRecord& job, const Error& why);
   void wait_again(const JobRecord& job);
@@ -145,6 +148,8 @@ class JobQueue {
   FairShare share_;
   QueueDoor door_;
   DiskPause pause_;
+  std::deque<std::string> left_;  // by the last process, and not taken up yet
+  bool tried_apart_ = false;
   std::map<std::string, std::shared_ptr<RunningJob>, std::less<>> running_;
 };
 

@@ -1,5 +1,6 @@
 #include "server/job_store.hpp"
 
+#include <cstdlib>
 #include <exception>
 #include <limits>
 
@@ -57,9 +58,22 @@ class JobStore::Writing {
   const int errors_;
 };
 
-JobStore::JobStore(const std::filesystem::path& path) : database_(path) {
+JobStore::JobStore(const std::filesystem::path& path, KeptTime::Read read) : database_(path) {
   migrate(database_);
+  Statement noted(database_, "SELECT set_by_ms FROM written");
+  if (noted.step()) noted_set_by_ms_ = noted.number(0);
+  time_.emplace(std::move(read), noted_set_by_ms_);
   check_writable();
+}
+
+std::int64_t JobStore::note_time() {
+  const Writing writing(*this);
+  const std::int64_t set_by_ms = now().set_by_ms;
+  const std::int64_t by_ms = set_by_ms - noted_set_by_ms_;
+  if (std::abs(by_ms) < kSetByMs) return 0;
+  Statement(database_, "UPDATE written SET set_by_ms = ?").with(set_by_ms).run();
+  noted_set_by_ms_ = set_by_ms;
+  return by_ms;
 }
 
 void JobStore::check_writable() {
@@ -180,23 +194,23 @@ std::vector<JobRecord> JobStore::lapsed(std::int64_t now_ms) {
 
 bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
   const Writing writing(*this);
+  const std::int64_t kept_since_ms = outcome.finished_ms - outcome.set_by_ms;
   Transaction both(database_);
   Statement statement(database_,
                       "UPDATE jobs SET state = ?4, result_format = ?5, problem = ?6,"
-                      " last_event = ?7, finished_ms = ?8, kept_since_ms = ?8, stored_bytes = ?9"
+                      " last_event = ?7, finished_ms = ?8, kept_since_ms = ?10, stored_bytes = ?9"
                       " WHERE id = ?1 AND attempt = ?2 AND state = ?3");
   statement
       .with(known.id, std::int64_t{known.attempt}, state_name(known.state),
             state_name(outcome.state), outcome.result_format, text_of(outcome.problem),
-            outcome.last_event, outcome.finished_ms, outcome.stored_bytes)
+            outcome.last_event, outcome.finished_ms, outcome.stored_bytes, kept_since_ms)
       .run();
   if (database_.changes() != 1) return false;
   if (!known.webhook.empty()) {
     Statement(database_,
               "INSERT INTO deliveries (job, owner, trace, url, body, due_ms)"
               " VALUES (?, ?, ?, ?, ?, ?)")
-        .with(known.id, known.owner, known.trace, known.webhook, outcome.delivery,
-              outcome.finished_ms)
+        .with(known.id, known.owner, known.trace, known.webhook, outcome.delivery, kept_since_ms)
         .run();
   }
   both.commit();
@@ -251,16 +265,6 @@ void JobStore::forget_before(std::int64_t epoch_ms) {
   Statement(database_, "DELETE FROM jobs WHERE expired = 1 AND kept_since_ms < ?")
       .with(epoch_ms)
       .run();
-}
-
-void JobStore::shift_kept_since(std::int64_t by_ms) {
-  const Writing writing(*this);
-  Statement(database_,
-            "UPDATE jobs SET kept_since_ms = kept_since_ms + ? WHERE state IN"
-            " ('succeeded', 'failed', 'cancelled')")
-      .with(by_ms)
-      .run();
-  Statement(database_, "UPDATE deliveries SET due_ms = due_ms + ?").with(by_ms).run();
 }
 
 void JobStore::remove(std::string_view id) {

@@ -18,6 +18,7 @@
 #include "core/error.hpp"
 #include "server/database.hpp"
 #include "server/job_record.hpp"
+#include "server/kept_time.hpp"
 
 namespace unwrapd::server {
 
@@ -29,6 +30,7 @@ struct JobOutcome {
   api::Json problem;
   std::int64_t last_event = 0;
   std::int64_t finished_ms = 0;
+  std::int64_t set_by_ms = 0;     ///< Moment::set_by_ms at that time
   std::int64_t stored_bytes = 0;  ///< of the job's files, 0 when none are left
   std::string delivery = {};      ///< body of the call to the job's webhook, where it has one
 };
@@ -53,8 +55,12 @@ struct OwnerUsage {
 /// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
 class JobStore {
  public:
-  /// Throws when it cannot be written.
-  explicit JobStore(const std::filesystem::path& path);
+  /// Throws when it cannot be written. read: the clocks.
+  explicit JobStore(const std::filesystem::path& path, KeptTime::Read read = read_clocks);
+
+  [[nodiscard]] Moment now() const { return time_->now(); }
+  /// By how much the time of day was set since the last call, which is noted; 0 when it was not.
+  std::int64_t note_time();
 
   /// Writes to it when the last write has failed, or none was tried; does not throw storage_full.
   void check_writable();
@@ -89,15 +95,13 @@ class JobStore {
 
   /// Whether the job's files are to be kept: it is not final, or has succeeded and not expired.
   bool keeps_files(std::string_view id);
-  /// Final jobs that ended before this time and still have their files, the oldest first.
+  /// Final jobs that ended before this time (of Moment::kept_ms(), like all below) and still have
+  /// their files, the oldest first.
   std::vector<std::string> finished_before(std::int64_t epoch_ms, int limit = -1);
   void set_stored_bytes(std::string_view id, std::int64_t bytes);
   void set_expired(std::string_view id);
   /// Removes the rows of expired jobs that ended before this time.
   void forget_before(std::int64_t epoch_ms);
-  /// The time of day was set: the time for which jobs are kept, and to the next call of a webhook,
-  /// goes on as if it had not been.
-  void shift_kept_since(std::int64_t by_ms);
   void remove(std::string_view id);
 
  private:
@@ -109,6 +113,8 @@ class JobStore {
 
   std::mutex mutex_;
   Database database_;
+  std::int64_t noted_set_by_ms_ = 0;
+  std::optional<const KeptTime> time_;
   std::atomic<bool> write_failed_ = true;  // or was not tried
 };
 

@@ -9,18 +9,18 @@ namespace {
 
 constexpr std::size_t kMaxBytes = api::kMaxOptionsBytes + 1024;
 
-[[noreturn]] void refuse(const std::string& member, const std::string& what) {
+[[noreturn]] void refuse_member(const std::string& member, const std::string& what) {
   throw Error(ErrorCode::invalid_option, what, "/" + api::pointer_token(member));
 }
 
 std::string mesh_of(const api::Json& value) {
   if (!value.is_string() || !is_sha256(value.get_ref<const std::string&>()))
-    refuse("mesh", "The mesh is named by its SHA-256; send its 64 lowercase hex digits.");
+    refuse_member("mesh", "The mesh is named by its SHA-256; send its 64 lowercase hex digits.");
   return value;
 }
 
 std::string options_of(const api::Json& value) {
-  if (!value.is_object()) refuse("options", "The options must be a JSON object.");
+  if (!value.is_object()) refuse_member("options", "The options must be a JSON object.");
   return value.dump();
 }
 
@@ -39,10 +39,10 @@ MeshReference parse_mesh_reference(std::string_view text) {
     } else if (member == "options") {
       reference.options = options_of(value);
     } else {
-      refuse(member, "There is no member of this name; there are mesh and options.");
+      refuse_member(member, "There is no member of this name; there are mesh and options.");
     }
   }
-  if (reference.sha256.empty()) refuse("mesh", "No mesh is named; send its SHA-256.");
+  if (reference.sha256.empty()) refuse_member("mesh", "No mesh is named; send its SHA-256.");
   return reference;
 }
 

@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::string_view kPath = "/v1/meshes/{sha256}";
 
-api::Json mesh_json(const MeshRecord& mesh, std::chrono::seconds kept) {
-  const std::int64_t kept_ms = std::chrono::milliseconds(kept).count();
+api::Json mesh_json(const Meshes& meshes, const MeshRecord& mesh, std::chrono::seconds kept) {
+  const std::int64_t kept_ms = std::chrono::milliseconds(kept).count() + meshes.now().set_by_ms;
   return api::to_json(api::Mesh{.sha256 = mesh.sha256,
                                 .bytes = mesh.bytes,
                                 .media_type = mesh.media_type,
@@ -24,14 +24,14 @@ Response mesh_response(int status, const api::Json& mesh) {
 
 Response put_mesh(Meshes& meshes, const Request& request, std::chrono::seconds kept) {
   const SentMesh sent = meshes.receive(request, request.sha256);
-  Response response = mesh_response(sent.is_new ? 201 : 200, mesh_json(sent.mesh, kept));
+  Response response = mesh_response(sent.is_new ? 201 : 200, mesh_json(meshes, sent.mesh, kept));
   response.headers.emplace_back("Location", api::mesh_path(request.sha256));
   return response;
 }
 
 Response get_mesh(Meshes& meshes, const Request& request, std::chrono::seconds kept) {
   const MeshRecord mesh = meshes.find(request.caller.owner, request.sha256);
-  api::Json json = mesh_json(mesh, kept);
+  api::Json json = mesh_json(meshes, mesh, kept);
   json.update(meshes.analysis(mesh));
   return mesh_response(200, json);
 }

@@ -71,11 +71,6 @@ std::vector<MeshRecord> MeshStore::unused_since(std::int64_t epoch_ms) {
   return mesh_rows(statement.with(epoch_ms));
 }
 
-void MeshStore::shift_kept_since(std::int64_t by_ms) {
-  const std::lock_guard lock(mutex_);
-  Statement(database_, "UPDATE meshes SET kept_since_ms = kept_since_ms + ?").with(by_ms).run();
-}
-
 void MeshStore::remove(std::string_view id) {
   const std::lock_guard lock(mutex_);
   Statement(database_, "DELETE FROM meshes WHERE id = ?").with(id).run();

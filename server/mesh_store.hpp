@@ -41,8 +41,6 @@ class MeshStore {
   [[nodiscard]] bool has(std::string_view id);
   /// The meshes that were used last before this time, the longest unused first.
   std::vector<MeshRecord> unused_since(std::int64_t epoch_ms);
-  /// The time of day was set.
-  void shift_kept_since(std::int64_t by_ms);
   void remove(std::string_view id);
 
  private:

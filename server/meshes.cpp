@@ -1,7 +1,6 @@
 #include "server/meshes.hpp"
 
 #include "api/error_table.hpp"
-#include "server/clock.hpp"
 #include "server/identity.hpp"
 #include "server/job_input.hpp"
 #include "server/media_types.hpp"
@@ -77,7 +76,9 @@ SentMesh Meshes::receive(const Request& request, const std::string& sha256) {
     check_digest(came.sha256, sha256);
     mesh.sha256 = came.sha256;
     mesh.bytes = mesh.stored_bytes = came.bytes;
-    mesh.created_ms = mesh.kept_since_ms = now_ms();
+    const Moment now = jobs_.now();
+    mesh.created_ms = now.of_day_ms;
+    mesh.kept_since_ms = now.kept_ms();
     return settle(request, std::move(mesh), upload);
   } catch (...) {
     blobs_.drop_upload(upload);
@@ -124,7 +125,7 @@ JobInput Meshes::share(const std::string& owner, const std::string& sha256,
                 "The stored mesh is damaged; send it again by PUT /v1/meshes/{sha256}.",
                 std::string(kMeshMember));
   }
-  store_.use(mesh.id, now_ms());
+  store_.use(mesh.id, jobs_.now().kept_ms());
   return {.sha256 = mesh.sha256, .bytes = mesh.bytes, .buffers = {}};
 }
 

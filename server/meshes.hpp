@@ -46,6 +46,7 @@ class Meshes {
   /// once. Throws what Renderer throws.
   api::Json analysis(const MeshRecord& mesh);
 
+  [[nodiscard]] Moment now() const { return jobs_.now(); }
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:

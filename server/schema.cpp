@@ -8,7 +8,7 @@ namespace unwrapd::server {
 namespace {
 
 /// Step k makes version k + 1 out of version k. Steps that were released are never edited.
-constexpr std::array<const char*, 7> kSteps = {
+constexpr std::array<const char*, 8> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -108,6 +108,9 @@ END;
 )sql",
     R"sql(
 ALTER TABLE jobs ADD COLUMN asked TEXT NOT NULL DEFAULT '';
+)sql",
+    R"sql(
+ALTER TABLE written ADD COLUMN set_by_ms INTEGER NOT NULL DEFAULT 0;
 )sql"};
 
 constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());

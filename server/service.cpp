@@ -9,7 +9,6 @@
 
 #include "server/access_log.hpp"
 #include "server/admin_routes.hpp"
-#include "server/clock.hpp"
 #include "server/cors.hpp"
 #include "server/data_lock.hpp"
 #include "server/http_server.hpp"
@@ -52,7 +51,8 @@ struct Service::Parts {
         links(secret),
         access(keys, links, asks_for_keys(config.access, config.listen.host)),
         cors(config.cors_origins),
-        webhooks(config.data / kStoreFile, secret, config.webhooks, log),
+        webhooks(config.data / kStoreFile, secret, config.webhooks, log,
+                 [this] { return store.now(); }),
         renderer(blobs, config.limits, log, isolation, making_limits(config, solver_cache), duties),
         meshes(mesh_store, store, blobs, rooms, renderer),
         submissions(queue, store, blobs, config.limits, config.webhooks, meshes, rooms),
@@ -130,11 +130,11 @@ struct Service::Parts {
 
   void start_periodic(const Log& log) {
     sweeping.emplace(
-        "sweeping", sweeper.pause(), [this] { sweeper.sweep_once(now_ms(), elapsed_ms()); }, log);
+        "sweeping", sweeper.pause(), [this] { sweeper.sweep_once(); }, log);
     beating.emplace(
         "prolonging leases", kHeartbeat, [this] { queue.beat(); }, log);
     calling.emplace(
-        "calling webhooks", kWebhookPause, [this] { webhooks.call_due(now_ms()); }, log);
+        "calling webhooks", kWebhookPause, [this] { webhooks.call_due(); }, log);
     trimming.emplace(  // what large jobs leave free in the heaps of their threads
         "giving memory back", kTrimPause, [] { ::malloc_trim(0); }, log);
   }

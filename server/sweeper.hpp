@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <optional>
 
 #include "server/blob_store.hpp"
 #include "server/job_store.hpp"
@@ -14,7 +13,7 @@
 
 namespace unwrapd::server {
 
-/// One sweep at this time.
+/// One sweep at this time, of Moment::kept_ms().
 void sweep(JobStore& store, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep);
 
 /// The same of stored meshes: those that were not used for so long, and that no job shares.
@@ -24,7 +23,7 @@ void sweep(MeshStore& meshes, BlobStore& blobs, std::int64_t now_ms, std::chrono
 /// no job shares; false when there is neither.
 bool evict_oldest(JobStore& store, MeshStore& meshes, BlobStore& blobs);
 
-/// Sweeps, and notices when the time of day is set: nothing is then removed too early or too late.
+/// Sweeps, whatever the time of day is set to, and has it noted when it was.
 class Sweeper {
  public:
   Sweeper(JobStore& store, MeshStore& meshes, BlobStore& blobs, const Log& log,
@@ -33,8 +32,7 @@ class Sweeper {
 
   /// How long to wait between two sweeps.
   [[nodiscard]] std::chrono::milliseconds pause() const;
-  /// One sweep. now_ms: the time of day; elapsed_ms: on a clock that nobody sets.
-  void sweep_once(std::int64_t now_ms, std::int64_t elapsed_ms);
+  void sweep_once();
 
  private:
   JobStore& store_;
@@ -42,7 +40,6 @@ class Sweeper {
   BlobStore& blobs_;
   const Log& log_;
   const std::chrono::seconds keep_;
-  std::optional<std::int64_t> offset_ms_;  // of the time of day over the elapsed, a sweep ago
 };
 
 }  // namespace unwrapd::server

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "core/error.hpp"
-#include "server/clock.hpp"
 #include "server/identity.hpp"
 #include "server/trace.hpp"
 #include "server/webhook_http.hpp"
@@ -54,17 +53,26 @@ std::string webhook_signature(const std::string& secret, std::string_view signed
 }
 
 Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret,
-                   WebhookConfig config, const Log& log)
+                   WebhookConfig config, const Log& log, std::function<Moment()> now)
     : secret_(std::move(server_secret)),
       config_(std::move(config)),
       log_(log),
+      now_(std::move(now)),
       database_(store),
       pool_(kAtOnce, kPerHost, [this] { go_on(); }) {
-  // Whoever set the clock back while no server ran did not mean to put calls off.
-  Statement(database_,
-            "UPDATE deliveries SET due_ms ="
-            " MIN(due_ms, ?1 + MIN(?2 << MAX(tries - 1, 0), ?3))")
-      .with(now_ms(), config_.retry_seconds * kMsPerSecond, kLongestPauseMs)
+  try {
+    put_forward();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::storage_full) throw;
+    log_.warning("the disk is full, calls of webhooks may be late");
+  }
+}
+
+/// Whoever set the clock back while no server ran did not mean to put calls off.
+void Webhooks::put_forward() {
+  const std::string latest = "?1 + MIN(?2 << MAX(tries - 1, 0), ?3)";
+  Statement(database_, "UPDATE deliveries SET due_ms = " + latest + " WHERE due_ms > " + latest)
+      .with(now_().kept_ms(), config_.retry_seconds * kMsPerSecond, kLongestPauseMs)
       .run();
 }
 
@@ -97,7 +105,7 @@ std::string Webhooks::call(const Delivery& delivery, const std::stop_token& stop
   try {
     const WebhookUrl url = parse_webhook(delivery.url, config_);
     const std::string address = resolve_webhook(url, config_).front();
-    const std::string timestamp = std::to_string(now_ms() / kMsPerSecond);
+    const std::string timestamp = std::to_string(now_().of_day_ms / kMsPerSecond);
     const std::string signed_text = delivery.job + "." + timestamp + "." + delivery.body;
     return post_webhook(
         {.url = url,
@@ -142,7 +150,7 @@ bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
   being_made_.erase(delivery.seq);
   if (stop.stop_requested() && !failure.empty()) return false;  // cut off by us
   try {
-    settle(delivery, failure, now_ms());
+    settle(delivery, failure, now_().kept_ms());
   } catch (const Error& error) {
     log_.error("a webhook's call was not noted", {{"reason", error.what()}});
   }
@@ -159,10 +167,10 @@ void Webhooks::begin(const Due& due) {
   });
 }
 
-void Webhooks::call_due(std::int64_t now_ms) {
+void Webhooks::call_due() {
   const std::lock_guard lock(mutex_);
   if (pool_.is_full()) return;
-  for (const Due& next : due(now_ms)) {
+  for (const Due& next : due(now_().kept_ms())) {
     begin(next);
     if (pool_.is_full()) return;
   }
@@ -170,7 +178,7 @@ void Webhooks::call_due(std::int64_t now_ms) {
 
 void Webhooks::go_on() {
   try {
-    call_due(now_ms());
+    call_due();
   } catch (const Error& error) {
     log_.error("calling webhooks failed", {{"reason", error.what()}});
   }

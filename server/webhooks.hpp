@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <stop_token>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "server/database.hpp"
+#include "server/kept_time.hpp"
 #include "server/log.hpp"
 #include "server/webhook_pool.hpp"
 #include "server/webhook_url.hpp"
@@ -45,13 +47,13 @@ std::string webhook_signature(const std::string& secret, std::string_view signed
 /// start.
 class Webhooks {
  public:
-  /// store: the file of the jobs, whose tables are there already.
+  /// store: the file of the jobs, whose tables are there already. now: JobStore::now().
   Webhooks(const std::filesystem::path& store, std::string server_secret, WebhookConfig config,
-           const Log& log);
+           const Log& log, std::function<Moment()> now);
 
   /// Begins the calls that are due, the longest due first, as far as there is room; the others
   /// follow when there is.
-  void call_due(std::int64_t now_ms);
+  void call_due();
 
  private:
   struct Due {
@@ -59,6 +61,7 @@ class Webhooks {
     std::string url;
   };
 
+  void put_forward();
   std::vector<Due> due(std::int64_t now_ms);
   Delivery load(std::int64_t seq);
   void begin(const Due& due);
@@ -70,6 +73,7 @@ class Webhooks {
   const std::string secret_;
   const WebhookConfig config_;
   const Log& log_;
+  const std::function<Moment()> now_;
   std::mutex mutex_;  // of the next two
   Database database_;
   std::set<std::int64_t> being_made_;  // seq

@@ -1,9 +1,9 @@
 // The real server on a directory, and what the fault tests send, ask and look at. UNWRAPD names the
 // binary.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
+import { execFileSync, spawn } from "node:child_process";
 import { once } from "node:events";
-import { mkdtempSync, readdirSync, rmSync } from "node:fs";
+import { mkdtempSync, readdirSync, rmdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
@@ -103,6 +103,21 @@ export function dataDirectory(t) {
   const data = mkdtempSync(join(tmpdir(), "unwrapd-fault-"));
   t.after(() => rmSync(data, { recursive: true, force: true }));
   return data;
+}
+
+/** A small file system of its own, or undefined where this user may not mount one. */
+export function smallDisk(t, megabytes) {
+  const folder = mkdtempSync(join(tmpdir(), "unwrapd-disk-"));
+  const remove = () => rmdirSync(folder);
+  try {
+    execFileSync("mount", ["-t", "tmpfs", "-o", `size=${megabytes}m`, "tmpfs", folder], { stdio: "ignore" });
+  } catch {
+    remove();
+    return undefined;
+  }
+  t.after(() => execFileSync("umount", ["-l", folder]));
+  t.after(remove);
+  return folder;
 }
 
 export function filesBelow(directory) {

@@ -2,13 +2,12 @@
 // or say what is wrong, and what was stored stays right.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmdirSync, rmSync, statfsSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { existsSync, readFileSync, rmSync, statfsSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { dataDirectory, ENDLESS, grid, QUICK, Server } from "./server.mjs";
+import { dataDirectory, ENDLESS, grid, QUICK, Server, smallDisk } from "./server.mjs";
 
 const FAKETIME = `/usr/lib/${process.arch === "arm64" ? "aarch64" : "x86_64"}-linux-gnu/faketime/libfaketime.so.1`;
 
@@ -78,21 +77,6 @@ test("a damaged result answers no later job: the same question is then worked ou
   assert.deepEqual(report, { status: 500, code: "storage_corrupt" });
   await server.end("SIGTERM");
 });
-
-/** A small file system of its own, or undefined where this user may not mount one. */
-function smallDisk(t, megabytes) {
-  const folder = mkdtempSync(join(tmpdir(), "unwrapd-disk-"));
-  const remove = () => rmdirSync(folder);
-  try {
-    execFileSync("mount", ["-t", "tmpfs", "-o", `size=${megabytes}m`, "tmpfs", folder], { stdio: "ignore" });
-  } catch {
-    remove();
-    return undefined;
-  }
-  t.after(() => execFileSync("umount", ["-l", folder]));
-  t.after(remove);
-  return folder;
-}
 
 test("a full disk refuses with 507, and every accepted job ends well once there is room", async (t) => {
   const disk = smallDisk(t, 8);

@@ -1,5 +1,5 @@
-// What keeps jobs over versions, damaged disks, full disks and clocks that are set; and whose job
-// is next. Each rule by itself; tests/fault kills the real server.
+// What keeps jobs over versions, damaged disks and full disks; and whose job is next. Each rule by
+// itself; tests/fault kills the real server.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -12,7 +12,6 @@
 #include "server/fair_share.hpp"
 #include "server/identity.hpp"
 #include "server/job_store.hpp"
-#include "server/sweeper.hpp"
 #include "temp_dir.hpp"
 #include "tests/api/error_of.hpp"
 
@@ -206,46 +205,30 @@ TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
   EXPECT_EQ(error_of([&] { blobs.room().take("j_2", 351); }).code(), ErrorCode::storage_full);
 }
 
-TEST_F(Durability, UploadsLeaveTheDiskSomeRoom) {
-  const std::int64_t more_than_any_disk = std::int64_t{1} << 60;
-  BlobStore blobs(dir_.path(), {.max_bytes = 0, .min_free_bytes = more_than_any_disk});
-  EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 1, 1); }).code(),
-            ErrorCode::storage_full);
-  EXPECT_NO_THROW(blobs.room().take("j_1", 1));
+TEST_F(Durability, UploadsLeaveTheDiskSomeRoomAndResultsHalfOfIt) {
+  const auto free = static_cast<std::int64_t>(std::filesystem::space(dir_.path()).available);
+  const auto upload = [](BlobStore& blobs) { blobs.room().take_for_upload("u", 1, 1); };
+  const auto result = [](BlobStore& blobs) { blobs.room().take("j_1", 1); };
+  BlobStore blobs(dir_.path(), {.max_bytes = 0, .min_free_bytes = free / 2 * 3});
+  EXPECT_EQ(error_of([&] { upload(blobs); }).code(), ErrorCode::storage_full);
+  EXPECT_NO_THROW(result(blobs));
+  BlobStore fuller(dir_.path(), {.max_bytes = 0, .min_free_bytes = 3 * free});
+  EXPECT_EQ(error_of([&] { result(fuller); }).code(), ErrorCode::storage_full);
 }
 
-TEST_F(Durability, ResultsAreKeptForTheirTimeWhenTheClockIsSet) {
-  constexpr std::int64_t kDay = 86'400'000;
-  const Log log(LogLevel::off);
+TEST_F(Durability, WhatSaysThatSomethingIsRemovedHasRoomOnAFullDiskOnce) {
   BlobStore blobs(dir_.path());
-  JobStore store(path());
-  MeshStore meshes(path());
-  Sweeper sweeper(store, meshes, blobs, log, std::chrono::seconds(100));
-  meshes.put(
-      {.id = "m_1", .owner = "", .sha256 = "ab", .media_type = "", .kept_since_ms = 50 * kDay});
-  JobRecord job;
-  job.id = "j_1";
-  job.options = job.notes = api::Json::array();
-  store.insert(job);
-  JobOutcome outcome;
-  outcome.finished_ms = 50 * kDay;
-  store.finish(*store.take("", 1), outcome);
-  Database deliveries(path());
-  deliveries.run("INSERT INTO deliveries (job, url, body, due_ms) VALUES ('j_1', 'x', '', 7000)");
-  const auto kept = [&] { return !store.find("j_1")->expired && meshes.has("m_1"); };
-  const auto gone = [&] { return store.find("j_1")->expired && !meshes.has("m_1"); };
-  sweeper.sweep_once(50 * kDay, 7000);
-  sweeper.sweep_once(60 * kDay, 8000);
-  EXPECT_TRUE(kept()) << "ten days forward";
-  sweeper.sweep_once(40 * kDay, 9000);
-  EXPECT_TRUE(kept()) << "twenty days back";
-  Statement due(deliveries, "SELECT due_ms FROM deliveries");
-  EXPECT_TRUE(due.step() && due.number(0) == 5000 - 10 * kDay) << "a call's time was set, too";
-  due.step();
-  sweeper.sweep_once(40 * kDay + 97'000, 106'000);
-  EXPECT_TRUE(kept()) << "99 s have passed";
-  sweeper.sweep_once(40 * kDay + 99'000, 108'000);
-  EXPECT_TRUE(gone()) << "101 s have passed";
+  int times = 0;
+  const auto write = [&] {
+    if (++times % 2 == 1) throw Error(ErrorCode::storage_full, "");
+  };
+  EXPECT_EQ(error_of([&] { blobs.room().free_by(write); }).code(), ErrorCode::storage_full);
+  times = 0;
+  blobs.room().make_reserve();
+  EXPECT_EQ(std::filesystem::file_size(dir_.path() / "reserve"), kReserveBytes);
+  EXPECT_NO_THROW(blobs.room().free_by(write));
+  EXPECT_EQ(times, 2);
+  EXPECT_FALSE(std::filesystem::exists(dir_.path() / "reserve"));
 }
 
 TEST(FairShare, ManyJobsOfOneOwnerDoNotKeepAnotherWaiting) {

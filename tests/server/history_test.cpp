@@ -111,7 +111,6 @@ TEST_F(History, BytesAreThoseOfAllRowsWhateverBecomesOfThem) {
   store_->set_expired("j_4");
   expect(250, 110, 350);
   store_->forget_before(std::numeric_limits<std::int64_t>::max());
-  store_->shift_kept_since(5);
   expect(250, 110, 350);
   store_.emplace(dir_.path() / "jobs.sqlite");
   expect(250, 110, 350);
