@@ -47,8 +47,9 @@ export async function streams(binary) {
                                             '1000', '--log-level', 'warning']);
   const mesh = await meshOfTenIterationsASecond(server.base);
   const jobs = [];
-  for (let i = 0; i < 2; ++i) {
-    jobs.push((await submit(server.base, mesh, '?stop.iterations=10000&guarantee=none')).job.id);
+  for (let i = 0; i < 2; ++i) {  // two questions: the same one is worked on once
+    const query = `?stop.iterations=${10_000 - i}&guarantee=none`;
+    jobs.push((await submit(server.base, mesh, query)).job.id);
   }
   for (const job of jobs) await iterates(server.base, job);
   await sleep(kTrimmed);  // now the jobs' memory is taken, and what they have freed is given back
