@@ -105,7 +105,8 @@ ConfigGroup storing() {
                            "Files of all jobs; results that ended first go earlier to keep within "
                            "it; 0: no limit"},
                           {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::max_bytes),
-                   number({"min-free-bytes", "N", "Uploads leave so much of the disk free"},
+                   number({"min-free-bytes", "N",
+                           "Uploads leave so much of the disk free, results half"},
                           {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::min_free_bytes)}};
 }
 
