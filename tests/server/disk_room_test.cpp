@@ -7,6 +7,7 @@
 #include <string>
 
 #include "server/blob_store.hpp"
+#include "server/disk_pause.hpp"
 #include "temp_dir.hpp"
 #include "tests/api/error_of.hpp"
 
@@ -81,6 +82,18 @@ TEST_F(FilesOfJobs, AreClaimedUntilTheyCount) {
   EXPECT_TRUE(blobs.try_keep("j_1", "picture", "1234567"));
   EXPECT_EQ(counted, 16) << "the document, the report and the picture: digests are ours";
   EXPECT_EQ(claimed, 0);
+}
+
+TEST(DiskPause, GrowsWithEachJobInARowThatFindsTheDiskFull) {
+  DiskPause pause;
+  EXPECT_EQ(pause.seconds_left(), 0);
+  for (const int seconds : {1, 2, 4, 8, 16, 32, 60, 60}) {
+    pause.note(true);
+    EXPECT_EQ(pause.seconds_left(), seconds);
+  }
+  pause.note(false);
+  pause.note(true);
+  EXPECT_EQ(pause.seconds_left(), 1);
 }
 
 }  // namespace

@@ -262,6 +262,26 @@ TEST_F(Store, AJobThatDoesNotStopIsLeftToTheNextStartAndNotBlamed) {
   EXPECT_EQ(store_->find("j_1")->crashes, 0);
 }
 
+TEST_F(Store, TheEndOfAJobIsTellableBeforeItIsTold) {
+  store_->insert(some_job("j_1"));
+  BlobStore blobs(dir_.path());
+  blobs.begin_upload("j_1");
+  blobs.keep_upload("j_1", "j_1");
+  EventFeed events;
+  const Log log(LogLevel::off);
+  JobQueue queue(*store_, blobs, events, log, {});
+  queue.recover(false);
+  const std::shared_ptr<RunningJob> job = queue.take();
+  int calls = 0;
+  queue.finish(*job, succeeded(), [&] {
+    ++calls;
+    EXPECT_EQ(store_->find("j_1")->state, JobState::succeeded);
+    EXPECT_FALSE(job->feed->read(0).end) << "nobody knows yet";
+  });
+  EXPECT_EQ(calls, 1);
+  EXPECT_TRUE(job->feed->read(0).end);
+}
+
 TEST_F(Store, AJobAtWorkAtTenDeathsIsGivenUpThoughItWasTriedApart) {
   store_->insert(some_job("j_1"));
   BlobStore blobs(dir_.path());

@@ -60,6 +60,18 @@ TEST(TrialMemory, AnswersInPlaceOfATrial) {
   EXPECT_EQ(result.excess.worst(), 4);
 }
 
+TEST(TrialMemory, KnowsWhatWasKnownBeforeAndWhatItTakes) {
+  TrialMemory before, other;
+  before.keep(1, {Verdict::distorted, {}});
+  other.keep(2, {Verdict::distorted, {}});
+  TrialMemory memory(&before);
+  EXPECT_TRUE(memory.find(1));
+  EXPECT_FALSE(memory.find(2));
+  memory.take(std::move(other));
+  EXPECT_TRUE(memory.find(2));
+  EXPECT_FALSE(before.find(2)) << "others read it";
+}
+
 TEST(TrialMemory, TellsTrialsApartByAllThatTheyRead) {
   const Dome dome;
   const TrialRules rules{.most_excess = 1};
