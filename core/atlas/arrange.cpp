@@ -5,11 +5,11 @@
 #include "core/atlas/arrange.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "core/atlas/lowest_places.hpp"
 #include "core/cancel.hpp"
 
 namespace unwrapd {
@@ -18,11 +18,6 @@ namespace {
 constexpr std::size_t kFewIslands = 64;  // that look at every row
 constexpr double kSpanning = 0.5;        // the square of an island's length that may span a page,
                                          // beside the area of all boxes
-constexpr std::size_t kClasses = 60;     // of sizes, four to a doubling
-
-std::size_t class_of(int cells) {
-  return std::min(kClasses - 1, static_cast<std::size_t>(4 * std::log2(cells + 1.0)));
-}
 
 UvMap points_of(const Outline& outline) {
   UvMap points;
@@ -35,15 +30,8 @@ UvMap points_of(const Outline& outline) {
 
 /// A page as it fills.
 struct Arranger::Page {
-  struct Cell {
-    int x = 0, y = 0;
-  };
   Occupancy cells;
-  std::array<std::array<Cell, kClasses>, kClasses> lowest{};  ///< place, by width and height
-
-  Cell& lowest_of(const Mask& mask) {
-    return lowest[class_of(mask.width)][class_of(mask.touched.height())];
-  }
+  LowestPlaces lowest = {};
 };
 
 Arranger::Arranger(std::span<const Outline> outlines, int turns)
@@ -96,13 +84,13 @@ int Arranger::least_side(const std::stop_token& stop) {
 bool Arranger::lower(std::size_t island, int turn, Page& page, Spot& spot, int& lowest_top) {
   const Mask& mask = mask_of(island, turn);
   const bool few = size() <= kFewIslands;
-  Page::Cell from = few ? Page::Cell() : page.lowest_of(mask);
+  Cell from = few ? Cell() : page.lowest.of(mask);
   for (; from.y + mask.touched.height() < lowest_top; from = {0, from.y + 1}) {
     const std::optional<int> x = page.cells.first_free(mask, from.y, from.x);
     if (!x) continue;
     lowest_top = from.y + mask.touched.height();
     spot = {*x, from.y, turn, spot.page};
-    if (!few) page.lowest_of(mask) = {*x, from.y};
+    if (!few) page.lowest.of(mask) = {*x, from.y};
     return true;
   }
   return false;

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -19,6 +18,7 @@
 #include "core/atlas/halve.hpp"
 #include "core/atlas/loosen.hpp"
 #include "core/atlas/partition_cost.hpp"
+#include "core/atlas/side_by_side.hpp"
 #include "core/atlas/straighten.hpp"
 #include "core/atlas/trial_memory.hpp"
 
@@ -57,24 +57,6 @@ struct Candidate {
 
 double all_of(const Candidate& own) { return own.cost.all; }
 
-/// What some number of searches come to, on any threads.
-std::vector<Candidate> side_by_side(std::size_t count, Executor& executor,
-                                    const std::function<Candidate(std::size_t)>& search) {
-  std::vector<Candidate> found(count);
-  std::vector<std::exception_ptr> failure(count);
-  executor.for_each_block(static_cast<int>(count), [&](int block) {
-    const auto k = static_cast<std::size_t>(block);
-    try {
-      found[k] = search(k);
-    } catch (...) {  // told to stop
-      failure[k] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& own : failure)
-    if (own) std::rethrow_exception(own);
-  return found;
-}
-
 class Search {
  public:
   Search(const Sheet& sheet, const Partition& from, const MergeRules& rules, Executor& executor)
@@ -97,7 +79,7 @@ class Search {
       const std::size_t count = std::min(kAbreast, tries_ - first);
       const double limit = best.size() < kept_ ? kInfinity : best.back().cost.all;
       begin(static_cast<double>(count));
-      std::vector<Candidate> found = side_by_side(count, executor_, [&](std::size_t k) {
+      std::vector<Candidate> found = side_by_side<Candidate>(count, executor_, [&](std::size_t k) {
         return weighed(merged(from_, rules_of(first + k)), limit);
       });
       learn(found);
@@ -120,7 +102,7 @@ class Search {
     const auto count = static_cast<double>(best.size());
     for (std::size_t number = 0; number < mends_; ++number) {
       begin(kTriesOfAMend * count);
-      std::vector<Candidate> found = side_by_side(
+      std::vector<Candidate> found = side_by_side<Candidate>(
           best.size(), executor_, [&](std::size_t k) { return mended(best[k], number); });
       learn(found);
       for (std::size_t k = 0; k < found.size(); ++k)
@@ -132,12 +114,13 @@ class Search {
   /// of any shape or not.
   Candidate finished(std::vector<Candidate> all) {
     begin(kTriesOfFinishing * static_cast<double>(all.size()));
-    all = side_by_side(all.size(), executor_,
-                       [&](std::size_t k) { return straightened(std::move(all[k].partition)); });
+    all = side_by_side<Candidate>(all.size(), executor_, [&](std::size_t k) {
+      return straightened(std::move(all[k].partition));
+    });
     learn(all);
     constexpr std::array kLeastFills = {0.0, kFittingFill};
     std::vector<Candidate> found =
-        side_by_side(all.size() * kLeastFills.size(), executor_, [&](std::size_t k) {
+        side_by_side<Candidate>(all.size() * kLeastFills.size(), executor_, [&](std::size_t k) {
           const Candidate& own = all[k / kLeastFills.size()];
           if (own.partition.patches.size() == 1) return Candidate{};
           MergeRules rules = rules_;
@@ -160,8 +143,8 @@ class Search {
     Candidate best = weighed(std::move(whole), kInfinity, kAcross);
     while (best.cost.all > best.cost.seams) {
       std::vector<Candidate> found =
-          side_by_side(best.partition.patches.size(), executor_,
-                       [&](std::size_t k) { return cut_across(best, k); });
+          side_by_side<Candidate>(best.partition.patches.size(), executor_,
+                                  [&](std::size_t k) { return cut_across(best, k); });
       learn(found);
       auto next = std::ranges::min_element(found, std::less(), all_of);
       if (!(next->cost.all < best.cost.all)) break;
