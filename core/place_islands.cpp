@@ -35,9 +35,9 @@ void note_stacks(const Packed& packed, Report& report) {
 }  // namespace
 
 double place_islands(std::span<const Outline> outlines, const UnwrapOptions& options,
-                     const std::stop_token& stop, std::span<UvMap* const> maps, Report& report) {
+                     Executor& executor, std::span<UvMap* const> maps, Report& report) {
   const Packed packed =
-      pack(outlines, {options.resolution, options.padding, options.packing}, stop);
+      pack(outlines, {options.resolution, options.padding, options.packing}, executor);
   double covered = 0;
   for (std::size_t k = 0; k < maps.size(); ++k) {
     const Placement& placement = packed.placements[k];

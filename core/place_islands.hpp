@@ -2,10 +2,10 @@
 // Islands onto their pages, and what the report says of it.
 
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include "core/atlas/outline.hpp"
+#include "core/executor.hpp"
 #include "core/options.hpp"
 #include "core/report.hpp"
 
@@ -15,6 +15,6 @@ namespace unwrapd {
 /// report's fill and pages, and notes what could not be had. Returns the scale from the islands'
 /// units to the page's. Throws Error{does_not_fit, cancelled}.
 double place_islands(std::span<const Outline> outlines, const UnwrapOptions& options,
-                     const std::stop_token& stop, std::span<UvMap* const> maps, Report& report);
+                     Executor& executor, std::span<UvMap* const> maps, Report& report);
 
 }  // namespace unwrapd

@@ -55,7 +55,7 @@ void even_out(UvIslands& islands) {
   }
 }
 
-void place(std::vector<UvIslands>& all, const UnwrapOptions& options, const std::stop_token& stop,
+void place(std::vector<UvIslands>& all, const UnwrapOptions& options, Executor& executor,
            Report& report) {
   std::vector<Outline> outlines;
   std::vector<UvMap*> maps;
@@ -66,7 +66,7 @@ void place(std::vector<UvIslands>& all, const UnwrapOptions& options, const std:
       maps.push_back(&islands.maps[k]);
     }
   }
-  place_islands(outlines, options, stop, maps, report);
+  place_islands(outlines, options, executor, maps, report);
   report.fill = std::min(report.fill, 1.0);  // faces on top of each other count each
   for (UvMap* map : maps) {
     const double step = uv_step(*map);
@@ -126,7 +126,7 @@ void measure(std::span<const Surface> surfaces, const std::vector<UvIslands>& al
 }  // namespace
 
 Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options,
-                 const Progress& progress) {
+                 const Progress& progress, Executor& executor) {
   const auto announce = [&](Stage stage, double fraction) {
     if (progress.on_stage) progress.on_stage({stage, 0, 0, fraction});
   };
@@ -134,7 +134,7 @@ Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options
   std::vector<UvIslands> all = find_islands(surfaces, progress.stop);
   Unwrapped out;
   announce(Stage::pack, 0.2);
-  place(all, options, progress.stop, out.report);
+  place(all, options, executor, out.report);
   announce(Stage::measure, 0.9);
   note_faces_without(all, out.report);
   measure(surfaces, all, options, out);

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "core/executor.hpp"
 #include "core/progress.hpp"
 #include "core/unwrap.hpp"
 
@@ -12,6 +13,6 @@ namespace unwrapd {
 /// each has it; else they keep their sizes beside each other.
 /// Throws Error{no_texture_coordinates, does_not_fit, cancelled}.
 Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options,
-                 const Progress& progress);
+                 const Progress& progress, Executor& executor);
 
 }  // namespace unwrapd

@@ -93,7 +93,7 @@ std::vector<Layout> map_charts(const TakenApart& taken, const std::vector<std::v
 }
 
 /// Places every chart on the page; the maps become page UVs. Returns their common scale.
-double place(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop) {
+double place(Layout& layout, const UnwrapOptions& options, Executor& executor) {
   std::vector<Outline> outlines;
   std::vector<UvMap*> maps;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
@@ -101,7 +101,7 @@ double place(Layout& layout, const UnwrapOptions& options, const std::stop_token
       outlines.push_back(outline_of(*layout.charts[s][k], layout.islands[s][k]));
       maps.push_back(&layout.islands[s][k]);
     }
-  return place_islands(outlines, options, stop, maps, layout.report);
+  return place_islands(outlines, options, executor, maps, layout.report);
 }
 
 /// Says where constraints reach beyond the page.
@@ -118,9 +118,9 @@ void note_charts_beyond(Layout& layout) {
 }
 
 /// Charts under position constraints are on the page already.
-void lay_out_page(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop) {
+void lay_out_page(Layout& layout, const UnwrapOptions& options, Executor& executor) {
   layout.report.fill = layout.sums.uv_area;
-  const double scale = options.constraints.empty() ? place(layout, options, stop) : 1;
+  const double scale = options.constraints.empty() ? place(layout, options, executor) : 1;
   const double density = std::sqrt(layout.sums.uv_area / layout.sums.area);
   layout.report.texel_density = scale * density * options.resolution;
   if (!options.constraints.empty()) note_charts_beyond(layout);
@@ -209,8 +209,9 @@ void add_curve(std::vector<Unwrapped>& maps, const std::vector<double>& lambdas)
 std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const UnwrapOptions& options,
                                     const Progress& progress, Executor& executor) {
   validate(options, std::numeric_limits<int>::max());
-  if (options.repack_only) return {lambdas_of(options).size(), repack(surfaces, options, progress)};
   JobExecutor job(executor, progress.stop);
+  if (options.repack_only)
+    return {lambdas_of(options).size(), repack(surfaces, options, progress, job)};
   announce(progress, Stage::setup, 0, kChartsBegin);
   const TakenApart taken = take_apart(surfaces, options, progress, job);
   const auto page = page_holds(surfaces, taken.all->surfaces, options.constraints, progress.stop);
@@ -218,7 +219,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
   for (Layout& layout : layouts) {
-    lay_out_page(layout, options, progress.stop);
+    lay_out_page(layout, options, job);
     keep_on_page(layout, options, progress.stop);
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);

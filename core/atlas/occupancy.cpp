@@ -61,11 +61,17 @@ template <std::size_t Words>
 std::optional<int> Occupancy::first_free_in(const Mask& mask, const Place& place,
                                             std::span<Word> refused) {
   const auto is_full = [](Word w) { return w == ~Word{0}; };
-  const int height = mask.grown.height();
+  const auto refuses_all = [&](int mask_row) {
+    refuse<Words>(mask.grown, mask_row, place, refused);
+    return std::all_of(refused.begin(), refused.end(), is_full);
+  };
+  const int height = mask.grown.height(), last = refusing_row_ - place.y;
+  if (0 <= last && last < height && refuses_all(last)) return std::nullopt;
   for (int k = 0; k < height; ++k) {  // from the middle outwards: the widest rows tell soonest
     const int j = height / 2 + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
-    refuse<Words>(mask.grown, j, place, refused);
-    if (std::all_of(refused.begin(), refused.end(), is_full)) return std::nullopt;
+    if (j == last || !refuses_all(j)) continue;
+    refusing_row_ = place.y + j;
+    return std::nullopt;
   }
   const auto free = std::find_if_not(refused.begin(), refused.end(), is_full);
   return static_cast<int>(place.word + static_cast<std::size_t>(free - refused.begin())) *
@@ -89,6 +95,13 @@ std::optional<int> Occupancy::first_free(const Mask& mask, int y, int from) {
     word += count;
   }
   return std::nullopt;
+}
+
+bool Occupancy::is_taken(int x, int y) const {
+  if (y >= height_) return false;
+  if (x < 0 || x >= width_ || y < 0) return true;
+  const int bit = x + margin_;
+  return (row(0, y + margin_)[bit / kWordBits] >> (bit % kWordBits) & 1) != 0;
 }
 
 /// How many words there are is known while compiling, which makes it several times as fast.

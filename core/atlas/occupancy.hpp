@@ -21,6 +21,9 @@ class Occupancy {
   /// cells stay on the page. Nothing when the row has no such place.
   [[nodiscard]] std::optional<int> first_free(const Mask& mask, int y, int from = 0);
 
+  /// Whether a cell is taken, as those beyond the page's sides and bottom are; above it none is.
+  [[nodiscard]] bool is_taken(int x, int y) const;
+
   /// Takes the touched cells.
   void stamp(const Mask& mask, int x, int y);
 
@@ -48,6 +51,7 @@ class Occupancy {
   int width_, height_, margin_, levels_ = 1;
   std::size_t words_;
   std::int64_t work_ = 0;
+  int refusing_row_ = 0;    // of the page: the last that left no place; it comes first next time
   std::vector<Word> bits_;  // bit x of row(k, y): a cell of [x, x + 2^k) is taken
 };
 

@@ -7,6 +7,7 @@
 
 #include "core/atlas/charts.hpp"
 #include "core/atlas/outline.hpp"
+#include "core/executor.hpp"
 #include "core/mesh/tri_mesh.hpp"
 #include "core/options.hpp"
 
@@ -49,10 +50,10 @@ double kept_padding(const PageOptions& page, std::size_t island_count);
 
 /// The same by true outlines, into each other's hollows and holes: as large as fits, or at
 /// packing.texels_per_unit. Identical islands share a place where packing asks for it. The same
-/// bytes on every machine: the search has a budget of work, not of time.
-/// Throws Error{does_not_fit} when a given density needs more pages than allowed; Error{cancelled}.
-Packed pack(std::span<const Outline> islands, const PageOptions& page,
-            const std::stop_token& stop = {});
+/// bytes on every machine and for any number of threads: the search has a budget of work, not of
+/// time. Throws Error{does_not_fit} when a given density needs more pages than allowed;
+/// Error{cancelled}.
+Packed pack(std::span<const Outline> islands, const PageOptions& page, Executor& executor);
 
 /// The share of a page that the islands would fill, at a glance and without padding; 1 where they
 /// have no extent. The search ends where it has come to `enough`. Throws Error{cancelled}.

@@ -11,6 +11,7 @@
 namespace unwrapd {
 namespace {
 
+using shapes::pack_alone;
 using shapes::polygon;
 
 Outline square(double side) { return polygon({{0, 0}, {side, 0}, {side, side}, {0, side}}); }
@@ -30,8 +31,8 @@ int page_of(const Outline& island, const Placement& placement) {
 
 TEST(Pages, EveryIslandHasTheDensityThatIsAskedFor) {
   const std::vector<Outline> islands{square(1), square(2), flag(1, 0.3, {7, 7})};
-  const Packed packed =
-      pack(islands, {.resolution = 1024, .padding = 4, .packing = {.texels_per_unit = 100.0}});
+  const Packed packed = pack_alone(
+      islands, {.resolution = 1024, .padding = 4, .packing = {.texels_per_unit = 100.0}});
   EXPECT_EQ(packed.pages, 1);
   for (const Placement& placement : packed.placements)
     EXPECT_NEAR(placement.scale * 1024, 100, 1e-9);
@@ -41,7 +42,7 @@ TEST(Pages, WhatDoesNotFitOnOnePageGoesToTheNextAndNeverAcrossTheBorder) {
   const std::vector<Outline> islands(7, square(1));
   const PageOptions page{
       .resolution = 256, .padding = 2, .packing = {.texels_per_unit = 100.0, .max_pages = 4}};
-  const Packed packed = pack(islands, page);
+  const Packed packed = pack_alone(islands, page);
   EXPECT_EQ(packed.pages, 2);  // four squares of 100 texels on a page of 256
   for (std::size_t k = 0; k < islands.size(); ++k) {
     const int own = page_of(islands[k], packed.placements[k]);
@@ -56,7 +57,7 @@ TEST(Pages, WhatDoesNotFitOnOnePageGoesToTheNextAndNeverAcrossTheBorder) {
 TEST(Pages, SaysClearlyThatADensityDoesNotFit) {
   const auto code_of = [](const std::vector<Outline>& islands, const Packing& packing) {
     try {
-      pack(islands, {.resolution = 256, .padding = 2, .packing = packing});
+      pack_alone(islands, {.resolution = 256, .padding = 2, .packing = packing});
     } catch (const Error& error) {
       EXPECT_EQ(error.where(), "/texels_per_unit");
       return error.code();
@@ -71,7 +72,8 @@ TEST(Pages, SaysClearlyThatADensityDoesNotFit) {
 TEST(Pages, MorePagesGiveMoreTexels) {
   std::vector<Outline> islands;
   for (int k = 0; k < 20; ++k) islands.push_back(flag(1 + 0.03 * k, 0.1 * k, {0, 0}));
-  const Packed one = pack(islands, {}), four = pack(islands, {.packing = {.max_pages = 4}});
+  const Packed one = pack_alone(islands, {}),
+               four = pack_alone(islands, {.packing = {.max_pages = 4}});
   EXPECT_EQ(one.pages, 1);
   EXPECT_EQ(four.pages, 4);
   EXPECT_GT(four.placements[0].scale, 1.7 * one.placements[0].scale);  // 2 is all
@@ -82,14 +84,14 @@ TEST(Stacks, IslandsOfOneShapeShareAPlaceWhateverWayTheyLie) {
   for (int k = 0; k < 6; ++k) islands.push_back(flag(1, 0.7 * k, {5.0 * k, -k}));
   islands.push_back(square(2));
   const PageOptions page{.packing = {.stack_identical = true}};
-  const Packed packed = pack(islands, page);
+  const Packed packed = pack_alone(islands, page);
   EXPECT_EQ(packed.is_stacked, (std::vector<char>{0, 1, 1, 1, 1, 1, 0}));
   for (std::size_t k = 0; k < 6; ++k)
     for (std::size_t i = 0; i < islands[k].size(); ++i)
       EXPECT_LT(
           (packed.placements[k](islands[k][i][0]) - packed.placements[0](islands[0][i][0])).norm(),
           1e-9);
-  EXPECT_GT(packed.placements[0].scale, 1.5 * pack(islands, {}).placements[0].scale);
+  EXPECT_GT(packed.placements[0].scale, 1.5 * pack_alone(islands, {}).placements[0].scale);
 }
 
 TEST(Stacks, MirrorImagesAndOtherSizesAreOtherShapes) {
@@ -100,7 +102,7 @@ TEST(Stacks, MirrorImagesAndOtherSizesAreOtherShapes) {
   }
   std::reverse(mirrored.begin(), mirrored.end());
   const std::vector<Outline> islands{flag(1, 0, {0, 0}), mirrored, flag(1.01, 0, {0, 0})};
-  const Packed packed = pack(islands, {.packing = {.stack_identical = true}});
+  const Packed packed = pack_alone(islands, {.packing = {.stack_identical = true}});
   EXPECT_EQ(packed.is_stacked, (std::vector<char>{0, 0, 0}));
 }
 
@@ -109,7 +111,7 @@ TEST(Pages, ThousandsOfIslandsAreStoppedAtOnce) {
   stop.request_stop();
   const std::vector<Outline> islands(3000, square(1));
   try {
-    pack(islands, {}, stop.get_token());
+    pack_alone(islands, {}, stop.get_token());
     ADD_FAILURE() << "it went on";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::cancelled);

@@ -1,0 +1,29 @@
+#pragma once
+// Few islands on one page.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/atlas/outline.hpp"
+#include "core/atlas/pack.hpp"
+#include "core/atlas/page_grid.hpp"
+#include "core/atlas/squeeze.hpp"
+#include "core/executor.hpp"
+
+namespace unwrapd {
+
+inline constexpr std::size_t kFewOnAPage = 40;  ///< at most
+
+/// Where few islands are squeezed first: cells and, of Budget, words for each island of 30 sides.
+inline constexpr SqueezeRules kFirstSqueeze{128, 0, 1, 20};
+
+/// A measure of how much there is to try, 12 at most: islands, or less where they have few sides.
+double shares_of(std::span<const Outline> islands);
+
+/// The islands as large as fits; nothing where they found no place apart. At least two, one of
+/// which has extent. The same for any number of threads. Throws Error{cancelled}.
+std::optional<std::vector<Placement>> packed_few(std::span<const Outline> islands,
+                                                 const PageGrid& grid, Executor& executor);
+
+}  // namespace unwrapd
