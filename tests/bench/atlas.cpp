@@ -3,6 +3,7 @@
 //   unwrapd_atlas [--default] FILE|FOLDER|noisy:FACES...
 //   .obj, .glb, .gltf, or a generated body like a scan; --default: disks stay one chart
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -69,10 +71,24 @@ std::vector<Surface> read_surfaces(const fs::path& path) {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-void print_peer(const char* name, const PeerFigures& peer, const WrittenAtlas& own, double seam) {
+/// Ours in shares of theirs, of all meshes.
+struct Shares {
+  const char* peer;
+  std::vector<double> charts, seams;
+};
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+void print_peer(const PeerFigures& peer, const WrittenAtlas& own, double seam, Shares& shares) {
   if (peer.charts == 0) return;
-  std::printf(" | %s %d/%.4g/%.3f %.3gs: charts x%.2f seam x%.2f", name, peer.charts, peer.seam,
-              peer.fill, peer.seconds, double(own.charts) / peer.charts, seam / peer.seam);
+  shares.charts.push_back(double(own.charts) / peer.charts);
+  shares.seams.push_back(seam / peer.seam);
+  std::printf(" | %s %d/%.4g/%.3f %.3gs: charts x%.2f seam x%.2f", shares.peer, peer.charts,
+              peer.seam, peer.fill, peer.seconds, shares.charts.back(), shares.seams.back());
 }
 
 /// What running a job took.
@@ -81,7 +97,7 @@ struct Took {
 };
 
 void print_row(const fs::path& path, const Unwrapped& unwrapped, const WrittenAtlas& own,
-               double creases, const Took& took) {
+               double creases, const Took& took, std::span<Shares> shares) {
   const Report& report = unwrapped.report;
   std::printf("%-22.22s %7d %6d %7.3f %7.4f %7.4f %5.3f %5d %7lld %6.2f %8d %6.2f %7.2f %6.0f",
               path.stem().string().c_str(), report.input.faces, own.charts, report.seam_ratio,
@@ -90,13 +106,14 @@ void print_row(const fs::path& path, const Unwrapped& unwrapped, const WrittenAt
               took.seconds, took.megabytes);
   const auto peers = std::ranges::find(kPeers, path.stem().string(), &PeerRow::mesh);
   if (peers != kPeers.end()) {
-    print_peer("xatlas", peers->xatlas, own, report.seam_ratio);
-    print_peer("UVAtlas", peers->uvatlas, own, report.seam_ratio);
+    print_peer(peers->xatlas, own, report.seam_ratio, shares[0]);
+    print_peer(peers->uvatlas, own, report.seam_ratio, shares[1]);
+    print_peer(peers->uvatlas_held, own, report.seam_ratio, shares[2]);
   }
   std::puts("");
 }
 
-void show(const fs::path& path, const UnwrapOptions& options) try {
+void show(const fs::path& path, const UnwrapOptions& options, std::span<Shares> shares) try {
   const std::vector<Surface> surfaces = read_surfaces(path);
   SerialExecutor serial;
   std::ofstream("/proc/self/clear_refs") << '5';  // the peak of memory begins anew
@@ -106,7 +123,7 @@ void show(const fs::path& path, const UnwrapOptions& options) try {
   const std::vector<WrittenFace> faces = written_faces(surfaces, unwrapped.surfaces);
   const WrittenRules rules{.resolution = options.resolution, .most_gap = 2.0 * options.padding};
   print_row(path, unwrapped, measure_written(faces, rules),
-            share_on_creases(surfaces, unwrapped.surfaces), {seconds, megabytes});
+            share_on_creases(surfaces, unwrapped.surfaces), {seconds, megabytes}, shares);
 } catch (const Error& e) {
   std::printf("%-22.22s refused: %s\n", path.stem().string().c_str(), e.what());
 }
@@ -133,11 +150,17 @@ int show_all(const std::vector<std::string>& paths, const UnwrapOptions& options
   std::printf("%-22s %7s %6s %7s %7s %7s %5s %5s %7s %6s %8s %6s %7s %6s\n", "mesh", "faces",
               "charts", "seam", "D_angle", "D_area", "fill", "flips", "overlap", "gap", "mirrored",
               "crease", "seconds", "MB");
+  std::array<Shares, 3> shares = {
+      Shares{"xatlas", {}, {}}, {"UVAtlas", {}, {}}, {"UVAtlas at D 2.02", {}, {}}};
   for (const std::string& path : paths)
     for (const fs::path& mesh : meshes_in(path)) {
-      show(mesh, options);
+      show(mesh, options, shares);
       std::fflush(stdout);
     }
+  for (const Shares& own : shares)
+    if (!own.charts.empty())
+      std::printf("median of %zu, ours in shares of %s: charts %.3f, seam %.3f\n",
+                  own.charts.size(), own.peer, median(own.charts), median(own.seams));
   return 0;
 }
 
