@@ -9,18 +9,18 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "core/atlas/candidate.hpp"
 #include "core/atlas/glue_slits.hpp"
 #include "core/atlas/halve.hpp"
+#include "core/atlas/hang.hpp"
 #include "core/atlas/loosen.hpp"
-#include "core/atlas/partition_cost.hpp"
 #include "core/atlas/side_by_side.hpp"
 #include "core/atlas/straighten.hpp"
-#include "core/atlas/trial_memory.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd {
 namespace {
@@ -36,24 +36,17 @@ constexpr std::array kTries = {Try{1, 0, 0, 0},       Try{1, .72, 0, .3},   Try{
 constexpr double kFacesOfSearch = 100'000;  // that are merged for a page, about
 constexpr std::size_t kFinished = 2;        // of the tries: mended, and with borders drawn straight
 constexpr double kFewTries = 4;             // that are worth half of all the merging
-constexpr double kShareOfMends = 0.7, kMostMends = 20;  // of how often all could be merged anew
+constexpr double kShareOfMends = 0.7, kMostMends = 40;  // of how often all could be merged anew
 constexpr double kWhimOfMends = 0.3, kTriesOfAMend = 0.3;
 constexpr int kFirstLotOfMends = 100;
 constexpr double kFittingFill = 0.72;  // see MergeRules::least_fill
 constexpr double kLargeRegion = 0.1;   // that is worth cutting across
-const CostRules kUsual{.chart = 0.45, .wanted_fill = 0.7};
-const CostRules kAcross{.chart = 0.15, .wanted_fill = 0.645};  // to cut across for
+const CostRules kUsual{.chart = 0.8, .small_chart = 0.4, .wanted_fill = 0.66};
+const CostRules kAcross{
+    .chart = 0.3, .small_chart = 0.12, .wanted_fill = 0.645};  // to cut across for
 constexpr double kFacesOfATry = 20, kTriesOfFinishing = 1;     // for each face; see Effort
 constexpr std::size_t kAbreast = 4;                            // tries at once, on as many threads
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// A partition and what it costs.
-struct Candidate {
-  Partition partition = {};
-  PartitionCost cost = {};
-  double tried_faces = 0;     ///< to come to it; see Effort
-  TrialMemory failures = {};  ///< on the way to it
-};
 
 double all_of(const Candidate& own) { return own.cost.all; }
 
@@ -134,6 +127,11 @@ class Search {
         });
     learn(found);
     for (Candidate& own : found) all.push_back(std::move(own));
+    all = distinct(std::move(all));
+    all = side_by_side<Candidate>(all.size(), executor_, [&](std::size_t k) {
+      return completed(std::move(all[k].partition));
+    });
+    learn(all);
     return cheapest(std::move(all));
   }
 
@@ -180,6 +178,7 @@ class Search {
       own.failures = {};
     }
     rules_.effort->add(static_cast<std::size_t>(faces));
+    throw_if_cancelled(rules_.stop);
   }
 
   /// search(rules) makes the partition by them; its failures and faces are noted on the way.
@@ -210,6 +209,15 @@ class Search {
     });
   }
 
+  /// With slits glued, and small regions hung on others.
+  [[nodiscard]] Candidate completed(Partition partition) const {
+    return noted(rules_, [&](const MergeRules& rules) {
+      glue_slits(sheet_, rules, partition);
+      hang_small(sheet_, rules, partition);
+      return std::move(partition);
+    });
+  }
+
   /// Some of `best` merged anew: its cost, where that is lower.
   [[nodiscard]] Candidate mended(const Candidate& best, std::size_t number) const {
     if (best.partition.patches.size() <= 1) return {};
@@ -234,10 +242,19 @@ class Search {
     return weighed(std::move(apart), whole.cost.all, kAcross);
   }
 
-  [[nodiscard]] Candidate cheapest(std::vector<Candidate> all) const {
+  /// Each once, the least seams first.
+  [[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> all) const {
     std::erase_if(all, [](const Candidate& own) { return own.partition.patches.empty(); });
     for (Candidate& own : all) own = weighed(std::move(own), 0);
-    std::ranges::stable_sort(all, std::less(), [](const Candidate& own) { return own.cost.seams; });
+    const auto seams = [](const Candidate& own) { return own.cost.seams; };
+    std::ranges::stable_sort(all, std::less(), seams);
+    const auto repeats = std::ranges::unique(all, std::equal_to(), seams);
+    all.erase(repeats.begin(), repeats.end());
+    return all;
+  }
+
+  [[nodiscard]] Candidate cheapest(std::vector<Candidate> all) const {
+    all = distinct(std::move(all));
     Candidate best;
     for (Candidate& own : all) {
       own = weighed(std::move(own), best.cost.all);
@@ -274,7 +291,8 @@ Partition best_merge(const Sheet& sheet, const Partition& from, const MergeRules
   Search search(sheet, from, rules, executor);
   std::vector<Candidate> best = search.greedy();
   search.mend(best);
-  Partition partition = search.taken_apart(search.finished(std::move(best)));
+  Candidate whole = search.finished(std::move(best));
+  Partition partition = search.taken_apart(std::move(whole));
   glue_slits(sheet, rules, partition);
   return partition;
 }

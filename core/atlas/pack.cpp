@@ -28,7 +28,7 @@ struct Level {
   std::int64_t work = 0;  ///< words a share
 };
 constexpr std::array kLevels = {Level{96, 12, 18'000'000}, Level{160, 20, 6'000'000}};
-constexpr Level kRough = {96, 12, 500'000};  // for a glance
+constexpr Level kRough = {96, 12, 350'000};  // for a glance
 constexpr double kRoughHeat = 0.1;
 constexpr std::int64_t kRoughSqueezeWork = 1'000'000, kFineWork = 1'000'000;  // words a share
 constexpr std::size_t kSearched = 400;  // islands at most that are searched on a coarse grid

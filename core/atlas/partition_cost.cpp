@@ -12,7 +12,7 @@
 namespace unwrapd {
 namespace {
 
-constexpr double kCostOfEmptiness = 14;  // of a whole page
+constexpr double kCostOfEmptiness = 28;  // of a whole page
 constexpr double kMostPage = 1.5;        // of the sheet
 
 std::vector<Outline> outlines(const Sheet& sheet, const Partition& partition,
@@ -49,7 +49,9 @@ PartitionCost partition_cost(const Sheet& sheet, const Partition& partition,
   const std::vector<Index> owner = owners(sheet, partition);
   const double seam = seam_of(sheet, partition, owner);
   if (seam <= 0) return {0, 0};
-  const double charts = rules.chart * static_cast<double>(partition.patches.size());
+  double charts = 0;
+  for (const MappedRegion& patch : partition.patches)
+    charts += patch.area < kSmallRegion ? rules.small_chart : rules.chart;
   PartitionCost cost{rounded(seam + charts)};
   if (cost.seams >= rules.limit) return cost;
   cost.all = cost.seams;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <stop_token>
 
+#include "core/atlas/hang.hpp"
 #include "core/atlas/merge.hpp"
 
 namespace unwrapd {
@@ -15,6 +16,7 @@ struct PartitionCost {
 
 struct CostRules {
   double chart = 0;        ///< what each chart costs, in length of seams
+  double small_chart = 0;  ///< one below kSmallRegion: most of them can be hung on others
   double page_area = 1;    ///< of all that comes onto the page, in units of the sheet's
   double wanted_fill = 1;  ///< share of the page; a page that is fuller costs nothing
   double limit = std::numeric_limits<double>::infinity();  ///< from here on it is all the same

@@ -30,6 +30,8 @@ struct Strip {
     for (Partition* own : {&whole, &halves})
       for (MappedRegion& patch : own->patches)
         patch.region.uv = projected(sheet, patch.region.faces);
+    whole.patches[0].area = 1;
+    for (MappedRegion& half : halves.patches) half.area = 0.5;
   }
 
   [[nodiscard]] PartitionCost cost(CostRules rules) const {
@@ -51,9 +53,16 @@ TEST(PartitionCost, CountsSeamsChartsAndWhatThePageLeavesEmpty) {
   EXPECT_EQ(none.all, none.seams);  // the page is full enough
   const PartitionCost empty = strip.cost({.wanted_fill = 0.7});
   EXPECT_EQ(empty.seams, none.seams);
-  EXPECT_GT(empty.all, empty.seams + 14 * 0.3);  // 2 charts 8 long and 1 high fill 1/4 of a page
-  EXPECT_LT(empty.all, empty.seams + 14 * 0.5);
+  EXPECT_GT(empty.all, empty.seams + 28 * 0.3);  // 2 charts 8 long and 1 high fill 1/4 of a page
+  EXPECT_LT(empty.all, empty.seams + 28 * 0.5);
   EXPECT_EQ(strip.cost({.page_area = 2, .wanted_fill = 0.7}).all, none.seams);
+}
+
+TEST(PartitionCost, TakesLessForASmallChart) {
+  Strip strip;
+  strip.halves.patches[1].area = 0.9 * kSmallRegion;
+  const CostRules rules{.small_chart = 0.05, .wanted_fill = 0.1};
+  EXPECT_NEAR(strip.cost(rules).seams, 0.25 + 0.15 + 0.05, 1e-5);
 }
 
 TEST(PartitionCost, IsTheSameWhereItIsBelowTheLimitAndNeverBelowItElsewhere) {
