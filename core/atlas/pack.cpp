@@ -31,9 +31,10 @@ constexpr std::array kLevels = {Level{96, 12, 18'000'000}, Level{160, 20, 6'000'
 constexpr Level kRough = {96, 12, 350'000};  // for a glance
 constexpr double kRoughHeat = 0.1;
 constexpr std::int64_t kRoughSqueezeWork = 1'000'000, kFineWork = 1'000'000;  // words a share
-constexpr std::size_t kSearched = 400;  // islands at most that are searched on a coarse grid
-constexpr double kUsualFill = 0.7;      // of a page: boxes, without padding
-constexpr double kSpareSide = 1.005;    // by which islands are made smaller than they seem to fit
+constexpr std::size_t kSearched = 400;    // islands at most that are searched on a coarse grid
+constexpr std::size_t kMostApart = 5000;  // islands: more lie in rows, on one page
+constexpr double kUsualFill = 0.7;        // of a page: boxes, without padding
+constexpr double kSpareSide = 1.005;      // by which islands are made smaller than they seem to fit
 
 int turns_for(std::size_t islands) {
   if (islands <= kFewOnAPage) return 48;
@@ -199,7 +200,8 @@ Packed pack_apart(std::span<const Outline> islands, const PageOptions& page, Exe
     return Packer(islands, page, executor).at_density(*page.packing.texels_per_unit);
   const std::vector<UvMap> points = points_of(islands);
   Packed rows{pack_in_rows(points, page), 1, kept_padding(page, islands.size()), {}};
-  if (islands.size() < 2 || !has_extent(points)) return rows;
+  const bool are_too_many = islands.size() > kMostApart && page.packing.max_pages == 1;
+  if (islands.size() < 2 || are_too_many || !has_extent(points)) return rows;
   Packed tight = Packer(islands, page, executor).largest();
   return tight.placements.front().scale > rows.placements.front().scale ? tight : rows;
 }

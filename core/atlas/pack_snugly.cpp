@@ -22,8 +22,9 @@ struct HowMuch {
   std::size_t rules = 0;  ///< on the coarse grid
   std::size_t fine = 0;   ///< rules that go on
   int scales = 0;         ///< of each
+  double first = 1;       ///< of them, in shares of what the coarse grid suggests
 };
-constexpr HowMuch kUsualEffort{kRules.size(), 2, 3}, kOfVeryMany{1, 1, 2};
+constexpr HowMuch kUsualEffort{kRules.size(), 2, 3}, kOfVeryMany{1, 1, 1, 1.03};
 constexpr std::size_t kVeryMany = 1000;
 constexpr int kRoughCells = 512;
 constexpr double kRoughPerIsland = 15;
@@ -73,7 +74,7 @@ class SnugPacker {
     const int side = grid_.tight_side(fine_cells(arranger_.size()));
     Arranger arranger = arranger_;
     std::vector<Placement> best;
-    double scale = rated.scale * side, largest = 0, step = kStep;
+    double scale = effort_.first * rated.scale * side, largest = 0, step = kStep;
     for (int tries = 0; tries < effort_.scales || best.empty(); ++tries) {
       arranger.set_scale(scale, grid_.padding(side));
       const SnugPage page = laid_snugly(arranger, side, rated.rules, executor_.stop());

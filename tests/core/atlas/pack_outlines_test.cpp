@@ -100,6 +100,12 @@ TEST(PackOutlines, FillsHollowsThatRowsLeaveEmpty) {
   }
 }
 
+TEST(PackOutlines, ThousandsLieInRowsAtOnce) {
+  const std::vector<Outline> islands(20'000, polygon({{0, 0}, {1, 0}, {0, 1}}));
+  const std::vector<UvMap> points(20'000, UvMap{{0, 0}, {1, 0}, {0, 1}});
+  EXPECT_EQ(pack_alone(islands).placements.back().offset, pack_in_rows(points, {}).back().offset);
+}
+
 TEST(PackOutlines, LaysTheSmallInTheHollowOfTheLarge) {
   const UvMap cup{{0, 0}, {10, 0}, {10, 10}, {9, 10}, {9, 1}, {1, 1}, {1, 10}, {0, 10}};
   const UvMap block{{0, 0}, {7, 0}, {7, 7}, {0, 7}};
