@@ -56,15 +56,16 @@ struct Candidate {
 
 class Snug {
  public:
-  Snug(Arranger& arranger, int width, const SnugRules& rules)
+  Snug(Arranger& arranger, int width, const SnugRules& rules, const std::stop_token& stop)
       : arranger_(arranger),
         rules_(rules),
+        stop_(stop),
         turns_(static_cast<std::size_t>(arranger.turns())),
         margin_(arranger.mask_of(0, 0).margin),
         page_(width, static_cast<int>(kHighest * width), margin_, longest_run(width)),
         candidates_(arranger.size() * turns_) {}
 
-  SnugPage run(const std::stop_token& stop) {
+  SnugPage run() {
     const std::size_t count = arranger_.size();
     const double wanted = kChoices / static_cast<double>(count);
     const auto choice = static_cast<std::size_t>(std::clamp(wanted, 1.0, kChoice));
@@ -73,7 +74,6 @@ class Snug {
     laid.found.arrangement.turn.assign(count, 0);
     laid.found.spots.resize(count);
     while (!rest.empty()) {
-      throw_if_cancelled(stop);
       const auto choices = std::span(rest).first(std::min(choice, rest.size()));
       const std::optional<std::size_t> best = best_of(choices);
       if (!best) return {};
@@ -103,7 +103,10 @@ class Snug {
     std::iota(order.begin(), order.end(), 0);
     size_.resize(order.size());
     double all = 0;
-    for (const std::size_t k : order) all += arranger_.mask_of(k, 0).cells;
+    for (const std::size_t k : order) {
+      throw_if_cancelled(stop_);
+      all += arranger_.mask_of(k, 0).cells;
+    }
     mean_ = std::sqrt(std::max(1.0, all) / static_cast<double>(order.size()));
     for (const std::size_t k : order) size_[k] = std::sqrt(arranger_.mask_of(k, 0).cells) / mean_;
     std::ranges::stable_sort(order, std::greater(), [&](std::size_t k) { return size_[k]; });
@@ -113,7 +116,8 @@ class Snug {
   std::optional<std::size_t> best_of(std::span<const std::size_t> islands) {
     std::optional<std::size_t> best;
     double most = -std::numeric_limits<double>::infinity();
-    for (const std::size_t island : islands)
+    for (const std::size_t island : islands) {
+      throw_if_cancelled(stop_);
       for (std::size_t k = island * turns_; k < (island + 1) * turns_; ++k) {
         Candidate& own = candidates_[k];
         if (!own.is_known && own.has_place) look(k);
@@ -123,6 +127,7 @@ class Snug {
             own.contact - rules_.low * middle / mean_ + rules_.large * size_[island];
         if (worth > most) most = worth, best = k;
       }
+    }
     return best;
   }
 
@@ -178,6 +183,7 @@ class Snug {
 
   Arranger& arranger_;
   SnugRules rules_;
+  const std::stop_token& stop_;
   std::size_t turns_;
   int margin_;
   Occupancy page_;
@@ -191,7 +197,7 @@ class Snug {
 
 SnugPage laid_snugly(Arranger& arranger, int width, const SnugRules& rules,
                      const std::stop_token& stop) {
-  return Snug(arranger, width, rules).run(stop);
+  return Snug(arranger, width, rules, stop).run();
 }
 
 }  // namespace unwrapd
