@@ -291,8 +291,7 @@ Partition best_merge(const Sheet& sheet, const Partition& from, const MergeRules
   Search search(sheet, from, rules, executor);
   std::vector<Candidate> best = search.greedy();
   search.mend(best);
-  Candidate whole = search.finished(std::move(best));
-  Partition partition = search.taken_apart(std::move(whole));
+  Partition partition = search.taken_apart(search.finished(std::move(best)));
   glue_slits(sheet, rules, partition);
   return partition;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/atlas/remap.hpp"
 #include "core/cancel.hpp"
 #include "core/mesh/edges.hpp"
 
@@ -94,20 +95,11 @@ class Gluing {
     };
     set_open(0);
     MappedRegion now = old;
-    const TrialRules rules{.most_excess = std::max(rules_.cap * old.area, old.excess.worst()),
-                           .stop = rules_.stop,
-                           .memory = rules_.memory};
-    const TrialResult result = try_map(sheet_, partition_.open, rules, now.region);
-    if (rules_.effort != nullptr) rules_.effort->add(now.region.faces.size());
-    const Excess after = total_ + result.excess - old.excess;
-    const bool fits = after.worst() <= std::max(rules_.budget, total_.worst());
-    if (result.verdict != Verdict::sound || !fits) {
+    if (!remap(sheet_, partition_.open, rules_, old.excess, now, total_)) {
       set_open(1);
       return false;
     }
-    now.excess = result.excess;
     old = std::move(now);
-    total_ = after;
     return true;
   }
 

@@ -10,7 +10,7 @@
 
 #include "core/atlas/labels.hpp"
 #include "core/atlas/loosen.hpp"
-#include "core/cancel.hpp"
+#include "core/atlas/remap.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd {
@@ -106,7 +106,6 @@ class Hanging {
 
   /// Whether small region k and the other have a sound map glued there; then they are one.
   bool glue(Index k, Index into, std::span<const Index> edges) {
-    throw_if_cancelled(rules_.stop);
     MappedRegion &own = partition_.patches[k], &other = partition_.patches[into];
     if (!own.is_sound || !other.is_sound) return false;
     std::vector<char> open = partition_.open;
@@ -114,23 +113,13 @@ class Hanging {
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
         if (across(h) == into) open[h] = open[twin(h)] = 1;
     for (const Index h : edges) open[h] = open[twin(h)] = 0;
-    const double area = own.area + other.area;
-    const Excess before = own.excess + other.excess;
-    MappedRegion both{beside(sheet_, other.region, own.region, edges), {}, area, true};
-    const TrialRules trial{.most_excess = std::max(rules_.cap * area, before.worst()),
-                           .stop = rules_.stop,
-                           .memory = rules_.memory};
-    const TrialResult result = try_map(sheet_, open, trial, both.region);
-    if (rules_.effort != nullptr) rules_.effort->add(both.region.faces.size());
-    const Excess after = total_ + result.excess - before;
-    if (result.verdict != Verdict::sound || after.worst() > std::max(rules_.budget, total_.worst()))
-      return false;
-    both.excess = result.excess;
+    MappedRegion both{
+        beside(sheet_, other.region, own.region, edges), {}, own.area + other.area, true};
+    if (!remap(sheet_, open, rules_, own.excess + other.excess, both, total_)) return false;
     for (const Index t : own.region.faces) owner_[t] = into;
     partition_.open = std::move(open);
     other = std::move(both);
     own = {};
-    total_ = after;
     return true;
   }
 

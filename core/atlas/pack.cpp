@@ -33,18 +33,10 @@ constexpr double kRoughHeat = 0.1;
 constexpr std::int64_t kRoughSqueezeWork = 1'000'000, kFineWork = 1'000'000;  // words a share
 constexpr std::size_t kSearched = 400;    // islands at most that are searched on a coarse grid
 constexpr std::size_t kMostApart = 5000;  // islands: more lie in rows, on one page
-constexpr double kUsualFill = 0.7;        // of a page: boxes, without padding
-constexpr double kSpareSide = 1.005;      // by which islands are made smaller than they seem to fit
 
 int turns_for(std::size_t islands) {
   if (islands <= kFewOnAPage) return 48;
   return islands <= 100 ? 8 : 4;
-}
-
-double box_area(const Arranger& arranger) {
-  double area = 0;
-  for (std::size_t k = 0; k < arranger.size(); ++k) area += arranger.box(k).size.prod();
-  return area;
 }
 
 class Packer {

@@ -31,10 +31,8 @@ constexpr Squeeze kFirst{kFirstSqueeze, 20'000'000};
 constexpr std::array kGrids = {Squeeze{{512, 8, 2, 3}, 8'000'000},
                                Squeeze{{1024, 8, 1, 3}, 8'000'000}};
 constexpr double kMostShares = 12;
-constexpr double kSidesAShare = 30;   // of outlines: small shapes need no long search
-constexpr double kUsualFill = 0.7;    // of a page: boxes
-constexpr double kSmaller = 0.9;      // where islands did not fit in
-constexpr double kSpareSide = 1.005;  // by which islands are made smaller than they seem to fit
+constexpr double kSidesAShare = 30;  // of outlines: small shapes need no long search
+constexpr double kSmaller = 0.9;     // where islands did not fit in
 
 /// Islands on a page, and the arranger whose masks these are.
 struct Tried {
@@ -74,10 +72,8 @@ class FewPacker {
   /// Twice: the second time at the scale at which the first suggests that the islands just fit.
   Found start(Arranger& arranger, const SnugRules& rules) const {
     const int side = kFirst.rules.side;
-    double box_area = 0;
-    for (std::size_t k = 0; k < arranger.size(); ++k) box_area += arranger.box(k).size.prod();
     SnugPage page;
-    double scale = side * std::sqrt(kUsualFill / box_area);
+    double scale = side * std::sqrt(kUsualFill / box_area(arranger));
     for (; page.found.side == 0; scale *= kSmaller) {
       arranger.set_scale(scale, 0);
       page = laid_snugly(arranger, side, rules, executor_.stop());

@@ -15,7 +15,7 @@ namespace unwrapd {
 
 inline constexpr std::size_t kFewOnAPage = 40;  ///< at most
 
-/// Where few islands are squeezed first: cells and, of Budget, words for each island of 30 sides.
+/// How islands are squeezed first: on a coarse grid, from anywhere to anywhere.
 inline constexpr SqueezeRules kFirstSqueeze{128, 0, 1, 20};
 
 /// A measure of how much there is to try, 12 at most: islands, or less where they have few sides.

@@ -12,6 +12,12 @@ constexpr double kFullBoxes = 0.9;  // of a page: boxes with their padding
 
 }  // namespace
 
+double box_area(const Arranger& arranger) {
+  double area = 0;
+  for (std::size_t k = 0; k < arranger.size(); ++k) area += arranger.box(k).size.prod();
+  return area;
+}
+
 int cells_for(std::size_t islands, double per_island, int least) {
   const double wanted = per_island * std::sqrt(static_cast<double>(islands));
   return static_cast<int>(std::clamp<double>(wanted, least, kMostCells));
@@ -21,11 +27,9 @@ int fine_cells(std::size_t islands) { return cells_for(islands, kFinePerIsland, 
 
 double usual_scale(const Arranger& arranger, const PageGrid& grid, int pages, double side) {
   const double margin = grid.padding(side), all = static_cast<double>(arranger.size());
-  double area = 0, half = 0;  // of the equation area s^2 + 2 half s + all margin^2 = room
-  for (std::size_t k = 0; k < arranger.size(); ++k) {
-    area += arranger.box(k).size.prod();
-    half += arranger.box(k).size.sum() * margin / 2;
-  }
+  double half = 0;  // of the equation area s^2 + 2 half s + all margin^2 = room
+  for (std::size_t k = 0; k < arranger.size(); ++k) half += arranger.box(k).size.sum() * margin / 2;
+  const double area = box_area(arranger);
   const double room = kFullBoxes * pages * side * side - all * margin * margin;
   return (std::sqrt(half * half + area * std::max(room, 0.2 * side * side)) - half) / area;
 }

@@ -11,6 +11,12 @@
 
 namespace unwrapd {
 
+inline constexpr double kUsualFill = 0.7;    ///< of a page: boxes, without padding
+inline constexpr double kSpareSide = 1.005;  ///< by which islands shrink beyond what seems to fit
+
+/// Of all islands' boxes, in their units.
+double box_area(const Arranger& arranger);
+
 /// Cells a side of a grid that gives each of so many islands about per_island of them, both ways;
 /// no fewer than `least`, and no more than 4096.
 int cells_for(std::size_t islands, double per_island, int least);

@@ -122,6 +122,12 @@ TEST(Occupancy, FindsTheLeftmostFreePlaceBruteForce) {
       for (int u = 0; u < mask.width; ++u)
         if (has(mask.touched, u, v)) taken[std::size_t((y + v) * width + *found + u)] = 1;
   }
+  for (int y = -2; y < side + 2; ++y)
+    for (int x = -2; x < width + 2; ++x) {
+      const bool beside = x < 0 || x >= width || y < 0;
+      const bool expected = y < side && (beside || taken[std::size_t(y * width + x)] != 0);
+      ASSERT_EQ(page.is_taken(x, y), expected) << x << ' ' << y;
+    }
 }
 
 }  // namespace

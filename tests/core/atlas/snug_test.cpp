@@ -96,6 +96,19 @@ TEST(Snug, EveryIslandLiesAtItsLowestFreePlace) {
   }
 }
 
+TEST(Snug, AHollowGetsWhatTouchesItAllAround) {
+  const Outline cup =
+      polygon({{0, 0}, {7.2, 0}, {7.2, 5}, {5.2, 5}, {5.2, 2}, {2, 2}, {2, 5}, {0, 5}});
+  const Outline block = polygon({{0, 0}, {3.9, 0}, {3.9, 3}, {0, 3}});
+  const Outline square = polygon({{0, 0}, {3, 0}, {3, 3}, {0, 3}});
+  const std::vector<Outline> islands{block, square, cup};
+  Arranger arranger(islands, 1);
+  arranger.set_scale(10, 0);
+  const SnugPage page = laid_snugly(arranger, 73, {.low = 0, .large = 0.45}, {});
+  EXPECT_EQ(page.found.arrangement.order, (std::vector<Index>{2, 1, 0}));  // the block is larger
+  EXPECT_LT(page.found.spots[1].y, 25);  // in the cup, which may lie upside down
+}
+
 /// The largest first, each at its lowest place in any turn.
 int height_by_size(Arranger& arranger, int width) {
   Budget budget{1'000'000'000'000};
