@@ -19,10 +19,18 @@ struct CellWindow {
 };
 
 /// Weighted cells of a window, in each row summed up from the left: what a run covers is the
-/// difference of two entries.
+/// difference of two entries. Columns lie in one piece, so a register has many places of one.
+/// Of a column of places.
+struct LeastOverlap {
+  int y = 0;
+  std::int32_t weight = 0;
+};
+
+/// Weighted cells of a window, in each row summed up from the left: what a run covers is the
+/// difference of two entries. Columns lie in one piece, so a register has many places of one.
 class OverlapTable {
  public:
-  static constexpr std::int64_t kTooMuch = std::numeric_limits<std::int64_t>::max();
+  static constexpr std::int32_t kTooMuch = 1 << 29;
 
   /// Forgets what was taken.
   void reset(const CellWindow& window);
@@ -34,15 +42,17 @@ class OverlapTable {
   /// To be called once between take() and overlap().
   void sum_up();
 
-  /// The weight of the cells on or near to the mask at (x, y), or kTooMuch once it is no less than
-  /// most. All of mask.grown lies in the window there.
-  [[nodiscard]] std::int64_t overlap(const Mask& mask, int x, int y, std::int64_t most);
+  /// Where in the column x, from y_begin to y_last, the cells on or near to the mask weigh least,
+  /// the lowest of such places; kTooMuch where none weighs less than most (at most kTooMuch). All
+  /// of mask.grown lies in the window there.
+  [[nodiscard]] LeastOverlap least(const Mask& mask, int x, int y_begin, int y_last,
+                                   std::int32_t most);
 
   [[nodiscard]] std::int64_t work() const { return work_; }  ///< in steps of about a nanosecond
 
  private:
-  [[nodiscard]] std::int32_t* row(int y) {
-    return &table_[static_cast<std::size_t>(y - window_.y_begin) * stride_];
+  [[nodiscard]] std::int32_t* column(int x) {
+    return table_.data() + static_cast<std::size_t>(x - window_.x_begin) * stride_;
   }
 
   CellWindow window_;

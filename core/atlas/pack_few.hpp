@@ -16,7 +16,7 @@ namespace unwrapd {
 inline constexpr std::size_t kFewOnAPage = 40;  ///< at most
 
 /// How islands are squeezed first: on a coarse grid, from anywhere to anywhere.
-inline constexpr SqueezeRules kFirstSqueeze{128, 0, 1, 20};
+inline constexpr SqueezeRules kFirstSqueeze{128, 0, 1, 14};
 
 /// A measure of how much there is to try, 12 at most: islands, or less where they have few sides.
 double shares_of(std::span<const Outline> islands);

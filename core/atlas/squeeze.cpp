@@ -23,14 +23,15 @@ namespace unwrapd {
 namespace {
 
 constexpr int kLeastWeight = 16, kMostWeight = 1 << 14;
-constexpr int kSweeps = 60;        // over the islands that overlap, before a page is too small
-constexpr int kPlacesAcross = 24;  // that are looked at along a side, before the best is refined
-constexpr int kOtherTurns = 3;     // that are tried for an island beside its own and the next ones
-constexpr int kWidening = 128;     // share of a page by which it grows until islands lie apart
+constexpr int kSweeps = 60;         // over the islands that overlap, before a page is too small
+constexpr int kColumnsAcross = 12;  // of places that are looked at before the best is refined
+constexpr int kAside = 8;           // places below the best that are looked at then, and above
+constexpr int kOtherTurns = 3;      // that are tried for an island beside its own and the next ones
+constexpr int kWidening = 128;      // share of a page by which it grows until islands lie apart
 
 struct Place {
   Spot spot;
-  std::int64_t overlap = OverlapTable::kTooMuch;  ///< weighted
+  std::int32_t overlap = OverlapTable::kTooMuch;  ///< weighted
 };
 
 /// All islands on one page of a given side, overlapping or not.
@@ -157,9 +158,10 @@ class Page {
             std::max(0, from.y - reach), std::min(side_ - mask.touched.height(), from.y + reach)};
   }
 
-  void look(const Mask& mask, Spot spot, Place& best) {
-    const std::int64_t own = table_.overlap(mask, spot.x, spot.y, best.overlap);
-    if (own != OverlapTable::kTooMuch) best = {spot, own};
+  /// At the places of a column from y_begin to y_last.
+  void look(const Mask& mask, int turn, int x, int y_begin, int y_last, Place& best) {
+    const LeastOverlap own = table_.least(mask, x, y_begin, y_last, best.overlap);
+    if (own.weight < best.overlap) best = {{x, own.y, turn, 0}, own.weight};
   }
 
   /// The best place of one turn, roughly, then to the cell.
@@ -169,13 +171,11 @@ class Page {
     const CellWindow window = places(mask, spots_[k]);
     if (window.x_end < window.x_begin || window.y_end < window.y_begin) return;
     const int span = rules_.reach > 0 ? 2 * rules_.reach : side_;
-    const int stride = std::max(1, span / kPlacesAcross);
+    const int stride = std::max(1, span / kColumnsAcross);
     Place own{{}, best.overlap};
-    const int x_offset = static_cast<int>(below(static_cast<std::size_t>(stride)));
-    const int y_offset = static_cast<int>(below(static_cast<std::size_t>(stride)));
-    for (int y = window.y_begin + y_offset; y <= window.y_end; y += stride)
-      for (int x = window.x_begin + x_offset; x <= window.x_end; x += stride)
-        look(mask, {x, y, turn, 0}, own);
+    const int offset = static_cast<int>(below(static_cast<std::size_t>(stride)));
+    for (int x = window.x_begin + offset; x <= window.x_end; x += stride)
+      look(mask, turn, x, window.y_begin, window.y_end, own);
     if (own.overlap == best.overlap) return;
     refine(mask, window, stride, own);
     if (own.overlap < best.overlap) best = own;
@@ -184,13 +184,10 @@ class Page {
   void refine(const Mask& mask, const CellWindow& window, int stride, Place& best) {
     for (int step = (stride + 1) / 2; best.overlap > 0 && best.overlap != OverlapTable::kTooMuch;) {
       const Place before = best;
-      for (const auto& [dx, dy] :
-           {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {-1, 1}, {1, -1}}) {
-        const int x = before.spot.x + dx * step, y = before.spot.y + dy * step;
-        if (x < window.x_begin || x > window.x_end || y < window.y_begin || y > window.y_end)
-          continue;
-        look(mask, {x, y, before.spot.turn, 0}, best);
-      }
+      for (const int x : {before.spot.x, before.spot.x - step, before.spot.x + step})
+        if (window.x_begin <= x && x <= window.x_end)
+          look(mask, before.spot.turn, x, std::max(window.y_begin, before.spot.y - kAside),
+               std::min(window.y_end, before.spot.y + kAside - 1), best);
       if (best.overlap < before.overlap) continue;
       if (step == 1) return;
       step /= 2;
@@ -208,8 +205,9 @@ class Page {
   void move(std::size_t k) {
     const std::int64_t before = table_.work();
     tabulate(k);
-    Place best{};
-    look(mask(k), spots_[k], best);
+    const Spot& from = spots_[k];
+    Place best{from};
+    look(mask(k), from.turn, from.x, from.y, from.y, best);
     if (best.overlap > 0) find_better(k, best);
     spots_[k] = best.spot;
     budget_.words -= table_.work() - before;
@@ -217,7 +215,7 @@ class Page {
 
   void find_better(std::size_t k, Place& best) {
     const int turns = arranger_.turns(), turn = spots_[k].turn;
-    refine(mask(k), places(mask(k), spots_[k]), std::max(1, side_ / kPlacesAcross), best);
+    refine(mask(k), places(mask(k), spots_[k]), std::max(1, side_ / kColumnsAcross), best);
     look_around(k, turn, best);
     look_around(k, (turn + 1) % turns, best);
     look_around(k, (turn + turns - 1) % turns, best);

@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 #include <set>
 
+#include "core/atlas/overlap_table.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/atlas/squeeze.hpp"
 #include "tests/core/outlines.hpp"
@@ -135,6 +138,53 @@ TEST(Squeeze, FindsNothingWithoutABudget) {
   Squeezing squeezing(islands);
   Budget budget{0, {}};
   EXPECT_EQ(squeezed(squeezing.arranger, squeezing.at_one_place, {.side = 70}, budget).side, 0);
+}
+
+bool covers(const Rows& rows, int x, int y) {
+  if (y < 0 || y >= rows.height()) return false;
+  const auto row = rows.row(y);
+  return std::ranges::any_of(row, [&](const Run& run) { return run.begin <= x && x < run.end; });
+}
+
+TEST(OverlapTable, FindsTheLeastWeightOfAColumnBruteForce) {
+  std::mt19937 rng(5);
+  const double padding = 2;
+  const CellWindow window{-3, 90, -2, 110};
+  std::vector<Mask> masks;
+  for (const Outline& star : shapes::stars(12, 3))
+    masks.push_back(make_mask(star, {1, 0, 4}, padding));
+  for (int round = 0; round < 200; ++round) {
+    OverlapTable table;
+    table.reset(window);
+    std::map<std::pair<int, int>, int> weight;
+    for (int k = 0; k < 9; ++k) {
+      const Rows& touched = masks[rng() % masks.size()].touched;
+      const int x = int(rng() % 80) - 10, y = int(rng() % 100) - 10, own = 1 + int(rng() % 900);
+      table.take(touched, x, y, own);
+      for (int v = 0; v < touched.height(); ++v)
+        for (int u = 0; u < 100; ++u)
+          if (covers(touched, u, v)) weight[{x + u, y + v}] += own;
+    }
+    table.sum_up();
+    const Mask& mask = masks[rng() % masks.size()];
+    const int rightmost = window.x_end - mask.width - mask.margin;
+    const int highest = window.y_end - mask.touched.height() - mask.margin;
+    const int x = round % 3 == 0 ? rightmost : int(rng() % 40), first = int(rng() % 20);
+    const int last = round % 2 == 0 ? highest : first + int(rng() % 20);
+    LeastOverlap expected{0, 1 << 28};
+    for (int y = first; y <= last; ++y) {
+      int sum = 0;
+      for (int v = 0; v < mask.grown.height(); ++v)
+        for (int u = 0; u < mask.width + 2 * mask.margin; ++u)
+          if (covers(mask.grown, u, v)) sum += weight[{x + u - mask.margin, y + v - mask.margin}];
+      if (sum < expected.weight) expected = {y, sum};
+    }
+    const LeastOverlap found = table.least(mask, x, first, last, OverlapTable::kTooMuch);
+    EXPECT_EQ(found.weight, expected.weight);
+    EXPECT_EQ(found.y, expected.y);
+    EXPECT_EQ(table.least(mask, x, first, last, expected.weight + 1).y, expected.y);
+    EXPECT_EQ(table.least(mask, x, first, last, expected.weight).weight, OverlapTable::kTooMuch);
+  }
 }
 
 }  // namespace
