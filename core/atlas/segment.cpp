@@ -30,7 +30,8 @@ constexpr double kMargin = 0.97;  // of what is allowed: solving on may shift so
 constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a number of regions
 constexpr double kPatchesShare = 0.1, kFacesOfPatches = 6;  // of the work; for each face
 constexpr std::size_t kPatchesAtOnce = 16;                  // then progress is told
-constexpr double kCapOfOnePatch = 4;                        // in shares of what is allowed of all
+constexpr double kFacesOfQuick = 20, kQuickPrice = 1;
+constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
 
 /// How the work is watched and done.
 struct Work {
@@ -118,6 +119,11 @@ Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& 
   MergeRules merging{.budget = budget, .cap = kCapOfOnePatch * budget, .stop = rules.stop};
   merging.page_area = rules.page_area;
   merging.effort = &work.effort;
+  if (rules.is_quick) {
+    work.effort.begin(1, kFacesOfQuick * sheet.face_count());
+    merging.price = kQuickPrice;
+    return merge_patches(Joiner(sheet), sheet, from, merging, work.executor);
+  }
   return best_merge(sheet, from, merging, work.executor);
 }
 
@@ -141,7 +147,7 @@ Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& execut
                              .stop = rules.stop};
     best = merge_patches(Joiner(sheet), sheet, std::move(best), merging, executor);
   }
-  Segments segments{{}, std::move(best.open)};
+  Segments segments{{}, std::move(best.open), total_of(best.patches)};
   for (MappedRegion& patch : best.patches) segments.regions.push_back(std::move(patch.region));
   return segments;
 }

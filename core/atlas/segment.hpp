@@ -16,7 +16,8 @@ namespace unwrapd {
 struct SegmentRules {
   double max_distortion = 2.02;  ///< of all regions together, D_angle and D_area each; > 2
   Index most_regions = std::numeric_limits<Index>::max();  ///< however distorted, if maps allow it
-  double page_area = 1;  ///< of all that lies on one page with this sheet, in units of its area
+  double page_area = 1;   ///< of all that lies on one page with this sheet, in units of its area
+  bool is_quick = false;  ///< one merge, no search for the best
   std::function<void(Stage, double)> on_progress = {};  ///< the share that is done
   std::stop_token stop = {};
 };
@@ -24,6 +25,7 @@ struct SegmentRules {
 struct Segments {
   std::vector<Region> regions;
   std::vector<char> open;  ///< one a half-edge of the sheet, 1: a seam inside a region
+  Excess excess = {};      ///< of all maps, over the sheet's area
 };
 
 /// Every face of the sheet is in exactly one region; each region is a disk (holes allowed) whose

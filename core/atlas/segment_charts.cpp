@@ -12,6 +12,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/atlas/large_charts.hpp"
 #include "core/atlas/region_charts.hpp"
 #include "core/cancel.hpp"
 #include "core/measure/rest_triangle.hpp"
@@ -21,9 +22,7 @@ namespace unwrapd {
 namespace {
 
 constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
-constexpr Index kMostFacesSegmented = 18'000, kFacesOfCoarse = 12'000;
-constexpr double kShareOfCoarse =
-    0.88;  // of the excess allowed: the rest is for what it averages out
+constexpr Index kMostFacesSegmented = 18'000;
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const Chart& component) {
@@ -94,7 +93,7 @@ class Cutter {
   }
 
   std::vector<Chart> charts;
-  Index cuts = 0, segmented = 0;
+  Index cuts = 0, segmented = 0, rough = 0;
 
  private:
   void take_apart(const Chart& component, bool whole, Index most) {
@@ -114,11 +113,9 @@ class Cutter {
   }
 
   std::vector<Chart> parts_of_large(const Chart& component, const SegmentRules& rules) {
-    const Coarse coarse = coarsen(component.mesh, component.halfedges, kFacesOfCoarse, rules.stop);
-    const Sheet sheet = make_sheet(coarse.mesh, coarse.halfedges);
-    SegmentRules own = rules;
-    own.max_distortion = 2 + kShareOfCoarse * (rules.max_distortion - 2);
-    return region_charts(component, coarse, segment(sheet, own, executor_), rules.stop);
+    LargeCharts large = large_charts(component, rules, executor_);
+    rough += large.is_rough ? 1 : 0;
+    return std::move(large.charts);
   }
 
   const SegmentOptions& options_;
@@ -129,24 +126,30 @@ class Cutter {
 /// How many charts each component may become, in the order of surfaces and components.
 using Quotas = std::vector<Index>;
 
-/// Returns how many each became.
-Quotas cut_all(std::vector<Charts>& surfaces, const Quotas& most, const SegmentOptions& options,
-               const SegmentWatch& watch, Executor& executor) {
+/// What cutting came to.
+struct Cuts {
+  Quotas became;    ///< how many charts each component
+  Index rough = 0;  ///< components where noise leaves no room for the bound
+};
+
+Cuts cut_all(std::vector<Charts>& surfaces, const Quotas& most, const SegmentOptions& options,
+             const SegmentWatch& watch, Executor& executor) {
   Account account(surfaces, watch);
-  Quotas became;
+  Cuts cuts;
   for (Charts& surface : surfaces) {
     Cutter cutter(options, account, executor);
     for (Chart& component : std::exchange(surface.charts, {})) {
       const std::size_t faces = component.mesh.faces.size(), before = cutter.charts.size();
-      cutter.add(std::move(component), most[became.size()]);
-      became.push_back(static_cast<Index>(cutter.charts.size() - before));
+      cutter.add(std::move(component), most[cuts.became.size()]);
+      cuts.became.push_back(static_cast<Index>(cutter.charts.size() - before));
       account.finish(faces);
     }
     surface.charts = std::move(cutter.charts);
+    cuts.rough += cutter.rough;
     note(surface, RepairKind::cut_to_disk, cutter.cuts);
     note(surface, RepairKind::segmented, cutter.segmented);
   }
-  return became;
+  return cuts;
 }
 
 /// One chart for each component; what is left of `most` goes by how many they would like.
@@ -164,6 +167,11 @@ std::string more_than_asked(Index charts, Index components) {
          " pieces, and no two charts that are left have a common map without overlaps.";
 }
 
+std::string rough_surfaces(Index count) {
+  return "The noise of " + std::to_string(count) +
+         " of the surfaces leaves no room for max_distortion, which was kept on a smoothed one.";
+}
+
 }  // namespace
 
 std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& options,
@@ -175,15 +183,19 @@ std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& 
   const Quotas first(static_cast<std::size_t>(components),
                      is_limited ? std::max<Index>(most - components + 1, 1) : most);
   const std::vector<Charts> whole = is_limited ? surfaces : std::vector<Charts>();
-  Quotas became = cut_all(surfaces, first, options, watch, executor);
-  Index total = std::accumulate(became.begin(), became.end(), Index(0));
+  Cuts cuts = cut_all(surfaces, first, options, watch, executor);
+  const auto charts = [&] {
+    return std::accumulate(cuts.became.begin(), cuts.became.end(), Index(0));
+  };
+  Index total = charts();
   if (total > most && components > 1) {
     surfaces = whole;
-    became = cut_all(surfaces, shared_out(std::move(became), total, most), options,
-                     {{}, watch.stop}, executor);
-    total = std::accumulate(became.begin(), became.end(), Index(0));
+    cuts = cut_all(surfaces, shared_out(std::move(cuts.became), total, most), options,
+                   {{}, watch.stop}, executor);
+    total = charts();
   }
-  return total > most ? more_than_asked(total, components) : std::string();
+  if (total > most) return more_than_asked(total, components);
+  return cuts.rough > 0 ? rough_surfaces(cuts.rough) : std::string();
 }
 
 }  // namespace unwrapd

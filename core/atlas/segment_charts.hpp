@@ -27,7 +27,8 @@ struct SegmentWatch {
 /// The components of surfaces (components_of()) become charts, all of them disks, and the repairs
 /// tell what was done. A disk stays as it is unless a distortion is asked for; any other component
 /// is taken apart by segment(), or cut to one disk where the number of charts leaves no more.
-/// Returns a sentence where more charts than asked for are needed, else nothing.
+/// Returns a sentence where more charts than asked for are needed, or noise leaves no room for the
+/// distortion, else nothing.
 /// The same for any executor. Throws Error{cancelled}.
 std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& options,
                            const SegmentWatch& watch, Executor& executor);

@@ -9,7 +9,6 @@
 #include "core/atlas/trial_memory.hpp"
 #include "core/cancel.hpp"
 #include "core/error.hpp"
-#include "core/measure/distortion.hpp"
 #include "core/measure/overlaps.hpp"
 #include "core/mesh/topology.hpp"
 #include "core/solve/global_step.hpp"
@@ -107,11 +106,6 @@ UvMap arap_map(const Disk& disk, const TrialRules& rules, std::span<const Corner
   return by_vertex(uv, global.rank());
 }
 
-/// For UV area = 3D area.
-Excess excess_of(const DistortionSums& sums) {
-  return {sums.angle - 2 * sums.area, sums.inverse * sums.uv_area / sums.area - sums.area};
-}
-
 Verdict verdict_on(const Disk& disk, const DistortionSums& sums, const TrialRules& rules,
                    const UvMap& uv) {
   if (sums.flipped > 0) return Verdict::flawed;
@@ -138,6 +132,10 @@ TrialResult tried(const Sheet& sheet, std::span<const char> open, const TrialRul
 }
 
 }  // namespace
+
+Excess excess_of(const DistortionSums& sums) {
+  return {sums.angle - 2 * sums.area, sums.inverse * sums.uv_area / sums.area - sums.area};
+}
 
 TrialResult try_map(const Sheet& sheet, std::span<const char> open, const TrialRules& rules,
                     Region& region) {

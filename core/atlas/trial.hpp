@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/atlas/sheet.hpp"
+#include "core/measure/distortion.hpp"
 
 namespace unwrapd {
 
@@ -24,6 +25,9 @@ struct Excess {
     return {a.angle - b.angle, a.area - b.area};
   }
 };
+
+/// For UV area = 3D area.
+Excess excess_of(const DistortionSums& sums);
 
 enum class Verdict {
   sound,       ///< the map has no flip and no overlap, by exact tests
