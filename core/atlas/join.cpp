@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/atlas/ranks.hpp"
 #include "core/cancel.hpp"
 #include "core/mesh/disjoint_sets.hpp"
 #include "core/mesh/edges.hpp"
@@ -48,29 +49,57 @@ Motion motion_between(std::span<const std::array<Vec2, 2>> pairs) {
   return motion;
 }
 
-std::vector<Index> ranks(const Sheet& sheet, const Region& region) {
-  std::vector<Index> rank(sheet.mesh.faces.size(), -1);
-  for (std::size_t k = 0; k < region.faces.size(); ++k)
-    rank[region.faces[k]] = static_cast<Index>(k);
-  return rank;
-}
+/// Two regions, and where in them each face is.
+class Pair {
+ public:
+  Pair(const Sheet& sheet, const Region& a, const Region& b)
+      : sheet_(sheet),
+        a_(a),
+        b_(b),
+        in_a_(sheet.mesh.faces.size(), a.faces),
+        in_b_(sheet.mesh.faces.size(), b.faces) {}
+
+  /// The half-edges of b across which a lies.
+  [[nodiscard]] std::vector<Index> border(std::span<const char> open) const {
+    std::vector<Index> border;
+    for (const Index t : b_.faces)
+      for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+        const Index twin = sheet_.halfedges.twin[h];
+        if (twin != kNoTwin && open[h] == 0 && in_a_[face_of(twin)] >= 0) border.push_back(h);
+      }
+    return border;
+  }
+
+  /// Where the ends of those half-edges lie in both maps, {b, a}.
+  [[nodiscard]] std::vector<std::array<Vec2, 2>> ends(std::span<const Index> border) const {
+    std::vector<std::array<Vec2, 2>> ends;
+    for (const Index h : border) {
+      const Index twin = sheet_.halfedges.twin[h];
+      const CornerUv &own = b_.uv[in_b_[face_of(h)]], &across = a_.uv[in_a_[face_of(twin)]];
+      ends.push_back({own[h % 3], across[next_halfedge(twin) % 3]});
+      ends.push_back({own[next_halfedge(h) % 3], across[twin % 3]});
+    }
+    return ends;
+  }
+
+  [[nodiscard]] Region beside(const Motion& motion) const {
+    Region both = a_;
+    both.faces.insert(both.faces.end(), b_.faces.begin(), b_.faces.end());
+    for (const auto& [p, q, r] : b_.uv) both.uv.push_back({motion(p), motion(q), motion(r)});
+    return both;
+  }
+
+ private:
+  const Sheet& sheet_;
+  const Region &a_, &b_;
+  Ranks in_a_, in_b_;
+};
 
 }  // namespace
 
 Region beside(const Sheet& sheet, const Region& a, const Region& b, std::span<const Index> border) {
-  const std::vector<Index> in_a = ranks(sheet, a), in_b = ranks(sheet, b);
-  std::vector<std::array<Vec2, 2>> pairs;
-  for (const Index h : border) {
-    const Index twin = sheet.halfedges.twin[h];
-    const CornerUv &own = b.uv[in_b[face_of(h)]], &across = a.uv[in_a[face_of(twin)]];
-    pairs.push_back({own[h % 3], across[next_halfedge(twin) % 3]});
-    pairs.push_back({own[next_halfedge(h) % 3], across[twin % 3]});
-  }
-  const Motion motion = motion_between(pairs);
-  Region both = a;
-  both.faces.insert(both.faces.end(), b.faces.begin(), b.faces.end());
-  for (const auto& [p, q, r] : b.uv) both.uv.push_back({motion(p), motion(q), motion(r)});
-  return both;
+  const Pair pair(sheet, a, b);
+  return pair.beside(motion_between(pair.ends(border)));
 }
 
 Joiner::Joiner(const Sheet& sheet) : sheet_(sheet) {
@@ -79,19 +108,6 @@ Joiner::Joiner(const Sheet& sheet) : sheet_(sheet) {
     for (std::size_t i = 0; i < 3; ++i)
       defect[sheet.mesh.faces[t][(i + 2) % 3]] -= std::atan2(1.0, sheet.rest[t].cot[i]);
   for (const double d : defect) is_flat_.push_back(std::abs(d) <= kFlatDefect ? 1 : 0);
-}
-
-/// The half-edges of b across which a lies.
-std::vector<Index> Joiner::border(const Region& a, const Region& b,
-                                  std::span<const char> open) const {
-  const std::vector<Index> in_a = ranks(sheet_, a);
-  std::vector<Index> border;
-  for (const Index t : b.faces)
-    for (Index h = 3 * t; h < 3 * t + 3; ++h) {
-      const Index twin = sheet_.halfedges.twin[h];
-      if (twin != kNoTwin && open[h] == 0 && in_a[face_of(twin)] >= 0) border.push_back(h);
-    }
-  return border;
 }
 
 /// All of the border but its longest stretch; empty where it has but one.
@@ -121,13 +137,15 @@ std::vector<Index> Joiner::slit_of(std::span<const Index> border) const {
 
 Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<const char> open,
                     double cap, const TrialRules& trial) const {
-  const std::vector<Index> common = border(a.region, b.region, open);
+  const Pair pair(sheet_, a.region, b.region);
+  const std::vector<Index> common = pair.border(open);
   const double area = a.area + b.area;
   TrialRules rules = trial;
   rules.most_excess = std::max(cap * area, (a.excess + b.excess).worst());
   Joined joined;
   const auto attempt = [&](std::span<const Index> glued, std::span<const char> cut) {
-    joined.patch = {beside(sheet_, a.region, b.region, glued), {}, area, false};
+    const Motion motion = motion_between(pair.ends(glued));
+    joined.patch = {pair.beside(motion), {}, area, false};
     const TrialResult result = try_map(sheet_, cut, rules, joined.patch.region);
     joined.verdict = result.verdict;
     joined.patch.excess = result.excess;

@@ -39,8 +39,6 @@ class Joiner {
                             std::span<const char> open, double cap, const TrialRules& trial) const;
 
  private:
-  [[nodiscard]] std::vector<Index> border(const Region& a, const Region& b,
-                                          std::span<const char> open) const;
   [[nodiscard]] std::vector<Index> slit_of(std::span<const Index> border) const;
 
   const Sheet& sheet_;

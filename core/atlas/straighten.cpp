@@ -8,6 +8,7 @@
 #include <queue>
 #include <utility>
 
+#include "core/atlas/ranks.hpp"
 #include "core/cancel.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/mesh/edges.hpp"
@@ -194,8 +195,7 @@ class Straightening {
   /// A patch of some of the faces of a region, from its map. most: excess it may have at any rate.
   [[nodiscard]] MappedRegion mapped(std::vector<Index> faces, const Region& both,
                                     double most) const {
-    std::vector<Index> rank(owner_.size(), -1);
-    for (std::size_t k = 0; k < both.faces.size(); ++k) rank[both.faces[k]] = static_cast<Index>(k);
+    const Ranks rank(owner_.size(), both.faces);
     MappedRegion patch;
     for (const Index t : faces) {
       patch.region.uv.push_back(both.uv[rank[t]]);

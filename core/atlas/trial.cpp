@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/atlas/ranks.hpp"
 #include "core/atlas/trial_memory.hpp"
 #include "core/cancel.hpp"
 #include "core/error.hpp"
@@ -25,8 +27,7 @@ struct Part {
 };
 
 Halfedges glued(const Sheet& sheet, std::span<const char> open, std::span<const Index> faces) {
-  std::vector<Index> rank(sheet.mesh.faces.size(), kNoTwin);
-  for (std::size_t k = 0; k < faces.size(); ++k) rank[faces[k]] = static_cast<Index>(k);
+  const Ranks rank(sheet.mesh.faces.size(), faces);
   Halfedges own;
   own.twin.reserve(3 * faces.size());
   for (const Index t : faces)
@@ -49,9 +50,23 @@ Part part_of(const Sheet& sheet, std::span<const char> open, std::span<const Ind
   return part;
 }
 
+/// In one piece, with a boundary and without a handle: V - E + F is 2 less the boundaries.
 bool is_disk(const Part& part) {
-  const Topology shape = topology(part.mesh.faces, part.halfedges);
-  return shape.components.size() == 1 && shape.components.front().is_disk();
+  const auto face_count = static_cast<Index>(part.mesh.faces.size());
+  Index sides = 0;
+  for (const BoundaryLoop& loop : part.loops) sides += static_cast<Index>(loop.size());
+  const Index euler = part.mesh.vertex_count() - (3 * face_count + sides) / 2 + face_count;
+  if (part.loops.empty() || euler != 2 - static_cast<Index>(part.loops.size())) return false;
+  std::vector<char> reached(part.mesh.faces.size(), 0);
+  std::vector<Index> pending{0};
+  reached[0] = 1;
+  for (std::size_t k = 0; k < pending.size(); ++k)
+    for (Index h = 3 * pending[k]; h < 3 * pending[k] + 3; ++h) {
+      const Index twin = part.halfedges.twin[h];
+      if (twin == kNoTwin || std::exchange(reached[face_of(twin)], 1) != 0) continue;
+      pending.push_back(face_of(twin));
+    }
+  return pending.size() == part.mesh.faces.size();
 }
 
 /// In the units of the sheet: what the solver reads of a part does not ask for area 1.
@@ -117,8 +132,8 @@ Verdict verdict_on(const Disk& disk, const DistortionSums& sums, const TrialRule
 TrialResult tried(const Sheet& sheet, std::span<const char> open, const TrialRules& rules,
                   Region& region) try {
   Part part = part_of(sheet, open, region.faces);
-  if (!is_disk(part)) return {};
   part.loops = boundary_loops(part.mesh, part.halfedges);
+  if (!is_disk(part)) return {};
   const Disk disk = disk_of(sheet, region.faces, part, rules.stop);
   UvMap uv = arap_map(disk, rules, region.uv);
   const DistortionSums sums = distortion_sums(disk.rest, disk.faces, uv);

@@ -1,5 +1,6 @@
 #include "core/atlas/trial_memory.hpp"
 
+#include <array>
 #include <bit>
 
 #include "core/atlas/scrambled.hpp"
@@ -8,18 +9,23 @@ namespace unwrapd {
 
 std::uint64_t trial_key(std::span<const char> open, const TrialRules& rules, const Region& region) {
   std::uint64_t key = 0;
-  const auto add = [&](std::uint64_t word) { key = scrambled((key ^ word) + kGoldenStep); };
-  const auto add_number = [&](double x) { add(std::bit_cast<std::uint64_t>(x)); };
+  const auto mix = [](std::uint64_t& sum, std::uint64_t word) {
+    sum = scrambled((sum ^ word) + kGoldenStep);
+  };
+  const auto add = [&](std::uint64_t word) { mix(key, word); };
   add(static_cast<std::uint64_t>(rules.iterations));
-  add_number(rules.most_excess);
+  add(std::bit_cast<std::uint64_t>(rules.most_excess));
   for (const Index t : region.faces) {
     auto word = static_cast<std::uint64_t>(t);
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
       word = 2 * word + (!open.empty() && open[static_cast<std::size_t>(h)] != 0 ? 1 : 0);
     add(word);
   }
+  std::array<std::uint64_t, 6> of_corners{};  // sums abreast: none waits for another
   for (const CornerUv& corners : region.uv)
-    for (const Vec2& uv : corners) add_number(uv.x()), add_number(uv.y());
+    for (std::size_t k = 0; k < of_corners.size(); ++k)
+      mix(of_corners[k], std::bit_cast<std::uint64_t>(corners[k / 2][k % 2]));
+  for (const std::uint64_t sum : of_corners) add(sum);
   return key;
 }
 

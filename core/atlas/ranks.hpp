@@ -1,0 +1,28 @@
+#pragma once
+// Where in a list each face of a sheet stands, without a walk over the sheet for every list.
+
+#include <span>
+#include <vector>
+
+#include "core/mesh/halfedges.hpp"
+
+namespace unwrapd {
+
+/// Kept per thread and wiped after use: what it costs is the list, not the sheet.
+class Ranks {
+ public:
+  /// faces, each once, below face_count, must outlive it.
+  Ranks(std::size_t face_count, std::span<const Index> faces);
+  ~Ranks();
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+
+  /// The place of face t in the list; kNoTwin: it is not there.
+  Index operator[](Index t) const { return rank_[static_cast<std::size_t>(t)]; }
+
+ private:
+  std::span<const Index> faces_;
+  std::vector<Index> rank_;
+};
+
+}  // namespace unwrapd
