@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/linear/ordering.hpp"
+#include "core/linear/sparse.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd {
@@ -46,10 +48,21 @@ std::vector<double> seam_costs(const Sheet& sheet, std::span<const char> given) 
                                                                                   : cost;
 }
 
+std::vector<Index> elimination_ranks(const TriMesh& mesh) {
+  const std::vector<double> weight(3 * mesh.faces.size(), 1);
+  const SparseMatrix lower = lower_laplacian(mesh.faces, mesh.vertex_count(), weight);
+  const std::span begin(lower.outerIndexPtr(), mesh.positions.size() + 1);
+  const std::span row(lower.innerIndexPtr(), static_cast<std::size_t>(lower.nonZeros()));
+  const std::vector<Index> order = fill_reducing_order(graph_of_lower(begin, row));
+  std::vector<Index> rank(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<Index>(k);
+  return rank;
+}
+
 }  // namespace
 
 Sheet make_sheet(const TriMesh& mesh, const Halfedges& halfedges, std::span<const char> crease) {
-  Sheet sheet{normalised(mesh), halfedges, {}, {}, {}, {}};
+  Sheet sheet{normalised(mesh), halfedges, {}, {}, {}, {}, {}};
   sheet.rest = flatten(sheet.mesh);
   sheet.normal.reserve(mesh.faces.size());
   for (const Triangle& face : mesh.faces) sheet.normal.push_back(normal_of(sheet.mesh, face));
@@ -59,6 +72,7 @@ Sheet make_sheet(const TriMesh& mesh, const Halfedges& halfedges, std::span<cons
                             sheet.mesh.positions[start_of(mesh.faces, h)])
                                .norm());
   sheet.seam_cost = seam_costs(sheet, crease);
+  sheet.rank = elimination_ranks(sheet.mesh);
   return sheet;
 }
 

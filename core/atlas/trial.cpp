@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "core/atlas/ranks.hpp"
@@ -39,9 +40,27 @@ Halfedges glued(const Sheet& sheet, std::span<const char> open, std::span<const 
   return own;
 }
 
+/// Numbers vertices as the sheet would eliminate them, those that are one on the sheet as they
+/// come.
+void renumber(const Sheet& sheet, std::span<const Index> faces, CornerVertices& corners) {
+  std::vector<std::uint64_t> key(static_cast<std::size_t>(corners.count));
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto v = static_cast<std::uint64_t>(corners.faces[k][i]);
+      const Index rank = sheet.rank[sheet.mesh.faces[faces[k]][i]];
+      key[v] = static_cast<std::uint64_t>(rank) << 32 | v;
+    }
+  std::ranges::sort(key);
+  std::vector<Index> number(key.size());
+  for (std::size_t n = 0; n < key.size(); ++n) number[key[n] & 0xffffffff] = static_cast<Index>(n);
+  for (Triangle& face : corners.faces)
+    for (Index& v : face) v = number[v];
+}
+
 Part part_of(const Sheet& sheet, std::span<const char> open, std::span<const Index> faces) {
   Part part{{}, glued(sheet, open, faces), {}};
   CornerVertices corners = corner_vertices(part.halfedges);
+  renumber(sheet, faces, corners);
   part.mesh = {std::vector<Vec3>(corners.count), std::move(corners.faces)};
   for (std::size_t k = 0; k < faces.size(); ++k)
     for (std::size_t i = 0; i < 3; ++i)
@@ -81,6 +100,7 @@ Disk disk_of(const Sheet& sheet, std::span<const Index> faces, const Part& part,
           .rest = std::move(rest),
           .corners = vertex_corners(part.mesh.faces, part.mesh.vertex_count()),
           .unit = 1,
+          .is_ordered = true,
           .stop = stop};
 }
 

@@ -39,6 +39,13 @@ void list_entries(const SparseMatrix& lower, const std::stop_token& stop, Analys
   });
 }
 
+Graph graph_of(const SparseMatrix& lower, const std::stop_token& stop) {
+  assert(lower.isCompressed());
+  const std::span begin(lower.outerIndexPtr(), static_cast<std::size_t>(lower.cols()) + 1);
+  const std::span row(lower.innerIndexPtr(), static_cast<std::size_t>(lower.nonZeros()));
+  return graph_of_lower(begin, row, stop);
+}
+
 /// The pattern of a matrix of pairs, one row a pair.
 Graph graph_of_pairs(const SparseMatrix& lower, const std::stop_token& stop) {
   assert(lower.cols() % 2 == 0);
@@ -118,10 +125,14 @@ std::size_t Analysis::scratch_bytes() const {
 }
 
 std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower, const std::stop_token& stop) {
-  assert(lower.isCompressed());
-  const std::span begin(lower.outerIndexPtr(), static_cast<std::size_t>(lower.cols()) + 1);
-  const std::span row(lower.innerIndexPtr(), static_cast<std::size_t>(lower.nonZeros()));
-  return complete(analyse(graph_of_lower(begin, row, stop), stop), lower, stop);
+  return complete(analyse(graph_of(lower, stop), stop), lower, stop);
+}
+
+std::shared_ptr<const Analysis> analyse_in_order(const SparseMatrix& lower,
+                                                 const std::stop_token& stop) {
+  std::vector<Index> order(static_cast<std::size_t>(lower.cols()));
+  std::iota(order.begin(), order.end(), 0);
+  return complete(analyse(graph_of(lower, stop), std::move(order), stop), lower, stop);
 }
 
 std::shared_ptr<const Analysis> analyse_pairs(const SparseMatrix& lower,

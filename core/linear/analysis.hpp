@@ -46,6 +46,11 @@ std::size_t most_pending(const Supernodes& nodes, Branch branch);
 std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower,
                                         const std::stop_token& stop = {});
 
+/// The same, of a matrix whose rows are numbered in a good order of elimination: none is looked
+/// for.
+std::shared_ptr<const Analysis> analyse_in_order(const SparseMatrix& lower,
+                                                 const std::stop_token& stop = {});
+
 /// As analyse(), of a matrix with two unknowns a vertex, rows 2v and 2v+1, whose entries come in
 /// whole blocks of two by two (of the diagonal ones the lower triangle): ordered by vertices, a
 /// quarter of the graph. Values are those of the given, not the halved, matrix.

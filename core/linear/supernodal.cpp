@@ -117,8 +117,8 @@ std::vector<Index> rows_of(const Graph& graph, const Supernodes& nodes,
 
 }  // namespace
 
-Supernodes analyse(const Graph& graph, const std::stop_token& stop) {
-  EliminationTree tree = elimination_tree(graph, fill_reducing_order(graph, stop), stop);
+Supernodes analyse(const Graph& graph, std::vector<Index> order, const std::stop_token& stop) {
+  EliminationTree tree = elimination_tree(graph, std::move(order), stop);
   throw_if_cancelled(stop);
   Supernodes nodes;
   nodes.first = relaxed_supernodes(tree);
@@ -138,6 +138,10 @@ Supernodes analyse(const Graph& graph, const std::stop_token& stop) {
   nodes.position = std::move(tree.position);
   nodes.row = rows_of(graph, nodes, supernode, parent, stop);
   return nodes;
+}
+
+Supernodes analyse(const Graph& graph, const std::stop_token& stop) {
+  return analyse(graph, fill_reducing_order(graph, stop), stop);
 }
 
 }  // namespace unwrapd

@@ -32,4 +32,7 @@ struct Supernodes {
 /// Error{cancelled}.
 Supernodes analyse(const Graph& graph, const std::stop_token& stop = {});
 
+/// The same of vertices to be eliminated in this order.
+Supernodes analyse(const Graph& graph, std::vector<Index> order, const std::stop_token& stop);
+
 }  // namespace unwrapd

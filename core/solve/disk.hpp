@@ -26,6 +26,7 @@ struct Disk {
       nullptr;  ///< shares what depends on the disk alone with other jobs; null: none
   Digest connectivity{}, content{};  ///< under core: of the faces; of faces and positions
   std::span<const Index> twin = {};  ///< of half-edges, as in Chart::halfedges; empty: not known
+  bool is_ordered = false;  ///< vertices are numbered in a good order of elimination; core is null
   std::stop_token stop = {};  ///< of the job: what is made of the disk looks at it (cancel.hpp)
 
   [[nodiscard]] Index vertex_count() const { return static_cast<Index>(positions.size()); }

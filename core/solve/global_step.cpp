@@ -42,7 +42,9 @@ std::shared_ptr<const Factor> factored(const Disk& disk, const Holds& holds,
   const SparseMatrix lower = free_matrix(disk, holds, free, executor);
   throw_if_cancelled(executor.stop());
   const Content pattern = Content("analysis").add(disk.connectivity).add(free.slot);
-  const auto analysis = kept(disk, pattern, [&] { return analyse(lower, disk.stop); });
+  const auto analysis = kept(disk, pattern, [&] {
+    return disk.is_ordered ? analyse_in_order(lower, disk.stop) : analyse(lower, disk.stop);
+  });
   throw_if_cancelled(executor.stop());
   check_memory(disk, analysis->job_bytes());
   return definite(try_factor(analysis, lower, executor));

@@ -111,6 +111,15 @@ TEST(Supernodes, CoverTheFactorWithBlocks) {
   }
 }
 
+TEST(Supernodes, KeepTheOrderThatIsGiven) {
+  for (const TriMesh& mesh : meshes()) {
+    const Graph graph = graph_of(mesh);
+    const std::vector<Index> order = random_order(graph.vertex_count(), 9);
+    const Supernodes nodes = analyse(graph, order, {});
+    EXPECT_EQ(dense_fill(graph, nodes.order).count(), dense_fill(graph, order).count());
+  }
+}
+
 TEST(Supernodes, PileTheirUpdatesInPostorder) {
   for (const TriMesh& mesh : meshes()) {
     const Supernodes nodes = analyse(graph_of(mesh));
