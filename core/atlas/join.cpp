@@ -3,6 +3,11 @@
 //
 // Where two regions meet along more than one stretch they close to a tube or a cap that cannot lie
 // flat, though glued along one stretch alone they would: a tube rolls out along a slit.
+//
+// Rejected: no trial where the maps miss each other by much at the border, or lie over each other
+// (winding numbers on a grid): of the time that failures take it saves a half where it also turns
+// down a twentieth of what is sound, and most failures lie side by side as neatly as what is sound.
+// With bounds that leave charts nearly alone it saves 5 % of segmenting, and longer seams eat it.
 #include "core/atlas/join.hpp"
 
 #include <algorithm>
