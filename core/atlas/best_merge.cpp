@@ -38,12 +38,12 @@ constexpr std::size_t kFinished = 2;        // of the tries: mended, and with bo
 constexpr double kFewTries = 4;             // that are worth half of all the merging
 constexpr double kShareOfMends = 0.7, kMostMends = 40;  // of how often all could be merged anew
 constexpr double kWhimOfMends = 0.3, kTriesOfAMend = 0.3;
-constexpr int kFirstLotOfMends = 100;
+constexpr int kFirstLotOfMends = 300;
 constexpr double kFittingFill = 0.72;  // see MergeRules::least_fill
 constexpr double kLargeRegion = 0.1;   // that is worth cutting across
-const CostRules kUsual{.chart = 0.8, .small_chart = 0.4, .wanted_fill = 0.66};
+const CostRules kUsual{.chart = 0.8, .small_chart = 0.4, .wanted_fill = 0.68};
 const CostRules kAcross{
-    .chart = 0.3, .small_chart = 0.12, .wanted_fill = 0.645};  // to cut across for
+    .chart = 0.3, .small_chart = 0.12, .wanted_fill = 0.665};  // to cut across for
 constexpr double kFacesOfATry = 20, kTriesOfFinishing = 1;     // for each face; see Effort
 constexpr std::size_t kAbreast = 4;                            // tries at once, on as many threads
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -12,7 +12,7 @@
 namespace unwrapd {
 namespace {
 
-constexpr double kCostOfEmptiness = 28;  // of a whole page
+constexpr double kCostOfEmptiness = 36;  // of a whole page
 constexpr double kMostPage = 1.5;        // of the sheet
 
 std::vector<Outline> outlines(const Sheet& sheet, const Partition& partition,
