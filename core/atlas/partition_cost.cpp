@@ -12,8 +12,7 @@
 namespace unwrapd {
 namespace {
 
-constexpr double kCostOfEmptiness = 36;  // of a whole page
-constexpr double kMostPage = 1.5;        // of the sheet
+constexpr double kMostPage = 1.5;  // of the sheet
 
 std::vector<Outline> outlines(const Sheet& sheet, const Partition& partition,
                               const std::vector<Index>& owner) {

@@ -9,6 +9,8 @@
 
 namespace unwrapd {
 
+inline constexpr double kCostOfEmptiness = 40;  ///< of a whole page, in length of seams
+
 struct PartitionCost {
   double seams = std::numeric_limits<double>::infinity();  ///< and charts; area of the sheet: 1
   double all = std::numeric_limits<double>::infinity();    ///< and what the page leaves empty

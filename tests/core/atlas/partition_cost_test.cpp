@@ -53,8 +53,9 @@ TEST(PartitionCost, CountsSeamsChartsAndWhatThePageLeavesEmpty) {
   EXPECT_EQ(none.all, none.seams);  // the page is full enough
   const PartitionCost empty = strip.cost({.wanted_fill = 0.7});
   EXPECT_EQ(empty.seams, none.seams);
-  EXPECT_GT(empty.all, empty.seams + 28 * 0.3);  // 2 charts 8 long and 1 high fill 1/4 of a page
-  EXPECT_LT(empty.all, empty.seams + 28 * 0.5);
+  const double share = (empty.all - empty.seams) / kCostOfEmptiness;
+  EXPECT_GT(share, 0.3);  // 2 charts 8 long and 1 high fill 1/4 of a page
+  EXPECT_LT(share, 0.5);
   EXPECT_EQ(strip.cost({.page_area = 2, .wanted_fill = 0.7}).all, none.seams);
 }
 
