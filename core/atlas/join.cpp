@@ -15,6 +15,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/atlas/labels.hpp"
 #include "core/atlas/ranks.hpp"
 #include "core/cancel.hpp"
 #include "core/mesh/disjoint_sets.hpp"
@@ -129,8 +130,8 @@ std::vector<Index> Joiner::slit_of(std::span<const Index> border) const {
   std::map<Index, double> length;
   for (std::size_t k = 0; k < border.size(); ++k)
     length[stretches.root(static_cast<Index>(k))] += sheet_.length[border[k]];
-  const auto longest = std::max_element(length.begin(), length.end(),
-                                        [](auto& x, auto& y) { return x.second < y.second; });
+  const auto longest = std::ranges::max_element(
+      length, {}, [](const auto& stretch) { return rounded(stretch.second); });
   std::vector<Index> slit;
   for (std::size_t k = 0; k < border.size(); ++k) {
     if (stretches.root(static_cast<Index>(k)) == longest->first) continue;

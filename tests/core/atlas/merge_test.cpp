@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd {
@@ -125,6 +129,40 @@ TEST(Merge, TellsOfSlitsOnBothSides) {
   }
   EXPECT_EQ(all.patches.size(), 1U);
   EXPECT_NEAR(slit, 7 * std::sqrt(1.0 / 6), 1e-9);  // of twelve edges a tree of five is glued
+}
+
+/// The two halves of a tube, rolled out, joined: both stretches of their border are as long.
+std::vector<Index> slit_of_tube(const Vec3& offset, double scale) {
+  TriMesh mesh = shapes::cylinder(24, 17);
+  const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
+  std::vector<Vec2> flat;
+  for (Vec3& p : mesh.positions) {
+    flat.emplace_back(std::atan2(p.y(), p.x()), p.z());
+    p = scale * (turn * p) + offset;
+  }
+  const Sheet sheet = sheet_of(mesh);
+  std::array<MappedRegion, 2> halves;
+  for (Index t = 0; t < sheet.face_count(); ++t) {
+    CornerUv uv;
+    for (std::size_t i = 0; i < 3; ++i) uv[i] = flat[std::size_t(mesh.faces[std::size_t(t)][i])];
+    const bool is_upper = uv[0].y() + uv[1].y() + uv[2].y() > 0 && t % 48 < 24;
+    for (Vec2& p : uv)
+      if (!is_upper && p.x() > 1.5) p.x() -= 2 * M_PI;
+    MappedRegion& half = halves[is_upper ? 0 : 1];
+    half.region.faces.push_back(t);
+    half.region.uv.push_back(uv);
+    half.area += sheet.area(t);
+  }
+  const std::vector<char> open(sheet.length.size(), 0);
+  return Joiner(sheet).join(halves[0], halves[1], open, 1, {}).slit;
+}
+
+TEST(Join, SlitsATubeAtTheSamePlaceWhereverItLies) {
+  const std::vector<Index> slit = slit_of_tube(Vec3::Zero(), 1);
+  EXPECT_EQ(slit.size(), 2U * 17);
+  for (const double scale : {1e-6, 0.3, 7.0, 1e6})
+    for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(3, -5, 7), Vec3(1e3, 1e2, -1e3)})
+      EXPECT_EQ(slit_of_tube(scale * offset, scale), slit) << scale << ' ' << offset.transpose();
 }
 
 }  // namespace
