@@ -39,14 +39,21 @@ FrameHead head_of(const std::string& bytes) {
   return head;
 }
 
-/// Takes memory only as the bytes come.
-void receive_text(const ReceiveAll& receive, std::uint64_t size, std::string& text) {
+/// Takes memory only as the bytes come. False at the end.
+bool receive_text(const ReceiveAll& receive, std::uint64_t size, std::string& text) {
   text.clear();
   while (text.size() < size) {
     const std::size_t begin = text.size();
     text.resize(begin + std::min<std::uint64_t>(size - begin, kPieceBytes));
-    if (!receive(text.data() + begin, text.size() - begin)) no_frame();
+    if (!receive(text.data() + begin, text.size() - begin)) return false;
   }
+  return true;
+}
+
+/// Of a job that is done: in [0, 1], whatever a worker says.
+double next_fraction(ByteUnpacker& from) {
+  const auto fraction = from.next<double>();
+  return fraction >= 0 ? std::min(fraction, 1.0) : 0;  // nor is it NaN
 }
 
 }  // namespace
@@ -68,9 +75,8 @@ bool receive_frame(const ReceiveAll& receive, std::int64_t max_bytes, Frame& fra
       head.bytes > static_cast<std::uint64_t>(max_bytes))
     no_frame();
   frame.kind = static_cast<FrameKind>(head.kind);
-  receive_text(receive, head.name_bytes, frame.name);
-  receive_text(receive, head.bytes, frame.bytes);
-  return true;
+  return receive_text(receive, head.name_bytes, frame.name) &&
+         receive_text(receive, head.bytes, frame.bytes);
 }
 
 std::string pack(const StageEvent& event) {
@@ -98,7 +104,7 @@ void unpack_stage(std::string_view bytes, JobOutput& output) {
   StageEvent event{.stage = static_cast<Stage>(stage)};
   event.chart = from.next<Index>();
   event.chart_count = from.next<Index>();
-  event.fraction = from.next<double>();
+  event.fraction = next_fraction(from);
   event.lambda = next_lambda(from);
   output.stage(event);
 }
@@ -111,7 +117,7 @@ void unpack_iteration(std::string_view bytes, JobOutput& output) {
   for (double* figure : {&event.energy, &event.rel_change, &event.angle, &event.area})
     *figure = from.next<double>();
   event.flipped = from.next<Index>();
-  event.fraction = from.next<double>();
+  event.fraction = next_fraction(from);
   event.lambda = next_lambda(from);
   output.iteration(event, from.next<double>());
 }

@@ -36,16 +36,18 @@ struct Frame {
   std::string bytes;
 };
 
-inline constexpr std::size_t kMaxFrameName = 4096;  ///< a buffer's URI is the longest
+/// A buffer's URI is the longest: it comes in the head of a form's part, which is shorter.
+inline constexpr std::size_t kMaxFrameName = std::size_t{64} << 10;
 
 /// Sends all bytes or throws Error{internal}, as when the other end is gone.
 using SendAll = std::function<void(std::string_view)>;
-/// Fills the memory or throws Error{internal}. False at the end of what is sent, before any byte.
+/// Fills the memory or throws Error{internal}. False when what is sent ends before that.
 using ReceiveAll = std::function<bool(char* data, std::size_t size)>;
 
 void send_frame(const SendAll& send, FrameKind kind, std::string_view name, std::string_view bytes);
 
-/// The next frame, of at most max_bytes. False at the end. Throws Error{internal} for what is none.
+/// The next frame, of at most max_bytes. False at the end, be it between two frames or in one: the
+/// sender is gone. Throws Error{internal} for what is none.
 bool receive_frame(const ReceiveAll& receive, std::int64_t max_bytes, Frame& frame);
 
 std::string pack(const StageEvent& event);

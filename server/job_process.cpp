@@ -1,21 +1,18 @@
 #include "server/job_process.hpp"
 
-#include <poll.h>
-#include <signal.h>
-#include <sys/socket.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <chrono>
 #include <limits>
 
 #include "api/error_table.hpp"
 #include "server/blob_store.hpp"
 #include "server/byte_pack.hpp"
+#include "server/deadline.hpp"
 #include "server/job_frames.hpp"
 #include "server/job_worker.hpp"
+#include "server/map_choice.hpp"
 #include "server/sandbox.hpp"
+#include "server/worker_answer.hpp"
 #include "server/worker_process.hpp"
 
 namespace unwrapd::server {
@@ -24,7 +21,8 @@ namespace {
 constexpr std::int64_t kProgramReserve = std::int64_t{256} << 20;
 constexpr std::int64_t kThreadReserve = std::int64_t{80} << 20;  // its stack and its arena
 constexpr int kSpareSeconds = 60;  // of processor time: the deadline comes first
-constexpr std::size_t kMaxFileName = 40;
+constexpr std::size_t kMaxTotals = 16384;
+constexpr std::chrono::seconds kProbePatience{20};
 
 SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolation) {
   const std::int64_t seconds =
@@ -32,22 +30,9 @@ SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolati
   return {
       .memory_bytes = isolation.memory_bytes + kProgramReserve + isolation.threads * kThreadReserve,
       .processor_seconds =
-          static_cast<int>(std::min<std::int64_t>(seconds, std::numeric_limits<int>::max()))};
+          static_cast<int>(std::min<std::int64_t>(seconds, std::numeric_limits<int>::max())),
+      .threads = isolation.threads};
 }
-
-/// A name that a worker may give to a file: a plain one, and none of the input's.
-bool is_answer_file(std::string_view name) {
-  const bool plain =
-      !name.empty() && name.size() <= kMaxFileName && name.front() != '.' &&
-      std::ranges::all_of(name, [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.' || c == '_';
-      });
-  return plain && !name.starts_with(kDocumentFile) && !name.starts_with("buffer") &&
-         !name.starts_with("digests") && !name.starts_with("options") &&
-         !name.starts_with("result.");
-}
-
-bool is_format(std::string_view name) { return name == "glb" || name == "gltf" || name == "obj"; }
 
 [[noreturn]] void misbehaved() { throw WorkerCrashed("it sent what no worker sends"); }
 
@@ -60,71 +45,122 @@ bool is_utf8(const std::string& text) {
   }
 }
 
-/// The error that a worker tells of; one that it cannot know of counts as internal.
-[[noreturn]] void rethrow(const Frame& frame) {
-  ByteUnpacker from(frame.bytes);
-  const std::string message(from.next_text());
-  const std::string where(from.next_text());
-  if (!is_utf8(message) || !is_utf8(where)) misbehaved();
-  throw Error(api::code_named(frame.name).value_or(ErrorCode::internal), message, where);
+/// What reading what a worker has sent gives. What cannot be read is no error of the job's.
+template <class Read>
+auto believed(Read read) {
+  try {
+    return read();
+  } catch (const Error&) {
+    misbehaved();
+  }
 }
+
+/// The error that a worker tells of, if it is one that it can know of.
+Error error_told(const Frame& frame) {
+  return believed([&] {
+    ByteUnpacker from(frame.bytes);
+    const std::string message(from.next_text());
+    const std::string where(from.next_text());
+    const std::optional<ErrorCode> code = api::code_named(frame.name);
+    if (!is_utf8(message) || !is_utf8(where) || !code || !is_of_work(*code)) misbehaved();
+    return Error(*code, message, where);
+  });
+}
+
+/// The totals become a field of an answer's head.
+bool is_totals(std::string_view bytes) {
+  return bytes.size() <= kMaxTotals && api::Json::accept(bytes) &&
+         bytes.find_first_of("\r\n") == std::string_view::npos;
+}
+
+/// The events of a frame, for an output that may fail for reasons of its own.
+class EventCopy final : public JobOutput {
+ public:
+  void stage(const StageEvent& event) override { stage_ = event; }
+  void iteration(const IterationEvent& event, double elapsed_ms) override {
+    iteration_ = event;
+    elapsed_ms_ = elapsed_ms;
+  }
+  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
+  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
+
+  void hand_to(JobOutput& output) const {
+    if (stage_) output.stage(*stage_);
+    if (iteration_) output.iteration(*iteration_, elapsed_ms_);
+  }
+
+ private:
+  std::optional<StageEvent> stage_;
+  std::optional<IterationEvent> iteration_;
+  double elapsed_ms_ = 0;
+};
 
 /// One conversation with a worker.
 class Conversation {
  public:
-  Conversation(WorkerProcess& worker, JobOutput& output, std::int64_t max_bytes)
-      : worker_(worker), output_(output), left_(max_bytes) {}
+  /// maps: that the answer has.
+  Conversation(WorkerProcess& worker, JobOutput& output, std::int64_t max_bytes,
+               std::size_t maps = 0)
+      : worker_(worker), output_(output), left_(max_bytes), files_(maps) {}
 
   void send(FrameKind kind, std::string_view name, std::string_view bytes) {
     send_frame([&](std::string_view piece) { worker_.send(piece); }, kind, name, bytes);
   }
 
   void await_ready() {
-    const Frame frame = next();
-    if (frame.kind == FrameKind::failed) rethrow(frame);
-    if (frame.kind != FrameKind::ready) misbehaved();
+    if (next().kind != FrameKind::ready) misbehaved();
   }
 
   /// Hands over what comes, until the end. Returns the format of the result.
   std::string listen() {
     while (true) {
       const Frame frame = next();
-      if (frame.kind == FrameKind::failed) rethrow(frame);
-      if (frame.kind == FrameKind::done && is_format(frame.name)) return frame.name;
+      if (frame.kind == FrameKind::done && is_result_format(frame.name)) return frame.name;
       hand_over(frame);
     }
   }
 
   /// The one file that comes, or none.
   std::string listen_for_file() {
-    const Frame frame = next();
-    if (frame.kind == FrameKind::failed) rethrow(frame);
+    Frame frame = next();
     if (frame.kind != FrameKind::rendered) misbehaved();
     return frame.bytes;
   }
 
  private:
+  /// What comes next. Throws the error that the worker ends with.
   Frame next() {
     Frame frame;
     const auto receive = [&](char* data, std::size_t size) { return worker_.receive(data, size); };
-    if (!receive_frame(receive, left_, frame)) worker_.reap();
+    if (!believed([&] { return receive_frame(receive, left_, frame); })) worker_.reap();
     left_ -= static_cast<std::int64_t>(frame.bytes.size());
+    if (frame.kind == FrameKind::failed) throw error_told(frame);
     return frame;
   }
 
   void hand_over(const Frame& frame) {
-    if (frame.kind == FrameKind::stage) return unpack_stage(frame.bytes, output_);
-    if (frame.kind == FrameKind::iteration) return unpack_iteration(frame.bytes, output_);
-    if (frame.kind == FrameKind::result && is_format(frame.name))
+    if (frame.kind == FrameKind::stage || frame.kind == FrameKind::iteration)
+      return hand_over_event(frame);
+    if (frame.kind == FrameKind::result && files_.take_result(frame.name))
       return output_.result(frame.name, frame.bytes);
-    if (frame.kind == FrameKind::file && is_answer_file(frame.name))
-      return output_.file(frame.name, frame.bytes);
-    misbehaved();
+    const bool is_file = frame.kind == FrameKind::file && files_.take(frame.name);
+    if (!is_file || (frame.name == kTotalsFile && !is_totals(frame.bytes))) misbehaved();
+    output_.file(frame.name, frame.bytes);
+  }
+
+  void hand_over_event(const Frame& frame) {
+    EventCopy event;
+    believed([&] {
+      frame.kind == FrameKind::stage ? unpack_stage(frame.bytes, event)
+                                     : unpack_iteration(frame.bytes, event);
+    });
+    event.hand_to(output_);
   }
 
   WorkerProcess& worker_;
   JobOutput& output_;
   std::int64_t left_;  // bytes that may still come
+  AnswerFiles files_;
 };
 
 void send_limits(WorkerProcess& worker, const SandboxLimits& limits) {
@@ -148,14 +184,22 @@ class NoOutput final : public JobOutput {
 }  // namespace
 
 void check_isolation(const Isolation& isolation) {
+  const auto cannot = [](const std::string& why) {
+    return Error(ErrorCode::internal,
+                 "A worker process cannot run here: " + why + "; run without --isolate.");
+  };
+  std::stop_source late;
+  const Deadline deadline(kProbePatience, [&] { late.request_stop(); });
   try {
-    WorkerProcess worker(isolation.program, {});
+    WorkerProcess worker(isolation.program, late.get_token(), isolation.grace);
     send_limits(worker, sandbox_limits({}, isolation));
     NoOutput none;
     Conversation(worker, none, isolation.memory_bytes).await_ready();
   } catch (const WorkerCrashed& crash) {
-    throw Error(ErrorCode::internal, std::string("A worker process cannot run here: ") +
-                                         crash.what() + "; run without --isolate.");
+    throw cannot(crash.what());
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::cancelled) throw;
+    throw cannot("it does not answer");
   }
 }
 
@@ -172,12 +216,11 @@ std::string run_job_isolated(const JobTask& task, const asset::Input& input, Job
                              const api::Limits& limits, const Isolation& isolation) {
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - task.began;
-  WorkerProcess worker(isolation.program, task.stop);
+  WorkerProcess worker(isolation.program, task.stop, isolation.grace);
   send_limits(worker, sandbox_limits(limits, isolation));
-  Conversation conversation(worker, output, isolation.memory_bytes);
+  Conversation conversation(worker, output, isolation.memory_bytes, map_count(task.record));
   conversation.await_ready();
   const WorkerTask shape{.limits = limits,
-                         .threads = isolation.threads,
                          .memory_bytes = isolation.memory_bytes,
                          .queue_ms = task.queue_ms,
                          .elapsed_ms = elapsed.count()};
@@ -190,15 +233,13 @@ std::string run_job_isolated(const JobTask& task, const asset::Input& input, Job
 std::string render_isolated(const Rendering& rendering, const RenderingInput& input,
                             const std::stop_token& stop, const api::Limits& limits,
                             const Isolation& isolation) {
-  WorkerProcess worker(isolation.program, stop);
+  WorkerProcess worker(isolation.program, stop, isolation.grace);
   send_limits(worker, sandbox_limits(limits, isolation));
   NoOutput none;
   Conversation conversation(worker, none, isolation.memory_bytes);
   conversation.await_ready();
-  const WorkerTask shape{.limits = limits,
-                         .threads = isolation.threads,
-                         .memory_bytes = isolation.memory_bytes,
-                         .rendering = rendering};
+  const WorkerTask shape{
+      .limits = limits, .memory_bytes = isolation.memory_bytes, .rendering = rendering};
   conversation.send(FrameKind::task, {}, pack_task(shape, input.record));
   send_asset(conversation, input.asset);
   conversation.send(FrameKind::uvs, {}, input.uvs);

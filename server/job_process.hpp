@@ -5,6 +5,7 @@
 // jobs (a crash would leave the next one a stranger's memory), fork without exec (of a program with
 // threads).
 
+#include <chrono>
 #include <cstdint>
 #include <stdexcept>
 #include <stop_token>
@@ -29,6 +30,7 @@ struct Isolation {
   bool possible = false;                              ///< for those that may have ended a server
   std::int64_t memory_bytes = std::int64_t{4} << 30;  ///< of a job
   int threads = 1;                                    ///< of a job
+  std::chrono::seconds grace{5};                      ///< for a process that was told to stop
   std::string program = {};                           ///< what --job-worker starts
 };
 

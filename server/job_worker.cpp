@@ -1,6 +1,5 @@
 #include "server/job_worker.hpp"
 
-#include <pthread.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -123,7 +122,7 @@ ReceivedJob receive_job() {
   gone();
 }
 
-/// SIGTERM asks the job to stop. The thread waits for it as long as the process lives.
+/// SIGTERM asks for a stop. The thread waits for it as long as the process lives.
 std::stop_source stop_at_sigterm() {
   std::stop_source stop;
   std::thread([stop]() mutable {
@@ -143,27 +142,42 @@ void fail_with(ErrorCode code, std::string_view message, std::string_view where)
   send_frame(send_all, FrameKind::failed, api::error_row(code).name, text.take());
 }
 
-/// A file half made is of no use to anybody.
-void end_at_sigterm() {
-  sigset_t term;
-  sigemptyset(&term);
-  sigaddset(&term, SIGTERM);
-  pthread_sigmask(SIG_UNBLOCK, &term, nullptr);
-}
+/// All threads that the process will ever have (sandbox.hpp).
+struct Crew {
+  explicit Crew(int count) : threads(count) {}
 
-void draw(const ReceivedJob& job, const Duties& duties) {
-  end_at_sigterm();
+  std::stop_source stop = stop_at_sigterm();
+  ThreadExecutor threads;
+};
+
+/// The threads of a crew, with what the charts of one job share.
+class SharingExecutor final : public Executor {
+ public:
+  SharingExecutor(ThreadExecutor& threads, SolverCore& core) : threads_(threads), core_(core) {}
+
+  void for_each_block(int block_count, const std::function<void(int)>& body) override {
+    threads_.for_each_block(block_count, body);
+  }
+  [[nodiscard]] SolverCore* shared_core() const override { return &core_; }
+
+ private:
+  ThreadExecutor& threads_;
+  SolverCore& core_;
+};
+
+void draw(const ReceivedJob& job, const Crew& crew, const Duties& duties) {
+  const std::stop_callback end_at_stop(  // a file half made is of no use to anybody
+      crew.stop.get_token(), [] { std::_Exit(EXIT_FAILURE); });
   const RenderingInput input{
       .record = job.record, .asset = job.input(), .uvs = job.uvs, .report = job.report};
   const std::string bytes = duties.draw(*job.task.rendering, input, job.task.limits);
   send_frame(send_all, FrameKind::rendered, {}, bytes);
 }
 
-void run(const ReceivedJob& job, const Duties& duties) {
-  const std::stop_source stop = stop_at_sigterm();
+void run(const ReceivedJob& job, Crew& crew, const Duties& duties) {
   const std::int64_t memory = job.task.memory_bytes;
   SolverCache core({.cache_bytes = memory / kCacheShare, .job_bytes = memory}, 1);
-  ThreadExecutor executor(job.task.threads, &core);
+  SharingExecutor executor(crew.threads, core);
   SocketOutput output;
   const auto elapsed = std::chrono::duration<double, std::milli>(job.task.elapsed_ms);
   const JobTask task{
@@ -171,15 +185,15 @@ void run(const ReceivedJob& job, const Duties& duties) {
       .queue_ms = job.task.queue_ms,
       .began = std::chrono::steady_clock::now() -
                std::chrono::duration_cast<std::chrono::steady_clock::duration>(elapsed),
-      .stop = stop.get_token()};
+      .stop = crew.stop.get_token()};
   const std::string format = duties.run(task, job.input(), output, job.task.limits, executor);
   send_frame(send_all, FrameKind::done, format, {});
 }
 
-void work(const Duties& duties) {
+void work(Crew& crew, const Duties& duties) {
   const ReceivedJob job = receive_job();
-  if (job.task.rendering) return draw(job, duties);
-  run(job, duties);
+  if (job.task.rendering) return draw(job, crew, duties);
+  run(job, crew, duties);
 }
 
 /// They come before anything else: nothing may be read without them.
@@ -205,9 +219,12 @@ std::string pack_task(const WorkerTask& task, const JobRecord& job) {
 
 int run_job_worker(const Duties& duties) {
   try {
-    enter_sandbox(sandbox_limits());
+    be_first_to_go();
+    const SandboxLimits limits = sandbox_limits();
+    auto* crew = new Crew(limits.threads);  // NOLINT: its threads end with the process
+    enter_sandbox(limits);
     send_frame(send_all, FrameKind::ready, {}, {});
-    work(duties);
+    work(*crew, duties);
   } catch (const Error& error) {
     fail_with(error.code(), error.what(), error.where());
   } catch (const std::bad_alloc&) {

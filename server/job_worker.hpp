@@ -19,7 +19,6 @@ int run_job_worker(const Duties& duties);
 /// What the server tells its worker of a job.
 struct WorkerTask {
   api::Limits limits;
-  int threads = 1;
   std::int64_t memory_bytes = 0;
   double queue_ms = 0;
   double elapsed_ms = 0;                    ///< since the job began

@@ -36,6 +36,10 @@ std::string map_file(std::string_view file, std::size_t map) {
   return std::string(file) + (map == 0 ? "" : "." + std::to_string(map));
 }
 
+std::size_t map_count(const JobRecord& job) {
+  return std::max<std::size_t>(1, lambdas_of(job).size());
+}
+
 std::size_t chosen_map(const JobRecord& job, const std::multimap<std::string, std::string>& query) {
   const auto [first, last] = query.equal_range("lambda");
   if (first == last) return 0;

@@ -14,6 +14,9 @@ namespace unwrapd::server {
 /// The file of a map: "uv.bin" is that of the first, "uv.bin.2" that of the third.
 std::string map_file(std::string_view file, std::size_t map);
 
+/// How many maps a job has.
+std::size_t map_count(const JobRecord& job);
+
 /// The map that the parameter lambda of a query names, as the number that the job was given;
 /// without it the first. Throws Error{invalid_option} when the job has no map of this lambda.
 std::size_t chosen_map(const JobRecord& job, const std::multimap<std::string, std::string>& query);

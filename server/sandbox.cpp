@@ -1,6 +1,6 @@
 #include "server/sandbox.hpp"
 
-#include <sched.h>
+#include <fcntl.h>
 #include <seccomp.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <csignal>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "core/error.hpp"
 
@@ -18,6 +20,7 @@ namespace unwrapd::server {
 namespace {
 
 constexpr int kKeptDescriptors = 3;
+constexpr std::string_view kFirstToGo = "1000";  // the most that proc(5) allows
 
 /// What malloc, threads, signals, clocks and open descriptors need.
 constexpr std::array kAllowed = {SCMP_SYS(read),
@@ -46,10 +49,8 @@ constexpr std::array kAllowed = {SCMP_SYS(read),
                                  SCMP_SYS(rt_sigtimedwait),
                                  SCMP_SYS(sigaltstack),
                                  SCMP_SYS(sched_yield),
-                                 SCMP_SYS(sched_getaffinity),
                                  SCMP_SYS(getpid),
                                  SCMP_SYS(gettid),
-                                 SCMP_SYS(tgkill),
                                  SCMP_SYS(exit),
                                  SCMP_SYS(exit_group),
                                  SCMP_SYS(clock_gettime),
@@ -90,10 +91,10 @@ void allow_without(const Filter& filter, int call, unsigned argument, std::uint6
     cannot("filter its calls");
 }
 
-/// Only with all of these flags in the first argument.
-void allow_with(const Filter& filter, int call, std::uint64_t flags) {
-  const scmp_arg_cmp all{0, SCMP_CMP_MASKED_EQ, flags, flags};
-  if (seccomp_rule_add_array(filter.get(), SCMP_ACT_ALLOW, call, 1, &all) != 0)
+/// Only of this process, which the first argument names.
+void allow_of_process(const Filter& filter, int call, pid_t process) {
+  const scmp_arg_cmp same{0, SCMP_CMP_EQ, static_cast<scmp_datum_t>(process), 0};
+  if (seccomp_rule_add_array(filter.get(), SCMP_ACT_ALLOW, call, 1, &same) != 0)
     cannot("filter its calls");
 }
 
@@ -104,11 +105,13 @@ void refuse(const Filter& filter, int call, std::uint16_t error) {
 
 void filter_calls() {
   const Filter filter(seccomp_init(SCMP_ACT_KILL_PROCESS), &seccomp_release);
-  if (!filter) cannot("filter its calls");
+  if (!filter || seccomp_attr_set(filter.get(), SCMP_FLTATR_CTL_TSYNC, 1) != 0)
+    cannot("filter its calls");
   for (const int call : kAllowed) allow(filter, call);
   for (const int call : kRefused) refuse(filter, call, EACCES);
-  refuse(filter, SCMP_SYS(clone3), ENOSYS);  // its flags are out of sight: clone is tried then
-  allow_with(filter, SCMP_SYS(clone), CLONE_THREAD);
+  allow_of_process(filter, SCMP_SYS(tgkill), ::getpid());  // abort() sends itself a signal
+  allow_of_process(filter, SCMP_SYS(sched_getaffinity), ::getpid());
+  allow_of_process(filter, SCMP_SYS(sched_getaffinity), 0);  // the caller
   allow_without(filter, SCMP_SYS(mmap), 2, PROT_EXEC);
   allow_without(filter, SCMP_SYS(mprotect), 2, PROT_EXEC);
   if (seccomp_load(filter.get()) != 0) cannot("filter its calls");
@@ -126,6 +129,13 @@ void enter_sandbox(const SandboxLimits& limits) {
   limit(RLIMIT_CORE, 0);
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) cannot("give up privileges");
   filter_calls();
+}
+
+void be_first_to_go() {
+  const int file = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (file < 0) return;
+  static_cast<void>(!::write(file, kFirstToGo.data(), kFirstToGo.size()));
+  ::close(file);
 }
 
 }  // namespace unwrapd::server

@@ -24,8 +24,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr std::chrono::seconds kStopPatience{5};  // between SIGTERM and SIGKILL
-
 [[noreturn]] void cannot_start() {
   throw Error(ErrorCode::internal,
               "A worker process cannot be started; check the limits of processes and files.");
@@ -79,7 +77,9 @@ std::string end_of(int status) {
 
 }  // namespace
 
-WorkerProcess::WorkerProcess(const std::string& program, const std::stop_token& stop) {
+WorkerProcess::WorkerProcess(const std::string& program, const std::stop_token& stop,
+                             milliseconds grace)
+    : grace_(grace) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) cannot_start();
   socket_ = ends[0];
@@ -105,8 +105,12 @@ WorkerProcess::~WorkerProcess() {
 }
 
 void WorkerProcess::ask_to_stop() {
-  kill_at_ = Clock::now() + kStopPatience;
+  kill_at_ = Clock::now() + grace_;
   ::kill(process_, SIGTERM);
+}
+
+void WorkerProcess::kill_when_due() {
+  if (kill_at_ && !killed_ && Clock::now() >= *kill_at_) killed_ = ::kill(process_, SIGKILL) == 0;
 }
 
 /// What poll() waits at most: for ever, but between SIGTERM and SIGKILL.
@@ -116,14 +120,15 @@ int WorkerProcess::patience_ms() const {
   return static_cast<int>(std::max<std::int64_t>(left, 0));
 }
 
-/// Waits until the socket is ready, and keeps an eye on the stop.
+/// Waits until the socket is ready. The stop comes first: a worker whose socket is always ready
+/// does not put it off.
 void WorkerProcess::await(short events) {
   while (true) {
     std::array<pollfd, 2> polled = {pollfd{socket_, events, 0}, pollfd{stopped_, POLLIN, 0}};
     const int ready = ::poll(polled.data(), kill_at_ ? 1 : 2, patience_ms());
-    if (ready > 0 && polled[0].revents != 0) return;
     if (ready > 0 && polled[1].revents != 0) ask_to_stop();
-    if (ready == 0) killed_ = ::kill(process_, SIGKILL) == 0;
+    kill_when_due();
+    if (ready > 0 && polled[0].revents != 0) return;
   }
 }
 

@@ -1,7 +1,9 @@
 // unwrapd whose work on meshes does what a bug, or a stranger who has found one, would do: the
 // first line of an OBJ says which, "# do WHAT" while it is unwrapped, "# draw WHAT" when somebody
-// asks for a picture or for another format.
+// asks for a picture or for another format. "# victim PID" in the second line names a process to
+// send signals to.
 #include <fcntl.h>
+#include <pthread.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -15,6 +17,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "server/job_frames.hpp"
 #include "server/program.hpp"
 
 namespace {
@@ -23,14 +26,69 @@ using unwrapd::Error;
 using unwrapd::ErrorCode;
 namespace server = unwrapd::server;
 
+[[noreturn]] void tell(bool is_open) {
+  throw Error(ErrorCode::solver_failed, is_open ? "It is open." : "It is closed.");
+}
+
 void eat_memory() {
   std::vector<std::string> eaten;
   while (true) eaten.emplace_back(std::size_t{64} << 20, 'x');
 }
 
-[[noreturn]] void tell(bool is_open) {
-  throw Error(ErrorCode::solver_failed, is_open ? "It is open." : "It is closed.");
+void send(server::FrameKind kind, std::string_view name, std::string_view bytes) {
+  server::send_frame(
+      [](std::string_view piece) {
+        while (!piece.empty()) {
+          const ssize_t sent = ::write(STDIN_FILENO, piece.data(), piece.size());
+          if (sent > 0) piece.remove_prefix(static_cast<std::size_t>(sent));
+        }
+      },
+      kind, name, bytes);
 }
+
+/// Events without end, however often it is told to stop.
+[[noreturn]] void flood() {
+  while (true)
+    send(server::FrameKind::stage, {}, server::pack(unwrapd::StageEvent{.fraction = 0.1}));
+}
+
+/// Many, on small stacks, so that the bound of the memory does not stop them.
+void begin_threads() {
+  pthread_attr_t small;
+  pthread_attr_init(&small);
+  pthread_attr_setstacksize(&small, 65536);
+  const auto wait = [](void*) -> void* {
+    while (true) ::usleep(100'000);
+  };
+  bool all = true;
+  for (int thread = 0; thread < 3000; ++thread) {
+    pthread_t begun{};
+    all = pthread_create(&begun, &small, wait, nullptr) == 0 && all;
+  }
+  tell(all);
+}
+
+void end_within_a_frame() {
+  std::string frame;
+  server::send_frame([&](std::string_view piece) { frame += piece; }, server::FrameKind::file,
+                     "uv.bin", std::string(100, 'x'));
+  frame.resize(frame.size() / 2);
+  static_cast<void>(!::write(STDIN_FILENO, frame.data(), frame.size()));
+  std::_Exit(3);
+}
+
+void claim(std::string_view code) {
+  std::string text(8, '\0');
+  text[0] = 1;
+  send(server::FrameKind::failed, code, text + "x" + std::string(8, '\0'));
+  while (true) ::usleep(1000);
+}
+
+void write_many(server::JobOutput& output) {
+  for (int file = 0; file < 12'000; ++file) output.file("f" + std::to_string(file), "");
+}
+
+pid_t victim = 0;
 
 using Deed = std::function<void(server::JobOutput&)>;
 
@@ -50,12 +108,32 @@ const std::map<std::string, Deed> kDeeds = {
     {"inherit", [](auto&) { tell(::lseek(3, 0, SEEK_CUR) >= 0 || errno != EBADF); }},
     {"environment", [](auto&) { tell(::getenv("PATH") != nullptr); }},
     {"chatter", [](auto&) { static_cast<void>(::write(STDIN_FILENO, "no frame of ours", 16)); }},
+    {"flood", [](auto&) { flood(); }},
+    {"threads", [](auto&) { begin_threads(); }},
+    {"signal", [](auto&) { ::tgkill(victim, victim, SIGKILL); }},
+    {"look", [](auto&) { tell(::tgkill(victim, victim, 0) == 0); }},
+    {"end_within", [](auto&) { end_within_a_frame(); }},
+    {"storage_full", [](auto&) { claim("storage_full"); }},
+    {"draining", [](auto&) { claim("draining"); }},
+    {"unauthorized", [](auto&) { claim("unauthorized"); }},
+    {"time_limit", [](auto&) { claim("time_limit"); }},
+    {"no_such_code", [](auto&) { claim("no_such_code"); }},
+    {"files", write_many},
+    {"twice",
+     [](auto& output) {
+       output.file("uv.bin", "x");
+       output.file("uv.bin", "x");
+     }},
+    {"head", [](auto& output) { output.file("totals.json", "{}\r\nX-Injected: 1"); }},
     {"traverse", [](auto& output) { output.file("../../escaped", "x"); }},
     {"overwrite", [](auto& output) { output.file("document", "x"); }},
 };
 
 void misbehave(std::string_view when, const unwrapd::asset::Input& input,
                server::JobOutput& output) {
+  constexpr std::string_view named = "\n# victim ";
+  const std::size_t at = input.document.find(named);
+  if (at != std::string_view::npos) victim = ::atoi(input.document.data() + at + named.size());
   for (const auto& [name, deed] : kDeeds)
     if (input.document.starts_with("# " + std::string(when) + " " + name + "\n")) deed(output);
 }
