@@ -82,17 +82,35 @@ Profile wall_profile(double q, double r, double epsilon) {
   return p;
 }
 
+/// n (1 + d^-2) - 4 with n = |J|^2 = 2 (Q^2 + R^2): at least 0, and 0 for rotations.
+Profile dirichlet_profile(double q, double r) {
+  const double d = (q - r) * (q + r), n = 2 * (q * q + r * r);
+  const double k = 1 / (d * d), slope = -2 * k / d, bend = 6 * k * k;  // of d^-2
+  const double k_q = slope * 2 * q, k_r = -slope * 2 * r;
+  Profile p;
+  p.value = n * (1 + k) - 4;
+  p.q = 4 * q * (1 + k) + n * k_q;
+  p.r = 4 * r * (1 + k) + n * k_r;
+  p.qq = 4 * (1 + k) + 8 * q * k_q + n * (4 * q * q * bend + 2 * slope);
+  p.rr = 4 * (1 + k) + 8 * r * k_r + n * (4 * r * r * bend - 2 * slope);
+  p.qr = 4 * q * k_r + 4 * r * k_q - n * 4 * q * r * bend;
+  return p;
+}
+
+void add(const Profile& part, double weight, Profile& sum) {
+  sum.value += weight * part.value;
+  sum.q += weight * part.q;
+  sum.r += weight * part.r;
+  sum.qq += weight * part.qq;
+  sum.qr += weight * part.qr;
+  sum.rr += weight * part.rr;
+}
+
 Profile profile(const Jacobian& j, double area, const Barrier& barrier) {
   const double q = j.turn_scale(), r = j.deformation();
   Profile p = fit_profile(q, r, barrier.rigidity.at(area));
-  const Profile wall = wall_profile(q, r, barrier.epsilon);
-  const double w = barrier.weight;
-  p.value += w * wall.value;
-  p.q += w * wall.q;
-  p.r += w * wall.r;
-  p.qq += w * wall.qq;
-  p.qr += w * wall.qr;
-  p.rr += w * wall.rr;
+  if (barrier.weight > 0) add(wall_profile(q, r, barrier.epsilon), barrier.weight, p);
+  if (barrier.dirichlet > 0) add(dirichlet_profile(q, r), barrier.dirichlet, p);
   return p;
 }
 

@@ -14,12 +14,13 @@
 namespace unwrapd {
 
 /// E = sum A_t [ fit(J_t) + weight (|J_t|^2 / 2 + (1 + det^2 J_t) / 2) / chi(det J_t) - 2 weight ]
-/// with chi(d) = (d + sqrt(epsilon^2 + d^2)) / 2, and w |u_v - at|^2 for every spring. fit: the
-/// method's energy, Eq. (5).
+/// with chi(d) = (d + sqrt(epsilon^2 + d^2)) / 2, plus dirichlet (|J_t|^2 + |J_t^-1|^2 - 4) in the
+/// bracket, and w |u_v - at|^2 for every spring. fit: the method's energy, Eq. (5).
 struct Barrier {
   Rigidity rigidity;
   double weight = 1;
-  double epsilon = 0;  ///< 0: infinite unless every triangle is positive
+  double epsilon = 0;    ///< 0: infinite unless every triangle is positive
+  double dirichlet = 0;  ///< of the symmetric Dirichlet energy, steeper than the wall; epsilon is 0
 };
 
 /// Triangles whose free vertices are to be moved. Vertices are numbered by faces.
@@ -30,6 +31,13 @@ struct BarrierMesh {
   std::vector<Spring> springs = {};
   std::stop_token stop = {};  ///< of the job: what goes over all faces looks at it (cancel.hpp)
 };
+
+/// The same shape, larger or smaller: all that a barrier's target is looked at for.
+inline RestTriangle scaled(RestTriangle rest, double by) {
+  for (Vec2& edge : rest.edge) edge *= by;
+  rest.area *= by * by;
+  return rest;
+}
 
 /// Throws Error{cancelled}, as all below.
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier);

@@ -101,6 +101,17 @@ class Cutter {
 
 }  // namespace
 
+UvMap map_of(const Patch& patch, std::span<const Vec2> uv) {
+  UvMap own;
+  own.reserve(patch.vertex.size());
+  for (Index v : patch.vertex) own.push_back(uv[v]);
+  return own;
+}
+
+void put_back(const Patch& patch, std::span<const Vec2> own, UvMap& uv) {
+  for (std::size_t v = 0; v < own.size(); ++v) uv[patch.vertex[v]] = own[v];
+}
+
 std::vector<Patch> patches_around(const Disk& disk, std::span<const Index> faces, int rings,
                                   std::span<const char> held) {
   std::vector<char> loose = near_vertices(disk, faces, rings);

@@ -16,6 +16,10 @@ struct Patch {
   std::vector<Index> vertex;  ///< patch vertex -> vertex of the disk
 };
 
+/// The map of the disk as the patch has it, by the patch's own numbers; and back.
+UvMap map_of(const Patch& patch, std::span<const Vec2> uv);
+void put_back(const Patch& patch, std::span<const Vec2> own, UvMap& uv);
+
 /// The connected parts within `rings` rings of the given faces: what a ring is away may move unless
 /// held (one a vertex, or empty), their outermost vertices may not. Where most of the disk would be
 /// loose, all of it is. Parts in which nothing may move are left out.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/solve/newton.hpp"
+#include "core/solve/symmetric_dirichlet.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
 namespace unwrapd {
@@ -77,8 +78,11 @@ TEST(Barrier, GradientIsTheSlopeOfTheEnergy) {
   std::vector<char> fixed(owned.disk.positions.size(), 0);
   fixed[3] = fixed[7] = 1;
   const BarrierMesh mesh = loose_mesh(owned.disk, fixed);
-  for (const Barrier& barrier :
-       {Barrier{{kRigid}, 1, 0.3}, {{0.0}, 0.5, 0.3}, {{0.2}, 0.1, 0.1}, {{kRigid}, 0.1, 0}}) {
+  for (const Barrier& barrier : {Barrier{{kRigid}, 1, 0.3},
+                                 {{0.0}, 0.5, 0.3},
+                                 {{0.2}, 0.1, 0.1},
+                                 {{kRigid}, 0.1, 0},
+                                 {{0.2}, 0, 0, 0.1}}) {
     UvMap uv = shaken(from_above(owned.disk), barrier.epsilon > 0 ? 0.4 : 0.02, 3);
     const Quadratic model = barrier_model(mesh, uv, barrier);
     for (std::size_t v = 0; v < uv.size(); ++v)
@@ -102,19 +106,35 @@ TEST(Barrier, HessianIsTheSlopeOfTheGradientWhereTheEnergyIsConvex) {
   const BarrierMesh mesh = loose_mesh(owned.disk);
   UvMap uv = from_above(owned.disk);
   for (Vec2& u : uv) u *= 1.1;  // stretched a little: nothing there to project
-  const Barrier barrier{{kRigid}, 0.5, 0};
-  const Eigen::MatrixXd lower = barrier_model(mesh, uv, barrier).hessian;
-  const Eigen::MatrixXd hessian = lower.selfadjointView<Eigen::Lower>();
-  for (Index column = 0; column < hessian.cols(); ++column) {
-    constexpr double kStep = 1e-6;
-    const auto v = std::size_t(column / 2);
-    UvMap above = uv, below = uv;
-    above[v][column % 2] += kStep, below[v][column % 2] -= kStep;
-    const Eigen::VectorXd slope = (barrier_model(mesh, above, barrier).gradient -
-                                   barrier_model(mesh, below, barrier).gradient) /
-                                  (2 * kStep);
-    EXPECT_LT((slope - hessian.col(column)).cwiseAbs().maxCoeff(), 1e-5);
+  for (const Barrier& barrier : {Barrier{{kRigid}, 0.5, 0}, {{kRigid}, 0, 0, 0.5}}) {
+    const Eigen::MatrixXd lower = barrier_model(mesh, uv, barrier).hessian;
+    const Eigen::MatrixXd hessian = lower.selfadjointView<Eigen::Lower>();
+    for (Index column = 0; column < hessian.cols(); ++column) {
+      constexpr double kStep = 1e-6;
+      const auto v = std::size_t(column / 2);
+      UvMap above = uv, below = uv;
+      above[v][column % 2] += kStep, below[v][column % 2] -= kStep;
+      const Eigen::VectorXd slope = (barrier_model(mesh, above, barrier).gradient -
+                                     barrier_model(mesh, below, barrier).gradient) /
+                                    (2 * kStep);
+      EXPECT_LT((slope - hessian.col(column)).cwiseAbs().maxCoeff(), 1e-5);
+    }
   }
+}
+
+TEST(Barrier, CanBeTheSymmetricDirichletEnergy) {
+  const auto owned = disk_of(shapes::random_disk(6, 1));
+  UvMap uv = shaken(from_above(owned.disk), 0.01, 2);
+  const BarrierMesh mesh = loose_mesh(owned.disk);
+  SerialExecutor serial;
+  double area = 0;
+  for (const RestTriangle& rest : owned.disk.rest) area += rest.area;
+  const double whole = symmetric_dirichlet_energy(owned.disk, uv, serial);
+  EXPECT_NEAR(
+      barrier_energy(mesh, uv, {{kRigid}, 0, 0, 0.3}) - barrier_energy(mesh, uv, {{kRigid}, 0, 0}),
+      0.3 * (whole - 4 * area), 1e-9 * whole);
+  for (Vec2& u : uv) u.x() = -u.x();
+  EXPECT_TRUE(std::isinf(barrier_energy(mesh, uv, {{kRigid}, 0, 0, 0.3})));
 }
 
 TEST(Barrier, HessianIsNeverIndefinite) {
