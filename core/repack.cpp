@@ -68,11 +68,7 @@ void place(std::vector<UvIslands>& all, const UnwrapOptions& options, Executor& 
   }
   place_islands(outlines, options, executor, maps, report);
   report.fill = std::min(report.fill, 1.0);  // faces on top of each other count each
-  for (UvMap* map : maps) {
-    const double step = uv_step(*map);
-    for (Vec2& uv : *map)
-      uv = Vec2(step * std::round(uv.x() / step), step * std::round(uv.y() / step));
-  }
+  for (UvMap* map : maps) round_to_step(*map);
 }
 
 ChartReport report_of(const Chart& chart, const DistortionSums& sums, std::size_t surface) {
@@ -93,8 +89,8 @@ void note_faces_without(const std::vector<UvIslands>& all, Report& report) {
   }
   if (count > 0)
     report.notes.push_back(std::to_string(count) +
-                           " faces came without texture coordinates; they have those of their "
-                           "neighbours now, or (0, 0).");
+                           " faces came without texture coordinates; they have no area on the page: "
+                           "they lie on an edge or a point of a neighbour, or at (0, 0).");
 }
 
 void measure(std::span<const Surface> surfaces, const std::vector<UvIslands>& all,

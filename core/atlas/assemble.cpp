@@ -3,20 +3,17 @@
 //
 // A corner is a pair (vertex of the surface, vertex of a chart). Equal pairs are found by sorting,
 // so a vertex with a million copies costs no more than a million vertices.
-#include <algorithm>
 #include <cassert>
 
 #include "core/atlas/pack.hpp"
+#include "core/atlas/set_aside.hpp"
 #include "core/cancel.hpp"
 #include "core/mesh/counting_sort.hpp"
-#include "core/mesh/repair.hpp"
-#include "core/mesh/weld.hpp"
 #include "core/solve/kept.hpp"
 
 namespace unwrapd {
 namespace {
 
-constexpr Index kUncharted = -1;
 constexpr Index kNone = -1, kSeveral = -2;  // corners
 
 /// The vertices of all charts in one numbering: chart k's begin at first[k].
@@ -24,9 +21,6 @@ struct Numbering {
   std::vector<Index> first;
 
   [[nodiscard]] Index total() const { return first.back(); }
-  [[nodiscard]] std::ptrdiff_t chart_of(Index vertex) const {
-    return std::upper_bound(first.begin(), first.end(), vertex) - first.begin();
-  }
 };
 
 Numbering number_vertices(std::span<const Chart* const> charts) {
@@ -49,56 +43,6 @@ std::vector<Triangle> charted_corners(const Surface& surface, std::span<const Ch
     }
   }
   return at;
-}
-
-/// A duplicate shows what the face that it repeats shows, corner by corner.
-Triangle corners_like(const Surface& surface, Index face, Index original, const Triangle& shown) {
-  const auto position = [&](Index t, int i) -> const Vec3& {
-    return surface.mesh.positions[surface.mesh.faces[t][i]];
-  };
-  int turn = 0;
-  while (turn < 2 && position(original, turn) != position(face, 0)) ++turn;
-  return {shown[turn], shown[(turn + 1) % 3], shown[(turn + 2) % 3]};
-}
-
-/// Where a degenerate face goes: each corner to a place that its vertex, or another at its
-/// position, has already; all to one of them when these lie in different charts.
-Triangle degenerate_corners(const Triangle& known, const Numbering& numbering) {
-  Triangle corners = known;
-  for (Index& corner : corners)
-    if (corner == kUncharted) corner = *std::max_element(known.begin(), known.end());
-  if (corners[0] == kUncharted) return corners;
-  const auto chart = numbering.chart_of(corners[0]);
-  if (numbering.chart_of(corners[1]) != chart || numbering.chart_of(corners[2]) != chart)
-    return {corners[0], corners[0], corners[0]};
-  return corners;
-}
-
-/// For each vertex the first chart vertex that it shows, or that one at its position shows.
-std::vector<Index> known_places(const TriMesh& mesh, const std::vector<Triangle>& at) {
-  const std::vector<Index> first_at = weld(mesh.positions);
-  std::vector<Index> of_vertex(mesh.positions.size(), kUncharted);
-  std::vector<Index> of_position = of_vertex;
-  for (Index c = 0; c < static_cast<Index>(3 * mesh.faces.size()); ++c) {
-    const Index v = mesh.faces[c / 3][c % 3], shown = at[c / 3][c % 3];
-    if (of_vertex[v] == kUncharted) of_vertex[v] = shown;
-    if (of_position[first_at[v]] == kUncharted) of_position[first_at[v]] = shown;
-  }
-  for (std::size_t v = 0; v < of_vertex.size(); ++v)
-    if (of_vertex[v] == kUncharted) of_vertex[v] = of_position[first_at[v]];
-  return of_vertex;
-}
-
-void give_corners_to_set_aside(const Surface& surface, const Charts& charts,
-                               const Numbering& numbering, std::vector<Triangle>& at) {
-  if (charts.set_aside.empty()) return;
-  const std::vector<Index> known = known_places(surface.mesh, at);
-  for (std::size_t k = 0; k < charts.set_aside.size(); ++k) {
-    const Index t = charts.set_aside[k], original = charts.repeats[k];
-    const auto& [a, b, c] = surface.mesh.faces[t];
-    at[t] = original != kNoFace ? corners_like(surface, t, original, at[original])
-                                : degenerate_corners({known[a], known[b], known[c]}, numbering);
-  }
 }
 
 /// For each vertex its first corner, kSeveral where its corners show several chart vertices.
@@ -157,7 +101,7 @@ VertexPlan plan_vertices(const Surface& surface, const Charts& whole,
                          std::span<const Chart* const> charts, const std::stop_token& stop) {
   const Numbering numbering = number_vertices(charts);
   std::vector<Triangle> at = charted_corners(surface, charts, numbering, stop);
-  give_corners_to_set_aside(surface, whole, numbering, at);
+  place_set_aside(surface, whole, stop, at);
   throw_if_cancelled(stop);
   const std::vector<Triangle>& faces = surface.mesh.faces;
   const Index vertex_count = surface.mesh.vertex_count();

@@ -77,10 +77,9 @@ VertexPlan plan_vertices(const Surface& surface, const Charts& whole,
 std::vector<const Chart*> pointers_to(std::span<const Chart> charts);
 
 /// Charts' page UVs back onto the surface's vertices: splits those that lie on a seam. A vertex's
-/// first corner keeps its number, copies are appended in the order of faces and corners. Of the
-/// faces that were set aside, a duplicate gets the UVs of the face that it repeats; a degenerate
-/// one those of its vertices (or of others at their positions), of one of them when they lie in
-/// several charts, and (0,0) when there are none. Throws Error{cancelled}.
+/// first corner keeps its number, copies are appended in the order of faces and corners. Faces that
+/// were set aside get their UVs by place_set_aside(), (0,0) where they touch no chart. Throws
+/// Error{cancelled}.
 UnwrappedSurface assemble(const Surface& surface, const Charts& charts,
                           std::span<const UvMap> chart_uv, const std::stop_token& stop = {});
 

@@ -214,8 +214,10 @@ Kept keep_promise(std::shared_ptr<const Chart> chart, const Disk& disk, UvMap uv
 }
 
 Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv) {
-  if (promise.guarantee == Guarantee::none)
+  if (promise.guarantee == Guarantee::none) {
+    round_to_step(page_uv);
     return {static_cast<Index>(flipped_faces(chart.mesh.faces, page_uv).size()), {}};
+  }
   if (snap(chart, promise.intent.held, promise.intent.stop, page_uv) > 0)
     fail("a triangle is too small beside the page for the precision in which UVs are written");
   const auto overlaps = static_cast<Index>(overlaps_of(chart, page_uv, promise.intent.stop).size());

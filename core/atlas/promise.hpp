@@ -49,7 +49,7 @@ struct Written {
 };
 
 /// Rounds a kept part's page UVs to what every format writes exactly, and keeps the promise there;
-/// vertices that promise.intent holds are only rounded. Under Guarantee::none nothing moves.
+/// vertices that promise.intent holds are only rounded, and under Guarantee::none all are.
 /// Gaps that rounding closes are opened again (part_on_page()).
 /// Throws Error{guarantee_failed, cancelled}.
 Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv);

@@ -78,6 +78,11 @@ double uv_step(const UvMap& uv) {
   return step;
 }
 
+void round_to_step(UvMap& uv) {
+  const double step = uv_step(uv);
+  for (Vec2& u : uv) u = Vec2(step * std::round(u.x() / step), step * std::round(u.y() / step));
+}
+
 Index snap(const Chart& chart, const std::vector<char>& held, const std::stop_token& stop,
            UvMap& uv) {
   const double step = uv_step(uv);

@@ -15,6 +15,9 @@ inline constexpr double kUvStep = 0x1p-24;
 /// kUvStep, or where constraints put UVs beyond [0, 1] the power of two at which the same holds.
 double uv_step(const UvMap& uv);
 
+/// Every UV to the nearest multiple of uv_step(), whatever becomes of the triangles.
+void round_to_step(UvMap& uv);
+
 /// Every UV on the page to the nearest multiple of uv_step(); uv is a chart's map without flips.
 /// Triangles that would flip or vanish by that are made a few steps larger, at their neighbours'
 /// expense; vertices with held[v] (one a vertex, or empty) are only rounded. Returns how many

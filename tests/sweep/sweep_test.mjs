@@ -10,6 +10,7 @@ import { basename, dirname, extname, join, relative } from "node:path";
 import { createInterface } from "node:readline";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { measure, trianglesOfGltf, trianglesOfObj } from "./written.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const data = process.env.UNWRAPD_TEST_DATA ?? join(here, "../../../shared/data");
@@ -82,6 +83,7 @@ async function unwrap(path) {
   const result = await fetch(`${address}/v1/jobs/${job.id}/result`);
   const report = await (await fetch(`${address}/v1/jobs/${job.id}/report`)).json();
   return {
+    id: job.id,
     status: result.status,
     format: result.headers.get("content-type"),
     bytes: new Uint8Array(await result.arrayBuffer()),
@@ -112,6 +114,63 @@ async function newErrors(path, answer) {
   return [...now.keys()].filter((code) => !before.has(code));
 }
 
+/** The triangles of an answer as it is written; of a compressed one as they are in its OBJ. */
+async function trianglesWritten({ id, format, bytes }) {
+  const isPlain = !/KHR_draco|meshopt_compression/.test(Buffer.from(bytes).toString("latin1"));
+  if (format.startsWith("model/gltf") && isPlain) return trianglesOfGltf(bytes);
+  if (format === "model/obj") return trianglesOfObj(new TextDecoder().decode(bytes));
+  const headers = { accept: "model/obj" };
+  const obj = await fetch(`${address}/v1/jobs/${id}/result`, { headers });
+  return trianglesOfObj(await obj.text());
+}
+
+/** Flips that a reader sees in the polygons of an OBJ which cuts them as fans of another corner. */
+function flipsByOtherFans({ format, bytes }) {
+  if (format !== "model/obj") return 0;
+  const text = new TextDecoder().decode(bytes);
+  if (!/^f +\S+ +\S+ +\S+ +\S/m.test(text)) return 0;
+  return Math.max(...[1, 2, 3].map((from) => measure(trianglesOfObj(text, from)).flipped));
+}
+
+/** What the report says of an answer that is not so in the file. */
+async function untrueFigures(answer) {
+  let counted;
+  try {
+    counted = measure(await trianglesWritten(answer));
+  } catch (error) {
+    return [String(error)];
+  }
+  const { distortion, fill, pages, overlaps } = answer.report;
+  const untrue = [];
+  const expect = (name, told, found, by) => {
+    if (!(Math.abs(told - found) <= by)) untrue.push(`${name}: told ${told}, found ${found}`);
+  };
+  expect("flipped", distortion.flipped, counted.flipped, 0);
+  expect("flipped by other diagonals", 0, flipsByOtherFans(answer), 0);
+  expect("triangles that lost their area", 0, counted.lost, 0);
+  expect("triangles without area that span others", 0, counted.stray, 0);
+  expect("overlaps", overlaps, counted.overlaps, 0);
+  if (counted.overlaps === 0) expect("fill", fill, counted.covered / pages, 1e-5);
+  for (const figure of ["angle", "area"])
+    expect(`D_${figure}`, distortion[figure], counted.distortion[figure], 1e-4 * distortion[figure]);
+  return untrue;
+}
+
+test("the counter counts what is wrong on a page", () => {
+  const square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt .5 0\nvt .5 .5\nvt 0 .5\n";
+  const found = (faces) => measure(trianglesOfObj(square + faces));
+  const right = found("f 1/1 2/2 3/3 4/4");
+  assert.deepEqual([right.flipped, right.lost, right.stray, right.overlaps], [0, 0, 0, 0]);
+  assert.equal(right.covered, 0.25);
+  assert.ok(Math.abs(right.distortion.angle - 2) < 1e-12 && Math.abs(right.distortion.area - 2) < 1e-12);
+  assert.equal(found("f 1/1 3/3 2/2").flipped, 1);
+  assert.equal(found("f 1/1 2/2 3/3\nf 2/1 3/2 4/3").overlaps, 1);
+  assert.equal(found("f 1/1 2/2 3/3\nf 1/1 2/2 3/3").overlaps, 0); // one triangle, twice
+  assert.deepEqual(found("f 1/1 2/2 3/3\nf 1/1 3/3 4/1").lost, 1);
+  assert.equal(found("f 1/1 2/2 3/3\nf 1/1 2/4 2/1").stray, 1);
+  assert.equal(found("f 1/1 2/2 3/3\nf 1/1 2/2 2/2").stray, 0);
+});
+
 test("real assets are answered or refused with a reason", { skip, timeout: 840_000 }, async (t) => {
   const documents = ["disk", "closed", "gltf", "paper"]
     .flatMap((folder) => filesBelow(join(data, folder)))
@@ -126,6 +185,8 @@ test("real assets are answered or refused with a reason", { skip, timeout: 840_0
       const errors = await newErrors(path, answer);
       if (errors.length) wrong.push(`${name}: new validator errors ${errors}`);
       if (!(answer.report.distortion.angle >= 2)) wrong.push(`${name}: D_angle below 2`);
+      for (const figure of await untrueFigures(answer)) wrong.push(`${name}: ${figure}`);
+      await new Promise((resolve) => setTimeout(resolve, 1)); // lets fetch hear of connections that ended
     } else {
       t.diagnostic(`${name}: ${answer.status} ${answer.code}`);
       if (!(answer.status >= 400 && answer.status < 500 && answer.code))

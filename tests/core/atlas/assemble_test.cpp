@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <random>
 #include <set>
 
 #include "core/atlas/pack.hpp"
@@ -91,20 +93,62 @@ TEST(Assemble, ADuplicateLooksLikeTheFaceThatItRepeats) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(a.out.uv[copy[i]], a.out.uv[original[(i + 1) % 3]]);
 }
 
-TEST(Assemble, ADegenerateFaceStaysWithinOneChart) {
-  TriMesh mesh = grid(1, 1);
-  const TriMesh other = moved(grid(1, 1), {3, 0, 0});
-  mesh = merged(std::array{mesh, other});
+/// How many of the distinct UVs of a face that is set aside; they must be ends of one charted edge.
+std::size_t points_of_degenerate(const Assembled& a, Index t) {
+  std::vector<Vec2> points;
+  for (const Index v : a.out.faces[t])
+    if (std::find(points.begin(), points.end(), a.out.uv[v]) == points.end())
+      points.push_back(a.out.uv[v]);
+  if (points.size() != 2) return points.size();
+  bool is_edge = false;
+  for (std::size_t k = 0; k < a.uv.size(); ++k)
+    for (const Triangle& face : a.charts.charts[k].mesh.faces)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec2 &p = a.uv[k][face[i]], &q = a.uv[k][face[(i + 1) % 3]];
+        is_edge |= (p == points[0] && q == points[1]) || (q == points[0] && p == points[1]);
+      }
+  EXPECT_TRUE(is_edge) << "face " << t << " spans more than an edge of a chart";
+  return 2;
+}
+
+TEST(Assemble, ADegenerateFaceLiesOnAnEdgeOrAPointOfAChart) {
+  TriMesh mesh = merged(std::array{grid(1, 1), moved(grid(1, 1), {3, 0, 0})});
   mesh.faces.push_back({0, 1, 5});  // on a line, across both squares
   mesh.positions.push_back(mesh.positions[2]);
   mesh.faces.push_back({2, 8, 3});  // one corner has no chart of its own, but its position has
+  mesh.positions.emplace_back(0, 0, 7);
+  mesh.positions.emplace_back(0, 0, 9);
+  mesh.faces.push_back({9, 10, 0});  // of three points one is known
   const Assembled a = assembled(mesh, SeamMode::keep);
-  ASSERT_EQ(a.charts.set_aside, (std::vector<Index>{4, 5}));
-  const Triangle& flat = a.out.faces[4];
-  EXPECT_EQ(a.out.uv[flat[0]], a.out.uv[flat[1]]);
-  EXPECT_EQ(a.out.uv[flat[0]], a.out.uv[flat[2]]);
-  const Triangle& collapsed = a.out.faces[5];
-  EXPECT_EQ(a.out.uv[collapsed[0]], a.out.uv[collapsed[1]]);
+  ASSERT_EQ(a.charts.set_aside, (std::vector<Index>{4, 5, 6}));
+  EXPECT_EQ(points_of_degenerate(a, 4), 2U);
+  EXPECT_EQ(a.out.uv[a.out.faces[4][2]], a.out.uv[a.out.faces[4][1]]);  // 1 is nearer to 5 than 0
+  EXPECT_EQ(points_of_degenerate(a, 5), 2U);
+  EXPECT_EQ(a.out.uv[a.out.faces[5][0]], a.out.uv[a.out.faces[5][1]]);
+  EXPECT_EQ(points_of_degenerate(a, 6), 1U);
+}
+
+TEST(Assemble, DegenerateFacesCoverNothingWhereverTheyAre) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    std::mt19937 rng(seed);
+    TriMesh mesh = std::array{torus(8, 4), cube(4), bow_tie(), soup(cube(2))}[seed % 4];
+    const std::size_t sound = mesh.faces.size();
+    for (int k = 0; k < 30; ++k) {  // points on one line, often of far ends of the surface
+      const Index n = mesh.vertex_count();
+      const auto any = [&] { return Index(rng() % std::uint32_t(n)); };
+      const Index a = any(), b = any();
+      mesh.positions.push_back((mesh.positions[a] + mesh.positions[b]) / 2);
+      mesh.faces.push_back(rng() % 3 == 0 ? Triangle{a, b, a} : Triangle{a, n, b});
+    }
+    const Assembled a = assembled(mesh, seed % 3 == 0 ? SeamMode::keep : SeamMode::automatic);
+    SCOPED_TRACE(seed);
+    EXPECT_GE(a.charts.set_aside.size(), mesh.faces.size() - sound);
+    for (std::size_t k = 0; k < a.charts.set_aside.size(); ++k)
+      if (a.charts.repeats[k] < 0) {
+        EXPECT_LE(points_of_degenerate(a, a.charts.set_aside[k]), 2U);
+      }
+    expect_consistent(a);
+  }
 }
 
 TEST(Assemble, WithoutAnyChartEverythingIsAtTheOrigin) {
