@@ -13,6 +13,9 @@ constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "b
 constexpr std::array<std::string_view, 5> kRepairKinds = {
     "degenerate_faces_set_aside", "duplicate_faces_set_aside", "non_manifold_edges_split",
     "cut_to_disk", "segmented"};
+constexpr std::array<std::string_view, 5> kFileRepairKinds = {
+    "line_ends_replaced", "empty_indices_ignored", "normals_replaced", "chunks_padded",
+    "shared_nodes_kept"};
 
 /// The stages of timings_ms, in the order in which a job goes through them.
 constexpr std::array kTimings = {"queue", "read",     "setup",   "segment", "merge", "factor",
@@ -40,6 +43,13 @@ Json to_json(const InputReport& input, const ReportContext& context) {
 Json to_json(const Repair& repair) {
   return {{"kind", kRepairKinds[static_cast<std::size_t>(repair.kind)]},
           {"surface", repair.surface},
+          {"count", repair.count}};
+}
+
+/// Of the file as a whole: the surface is 0.
+Json to_json(const FileRepair& repair) {
+  return {{"kind", kFileRepairKinds[static_cast<std::size_t>(repair.kind)]},
+          {"surface", 0},
           {"count", repair.count}};
 }
 
@@ -101,11 +111,19 @@ Json array_of(const std::vector<Item>& items) {
   return array;
 }
 
+Json repairs_json(std::span<const FileRepair> file_repairs, const std::vector<Repair>& repairs) {
+  Json json = Json::array();
+  for (const FileRepair& repair : file_repairs) json.push_back(to_json(repair));
+  for (const Repair& repair : repairs) json.push_back(to_json(repair));
+  return json;
+}
+
 }  // namespace
 
-Json to_json(const InputReport& input, const std::vector<Repair>& repairs) {
+Json to_json(const InputReport& input, const std::vector<Repair>& repairs,
+             std::span<const FileRepair> file_repairs) {
   Json json = counts_json(input);
-  json["repairs"] = array_of(repairs);
+  json["repairs"] = repairs_json(file_repairs, repairs);
   return json;
 }
 
@@ -119,7 +137,7 @@ Json totals_json(const Report& report) {
 
 Json to_json(const Report& report, const ReportContext& context) {
   Json json = {{"input", to_json(report.input, context)},
-               {"repairs", array_of(report.repairs)},
+               {"repairs", repairs_json(context.file_repairs, report.repairs)},
                {"notes", notes_json(report, context)},
                {"charts", array_of(report.charts)},
                {"distortion", to_json(report.distortion)},

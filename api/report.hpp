@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "api/json.hpp"
 #include "core/asset_options.hpp"
+#include "core/file_repair.hpp"
 #include "core/report.hpp"
 
 namespace unwrapd::api {
@@ -21,7 +23,8 @@ struct ReportContext {
   /// Milliseconds by stage: queue, read, setup, factor, solve, untangle, measure, pack, write,
   /// total.
   std::map<std::string, double> timings_ms = {};
-  std::vector<std::string> notes = {};  ///< beside core's own (see JobOptions::notes)
+  std::vector<FileRepair> file_repairs = {};  ///< before core's own
+  std::vector<std::string> notes = {};        ///< beside core's own (see JobOptions::notes)
   std::optional<std::vector<VertexMap>> vertex_maps = {};  ///< where the report shall have them
 };
 
@@ -30,7 +33,8 @@ Json to_json(const Report& report, const ReportContext& context);
 
 /// What came in and what would be repaired, of a mesh that is only looked at: the counts of a
 /// report's `input`, and `repairs`.
-Json to_json(const InputReport& input, const std::vector<Repair>& repairs);
+Json to_json(const InputReport& input, const std::vector<Repair>& repairs,
+             std::span<const FileRepair> file_repairs = {});
 
 /// The totals alone, for a header: charts, distortion, seam_length, fill, texel_density.
 Json totals_json(const Report& report);

@@ -88,9 +88,10 @@ void note_faces_without(const std::vector<UvIslands>& all, Report& report) {
     if (islands.maps.empty()) count += static_cast<std::size_t>(islands.charts.input.faces);
   }
   if (count > 0)
-    report.notes.push_back(std::to_string(count) +
-                           " faces came without texture coordinates; they have no area on the page: "
-                           "they lie on an edge or a point of a neighbour, or at (0, 0).");
+    report.notes.push_back(
+        std::to_string(count) +
+        " faces came without texture coordinates; they have no area on the page: "
+        "they lie on an edge or a point of a neighbour, or at (0, 0).");
 }
 
 void measure(std::span<const Surface> surfaces, const std::vector<UvIslands>& all,

@@ -16,7 +16,7 @@ api::Json analysis_json(const RenderingInput& mesh, std::size_t memory_bytes,
   check_memory(job_bytes(asset.surfaces()), memory_bytes);
   const InputAnalysis analysis = analyse(asset.surfaces(), mesh.asset.stop);
   api::Json json = {{"format", format_name(asset.format())}};
-  json.update(api::to_json(analysis.input, analysis.repairs));
+  json.update(api::to_json(analysis.input, analysis.repairs, asset.repairs()));
   return json;
 }
 

@@ -66,8 +66,9 @@ struct Made {
 /// A map's report, with what writing the asset adds to it.
 api::Json report_json(const Made& made, const Unwrapped& map, api::ReportContext context,
                       bool with_vertex_maps) {
-  for (std::string& note : asset::side_effects(made.asset, made.format))
+  for (std::string& note : asset::side_effects(made.asset, map.surfaces, made.format))
     context.notes.push_back(std::move(note));
+  context.file_repairs.assign(made.asset.repairs().begin(), made.asset.repairs().end());
   if (with_vertex_maps)
     context.vertex_maps = asset::vertex_maps(made.asset, map.surfaces, made.format);
   return api::to_json(map.report, context);

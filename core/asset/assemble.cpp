@@ -166,7 +166,7 @@ std::string finish(Json& document, const std::vector<std::string_view>& buffers,
   }
   if (format == Format::gltf) return document.dump();
   const std::string json = document.dump();
-  return join_glb({json, buffers.empty() ? std::string_view() : buffers[0], other_chunks});
+  return join_glb(json, buffers.empty() ? std::string_view() : buffers[0], other_chunks);
 }
 
 }  // namespace

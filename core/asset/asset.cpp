@@ -7,6 +7,7 @@
 #include "core/asset/compress.hpp"
 #include "core/asset/convert.hpp"
 #include "core/asset/document.hpp"
+#include "core/asset/obj_polygons.hpp"
 #include "core/asset/patch.hpp"
 #include "core/asset/read_gltf.hpp"
 #include "core/asset/recognise.hpp"
@@ -21,6 +22,11 @@ Asset::~Asset() = default;
 Format Asset::format() const { return document_->format; }
 
 std::span<const Surface> Asset::surfaces() const { return document_->surfaces; }
+
+std::span<const FileRepair> Asset::repairs() const {
+  return std::visit([](const auto& source) { return std::span(source.repairs); },
+                    document_->source);
+}
 
 namespace {
 
@@ -117,12 +123,20 @@ std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const Unwrapped
   return maps;
 }
 
-std::vector<std::string> side_effects(const Asset& asset, Format output) {
-  if (output == Format::obj && is_compressed(asset.document().options.compression))
-    return {"An OBJ cannot be compressed; the option compression has no effect."};
-  const Gltf* gltf = std::get_if<Gltf>(&asset.document().source);
-  if (gltf == nullptr || output == Format::obj) return {};
-  return side_effects_of_patch(*gltf);
+std::vector<std::string> side_effects(const Asset& asset,
+                                      std::span<const UnwrappedSurface> unwrapped, Format output) {
+  const Document& document = asset.document();
+  std::vector<std::string> notes;
+  if (output == Format::obj && is_compressed(document.options.compression))
+    notes.emplace_back("An OBJ cannot be compressed; the option compression has no effect.");
+  std::vector<std::string> more;
+  if (const Obj* obj = std::get_if<Obj>(&document.source); obj != nullptr && output == Format::obj)
+    more = note_on_polygons(*obj, unwrapped.front());
+  if (const Gltf* gltf = std::get_if<Gltf>(&document.source);
+      gltf != nullptr && output != Format::obj)
+    more = side_effects_of_patch(*gltf);
+  notes.insert(notes.end(), more.begin(), more.end());
+  return notes;
 }
 
 }  // namespace unwrapd::asset

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/asset_options.hpp"
+#include "core/file_repair.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd::asset {
@@ -44,6 +45,7 @@ class Asset {
 
   [[nodiscard]] Format format() const;  ///< as it came in
   [[nodiscard]] std::span<const Surface> surfaces() const;
+  [[nodiscard]] std::span<const FileRepair> repairs() const;  ///< in the order of their kinds
   [[nodiscard]] const Document& document() const { return *document_; }
   [[nodiscard]] Document& document() { return *document_; }
 
@@ -73,7 +75,8 @@ std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const Unwrapped
                                    Format output);
 
 /// Sentences about what write() changes besides: tangents left out, transforms of textures reset,
-/// sets of texture coordinates filled in.
-std::vector<std::string> side_effects(const Asset& asset, Format output);
+/// sets of texture coordinates filled in, polygons written as triangles.
+std::vector<std::string> side_effects(const Asset& asset,
+                                      std::span<const UnwrappedSurface> unwrapped, Format output);
 
 }  // namespace unwrapd::asset

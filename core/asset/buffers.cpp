@@ -56,13 +56,15 @@ bool is_plain_relative(std::string_view path) {
 std::string data_uri_bytes(const Node& uri) {
   const std::string& text = uri.text();
   const std::size_t comma = text.find(',');
-  const bool base64 =
-      comma != std::string::npos && std::string_view(text).substr(0, comma).ends_with(";base64");
+  const std::string_view head = std::string_view(text).substr(0, comma);
   std::optional<std::string> bytes;
-  if (base64) bytes = base64_decoded(std::string_view(text).substr(comma + 1));
+  if (comma != std::string::npos && head.ends_with(";base64"))
+    bytes = base64_decoded(std::string_view(text).substr(comma + 1));
+  else if (comma != std::string::npos)  // RFC 2397: percent-encoded
+    bytes = percent_decoded(std::string_view(text).substr(comma + 1));
   if (!bytes)
     fail(ErrorCode::malformed_gltf, uri.place(),
-         "the data URI is not valid base64; export the asset again");
+         "the data URI has no data, or is not valid base64; export the asset again");
   return std::move(*bytes);
 }
 

@@ -1,5 +1,6 @@
 #include "core/asset/container.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -18,7 +19,7 @@ constexpr std::size_t kChunkHeaderBytes = 8;
 struct Chunk {
   std::uint32_t type = 0;
   std::string_view bytes;
-  std::size_t end = 0;  ///< where the next chunk starts
+  std::size_t end = 0;  ///< where its bytes end
 };
 
 [[noreturn]] void refuse(const std::string& message, std::size_t byte) {
@@ -36,7 +37,6 @@ Chunk chunk_at(std::string_view file, std::size_t offset) {
   const std::uint32_t type = word(file, offset + 4);
   const std::size_t begin = offset + kChunkHeaderBytes;
   if (length > file.size() - begin) refuse("a chunk of the GLB is longer than the file", offset);
-  if (length % 4 != 0) refuse("the length of a chunk of the GLB is no multiple of 4", offset);
   return {type, file.substr(begin, length), begin + length};
 }
 
@@ -49,6 +49,19 @@ std::string_view checked(std::string_view file) {
     refuse("the GLB states more than the " + std::to_string(file.size()) + " bytes that were sent",
            8);
   return file.substr(0, length);
+}
+
+bool is_aligned(const Chunk& chunk) { return chunk.bytes.size() % 4 == 0; }
+
+/// Where the chunk after this one starts, or the file ends.
+std::size_t next_chunk(std::string_view file, const Chunk& chunk) {
+  const std::size_t padded = chunk.end + (4 - chunk.bytes.size() % 4) % 4;
+  const auto is_start = [&](std::size_t offset) {
+    return file.size() - offset >= kChunkHeaderBytes &&
+           word(file, offset) <= file.size() - offset - kChunkHeaderBytes;
+  };
+  if (is_aligned(chunk) || is_start(chunk.end)) return chunk.end;
+  return std::min(padded, file.size());
 }
 
 void append_chunk(std::string& file, std::uint32_t type, std::string_view bytes, char padding) {
@@ -64,24 +77,23 @@ GlbChunks split_glb(std::string_view bytes) {
   const std::string_view file = checked(bytes);
   const Chunk json = chunk_at(file, kHeaderBytes);
   if (json.type != kJsonChunk) refuse("the first chunk of the GLB is not JSON", kHeaderBytes);
-  GlbChunks chunks{json.bytes, {}, {}};
-  std::size_t offset = json.end;
-  if (offset < file.size()) {
-    const Chunk second = chunk_at(file, offset);
-    if (second.type == kBinChunk) {
-      chunks.bin = second.bytes;
-      offset = second.end;
-    }
+  GlbChunks chunks{.json = json.bytes, .unaligned = is_aligned(json) ? 0 : 1};
+  bool is_second = true;
+  for (std::size_t offset = next_chunk(file, json); offset < file.size(); is_second = false) {
+    const Chunk chunk = chunk_at(file, offset);
+    if (is_second && chunk.type == kBinChunk)
+      chunks.bin = chunk.bytes;
+    else
+      append_chunk(chunks.others, chunk.type, chunk.bytes, '\0');
+    chunks.unaligned += is_aligned(chunk) ? 0 : 1;
+    offset = next_chunk(file, chunk);
   }
-  chunks.others = file.substr(offset);
-  while (offset < file.size()) offset = chunk_at(file, offset).end;
   return chunks;
 }
 
-std::string join_glb(const GlbChunks& chunks) {
-  const std::size_t length = kHeaderBytes + 2 * kChunkHeaderBytes +
-                             (chunks.json.size() + 3) / 4 * 4 + (chunks.bin.size() + 3) / 4 * 4 +
-                             chunks.others.size();
+std::string join_glb(std::string_view json, std::string_view bin, std::string_view others) {
+  const std::size_t length = kHeaderBytes + 2 * kChunkHeaderBytes + (json.size() + 3) / 4 * 4 +
+                             (bin.size() + 3) / 4 * 4 + others.size();
   if (length > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorCode::body_too_large,
                 "the result does not fit into a GLB of 4 GiB; split the asset or ask for glTF");
@@ -90,9 +102,9 @@ std::string join_glb(const GlbChunks& chunks) {
   append(file, kMagic);
   append(file, std::uint32_t{2});
   append(file, static_cast<std::uint32_t>(length));
-  append_chunk(file, kJsonChunk, chunks.json, ' ');
-  append_chunk(file, kBinChunk, chunks.bin, '\0');
-  file += chunks.others;
+  append_chunk(file, kJsonChunk, json, ' ');
+  append_chunk(file, kBinChunk, bin, '\0');
+  file += others;
   return file;
 }
 

@@ -90,7 +90,8 @@ struct Gltf {
   std::vector<std::size_t> spent_views;  ///< held compressed data that has been decoded
   bool has_dead_bytes = false;           ///< buffers hold more than what views refer to
   bool has_foreign_references = false;   ///< an extension may point to views or accessors unseen
-  std::stop_token stop;                  ///< of the job, for reading and writing
+  std::vector<FileRepair> repairs;
+  std::stop_token stop;  ///< of the job, for reading and writing
 };
 
 std::size_t component_bytes(ComponentType type);

@@ -30,9 +30,9 @@ void decode_meshopt(Gltf& gltf);
 
 void read_accessors(Gltf& gltf);
 
-/// Meshes, and the graph of nodes as far as it must be sound: references, no cycle, one parent.
+/// Meshes, and the graph of nodes as far as it must be sound: references, no cycle.
 std::vector<DracoSource> read_meshes(Gltf& gltf);
-void check_nodes(const Gltf& gltf);
+void check_nodes(Gltf& gltf);
 
 /// Decodes the primitives with KHR_draco_mesh_compression into accessors of the document, whose
 /// views, accessors and meshes must then be read again.

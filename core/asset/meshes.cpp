@@ -1,5 +1,6 @@
 // Meshes and nodes of the document: what refers to what. Nodes are only checked (a mesh is
 // unwrapped once, however many nodes show it), by counting, without walking the graph recursively.
+// A node with two parents is passed over: whoever reads the file shows it at both places.
 #include <algorithm>
 
 #include "core/asset/gltf_steps.hpp"
@@ -71,37 +72,28 @@ Primitive read_primitive(const Gltf& gltf, const Node& node) {
   return primitive;
 }
 
-/// Marks the node's children; a node that already has a parent is refused.
-void adopt_children(const Node& node, std::size_t parent, std::vector<std::size_t>& parents) {
-  const auto children = node.find("children");
-  const std::size_t count = children ? children->array_size() : 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Node child = children->at(i);
-    std::size_t& slot = parents[child.index(parents.size(), "nodes")];
-    if (slot != parents.size())
-      fail(ErrorCode::malformed_gltf, child.place(),
-           "a node may have one parent only, and this one has two; give each parent its own copy");
-    slot = parent;
-  }
-}
+/// The children of all nodes, one after another: those of node i begin at first[i].
+struct Children {
+  std::vector<std::size_t> node;
+  std::vector<std::size_t> first = {0};
+};
 
-/// With one parent each, the nodes that no chain of parents leads out of lie on a cycle.
-void check_no_cycle(const std::vector<std::size_t>& parents) {
-  const std::size_t root = parents.size();
-  std::vector<char> known(parents.size(), 0);  // known to lead to a root
-  std::vector<std::size_t> chain;
-  for (std::size_t i = 0; i < parents.size(); ++i) {
-    chain.clear();
-    std::size_t node = i;
-    while (node != root && known[node] == 0 && chain.size() <= parents.size()) {
-      chain.push_back(node);
-      node = parents[node];
-    }
-    if (chain.size() > parents.size())
-      fail(ErrorCode::malformed_gltf, Place().at("nodes").at(i),
-           "the node is its own ancestor; break the cycle of children");
-    for (const std::size_t visited : chain) known[visited] = 1;
-  }
+/// Nodes are taken away, parents before their children, until none is left (Kahn 1962). Linear
+/// however many parents a node has: no path is walked twice.
+void check_no_cycle(const Children& children, std::vector<std::size_t> parent_counts) {
+  const std::size_t count = parent_counts.size();
+  std::vector<std::size_t> free;
+  for (std::size_t i = 0; i < count; ++i)
+    if (parent_counts[i] == 0) free.push_back(i);
+  for (std::size_t k = 0; k < free.size(); ++k)
+    for (std::size_t c = children.first[free[k]]; c < children.first[free[k] + 1]; ++c)
+      if (--parent_counts[children.node[c]] == 0) free.push_back(children.node[c]);
+  if (free.size() == count) return;
+  const auto in_cycle = std::find_if(parent_counts.begin(), parent_counts.end(),
+                                     [](std::size_t parents) { return parents > 0; });
+  fail(ErrorCode::malformed_gltf,
+       Place().at("nodes").at(static_cast<std::size_t>(in_cycle - parent_counts.begin())),
+       "the node is its own ancestor, or below one that is; break the cycle of children");
 }
 
 void check_scenes(const Gltf& gltf, std::size_t node_count) {
@@ -138,17 +130,27 @@ std::vector<DracoSource> read_meshes(Gltf& gltf) {
   return sources;
 }
 
-void check_nodes(const Gltf& gltf) {
+void check_nodes(Gltf& gltf) {
   const std::size_t count = list_size(gltf, "nodes");
   const std::size_t mesh_count = list_size(gltf, "meshes");
-  std::vector<std::size_t> parents(count, count);
+  std::vector<std::size_t> parent_counts(count, 0);
+  Children children;
   for (std::size_t i = 0; i < count; ++i) {
     const Node node = Node(gltf.json).at("nodes").at(i);
     if (const auto mesh = node.find("mesh")) static_cast<void>(mesh->index(mesh_count, "meshes"));
-    adopt_children(node, i, parents);
+    const auto list = node.find("children");
+    const std::size_t child_count = list ? list->array_size() : 0;
+    for (std::size_t k = 0; k < child_count; ++k) {
+      children.node.push_back(list->at(k).index(count, "nodes"));
+      ++parent_counts[children.node.back()];
+    }
+    children.first.push_back(children.node.size());
   }
-  check_no_cycle(parents);
+  check_no_cycle(children, parent_counts);
   check_scenes(gltf, count);
+  const auto shared = std::count_if(parent_counts.begin(), parent_counts.end(),
+                                    [](std::size_t parents) { return parents > 1; });
+  if (shared > 0) gltf.repairs.push_back({FileRepairKind::shared_nodes_kept, shared});
 }
 
 }  // namespace unwrapd::asset

@@ -41,6 +41,7 @@ struct Obj {
   std::vector<std::array<Index, 3>> face_corners;  ///< [face]: which corners of its element
   std::vector<std::pair<std::size_t, std::size_t>> texcoord_lines;  ///< their bytes, in order
   std::vector<Vec3> normals;
+  std::vector<FileRepair> repairs;
   std::stop_token stop;  ///< of the job, for reading and writing
 };
 
@@ -49,7 +50,7 @@ struct Obj {
 Obj read_obj(const Input& input, const ReadLimits& limits, Surface& surface);
 
 /// The text with its vt statements replaced, its faces given as v/vt[/vn]. A polygon stays one
-/// unless a seam runs through it.
+/// where polygon_fate() lets it.
 std::string write_obj(const Obj& obj, const UnwrappedSurface& unwrapped);
 
 /// Cuts a polygon of at least 3 corners into corner_count - 2 triangles: ears where it is not

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "core/asset/obj.hpp"
+#include "core/asset/obj_words.hpp"
 #include "core/cancel.hpp"
 #include "core/error.hpp"
 
@@ -15,58 +16,12 @@ namespace unwrapd::asset {
 namespace {
 
 constexpr double kLargest = std::numeric_limits<float>::max();
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 std::string line_of(std::string_view text, std::size_t byte) {
   const auto lines = std::count(text.begin(), text.begin() + std::ptrdiff_t(byte), '\n');
   return "line " + std::to_string(lines + 1);
 }
-
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
-
-/// Bytes of a statement. Comment and line end are not part of it.
-struct Statement {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  std::size_t next = 0;  ///< where the next line begins
-};
-
-/// A backslash before the line's end joins it with the next.
-bool is_continued(std::string_view text, std::size_t line_end) {
-  std::size_t end = line_end;
-  if (end > 0 && text[end - 1] == '\r') --end;
-  return end > 0 && text[end - 1] == '\\';
-}
-
-Statement statement_at(std::string_view text, std::size_t begin) {
-  std::size_t line_end = text.find('\n', begin);
-  while (line_end != std::string_view::npos && is_continued(text, line_end))
-    line_end = text.find('\n', line_end + 1);
-  if (line_end == std::string_view::npos) line_end = text.size();
-  const std::size_t comment = text.substr(begin, line_end - begin).find('#');
-  std::size_t end = comment == std::string_view::npos ? line_end : begin + comment;
-  while (end > begin && is_space(text[end - 1])) --end;
-  return {begin, end, std::min(line_end + 1, text.size())};
-}
-
-/// The words of a statement; the backslash and the line end of a continuation are spaces.
-class Words {
- public:
-  explicit Words(std::string_view statement) : rest_(statement) {}
-
-  /// Empty at the end.
-  std::string_view next() {
-    while (!rest_.empty() && is_gap(rest_.front())) rest_.remove_prefix(1);
-    std::size_t size = 0;
-    while (size < rest_.size() && !is_gap(rest_[size])) ++size;
-    const std::string_view word = rest_.substr(0, size);
-    rest_.remove_prefix(size);
-    return word;
-  }
-
- private:
-  static bool is_gap(char c) { return is_space(c) || c == '\n' || c == '\\'; }
-  std::string_view rest_;
-};
 
 class ObjReader {
  public:
@@ -74,21 +29,30 @@ class ObjReader {
       : limits_(limits), surface_(surface) {
     obj_.text = input.document;
     obj_.stop = input.stop;
+    line_ends_ = replace_lone_returns(obj_.text);
   }
 
   Obj read() {
     std::size_t lines = 0;
-    for (at_ = {}; at_.next < obj_.text.size(); ++lines) {
+    at_.next = obj_.text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+    for (; at_.next < obj_.text.size(); ++lines) {
       look_now_and_then(lines, obj_.stop);
       at_ = statement_at(obj_.text, at_.next);
       read_statement(Words(std::string_view(obj_.text).substr(at_.begin, at_.end - at_.begin)));
     }
     check_indices();
     triangulate_faces();
+    note(FileRepairKind::line_ends_replaced, line_ends_);
+    note(FileRepairKind::empty_indices_ignored, empty_indices_);
+    note(FileRepairKind::normals_replaced, bad_normals_);
     return std::move(obj_);
   }
 
  private:
+  void note(FileRepairKind kind, std::int64_t count) {
+    if (count > 0) obj_.repairs.push_back({kind, count});
+  }
+
   [[noreturn]] void refuse(ErrorCode code, const std::string& message) const {
     throw Error(code, message, line_of(obj_.text, at_.begin));
   }
@@ -104,7 +68,7 @@ class ObjReader {
     } else if (keyword == "f" || keyword == "l") {
       read_element(keyword.front(), words);
     } else if (keyword == "vn") {
-      obj_.normals.push_back(read_vec3(words));
+      obj_.normals.push_back(read_normal(words));
     } else if (keyword == "vt") {
       ++texcoord_count_;
       obj_.texcoord_lines.emplace_back(at_.begin, at_.next);
@@ -127,18 +91,26 @@ class ObjReader {
     return {x, y, read_number(words.next())};
   }
 
+  /// No UV depends on a normal, so none is refused: exporters write nan for faces without area.
+  Vec3 read_normal(Words& words) {
+    Vec3 normal;
+    for (double& x : normal) {
+      const std::optional<double> value = number_in(words.next());
+      x = value.value_or(std::numeric_limits<double>::quiet_NaN());
+    }
+    if (normal.allFinite() && normal.cwiseAbs().maxCoeff() <= kLargest) return normal;
+    ++bad_normals_;
+    return Vec3::Zero();
+  }
+
   [[nodiscard]] double read_number(std::string_view word) const {
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error == std::errc::result_out_of_range)  // too large, or too small to matter
-      value = std::strtod(std::string(word).c_str(), nullptr);
-    else if (error != std::errc() || end != word.data() + word.size())
+    const std::optional<double> value = number_in(word);
+    if (!value)
       refuse("a number is expected where \"" + std::string(word.substr(0, 40)) + "\" stands");
-    if (!(std::abs(value) <= kLargest))
+    if (!(std::abs(*value) <= kLargest))
       refuse(ErrorCode::non_finite_position,
              "a coordinate is infinite, undefined or beyond what a float holds; repair the mesh");
-    return value;
+    return *value;
   }
 
   void read_element(char keyword, Words& words) {
@@ -156,24 +128,27 @@ class ObjReader {
     obj_.elements.push_back(element);
   }
 
-  /// v, v/vt, v//vn or v/vt/vn.
-  [[nodiscard]] ObjCorner read_corner(std::string_view word) const {
+  /// v, v/vt, v//vn or v/vt/vn; an index may be missing after its slash.
+  [[nodiscard]] ObjCorner read_corner(std::string_view word) {
     ObjCorner corner;
     std::string_view rest = word;
     corner.vertex = read_index(rest, surface_.mesh.positions.size());
-    if (rest.starts_with("//")) {
-      rest.remove_prefix(2);
-      corner.normal = read_index(rest, obj_.normals.size());
-    } else if (rest.starts_with('/')) {
+    const auto take_slash = [&] {
+      if (!rest.starts_with('/')) return false;
       rest.remove_prefix(1);
-      if (!rest.empty()) corner.texcoord = read_index(rest, texcoord_count_);
-      if (rest.size() > 1 && rest.front() == '/') {
-        rest.remove_prefix(1);
-        corner.normal = read_index(rest, obj_.normals.size());
-      }
+      return true;
+    };
+    bool is_open = take_slash();
+    if (is_open && !rest.empty() && rest.front() != '/') {
+      corner.texcoord = read_index(rest, texcoord_count_);
+      is_open = false;
     }
-    if (!rest.empty() && rest != "/")
-      refuse("\"" + std::string(word.substr(0, 40)) + "\" is no corner of a face");
+    if (take_slash()) {
+      is_open = rest.empty();
+      if (!rest.empty()) corner.normal = read_index(rest, obj_.normals.size());
+    }
+    if (!rest.empty()) refuse("\"" + std::string(word.substr(0, 40)) + "\" is no corner of a face");
+    empty_indices_ += is_open ? 1 : 0;
     return corner;
   }
 
@@ -234,6 +209,7 @@ class ObjReader {
   Statement at_;
   std::size_t texcoord_count_ = 0;
   std::size_t face_total_ = 0;
+  std::int64_t line_ends_ = 0, empty_indices_ = 0, bad_normals_ = 0;  ///< repaired
   Index part_ = 0;
   std::map<std::string, Index> part_of_ = {{"", 0}};
 };

@@ -26,12 +26,14 @@ void append_obj_corner(std::string& out, Index vertex, Index texcoord, Index nor
   append_number(out, normal + 1);
 }
 
-/// UVs have the precision of a float, as in every other format.
+/// UVs have the precision of a float, as in every other format. The text is that of the same number
+/// as a double: the shortest text of a float is another number to a reader of doubles, and flips
+/// triangles a few steps high.
 void append_vt(std::string& out, const Vec2& uv) {
   out += "vt ";
-  append_number(out, static_cast<float>(uv.x()));
+  append_number(out, static_cast<double>(static_cast<float>(uv.x())));
   out += ' ';
-  append_number(out, static_cast<float>(uv.y()));
+  append_number(out, static_cast<double>(static_cast<float>(uv.y())));
   out += '\n';
 }
 

@@ -1,6 +1,6 @@
 // The text is copied statement by statement: vt lines go, the new ones stand before the first face.
 #include "core/asset/as_size.hpp"
-#include "core/asset/obj.hpp"
+#include "core/asset/obj_polygons.hpp"
 #include "core/asset/obj_text.hpp"
 #include "core/cancel.hpp"
 
@@ -12,7 +12,7 @@ class ObjWriter {
   ObjWriter(const Obj& obj, const UnwrappedSurface& unwrapped) : obj_(obj), unwrapped_(unwrapped) {}
 
   std::string write() {
-    out_.reserve(obj_.text.size() + unwrapped_.uv.size() * 26 + obj_.corners.size() * 8);
+    out_.reserve(obj_.text.size() + unwrapped_.uv.size() * 42 + obj_.corners.size() * 8);
     for (const ObjElement& element : obj_.elements) {
       look_now_and_then(element.first_face, obj_.stop);
       keep_until(element.begin);
@@ -44,8 +44,7 @@ class ObjWriter {
 
   void write_element(const ObjElement& element) {
     if (element.face_count() == 0) return write_without_texcoords(element);
-    texcoords_.assign(element.corner_count, kUnset);
-    if (assign_texcoords(element)) {
+    if (polygon_fate(obj_, element, unwrapped_, texcoords_) == PolygonFate::kept) {
       out_ += 'f';
       for (std::size_t i = 0; i < element.corner_count; ++i)
         append_corner(element, i, texcoords_[i]);
@@ -57,18 +56,6 @@ class ObjWriter {
   void write_without_texcoords(const ObjElement& element) {
     out_ += element.keyword;
     for (std::size_t i = 0; i < element.corner_count; ++i) append_corner(element, i, kUnset);
-  }
-
-  /// The UV of each corner of a polygon; false when a seam gives a corner two of them.
-  bool assign_texcoords(const ObjElement& element) {
-    for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t)
-      for (std::size_t k = 0; k < 3; ++k) {
-        Index& slot = texcoords_[as_size(obj_.face_corners[t][k])];
-        const Index texcoord = unwrapped_.faces[t][k];
-        if (slot != kUnset && slot != texcoord) return false;
-        slot = texcoord;
-      }
-    return true;
   }
 
   void write_triangles(const ObjElement& element) {
@@ -84,7 +71,6 @@ class ObjWriter {
     append_obj_corner(out_, c.vertex, texcoord, c.normal);
   }
 
-  static constexpr Index kUnset = -1;
   const Obj& obj_;
   const UnwrappedSurface& unwrapped_;
   std::string out_;

@@ -15,6 +15,8 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
   gltf.stop = input.stop;
   gltf.json = parse_json(chunks.json, gltf.stop);
   gltf.other_chunks = chunks.others;
+  if (chunks.unaligned > 0)
+    gltf.repairs.push_back({FileRepairKind::chunks_padded, chunks.unaligned});
   check_asset_and_extensions(gltf);
   resolve_buffers(gltf, chunks.bin, input);
   read_views(gltf);

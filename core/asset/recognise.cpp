@@ -30,7 +30,7 @@ bool looks_like_obj(std::string_view file) {
   const std::string_view head = file.substr(0, kMaxScanned);
   if (head.find('\0') != std::string_view::npos) return false;
   for (std::size_t at = 0; at < head.size();) {
-    const std::string_view line = head.substr(at, head.find('\n', at) - at);
+    const std::string_view line = head.substr(at, head.find_first_of("\r\n", at) - at);
     const std::size_t word = std::min(line.find_first_not_of(kSpaces), line.size());
     if (line.substr(word).starts_with("v ") || line.substr(word).starts_with("v\t")) return true;
     at += line.size() + 1;

@@ -67,6 +67,13 @@ TEST(Report, NamesItsKindsAsTheContractDoes) {
     report.repairs[0].kind = static_cast<RepairKind>(i);
     kinds.push_back(to_json(report, {}).at("repairs").at(0).at("kind"));
   }
+  for (int i = 0; i <= static_cast<int>(FileRepairKind::shared_nodes_kept); ++i) {
+    const Json json = to_json(report, {.file_repairs = {{static_cast<FileRepairKind>(i), 3}}});
+    expect_members(json.at("repairs").at(0), "Repair");
+    EXPECT_EQ(json.at("repairs").at(0).at("count"), 3);
+    EXPECT_EQ(json.at("repairs").size(), 2U);
+    kinds.push_back(json.at("repairs").at(0).at("kind"));
+  }
   for (int i = 0; i < 5; ++i) {
     report.charts[0].stop_reason = static_cast<StopReason>(i);
     reasons.push_back(to_json(report, {}).at("charts").at(0).at("stop_reason"));

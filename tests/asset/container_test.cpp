@@ -44,6 +44,48 @@ TEST(Glb, KeepsTheChunksThatItDoesNotKnow) {
   EXPECT_TRUE(write(asset, split_nowhere(asset), Format::glb).ends_with(extra));
 }
 
+void append_word(std::string& file, std::size_t word) {
+  for (int k = 0; k < 4; ++k) file += static_cast<char>(word >> (8 * k) & 0xff);
+}
+
+/// The square's GLB, its chunks `extra` bytes longer than a multiple of 4, with padding behind them
+/// that their lengths do not tell of, or none.
+std::string unaligned_glb(std::size_t extra, bool is_padded) {
+  Builder b = square();
+  std::string json = json_of(b.glb()).dump();
+  while (json.size() % 4 != extra) json += ' ';
+  while (b.bin.size() % 4 != extra) b.bin += 'x';
+  std::string chunks;
+  for (const auto& [type, bytes] : {std::pair("JSON", json), std::pair("BIN\0", b.bin)}) {
+    append_word(chunks, bytes.size());
+    chunks.append(type, 4);
+    chunks += bytes + std::string(is_padded ? 4 - extra : 0, ' ');
+  }
+  std::string file = "glTF";
+  append_word(file, 2);
+  append_word(file, 12 + chunks.size());
+  return file + chunks;
+}
+
+TEST(Glb, ChunksOfAnyLengthAreReadAndTold) {
+  const Asset expected = read_file(square().glb());
+  EXPECT_TRUE(expected.repairs().empty());
+  for (const std::size_t extra : {1, 2, 3})
+    for (const bool is_padded : {false, true}) {
+      SCOPED_TRACE(std::to_string(extra) + (is_padded ? " padded" : ""));
+      const std::string file = unaligned_glb(extra, is_padded);
+      const Asset asset = read_file(file);
+      ASSERT_EQ(asset.repairs().size(), 1U);
+      EXPECT_EQ(asset.repairs()[0].kind, FileRepairKind::chunks_padded);
+      EXPECT_EQ(asset.repairs()[0].count, 2);
+      EXPECT_EQ(asset.surfaces()[0].mesh.positions, expected.surfaces()[0].mesh.positions);
+      const std::string answer = write(asset, split_nowhere(asset), Format::glb);
+      EXPECT_TRUE(read_file(answer).repairs().empty());
+      for (std::size_t length = 4; length < file.size(); ++length)
+        EXPECT_EQ(error_of(file.substr(0, length)).code(), ErrorCode::malformed_glb) << length;
+    }
+}
+
 TEST(Json, DepthIsBoundedWithoutRecursion) {
   const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
   const std::string file = R"({"asset":{"version":"2.0"},"extras":)" + deep + "}";
@@ -94,6 +136,19 @@ TEST(Uri, AShortOrBrokenBufferIsRefused) {
     b.json["buffers"][0] = {{"byteLength", b.bin.size()}, {"uri", uri}};
     EXPECT_EQ(error_of(b.json.dump()).code(), ErrorCode::malformed_gltf) << uri;
   }
+}
+
+TEST(Uri, DataMayBePercentEncoded) {
+  Builder b = square();
+  std::string text = "data:application/gltf-buffer,";
+  for (const char c : b.bin) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    const auto byte = static_cast<unsigned char>(c);
+    text += {'%', digits[byte >> 4], digits[byte & 15]};
+  }
+  b.json["buffers"][0] = {{"byteLength", b.bin.size()}, {"uri", text}};
+  EXPECT_EQ(read_file(b.json.dump()).surfaces()[0].mesh.positions,
+            read_file(square().glb()).surfaces()[0].mesh.positions);
 }
 
 TEST(Uri, ThoseOfImagesDoNotMatter) {

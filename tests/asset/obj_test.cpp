@@ -1,4 +1,7 @@
 #include <Eigen/Geometry>
+#include <cmath>
+#include <cstdlib>
+#include <random>
 #include <sstream>
 
 #include "tests/asset/support.hpp"
@@ -42,6 +45,14 @@ std::vector<std::string> other_lines(const std::string& obj) {
   return lines;
 }
 
+/// The cube laid out as a frame: every quad is convex, as on a page.
+std::vector<UnwrappedSurface> as_frame(const Asset& cube) {
+  std::vector<UnwrappedSurface> unwrapped = split_nowhere(cube);
+  unwrapped[0].uv = {{.375, .375}, {.625, .375}, {.625, .625}, {.375, .625},
+                     {.125, .125}, {.875, .125}, {.875, .875}, {.125, .875}};
+  return unwrapped;
+}
+
 std::string line_with(const std::string& text, const std::string& start) {
   const std::size_t at = text.find("\n" + start);
   return at == std::string::npos ? "" : text.substr(at + 1, text.find('\n', at + 1) - at - 1);
@@ -60,7 +71,7 @@ TEST(Obj, PolygonsNegativeIndicesAndPartsAreRead) {
 
 TEST(Obj, OnlyTexcoordsAndFacesChange) {
   const Asset asset = read_file(kCube);
-  const std::string answer = write(asset, split_nowhere(asset), Format::obj);
+  const std::string answer = write(asset, as_frame(asset), Format::obj);
   std::vector<std::string> expected = other_lines(kCube);
   expected.back() = "l 1 2";
   EXPECT_EQ(other_lines(answer), expected);
@@ -73,7 +84,7 @@ TEST(Obj, OnlyTexcoordsAndFacesChange) {
 
 TEST(Obj, APolygonIsCutOnlyWhereASeamRunsThroughIt) {
   const Asset asset = read_file(kCube);
-  std::vector<UnwrappedSurface> unwrapped = split_nowhere(asset);
+  std::vector<UnwrappedSurface> unwrapped = as_frame(asset);
   UnwrappedSurface& surface = unwrapped[0];
   surface.faces[1][0] = 8;  // the second triangle of the first polygon has a corner of its own
   surface.source.push_back(asset.surfaces()[0].mesh.faces[1][0]);
@@ -83,6 +94,63 @@ TEST(Obj, APolygonIsCutOnlyWhereASeamRunsThroughIt) {
             std::string::npos);
   EXPECT_NE(answer.find("\nvt 0.125 0.25\n"), std::string::npos);
   EXPECT_NE(answer.find("f 1/1 2/2 6/6 5/5"), std::string::npos);
+  EXPECT_EQ(side_effects(asset, unwrapped, Format::obj),
+            (std::vector<std::string>{
+                "1 of 4 polygons are written as triangles: 1 because a seam runs through them, 0 "
+                "because they are not convex on the page, where other diagonals would flip."}));
+}
+
+TEST(Obj, APolygonThatIsNotConvexOnThePageIsWrittenAsTriangles) {
+  const Asset asset = read_file(kCube);
+  std::vector<UnwrappedSurface> unwrapped = as_frame(asset);
+  EXPECT_TRUE(side_effects(asset, unwrapped, Format::obj).empty());
+  unwrapped[0].uv[1] = {.4375, .5};  // 2, beyond the diagonal from 1 to 3
+  const std::string answer = write(asset, unwrapped, Format::obj);
+  EXPECT_EQ(answer.find("f 4/4/1 3/3/1 2/2/1 1/1/1"), std::string::npos);
+  EXPECT_NE(answer.find("f 5/5/2 6/6/2 7/7/2 8/8/2"), std::string::npos);
+  EXPECT_EQ(side_effects(asset, unwrapped, Format::obj).size(), 1U);
+  unwrapped[0].uv[1] = unwrapped[0].uv[0];  // a triangle without area folds nothing
+  EXPECT_TRUE(side_effects(asset, unwrapped, Format::obj).empty());
+}
+
+TEST(Obj, APolygonThatWindsTwiceAroundIsWrittenAsTriangles) {
+  std::string text;
+  std::string face = "f";
+  UvMap star;
+  for (int i = 0; i < 5; ++i) {
+    const double angle = 0.8 * 3.14159265358979 * i;  // every corner turns left
+    text += "v " + std::to_string(i) + " " + std::to_string(i * i) + " 0\n";
+    star.emplace_back(std::round(400 + 300 * std::cos(angle)) / 1024,
+                      std::round(400 + 300 * std::sin(angle)) / 1024);
+    face += " " + std::to_string(i + 1);
+  }
+  const Asset asset = read_file(text + face);
+  std::vector<UnwrappedSurface> unwrapped = split_nowhere(asset);
+  unwrapped[0].uv = star;
+  EXPECT_EQ(side_effects(asset, unwrapped, Format::obj).size(), 1U);
+}
+
+TEST(Obj, TexcoordsAreTheSameNumbersAsFloatsAndAsDoubles) {
+  const Asset asset = read_file("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  std::mt19937 rng(1);
+  for (int round = 0; round < 1000; ++round) {
+    std::vector<UnwrappedSurface> unwrapped = split_nowhere(asset);
+    for (Vec2& uv : unwrapped[0].uv)
+      for (double& x : uv) x = std::ldexp(double(rng() >> (rng() % 24)) / 256, -24);
+    std::istringstream answer(write(asset, unwrapped, Format::obj));
+    std::size_t vertex = 0;
+    for (std::string line; std::getline(answer, line);) {
+      if (!line.starts_with("vt ")) continue;
+      const std::size_t second = line.find(' ', 3) + 1;
+      for (const auto& [at, k] : {std::pair(std::size_t{3}, 0), std::pair(second, 1)}) {
+        const double expected = static_cast<float>(unwrapped[0].uv.at(vertex)[k]);
+        EXPECT_EQ(std::strtod(line.c_str() + at, nullptr), expected) << line;
+        EXPECT_EQ(std::strtof(line.c_str() + at, nullptr), static_cast<float>(expected)) << line;
+      }
+      ++vertex;
+    }
+    EXPECT_EQ(vertex, 3U);
+  }
 }
 
 TEST(Obj, WhatIsWrittenReadsBackWithTheSameFaces) {

@@ -55,7 +55,7 @@ TEST(Texcoord, FillsTheSetsBelowThatAreMissing) {
   const std::string file = answer(square().glb(), third);
   for (const char* set : {"TEXCOORD_0", "TEXCOORD_1"})
     EXPECT_EQ(first_uv(file, set), first_uv(file, "TEXCOORD_2"));
-  EXPECT_EQ(side_effects(asset, Format::glb).size(), 1U);
+  EXPECT_EQ(side_effects(asset, split_nowhere(asset), Format::glb).size(), 1U);
 }
 
 TEST(Texcoord, TakesTangentsAndTransformsOfReplacedUvsAway) {
@@ -63,7 +63,8 @@ TEST(Texcoord, TakesTangentsAndTransformsOfReplacedUvsAway) {
   EXPECT_FALSE(first_primitive(file)["attributes"].contains("TANGENT"));
   const Json texture = json_of(file)["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
   EXPECT_EQ(texture, Json({{"index", 0}}));
-  EXPECT_EQ(side_effects(read_file(painted().glb()), Format::glb).size(), 2U);
+  const Asset asset = read_file(painted().glb());
+  EXPECT_EQ(side_effects(asset, split_nowhere(asset), Format::glb).size(), 2U);
   EXPECT_EQ(json_of(file)["accessors"].size(), 3U);  // of the tangents nothing is left
 }
 

@@ -25,13 +25,13 @@ const MAY_INCLUDE = {
 const PLAIN = ["core/error.hpp", "core/options.hpp", "core/report.hpp", "core/progress.hpp", "core/executor.hpp", "core/solver_core.hpp", "core/cancel.hpp"];
 const PLAIN_FOR = {
   "core/mesh": ["core/cancel.hpp", "core/error.hpp"],
-  "core/asset": ["core/cancel.hpp", "core/error.hpp", "core/asset_options.hpp"],
+  "core/asset": ["core/cancel.hpp", "core/error.hpp", "core/asset_options.hpp", "core/file_repair.hpp"],
   "core/measure": PLAIN,
   "core/linear": PLAIN,
   "core/solve": PLAIN,
   "core/atlas": PLAIN,
   "core/figure": PLAIN,
-  api: ["core/error.hpp", "core/options.hpp", "core/asset_options.hpp", "core/report.hpp", "core/progress.hpp", "core/mesh/tri_mesh.hpp"],
+  api: ["core/error.hpp", "core/options.hpp", "core/asset_options.hpp", "core/file_repair.hpp", "core/report.hpp", "core/progress.hpp", "core/mesh/tri_mesh.hpp"],
   client: [],
 };
 
