@@ -16,7 +16,7 @@
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
 #include "core/solve/bijective.hpp"
-#include "core/solve/virtual_boundary.hpp"
+#include "core/solve/virtual_patches.hpp"
 
 namespace unwrapd {
 namespace {
@@ -45,9 +45,7 @@ bool has_a_place(const MapIntent& intent) { return holds_any(intent) || !intent.
 /// Mends the map of one disk; returns how many flips are left.
 Index mend(const Disk& disk, const Promise& promise, UvMap& uv, Mending& mending) {
   mending.virtual_boundary = promise.repair == RepairMethod::virtual_boundary &&
-                             !holds_any(promise.intent) &&
-                             start_anew(disk, promise.intent, virtual_boundary_map(disk, uv), uv);
-  if (mending.virtual_boundary) return 0;
+                             mend_by_virtual_boundary(disk, promise.intent, uv);
   return untangle(disk, promise.intent, uv);
 }
 
