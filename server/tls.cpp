@@ -23,25 +23,51 @@ int clamped(std::size_t size) {
   return static_cast<int>(std::min<std::size_t>(size, std::numeric_limits<int>::max()));
 }
 
+/// The records that a client sends beside its data. One that goes on sending them keeps whoever
+/// reads busy without end: OpenSSL answers a KeyUpdate, or a wish to renegotiate, and reads on.
+class Records {
+ public:
+  /// So many may come until the handshake is done, and so many that are no data after it.
+  static constexpr int kMostInHandshake = 64;
+  static constexpr int kMostBesideData = 16;
+
+  void count(bool open, bool data) {
+    int& of = open ? beside_data_ : in_handshake_;
+    if (!open || !data) ++of;
+  }
+  [[nodiscard]] bool too_many() const {
+    return in_handshake_ > kMostInHandshake || beside_data_ > kMostBesideData;
+  }
+
+ private:
+  int in_handshake_ = 0;
+  int beside_data_ = 0;
+};
+
 class TlsTransport final : public Transport {
  public:
   TlsTransport(int socket, Session session) : Transport(socket), session_(std::move(session)) {
-    SSL_set_fd(session_.get(), socket);
+    BIO* bytes = BIO_new(bio_method());
+    BIO_set_data(bytes, this);
+    BIO_set_init(bytes, 1);
+    SSL_set_bio(session_.get(), bytes, bytes);
+    SSL_set_msg_callback(session_.get(), count_record);
+    SSL_set_msg_callback_arg(session_.get(), &records_);
     SSL_set_accept_state(session_.get());
   }
 
   [[nodiscard]] bool is_open() const override { return SSL_is_init_finished(session_.get()) == 1; }
   bool greet() override {
-    ERR_clear_error();
+    begin_step();
     const std::int64_t done = result_of(SSL_do_handshake(session_.get()));
     return done > 0 || done == kAgain;
   }
   std::int64_t receive(char* data, std::size_t size) override {
-    ERR_clear_error();
+    begin_step();
     return result_of(SSL_read(session_.get(), data, clamped(size)));
   }
   std::int64_t send(std::string_view bytes) override {
-    ERR_clear_error();
+    begin_step();
     return result_of(SSL_write(session_.get(), bytes.data(), clamped(bytes.size())));
   }
   [[nodiscard]] short awaits(short wanted) const override {
@@ -50,25 +76,80 @@ class TlsTransport final : public Transport {
     return wanted;
   }
   void end() override {
-    ERR_clear_error();
+    begin_step();
     if (!broken_ && SSL_is_init_finished(session_.get())) SSL_shutdown(session_.get());
     Transport::end();
   }
 
  private:
+  static constexpr std::size_t kMostInAStep = std::size_t{64} * 1024;
+
+  static BIO_METHOD* bio_method();
+  static int bio_read(BIO* bio, char* data, int size);
+  static int bio_write(BIO* bio, const char* data, int size);
+  static long bio_control(BIO*, int command, long, void*) { return command == BIO_CTRL_FLUSH; }
+  static void count_record(int sent, int, int type, const void* bytes, size_t, SSL* ssl, void* to);
+
+  void begin_step() {
+    ERR_clear_error();
+    left_in_step_ = kMostInAStep;
+  }
   std::int64_t result_of(int count) {
     wants_ = count > 0 ? SSL_ERROR_NONE : SSL_get_error(session_.get(), count);
     if (count > 0) return count;
     if (wants_ == SSL_ERROR_ZERO_RETURN) return 0;
-    if (wants_ == SSL_ERROR_WANT_READ || wants_ == SSL_ERROR_WANT_WRITE) return kAgain;
+    const bool waits = wants_ == SSL_ERROR_WANT_READ || wants_ == SSL_ERROR_WANT_WRITE;
+    if (waits && !records_.too_many()) return kAgain;
     broken_ = true;
     return kBroken;
   }
 
-  Session session_;
+  Records records_;
+  std::size_t left_in_step_ = 0;  // bytes until OpenSSL must come back to us
   int wants_ = SSL_ERROR_NONE;
   bool broken_ = false;
+  Session session_;  // last: it uses the others
 };
+
+/// The type of a record is in its header, within TLS 1.3 in its last byte.
+void TlsTransport::count_record(int sent, int, int type, const void* bytes, size_t, SSL* ssl,
+                                void* to) {
+  if (sent != 0 || (type != SSL3_RT_HEADER && type != SSL3_RT_INNER_CONTENT_TYPE)) return;
+  const bool data = *static_cast<const unsigned char*>(bytes) == SSL3_RT_APPLICATION_DATA;
+  static_cast<Records*>(to)->count(SSL_is_init_finished(ssl) == 1, data);
+}
+
+BIO_METHOD* TlsTransport::bio_method() {
+  static BIO_METHOD* const method = [] {
+    BIO_METHOD* made = BIO_meth_new(BIO_get_new_index() | BIO_TYPE_SOURCE_SINK, "client");
+    BIO_meth_set_read(made, bio_read);
+    BIO_meth_set_write(made, bio_write);
+    BIO_meth_set_ctrl(made, bio_control);
+    return made;
+  }();
+  return method;
+}
+
+/// Says after a while that there is nothing now, so that a client that never stops is one among
+/// many, and fails for one that sends too much that is no data.
+int TlsTransport::bio_read(BIO* bio, char* data, int size) {
+  auto& self = *static_cast<TlsTransport*>(BIO_get_data(bio));
+  BIO_clear_retry_flags(bio);
+  if (self.records_.too_many()) return -1;
+  const std::size_t most = std::min(static_cast<std::size_t>(size), self.left_in_step_);
+  const std::int64_t got = most == 0 ? kAgain : self.Transport::receive(data, most);
+  if (got == kAgain) BIO_set_retry_read(bio);
+  if (got > 0) self.left_in_step_ -= static_cast<std::size_t>(got);
+  return static_cast<int>(std::max<std::int64_t>(got, -1));
+}
+
+int TlsTransport::bio_write(BIO* bio, const char* data, int size) {
+  auto& self = *static_cast<TlsTransport*>(BIO_get_data(bio));
+  BIO_clear_retry_flags(bio);
+  const std::int64_t sent = self.Transport::send({data, static_cast<std::size_t>(size)});
+  if (sent == kAgain) BIO_set_retry_write(bio);
+  return static_cast<int>(std::max<std::int64_t>(sent, -1));
+}
 
 /// Of the first thing that went wrong: the rest follows from it.
 std::string reason_of_failure() {

@@ -57,6 +57,7 @@ class RawClient {
     received_.erase(0, until.size());
     return until;
   }
+  [[nodiscard]] int socket() const { return socket_; }
   /// What has come, up to so many bytes; 0 when the server has closed.
   std::size_t receive(char* data, std::size_t size) const {
     const ssize_t got = ::recv(socket_, data, size, 0);
