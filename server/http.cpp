@@ -6,12 +6,21 @@
 
 #include "api/error_table.hpp"
 #include "server/job_queue.hpp"
+#include "server/utf8.hpp"
 
 namespace unwrapd::server {
 namespace {
 
+constexpr std::size_t kMaxProblemText = 500;  // bytes of a detail, or of a pointer
+
 char lower(char letter) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+}
+
+/// A name that a request brings may be as long as the request.
+std::string bounded(const std::string& text) {
+  if (text.size() <= kMaxProblemText) return text;
+  return std::string(within_bytes(text, kMaxProblemText)) + "...";
 }
 
 }  // namespace
@@ -38,7 +47,9 @@ Response json_response(int status, std::string_view json) {
 }
 
 Response error_response(const Error& error, std::string_view job) {
-  const api::Json problem = api::problem(error, job);
+  api::Json problem = api::problem(error, job);
+  for (const char* member : {"detail", "pointer"})
+    if (problem.contains(member)) problem[member] = bounded(problem[member]);
   Response response =
       json_response(api::error_row(error.code()).status,
                     problem.dump(-1, ' ', false, api::Json::error_handler_t::replace));

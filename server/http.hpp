@@ -52,10 +52,11 @@ struct Request {
   std::string path;  ///< percent-decoded
   std::multimap<std::string, std::string> query;
   std::multimap<std::string, std::string, IgnoreCase> headers;
-  std::string id;                               ///< the {id} of the path, once a route has matched
-  std::string sha256;                           ///< the {sha256} of the path, the same
-  Caller caller;                                ///< who asks, once that has been found out
-  std::string client;                           ///< the address of who asks
+  std::string id;      ///< the {id} of the path, once a route has matched
+  std::string sha256;  ///< the {sha256} of the path, the same
+  Caller caller;       ///< who asks, once that has been found out
+  std::string client;  ///< the address of who asks
+  std::string host;    ///< by which the server was reached, and its port; empty when not told
   BodyReader* body = nullptr;                   ///< of POST, PUT and PATCH
   std::int64_t declared_bytes = 0;              ///< of the body; 0 when not told beforehand
   std::optional<Error> refusal = std::nullopt;  ///< what its head has against it, to be answered

@@ -6,18 +6,21 @@
 #include <chrono>
 #include <exception>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include "server/form.hpp"
 #include "server/media_types.hpp"
 #include "server/trace.hpp"
+#include "server/utf8.hpp"
 
 namespace unwrapd::server {
 namespace {
 
 constexpr std::int64_t kFilePiece = std::int64_t{256} * 1024;
-constexpr int kRangeNotRead = 416;
-constexpr std::size_t kLongestRoute = 256;  // httplib's routing recurses over longer paths
+constexpr std::size_t kBodyPiece = std::size_t{64} * 1024;
 
-/// A connection as httplib sees it: bytes without chunks.
+/// A connection as httplib sees it: heads in, answers out.
 class ConnectionStream final : public httplib::Stream {
  public:
   explicit ConnectionStream(Connection& connection) : connection_(connection) {}
@@ -39,45 +42,52 @@ class ConnectionStream final : public httplib::Stream {
   Connection& connection_;
 };
 
-class HttplibBody final : public BodyReader {
+/// The body as the connection has it: httplib does not see it.
+class ConnectionBody final : public BodyReader {
  public:
-  explicit HttplibBody(const httplib::ContentReader& reader) : reader_(reader) {}
+  ConnectionBody(Connection& connection, std::string boundary)
+      : connection_(connection), boundary_(std::move(boundary)) {}
 
   void read(const Sink& sink) override {
-    check(reader_([&](const char* data, size_t size) {
-      sink({data, size});
-      return true;
-    }));
+    std::vector<char> piece(kBodyPiece);
+    while (true) {
+      const std::int64_t got = connection_.read(piece.data(), piece.size());
+      if (connection_.failure()) throw Error(*connection_.failure());
+      if (got == 0) return;
+      sink({piece.data(), static_cast<std::size_t>(got)});
+    }
   }
 
   void read_parts(const PartStart& start, const Sink& sink) override {
-    check(reader_(
-        [&](const httplib::MultipartFormData& part) {
-          start({part.name, part.filename});
-          return true;
-        },
-        [&](const char* data, size_t size) {
-          sink({data, size});
-          return true;
-        }));
+    FormParser form(boundary_, start, sink);
+    read([&](std::string_view bytes) { form.feed(bytes); });
+    form.finish();
   }
 
  private:
-  static void check(bool complete) {
-    if (!complete)
-      throw Error(ErrorCode::malformed_request, "The body is not complete; check the client.");
-  }
-
-  const httplib::ContentReader& reader_;
+  Connection& connection_;
+  const std::string boundary_;
 };
 
-Request to_request(const httplib::Request& from, BodyReader* body) {
+bool is_text(const std::multimap<std::string, std::string>& query) {
+  return std::ranges::all_of(query, [](const auto& parameter) {
+    return is_utf8_text(parameter.first) && is_utf8_text(parameter.second);
+  });
+}
+
+Request to_request(const httplib::Request& from, const Framing& framing) {
   Request request;
   request.method = from.method;
   request.path = from.path;
   request.query.insert(from.params.begin(), from.params.end());
-  request.headers.insert(from.headers.begin(), from.headers.end());
-  request.body = body;
+  request.headers.insert(framing.fields.begin(), framing.fields.end());
+  if (framing.brings_body) request.headers.erase("Range");  // RFC 9110, 14.2
+  request.host = framing.host;
+  request.declared_bytes = framing.content_length;
+  request.refusal = framing.refusal;
+  if (!request.refusal && !is_text(request.query))
+    request.refusal.emplace(ErrorCode::malformed_request,
+                            "The query is not UTF-8; percent-encode that.");
   return request;
 }
 
@@ -123,16 +133,19 @@ void put(const Response& response, std::optional<StreamBody>& begun, httplib::Re
   }
 }
 
+/// What holds for every answer: it is what its type says, and kept by nobody unasked. A copy with
+/// an ETag may be asked for again.
+void add_usual_fields(httplib::Response& out) {
+  constexpr int kFirstError = 400;
+  out.set_header("X-Content-Type-Options", "nosniff");
+  if (!out.has_header("Cache-Control"))
+    out.set_header("Cache-Control", out.status < kFirstError ? "private, no-cache" : "no-store");
+}
+
 /// How long a connection may be idle; there is no limit to the requests on it.
 std::string kept_alive(std::chrono::milliseconds idle) {
   const auto seconds = std::chrono::floor<std::chrono::seconds>(idle);
   return "timeout=" + std::to_string(seconds.count());
-}
-
-bool takes_body(const httplib::Request& request) {
-  const bool method =
-      request.method == "POST" || request.method == "PUT" || request.method == "PATCH";
-  return method && request.path.size() <= kLongestRoute;
 }
 
 }  // namespace
@@ -141,21 +154,12 @@ class Exchange::Http final : public httplib::Server {
  public:
   Http(const HttpUses& uses, const Log& log, std::chrono::milliseconds idle)
       : uses_(uses), log_(log), kept_(kept_alive(idle)) {
-    const auto with_body = [this](const httplib::Request& request, httplib::Response& response,
-                                  const httplib::ContentReader& reader) {
-      HttplibBody body(reader);
-      answer(request, &body, response);
-    };
-    Post(".*", with_body);
-    Put(".*", with_body);
-    Patch(".*", with_body);
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-      if (takes_body(request)) return HandlerResponse::Unhandled;
-      answer(request, nullptr, response);
-      return HandlerResponse::Handled;
+      answer(request, response);
+      return HandlerResponse::Handled;  // neither its routes nor its readers of bodies see anything
     });
-    set_error_handler(HandlerWithResponse(
-        [this](const auto& request, auto& response) { return fill_error(request, response); }));
+    set_error_handler(
+        HandlerWithResponse([this](const auto&, auto& response) { return fill_error(response); }));
     set_exception_handler([this](const auto&, httplib::Response& response, const auto&) {
       log_.error("exception at the HTTP edge");
       send(error_response(Error(ErrorCode::internal, "The server made a mistake.")), response);
@@ -197,10 +201,10 @@ class Exchange::Http final : public httplib::Server {
   }
 
  private:
-  void answer(const httplib::Request& from, BodyReader* body, httplib::Response& out) {
-    Request request = to_request(from, body);
-    request.declared_bytes = connection_->framing().content_length;
-    request.refusal = connection_->framing().refusal;
+  void answer(const httplib::Request& from, httplib::Response& out) {
+    Request request = to_request(from, connection_->framing());
+    ConnectionBody body(*connection_, multipart_boundary(request.header("Content-Type")));
+    if (connection_->framing().brings_body) request.body = &body;
     request.client =
         client_behind(connection_->client(), forwarded_for(request), uses_.trusted_proxies);
     const Trace trace = continue_trace(request.header("traceparent"));
@@ -216,32 +220,22 @@ class Exchange::Http final : public httplib::Server {
     done_.route = response.route;
     done_.problem = response.problem;
     put(response, begun_, out);
+    add_usual_fields(out);
     if (out.is_chunked_content_provider_ && connection_->framing().version_1_0) {
       out.is_chunked_content_provider_ = false;  // it ends with the connection
       last_ = true;
     }
   }
 
-  /// The stream has no framing any more, and ranges, encodings and who waits for 100 are not
-  /// httplib's business. Of a form it knows one spelling.
+  /// Who waits for 100, and encodings, are not httplib's business.
   static void unframe(httplib::Request& request) {
     for (const char* name : {"Content-Length", "Transfer-Encoding", "Accept-Encoding", "Expect"})
       request.headers.erase(name);
-    request.ranges.clear();
-    const std::string boundary = multipart_boundary(request.get_header_value("Content-Type"));
-    if (boundary.empty()) return;
-    request.headers.erase("Content-Type");
-    request.set_header("Content-Type", "multipart/form-data; boundary=" + boundary);
   }
 
-  /// Gives a body to the errors that httplib itself answers with. A Range that it cannot read is
-  /// none (RFC 9110, 14.2).
-  HandlerResponse fill_error(const httplib::Request& request, httplib::Response& response) {
+  /// Gives a body to the errors that httplib itself answers with.
+  HandlerResponse fill_error(httplib::Response& response) {
     if (!response.body.empty()) return HandlerResponse::Unhandled;
-    if (response.status == kRangeNotRead && !takes_body(request)) {
-      answer(request, nullptr, response);
-      return HandlerResponse::Handled;
-    }
     send(error_response(Error(ErrorCode::malformed_request,
                               "The request cannot be read as HTTP; check the client.")),
          response);

@@ -120,6 +120,8 @@ std::string_view vet_request_line(std::string_view line, Framing& framing) {
   framing.target = first + 1;
   framing.authority = authority_of(target);
   if (framing.authority == 0 && !target.starts_with('/')) no_request_line();
+  const std::string_view authority = target.substr(0, framing.authority);
+  if (framing.authority > 0) framing.host = authority.substr(authority.find("://") + 3);
   if (target.find(' ') != std::string_view::npos || std::ranges::any_of(target, is_control))
     malformed(
         "The address contains a space or a control character; "
@@ -143,12 +145,17 @@ void vet_single(std::string_view name, std::string_view value, Framing& framing,
     refuse(framing, ErrorCode::malformed_request,
            "There are two of the header " + std::string(name) + "; send one.");
   before = value;
+  if (std::ranges::any_of(value, [](char c) { return c < 0; }))
+    refuse(framing, ErrorCode::malformed_request,
+           "The header " + std::string(name) + " is not ASCII; send it so.");
 }
 
 void vet_field(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
+  framing.fields.emplace_back(name, value);
   vet_single(name, value, framing, counts);
   if (same(name, "host")) {
     ++counts.hosts;
+    if (framing.authority == 0) framing.host = value;  // RFC 9112, 3.2.2
     if (!is_made_of(value, kHostSymbols))
       malformed("The Host header is no host; check the client.");
   }
@@ -246,7 +253,7 @@ bool is_trailer(std::string_view line) {
 
 std::ptrdiff_t simplify(std::string& head, const Framing& framing) {
   const std::ptrdiff_t before = std::ssize(head);
-  if (framing.brings_body) drop_ranges(head);
+  drop_ranges(head);
   if (framing.authority > 0) to_origin_form(head, framing);
   return before - std::ssize(head);
 }

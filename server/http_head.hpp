@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 
@@ -23,9 +25,12 @@ struct Framing {
   bool awaits_continue = false;     ///< the sender waits for 100 before it sends the body
   std::size_t target = 0;           ///< where the request line's target begins
   std::size_t authority = 0;        ///< bytes of scheme and host before its path
+  std::string host;                 ///< of the target, else of the Host header; may be empty
   bool brings_body = false;         ///< by its method
   bool version_1_0 = false;         ///< knows no chunks
   bool last = false;                ///< the sender wants no other answer on this connection
+  /// Name and value of each header field, as they came: httplib percent-decodes what it hands on.
+  std::vector<std::pair<std::string, std::string>> fields = {};
   /// Why a request that can be read is not taken: length_required, unsupported_media_type (a
   /// Content-Encoding), malformed_request (two values of what has one). What follows it is no
   /// other.
@@ -43,8 +48,8 @@ Framing vet_head(std::string_view head);
 bool is_trailer(std::string_view line);
 
 /// Makes "GET http://host/path" "GET /path" in a head that was vetted (RFC 9112, 3.2.2), and leaves
-/// out the Range of a request that brings something: it means nothing there (RFC 9110, 14.2).
-/// Returns by how many bytes the head, which more may follow, is shorter.
+/// out every Range, which httplib would match against a regular expression. Returns by how many
+/// bytes the head, which more may follow, is shorter.
 std::ptrdiff_t simplify(std::string& head, const Framing& framing);
 
 }  // namespace unwrapd::server

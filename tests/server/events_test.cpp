@@ -6,6 +6,7 @@
 #include <atomic>
 #include <thread>
 
+#include "api/events.hpp"
 #include "server/key_store.hpp"
 
 namespace unwrapd::server {
