@@ -26,7 +26,7 @@ constexpr std::array kRows = {
     ErrorRow{draining, "draining", 503, "The server is shutting down"},
     ErrorRow{too_many_streams, "too_many_streams", 503, "Too many event streams are open"},
     ErrorRow{unauthorized, "unauthorized", 401, "An API key is required"},
-    ErrorRow{forbidden, "forbidden", 403, "The API key does not allow this"},
+    ErrorRow{forbidden, "forbidden", 403, "This is not allowed"},
     ErrorRow{invalid_link, "invalid_link", 403, "The link is not valid, or no longer"},
     ErrorRow{idempotency_conflict, "idempotency_conflict", 409, "The name is another request's"},
     ErrorRow{rate_limited, "rate_limited", 429, "Too many requests"},

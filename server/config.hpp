@@ -45,6 +45,7 @@ struct Config {
   LogFormat log_format = LogFormat::json;
   DiskLimits disk;
   AccessConfig access;
+  std::vector<std::string> allowed_hosts;  ///< without keys, beside addresses and localhost
   std::vector<std::string> cors_origins;
   WebhookConfig webhooks;
   MemoryLimits memory;

@@ -142,6 +142,10 @@ ConfigGroup admitting() {
                     &Config::access, &AccessConfig::key_file),
                on_off({"insecure", "", "Ask for no API keys although other machines can connect"},
                       &Config::access, &AccessConfig::insecure),
+               list({"allowed-hosts", "LIST",
+                     "Names by which the server is reached where it asks for no keys: "
+                     "example.com, *.example.com or *; addresses and localhost always are"},
+                    check_host, &Config::allowed_hosts),
                list({"cors-origins", "LIST", "Sites whose pages may call from a browser, or *"},
                     check_origin, &Config::cors_origins),
                list({"webhook-hosts", "LIST",

@@ -20,10 +20,9 @@ class Cors {
   [[nodiscard]] std::optional<Response> preflight(const Request& request) const;
   /// Lets the page that asked read the answer, if its site may.
   void allow(const Request& request, Response& response) const;
-
- private:
   [[nodiscard]] bool allows(const std::string& origin) const;
 
+ private:
   const std::vector<std::string> origins_;
 };
 

@@ -19,6 +19,7 @@
 #include "server/parts_config.hpp"
 #include "server/periodic.hpp"
 #include "server/picture_routes.hpp"
+#include "server/sites.hpp"
 #include "server/store_file.hpp"
 #include "server/sweeper.hpp"
 #include "server/webhooks.hpp"
@@ -51,6 +52,7 @@ struct Service::Parts {
         links(secret),
         access(keys, links, asks_for_keys(config.access, config.listen.host)),
         cors(config.cors_origins),
+        sites(config.allowed_hosts, cors),
         webhooks(config.data / kStoreFile, secret, config.webhooks, log,
                  [this] { return store.now(); }),
         renderer(blobs, config.limits, log, isolation, making_limits(config, solver_cache), duties),
@@ -64,7 +66,12 @@ struct Service::Parts {
         http(http_config(config), main_uses(log), log),
         admin_router(admin_routes(queue, store, metrics), log) {
     if (config.admin) {
-      const auto told = [this](const Request& request) { return admin_router.answer(request); };
+      const bool only_here = !asks_for_keys({}, config.admin->host);
+      const auto told = [this, only_here](const Request& request) {
+        const std::optional<Error> refused =
+            only_here ? sites.refusal(request) : std::nullopt;  // by a page in a browser here
+        return refused ? error_response(*refused) : admin_router.answer(request);
+      };
       admin.emplace(admin_config(*config.admin), uses(told, log, LogLevel::debug), log);
     }
     tell_state();
@@ -122,6 +129,9 @@ struct Service::Parts {
   }
 
   Response answer(const Request& request) const {
+    if (!asks_for_keys(config.access, config.listen.host))
+      if (const std::optional<Error> refused = sites.refusal(request))
+        return error_response(*refused);
     std::optional<Response> early = cors.preflight(request);
     Response response = early ? std::move(*early) : router.answer(request);
     cors.allow(request, response);
@@ -218,6 +228,7 @@ struct Service::Parts {
   const LinkSigner links;
   Access access;
   const Cors cors;
+  const Sites sites;
   Webhooks webhooks;
   Renderer renderer;
   Meshes meshes;

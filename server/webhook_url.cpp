@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "server/sites.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -52,17 +53,10 @@ bool is_public_v4(std::uint32_t address) {
 bool is_public_v6(const std::array<std::uint8_t, 16>& a) {
   const bool global = (a[0] & 0xE0) == 0x20;
   const bool protocols = a[0] == 0x20 && a[1] == 0x01 && a[2] < 0x02;
-  const bool documentation = a[0] == 0x20 && a[1] == 0x01 && a[2] == 0x0D && a[3] == 0xB8;
+  const bool documentation = (a[0] == 0x20 && a[1] == 0x01 && a[2] == 0x0D && a[3] == 0xB8) ||
+                             (a[0] == 0x3F && a[1] == 0xFF && a[2] < 0x10);  // RFC 9637
   const bool six_to_four = a[0] == 0x20 && a[1] == 0x02;
   return global && !protocols && !documentation && !six_to_four;
-}
-
-bool is_allowed(std::string_view host, const std::vector<std::string>& allowed) {
-  return std::ranges::any_of(allowed, [&](std::string_view rule) {
-    if (rule == "*") return true;
-    if (!rule.starts_with("*.")) return rule == host;
-    return host.size() > rule.size() - 1 && host.ends_with(rule.substr(1));
-  });
 }
 
 bool is_host_letter(char letter) {
@@ -147,7 +141,7 @@ struct FreeAddresses {
 
 WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config) {
   WebhookUrl url = read_webhook(text);
-  if (!is_allowed(url.host, config.allowed_hosts)) {
+  if (!is_named(url.host, config.allowed_hosts)) {
     refuse("This server calls no webhooks at " + url.host +
            "; its operator can allow the host by --webhook-hosts.");
   }

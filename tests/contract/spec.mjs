@@ -6,7 +6,7 @@ import {readFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
 import yaml from 'js-yaml';
 
-const kAnyCall = new Set([400, 404, 405, 408, 431, 500]);  // what 4XX and 5XX stand for
+const kAnyCall = new Set([400, 403, 404, 405, 408, 431, 500]);  // what 4XX and 5XX stand for
 
 const escape = (token) => String(token).replaceAll('~', '~0').replaceAll('/', '~1');
 

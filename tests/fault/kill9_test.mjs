@@ -31,7 +31,7 @@ async function beginUpload(server, data) {
   const socket = connect(Number(port), hostname);
   socket.on("error", () => {}); // the server is killed
   socket.write(
-    "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: model/obj\r\nContent-Length: 9000000\r\n\r\n",
+    "POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: model/obj\r\nContent-Length: 9000000\r\n\r\n",
   );
   socket.write("v 0 0 0\n".repeat(100_000));
   while (filesBelow(join(data, "incoming")).length === 0) await sleep(5);

@@ -100,6 +100,7 @@ TEST_F(Edge, WhoWaitsFor100GetsItWhenTheBodyIsWanted) {
 }
 
 TEST_F(Edge, AbsoluteTargetsArePaths) {
+  config_.allowed_hosts = {"*"};
   start();
   const std::string get = "GET http://other:81/v1/limits HTTP/1.1\r\nHost: x\r\n\r\n";
   const std::string post = "POST http://other/v1/jobs?method=asap HTTP/1.1\r\nHost: x\r\n";

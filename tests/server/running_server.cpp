@@ -118,6 +118,7 @@ RunningServer::RunningServer() {
   config_.workers = 2;
   config_.threads = 2;
   config_.limits.max_streams = 8;
+  config_.allowed_hosts = {"x"};  // what requests in raw bytes name
 }
 
 void RunningServer::start() { service_ = std::make_unique<Service>(config_, log_); }

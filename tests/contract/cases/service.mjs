@@ -88,11 +88,21 @@ export async function anyCall(run, base) {
     run.judge(`PATCH ${path}`, id, answer, 405);
     run.expect(`Allow of ${path}`, answer.headers.allow ? [] : ['the header is missing']);
   }
-  const long = `GET /v1/limits HTTP/1.1\r\nHost: x\r\nX-Long: ${'x'.repeat(100_000)}\r\n\r\n`;
+  const long = `GET /v1/limits HTTP/1.1\r\nHost: localhost\r\nX-Long: ${'x'.repeat(100_000)}\r\n\r\n`;
   run.judge('long headers', 'getLimits', await raw(base, long), 431);
-  const both = 'POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\n' +
+  const both = 'POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1\r\n' +
       'Transfer-Encoding: chunked\r\n\r\n';
   run.judge('two lengths', 'createJob', await raw(base, both), 400);
+}
+
+/** What a page of another site can have a browser send to a server without keys. */
+export async function otherSites(run, base) {
+  const rebound = await request(base, {path: '/v1/jobs', headers: {Host: 'rebind.example:8080'}});
+  run.judge('a name of somebody else', 'listJobs', rebound, 403);
+  const {method, path} = run.contract.operation('createJob');
+  const headers = {Origin: 'https://example.com'};
+  run.judge('a form of another site', 'createJob',
+            await request(base, {method, path, headers, body: meshes.glb()}), 403);
 }
 
 export async function badBodies(run, base) {
@@ -101,7 +111,7 @@ export async function badBodies(run, base) {
     const headers = {'Content-Type': 'text/plain'};
     await run.call(base, id, {job: newId(), headers, body: meshes.glb(), status: 415});
     const line = `${operation.method} ${pathTo(operation.path, newId())} HTTP/1.1`;
-    const answer = await raw(base, `${line}\r\nHost: x\r\nConnection: close\r\n\r\n`);
+    const answer = await raw(base, `${line}\r\nHost: localhost\r\nConnection: close\r\n\r\n`);
     run.judge('a body without length', id, answer, 411);
     if (id === 'putMesh') continue;
     const form = {'Content-Type': 'multipart/form-data; boundary=x'};
@@ -117,7 +127,7 @@ export async function badBodies(run, base) {
 
 /** Requests that begin and do not go on. */
 export async function slowRequests(run, base) {
-  const head = 'POST /v1/jobs HTTP/1.1\r\nHost: x\r\n';
+  const head = 'POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\n';
   const starts = {'half a head': head, 'half a body': `${head}Content-Length: 100\r\n\r\nhalf`};
   await Promise.all(Object.entries(starts).map(async ([name, text]) =>
     run.judge(name, 'createJob', await raw(base, text), 408)));
