@@ -134,7 +134,7 @@ void BlobStore::keep_upload(std::string_view upload, std::string_view job, const
 
 void BlobStore::drop_upload(std::string_view upload) noexcept {
   if (!fs::exists(incoming_ / upload)) return;
-  remove_tree(incoming_ / upload);
+  left_.remove(incoming_ / upload);
   room_.give_back(upload);
 }
 
@@ -155,8 +155,9 @@ void BlobStore::write_unsealed(std::string_view job, std::string_view file,
 }
 
 void BlobStore::remove(std::string_view job) noexcept {
-  remove_tree(blobs_ / job);
+  left_.remove(blobs_ / job);
   room_.give_back(job);
+  room_.make_reserve();
 }
 
 bool BlobStore::share_document(std::string_view mesh, std::string_view upload) {
@@ -239,7 +240,7 @@ bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
     for (const std::string& file : results_in(blobs_ / from, theirs)) {
       adopted[file] = theirs.at(file);
       fs::create_hard_link(path(from, file), path(job, file));
-      if (sha256_of(File::open(path(job, file))) != theirs.at(file)) corrupt(file);
+      if (!checked_.is_whole(File::open(path(job, file)), theirs.at(file))) corrupt(file);
     }
     Digests digests = read_digests(blobs_ / job);
     digests.merge(Digests(adopted));
@@ -257,7 +258,7 @@ std::shared_ptr<const File> BlobStore::open(std::string_view job, std::string_vi
   auto opened = std::make_shared<const File>(File::open(path(job, file)));
   const Digests digests = read_digests(blobs_ / job);
   const auto noted = digests.find(file);
-  if (noted == digests.end() || noted->second != sha256_of(*opened)) corrupt(file);
+  if (noted == digests.end() || !checked_.is_whole(*opened, noted->second)) corrupt(file);
   return opened;
 }
 

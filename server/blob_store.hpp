@@ -14,9 +14,11 @@
 #include <string>
 #include <string_view>
 
+#include "server/checked_files.hpp"
 #include "server/digests.hpp"
 #include "server/disk_room.hpp"
 #include "server/files.hpp"
+#include "server/left_folders.hpp"
 
 namespace unwrapd::server {
 
@@ -84,7 +86,8 @@ class BlobStore {
   /// copied. Every file is read and checked: false, and none is given, when one is not whole.
   bool adopt(std::string_view job, std::string_view from) noexcept;
 
-  /// A file whose bytes are those that were noted. Throws Error{storage_corrupt} when they are not,
+  /// A file whose bytes are those that were noted, checked once while it stays as it is
+  /// (checked_files.hpp). Throws Error{storage_corrupt} when they are not,
   /// or none were.
   [[nodiscard]] std::shared_ptr<const File> open(std::string_view job, std::string_view file) const;
   /// The same, read whole.
@@ -103,6 +106,9 @@ class BlobStore {
   DiskRoom& room() { return room_; }
   [[nodiscard]] bool holds(std::string_view job) const;
 
+  /// Removes what could not be removed before; returns how much that was.
+  int remove_left() noexcept { return left_.retry(); }
+
  private:
   std::filesystem::path incoming_;
   std::filesystem::path blobs_;
@@ -110,6 +116,8 @@ class BlobStore {
   void note(std::string_view job, const std::string& file);
 
   Keeping keeping_;
+  mutable CheckedFiles checked_;
+  LeftFolders left_;
   mutable std::mutex noting_;  // one writer of `digests` at a time
 };
 

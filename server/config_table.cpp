@@ -52,25 +52,31 @@ void check_range(const std::string& item) { const AddressSet set({item}); }
 ConfigGroup edge() {
   using E = EdgeConfig;
   const auto edge = &Config::edge;
-  return {.title = "Edge",
-          .rows = {
-              number({"max-connections", "N", "Connections open at once; more are turned away"},
-                     {16, 1'000'000}, edge, &E::max_connections),
-              number({"max-idle-connections", "N",
-                      "Of those, ones that send nothing; one more drives out the longest"},
-                     {1, 1'000'000}, edge, &E::max_idle_connections),
-              number({"max-connections-per-address", "N",
-                      "Of one client, an IPv6 one by its /64; loopback and trusted proxies are not "
-                      "counted; 0: no limit"},
-                     {0, 1'000'000}, edge, &E::max_connections_per_address),
-              number({"max-requests", "N", "Requests answered at once, event streams not counted"},
-                     {1, 4096}, edge, &E::max_requests),
-              list({"trusted-proxies", "RANGES",
-                    "Addresses and ranges (10.0.0.0/8,::1) whose X-Forwarded-For is believed"},
-                   check_range, edge, &E::trusted_proxies),
-              text({"tls-cert", "PATH", "PEM file of the certificate and its chain; HTTPS then"},
-                   edge, &E::tls_cert),
-              text({"tls-key", "PATH", "PEM file of its key"}, edge, &E::tls_key)}};
+  return {
+      .title = "Edge",
+      .rows = {
+          number({"max-connections", "N",
+                  "Connections open at once, fewer where few files may be open; more are turned "
+                  "away"},
+                 {16, 1'000'000}, edge, &E::max_connections),
+          number({"max-idle-connections", "N",
+                  "Of those, ones that send nothing; one more drives out the longest"},
+                 {1, 1'000'000}, edge, &E::max_idle_connections),
+          number({"max-connections-per-address", "N",
+                  "Of one client, an IPv6 one by its /64; loopback and trusted proxies are not "
+                  "counted; 0: no limit"},
+                 {0, 1'000'000}, edge, &E::max_connections_per_address),
+          number(
+              {"max-requests", "N",
+               "Requests answered at once; event streams, and half as many that wait for jobs or "
+               "pictures, come on top"},
+              {1, 4096}, edge, &E::max_requests),
+          list({"trusted-proxies", "RANGES",
+                "Addresses and ranges (10.0.0.0/8,::1) whose X-Forwarded-For is believed"},
+               check_range, edge, &E::trusted_proxies),
+          text({"tls-cert", "PATH", "PEM file of the certificate and its chain; HTTPS then"}, edge,
+               &E::tls_cert),
+          text({"tls-key", "PATH", "PEM file of its key"}, edge, &E::tls_key)}};
 }
 
 ConfigGroup working() {

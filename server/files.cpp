@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "server/retry_later.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -18,11 +19,17 @@ namespace {
 constexpr mode_t kFileMode = 0640;
 constexpr std::string_view kPartSuffix = ".part";
 constexpr std::size_t kSyncsAtOnce = 4;
+constexpr int kBusyRetrySeconds = 5;
 
 /// Throws with the text of errno; the path stays out of it, since users read it.
 [[noreturn]] void fail(std::string_view doing) {
   const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
   if (full) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
+  if (errno == EMFILE || errno == ENFILE) {
+    throw RetryLater(ErrorCode::rate_limited,
+                     "The server has too many files open; come back after Retry-After.",
+                     kBusyRetrySeconds);
+  }
   const std::string reason = std::generic_category().message(errno);
   throw Error(ErrorCode::storage_failed,
               "The server failed to " + std::string(doing) + " (" + reason + "); try again later.");
@@ -85,6 +92,16 @@ std::int64_t File::size() const {
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0) fail("read a file");
   return status.st_size;
+}
+
+FileStamp File::stamp() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0) fail("read a file");
+  constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+  return {.device = status.st_dev,
+          .inode = status.st_ino,
+          .size = status.st_size,
+          .changed_ns = status.st_mtim.tv_sec * kNsPerSecond + status.st_mtim.tv_nsec};
 }
 
 std::string File::read(std::int64_t offset, std::size_t length) const {
@@ -168,8 +185,9 @@ void make_directories(const std::filesystem::path& directory) {
 }
 
 void remove_tree(const std::filesystem::path& path) noexcept {
-  std::error_code ignored;
-  std::filesystem::remove_all(path, ignored);
+  std::error_code failed;
+  std::filesystem::remove(path, failed);  // a file: without a descriptor, which may not be had
+  if (failed) std::filesystem::remove_all(path, failed);
 }
 
 }  // namespace unwrapd::server

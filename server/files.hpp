@@ -3,6 +3,7 @@
 // before it has its name (rename), so that a crash at any point leaves no partial file under it.
 // Every failure is Error{storage_failed}, or Error{storage_full} when there is no room to write.
 
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -19,6 +20,16 @@ inline constexpr std::string_view kStorageFull =
     "The server's disk is full; try again later, or remove jobs that are no longer needed.";
 
 /// An open file descriptor.
+/// By which a file is known, and whether it has been written since.
+struct FileStamp {
+  std::uint64_t device = 0;
+  std::uint64_t inode = 0;
+  std::int64_t size = 0;
+  std::int64_t changed_ns = 0;  ///< when its bytes were written last, since 1970
+
+  auto operator<=>(const FileStamp&) const = default;
+};
+
 class File {
  public:
   explicit File(int descriptor) : descriptor_(descriptor) {}
@@ -36,6 +47,7 @@ class File {
   /// Has the disk begin with what a later sync() waits for.
   void begin_sync() noexcept;
   [[nodiscard]] std::int64_t size() const;
+  [[nodiscard]] FileStamp stamp() const;
   /// Reads at most length bytes from offset; fewer only at the end of the file.
   [[nodiscard]] std::string read(std::int64_t offset, std::size_t length) const;
   [[nodiscard]] int descriptor() const { return descriptor_; }

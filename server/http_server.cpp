@@ -22,9 +22,9 @@ std::string plain_refusal(const Error& error) {
   std::string text = "HTTP/1.1 " + std::to_string(response.status) + " Refused\r\n";
   for (const auto& [name, value] : response.headers)
     text.append(name).append(": ").append(value).append("\r\n");
-  return text + "Content-Type: " + response.content_type +
-         "\r\nContent-Length: " + std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" +
-         body;
+  return text + "X-Content-Type-Options: nosniff\r\nCache-Control: no-store\r\nContent-Type: " +
+         response.content_type + "\r\nContent-Length: " + std::to_string(body.size()) +
+         "\r\nConnection: close\r\n\r\n" + body;
 }
 
 std::int64_t write_all(Connection& connection, std::string_view bytes) {
@@ -115,7 +115,7 @@ void HttpServer::make_ready(Client client) {
   if (!idle_.empty()) {
     wake(*idle_.back());
     idle_.pop_back();
-  } else if (threads_.size() < static_cast<std::size_t>(config_.max_requests)) {
+  } else if (threads_.size() < static_cast<std::size_t>(config_.max_requests + config_.max_held)) {
     begin_thread();
   }
 }

@@ -37,6 +37,7 @@ struct HttpConfig {
   Address address{"127.0.0.1", 8080};     ///< port 0: a free one
   std::string_view option = "--listen";   ///< which asks for it
   int max_requests = 320;                 ///< answered at once, a thread each; others wait
+  int max_held = 0;                       ///< threads beside those, for requests that wait for work
   int max_connections = 4096;             ///< open at once; more are turned away
   int max_connections_per_address = 0;    ///< not of loopback nor trusted proxies; 0: no limit
   std::filesystem::path tls_certificate;  ///< empty: plain HTTP

@@ -1,5 +1,6 @@
 #include "server/listener.hpp"
 
+#include <fcntl.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -83,6 +84,9 @@ int listen_on(const addrinfo& address) {
   return -1;
 }
 
+/// For Listener::shut_out(); -1 when there is none.
+int open_spare() { return ::open("/dev/null", O_RDONLY | O_CLOEXEC); }
+
 }  // namespace
 
 Listener::Listener(const std::string& host, int port, std::string_view option) {
@@ -92,11 +96,13 @@ Listener::Listener(const std::string& host, int port, std::string_view option) {
     socket_ = listen_on(*at);
   if (socket_ < 0) fail(wanted, std::generic_category().message(errno));
   stop_ = ::eventfd(0, EFD_CLOEXEC);
+  spare_ = open_spare();
 }
 
 Listener::~Listener() {
   ::close(socket_);
   ::close(stop_);
+  if (spare_ >= 0) ::close(spare_);
 }
 
 int Listener::port() const {
@@ -114,11 +120,19 @@ std::optional<Accepted> Listener::accept() const {
   const int client = ::accept4(socket_, reinterpret_cast<sockaddr*>(&address), &size,
                                SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (client < 0) {
-    if (errno == EMFILE || errno == ENFILE) std::this_thread::sleep_for(kOutOfDescriptors);
+    if (errno == EMFILE || errno == ENFILE) shut_out();
     return std::nullopt;
   }
   set(client, IPPROTO_TCP, TCP_NODELAY);
   return Accepted{.socket = client, .address = numeric_host(address, size)};
+}
+
+void Listener::shut_out() const {
+  if (spare_ < 0) return std::this_thread::sleep_for(kOutOfDescriptors);
+  ::close(spare_);
+  const int client = ::accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+  if (client >= 0) ::close(client);
+  spare_ = open_spare();
 }
 
 void Listener::stop() const {

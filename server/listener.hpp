@@ -28,14 +28,19 @@ class Listener {
   /// Readable once stop() was called.
   [[nodiscard]] int stop_descriptor() const { return stop_; }
 
-  /// The next that waits at the door; nothing when there is none.
+  /// The next that waits at the door; nothing when there is none. Where no descriptor is left for
+  /// it, it is closed. For one thread alone.
   [[nodiscard]] std::optional<Accepted> accept() const;
   /// Async-signal-safe.
   void stop() const;
 
  private:
+  /// Takes the next client at the door and closes it, by the descriptor that is kept for that.
+  void shut_out() const;
+
   int socket_ = -1;
   int stop_ = -1;
+  mutable int spare_ = -1;  // open while others may be had
 };
 
 }  // namespace unwrapd::server

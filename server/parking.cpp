@@ -93,6 +93,12 @@ void Parking::admit(Client client) {
   epoll_.add(socket, awaits);
   if (is_open) look_at(at);  // TLS may hold bytes that the socket no longer tells of
   if (count_ > rules_.max_idle) drive_out_longest_idle();
+  if (rules_.max_parked > 0 && count_ > rules_.max_parked) drive_out_next_late();
+}
+
+void Parking::drive_out_next_late() {
+  const auto until = [](const auto& entry) { return entry.second.until; };
+  remove(std::ranges::min_element(lot_, {}, until));
 }
 
 /// Reads what is there. False when the client has left.

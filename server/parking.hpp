@@ -28,6 +28,7 @@ struct ParkingRules {
   std::chrono::milliseconds idle{15'000};  ///< without a byte of a request
   std::chrono::milliseconds head{10'000};  ///< from the first byte to the empty line
   int max_idle = 1024;                     ///< without a byte; one more drives out the longest
+  int max_parked = 0;  ///< without a whole head; one more drives out the next to be late; 0: any
 };
 
 class Parking {
@@ -69,6 +70,7 @@ class Parking {
   bool receive(Parked& parked);
   Client remove(Lot::iterator at);
   void drive_out_longest_idle();
+  void drive_out_next_late();
   void attend(int descriptor);
   void close_late(Lot::iterator at);
 

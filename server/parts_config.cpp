@@ -8,6 +8,7 @@ namespace {
 constexpr int kLeastMakers = 4;
 constexpr int kAdminThreads = 4;
 constexpr int kAdminConnections = 64;
+constexpr int kAdminParked = 48;  // so that idle ones keep nobody out
 
 }  // namespace
 
@@ -15,7 +16,9 @@ HttpConfig http_config(const Config& config) {
   const EdgeConfig& edge = config.edge;
   HttpConfig http;
   http.address = config.listen;
+  const MakingLimits making = making_limits(config, 0);
   http.max_requests = edge.max_requests;
+  http.max_held = most_waiting(config) + making.waiting + making.places;
   http.max_connections = edge.max_connections;
   http.max_connections_per_address = edge.max_connections_per_address;
   http.parking.max_idle = edge.max_idle_connections;
@@ -31,6 +34,7 @@ HttpConfig admin_config(const Address& address) {
   http.option = "--admin-listen";
   http.max_requests = kAdminThreads;
   http.max_connections = kAdminConnections;
+  http.parking.max_parked = kAdminParked;
   return http;
 }
 
@@ -43,10 +47,12 @@ Isolation isolation_of(const Config& config, const SolverCache& cache, const Dut
   return isolation;
 }
 
-MakingLimits making_limits(const Config& config, const SolverCache& cache) {
+int most_waiting(const Config& config) { return std::max(1, config.edge.max_requests / 2); }
+
+MakingLimits making_limits(const Config& config, std::size_t memory_bytes) {
   return {.places = std::max(kLeastMakers, config.workers),
-          .waiting = std::max(1, config.edge.max_requests / 2),
-          .bytes = cache.memory_limit()};
+          .waiting = most_waiting(config),
+          .bytes = memory_bytes};
 }
 
 }  // namespace unwrapd::server

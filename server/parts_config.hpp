@@ -17,7 +17,11 @@ HttpConfig admin_config(const Address& address);
 /// Throws Error where they are asked for and cannot be had.
 Isolation isolation_of(const Config& config, const SolverCache& cache, const Duties& duties);
 
-/// Waiting takes a thread that answers: half of them are never taken so.
-MakingLimits making_limits(const Config& config, const SolverCache& cache);
+/// Requests that may wait for the ends of jobs at a time. As many may wait for pictures.
+int most_waiting(const Config& config);
+
+/// Who waits for a picture, or makes one, holds a thread, as who waits for a job does:
+/// http_config() has so many more.
+MakingLimits making_limits(const Config& config, std::size_t memory_bytes);
 
 }  // namespace unwrapd::server

@@ -4,7 +4,9 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -13,6 +15,7 @@
 #include <thread>
 
 #include "server/config.hpp"
+#include "server/descriptors.hpp"
 #include "server/http_probe.hpp"
 #include "server/job_worker.hpp"
 #include "server/keys_command.hpp"
@@ -23,16 +26,24 @@ namespace unwrapd::server {
 namespace {
 
 constexpr mode_t kNotOfOthers = 0027;                           // meshes, results and the databases
+constexpr rlim_t kManyFiles = 1'000'000'000;                    // as good as no limit
 constexpr timespec kLook{.tv_sec = 0, .tv_nsec = 200'000'000};  // for a second signal
 
-/// As many files as the kernel lets us have: the default is less than --max-connections.
-void allow_open_files(int connections, const Log& log) {
+/// As many files as the kernel lets us have: the default is less than --max-connections. Returns
+/// the configuration with as many connections as those leave room for.
+Config with_open_files(Config config, const Log& log) {
   rlimit files{};
   ::getrlimit(RLIMIT_NOFILE, &files);
   files.rlim_cur = files.rlim_max;
   ::setrlimit(RLIMIT_NOFILE, &files);
-  if (files.rlim_max < static_cast<rlim_t>(connections))
-    log.warning("fewer files may be open than --max-connections", {{"files", files.rlim_max}});
+  const auto most = static_cast<std::int64_t>(std::min<rlim_t>(files.rlim_max, kManyFiles));
+  const int connections = connections_within(most, config);
+  if (connections < config.edge.max_connections)
+    log.warning("fewer connections than --max-connections: few files may be open",
+                {{"connections", connections}, {"files", most}});
+  config.edge.max_connections = connections;
+  config.edge.max_idle_connections = std::min(config.edge.max_idle_connections, connections / 2);
+  return config;
 }
 
 /// The signals that end the server, blocked in this thread and all that it starts from now on.
@@ -60,7 +71,6 @@ std::jthread hurry_at_next(const sigset_t& signals, Service& service, const Log&
 
 void serve(const Config& config, const Log& log, const Duties& duties) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is then EFBIG, as no room is ENOSPC
-  allow_open_files(config.edge.max_connections, log);
   const sigset_t signals = block_end_signals();
   Service service(config, log, duties);
   const std::string address = to_text({config.listen.host, service.port()});
@@ -94,7 +104,7 @@ int run_program(int argc, char** argv, Duties duties) {
   const Log log(line.config.log_level, line.config.log_format);
   try {
     if (duties.program.empty()) duties.program = "/proc/self/exe";
-    serve(line.config, log, duties);
+    serve(with_open_files(line.config, log), log, duties);
     return 0;
   } catch (const std::exception& error) {
     log.error("unwrapd cannot run",

@@ -55,7 +55,8 @@ struct Service::Parts {
         sites(config.allowed_hosts, cors),
         webhooks(config.data / kStoreFile, secret, config.webhooks, log,
                  [this] { return store.now(); }),
-        renderer(blobs, config.limits, log, isolation, making_limits(config, solver_cache), duties),
+        renderer(blobs, config.limits, log, isolation,
+                 making_limits(config, solver_cache.memory_limit()), duties),
         meshes(mesh_store, store, blobs, rooms, renderer),
         submissions(queue, store, blobs, config.limits, config.webhooks, meshes, rooms),
         results(blobs, renderer),
@@ -140,7 +141,12 @@ struct Service::Parts {
 
   void start_periodic(const Log& log) {
     sweeping.emplace(
-        "sweeping", sweeper.pause(), [this] { sweeper.sweep_once(); }, log);
+        "sweeping", sweeper.pause(),
+        [this] {
+          sweeper.sweep_once();
+          blobs.remove_left();
+        },
+        log);
     beating.emplace(
         "prolonging leases", kHeartbeat, [this] { queue.beat(); }, log);
     calling.emplace(
@@ -217,7 +223,7 @@ struct Service::Parts {
   MeshStore mesh_store;
   Claims claims{store};
   const UploadRooms rooms{claims, blobs.room()};
-  Waiters waiters{std::max(1, config.edge.max_requests / 2)};
+  Waiters waiters{most_waiting(config)};
   Metrics metrics;
   const std::shared_ptr<Doorbell> news = std::make_shared<Doorbell>();
   EventFeed events{kEventsKept, kFeedsKept, &metrics, news};

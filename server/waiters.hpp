@@ -1,6 +1,6 @@
 #pragma once
 // Who may hold open what there is little of: a request until a job ends (each holds a thread of the
-// server, so there are fewer of them than threads), an event stream. An API key takes
+// server, which has so many more for them), an event stream. An API key takes
 // no more than half of what the others leave it, so that no few of them take all.
 
 #include <map>

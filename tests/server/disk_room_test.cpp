@@ -27,6 +27,14 @@ class FilesOfJobs : public testing::Test {
   TempDir dir_;
 };
 
+TEST_F(FilesOfJobs, ThatGoMakeRoomForTheReserveAtOnce) {
+  BlobStore blobs(dir_.path(), {.max_bytes = 0, .min_free_bytes = 0});
+  add_sealed(blobs, "j_1");
+  EXPECT_FALSE(std::filesystem::exists(dir_.path() / "reserve"));
+  blobs.remove("j_1");
+  EXPECT_TRUE(std::filesystem::exists(dir_.path() / "reserve"));
+}
+
 TEST_F(FilesOfJobs, ThatCanBeMadeAgainTakeNothingFromOthers) {
   BlobStore blobs(dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0});
   add_sealed(blobs, "j_1");

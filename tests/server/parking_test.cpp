@@ -1,7 +1,10 @@
 // The parking lot by itself: handshakes, which are made elsewhere.
+#include "api/options.hpp"  // Eigen before httplib, whose headers define _res
+
 #include "server/parking.hpp"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -11,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "running_server.hpp"
 #include "server/greeters.hpp"
 
 namespace unwrapd::server {
@@ -47,13 +51,14 @@ class ParkingTest : public testing::Test {
   }
 
   void start(milliseconds idle) {
+    rules_.idle = idle;
     parking_.emplace(
         listener_,
         Parking::Uses{.accept = [] { return std::nullopt; },
                       .greet = [this](Client client) { greeters_.greet(std::move(client)); },
                       .ready = [this](const Client& client) { ready_.set_value(client.received); },
                       .refuse = [](const Client&, const Error&) {}},
-        ParkingRules{.idle = idle});
+        rules_);
     running_ = std::jthread([this] { parking_->run(); });
   }
   /// Our end of a new client's socket.
@@ -73,6 +78,7 @@ class ParkingTest : public testing::Test {
     return ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL) > 0;
   }
 
+  ParkingRules rules_;
   Listener listener_{"127.0.0.1", 0};
   std::vector<std::array<int, 2>> pairs_;
   std::promise<std::string> ready_;
@@ -80,6 +86,22 @@ class ParkingTest : public testing::Test {
   Greeters greeters_{2, [this](Client client) { parking_->park(std::move(client)); }};
   std::jthread running_;
 };
+
+TEST_F(ParkingTest, OneTooManyDrivesOutWhoWouldBeLateNext) {
+  rules_.max_parked = 2;
+  start(std::chrono::minutes(1));
+  const int first = come();
+  const int second = come();
+  ASSERT_TRUE(send(first, "G"));  // its head has less time than the idle have
+  await([&] { return parking_->count() == 2; });
+  const int third = come();
+  std::array<pollfd, 1> closed = {pollfd{first, POLLIN, 0}};
+  ASSERT_EQ(::poll(closed.data(), 1, 60'000), 1);
+  EXPECT_EQ(parking_->count(), 2);
+  ASSERT_TRUE(send(second, "G"));
+  ASSERT_TRUE(send(third, kHead));
+  EXPECT_EQ(ready_.get_future().get(), kHead);
+}
 
 TEST_F(ParkingTest, AHandshakeThatComputesLongDelaysNobody) {
   const auto begun = std::make_shared<std::promise<void>>();

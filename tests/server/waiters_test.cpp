@@ -5,6 +5,10 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <future>
+#include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -75,6 +79,43 @@ TEST_F(WaitingRequests, LeaveRoomForOthers) {
   ASSERT_EQ(jobs.size(), 2U);
   for (const api::Json& job : jobs) client().Delete("/v1/jobs/" + job.at("id").get<std::string>());
   waiting.join();
+}
+
+/// All who may wait for jobs do, and all who may wait for pictures, beside those who make some.
+TEST_F(WaitingRequests, ForJobsAndPicturesTogetherLeaveThreadsForOthers) {
+  config_.edge.max_requests = 1;
+  config_.workers = 1;
+  std::promise<void> release;
+  std::atomic<int> drawing = 0;
+  Duties duties;
+  duties.draw = [&, released = release.get_future().share()](const auto&...) {
+    ++drawing;
+    released.wait();
+    return std::string("x");
+  };
+  service_ = std::make_unique<Service>(config_, log_, duties);
+  const std::string small = submit("?method=asap", 2);
+  await_state(small, "succeeded");
+  std::vector<std::jthread> others;
+  for (int k = 0; k < 8; ++k)  // two draw, half of the places, and one waits; the rest are refused
+    others.emplace_back([&, k] {
+      client().Get("/v1/jobs/" + small + "/preview.png?size=" + std::to_string(100 + k));
+    });
+  others.emplace_back([&] {
+    client().Post("/v1/jobs?stop.iterations=10000", {{"Prefer", "wait=60"}}, grid_obj(120),
+                  "model/obj");
+  });
+  await([&] { return drawing == 2; });
+  const std::string live = "/v1/jobs?state=running";
+  std::string running;
+  await([&] {
+    const api::Json jobs = api::Json::parse(client().Get(live)->body).at("jobs");
+    if (!jobs.empty()) running = jobs.at(0).at("id").get<std::string>();
+    return !running.empty();
+  });
+  EXPECT_EQ(client().Get("/healthz")->status, 200);
+  client().Delete("/v1/jobs/" + running);
+  release.set_value();
 }
 
 }  // namespace
