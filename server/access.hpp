@@ -26,13 +26,18 @@ struct AccessConfig {
 /// operator insists, and where the operator has given one.
 bool asks_for_keys(const AccessConfig& config, std::string_view host);
 
+/// For how many requests one counts: a large picture for one each megapixel.
+double cost_of(const Request& request, std::string_view route);
+
 /// At most so many requests a minute, a minute's worth of them at once (token bucket).
 class RateLimit {
  public:
   using Clock = std::chrono::steady_clock;
 
   /// 0 when the request may go on, else the whole seconds after which it may.
-  int wait_seconds(const std::string& key, std::int64_t per_minute, Clock::time_point now);
+  /// cost: for how many requests it counts, which are a minute's worth at most.
+  int wait_seconds(const std::string& key, std::int64_t per_minute, Clock::time_point now,
+                   double cost = 1);
 
  private:
   struct Bucket {
@@ -54,7 +59,9 @@ class Access {
   void admit(Request& request, std::string_view route);
 
  private:
-  [[nodiscard]] Caller caller_of(const Request& request);
+  [[nodiscard]] Caller caller_of(const Request& request, double cost);
+  void open_link(Request& request, double cost);
+  void spend(const ApiKey& key, double cost);
   [[nodiscard]] ApiKey key_of(const Request& request);
 
   KeyStore& keys_;

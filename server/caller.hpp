@@ -16,6 +16,7 @@ struct Caller {
   std::string owner;     ///< id of the API key; empty without one
   bool sees_all = true;  ///< jobs of others, too
   Quota quota;
+  std::string key_sha256 = {};  ///< of the API key: what is signed with it goes when the key goes
 };
 
 }  // namespace unwrapd::server

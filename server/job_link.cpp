@@ -34,7 +34,8 @@ Response get_link(const JobRecord& job, const LinkSigner& links, const Request& 
     refuse_parameter("file", "A job has no such file to link to; see /openapi.yaml.");
   const std::int64_t expires_ms = now_ms() + seconds * kMsPerSecond;
   const std::string path = api::job_path(job.id) + "/" + file;
-  const api::Json link = {{"url", links.sign(path, expires_ms / kMsPerSecond)},
+  const LinkKey key{.id = request.caller.owner, .sha256 = request.caller.key_sha256};
+  const api::Json link = {{"url", links.sign(path, expires_ms / kMsPerSecond, key)},
                           {"expires", rfc3339(expires_ms)}};
   Response response = json_response(200, link.dump());
   response.headers.emplace_back("Cache-Control", "no-store");

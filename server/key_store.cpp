@@ -49,7 +49,8 @@ ApiKey key_of(const Statement& row) {
           .scopes = parse_scopes(row.text(2)),
           .requests_per_minute = row.number(3),
           .quota = {.max_jobs = row.number(4), .max_bytes = row.number(5)},
-          .created_ms = row.number(6)};
+          .created_ms = row.number(6),
+          .sha256 = row.text(kDigestColumn)};
 }
 
 bool same(const std::string& left, const std::string& right) {
@@ -85,11 +86,12 @@ std::string key_in(const std::filesystem::path& file) {
       "with openssl rand -hex 32.");
 }
 
-ApiKey given_key() {
+ApiKey given_key(const std::string& digest) {
   ApiKey key;
   key.id = kGivenKeyId;
   key.name = "that of --key-file";
   key.scopes.admin = true;
+  key.sha256 = digest;
   return key;
 }
 
@@ -156,7 +158,7 @@ std::string KeyStore::add(ApiKey key) {
 }
 
 std::optional<ApiKey> KeyStore::find(std::string_view text) {
-  if (!given_.empty() && same(given_, sha256(text))) return given_key();
+  if (!given_.empty() && same(given_, sha256(text))) return given_key(given_);
   const bool of_form =
       text.starts_with(kPrefix) && text.size() == kPrefix.size() + kIdDigits + 1 + kSecretDigits;
   if (!of_form) return std::nullopt;
@@ -168,7 +170,10 @@ std::optional<ApiKey> KeyStore::find(std::string_view text) {
   return key_of(statement);
 }
 
+bool KeyStore::has_any() { return !given_.empty() || !all().empty(); }
+
 std::optional<ApiKey> KeyStore::with_id(std::string_view id) {
+  if (!given_.empty() && id == kGivenKeyId) return given_key(given_);
   const std::lock_guard lock(mutex_);
   Statement statement(database_, std::string(kSelect) + "WHERE id = ?");
   if (!statement.with(id).step()) return std::nullopt;

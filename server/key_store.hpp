@@ -37,6 +37,7 @@ struct ApiKey {
   std::int64_t requests_per_minute = 0;  ///< 0: no limit
   Quota quota;
   std::int64_t created_ms = 0;
+  std::string sha256 = {};  ///< of its text
 };
 
 /// "submit,read", with or without spaces. Throws Error{invalid_option} when a name is none of
@@ -58,6 +59,8 @@ class KeyStore {
   /// The key of this text, if it is one.
   std::optional<ApiKey> find(std::string_view text);
   [[nodiscard]] std::optional<ApiKey> with_id(std::string_view id);
+  /// Whether anybody can have a key: one was added, or given.
+  [[nodiscard]] bool has_any();
   /// In the order in which they were added.
   std::vector<ApiKey> all();
   /// False when there is none of this id. Its jobs stay.

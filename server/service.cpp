@@ -75,6 +75,7 @@ struct Service::Parts {
       };
       admin.emplace(admin_config(*config.admin), uses(told, log, LogLevel::debug), log);
     }
+    warn_without_keys(log);
     tell_state();
     queue.recover(isolation.possible);
     sweep_blobs(log);
@@ -98,6 +99,14 @@ struct Service::Parts {
                                  .duties = duties});
     serving = std::jthread([this] { http.serve(); });
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
+  }
+
+  /// A server that nobody can use must not look like one that runs.
+  void warn_without_keys(const Log& log) {
+    if (!asks_for_keys(config.access, config.listen.host) || keys.has_any()) return;
+    log.warning("API keys are asked for and there is none yet; add one",
+                {{"command", "unwrapd keys add --data " + config.data.string() +
+                                 " --name NAME --scopes submit,read"}});
   }
 
   /// Of an owner's quota; 0: none.

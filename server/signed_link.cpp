@@ -45,25 +45,31 @@ std::string secret_in(const std::filesystem::path& file) {
                                              "links and webhooks' secrets change with it.");
 }
 
-std::string LinkSigner::signature(const std::string& path, const std::string& expires) const {
-  return to_hex(hmac_sha256(secret_, "GET\n" + path + "\n" + expires));
+std::string LinkSigner::signature(const std::string& path, const std::string& expires,
+                                  const LinkKey& key) const {
+  const std::string of_key = key.id.empty() ? "" : "\n" + key.id + "\n" + key.sha256;
+  return to_hex(hmac_sha256(secret_, "GET\n" + path + "\n" + expires + of_key));
 }
 
-std::string LinkSigner::sign(const std::string& path, std::int64_t expires) const {
+std::string LinkSigner::sign(const std::string& path, std::int64_t expires,
+                             const LinkKey& key) const {
   const std::string until = std::to_string(expires);
-  return path + "?" + std::string(kExpiresParameter) + "=" + until + "&" +
-         std::string(kSignatureParameter) + "=" + signature(path, until);
+  std::string link = path + "?" + std::string(kExpiresParameter) + "=" + until;
+  if (!key.id.empty()) link += "&" + std::string(kKeyParameter) + "=" + key.id;
+  return link + "&" + std::string(kSignatureParameter) + "=" + signature(path, until, key);
 }
+
+std::string LinkSigner::key_of(const Request& request) { return parameter(request, kKeyParameter); }
 
 bool LinkSigner::is_signed(const Request& request) const {
   return request.query.contains(std::string(kSignatureParameter));
 }
 
-void LinkSigner::check(const Request& request) const {
+void LinkSigner::check(const Request& request, const LinkKey& key) const {
   const bool reads = request.method == "GET" || request.method == "HEAD";
   if (!reads) refuse("A signed link only reads; use an API key.");
   const std::string expires = parameter(request, kExpiresParameter);
-  const std::string expected = signature(request.path, expires);
+  const std::string expected = signature(request.path, expires, key);
   const std::string given = parameter(request, kSignatureParameter);
   const bool same = given.size() == expected.size() &&
                     CRYPTO_memcmp(given.data(), expected.data(), given.size()) == 0;
@@ -77,6 +83,7 @@ void LinkSigner::check(const Request& request) const {
 std::multimap<std::string, std::string> unsigned_query(const Request& request) {
   std::multimap<std::string, std::string> query = request.query;
   query.erase(std::string(kExpiresParameter));
+  query.erase(std::string(kKeyParameter));
   query.erase(std::string(kSignatureParameter));
   return query;
 }

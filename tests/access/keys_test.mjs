@@ -106,6 +106,7 @@ test("a key sees its own jobs alone; admin sees all; a removed key sees nothing"
   const id = list.split("\n").find((line) => line.endsWith(" a")).split(" ")[0];
   execFileSync(process.env.UNWRAPD, ["keys", "remove", id, "--data", data]);
   await refused(await a.fetch(`/v1/jobs/${job}`), 401, "unauthorized");
+  await refused(await fetch(server.url + url), 403, "invalid_link");
   const signature = url.split("signature=")[1];
   await server.end("SIGTERM");
   assert.ok(server.log.length > 0);
