@@ -16,9 +16,19 @@ bool is_apart(const UnwrappedSurface& unwrapped, Index g, Index h) {
   return a != b && unwrapped.uv[a] != unwrapped.uv[b];
 }
 
-/// Whether the two sides of an edge lie apart on the page.
+/// Whether the face of a half-edge has corners at one point of the page.
+bool is_collapsed(const UnwrappedSurface& unwrapped, Index h) {
+  const Index next = next_halfedge(h), previous = previous_halfedge(h);
+  return !is_apart(unwrapped, h, next) || !is_apart(unwrapped, next, previous) ||
+         !is_apart(unwrapped, previous, h);
+}
+
+/// Whether the two sides of an edge lie apart on the page, and both are there: a face without area
+/// is laid on some edge, and says nothing of its others.
 bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
-  return is_apart(unwrapped, h, next_halfedge(twin)) || is_apart(unwrapped, next_halfedge(h), twin);
+  const bool is_open =
+      is_apart(unwrapped, h, next_halfedge(twin)) || is_apart(unwrapped, next_halfedge(h), twin);
+  return is_open && !is_collapsed(unwrapped, h) && !is_collapsed(unwrapped, twin);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace unwrapd {
 Halfedges halfedges_by_position(const TriMesh& mesh, const std::stop_token& stop = {});
 
 /// 3D length of the edges between two faces whose UVs differ on both sides, mesh units. Edges are
-/// found by position, so cuts that the input came with count as well; boundaries and non-manifold
-/// edges do not.
+/// found by position, so cuts that the input came with count as well; boundaries, non-manifold
+/// edges and those of faces without area on the page do not.
 double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped);
 
 /// The same by face: the length of each face's own sides that are seams. Adds up to twice

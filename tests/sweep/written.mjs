@@ -5,7 +5,10 @@
 const STEP = 2 ** -24;
 const FLAT = 2 ** -48; // a height below this share of the mesh's reach is none: rounding makes it
 
-/** Triangles {at: [x, y, z] * 3, uv: [u, v] * 3 in steps, V up} of an OBJ; polygons are fans of their corner `from`. */
+/**
+ * Triangles {at: [x, y, z] * 3, uv: [u, v] * 3 in steps, V up} of an OBJ. Polygons are cut into fans
+ * from their corner number `from`.
+ */
 export function trianglesOfObj(text, from = 0) {
   const points = [];
   const coordinates = [];
@@ -70,15 +73,18 @@ function rows({ json, buffers }, viewIndex, offset, count, type, componentType) 
 }
 
 function elements(file, index) {
-  const { bufferView, byteOffset, count, type, componentType, sparse, normalized } = file.json.accessors[index];
+  const accessor = file.json.accessors[index];
+  const { bufferView, byteOffset, count, type, componentType, sparse, normalized } = accessor;
   const values =
     bufferView === undefined
       ? Array.from({ length: count }, () => new Array(SIZES[type]).fill(0))
       : rows(file, bufferView, byteOffset ?? 0, count, type, componentType);
   if (sparse) {
     const { indices, values: news } = sparse;
-    const at = rows(file, indices.bufferView, indices.byteOffset ?? 0, sparse.count, "SCALAR", indices.componentType);
-    const by = rows(file, news.bufferView, news.byteOffset ?? 0, sparse.count, type, componentType);
+    const part = ({ bufferView: view, byteOffset: offset = 0 }, width, component) =>
+      rows(file, view, offset, sparse.count, width, component);
+    const at = part(indices, "SCALAR", indices.componentType);
+    const by = part(news, type, componentType);
     at.forEach(([i], k) => (values[i] = by[k]));
   }
   const largest = COMPONENTS[componentType][2];
@@ -104,8 +110,9 @@ export function trianglesOfGltf(bytes) {
     for (const { attributes, indices, mode = 4 } of primitives) {
       if (mode < 4 || attributes.TEXCOORD_0 === undefined) continue;
       const points = elements(file, attributes.POSITION);
-      const coordinates = elements(file, attributes.TEXCOORD_0).map(([u, v]) => [inSteps(u), inSteps(1 - v)]);
-      const order = indices === undefined ? points.map((_, i) => i) : elements(file, indices).map(([i]) => i);
+      const coordinates = elements(file, attributes.TEXCOORD_0).map(([u, v]) => [u, 1 - v].map(inSteps));
+      const inOrder = () => points.map((_, i) => i);
+      const order = indices === undefined ? inOrder() : elements(file, indices).map(([i]) => i);
       for (const triple of cornersOf(order, mode))
         triangles.push({ at: triple.map((i) => points[i]), uv: triple.map((i) => coordinates[i]) });
     }
@@ -147,7 +154,8 @@ const isApart = (a, b) =>
 function overlappingPairs(all) {
   const cells = Math.max(1, Math.floor(Math.sqrt(all.length)));
   const cell = (x) => Math.min(cells - 1, Math.max(0, Math.floor((x * STEP) * cells)));
-  const boxes = all.map((uv) => [0, 1].map((k) => [Math.min(...uv.map((p) => p[k])), Math.max(...uv.map((p) => p[k]))]));
+  const range = (values) => [Math.min(...values), Math.max(...values)];
+  const boxes = all.map((uv) => [0, 1].map((k) => range(uv.map((p) => p[k]))));
   const bins = new Map();
   let pairs = 0;
   all.forEach((uv, t) => {
@@ -173,7 +181,7 @@ function liesOnAnEdge(uv, edges) {
   return points.length === 1 || (points.length === 2 && edges.has([...points].sort().join(" ")));
 }
 
-/** D_angle and D_area (Sec. 6 of the paper) from the Frobenius norm and determinant of each map. */
+/** D_angle and D_area (Sec. 6 of the paper) from the Frobenius norm and |determinant| of each map. */
 function distortionOf(triangles) {
   const sum = { area: 0, image: 0, inverse: 0, angle: 0 };
   for (const { at, uv } of triangles) {
@@ -204,7 +212,8 @@ export function measure(triangles) {
   const signs = all.map(({ uv }) => Math.sign(turn(...uv)));
   const up = all.filter((_, t) => signs[t] > 0);
   const empty = all.filter((_, t) => signs[t] === 0);
-  const edges = new Set(up.flatMap(({ uv }) => [0, 1, 2].map((i) => [uv[i], uv[(i + 1) % 3]].map(String).sort().join(" "))));
+  const edgesOf = ({ uv }) => [0, 1, 2].map((i) => [uv[i], uv[(i + 1) % 3]].map(String).sort().join(" "));
+  const edges = new Set(up.flatMap(edgesOf));
   return {
     triangles: all.length,
     flipped: signs.filter((sign) => sign < 0).length,
@@ -212,6 +221,6 @@ export function measure(triangles) {
     stray: empty.filter(({ uv }) => !liesOnAnEdge(uv, edges)).length,
     overlaps: overlappingPairs(up.map(({ uv }) => uv)),
     covered: up.reduce((sum, { uv }) => sum + turn(...uv), 0) * (STEP ** 2 / 2),
-    distortion: distortionOf(up),
+    distortion: distortionOf(all.filter((_, t) => signs[t] !== 0)),
   };
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/atlas/pack.hpp"
+#include "core/measure/seam_length.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd {
@@ -149,6 +150,18 @@ TEST(Assemble, DegenerateFacesCoverNothingWhereverTheyAre) {
       }
     expect_consistent(a);
   }
+}
+
+TEST(Assemble, AFaceWithoutAreaMakesNoSeam) {
+  // a square above, two triangles below, and between them a face that closes the gap at vertex 4
+  const TriMesh mesh{
+      {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 0, 0}, {0, -2, 0}, {2, -2, 0}},
+      {{0, 1, 2}, {0, 2, 3}, {0, 5, 4}, {4, 5, 6}, {4, 6, 1}, {0, 4, 1}}};
+  const Assembled a = assembled(mesh);
+  ASSERT_EQ(a.charts.set_aside, (std::vector<Index>{5}));
+  ASSERT_EQ(a.charts.charts.size(), 2U);
+  EXPECT_EQ(points_of_degenerate(a, 5), 2U);
+  EXPECT_EQ(seam_length(a.surface, a.out), 0);
 }
 
 TEST(Assemble, WithoutAnyChartEverythingIsAtTheOrigin) {
