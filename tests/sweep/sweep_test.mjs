@@ -186,7 +186,7 @@ test("real assets are answered or refused with a reason", { skip, timeout: 840_0
       if (errors.length) wrong.push(`${name}: new validator errors ${errors}`);
       if (!(answer.report.distortion.angle >= 2)) wrong.push(`${name}: D_angle below 2`);
       for (const figure of await untrueFigures(answer)) wrong.push(`${name}: ${figure}`);
-      await new Promise((resolve) => setTimeout(resolve, 1)); // lets fetch hear of connections that ended
+      await new Promise((resolve) => setTimeout(resolve, 1)); // fetch hears of connections that ended
     } else {
       t.diagnostic(`${name}: ${answer.status} ${answer.code}`);
       if (!(answer.status >= 400 && answer.status < 500 && answer.code))

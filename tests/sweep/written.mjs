@@ -3,6 +3,7 @@
 // multiples of 2^-24 in [0, 1], so that in these units products of two differences stay below 2^53
 // and every orientation is exact.
 const STEP = 2 ** -24;
+const THIN = 1e-5; // a triangle's height over its longest side, below which D is not taken of it
 const FLAT = 2 ** -48; // a height below this share of the mesh's reach is none: rounding makes it
 
 /**
@@ -141,10 +142,14 @@ function areaInSpace([a, b, c]) {
   return Math.hypot(...cross) / 2;
 }
 
+const longestSide = (at) => Math.max(...[0, 1, 2].map((i) => Math.hypot(...minus(at[i], at[(i + 1) % 3]))));
+
 function isFlat(at, reach) {
-  const longest = Math.max(...[0, 1, 2].map((i) => Math.hypot(...minus(at[i], at[(i + 1) % 3]))));
+  const longest = longestSide(at);
   return !(longest > 0) || (2 * areaInSpace(at)) / longest <= FLAT * reach;
 }
+
+const isThin = ({ at }) => !(2 * areaInSpace(at) >= THIN * longestSide(at) ** 2);
 
 /** Whether the line of some edge of one has all of the other behind it (both are counter-clockwise). */
 const isApart = (a, b) =>
@@ -221,6 +226,6 @@ export function measure(triangles) {
     stray: empty.filter(({ uv }) => !liesOnAnEdge(uv, edges)).length,
     overlaps: overlappingPairs(up.map(({ uv }) => uv)),
     covered: up.reduce((sum, { uv }) => sum + turn(...uv), 0) * (STEP ** 2 / 2),
-    distortion: distortionOf(all.filter((_, t) => signs[t] !== 0)),
+    distortion: distortionOf(all.filter((face, t) => signs[t] !== 0 && !isThin(face))),
   };
 }
