@@ -10,7 +10,8 @@
 namespace unwrapd::asset {
 namespace {
 
-/// Twice the signed area. Exact: texture coordinates share their last place and have 25 bits.
+/// Twice the signed area. Exact on the page, where texture coordinates are multiples of 2^-24;
+/// beyond it, where constraints may put them, exact but for triangles a few steps high.
 double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }

@@ -213,7 +213,7 @@ Kept keep_promise(std::shared_ptr<const Chart> chart, const Disk& disk, UvMap uv
 
 Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv) {
   if (promise.guarantee == Guarantee::none) {
-    round_to_step(page_uv);
+    round_to_step(page_uv, promise.intent.held);
     return {static_cast<Index>(flipped_faces(chart.mesh.faces, page_uv).size()), {}};
   }
   if (snap(chart, promise.intent.held, promise.intent.stop, page_uv) > 0)

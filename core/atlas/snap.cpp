@@ -21,10 +21,29 @@ constexpr double kMostEnlarged =
     200;  // least heights: up to this length small triangles are scaled
 constexpr double kLeastLength = 1e-9;  // steps
 
-UvMap rounded(const UvMap& uv) {
+/// kUvStep, or for what reaches beyond 1 the power of two at which the same holds.
+double step_of(double reach) {
+  double step = kUvStep;
+  while (reach * kUvStep > step) step *= 2;
+  return step;
+}
+
+/// To the nearest multiple of the finest step at which the coordinate can be written.
+double finely_rounded(double coordinate) {
+  const double step = step_of(std::max(std::abs(coordinate), std::abs(1 - coordinate)));
+  return std::round(coordinate / step) * step;
+}
+
+/// In units of a step. Vertices that are held lie where they shall as exactly as can be written,
+/// though the rest of the chart reaches further and is rounded to larger steps.
+UvMap rounded(const UvMap& uv, std::span<const char> held, double step) {
   UvMap on_lattice(uv.size());
   for (std::size_t v = 0; v < uv.size(); ++v)
-    on_lattice[v] = Vec2(std::round(uv[v].x()), std::round(uv[v].y()));
+    if (!held.empty() && held[v] != 0)
+      on_lattice[v] =
+          Vec2(finely_rounded(uv[v].x() * step), finely_rounded(uv[v].y() * step)) / step;
+    else
+      on_lattice[v] = Vec2(std::round(uv[v].x()), std::round(uv[v].y()));
   return on_lattice;
 }
 
@@ -73,21 +92,21 @@ void set_least_height(double least_height, const UvMap& uv, Disk& disk) {
 double uv_step(const UvMap& uv) {
   double reach = 1;
   for (const Vec2& u : uv) reach = std::max({reach, u.cwiseAbs().maxCoeff(), std::abs(1 - u.y())});
-  double step = kUvStep;
-  while (reach * kUvStep > step) step *= 2;
-  return step;
+  return step_of(reach);
 }
 
-void round_to_step(UvMap& uv) {
+void round_to_step(UvMap& uv, std::span<const char> held) {
   const double step = uv_step(uv);
-  for (Vec2& u : uv) u = Vec2(step * std::round(u.x() / step), step * std::round(u.y() / step));
+  for (Vec2& u : uv) u /= step;
+  uv = rounded(uv, held, step);
+  for (Vec2& u : uv) u *= step;
 }
 
 Index snap(const Chart& chart, const std::vector<char>& held, const std::stop_token& stop,
            UvMap& uv) {
   const double step = uv_step(uv);
   for (Vec2& u : uv) u /= step;
-  UvMap best = rounded(uv);
+  UvMap best = rounded(uv, held, step);
   std::size_t flipped = flipped_faces(chart.mesh.faces, best, stop).size();
   if (flipped > 0) {
     Disk disk = page_disk(chart, uv);
@@ -97,7 +116,7 @@ Index snap(const Chart& chart, const std::vector<char>& held, const std::stop_to
       set_least_height(height, uv, disk);
       untangle(disk, intent, now);
       intent.rings *= 2;
-      now = rounded(now);
+      now = rounded(now, held, step);
       const std::size_t left = flipped_faces(disk.faces, now).size();
       if (left < flipped) flipped = left, best = now;
       if (flipped == 0) break;
