@@ -14,7 +14,8 @@
 namespace unwrapd {
 namespace {
 
-constexpr double kMostRise = 0.5;  // of a segmented chart's energy, rather than a split
+constexpr double kMindsSizes = 0.01;  // lambda
+constexpr double kMostRise = 0.5;     // of a segmented chart's energy, rather than a split
 
 /// Sums in disk units as they are in mesh units, scale UV units in one disk unit.
 DistortionSums in_mesh_units(DistortionSums sums, double unit, double scale) {
@@ -39,6 +40,17 @@ Rigidity rigidity_of(const Disk& disk, const UnwrapOptions& options, double lamb
     default:
       return {0, false};
   }
+}
+
+/// What a map that replaces the method's shall keep of it. A hybrid that hardly minds sizes counts
+/// as a method of angles: its energy alone would have the map shrink.
+OwnEnergy own_energy_of(const Disk& disk, const UnwrapOptions& options, const Rigidity& rigidity) {
+  if (options.method == Method::slim) return OwnEnergy::symmetric_dirichlet;
+  if (options.method == Method::arap) return OwnEnergy::fit;
+  const double mean_area = 1.0 / static_cast<double>(disk.faces.size());
+  const bool minds_sizes =
+      options.method == Method::hybrid && rigidity.at(mean_area) >= kMindsSizes;
+  return minds_sizes ? OwnEnergy::fit : OwnEnergy::mips;
 }
 
 /// What is held, and where nothing is, the map that the chart came with to begin with.
@@ -130,11 +142,13 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
   for (std::size_t k = 0; k < lambdas.size(); ++k) {
     watch.begin_run(is_curve(options) ? std::optional(lambdas[k]) : std::nullopt);
     Solution solution = solve_once(solver, job, options, lambdas[k], watch);
+    const Rigidity rigidity = rigidity_of(disk, options, lambdas[k]);
     const Promise promise{guarantee_of(chart, options),
                           options.repair,
-                          {.rigidity = rigidity_of(disk, options, lambdas[k]),
+                          {.rigidity = rigidity,
                            .held = fixed_vertices(disk.positions.size(), hold.held.holds),
                            .stop = watch.stop(),
+                           .own = own_energy_of(disk, options, rigidity),
                            .springs = hold.held.holds.springs},
                           most_rise_of(chart)};
     if (options.guarantee != Guarantee::none) watch.tell(Stage::untangle);

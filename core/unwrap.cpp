@@ -72,6 +72,34 @@ ChartWatch chart_watch(const TakenApart& taken, const Progress& progress, Execut
   return {progress, static_cast<Index>(chart_count), face_count, taken.solve_begin, executor};
 }
 
+/// What a map without overlaps keeps of the method's own.
+std::string kept_of(Method method) {
+  switch (method) {
+    case Method::arap:
+      return "ARAP's energy";
+    case Method::hybrid:
+      return "the method's own energy (below a lambda of 0.01: to the angles of its own map)";
+    case Method::slim:
+      return "the symmetric Dirichlet energy";
+    default:
+      return "the angles of the method's own map";
+  }
+}
+
+/// Says which maps are not those of the method.
+void note_new_maps(Layout& layout, const UnwrapOptions& options) {
+  const auto is_new = [](const ChartReport& chart) {
+    return chart.mending.overlaps > 0 && chart.mending.parts == 1;
+  };
+  const auto& charts = layout.report.charts;
+  if (const auto count = std::count_if(charts.begin(), charts.end(), is_new); count > 0)
+    layout.report.notes.push_back(
+        std::to_string(count) +
+        " of the charts overlapped themselves and have new maps without overlaps, which keep as "
+        "near as they can to " +
+        kept_of(options.method) + ". energy_rise of their mending is what that took.");
+}
+
 /// page: the position constraints of every chart of every surface.
 std::vector<Layout> map_charts(const TakenApart& taken, const std::vector<std::vector<Holds>>& page,
                                const UnwrapOptions& options, const Progress& progress,
@@ -88,7 +116,10 @@ std::vector<Layout> map_charts(const TakenApart& taken, const std::vector<std::v
       for (std::size_t k = 0; k < maps.size(); ++k)
         for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped));
     }
-  for (Layout& layout : layouts) layout.report.distortion = distortion(layout.sums);
+  for (Layout& layout : layouts) {
+    layout.report.distortion = distortion(layout.sums);
+    note_new_maps(layout, options);
+  }
   return layouts;
 }
 

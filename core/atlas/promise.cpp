@@ -13,9 +13,11 @@
 #include "core/atlas/split_chart.hpp"
 #include "core/cancel.hpp"
 #include "core/error.hpp"
+#include "core/measure/distortion.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
 #include "core/solve/bijective.hpp"
+#include "core/solve/symmetric_dirichlet.hpp"
 #include "core/solve/virtual_patches.hpp"
 
 namespace unwrapd {
@@ -24,7 +26,7 @@ namespace {
 constexpr std::size_t kMostPairs = 1 << 20;   // of overlapping triangles, counted in one chart
 constexpr Index kMostFacesUnfolded = 50'000;  // a new map of more takes minutes
 
-double energy_of(const Disk& disk, const UvMap& uv, const Rigidity& rigidity) {
+double fit_energy_of(const Disk& disk, const UvMap& uv, const Rigidity& rigidity) {
   double energy = 0;
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
     look_now_and_then(t, disk.stop);
@@ -33,6 +35,40 @@ double energy_of(const Disk& disk, const UvMap& uv, const Rigidity& rigidity) {
     energy += fit_energy(j, fit_similarity(j, lambda), disk.rest[t].area, lambda);
   }
   return energy;
+}
+
+/// The method's own energy of a map: for angles D_angle, which flipped triangles have too.
+double energy_of(const Disk& disk, const UvMap& uv, const MapIntent& intent) {
+  SerialExecutor serial;
+  switch (intent.own) {
+    case OwnEnergy::symmetric_dirichlet:
+      return symmetric_dirichlet_energy(disk, uv, serial);
+    case OwnEnergy::mips:
+      return distortion_sums(disk.rest, disk.faces, uv, disk.stop).angle;
+    default:
+      return fit_energy_of(disk, uv, intent.rigidity);
+  }
+}
+
+/// That of an isometric map.
+double least_energy(const Disk& disk, const MapIntent& intent) {
+  double area = 0;
+  for (const RestTriangle& rest : disk.rest) area += rest.area;
+  switch (intent.own) {
+    case OwnEnergy::symmetric_dirichlet:
+      return 4 * area;
+    case OwnEnergy::mips:
+      return 2 * area;
+    default:
+      return 0;
+  }
+}
+
+/// Whether what a map's energy has above the least is more than `most` times that of another.
+bool exceeds(const Disk& disk, const MapIntent& intent, double most, const UvMap& uv,
+             const UvMap& other) {
+  const double least = least_energy(disk, intent);
+  return energy_of(disk, uv, intent) - least > most * (energy_of(disk, other, intent) - least);
 }
 
 bool holds_any(const MapIntent& intent) {
@@ -117,16 +153,13 @@ void split(const KeptPart& part, const Seeds& seeds, const std::stop_token& stop
 /// drawn by the springs. The part stays as it is where there is none, or none that is good enough.
 bool unfold(KeptPart& part, double unit, const Promise& promise) {
   const MapIntent& intent = promise.intent;
-  SerialExecutor serial;
   const Disk disk = make_disk(part.chart->mesh, part.chart->loops, intent.stop);
   UvMap uv = part.uv;
-  if (!map_injectively(disk, intent, uv, serial)) return false;
+  if (!map_injectively(disk, intent, uv)) return false;
   const bool is_bounded = promise.most_rise < std::numeric_limits<double>::infinity();
   UvMap before = is_bounded ? part.uv : UvMap();
   for (Vec2& u : before) u *= unit / disk.unit;
-  if (is_bounded && energy_of(disk, uv, intent.rigidity) >
-                        (1 + promise.most_rise) * energy_of(disk, before, intent.rigidity))
-    return false;
+  if (is_bounded && exceeds(disk, intent, 1 + promise.most_rise, uv, before)) return false;
   for (Vec2& u : uv) u *= disk.unit / unit;
   part.uv = std::move(uv);
   return overlaps_of(*part.chart, part.uv, intent.stop).empty();
@@ -195,8 +228,8 @@ Kept keep_promise(std::shared_ptr<const Chart> chart, const Disk& disk, UvMap uv
   const bool may_change = kept.mending.flips > 0 || promise.guarantee == Guarantee::bijective;
   const UvMap before = may_change ? uv : UvMap();
   const auto rise = [&](const UvMap& now) {
-    const double energy = energy_of(disk, before, promise.intent.rigidity);
-    return energy > 0 ? energy_of(disk, now, promise.intent.rigidity) / energy - 1 : 0;
+    const double energy = energy_of(disk, before, promise.intent);
+    return energy > 0 ? std::max(0.0, energy_of(disk, now, promise.intent) / energy - 1) : 0;
   };
   if (!flipped.empty()) {
     if (mend(disk, promise, uv, kept.mending) == 0) kept.mending.energy_rise = rise(uv);

@@ -28,17 +28,18 @@ struct Promise {
   Guarantee guarantee = Guarantee::flip_free;
   RepairMethod repair = RepairMethod::untangle;
   MapIntent intent = {};  ///< held vertices stay; a chart that has some, or springs, is not split
-  /// A new map's energy may be higher by this share of the old one's; rather than that the chart is
-  /// split.
+  /// What a new map's energy has above the least there is may be more by this share of what the old
+  /// one's has; rather than that the chart is split.
   double most_rise = std::numeric_limits<double>::infinity();
 };
 
 /// uv: the solved map of the chart's disk, in disk units. Afterwards no triangle of a part is
 /// flipped (flip_free), and no two of a part overlap (bijective), by exact tests; under
 /// Guarantee::none the map stays as it is. A chart with overlaps has a new map (map_injectively()),
-/// and is split only where none is found. The energy that mending.energy_rise tells of is that of
-/// intent.rigidity. Throws Error{guarantee_failed}, where = "/guarantee", where constraints leave
-/// no way, or a single triangle has no area in the map; Error{cancelled}.
+/// and is split only where none is found. The energy that mending.energy_rise tells of is
+/// intent.own, for angles D_angle; where it fell the rise is 0. Throws Error{guarantee_failed},
+/// where = "/guarantee", where constraints leave no way, or a single triangle has no area in the
+/// map; Error{cancelled}.
 Kept keep_promise(std::shared_ptr<const Chart> chart, const Disk& disk, UvMap uv,
                   const Promise& promise);
 

@@ -10,17 +10,20 @@
 #include "core/linear/eliminate.hpp"
 #include "core/solve/holds.hpp"
 #include "core/solve/local_step.hpp"
+#include "core/solve/profile.hpp"
 
 namespace unwrapd {
 
-/// E = sum A_t [ fit(J_t) + weight (|J_t|^2 / 2 + (1 + det^2 J_t) / 2) / chi(det J_t) - 2 weight ]
-/// with chi(d) = (d + sqrt(epsilon^2 + d^2)) / 2, plus dirichlet (|J_t|^2 + |J_t^-1|^2 - 4) in the
-/// bracket, and w |u_v - at|^2 for every spring. fit: the method's energy, Eq. (5).
+/// E = sum A_t [ own(J_t) + weight wall(J_t) + steep wall^4(J_t) + dirichlet SD(J_t) ],
+/// wall and SD, the symmetric Dirichlet energy, as in profile.hpp, and w |u_v - at|^2 for every
+/// spring.
 struct Barrier {
-  Rigidity rigidity;
+  Rigidity rigidity;  ///< of OwnEnergy::fit
   double weight = 1;
   double epsilon = 0;    ///< 0: infinite unless every triangle is positive
-  double dirichlet = 0;  ///< of the symmetric Dirichlet energy, steeper than the wall; epsilon is 0
+  double dirichlet = 0;  ///< steeper than the wall; epsilon is 0
+  double steep = 0;      ///< bounds stretch, and hardly moves what is stretched less
+  OwnEnergy own = OwnEnergy::fit;
 };
 
 /// Triangles whose free vertices are to be moved. Vertices are numbered by faces.
@@ -30,6 +33,7 @@ struct BarrierMesh {
   FreeVertices free;               ///< one slot a vertex
   std::vector<Spring> springs = {};
   std::stop_token stop = {};  ///< of the job: what goes over all faces looks at it (cancel.hpp)
+  std::vector<double> share = {};  ///< A_t in the energy, one a face; empty: that of rest
 };
 
 /// The same shape, larger or smaller: all that a barrier's target is looked at for.
@@ -38,6 +42,16 @@ inline RestTriangle scaled(RestTriangle rest, double by) {
   rest.area *= by * by;
   return rest;
 }
+
+/// Gradient and projected Hessian of one triangle, by the coordinates of its corners.
+struct BarrierElement {
+  Eigen::Matrix<double, 6, 1> gradient;
+  Eigen::Matrix<double, 6, 6> hessian;
+};
+
+/// Of face t.
+BarrierElement barrier_element(const BarrierMesh& mesh, std::size_t t, std::span<const Vec2> uv,
+                               const Barrier& barrier);
 
 /// Throws Error{cancelled}, as all below.
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier);

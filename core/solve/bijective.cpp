@@ -1,10 +1,9 @@
 // After Smith and Schaefer (2015): from an injective map downhill in the symmetric Dirichlet energy
-// plus the boundary's own barrier, by steps after which the map is still injective. Steps are
-// those of SLIM (Rabinovich et al. 2017), whose matrix takes in the barrier's curvature as blocks
-// on the diagonal: the pattern stays that of the mesh. Neither a scaffold of triangles around the
-// boundary nor collision times along the step: the exact test of the boundary alone is cheap, and a
-// map that passes it is right whatever came between. The method's own energy then has the last
-// word (settle_apart()).
+// plus the boundary's own barrier, by steps after which the map is still injective; then in the
+// method's own energy (settle_apart()). Maps of angles are unfolded over the surface, too, before
+// they are over the method's own map: straight to that one Cow's legs get stuck. Neither a scaffold
+// of triangles around the boundary nor collision times along the step: the exact test of the
+// boundary alone is cheap, and a map that passes it is right whatever came between.
 #include "core/solve/bijective.hpp"
 
 #include <algorithm>
@@ -14,101 +13,38 @@
 
 #include "core/cancel.hpp"
 #include "core/error.hpp"
+#include "core/measure/distortion.hpp"
+#include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
-#include "core/solve/boundary_barrier.hpp"
 #include "core/solve/convex_map.hpp"
 #include "core/solve/fill_holes.hpp"
 #include "core/solve/hold_align.hpp"
-#include "core/solve/injective_step.hpp"
-#include "core/solve/kept.hpp"
 #include "core/solve/settle_apart.hpp"
 #include "core/solve/symmetric_dirichlet.hpp"
 
 namespace unwrapd {
 namespace {
 
-constexpr int kMostIterations = 300;
-constexpr std::size_t kWindow = 5;   // iterations, over which the energy must fall by this share
-constexpr double kTolerance = 1e-3;  // (1e-2: the map of Cow ends at a sixth more energy)
-
-class Parting {
- public:
-  Parting(const Disk& disk, const FreeVertices& free, UvMap start, Executor& executor)
-      : disk_(disk),
-        executor_(executor),
-        barrier_(disk),
-        system_(disk.faces, free, disk.stop),
-        uv_(std::move(start)),
-        gradient_(uv_.size()),
-        blocks_(uv_.size()),
-        step_(uv_.size(), Vec2::Zero()) {
-    check_memory(disk, system_.bytes());
-    energy_ = energy_of(uv_);
-  }
-
-  [[nodiscard]] const UvMap& uv() const { return uv_; }
-  [[nodiscard]] double energy() const { return energy_; }
-
-  /// False where no step lowers the energy.
-  bool iterate() { return find_step() && search_along_step(); }
-
- private:
-  [[nodiscard]] double energy_of(const UvMap& uv) const {
-    const double own = symmetric_dirichlet_energy(disk_, uv, executor_);
-    return std::isfinite(own) ? own + contact_energy(barrier_.contacts(uv), uv) : own;
-  }
-
-  void add_contacts() {
-    const std::vector<Contact> contacts = barrier_.contacts(uv_);
-    add_contact_gradient(contacts, uv_, gradient_);
-    std::fill(blocks_.begin(), blocks_.end(), Vec3::Zero());
-    add_contact_curvature(contacts, uv_, blocks_);
-    for (std::size_t v = 0; v < blocks_.size(); ++v) {
-      if (blocks_[v].isZero(0)) continue;
-      const auto corner = static_cast<std::size_t>(disk_.corners.corner[disk_.corners.begin[v]]);
-      const std::size_t i = 2 * (corner % 3);
-      PairElement element{};
-      element[i][i] = blocks_[v][0];
-      element[i + 1][i] = blocks_[v][1];
-      element[i + 1][i + 1] = blocks_[v][2];
-      system_.add(corner / 3, element);
-    }
-  }
-
-  bool find_step() {
-    symmetric_dirichlet_gradient(disk_, uv_, gradient_, executor_);
-    system_.clear();
-    for (std::size_t t = 0; t < disk_.faces.size(); ++t)
-      system_.add(
-          t, proxy_element(disk_.rest[t], jacobian(disk_.rest[t], uv_edges(disk_.faces[t], uv_))));
-    add_contacts();
-    if (!system_.factor()) return false;
-    std::vector<Vec2> change;
-    for (std::size_t v = 1; v < uv_.size(); ++v) change.emplace_back(-gradient_[v]);
-    system_.solve(change);
-    std::copy(change.begin(), change.end(), step_.begin() + 1);
-    return true;
-  }
-
-  bool search_along_step() {
-    double slope = 0;
-    for (std::size_t v = 0; v < uv_.size(); ++v) slope += gradient_[v].dot(step_[v]);
-    const auto energy = [this](const UvMap& uv) { return energy_of(uv); };
-    const std::optional<double> after = injective_step(disk_, step_, slope, energy, uv_);
-    if (after) energy_ = *after;
-    return after.has_value();
-  }
-
-  const Disk& disk_;
-  Executor& executor_;
-  BoundaryBarrier barrier_;
-  PairSystem system_;
-  UvMap uv_;
-  double energy_ = 0;
-  std::vector<Vec2> gradient_;
-  std::vector<Vec3> blocks_;
-  std::vector<Vec2> step_;
+/// What a map shall be like: a disk with rest triangles, and what each of them weighs (empty: its
+/// area).
+struct Target {
+  Disk disk;
+  std::vector<double> share;
 };
+
+/// The surface itself. For angles the method's own map, without flips: the new one then has the
+/// angles nearest to its, and its sizes where nothing presses.
+Target target_of(const Disk& disk, const MapIntent& intent, const UvMap& uv) {
+  if (intent.own != OwnEnergy::mips || !flipped_faces(disk.faces, uv, intent.stop).empty())
+    return {disk, {}};
+  TriMesh mesh;
+  mesh.faces.assign(disk.faces.begin(), disk.faces.end());
+  for (const Vec2& u : uv) mesh.positions.emplace_back(u.x(), u.y(), 0);
+  Target target{disk, {}};
+  target.disk.rest = flatten(mesh, intent.stop);
+  for (const RestTriangle& rest : disk.rest) target.share.push_back(rest.area);
+  return target;
+}
 
 UvMap to_best_scale(const Disk& disk, UvMap uv) {
   const double scale = best_scale(disk, uv);
@@ -162,6 +98,13 @@ UvMap laid_along(const UvMap& old, const UvMap& uv) {
   return laid;
 }
 
+UvMap of_the_area_of(const UvMap& old, const Disk& disk, UvMap uv) {
+  const double scale =
+      std::sqrt(uv_area(disk.rest, disk.faces, old) / uv_area(disk.rest, disk.faces, uv));
+  for (Vec2& u : uv) u *= scale;
+  return uv;
+}
+
 /// The map moved to where its springs pull it no further: nothing else feels where it lies.
 UvMap moved_to_rest(UvMap uv, const std::vector<Spring>& springs) {
   Vec2 pull = Vec2::Zero();
@@ -179,33 +122,24 @@ void keep_apart(const Disk& disk, UvMap moved, UvMap& uv) {
   if (is_plainly_injective(disk.faces, disk.loops, moved)) uv = std::move(moved);
 }
 
-bool has_settled(const std::vector<double>& energy) {
-  return energy.size() > kWindow &&
-         energy[energy.size() - 1 - kWindow] - energy.back() <= kTolerance * energy.back();
-}
-
 }  // namespace
 
-bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv, Executor& executor) {
+bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   throw_if_cancelled(intent.stop);
   std::optional<UvMap> start = injective_start(disk);
   throw_if_cancelled(intent.stop);
   if (!start) return false;
-  std::vector<char> fixed(disk.positions.size(), 0);
-  fixed.front() = 1;  // translation costs nothing
-  const FreeVertices free = number_free(fixed);
-  Parting parting(disk, free, std::move(*start), executor);
-  std::vector<double> energy{parting.energy()};
-  for (int k = 0; k < kMostIterations && !has_settled(energy); ++k) {
-    throw_if_cancelled(intent.stop);
-    if (!parting.iterate()) break;
-    energy.push_back(parting.energy());
+  const Target target = target_of(disk, intent, uv);
+  UvMap settled = std::move(*start);
+  unfold_apart(disk, {}, intent.stop, settled);
+  if (!target.share.empty()) {
+    keep_apart(disk, of_the_area_of(uv, disk, settled), settled);
+    unfold_apart(target.disk, target.share, intent.stop, settled);
   }
   throw_if_cancelled(intent.stop);
-  UvMap settled = parting.uv();
   const bool is_drawn = !intent.springs.empty();
   if (is_drawn) keep_apart(disk, held_start(settled, {{}, intent.springs}), settled);
-  settle_apart(disk, intent, settled);
+  settle_apart(target.disk, intent, settled, target.share);
   throw_if_cancelled(intent.stop);
   keep_apart(disk, is_drawn ? moved_to_rest(settled, intent.springs) : laid_along(uv, settled),
              settled);

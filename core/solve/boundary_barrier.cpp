@@ -30,10 +30,6 @@ Gap gap_of(const Contact& contact, std::span<const Vec2> uv) {
   return {distance, across / distance, {1, s - 1, -s}};
 }
 
-std::array<Index, 3> vertices_of(const Contact& contact) {
-  return {contact.vertex, contact.edge[0], contact.edge[1]};
-}
-
 struct Entry {
   std::size_t cell, edge;
   auto operator<=>(const Entry&) const = default;
@@ -82,12 +78,16 @@ double area_around(const Disk& disk, Index v) {
 
 }  // namespace
 
+Triangle vertices_of(const Contact& contact) {
+  return {contact.vertex, contact.edge[0], contact.edge[1]};
+}
+
 BoundaryBarrier::BoundaryBarrier(const Disk& disk) {
   double total = 0;
   for (const BoundaryLoop& loop : disk.loops)
     for (const Index h : loop) {
       const Index a = start_of(disk.faces, h), b = end_of(disk.faces, h);
-      edges_.push_back({{a, b}, (disk.positions[a] - disk.positions[b]).norm()});
+      edges_.push_back({{a, b}, disk.rest[h / 3].edge[static_cast<std::size_t>(h % 3)].norm()});
       total += edges_.back().length;
     }
   for (Edge& edge : edges_)
@@ -100,7 +100,7 @@ BoundaryBarrier::BoundaryBarrier(const Disk& disk) {
     }
 }
 
-std::vector<Contact> BoundaryBarrier::contacts(std::span<const Vec2> uv) const {
+std::vector<Contact> BoundaryBarrier::contacts(std::span<const Vec2> uv, double ahead) const {
   Vec2 low = uv[edges_.front().ends[0]], high = low;
   for (const Corner& corner : corners_) {
     low = low.cwiseMin(uv[corner.vertex]);
@@ -109,7 +109,7 @@ std::vector<Contact> BoundaryBarrier::contacts(std::span<const Vec2> uv) const {
   EdgeGrid grid(low, high, edges_.size());
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     const Vec2 &a = uv[edges_[e].ends[0]], &b = uv[edges_[e].ends[1]];
-    const Vec2 margin = Vec2::Constant(kReach * edges_[e].length);
+    const Vec2 margin = Vec2::Constant(ahead * kReach * edges_[e].length);
     grid.add(e, a.cwiseMin(b) - margin, a.cwiseMax(b) + margin);
   }
   grid.sort();
@@ -120,7 +120,7 @@ std::vector<Contact> BoundaryBarrier::contacts(std::span<const Vec2> uv) const {
       if (edge.ends[0] == corner.vertex || edge.ends[1] == corner.vertex) return;
       const double reach = kReach * std::min(edge.length, corner.length);
       const Contact contact{corner.vertex, edge.ends, reach, corner.weight};
-      if (gap_of(contact, uv).distance < reach) found.push_back(contact);
+      if (gap_of(contact, uv).distance < ahead * reach) found.push_back(contact);
     });
   return found;
 }
@@ -145,19 +145,20 @@ void add_contact_gradient(std::span<const Contact> contacts, std::span<const Vec
   }
 }
 
-void add_contact_curvature(std::span<const Contact> contacts, std::span<const Vec2> uv,
-                           std::span<Vec3> blocks) {
-  for (const Contact& contact : contacts) {
-    const Gap gap = gap_of(contact, uv);
-    const double q = contact.reach / gap.distance;
-    if (!(q > 1)) continue;
-    const double bend = 2 * contact.weight * q * (3 * q - 2) / (gap.distance * gap.distance);
-    const Vec3 square(gap.normal.x() * gap.normal.x(), gap.normal.x() * gap.normal.y(),
-                      gap.normal.y() * gap.normal.y());
-    // g g' is no more than the sum of |shares|, which is 2, times its blocks |share_i| n n'.
-    for (std::size_t i = 0; i < 3; ++i)
-      blocks[vertices_of(contact)[i]] += 2 * std::abs(gap.share[i]) * bend * square;
+PairElement contact_curvature(const Contact& contact, std::span<const Vec2> uv) {
+  PairElement element{};
+  const Gap gap = gap_of(contact, uv);
+  const double q = contact.reach / gap.distance;
+  if (!(q > 1)) return element;
+  const double bend = 2 * contact.weight * q * (3 * q - 2) / (gap.distance * gap.distance);
+  std::array<double, 6> along{};  // the gradient of the distance
+  for (std::size_t i = 0; i < 3; ++i) {
+    along[2 * i] = gap.share[i] * gap.normal.x();
+    along[2 * i + 1] = gap.share[i] * gap.normal.y();
   }
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t k = 0; k <= i; ++k) element[i][k] = bend * along[i] * along[k];
+  return element;
 }
 
 }  // namespace unwrapd

@@ -6,11 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "core/linear/pair_system.hpp"
 #include "core/solve/disk.hpp"
 
 namespace unwrapd {
 
-/// A boundary vertex and a boundary edge without it, nearer to each other than `reach`.
+/// A boundary vertex and a boundary edge without it, which push each other apart where they are
+/// nearer than `reach`.
 struct Contact {
   Index vertex;
   std::array<Index, 2> edge;
@@ -18,21 +20,25 @@ struct Contact {
   double weight;
 };
 
+/// The vertex, then the ends of the edge.
+Triangle vertices_of(const Contact& contact);
+
 /// The energy sum w (reach / d - 1)^2 over all contacts, d the distance in the map: 0 where nothing
 /// is near, without bound as d goes to 0 (Smith, Schaefer 2015, Sec. 4). The reach is a quarter of
-/// the shortest of the three boundary edges concerned, on the surface; the weight is the area of
-/// the triangles around the vertex, so that it is of the size of their own energy.
+/// the shortest of the three boundary edges concerned, as in the rest triangles; the weight is the
+/// area of the triangles around the vertex, so that it is of the size of their own energy.
 class BoundaryBarrier {
  public:
   explicit BoundaryBarrier(const Disk& disk);
 
-  /// In an order that depends on the map alone. uv: one a vertex of the disk, finite.
-  [[nodiscard]] std::vector<Contact> contacts(std::span<const Vec2> uv) const;
+  /// Those nearer than `ahead` times their reach, in an order that depends on the map alone. uv:
+  /// one a vertex of the disk, finite.
+  [[nodiscard]] std::vector<Contact> contacts(std::span<const Vec2> uv, double ahead = 1) const;
 
  private:
   struct Edge {
     std::array<Index, 2> ends;
-    double length;  ///< on the surface, no less than a tenth of the mean
+    double length;  ///< no less than a tenth of the mean
   };
   struct Corner {
     Index vertex;
@@ -50,9 +56,8 @@ double contact_energy(std::span<const Contact> contacts, std::span<const Vec2> u
 void add_contact_gradient(std::span<const Contact> contacts, std::span<const Vec2> uv,
                           std::span<Vec2> gradient);
 
-/// Adds to each vertex's block [xx, xy, yy] of a block-diagonal matrix that bounds the Hessian of
-/// the contacts, their curvature along the distances, from above.
-void add_contact_curvature(std::span<const Contact> contacts, std::span<const Vec2> uv,
-                           std::span<Vec3> blocks);
+/// The curvature along the distance, the lower triangle by vertices_of(): it bounds the Hessian
+/// from above, but for how the distance itself bends.
+PairElement contact_curvature(const Contact& contact, std::span<const Vec2> uv);
 
 }  // namespace unwrapd

@@ -8,6 +8,7 @@
 #include "core/solve/disk.hpp"
 #include "core/solve/holds.hpp"
 #include "core/solve/local_step.hpp"
+#include "core/solve/profile.hpp"
 
 namespace unwrapd {
 
@@ -16,8 +17,9 @@ struct MapIntent {
   Rigidity rigidity;       ///< the energy whose rise shall be small
   std::vector<char> held;  ///< one a vertex, 1: it must not move; empty: none
   std::stop_token stop;
-  bool in_place = false;  ///< only near the flips: never a new map of the whole disk
-  int rings = 2;          ///< how far around a flip vertices are let loose at first; >= 1
+  bool in_place = false;           ///< only near the flips: never a new map of the whole disk
+  int rings = 2;                   ///< how far around a flip vertices are let loose at first; >= 1
+  OwnEnergy own = OwnEnergy::fit;  ///< of a new map of the whole (bijective.hpp)
   std::vector<Spring> springs = {};  ///< what draws vertices to places, weighed like rigidity
 };
 

@@ -75,6 +75,29 @@ TEST(Unwrap, GivesOneTexelDensityToAllCharts) {
   }
 }
 
+TEST(Unwrap, SaysWhichMapsAreNotTheMethodsOwn) {
+  const Surface ramp = shapes::surface_of(  // more than a turn, which lies flat on itself
+      shapes::mapped_grid(96, 4, shapes::Wrap::none, [](double u, double v) {
+        const double angle = shapes::kTurn * 1.6 * u, radius = 1 + 0.5 * (1 - v);
+        return Vec3(radius * std::cos(angle), radius * std::sin(angle), 0.6 * u);
+      }));
+  const auto says_so = [](const Report& report) {
+    return std::any_of(report.notes.begin(), report.notes.end(), [](const std::string& note) {
+      return note.find("have new maps without overlaps") != std::string::npos;
+    });
+  };
+  for (const Method method : {Method::arap, Method::slim, Method::abf, Method::hybrid}) {
+    const Report free = unwrapped({ramp}, {.method = method}).report;
+    const Report apart =
+        unwrapped({ramp}, {.method = method, .guarantee = Guarantee::bijective}).report;
+    EXPECT_FALSE(says_so(free));
+    EXPECT_EQ(says_so(apart), apart.charts[0].mending.overlaps > 0);
+    EXPECT_EQ(apart.charts[0].overlaps, 0);
+    EXPECT_GE(apart.charts[0].mending.energy_rise, 0);
+    EXPECT_TRUE(says_so(apart) || (method != Method::arap && method != Method::slim));
+  }
+}
+
 TEST(Unwrap, CountsInItsReportWhatItAnswered) {
   const Unwrapped u = unwrapped(shapes::sphere(3));
   EXPECT_EQ(u.report.input.faces, 512);

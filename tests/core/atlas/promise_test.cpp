@@ -94,6 +94,23 @@ TEST(Promise, OfInjectivityPartsAStripThatLiesOnItselfAndSplitsItOnlyWhereThatIs
   }
 }
 
+TEST(Promise, TellsOfNoRiseWhereTheEnergyFell) {
+  const auto owned = disk_of(spiral());
+  UvMap uv = from_above(owned.disk);
+  if (!flipped_faces(owned.disk.faces, uv).empty())
+    for (Vec2& u : uv) u.x() = -u.x();
+  for (Vec2& u : uv) u *= 3;  // far from the least energy
+  for (const OwnEnergy own : {OwnEnergy::fit, OwnEnergy::symmetric_dirichlet, OwnEnergy::mips}) {
+    Promise promise{.guarantee = Guarantee::bijective};
+    promise.intent.own = own;
+    const Kept kept = keep_promise(owned.chart, owned.disk, uv, promise);
+    expect_kept(*owned.chart, kept, Guarantee::bijective);
+    ASSERT_GT(kept.mending.overlaps, 0);
+    EXPECT_GE(kept.mending.energy_rise, 0);
+    EXPECT_LT(kept.mending.energy_rise, own == OwnEnergy::mips ? 0.05 : 1e-9);
+  }
+}
+
 /// A tube that no convex map draws in double precision, with two ears on its rim.
 struct EaredTube {
   static constexpr Index kAround = 8, kRings = 90, kRim = 1 + (kRings - 1) * kAround;

@@ -16,7 +16,6 @@
 #include "tests/core/hard_shapes.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
-#include "tests/core/two_threads.hpp"
 
 namespace unwrapd {
 namespace {
@@ -56,8 +55,7 @@ TEST(Bijective, PartsARampThatLiesOnItself) {
     const OwnedDisk d = disk_of(ramp(Index(60 * turns), 4, turns));
     UvMap uv = solved(d.disk);
     ASSERT_GT(overlaps(d.disk, uv), 0U);
-    SerialExecutor serial;
-    ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+    ASSERT_TRUE(map_injectively(d.disk, {}, uv));
     expect_injective(d.disk, uv, 4.5);  // 4 is isometric
   }
 }
@@ -77,19 +75,17 @@ double least_gap(const Disk& disk, const UvMap& uv) {
 TEST(Bijective, LeavesAGapBetweenBoundariesThatPress) {
   const OwnedDisk d = disk_of(ramp(150, 4, 2.5));
   UvMap uv = solved(d.disk);
-  SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, uv));
   EXPECT_LT(least_gap(d.disk, uv), 1);
   EXPECT_GT(least_gap(d.disk, uv), 0.25);
 }
 
 TEST(Bijective, EndsWithTheEnergyThatIsAskedFor) {
   const OwnedDisk d = disk_of(shapes::sphere_cap(24, 12, 2));
-  SerialExecutor serial;
   UvMap rigid(d.disk.positions.size(), Vec2::Zero()), conformal = rigid;
-  ASSERT_TRUE(map_injectively(d.disk, {}, rigid, serial));
-  ASSERT_TRUE(map_injectively(d.disk, {.rigidity = {.lambda = 0}, .held = {}, .stop = {}},
-                              conformal, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, rigid));
+  ASSERT_TRUE(
+      map_injectively(d.disk, {.rigidity = {.lambda = 0}, .held = {}, .stop = {}}, conformal));
   const auto angle = [&](const UvMap& uv) {
     return distortion(distortion_sums(d.disk.rest, d.disk.faces, uv)).angle - 2;
   };
@@ -99,8 +95,7 @@ TEST(Bijective, EndsWithTheEnergyThatIsAskedFor) {
 TEST(Bijective, KeepsHolesOpen) {
   const OwnedDisk d = disk_of(shapes::pierced_disk(12, 5));
   UvMap uv = solved(d.disk);
-  SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, uv));
   expect_injective(d.disk, uv, 4.5);
 }
 
@@ -110,8 +105,7 @@ TEST(Bijective, LaysAFlatSurfaceWhereItWas) {
   for (const Vec3& p : d.disk.positions)
     turned.emplace_back(3 + 0.6 * p.x() - 0.8 * p.y(), 0.8 * p.x() + 0.6 * p.y() - 2);
   UvMap uv = turned;
-  SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, {}, uv));
   for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT((uv[v] - turned[v]).norm(), 0.02) << v;
 }
 
@@ -122,8 +116,7 @@ TEST(Bijective, IsDrawnByItsSprings) {
     turned.emplace_back(3 + 0.6 * p.x() - 0.8 * p.y(), 0.8 * p.x() + 0.6 * p.y() - 2);
   MapIntent intent;
   for (const std::size_t v : {0U, 9U, 44U, 79U}) intent.springs.push_back({Index(v), turned[v], 1});
-  SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, intent, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, intent, uv));
   for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT((uv[v] - turned[v]).norm(), 0.02) << v;
 }
 
@@ -133,23 +126,18 @@ TEST(Bijective, IsStretchedByStrongSprings) {
   MapIntent intent;
   for (const std::size_t v : {0U, 9U, 70U, 79U})
     intent.springs.push_back({Index(v), 1.2 * d.disk.positions[v].head<2>(), 1e4});
-  SerialExecutor serial;
-  ASSERT_TRUE(map_injectively(d.disk, intent, uv, serial));
+  ASSERT_TRUE(map_injectively(d.disk, intent, uv));
   for (const Spring& spring : intent.springs)
     EXPECT_LT((uv[std::size_t(spring.vertex)] - spring.at).norm(), 0.01) << spring.vertex;
 }
 
-TEST(Bijective, GivesTheSameBytesForAnyExecutor) {
-  const OwnedDisk d = disk_of(ramp(300, 10, 1.5));  // more than one block of faces
+TEST(Bijective, GivesTheSameBytesAgain) {
+  const OwnedDisk d = disk_of(ramp(90, 6, 1.5));
   const UvMap before = solved(d.disk);
-  UvMap once = before, again = before, threaded = before;
-  SerialExecutor serial;
-  TwoThreads two;
-  ASSERT_TRUE(map_injectively(d.disk, {}, once, serial));
-  ASSERT_TRUE(map_injectively(d.disk, {}, again, serial));
-  ASSERT_TRUE(map_injectively(d.disk, {}, threaded, two));
+  UvMap once = before, again = before;
+  ASSERT_TRUE(map_injectively(d.disk, {}, once));
+  ASSERT_TRUE(map_injectively(d.disk, {}, again));
   EXPECT_EQ(once, again);
-  EXPECT_EQ(once, threaded);
 }
 
 TEST(Bijective, StopsWhenAsked) {
@@ -158,9 +146,8 @@ TEST(Bijective, StopsWhenAsked) {
   const UvMap before = uv;
   std::stop_source source;
   source.request_stop();
-  SerialExecutor serial;
   try {
-    map_injectively(d.disk, {.rigidity = {}, .held = {}, .stop = source.get_token()}, uv, serial);
+    map_injectively(d.disk, {.rigidity = {}, .held = {}, .stop = source.get_token()}, uv);
     FAIL() << "went on";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::cancelled);
@@ -175,8 +162,7 @@ TEST(Bijective, LeavesTheMapWhereNoStartIsInjectiveInDoublePrecision) {
   }));
   UvMap uv(d.disk.positions.size(), Vec2(1, 2));
   const UvMap before = uv;
-  SerialExecutor serial;
-  EXPECT_FALSE(map_injectively(d.disk, {}, uv, serial));
+  EXPECT_FALSE(map_injectively(d.disk, {}, uv));
   EXPECT_EQ(uv, before);
 }
 
@@ -185,8 +171,7 @@ TEST(Bijective, MapsEveryHardDisk) {
     SCOPED_TRACE(name);
     const OwnedDisk d = disk_of(mesh);
     UvMap uv(d.disk.positions.size(), Vec2::Zero());
-    SerialExecutor serial;
-    if (map_injectively(d.disk, {}, uv, serial))
+    if (map_injectively(d.disk, {}, uv))
       EXPECT_TRUE(is_plainly_injective(d.disk.faces, d.disk.loops, uv));
     else
       ADD_FAILURE() << "no start";
@@ -200,8 +185,7 @@ TEST(Bijective, MapsRealMeshesThatLieOnThemselves) {
     const OwnedDisk d = disk_of(read_obj(test_data() / name));
     UvMap uv = solved(d.disk);
     ASSERT_GT(overlaps(d.disk, uv), 0U);
-    SerialExecutor serial;
-    ASSERT_TRUE(map_injectively(d.disk, {}, uv, serial));
+    ASSERT_TRUE(map_injectively(d.disk, {}, uv));
     expect_injective(d.disk, uv, 4.6);
   }
 }

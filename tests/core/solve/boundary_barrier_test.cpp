@@ -100,14 +100,13 @@ TEST(BoundaryBarrier, HasTheSlopeOfItsDifferences) {
     }
 }
 
-TEST(BoundaryBarrier, IsBentNoMoreThanItsBlocks) {
+TEST(BoundaryBarrier, IsBentNoMoreThanItsCurvature) {
   const std::vector<Contact> contact{{0, {1, 2}, 1, 0.5}};
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> place(-0.4, 0.4);
   for (int k = 0; k < 200; ++k) {
     UvMap uv{Vec2(place(rng), 0.5 + place(rng)), Vec2(-0.3, 0), Vec2(0.3, 0)};
-    std::vector<Vec3> blocks(3, Vec3::Zero());
-    add_contact_curvature(contact, uv, blocks);
+    const PairElement bend = contact_curvature(contact.front(), uv);
     const Vec2 way(place(rng), place(rng));
     const double h = 1e-4, at = contact_energy(contact, uv);
     double around = -2 * at;
@@ -116,10 +115,37 @@ TEST(BoundaryBarrier, IsBentNoMoreThanItsBlocks) {
       moved[0] += sign * h * way;
       around += contact_energy(contact, moved);
     }
-    const double bound = way.x() * way.x() * blocks[0][0] + 2 * way.x() * way.y() * blocks[0][1] +
-                         way.y() * way.y() * blocks[0][2];
+    const double bound = way.x() * way.x() * bend[0][0] + 2 * way.x() * way.y() * bend[1][0] +
+                         way.y() * way.y() * bend[1][1];
     EXPECT_LE(around / (h * h), bound * (1 + 1e-3) + 1e-6);
   }
+}
+
+TEST(BoundaryBarrier, IsBentAsItsDifferencesWhereTheEdgeMovesAcrossItself) {
+  const std::vector<Contact> contact{{0, {1, 2}, 1, 0.5}};
+  const UvMap uv{Vec2(0.1, 0.4), Vec2(-0.3, 0), Vec2(0.5, 0)};
+  const PairElement bend = contact_curvature(contact.front(), uv);
+  const std::array<double, 3> way{1, 0.5, 0.5};  // v of the vertex and of both ends: no turn
+  const double h = 1e-4;
+  double around = -2 * contact_energy(contact, uv), bound = 0;
+  for (double sign : {-1.0, 1.0}) {
+    UvMap moved = uv;
+    for (std::size_t i = 0; i < 3; ++i) moved[i].y() += sign * h * way[i];
+    around += contact_energy(contact, moved);
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      bound += way[i] * way[k] * bend[2 * std::max(i, k) + 1][2 * std::min(i, k) + 1];
+  EXPECT_NEAR(around / (h * h), bound, 1e-4 * bound);
+}
+
+TEST(BoundaryBarrier, FindsWhatIsNearBeforeItActs) {
+  const OwnedDisk d = disk_of(shapes::pierced_disk(12, 5));
+  const BoundaryBarrier barrier(d.disk);
+  const UvMap uv = crowded(d.disk, 3);
+  const auto acting = barrier.contacts(uv), near = barrier.contacts(uv, 2);
+  EXPECT_GT(near.size(), acting.size());
+  EXPECT_EQ(contact_energy(near, uv), contact_energy(acting, uv));
 }
 
 TEST(BoundaryBarrier, GrowsWithoutBound) {
