@@ -82,10 +82,10 @@ void Reading::declare(CLI::App& app) {
                "Ask the server that runs with these options whether it is well; exit with 0 or 1");
   each_row([&](const ConfigGroup& group, const ConfigRow& row) {
     const std::string flag = "--" + std::string(row.heading.name);
-    CLI::Option* option =
-        row.kind == ConfigKind::on_off ? app.add_flag(flag) : app.add_option(flag);
+    const bool is_switch = row.kind == ConfigKind::on_off || row.kind == ConfigKind::switch_of_text;
+    CLI::Option* option = is_switch ? app.add_flag(flag) : app.add_option(flag);
     option->description(std::string(row.heading.what))->group(std::string(group.title));
-    if (row.kind == ConfigKind::on_off) return;
+    if (is_switch) return;
     option->type_name(std::string(row.heading.takes))->default_str(row.get(config_));
   });
 }
@@ -198,7 +198,7 @@ std::string quoted(const std::string& text) {
 std::string toml_value(const ConfigRow& row, const Config& config) {
   const std::string value = row.get(config);
   if (row.heading.is_secret) return value.empty() ? "\"\"" : "\"********\"";
-  if (row.kind == ConfigKind::text) return quoted(value);
+  if (row.kind == ConfigKind::text || row.kind == ConfigKind::switch_of_text) return quoted(value);
   if (row.kind != ConfigKind::list) return value;
   std::string items;
   for (const std::string& item : split_list(value))

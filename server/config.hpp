@@ -18,6 +18,9 @@
 
 namespace unwrapd::server {
 
+/// Each job in a process of its own (job_process.hpp); automatic: where the kernel allows it.
+enum class Isolate { off, automatic, on };
+
 /// What clients may take of the HTTP edge, and how it is reached.
 struct EdgeConfig {
   int max_requests = 64;       ///< answered at once, event streams not counted
@@ -40,7 +43,8 @@ struct Config {
   int threads = 1;  ///< for each job
   int keep_seconds = 7 * 24 * 60 * 60;
   int drain_seconds = 30;
-  bool isolate = false;  ///< each job in a process of its own (job_process.hpp)
+  int grace_seconds = 5;  ///< for a job that was told to stop (worker_pool.hpp)
+  Isolate isolate = Isolate::automatic;
   LogLevel log_level = LogLevel::info;
   LogFormat log_format = LogFormat::json;
   DiskLimits disk;

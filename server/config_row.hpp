@@ -20,7 +20,8 @@
 
 namespace unwrapd::server {
 
-enum class ConfigKind { number, text, on_off, list };
+/// A switch is a flag that may go without a value, which is then "true".
+enum class ConfigKind { number, text, on_off, switch_of_text, list };
 
 /// What an option is called and said to do.
 struct ConfigHeading {

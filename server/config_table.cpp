@@ -79,6 +79,22 @@ ConfigGroup edge() {
           text({"tls-key", "PATH", "PEM file of its key"}, edge, &E::tls_key)}};
 }
 
+/// true and false are on and off, which is what the option once was.
+ConfigRow isolate_row() {
+  ConfigRow row = choice(
+      {"isolate", "",
+       "Each job in a process of its own, without files or network: a crash "
+       "costs that job alone; --isolate=auto (where the kernel allows it), on "
+       "or off"},
+      Names<Isolate>{{"auto", Isolate::automatic}, {"on", Isolate::on}, {"off", Isolate::off}},
+      &Config::isolate);
+  row.kind = ConfigKind::switch_of_text;
+  row.set = [set = row.set](Config& config, const std::string& text) {
+    set(config, text == "true" ? "on" : text == "false" ? "off" : text);
+  };
+  return row;
+}
+
 ConfigGroup working() {
   return {
       .title = "Working",
@@ -93,13 +109,14 @@ ConfigGroup working() {
           number({"solver-cache-bytes", "N",
                   "Factors and maps kept for further jobs on the same mesh"},
                  {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::cache_bytes),
-          on_off({"isolate", "",
-                  "Each job in a process of its own, without files or network: a crash costs that "
-                  "job alone"},
-                 &Config::isolate),
+          isolate_row(),
+          number({"grace-seconds", "N",
+                  "How long a job that was told to stop, by --max-job-seconds or its owner, may go "
+                  "on; then its process is killed, or its thread given up"},
+                 {0, 3600}, &Config::grace_seconds),
           number({"drain-seconds", "N",
                   "How long running jobs may go on after SIGTERM, or until a second one; jobs that "
-                  "do not stop and last answers may take 20 s more"},
+                  "do not stop and last answers may take 15 s and --grace-seconds more"},
                  {0, kMaxCount}, &Config::drain_seconds)}};
 }
 

@@ -17,10 +17,13 @@ bool is_news(const StageEvent& event, const StageEvent& told) {
 
 FeedOutput::FeedOutput(const RunningJob& job, BlobStore& blobs, ResultClaim room)
     : job_(job), blobs_(blobs), room_(room) {
-  room_.claim.give_up();
+  const std::lock_guard lock(job_.output);
+  if (!job_.has_ended) room_.claim.give_up();
 }
 
 void FeedOutput::stage(const StageEvent& event) {
+  const std::lock_guard lock(job_.output);
+  if (job_.has_ended) return;
   job_.feed->set_progress({.stage = event.stage,
                            .fraction = event.fraction,
                            .chart = event.chart,
@@ -32,6 +35,8 @@ void FeedOutput::stage(const StageEvent& event) {
 }
 
 void FeedOutput::iteration(const IterationEvent& event, double elapsed_ms) {
+  const std::lock_guard lock(job_.output);
+  if (job_.has_ended) return;
   job_.feed->set_progress({.stage = Stage::solve,
                            .fraction = event.fraction,
                            .chart = event.chart,
@@ -48,6 +53,8 @@ void FeedOutput::result(std::string_view format, std::string_view bytes) {
 void FeedOutput::file(std::string_view name, std::string_view bytes) { keep(name, bytes); }
 
 void FeedOutput::keep(std::string_view name, std::string_view bytes) {
+  const std::lock_guard lock(job_.output);
+  if (job_.has_ended) throw Error(ErrorCode::cancelled, "The job was given up meanwhile.");
   room_.claim.add(static_cast<std::int64_t>(bytes.size()), room_.most_bytes(job_.record.owner));
   blobs_.write_unsealed(job_.record.id, name, bytes);
 }

@@ -20,6 +20,7 @@ struct ResultClaim {
   const std::function<std::int64_t(const std::string& owner)>& most_bytes;
 };
 
+/// Of a job that has ended meanwhile nothing is put out any more: files throw Error{cancelled}.
 class FeedOutput final : public JobOutput {
  public:
   /// What an attempt before has claimed is given up: its files are replaced.

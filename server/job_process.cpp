@@ -186,12 +186,12 @@ class NoOutput final : public JobOutput {
 void check_isolation(const Isolation& isolation) {
   const auto cannot = [](const std::string& why) {
     return Error(ErrorCode::internal,
-                 "A worker process cannot run here: " + why + "; run without --isolate.");
+                 "A worker process cannot run here: " + why + "; run with --isolate=off.");
   };
   std::stop_source late;
   const Deadline deadline(kProbePatience, [&] { late.request_stop(); });
   try {
-    WorkerProcess worker(isolation.program, late.get_token(), isolation.grace);
+    WorkerProcess worker(isolation.program, {late.get_token(), isolation.grace});
     send_limits(worker, sandbox_limits({}, isolation));
     NoOutput none;
     Conversation(worker, none, isolation.memory_bytes).await_ready();
@@ -203,12 +203,12 @@ void check_isolation(const Isolation& isolation) {
   }
 }
 
-bool can_isolate(const Isolation& isolation) {
+std::string why_not(const Isolation& isolation) {
   try {
     check_isolation(isolation);
-    return true;
-  } catch (const Error&) {
-    return false;
+    return {};
+  } catch (const Error& error) {
+    return error.what();
   }
 }
 
@@ -216,7 +216,7 @@ std::string run_job_isolated(const JobTask& task, const asset::Input& input, Job
                              const api::Limits& limits, const Isolation& isolation) {
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - task.began;
-  WorkerProcess worker(isolation.program, task.stop, isolation.grace);
+  WorkerProcess worker(isolation.program, {task.stop, isolation.grace, isolation.on_kill});
   send_limits(worker, sandbox_limits(limits, isolation));
   Conversation conversation(worker, output, isolation.memory_bytes, map_count(task.record));
   conversation.await_ready();
@@ -233,7 +233,7 @@ std::string run_job_isolated(const JobTask& task, const asset::Input& input, Job
 std::string render_isolated(const Rendering& rendering, const RenderingInput& input,
                             const std::stop_token& stop, const api::Limits& limits,
                             const Isolation& isolation) {
-  WorkerProcess worker(isolation.program, stop, isolation.grace);
+  WorkerProcess worker(isolation.program, {stop, isolation.grace});
   send_limits(worker, sandbox_limits(limits, isolation));
   NoOutput none;
   Conversation conversation(worker, none, isolation.memory_bytes);

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
@@ -28,17 +29,19 @@ class WorkerCrashed : public std::runtime_error {
 struct Isolation {
   bool on = false;                                    ///< for all jobs
   bool possible = false;                              ///< for those that may have ended a server
+  std::string why_not = {};                           ///< if it is not
   std::int64_t memory_bytes = std::int64_t{4} << 30;  ///< of a job
   int threads = 1;                                    ///< of a job
   std::chrono::seconds grace{5};                      ///< for a process that was told to stop
   std::string program = {};                           ///< what --job-worker starts
+  std::function<void()> on_kill = {};  ///< called when one has not ended within its grace
 };
 
 /// Throws Error{internal} when no worker process can be started and locked in on this machine.
 void check_isolation(const Isolation& isolation);
 
-/// Whether check_isolation() throws nothing.
-bool can_isolate(const Isolation& isolation);
+/// What check_isolation() throws, in words; empty when it throws nothing.
+std::string why_not(const Isolation& isolation);
 
 /// run_job() in a process of its own. Throws what that throws, and WorkerCrashed.
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,

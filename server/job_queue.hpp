@@ -19,6 +19,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
@@ -36,7 +37,8 @@ namespace unwrapd::server {
 
 enum class StopCause { none, cancelled, time_limit, draining };
 
-/// A job in the hands of a worker.
+/// A job in the hands of a worker. Its end is stored by one alone: the worker, or whoever gives the
+/// worker up.
 struct RunningJob {
   JobRecord record;
   std::shared_ptr<JobFeed> feed;
@@ -44,6 +46,8 @@ struct RunningJob {
   std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
   std::stop_source stop;
   std::atomic<StopCause> cause = StopCause::none;
+  mutable std::mutex output;  ///< held while something is put out
+  bool has_ended = false;     ///< guarded by output; nothing is put out then
 
   /// Since it began.
   [[nodiscard]] double seconds() const {
@@ -54,6 +58,11 @@ struct RunningJob {
     StopCause none = StopCause::none;
     cause.compare_exchange_strong(none, why);
     stop.request_stop();
+  }
+  /// Whether the job's end is the caller's to store. Of two callers it is the first's.
+  [[nodiscard]] bool take_end() {
+    const std::lock_guard lock(output);
+    return !std::exchange(has_ended, true);
   }
 };
 

@@ -39,6 +39,13 @@ constexpr std::array kFamilies = {
               "Jobs that came to an end, by state."},
     FamilyRow{Metric::job_errors, "unwrapd_job_errors_total", "counter",
               "Problems that jobs failed of, by code."},
+    FamilyRow{Metric::jobs_forced, "unwrapd_jobs_forced_total", "counter",
+              "Jobs beyond their limit that did not stop in their grace, by how they were ended: "
+              "killed (their process) or given_up (their thread)."},
+    FamilyRow{Metric::lost_threads, "unwrapd_lost_threads", "gauge",
+              "Threads still at work on jobs that were given up."},
+    FamilyRow{Metric::isolation, "unwrapd_isolation", "gauge",
+              "1 when each job has a process of its own, else 0."},
     FamilyRow{Metric::stage_seconds, "unwrapd_job_stage_seconds", "histogram",
               "Time of each stage of jobs; the first is queue."},
     FamilyRow{Metric::iterations, "unwrapd_iterations_total", "counter",
@@ -122,8 +129,11 @@ double open_files() {
 }  // namespace
 
 Metrics::Metrics() {
+  // Told from the start, so that their rates are known from the start.
   for (const Metric metric : {Metric::iterations, Metric::received_bytes, Metric::sent_bytes})
-    count(metric, {}, 0);  // told from the start, so that their rates are known from the start
+    count(metric, {}, 0);
+  for (const std::string_view how : {"killed", "given_up"})
+    count(Metric::jobs_forced, {{"ended", how}}, 0);
 }
 
 void Metrics::count(Metric metric, const Labels& labels, double by) {

@@ -39,11 +39,14 @@ HttpConfig admin_config(const Address& address) {
 }
 
 Isolation isolation_of(const Config& config, const SolverCache& cache, const Duties& duties) {
-  Isolation isolation{.on = config.isolate, .program = duties.program};
+  Isolation isolation{.program = duties.program};
+  isolation.grace = std::chrono::seconds(config.grace_seconds);
   isolation.threads = config.threads;
   isolation.memory_bytes = static_cast<std::int64_t>(cache.memory_limit());
-  isolation.possible = isolation.on || (!isolation.program.empty() && can_isolate(isolation));
-  if (isolation.on) check_isolation(isolation);
+  if (config.isolate == Isolate::on) check_isolation(isolation);
+  isolation.why_not = isolation.program.empty() ? "there is no program" : why_not(isolation);
+  isolation.possible = isolation.why_not.empty();
+  isolation.on = isolation.possible && config.isolate != Isolate::off;
   return isolation;
 }
 

@@ -13,8 +13,8 @@ namespace unwrapd::server {
 HttpConfig http_config(const Config& config);
 HttpConfig admin_config(const Address& address);
 
-/// Processes for all jobs when they are asked for, else for the suspects, if they can be had.
-/// Throws Error where they are asked for and cannot be had.
+/// Processes for all jobs if they can be had, of which this makes sure; when they are turned off,
+/// for the suspects alone. Throws Error where they are asked for and cannot be had.
 Isolation isolation_of(const Config& config, const SolverCache& cache, const Duties& duties);
 
 /// Requests that may wait for the ends of jobs at a time. As many may wait for pictures.

@@ -70,7 +70,7 @@ constexpr std::array kRefused = {SCMP_SYS(openat), SCMP_SYS(open),     SCMP_SYS(
 
 [[noreturn]] void cannot(const char* what) {
   throw Error(ErrorCode::internal, std::string("A worker process cannot ") + what +
-                                       "; run without --isolate, or on a kernel with seccomp.");
+                                       "; run with --isolate=off, or on a kernel with seccomp.");
 }
 
 void limit(__rlimit_resource resource, std::int64_t value) {

@@ -30,6 +30,7 @@ namespace {
 
 constexpr std::chrono::seconds kHeartbeat{10};
 constexpr std::chrono::seconds kWebhookPause{1};
+constexpr std::chrono::seconds kStopPatience{5};  // at the end, beyond the grace of a job
 constexpr std::chrono::seconds kTrimPause{10};
 constexpr std::size_t kEventsKept = 1024;  // of each job
 constexpr std::size_t kFeedsKept = 64;     // of finished jobs
@@ -45,7 +46,9 @@ struct Service::Parts {
         store(store_in(config.data, blobs)),
         mesh_store(config.data / kStoreFile),
         queue(store, blobs, events, log,
-              {.max_queue = config.limits.max_queue, .workers = config.workers}),
+              {.max_queue = config.limits.max_queue,
+               .workers = config.workers,
+               .stop = std::chrono::seconds(config.grace_seconds) + kStopPatience}),
         streams(events, config.limits.max_streams),
         keys(config.data, config.access.key_file),
         secret(secret_in(config.data / kSecretFile)),
@@ -77,6 +80,7 @@ struct Service::Parts {
     }
     warn_without_keys(log);
     tell_state();
+    tell_isolation(log);
     queue.recover(isolation.possible);
     sweep_blobs(log);
     blobs.room().on_shortage({.evict = [this] { return evict_oldest(store, mesh_store, blobs); },
@@ -96,7 +100,12 @@ struct Service::Parts {
                                  .claims = &claims,
                                  .most_bytes = [this](const auto& id) { return most_bytes(id); },
                                  .isolation = isolation,
-                                 .duties = duties});
+                                 .duties = duties,
+                                 .on_force =
+                                     [this](std::string_view how) {
+                                       metrics.count(Metric::jobs_forced, {{"ended", how}});
+                                     }});
+    metrics.tell(Metric::lost_threads, {}, [this] { return workers->lost(); });
     serving = std::jthread([this] { http.serve(); });
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
   }
@@ -179,6 +188,13 @@ struct Service::Parts {
     metrics.tell(Metric::event_streams, {}, [&] { return streams.open_count(); });
     metrics.tell(Metric::stored_bytes, {}, [&] { return blobs.room().used_bytes(); });
     tell_caches();
+  }
+
+  void tell_isolation(const Log& log) {
+    metrics.tell(Metric::isolation, {}, [this] { return isolation.on ? 1 : 0; });
+    if (isolation.on) return log.info("each job has a process of its own");
+    const bool wanted = config.isolate == Isolate::automatic && !isolation.program.empty();
+    if (wanted) log.warning("no job has a process of its own", {{"reason", isolation.why_not}});
   }
 
   void tell_caches() {
@@ -287,7 +303,7 @@ bool Service::drain() {
   const bool is_idle = parts_->queue.drain(std::chrono::seconds(parts_->config.drain_seconds));
   parts_->events.end_all();
   parts_->stop();
-  return is_idle;
+  return is_idle && parts_->workers->lost() == 0;
 }
 
 }  // namespace unwrapd::server

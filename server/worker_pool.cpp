@@ -1,8 +1,5 @@
 #include "server/worker_pool.hpp"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -10,11 +7,12 @@
 #include <new>
 
 #include "api/error_table.hpp"
-#include "server/deadline.hpp"
 #include "server/feed_output.hpp"
 #include "server/job_input.hpp"
+#include "server/priority.hpp"
 #include "server/thread_executor.hpp"
 #include "server/trace.hpp"
+#include "server/watchdog.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -23,14 +21,7 @@ using api::JobState;
 
 constexpr std::chrono::seconds kPauseAfterFailure{1};
 constexpr int kMaxCrashes = 3;
-constexpr int kNice = 10;  // more than others: a tenth of their time where they want it all
-
-/// Of this thread, and of all threads and processes that it starts: work yields to answers, which
-/// take microseconds and should not wait for a turn of milliseconds.
-void give_way() {
-  const auto self = static_cast<id_t>(::gettid());
-  ::setpriority(PRIO_PROCESS, self, ::getpriority(PRIO_PROCESS, self) + kNice);
-}
+constexpr std::chrono::seconds kTimeToKill{10};  // a process, and to reap it
 
 /// A stop is a failure when time ran out; else the owner, or the server's end, has stopped the job.
 JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds) {
@@ -54,8 +45,25 @@ Error too_many_crashes() {
 WorkerPool::WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
                        const WorkerConfig& config)
     : queue_(queue), blobs_(blobs), limits_(limits), log_(log), config_(config) {
-  threads_.reserve(static_cast<std::size_t>(config.workers));
-  for (int worker = 0; worker < config.workers; ++worker) threads_.emplace_back([this] { work(); });
+  const std::lock_guard lock(mutex_);
+  for (int worker = 0; worker < config.workers; ++worker) begin_thread();
+}
+
+/// A thread that leaves now wants the mutex: it is not held while they are awaited.
+WorkerPool::~WorkerPool() {
+  Threads threads;
+  const std::lock_guard lock(mutex_);
+  threads.swap(threads_);
+}
+
+int WorkerPool::lost() const {
+  const std::lock_guard lock(mutex_);
+  return lost_;
+}
+
+/// With the mutex held.
+void WorkerPool::begin_thread() {
+  threads_.emplace_back([this] { work(); });
 }
 
 void WorkerPool::work() {
@@ -64,8 +72,7 @@ void WorkerPool::work() {
   while (true) {
     try {
       const std::shared_ptr<RunningJob> job = queue_.take();
-      if (!job) return;
-      work_on(*job, executor);
+      if (!job || work_on(*job, executor) == Then::leave) return;
     } catch (const std::exception& error) {  // the store: the job is run again at the next start
       log_.error("a worker failed", {{"reason", error.what()}});
       std::this_thread::sleep_for(kPauseAfterFailure);
@@ -73,17 +80,72 @@ void WorkerPool::work() {
   }
 }
 
-void WorkerPool::work_on(RunningJob& job, Executor& executor) {
+WorkerPool::Then WorkerPool::work_on(RunningJob& job, Executor& executor) {
   const TraceScope trace(job.feed->trace());
   log_.info("job started", {{"job", job.record.id}, {"attempt", job.record.attempt}});
   Claim claim(*config_.claims, job.record.owner);  // until the store counts the results
+  const auto to_kill = is_apart(job.record) ? kTimeToKill : std::chrono::seconds(0);
   JobOutcome outcome;
   {
-    const Deadline deadline(std::chrono::seconds(limits_.max_job_seconds),
-                            [&] { job.request_stop(StopCause::time_limit); });
+    const Watchdog watchdog(
+        job.stop.get_token(),
+        {std::chrono::seconds(limits_.max_job_seconds), config_.isolation.grace + to_kill},
+        {.late = [&] { job.request_stop(StopCause::time_limit); },
+         .overdue = [&] { give_up(job, claim); }});
     outcome = attempt(job, {executor, claim});
   }
+  if (!job.take_end()) return come_back(job);
   queue_.finish(job, std::move(outcome), [&] { claim.give_up(); });
+  return Then::next_job;
+}
+
+/// In a process of its own.
+bool WorkerPool::is_apart(const JobRecord& job) const {
+  const bool suspected = job.crashes > 0 && config_.isolation.possible;
+  return config_.isolation.on || suspected;
+}
+
+/// From the watchdog's thread, of a job whose own goes on without hearing its stop. At the end of
+/// the server the queue has other means.
+void WorkerPool::give_up(RunningJob& job, Claim& claim) {
+  if (job.cause == StopCause::draining || !job.take_end()) return;
+  const TraceScope trace(job.feed->trace());
+  lose_thread(job);
+  config_.on_force("given_up");
+  const Error stopped(ErrorCode::cancelled, "The job was stopped; send it again to have it done.");
+  try {
+    queue_.finish(job, outcome_of(stopped, job, limits_.max_job_seconds), [&] { claim.give_up(); });
+  } catch (const std::exception& error) {  // the store: the job is run again at the next start
+    log_.error("a worker failed", {{"reason", error.what()}});
+  }
+}
+
+void WorkerPool::lose_thread(const RunningJob& job) {
+  const std::lock_guard lock(mutex_);
+  ended_.clear();
+  ++lost_;
+  const bool has_heir = replaced_ < config_.workers;
+  if (has_heir) {
+    ++replaced_;
+    begin_thread();
+  }
+  log_.error("a job does not stop, and is given up", {{"job", job.record.id},
+                                                      {"seconds", job.seconds()},
+                                                      {"threads_lost", lost_},
+                                                      {"replaced", has_heir}});
+}
+
+/// Of a thread whose job was given up meanwhile: it works on where no other has its place.
+WorkerPool::Then WorkerPool::come_back(const RunningJob& job) {
+  const std::lock_guard lock(mutex_);
+  --lost_;
+  log_.warning("a job that was given up has stopped",
+               {{"job", job.record.id}, {"seconds", job.seconds()}, {"threads_lost", lost_}});
+  if (replaced_ <= lost_) return Then::next_job;
+  --replaced_;
+  const auto self = std::ranges::find(threads_, std::this_thread::get_id(), &std::jthread::get_id);
+  if (self != threads_.end()) ended_.splice(ended_.end(), threads_, self);
+  return Then::leave;
 }
 
 std::string WorkerPool::run(const RunningJob& job, const Means& means) {
@@ -94,11 +156,16 @@ std::string WorkerPool::run(const RunningJob& job, const Means& means) {
                      .queue_ms = std::max(0.0, queue_ms),
                      .began = job.began,
                      .stop = job.stop.get_token()};
-  const bool suspected = job.record.crashes > 0 && config_.isolation.possible;
-  if (!config_.isolation.on && !suspected)
+  if (!is_apart(job.record))
     return config_.duties.run(task, loaded.input(), output, limits_, means.executor);
+  Isolation isolation = config_.isolation;
+  isolation.on_kill = [&] {
+    log_.error("a job does not stop, and its process is killed",
+               {{"job", job.record.id}, {"seconds", job.seconds()}});
+    config_.on_force("killed");
+  };
   try {
-    return run_job_isolated(task, loaded.input(), output, limits_, config_.isolation);
+    return run_job_isolated(task, loaded.input(), output, limits_, isolation);
   } catch (const Error& error) {
     const bool asked = error.code() != ErrorCode::cancelled || job.stop.stop_requested();
     if (!asked) throw WorkerCrashed("somebody else told it to stop");

@@ -3,12 +3,19 @@
 // They are nice to the threads that answer, which would otherwise wait for their turns on a full
 // machine. A job that was at work when a server died is suspected, and tried in a process of its
 // own where that can be had: only if it ends that, too, three times, is it to blame (`poison`).
+//
+// A job that was told to stop and goes on is ended by force when its grace is over: its process is
+// killed. A thread cannot be killed: the job is given up, another thread takes the worker's place,
+// and the lost one ends where its work does. Of these there are no more than there are workers.
 
 #include <cstdint>
 #include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
-#include <vector>
 
 #include "api/limits.hpp"
 #include "core/executor.hpp"
@@ -29,8 +36,10 @@ struct WorkerConfig {
   Claims* claims = nullptr;    ///< of their results; outlives the pool
   /// Bytes that an owner may have; 0: any.
   std::function<std::int64_t(const std::string& owner)> most_bytes;
-  Isolation isolation = {};
+  Isolation isolation = {};  ///< its grace holds for threads, too
   Duties duties = {};
+  /// Told of each job that was ended by force: "killed" or "given_up".
+  std::function<void(std::string_view how)> on_force = [](std::string_view) {};
 };
 
 class WorkerPool {
@@ -38,6 +47,10 @@ class WorkerPool {
   /// Starts at once; ends when the queue is closed and the jobs at hand are done.
   WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
              const WorkerConfig& config);
+  ~WorkerPool();
+
+  /// Threads that are still at work on a job that was given up.
+  [[nodiscard]] int lost() const;
 
  private:
   /// What a job is run with.
@@ -45,9 +58,17 @@ class WorkerPool {
     Executor& executor;
     Claim& claim;
   };
+  /// What becomes of a thread when it is done with a job.
+  enum class Then { next_job, leave };
+  using Threads = std::list<std::jthread>;
 
+  void begin_thread();
   void work();
-  void work_on(RunningJob& job, Executor& executor);
+  Then work_on(RunningJob& job, Executor& executor);
+  [[nodiscard]] bool is_apart(const JobRecord& job) const;
+  void give_up(RunningJob& job, Claim& claim);
+  void lose_thread(const RunningJob& job);
+  Then come_back(const RunningJob& job);
   JobOutcome attempt(const RunningJob& job, const Means& means);
   std::string run_patiently(const RunningJob& job, const Means& means);
   std::string run(const RunningJob& job, const Means& means);
@@ -57,7 +78,11 @@ class WorkerPool {
   const api::Limits& limits_;
   const Log& log_;
   const WorkerConfig config_;
-  std::vector<std::jthread> threads_;
+  mutable std::mutex mutex_;
+  int lost_ = 0;      // threads
+  int replaced_ = 0;  // of those, by another thread
+  Threads threads_;
+  Threads ended_;  // about to, and to be joined
 };
 
 }  // namespace unwrapd::server

@@ -77,9 +77,8 @@ std::string end_of(int status) {
 
 }  // namespace
 
-WorkerProcess::WorkerProcess(const std::string& program, const std::stop_token& stop,
-                             milliseconds grace)
-    : grace_(grace) {
+WorkerProcess::WorkerProcess(const std::string& program, Stopping stopping)
+    : stopping_(std::move(stopping)) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) cannot_start();
   socket_ = ends[0];
@@ -91,7 +90,7 @@ WorkerProcess::WorkerProcess(const std::string& program, const std::stop_token& 
     ::close(stopped_);
     cannot_start();
   }
-  on_stop_.emplace(stop, [this] { ::eventfd_write(stopped_, 1); });
+  on_stop_.emplace(stopping_.stop, [this] { ::eventfd_write(stopped_, 1); });
 }
 
 WorkerProcess::~WorkerProcess() {
@@ -105,12 +104,15 @@ WorkerProcess::~WorkerProcess() {
 }
 
 void WorkerProcess::ask_to_stop() {
-  kill_at_ = Clock::now() + grace_;
+  kill_at_ = Clock::now() + stopping_.grace;
   ::kill(process_, SIGTERM);
 }
 
 void WorkerProcess::kill_when_due() {
-  if (kill_at_ && !killed_ && Clock::now() >= *kill_at_) killed_ = ::kill(process_, SIGKILL) == 0;
+  if (!kill_at_ || killed_ || Clock::now() < *kill_at_) return;
+  killed_ = true;
+  ::kill(process_, SIGKILL);
+  if (stopping_.on_kill) stopping_.on_kill();
 }
 
 /// What poll() waits at most: for ever, but between SIGTERM and SIGKILL.

@@ -13,12 +13,17 @@
 
 namespace unwrapd::server {
 
+/// How a worker process is stopped.
+struct Stopping {
+  std::stop_token stop;
+  std::chrono::milliseconds grace;     ///< between SIGTERM and SIGKILL
+  std::function<void()> on_kill = {};  ///< called at SIGKILL
+};
+
 class WorkerProcess {
  public:
-  /// Starts program --job-worker with an empty environment. grace: between SIGTERM and SIGKILL.
-  /// Throws Error{internal} when it cannot.
-  WorkerProcess(const std::string& program, const std::stop_token& stop,
-                std::chrono::milliseconds grace);
+  /// Starts program --job-worker with an empty environment. Throws Error{internal} when it cannot.
+  WorkerProcess(const std::string& program, Stopping stopping);
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
   ~WorkerProcess();
@@ -31,8 +36,6 @@ class WorkerProcess {
   /// The worker has gone without an answer: throws Error{cancelled} when it was stopped, Error
   /// {time_limit} when its processor time ran out, else WorkerCrashed, saying how it ended.
   [[noreturn]] void reap();
-  /// Whether it did not end within its grace.
-  [[nodiscard]] bool was_killed() const { return killed_; }
 
  private:
   void ask_to_stop();
@@ -40,7 +43,7 @@ class WorkerProcess {
   [[nodiscard]] int patience_ms() const;
   void await(short events);
 
-  const std::chrono::milliseconds grace_;
+  const Stopping stopping_;
   int socket_ = -1;
   int stopped_ = -1;  // an eventfd: readable once a stop was requested
   pid_t process_ = -1;

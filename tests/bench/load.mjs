@@ -11,8 +11,8 @@ import {streams} from './load/streams.mjs';
 
 const [binary, out, seconds = '60', only] = process.argv.slice(2);
 const parts = {streams, idle, queue, soak: (program) => soak(program, Number(seconds)),
-               isolated_soak: (program) =>
-                 soak(program, Number(seconds) / 4, ['--isolate'])};
+               shared_soak: (program) =>
+                 soak(program, Number(seconds) / 4, ['--isolate=off'])};
 const figures = {};
 for (const [name, part] of Object.entries(parts)) {
   if (only && only !== name) continue;

@@ -106,7 +106,7 @@ function remove() {
   run("volume", "rm", "--force", name);
 }
 
-for (const flags of [[], ["--isolate"]])
+for (const flags of [["--isolate=off"], ["--isolate"]])
   test(`hardened, it serves, drains at SIGTERM, and goes on where it was ${flags}`, async (t) => {
     t.after(remove);
     await start(...flags);

@@ -22,8 +22,8 @@ let plain;
 before(async () => {
   [isolated, plain] = await Promise.all([
     startServer(process.env.UNWRAPD, ['--isolate', '--workers', '2', '--threads', '2',
-                                       '--memory-limit', '200000000']),
-    startServer(process.env.UNWRAPD, ['--workers', '1', '--threads', '2']),
+                                       '--grace-seconds', '1', '--memory-limit', '200000000']),
+    startServer(process.env.UNWRAPD, ['--isolate=off', '--workers', '1', '--threads', '2']),
   ]);
 });
 after(() => Promise.all([isolated.stop(), plain.stop()]));
@@ -138,7 +138,8 @@ test('a worker has bounded memory while a file is made', async () => {
 });
 
 test('a worker has bounded time while a file is made', async (t) => {
-  const server = await startServer(process.env.UNWRAPD, ['--isolate', '--workers', '1', '--max-job-seconds', '1']);
+  const server = await startServer(process.env.UNWRAPD, ['--isolate', '--workers', '1', '--max-job-seconds', '1',
+                                                          '--grace-seconds', '0']);
   t.after(() => server.stop());
   const job = await done(server, drawing('hang'));
   const answer = await request(server.base, {path: `/v1/jobs/${job.id}/preview.png`});
@@ -188,6 +189,7 @@ for (const what of ['hang', 'flood']) {
       await sleep(20);
     }
     assert.equal((await job(isolated, id)).state, 'cancelled');
+    assert.match(isolated.log(), new RegExp(`does not stop, and its process is killed.*${id}`));
   });
 }
 
@@ -244,11 +246,11 @@ async function kill(server, what) {
 
 test('without --isolate a mesh ends the server once, and its neighbour is not blamed', async (t) => {
   const data = dataDirectory(t);
-  const first = await Server.start(data, '--workers', '2');
+  const first = await Server.start(data, '--isolate=off', '--workers', '2');
   const neighbour = await first.submit(...ENDLESS);
   await first.iterates(neighbour);
   const guilty = await kill(first, 'segv');
-  const second = await Server.start(data, '--workers', '2');
+  const second = await Server.start(data, '--isolate=off', '--workers', '2');
   const job = await second.finished(guilty);
   assert.deepEqual([job.state, job.problem.code, job.attempt], ['failed', 'poison', 2]);
   assert.equal((await second.iterates(neighbour)).attempt, 2);

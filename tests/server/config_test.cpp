@@ -177,6 +177,21 @@ TEST(Config, MistakesEndTheProgram) {
     EXPECT_NE(mistake(flags), "") << flags[0];
 }
 
+TEST(Config, IsolationIsASwitchThatMayHaveAValue) {
+  EXPECT_EQ(parse({}).config.isolate, Isolate::automatic);
+  EXPECT_EQ(parse({"--isolate", "--workers", "1"}).config.isolate, Isolate::on);
+  for (const auto& [text, meaning] : Names<Isolate>{{"auto", Isolate::automatic},
+                                                    {"on", Isolate::on},
+                                                    {"true", Isolate::on},
+                                                    {"off", Isolate::off},
+                                                    {"false", Isolate::off}}) {
+    EXPECT_EQ(parse({("--isolate=" + std::string(text)).c_str()}).config.isolate, meaning) << text;
+    const Environment variable("UNWRAPD_ISOLATE", std::string(text).c_str());
+    EXPECT_EQ(parse({}).config.isolate, meaning) << text;
+  }
+  EXPECT_THAT(mistake({"--isolate=maybe"}), HasSubstr("auto, on, off"));
+}
+
 TEST(Config, QuestionsAreAnsweredAndEndTheProgramWithSuccess) {
   EXPECT_THAT(answer({"--help"}),
               AllOf(HasSubstr("--max-job-seconds"), HasSubstr("UNWRAPD_MAX_QUEUE"),
