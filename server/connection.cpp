@@ -272,6 +272,11 @@ bool Connection::is_writable() {
   return (events & POLLOUT) != 0 && (events & (POLLERR | POLLHUP | POLLRDHUP)) == 0;
 }
 
+bool Connection::has_left() const {
+  pollfd polled{socket(), POLLRDHUP, 0};
+  return ::poll(&polled, 1, 0) > 0;
+}
+
 std::int64_t Connection::write(std::string_view bytes) {
   std::int64_t sent = client_.transport->send(bytes);
   if (sent == Transport::kAgain) {

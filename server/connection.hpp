@@ -58,6 +58,8 @@ class Connection {
   std::int64_t write(std::string_view bytes);
   /// Whether the client takes bytes now or in time, and is still there.
   [[nodiscard]] bool is_writable();
+  /// Whether the client has closed its end, be it only for sending, or is lost.
+  [[nodiscard]] bool has_left() const;
 
   [[nodiscard]] bool is_readable() const { return !body_done_; }
   /// Whether the current request has been handed out to its end: what follows is the next one.

@@ -47,6 +47,9 @@ struct IgnoreCase {
   bool operator()(std::string_view left, std::string_view right) const;
 };
 
+/// Whether a client has closed its connection meanwhile; empty where nobody can tell.
+using HasLeft = std::function<bool()>;
+
 struct Request {
   std::string method;
   std::string path;  ///< percent-decoded
@@ -60,6 +63,7 @@ struct Request {
   BodyReader* body = nullptr;                   ///< of POST, PUT and PATCH
   std::int64_t declared_bytes = 0;              ///< of the body; 0 when not told beforehand
   std::optional<Error> refusal = std::nullopt;  ///< what its head has against it, to be answered
+  HasLeft has_left = {};
 
   /// The headers of this name as one list (RFC 9110, 5.3), one that repeats the one before left
   /// out; empty when there is none.

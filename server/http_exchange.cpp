@@ -205,6 +205,7 @@ class Exchange::Http final : public httplib::Server {
     Request request = to_request(from, connection_->framing());
     ConnectionBody body(*connection_, multipart_boundary(request.header("Content-Type")));
     if (connection_->framing().brings_body) request.body = &body;
+    request.has_left = [connection = connection_] { return connection->has_left(); };
     request.client =
         client_behind(connection_->client(), forwarded_for(request), uses_.trusted_proxies);
     const Trace trace = continue_trace(request.header("traceparent"));

@@ -13,14 +13,30 @@ int half_of(int count) { return std::max(1, count / 2); }
 
 }  // namespace
 
-std::shared_ptr<void> MakingRoom::enter(const Making& making) {
+Error client_left() {
+  return {ErrorCode::cancelled, "The client has closed its connection; ask again and stay."};
+}
+
+std::shared_ptr<void> MakingRoom::enter(const Making& making, const HasLeft& has_left) {
   std::unique_lock lock(mutex_);
   check_waiting(making.holder);
   const auto self = guests_.insert(guests_.end(), {.making = making});
   let_in();
-  let_in_.wait(lock, [&] { return self->is_in; });
+  try {
+    await_place(lock, self->is_in, has_left);
+  } catch (...) {
+    guests_.erase(self);
+    let_in();
+    throw;
+  }
   lock.unlock();
   return {nullptr, [this, self](void*) { leave(self); }};
+}
+
+void MakingRoom::await_place(std::unique_lock<std::mutex>& lock, const bool& is_in,
+                             const HasLeft& has_left) {
+  while (!let_in_.wait_for(lock, kPresenceLook, [&] { return is_in; }))
+    if (has_left && has_left()) throw client_left();
 }
 
 int MakingRoom::waiting() {
@@ -48,7 +64,9 @@ bool MakingRoom::is_held_up(const Making& making) const {
   const auto same_holder = [&](const Guest& guest) {
     return guest.is_in && guest.making.holder == making.holder;
   };
+  const auto costly = [](const Guest& guest) { return guest.is_in && guest.making.is_costly; };
   return std::ranges::any_of(guests_, same_file) ||
+         (making.is_costly && std::ranges::any_of(guests_, costly)) ||
          std::ranges::count_if(guests_, same_holder) >= half_of(limits_.places);
 }
 

@@ -32,7 +32,7 @@ Response put_mesh(Meshes& meshes, const Request& request, std::chrono::seconds k
 Response get_mesh(Meshes& meshes, const Request& request, std::chrono::seconds kept) {
   const MeshRecord mesh = meshes.find(request.caller.owner, request.sha256);
   api::Json json = mesh_json(meshes, mesh, kept);
-  json.update(meshes.analysis(mesh));
+  json.update(meshes.analysis(mesh, request.has_left));
   return mesh_response(200, json);
 }
 

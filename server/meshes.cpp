@@ -32,9 +32,9 @@ void check_digest(const std::string& is, const std::string& expected) {
 }
 
 /// Too much time or memory is a problem of the mesh like any other.
-std::string analyse(const Renderer& renderer, const JobRecord& job) {
+std::string analyse(const Renderer& renderer, const JobRecord& job, const HasLeft& has_left) {
   try {
-    return renderer.analyse(job);
+    return renderer.analyse(job, has_left);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::time_limit && error.code() != ErrorCode::memory_limit) throw;
     return api::Json{{"problem", api::problem(error)}}.dump();
@@ -129,19 +129,19 @@ JobInput Meshes::share(const std::string& owner, const std::string& sha256,
   return {.sha256 = mesh.sha256, .bytes = mesh.bytes, .buffers = {}};
 }
 
-api::Json Meshes::analysis(const MeshRecord& mesh) {
+api::Json Meshes::analysis(const MeshRecord& mesh, const HasLeft& has_left) {
   const JobRecord job = as_job(mesh);
   const std::string file(kAnalysisFile);
   std::optional<StoredResult> kept = find_whole(blobs_, mesh.id, file);
   std::shared_ptr<void> place;
   if (!kept) {
-    place = renderer_.enter(job, 0, file);
+    place = renderer_.enter(job, {.file = file, .map = 0, .has_left = has_left});
     kept = find_whole(blobs_, mesh.id, file);  // made meanwhile
   }
   if (kept) {
     ++counts_.hits;
   } else {
-    const std::string bytes = analyse(renderer_, job);
+    const std::string bytes = analyse(renderer_, job, has_left);
     counts_.made(bytes);
     kept = keep(blobs_, mesh.id, file, bytes);
   }

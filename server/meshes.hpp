@@ -44,7 +44,7 @@ class Meshes {
 
   /// {"analysis": ...}, or {"problem": ...} for a mesh of which no job can be made; worked out
   /// once. Throws what Renderer throws.
-  api::Json analysis(const MeshRecord& mesh);
+  api::Json analysis(const MeshRecord& mesh, const HasLeft& has_left = {});
 
   [[nodiscard]] Moment now() const { return jobs_.now(); }
   [[nodiscard]] const FileCounts& counts() const { return counts_; }

@@ -37,7 +37,7 @@ Response get_picture(PictureStore& pictures, const JobRecord& job, PictureKind k
   const Picture picture = picture_of(kind, query);
   require_result(job);
   const std::string_view type = kind == PictureKind::layout_svg ? "image/svg+xml" : "image/png";
-  return stored_response(pictures.open(job, map, picture), type, request);
+  return stored_response(pictures.open(job, map, picture, request.has_left), type, request);
 }
 
 }  // namespace

@@ -17,8 +17,9 @@ class PictureStore {
 
   /// The picture of one of a succeeded job's maps (see map_choice.hpp). Those whose size is a power
   /// of two are kept with the job, so that whoever asks for every size fills no disk; a damaged one
-  /// is drawn again.
-  StoredResult open(const JobRecord& job, std::size_t map, const Picture& picture);
+  /// is drawn again. Throws what Renderer::render() throws.
+  StoredResult open(const JobRecord& job, std::size_t map, const Picture& picture,
+                    const HasLeft& has_left = {});
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:

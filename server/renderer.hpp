@@ -15,6 +15,15 @@
 
 namespace unwrapd::server {
 
+/// A file of a job that somebody asks for.
+struct WantedFile {
+  std::string file;
+  std::size_t map = 0;      ///< that it is made from
+  std::size_t bytes = 0;    ///< of memory that it takes besides what its mesh does
+  bool is_costly = false;   ///< takes seconds and is not kept
+  const HasLeft& has_left;  ///< of who asks
+};
+
 /// Thread-safe.
 class Renderer {
  public:
@@ -29,21 +38,25 @@ class Renderer {
         duties_(duties) {}
 
   /// Waits until a file of a job may be made; then it is the caller's to make while the pointer is
-  /// kept, unless somebody has made it meanwhile. map: that it is made from. Throws
-  /// RetryLater{rate_limited} when too many wait.
-  [[nodiscard]] std::shared_ptr<void> enter(const JobRecord& job, std::size_t map,
-                                            const std::string& file);
+  /// kept, unless somebody has made it meanwhile. Throws RetryLater{rate_limited} when too many
+  /// wait, Error{cancelled} when who asks has left.
+  [[nodiscard]] std::shared_ptr<void> enter(const JobRecord& job, const WantedFile& wanted);
 
-  /// The bytes of a file of a succeeded job. Throws what render() throws, storage_corrupt, and in a
-  /// process time_limit, memory_limit, and internal when the process has ended.
-  [[nodiscard]] std::string render(const JobRecord& job, const Rendering& rendering) const;
+  /// The bytes of a file of a succeeded job, made by a thread that yields to answers. Throws what
+  /// render() throws, storage_corrupt, time_limit, cancelled when who asks has left, and in a
+  /// process memory_limit, and internal when the process has ended.
+  [[nodiscard]] std::string render(const JobRecord& job, const Rendering& rendering,
+                                   const HasLeft& has_left = {}) const;
 
   /// What a stored mesh is (mesh_analysis.hpp), which is given as the job that it could be. Throws
   /// like render().
-  [[nodiscard]] std::string analyse(const JobRecord& mesh) const;
+  [[nodiscard]] std::string analyse(const JobRecord& mesh, const HasLeft& has_left = {}) const;
 
  private:
-  [[nodiscard]] std::string make(const Rendering& rendering, RenderingInput input) const;
+  [[nodiscard]] std::string make(const Rendering& rendering, RenderingInput input,
+                                 const HasLeft& has_left) const;
+  [[nodiscard]] std::string make_here(const Rendering& rendering,
+                                      const RenderingInput& input) const;
 
   const BlobStore& blobs_;
   const api::Limits& limits_;

@@ -17,14 +17,16 @@ namespace {
 
 using Surfaces = std::vector<UnwrappedSurface>;
 
-std::string draw(const Picture& picture, const asset::Asset& asset, const Surfaces& unwrapped) {
+std::string draw(const Picture& picture, const asset::Asset& asset, const Surfaces& unwrapped,
+                 const std::stop_token& stop) {
   switch (picture.kind) {
     case PictureKind::layout_svg:
-      return layout_svg(asset.surfaces(), unwrapped, picture.colouring);
+      return layout_svg(asset.surfaces(), unwrapped, picture.colouring, stop);
     case PictureKind::layout_png:
-      return encode_png(layout_image(asset.surfaces(), unwrapped, picture.colouring, picture.size));
+      return encode_png(
+          layout_image(asset.surfaces(), unwrapped, picture.colouring, picture.size, stop));
     case PictureKind::preview_png:
-      return encode_png(preview(asset.surfaces(), unwrapped, picture.size));
+      return encode_png(preview(asset.surfaces(), unwrapped, picture.size, stop));
   }
   return {};
 }
@@ -37,7 +39,7 @@ std::string render(const Rendering& rendering, const RenderingInput& input,
   const asset::Asset asset = asset::read(input.asset, read_limits(input.record, limits),
                                          api::parse_stored_options(input.record.options).asset);
   const Surfaces unwrapped = decode_uvs(input.uvs);
-  if (rendering.picture) return draw(*rendering.picture, asset, unwrapped);
+  if (rendering.picture) return draw(*rendering.picture, asset, unwrapped, input.asset.stop);
   if (rendering.format) return asset::write(asset, unwrapped, *rendering.format);
   return api::result_json(api::Json::parse(input.report), asset.surfaces(), unwrapped);
 }

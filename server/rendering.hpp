@@ -40,7 +40,7 @@ struct RenderingInput {
 };
 
 /// The bytes of the file. Throws what reading and writing the asset throw, storage_failed when the
-/// map is none.
+/// map is none, cancelled once the asset's token asks for a stop.
 std::string render(const Rendering& rendering, const RenderingInput& input,
                    const api::Limits& limits);
 

@@ -67,7 +67,8 @@ Response get_result(ResultStore& results, const JobRecord& job, std::size_t map,
                     const Request& request) {
   require_result(job);
   const std::string format = choose_format(request.header("Accept"), job.result_format);
-  Response response = stored_response(results.open(job, map, format), media_type(format), request);
+  Response response = stored_response(results.open(job, map, format, request.has_left),
+                                      media_type(format), request);
   response.headers.emplace_back("Vary", "Accept");
   return response;
 }

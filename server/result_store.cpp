@@ -49,12 +49,13 @@ StoredResult lend(const BlobStore& blobs, std::string_view bytes) {
   return {.file = blobs.lend(bytes), .sha256 = sha256(bytes)};
 }
 
-StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::string_view format) {
+StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::string_view format,
+                               const HasLeft& has_left) {
   const std::string file = map_file(result_file(format), map);
   std::optional<StoredResult> kept = find_whole(blobs_, job.id, file);
   std::shared_ptr<void> place;
   if (!kept) {
-    place = renderer_.enter(job, map, file);
+    place = renderer_.enter(job, {.file = file, .map = map, .has_left = has_left});
     kept = find_whole(blobs_, job.id, file);  // made meanwhile
   }
   if (kept) {
@@ -62,7 +63,7 @@ StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::strin
     return std::move(*kept);
   }
   const Rendering rendering{.map = map, .picture = {}, .format = format_named(format)};
-  const std::string bytes = renderer_.render(job, rendering);
+  const std::string bytes = renderer_.render(job, rendering, has_left);
   counts_.made(bytes);
   return keep(blobs_, job.id, file, bytes);
 }

@@ -41,7 +41,8 @@ class ResultStore {
   /// The result of a succeeded job by one of its maps (see map_choice.hpp), in a format (glb, gltf,
   /// obj, json); one that is missing or damaged is made from the job's input and map. Throws what
   /// Renderer::render() throws.
-  StoredResult open(const JobRecord& job, std::size_t map, std::string_view format);
+  StoredResult open(const JobRecord& job, std::size_t map, std::string_view format,
+                    const HasLeft& has_left = {});
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:

@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <limits>
+#include <stop_token>
 #include <vector>
 
+#include "core/cancel.hpp"
 #include "core/figure/image.hpp"
 #include "core/figure/scan.hpp"
 #include "core/mesh/counting_sort.hpp"
@@ -60,11 +62,18 @@ class Band {
   std::vector<float> depth_;
 };
 
+/// What a picture is drawn on.
+struct Canvas {
+  Image& image;
+  Rgb background;
+  std::stop_token stop = {};
+};
+
 /// Draws `count` things in their order: triangle(k) tells where thing k is, draw(k, band) draws
-/// what of it lies in a band.
+/// what of it lies in a band. Throws Error{cancelled} once a stop was requested.
 template <class TriangleOf, class Draw>
-void draw_in_bands(Image& image, const Rgb& background, Index count, TriangleOf triangle,
-                   Draw draw) {
+void draw_in_bands(const Canvas& canvas, Index count, TriangleOf triangle, Draw draw) {
+  Image& image = canvas.image;
   struct Touch {
     Index band = 0;
     Index thing = 0;
@@ -72,17 +81,21 @@ void draw_in_bands(Image& image, const Rgb& background, Index count, TriangleOf 
   const Index bands = (image.height + Band::kPixels - 1) / Band::kPixels;
   std::vector<Touch> touches;
   for (Index k = 0; k < count; ++k) {
+    look_now_and_then(k, canvas.stop);
     const SampleRange rows = rows_of(triangle(k));
     const Index first = std::max(0, rows.first) / Band::kRows;
     for (Index b = first; b < bands && b * Band::kRows < rows.end; ++b) touches.push_back({b, k});
   }
   counting_sort(touches, bands, [](const Touch& touch) { return touch.band; });
-  Band band(image.width, background);
+  Band band(image.width, canvas.background);
   std::size_t next = 0;
   for (Index b = 0; b < bands; ++b) {
+    throw_if_cancelled(canvas.stop);
     band.start(b * Band::kRows);
-    for (; next < touches.size() && touches[next].band == b; ++next)
+    for (; next < touches.size() && touches[next].band == b; ++next) {
+      look_now_and_then(next, canvas.stop);
       draw(touches[next].thing, band);
+    }
     band.resolve(image);
   }
 }

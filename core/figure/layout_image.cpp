@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/cancel.hpp"
 #include "core/figure/legend.hpp"
 #include "core/figure/lettering.hpp"
 #include "core/figure/painting.hpp"
@@ -78,13 +79,14 @@ void append_legend(Drawing& drawing, const ColourScale& colours, const Scale& sc
 }  // namespace
 
 Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
-                   Colouring colouring, int size) {
+                   Colouring colouring, int size, const std::stop_token& stop) {
   assert(size >= kMinImageSize && size <= kMaxImageSize);
   const ColourScale& colours = colour_scale(colouring);
   const Scale scale{.frame = frame_of(unwrapped), .size = static_cast<double>(size)};
   const int height = size + static_cast<int>(std::lround(scale.length(kLegendUnits)));
   const auto painted = painted_faces(surfaces, unwrapped, colouring);
   Drawing drawing;
+  throw_if_cancelled(stop);
   for (std::size_t s = 0; s < unwrapped.size(); ++s)
     append_faces(drawing, unwrapped[s], painted[s], colours.colours, scale);
   const double flip_width =
@@ -95,7 +97,7 @@ Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedS
         append_flipped(drawing, unwrapped[s].faces[t], unwrapped[s].uv, scale, flip_width);
   for (const UnwrappedSurface& surface : unwrapped) append_outline(drawing, surface, scale);
   append_legend(drawing, colours, scale, height);
-  return rasterised(drawing, size, height, kPage);
+  return rasterised(drawing, size, height, kPage, stop);
 }
 
 }  // namespace unwrapd

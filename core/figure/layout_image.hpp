@@ -2,6 +2,7 @@
 // The UV layout as a picture of pixels: what layout_svg() draws, without a program that reads SVG.
 
 #include <span>
+#include <stop_token>
 
 #include "core/figure/colour_scale.hpp"
 #include "core/figure/image.hpp"
@@ -10,8 +11,8 @@
 namespace unwrapd {
 
 /// `size` pixels wide, in [kMinImageSize, kMaxImageSize], and as much higher as the legend takes.
-/// unwrapped has one entry for each surface.
+/// unwrapped has one entry for each surface. Throws Error{cancelled} once a stop was requested.
 Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
-                   Colouring colouring, int size);
+                   Colouring colouring, int size, const std::stop_token& stop = {});
 
 }  // namespace unwrapd

@@ -11,6 +11,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/cancel.hpp"
 #include "core/figure/bands.hpp"
 #include "core/figure/colour_scale.hpp"
 #include "core/figure/raster.hpp"
@@ -196,7 +197,7 @@ void draw_line(const LinePart& part, Band& band) {
 }  // namespace
 
 Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
-              int size) {
+              int size, const std::stop_token& stop) {
   assert(surfaces.size() == unwrapped.size());
   assert(size >= kMinImageSize && size <= kMaxImageSize);
   const View view = view_of(surfaces, size);
@@ -205,6 +206,7 @@ Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurfac
   std::vector<LinePart> lines;
   std::vector<Index> first_face = {0};
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    throw_if_cancelled(stop);
     painters.emplace_back(surfaces[s], unwrapped[s], view, checks);
     append_lines(lines, surfaces[s], unwrapped[s], view);
     first_face.push_back(first_face.back() + painters.back().face_count());
@@ -215,7 +217,7 @@ Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurfac
   };
   Image image = blank_image(size, size);
   draw_in_bands(
-      image, kPaper, faces + static_cast<Index>(lines.size()),
+      {image, kPaper, stop}, faces + static_cast<Index>(lines.size()),
       [&](Index k) {
         const auto s = surface_of(k);
         return k < faces ? painters[s].triangle(k - first_face[s])

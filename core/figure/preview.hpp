@@ -3,6 +3,7 @@
 // usual way to see what a map does to angles and areas.
 
 #include <span>
+#include <stop_token>
 
 #include "core/figure/image.hpp"
 #include "core/mesh/tri_mesh.hpp"
@@ -12,9 +13,10 @@ namespace unwrapd {
 /// A square picture of `size` pixels, in [kMinImageSize, kMaxImageSize], on white. Squares of the
 /// checkerboard have one size on the page, chosen so that about kChecksAcross of them cross the
 /// surface; seams are drawn pink and boundaries of the surface dark, both where they can be seen.
-/// Surfaces lie where their own coordinates put them. unwrapped has one entry for each.
+/// Surfaces lie where their own coordinates put them. unwrapped has one entry for each. Throws
+/// Error{cancelled} once a stop was requested.
 Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
-              int size);
+              int size, const std::stop_token& stop = {});
 
 inline constexpr int kChecksAcross = 26;
 

@@ -44,10 +44,10 @@ Image blank_image(int width, int height) {
 }
 
 Image rasterised(std::span<const FlatTriangle> drawing, int width, int height,
-                 const Rgb& background) {
+                 const Rgb& background, const std::stop_token& stop) {
   Image image = blank_image(width, height);
   draw_in_bands(
-      image, background, static_cast<Index>(drawing.size()),
+      {image, background, stop}, static_cast<Index>(drawing.size()),
       [&](Index k) -> const ScreenTriangle& { return drawing[k].corners; },
       [&](Index k, Band& band) { band.fill(drawing[k].corners, drawing[k].colour); });
   return image;

@@ -2,6 +2,7 @@
 // Flat drawings in pixels: triangles and lines of one colour each, the later over the earlier.
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/figure/image.hpp"
@@ -26,9 +27,10 @@ void append_line(std::vector<FlatTriangle>& drawing, const std::array<Vec2, 2>& 
 void append_rectangle(std::vector<FlatTriangle>& drawing, const Vec2& low, const Vec2& high,
                       const Rgb& colour);
 
-/// The picture, anti-aliased; width and height in pixels, both >= 1.
+/// The picture, anti-aliased; width and height in pixels, both >= 1. Throws Error{cancelled} once a
+/// stop was requested.
 Image rasterised(std::span<const FlatTriangle> drawing, int width, int height,
-                 const Rgb& background);
+                 const Rgb& background, const std::stop_token& stop = {});
 
 /// A picture of one colour, to draw into.
 Image blank_image(int width, int height);

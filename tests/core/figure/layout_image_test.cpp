@@ -3,8 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <stop_token>
+#include <vector>
+
 #include "core/figure/legend.hpp"
 #include "core/figure/painting.hpp"
+#include "core/figure/preview.hpp"
+#include "core/figure/raster.hpp"
+#include "tests/api/error_of.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd {
@@ -137,6 +144,23 @@ TEST(LayoutImage, EveryBoundSizeWorksAndTheSameBytesComeTwice) {
     EXPECT_EQ(image.rgb, layout_image({&surface, 1}, {&out, 1}, Colouring::angle, size).rgb);
   }
   EXPECT_EQ(layout_image({}, {}, Colouring::area, kMinImageSize).at(5, 5), kPage);
+}
+
+TEST(LayoutImage, HearsAStop) {
+  const TriMesh mesh = grid(3, 3);
+  const Surface surface = surface_of(mesh);
+  const UnwrappedSurface out = flattened(mesh, {1, 1});
+  std::stop_source stop;
+  stop.request_stop();
+  for (const auto& draw : std::vector<std::function<void()>>{
+           [&] {
+             layout_image({&surface, 1}, {&out, 1}, Colouring::angle, kSize, stop.get_token());
+           },
+           [&] { rasterised({}, kSize, kSize, kPage, stop.get_token()); },
+           [&] {
+             preview({&surface, 1}, {&out, 1}, kSize, stop.get_token());
+           }})
+    EXPECT_EQ(error_of(draw).code(), ErrorCode::cancelled);
 }
 
 }  // namespace
