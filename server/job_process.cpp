@@ -22,6 +22,7 @@ constexpr std::int64_t kProgramReserve = std::int64_t{256} << 20;
 constexpr std::int64_t kThreadReserve = std::int64_t{80} << 20;  // its stack and its arena
 constexpr int kSpareSeconds = 60;  // of processor time: the deadline comes first
 constexpr std::size_t kMaxTotals = 16384;
+constexpr std::size_t kMaxErrorText = 65536;
 constexpr std::chrono::seconds kProbePatience{20};
 
 SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolation) {
@@ -36,13 +37,12 @@ SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolati
 
 [[noreturn]] void misbehaved() { throw WorkerCrashed("it sent what no worker sends"); }
 
-bool is_utf8(const std::string& text) {
-  try {
-    static_cast<void>(api::Json(text).dump());
-    return true;
-  } catch (const std::exception&) {
-    return false;
-  }
+/// The text of an error, which may quote a mesh: what is no UTF-8 in it is replaced, and what
+/// nobody would read is cut off.
+std::string readable(std::string_view text) {
+  constexpr auto replace = api::Json::error_handler_t::replace;
+  const std::string json = api::Json(text.substr(0, kMaxErrorText)).dump(-1, ' ', false, replace);
+  return api::Json::parse(json).get<std::string>();
 }
 
 /// What reading what a worker has sent gives. What cannot be read is no error of the job's.
@@ -59,10 +59,10 @@ auto believed(Read read) {
 Error error_told(const Frame& frame) {
   return believed([&] {
     ByteUnpacker from(frame.bytes);
-    const std::string message(from.next_text());
-    const std::string where(from.next_text());
+    const std::string message = readable(from.next_text());
+    const std::string where = readable(from.next_text());
     const std::optional<ErrorCode> code = api::code_named(frame.name);
-    if (!is_utf8(message) || !is_utf8(where) || !code || !is_of_work(*code)) misbehaved();
+    if (!code || !is_of_work(*code)) misbehaved();
     return Error(*code, message, where);
   });
 }

@@ -74,10 +74,12 @@ test('a job in a process of its own gives the same answer', async () => {
 });
 
 test('what is wrong with a mesh is told as ever', async () => {
-  const bad = Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n');
-  const [one, other] = await Promise.all([isolated, plain].map((server) => done(server, bad)));
-  assert.equal(one.problem.code, 'malformed_obj');
-  assert.deepEqual({...one.problem, job: ''}, {...other.problem, job: ''});
+  for (const face of ['f 1 2 9', 'f 1 2 \x80', 'f 1 2 ' + 'x'.repeat(100_000)]) {
+    const bad = Buffer.from(`v 0 0 0\nv 1 0 0\nv 0 1 0\n${face}\n`, 'latin1');
+    const [one, other] = await Promise.all([isolated, plain].map((server) => done(server, bad)));
+    assert.equal(one.problem.code, 'malformed_obj');
+    assert.deepEqual({...one.problem, job: ''}, {...other.problem, job: ''});
+  }
 });
 
 // The last lines are lies: what they say is nothing that work on a mesh can come to.
