@@ -181,9 +181,9 @@ class NoOutput final : public JobOutput {
   void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
 };
 
-}  // namespace
-
-void check_isolation(const Isolation& isolation) {
+/// Calls use(stop token), which needs a worker process. Throws Error{internal} when there is none.
+template <class Use>
+void try_out(Use use) {
   const auto cannot = [](const std::string& why) {
     return Error(ErrorCode::internal,
                  "A worker process cannot run here: " + why + "; run with --isolate=off.");
@@ -191,25 +191,45 @@ void check_isolation(const Isolation& isolation) {
   std::stop_source late;
   const Deadline deadline(kProbePatience, [&] { late.request_stop(); });
   try {
-    WorkerProcess worker(isolation.program, {late.get_token(), isolation.grace});
-    send_limits(worker, sandbox_limits({}, isolation));
-    NoOutput none;
-    Conversation(worker, none, isolation.memory_bytes).await_ready();
+    use(late.get_token());
   } catch (const WorkerCrashed& crash) {
     throw cannot(crash.what());
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::cancelled) throw;
-    throw cannot("it does not answer");
+    throw cannot(error.code() == ErrorCode::cancelled ? "it does not answer" : error.what());
   }
 }
 
+}  // namespace
+
+void check_isolation(const Isolation& isolation) {
+  try_out([&](const std::stop_token& stop) {
+    WorkerProcess worker(isolation.program, {stop, isolation.grace});
+    send_limits(worker, sandbox_limits({}, isolation));
+    NoOutput none;
+    Conversation(worker, none, isolation.memory_bytes).await_ready();
+  });
+}
+
+/// Does a whole job: the calls that the C library makes differ between machines.
 std::string why_not(const Isolation& isolation) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  static_cast<void>(isolation);
+  return "A sanitizer needs more memory and files than a worker process may have.";
+#else
+  const asset::Input triangle{.document = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", .buffers = {}};
+  JobRecord record;
+  record.options = api::Json::object();
+  NoOutput none;
   try {
-    check_isolation(isolation);
+    try_out([&](const std::stop_token& stop) {
+      const JobTask task{.record = record, .began = std::chrono::steady_clock::now(), .stop = stop};
+      run_job_isolated(task, triangle, none, {}, isolation);
+    });
     return {};
   } catch (const Error& error) {
     return error.what();
   }
+#endif
 }
 
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,

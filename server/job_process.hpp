@@ -40,7 +40,7 @@ struct Isolation {
 /// Throws Error{internal} when no worker process can be started and locked in on this machine.
 void check_isolation(const Isolation& isolation);
 
-/// What check_isolation() throws, in words; empty when it throws nothing.
+/// Why jobs cannot have processes here, in words; empty when they can.
 std::string why_not(const Isolation& isolation);
 
 /// run_job() in a process of its own. Throws what that throws, and WorkerCrashed.

@@ -43,8 +43,10 @@ Isolation isolation_of(const Config& config, const SolverCache& cache, const Dut
   isolation.grace = std::chrono::seconds(config.grace_seconds);
   isolation.threads = config.threads;
   isolation.memory_bytes = static_cast<std::int64_t>(cache.memory_limit());
-  if (config.isolate == Isolate::on) check_isolation(isolation);
-  isolation.why_not = isolation.program.empty() ? "there is no program" : why_not(isolation);
+  if (config.isolate == Isolate::on)
+    check_isolation(isolation);
+  else
+    isolation.why_not = isolation.program.empty() ? "There is no program." : why_not(isolation);
   isolation.possible = isolation.why_not.empty();
   isolation.on = isolation.possible && config.isolate != Isolate::off;
   return isolation;
