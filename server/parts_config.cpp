@@ -6,6 +6,7 @@ namespace unwrapd::server {
 namespace {
 
 constexpr int kLeastMakers = 4;
+constexpr std::chrono::seconds kStopPatience{5};  // beyond the grace of a job
 constexpr int kAdminThreads = 4;
 constexpr int kAdminConnections = 64;
 constexpr int kAdminParked = 48;  // so that idle ones keep nobody out
@@ -53,6 +54,18 @@ Isolation isolation_of(const Config& config, const SolverCache& cache, const Dut
 }
 
 int most_waiting(const Config& config) { return std::max(1, config.edge.max_requests / 2); }
+
+std::chrono::seconds most_stopping(const Config& config) {
+  return std::chrono::seconds(config.grace_seconds) + kStopPatience;
+}
+
+void tell_isolation(const Isolation& isolation, const Config& config, const Log& log,
+                    Metrics& metrics) {
+  metrics.tell(Metric::isolation, {}, [on = isolation.on] { return on ? 1 : 0; });
+  if (isolation.on) return log.info("each job has a process of its own");
+  const bool wanted = config.isolate == Isolate::automatic && !isolation.program.empty();
+  if (wanted) log.warning("no job has a process of its own", {{"reason", isolation.why_not}});
+}
 
 MakingLimits making_limits(const Config& config, std::size_t memory_bytes) {
   return {.places = std::max(kLeastMakers, config.workers),

@@ -5,13 +5,22 @@
 #include "server/duties.hpp"
 #include "server/http_server.hpp"
 #include "server/job_process.hpp"
+#include "server/log.hpp"
 #include "server/making_room.hpp"
+#include "server/metrics.hpp"
 #include "server/solver_cache.hpp"
 
 namespace unwrapd::server {
 
 HttpConfig http_config(const Config& config);
 HttpConfig admin_config(const Address& address);
+
+/// How long jobs that were told to stop may go on at the end of the server.
+std::chrono::seconds most_stopping(const Config& config);
+
+/// Tells whether jobs have processes, and why not if they should.
+void tell_isolation(const Isolation& isolation, const Config& config, const Log& log,
+                    Metrics& metrics);
 
 /// Processes for all jobs if they can be had, of which this makes sure; when they are turned off,
 /// for the suspects alone. Throws Error where they are asked for and cannot be had.

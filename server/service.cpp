@@ -11,7 +11,6 @@
 #include "server/admin_routes.hpp"
 #include "server/cors.hpp"
 #include "server/data_lock.hpp"
-#include "server/http_server.hpp"
 #include "server/identity.hpp"
 #include "server/info_routes.hpp"
 #include "server/job_routes.hpp"
@@ -30,7 +29,6 @@ namespace {
 
 constexpr std::chrono::seconds kHeartbeat{10};
 constexpr std::chrono::seconds kWebhookPause{1};
-constexpr std::chrono::seconds kStopPatience{5};  // at the end, beyond the grace of a job
 constexpr std::chrono::seconds kTrimPause{10};
 constexpr std::size_t kEventsKept = 1024;  // of each job
 constexpr std::size_t kFeedsKept = 64;     // of finished jobs
@@ -48,7 +46,7 @@ struct Service::Parts {
         queue(store, blobs, events, log,
               {.max_queue = config.limits.max_queue,
                .workers = config.workers,
-               .stop = std::chrono::seconds(config.grace_seconds) + kStopPatience}),
+               .stop = most_stopping(config)}),
         streams(events, config.limits.max_streams),
         keys(config.data, config.access.key_file),
         secret(secret_in(config.data / kSecretFile)),
@@ -80,7 +78,7 @@ struct Service::Parts {
     }
     warn_without_keys(log);
     tell_state();
-    tell_isolation(log);
+    tell_isolation(isolation, config, log, metrics);
     queue.recover(isolation.possible);
     sweep_blobs(log);
     blobs.room().on_shortage({.evict = [this] { return evict_oldest(store, mesh_store, blobs); },
@@ -188,13 +186,6 @@ struct Service::Parts {
     metrics.tell(Metric::event_streams, {}, [&] { return streams.open_count(); });
     metrics.tell(Metric::stored_bytes, {}, [&] { return blobs.room().used_bytes(); });
     tell_caches();
-  }
-
-  void tell_isolation(const Log& log) {
-    metrics.tell(Metric::isolation, {}, [this] { return isolation.on ? 1 : 0; });
-    if (isolation.on) return log.info("each job has a process of its own");
-    const bool wanted = config.isolate == Isolate::automatic && !isolation.program.empty();
-    if (wanted) log.warning("no job has a process of its own", {{"reason", isolation.why_not}});
   }
 
   void tell_caches() {
