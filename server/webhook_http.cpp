@@ -7,6 +7,7 @@
 
 #include <array>
 #include <chrono>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -18,7 +19,31 @@ namespace {
 
 constexpr std::chrono::seconds kConnectTime{5};
 constexpr std::chrono::seconds kWholeTime{15};
-constexpr std::size_t kMostAnswer = std::size_t{64} * 1024;  // bytes, certificates included
+constexpr std::size_t kMostStatusLine = 512;
+constexpr std::size_t kMostAnswer = std::size_t{16} * 1024;  // bytes, certificates included
+
+/// httplib matches status lines against a regular expression that recurses for every byte: 30 kB of
+/// one overflow the stack. Lines that it does not take for such are as long as they like. Within
+/// TLS they are not seen here; kMostAnswer keeps them short enough.
+class StatusLines {
+ public:
+  /// False once one is too long.
+  bool are_short(std::string_view bytes) {
+    for (const char byte : bytes) {
+      if (byte == '\n') {
+        line_.clear();
+      } else if (line_.size() < kMostStatusLine) {
+        line_ += byte;
+      } else if (line_.starts_with("HTTP/")) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  std::string line_;  // its first bytes
+};
 
 /// A Client or an SSLClient that gets no more than so many bytes of an answer: they come to it
 /// through a pipe that counts them. httplib itself reads lines without end.
@@ -49,15 +74,17 @@ class Bounded : public Client {
   void pump() {
     std::array<char, 4096> bytes{};
     std::size_t answered = 0;
+    StatusLines status_lines;
     std::array<pollfd, 2> ends{{{near_, POLLIN, 0}, {far_, POLLIN, 0}}};
     while (answered <= kMostAnswer && ::poll(ends.data(), ends.size(), -1) >= 0) {
       for (const std::size_t from : {0U, 1U}) {
         if (ends.at(from).revents == 0) continue;
         const ssize_t count = ::recv(ends.at(from).fd, bytes.data(), bytes.size(), 0);
         if (count <= 0) return cut();
-        if (from == 1) answered += static_cast<std::size_t>(count);
-        if (!pass_on(ends.at(1 - from).fd, {bytes.data(), static_cast<std::size_t>(count)}))
-          return cut();
+        const std::string_view piece(bytes.data(), static_cast<std::size_t>(count));
+        if (from == 1) answered += piece.size();
+        if (from == 1 && !status_lines.are_short(piece)) return cut();
+        if (!pass_on(ends.at(1 - from).fd, piece)) return cut();
       }
     }
     cut();
