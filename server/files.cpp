@@ -20,6 +20,7 @@ constexpr mode_t kFileMode = 0640;
 constexpr std::string_view kPartSuffix = ".part";
 constexpr std::size_t kSyncsAtOnce = 4;
 constexpr int kBusyRetrySeconds = 5;
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 /// Throws with the text of errno; the path stays out of it, since users read it.
 [[noreturn]] void fail(std::string_view doing) {
@@ -97,7 +98,6 @@ std::int64_t File::size() const {
 FileStamp File::stamp() const {
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0) fail("read a file");
-  constexpr std::int64_t kNsPerSecond = 1'000'000'000;
   return {.device = status.st_dev,
           .inode = status.st_ino,
           .size = status.st_size,

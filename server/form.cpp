@@ -58,9 +58,25 @@ std::string take_value(std::string_view& text) {
   return std::string(take_until(text, " \t;"));
 }
 
-void put_once(std::optional<std::string>& place, std::string value) {
+/// What a disposition says so far.
+struct Names {
+  std::optional<std::string> name;
+  std::optional<std::string> filename;
+};
+
+void put_once(std::optional<std::string>& place, const std::string& value) {
   if (place) wrong_disposition();
-  place = std::move(value);
+  place = value;
+}
+
+/// One `key=value`, with which text begins and which it loses.
+void take_parameter(std::string_view& text, Names& names) {
+  const std::string_view key = take_until(text, "= \t;\"");
+  if (key.empty() || !text.starts_with('=')) wrong_disposition();
+  text.remove_prefix(1);
+  const std::string value = take_value(text);
+  if (same_word(key, "name")) put_once(names.name, value);
+  if (same_word(key, "filename")) put_once(names.filename, value);
 }
 
 /// The one Content-Disposition among the fields of a part's head, each of which follows a line end.
@@ -88,24 +104,18 @@ Part part_of_disposition(std::string_view value) {
   if (std::ranges::any_of(value, is_control_byte)) wrong_disposition();
   skip_blanks(value);
   if (!same_word(take_until(value, " \t;"), "form-data")) wrong_disposition();
-  std::optional<std::string> name;
-  std::optional<std::string> filename;
+  Names names;
   for (skip_blanks(value); !value.empty(); skip_blanks(value)) {
     if (value.front() != ';') wrong_disposition();
     value.remove_prefix(1);
     skip_blanks(value);
-    if (value.empty()) break;
-    const std::string_view key = take_until(value, "= \t;\"");
-    if (key.empty() || !value.starts_with('=')) wrong_disposition();
-    value.remove_prefix(1);
-    std::string text = take_value(value);
-    if (same_word(key, "name")) put_once(name, std::move(text));
-    if (same_word(key, "filename")) put_once(filename, std::move(text));
+    if (!value.empty()) take_parameter(value, names);
   }
-  if (!name) wrong_disposition();
-  if (!is_utf8_text(*name) || !is_utf8_text(filename.value_or("")))
+  if (!names.name) wrong_disposition();
+  Part part{.name = *names.name, .filename = names.filename.value_or("")};
+  if (!is_utf8_text(part.name) || !is_utf8_text(part.filename))
     no_form("A part's name is not UTF-8; send it so.");
-  return {.name = std::move(*name), .filename = std::move(filename).value_or("")};
+  return part;
 }
 
 FormParser::FormParser(std::string_view boundary, BodyReader::PartStart start,

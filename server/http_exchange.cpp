@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::int64_t kFilePiece = std::int64_t{256} * 1024;
 constexpr std::size_t kBodyPiece = std::size_t{64} * 1024;
+constexpr int kFirstError = 400;  // of statuses
 
 /// A connection as httplib sees it: heads in, answers out.
 class ConnectionStream final : public httplib::Stream {
@@ -136,7 +137,6 @@ void put(const Response& response, std::optional<StreamBody>& begun, httplib::Re
 /// What holds for every answer: it is what its type says, and kept by nobody unasked. A copy with
 /// an ETag may be asked for again.
 void add_usual_fields(httplib::Response& out) {
-  constexpr int kFirstError = 400;
   out.set_header("X-Content-Type-Options", "nosniff");
   if (!out.has_header("Cache-Control"))
     out.set_header("Cache-Control", out.status < kFirstError ? "private, no-cache" : "no-store");

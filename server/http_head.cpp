@@ -150,15 +150,16 @@ void vet_single(std::string_view name, std::string_view value, Framing& framing,
            "The header " + std::string(name) + " is not ASCII; send it so.");
 }
 
+void vet_host(std::string_view value, Framing& framing, Counts& counts) {
+  ++counts.hosts;
+  if (framing.authority == 0) framing.host = value;  // RFC 9112, 3.2.2
+  if (!is_made_of(value, kHostSymbols)) malformed("The Host header is no host; check the client.");
+}
+
 void vet_field(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
   framing.fields.emplace_back(name, value);
   vet_single(name, value, framing, counts);
-  if (same(name, "host")) {
-    ++counts.hosts;
-    if (framing.authority == 0) framing.host = value;  // RFC 9112, 3.2.2
-    if (!is_made_of(value, kHostSymbols))
-      malformed("The Host header is no host; check the client.");
-  }
+  if (same(name, "host")) vet_host(value, framing, counts);
   if (same(name, "content-length")) {
     ++counts.lengths;
     framing.content_length = length_of(value);

@@ -115,7 +115,7 @@ void HttpServer::make_ready(Client client) {
   if (!idle_.empty()) {
     wake(*idle_.back());
     idle_.pop_back();
-  } else if (threads_.size() < static_cast<std::size_t>(config_.max_requests + config_.max_held)) {
+  } else if (std::ssize(threads_) < std::int64_t{config_.max_requests} + config_.max_held) {
     begin_thread();
   }
 }
