@@ -23,8 +23,14 @@ class Path {
   void close() { levels_.pop_back(); }
   [[nodiscard]] int depth() const { return static_cast<int>(levels_.size()); }
 
-  void enter(const std::string& name) {
+  /// The object's next member, of at most so many.
+  void enter(const std::string& name, std::size_t max_members) {
     Level& level = levels_.back();
+    if (level.seen.size() >= max_members)
+      throw Error(ErrorCode::malformed_request,
+                  "An object of the JSON has too many members: send at most " +
+                      std::to_string(max_members) + ".",
+                  pointer());
     level.current = name;
     if (level.seen.insert(name).second) return;
     throw Error(ErrorCode::invalid_option, "\"" + name + "\" is given twice: give it once.",
@@ -73,7 +79,7 @@ class Checker : public nlohmann::json_sax<Json> {
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
     count();
-    path_.enter(name);
+    path_.enter(name, limits_.max_members);
     return true;
   }
   bool parse_error(std::size_t byte, const std::string&, const Json::exception& error) override {

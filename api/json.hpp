@@ -16,9 +16,10 @@ struct JsonLimits {
   std::size_t max_bytes = 65'536;
   int max_depth = 16;
   std::size_t max_values = 2'000'000;  ///< and names of members: some 80 bytes of memory each
+  std::size_t max_members = 1'000;     ///< of one object: making it costs their square
 };
 
-/// Parses one JSON value. Throws Error: malformed_request (syntax, depth, size, count),
+/// Parses one JSON value. Throws Error: malformed_request (syntax, depth, size, counts),
 /// invalid_option with its JSON pointer (a member given twice, a number beyond the range of a
 /// double).
 Json parse_json(std::string_view text, const JsonLimits& limits = {});

@@ -12,7 +12,8 @@ namespace {
 
 api::Json analysis_json(const RenderingInput& mesh, std::size_t memory_bytes,
                         const api::Limits& limits) {
-  const asset::Asset asset = asset::read(mesh.asset, read_limits(mesh.record, limits));
+  const asset::Asset asset =
+      asset::read(mesh.asset, read_limits(mesh.record, limits, memory_bytes));
   check_memory(job_bytes(asset.surfaces()), memory_bytes);
   const InputAnalysis analysis = analyse(asset.surfaces(), mesh.asset.stop);
   api::Json json = {{"format", format_name(asset.format())}};

@@ -6,6 +6,7 @@
 #include "api/options.hpp"
 #include "api/report.hpp"
 #include "core/error.hpp"
+#include "core/solver_core.hpp"
 #include "core/unwrap.hpp"
 #include "server/blob_store.hpp"
 #include "server/map_choice.hpp"
@@ -90,9 +91,12 @@ void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageC
 
 }  // namespace
 
-asset::ReadLimits read_limits(const JobRecord& job, const api::Limits& limits) {
+asset::ReadLimits read_limits(const JobRecord& job, const api::Limits& limits,
+                              std::size_t memory_bytes) {
   const std::int64_t faces = job.synchronous ? limits.max_sync_faces : limits.max_faces;
-  return {.max_vertices = limits.max_vertices, .max_faces = std::min(faces, limits.max_faces)};
+  return {.max_vertices = limits.max_vertices,
+          .max_faces = std::min(faces, limits.max_faces),
+          .max_bytes = memory_bytes};
 }
 
 std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& output,
@@ -104,7 +108,9 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   const api::JobOptions options = api::parse_stored_options(record.options);
   asset::Input watched = input;
   watched.stop = task.stop;
-  asset::Asset asset = asset::read(watched, read_limits(record, limits), options.asset);
+  const SolverCore* core = executor.shared_core();
+  const std::size_t memory = core != nullptr ? core->memory_limit() : asset::kNoByteLimit;
+  asset::Asset asset = asset::read(watched, read_limits(record, limits, memory), options.asset);
   if (options.unwrap.repack_only || options.unwrap.seams == SeamMode::uv0) asset::read_uvs(asset);
   check_stop(task);
 

@@ -28,6 +28,7 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
                     const api::Limits& limits, Executor& executor);
 
 /// The most that may be read for a job: less for one that somebody waits for.
-asset::ReadLimits read_limits(const JobRecord& job, const api::Limits& limits);
+asset::ReadLimits read_limits(const JobRecord& job, const api::Limits& limits,
+                              std::size_t memory_bytes = asset::kNoByteLimit);
 
 }  // namespace unwrapd::server

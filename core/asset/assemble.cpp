@@ -2,22 +2,18 @@
 // view still uses are kept, in order and at the same alignment. A buffer that carries more than
 // bytes (extras, extensions) stays a buffer of its own, and then nothing is moved.
 #include <algorithm>
-#include <cassert>
 #include <vector>
 
 #include "core/asset/base64.hpp"
-#include "core/asset/bytes.hpp"
 #include "core/asset/compress.hpp"
 #include "core/asset/container.hpp"
 #include "core/asset/patch.hpp"
 #include "core/asset/references.hpp"
+#include "core/asset/runs.hpp"
 #include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
-
-constexpr std::size_t kAlignment = 8;  // of runs of bytes, as they had in their buffers
-constexpr std::string_view kDataUri = "data:application/octet-stream;base64,";
 
 std::size_t number(const Json& object, const char* key) {
   const auto found = object.find(key);
@@ -29,9 +25,9 @@ std::size_t view_count(const Json& document) {
   return views == document.end() ? 0 : views->size();
 }
 
-std::vector<char> used_views(Json& document, std::size_t count) {
+std::vector<char> used_views(const Json& document, std::size_t count) {
   std::vector<char> used(count, 0);
-  for_each_view_reference(document, [&](Json& index) {
+  for_each_view_reference(document, [&](const Json& index) {
     const auto view = index.get<std::size_t>();
     if (view < count) used[view] = 1;
   });
@@ -60,31 +56,24 @@ void drop_dead_accessors(const Gltf& gltf, Json& document) {
 /// Takes out the views that only what was replaced had used, and renumbers the others.
 void drop_dead_views(const Gltf& gltf, Json& document) {
   const std::size_t count = view_count(document);
-  Json before = gltf.json;
-  std::vector<char> used_before = used_views(before, count);
+  std::vector<char> used_before = used_views(gltf.json, count);
   for (const std::size_t view : gltf.spent_views) used_before[view] = 1;
   const std::vector<char> used_now = used_views(document, count);
   std::vector<std::size_t> renumbered(count);
   Json kept = Json::array();
   for (std::size_t i = 0; i < count; ++i) {
     renumbered[i] = kept.size();
-    if (used_now[i] != 0 || used_before[i] == 0) kept.push_back(document["bufferViews"][i]);
+    if (used_now[i] != 0 || used_before[i] == 0)
+      kept.push_back(std::move(document["bufferViews"][i]));
   }
-  if (kept.size() == count) return;
-  document["bufferViews"] = std::move(kept);
+  const bool all = kept.size() == count;
+  if (count > 0) document["bufferViews"] = std::move(kept);
+  if (all) return;
   for_each_view_reference(document, [&](Json& index) {
     const auto view = index.get<std::size_t>();
     if (view < count) index = renumbered[view];
   });
 }
-
-/// A run of bytes of a buffer that goes into the file, and where.
-struct Run {
-  std::size_t buffer = 0;
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  std::size_t target = 0;
-};
 
 std::vector<Run> whole_buffers(const std::vector<std::string_view>& buffers) {
   std::vector<Run> runs;
@@ -98,36 +87,7 @@ std::vector<Run> used_runs(const Json& document) {
     const std::size_t begin = number(view, "byteOffset");
     runs.push_back({number(view, "buffer"), begin, begin + number(view, "byteLength"), 0});
   }
-  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
-    return std::pair(a.buffer, a.begin) < std::pair(b.buffer, b.begin);
-  });
-  std::vector<Run> merged;
-  for (const Run& run : runs) {
-    if (!merged.empty() && merged.back().buffer == run.buffer && run.begin <= merged.back().end)
-      merged.back().end = std::max(merged.back().end, run.end);
-    else
-      merged.push_back(run);
-  }
-  return merged;
-}
-
-std::string joined(const std::vector<std::string_view>& buffers, std::vector<Run>& runs) {
-  std::string bytes;
-  for (Run& run : runs) {
-    pad(bytes, kAlignment);
-    bytes.append(run.begin % kAlignment, '\0');
-    run.target = bytes.size();
-    bytes += buffers[run.buffer].substr(run.begin, run.end - run.begin);
-  }
-  return bytes;
-}
-
-const Run& run_of(const std::vector<Run>& runs, std::size_t buffer, std::size_t offset) {
-  const auto after = std::upper_bound(
-      runs.begin(), runs.end(), std::pair(buffer, offset),
-      [](const auto& at, const Run& run) { return at < std::pair(run.buffer, run.begin); });
-  assert(after != runs.begin());
-  return *std::prev(after);
+  return merged(std::move(runs));
 }
 
 void move_views(Json& document, const std::vector<Run>& runs) {
@@ -148,41 +108,39 @@ bool can_join(const Json& buffers) {
   return buffers.size() <= 1 || std::all_of(buffers.begin() + 1, buffers.end(), is_plain);
 }
 
-std::string data_uri(std::string_view bytes) {
-  std::string uri(kDataUri);
-  append_base64(uri, bytes);
-  return uri;
-}
-
-std::string finish(Json& document, const std::vector<std::string_view>& buffers,
-                   std::string_view other_chunks, Format format) {
+std::string finish(const Gltf& gltf, PatchedDocument& patched,
+                   const std::vector<std::string_view>& buffers, Format format) {
+  Json& document = patched.json;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     Json& buffer = document["buffers"][i];
     buffer["byteLength"] = buffers[i].size();
     if (i > 0 || format == Format::gltf)
-      buffer["uri"] = data_uri(buffers[i]);
+      buffer["uri"] = data_uri(buffers[i], gltf.stop);
     else
       buffer.erase("uri");
   }
-  if (format == Format::gltf) return document.dump();
-  const std::string json = document.dump();
-  return join_glb(json, buffers.empty() ? std::string_view() : buffers[0], other_chunks);
+  static const Aside nothing;
+  std::string text =
+      (patched.aside != nullptr ? *patched.aside : nothing).text_with(document, gltf.stop);
+  if (format == Format::gltf) return text;
+  return join_glb(text, buffers.empty() ? std::string_view() : buffers[0], gltf.other_chunks);
 }
 
 }  // namespace
 
-std::string assemble(const Gltf& gltf, PatchedDocument patched, Format format, bool with_meshopt) {
+std::string assemble(const Gltf& gltf, PatchedDocument patched, Format format,
+                     const std::optional<MeshoptStyle>& meshopt) {
   Json& document = patched.json;
   std::vector<std::string_view> buffers(gltf.buffers.begin(), gltf.buffers.end());
   if (!can_join(document["buffers"])) {
-    if (with_meshopt)
+    if (meshopt)
       throw Error(ErrorCode::invalid_option,
                   "the asset's buffers carry extras or extensions, so they cannot be compressed; "
                   "ask for compression none",
                   "/compression");
     document["buffers"].push_back(Json::object());
     buffers.push_back(patched.added);
-    return finish(document, buffers, gltf.other_chunks, format);
+    return finish(gltf, patched, buffers, format);
   }
   throw_if_cancelled(gltf.stop);
   const std::size_t views_before = view_count(document);
@@ -193,14 +151,15 @@ std::string assemble(const Gltf& gltf, PatchedDocument patched, Format format, b
   const bool has_dead_bytes = gltf.has_dead_bytes || view_count(document) < views_before;
   buffers.push_back(patched.added);
   std::vector<Run> runs = has_dead_bytes ? used_runs(document) : whole_buffers(buffers);
-  std::string bytes = joined(buffers, runs);
+  std::string bytes;
+  append_runs(bytes, buffers, runs);
   throw_if_cancelled(gltf.stop);
   move_views(document, runs);
   Json& list = document["buffers"];
   while (list.size() > 1) list.erase(list.size() - 1);
   if (list.empty()) list.push_back(Json::object());
-  if (with_meshopt) compress_views(document, bytes);
-  return finish(document, {bytes}, gltf.other_chunks, format);
+  if (meshopt) compress_views(document, bytes, *meshopt, gltf.stop);
+  return finish(gltf, patched, {bytes}, format);
 }
 
 }  // namespace unwrapd::asset

@@ -47,12 +47,23 @@ void check_for_obj(const AssetOptions& options) {
     refuse("/primitives", "an OBJ has no primitives; leave them out, or send a glTF");
 }
 
-/// A plain GLB compressed: Draco needs the document as it will be.
-std::string compressed(const Input& plain, Format output, Compression compression) {
+/// What a compressed document is made of and how.
+struct Plain {
+  std::string glb;
+  const Aside* aside = nullptr;  ///< of the document, and not in the GLB
+  std::stop_token stop;
+};
+
+/// Draco and, of an OBJ, meshopt need the document as it will be.
+std::string compressed(Plain plain, Format output, Compression compression, bool with_fallback) {
   std::vector<Surface> surfaces;
-  const Gltf again = read_gltf(plain, Format::glb, kNoLimits, {}, surfaces);
-  if (compression == Compression::draco) return assemble(again, draco_compressed(again), output);
-  return assemble(again, {again.json, {}}, output, true);
+  const Gltf again = read_gltf({plain.glb, {}, plain.stop}, Format::glb, kNoLimits, {}, surfaces);
+  plain.glb = {};
+  if (compression != Compression::draco)
+    return assemble(again, {again.json, {}, &again.aside}, output, MeshoptStyle{});
+  PatchedDocument packed = draco_compressed(again, with_fallback);
+  packed.aside = plain.aside != nullptr ? plain.aside : &again.aside;
+  return assemble(again, std::move(packed), output);
 }
 
 bool is_compressed(Compression compression) {
@@ -61,12 +72,19 @@ bool is_compressed(Compression compression) {
 
 std::string write_from_gltf(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped,
                             Format output, Compression wanted) {
-  const Compression compression = wanted == Compression::keep ? gltf.came_as : wanted;
-  PatchedDocument patched = patch(gltf, unwrapped);
-  if (compression != Compression::draco)
-    return assemble(gltf, std::move(patched), output, compression == Compression::meshopt);
-  const std::string plain = assemble(gltf, std::move(patched), Format::glb);
-  return compressed({plain, {}, gltf.stop}, output, compression);
+  const bool is_kept = wanted == Compression::keep;
+  const Compression compression = is_kept ? gltf.came_as : wanted;
+  const bool with_fallback = is_kept && gltf.came_with_fallback;
+  PatchedDocument patched = patch(gltf, unwrapped, output);
+  if (compression == Compression::draco) {
+    patched.aside = nullptr;  // so that what nothing reads is not read again
+    return compressed({assemble(gltf, std::move(patched), Format::glb), &gltf.aside, gltf.stop},
+                      output, compression, with_fallback);
+  }
+  if (compression != Compression::meshopt) return assemble(gltf, std::move(patched), output);
+  const MeshoptStyle style =
+      is_kept ? MeshoptStyle{gltf.meshopt_name, with_fallback} : MeshoptStyle{};
+  return assemble(gltf, std::move(patched), output, style);
 }
 
 std::string write_from_obj(const Document& document, const UnwrappedSurface& unwrapped,
@@ -76,8 +94,8 @@ std::string write_from_obj(const Document& document, const UnwrappedSurface& unw
   const Compression compression = document.options.compression;
   if (!is_compressed(compression))
     return obj_as_gltf(obj, document.surfaces.front(), unwrapped, output);
-  const std::string plain = obj_as_gltf(obj, document.surfaces.front(), unwrapped, Format::glb);
-  return compressed({plain, {}, obj.stop}, output, compression);
+  std::string plain = obj_as_gltf(obj, document.surfaces.front(), unwrapped, Format::glb);
+  return compressed({std::move(plain), nullptr, obj.stop}, output, compression, false);
 }
 
 }  // namespace
@@ -134,7 +152,7 @@ std::vector<std::string> side_effects(const Asset& asset,
     more = note_on_polygons(*obj, unwrapped.front());
   if (const Gltf* gltf = std::get_if<Gltf>(&document.source);
       gltf != nullptr && output != Format::obj)
-    more = side_effects_of_patch(*gltf);
+    more = side_effects_of_patch(*gltf, output);
   notes.insert(notes.end(), more.begin(), more.end());
   return notes;
 }

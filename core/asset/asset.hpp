@@ -3,6 +3,7 @@
 // texture coordinates are added and, where a vertex lies on a seam, its copies.
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -27,10 +28,13 @@ struct Input {
   std::stop_token stop = {};  ///< of the job: reading looks at it, and so does writing later
 };
 
+inline constexpr std::size_t kNoByteLimit = std::numeric_limits<std::size_t>::max();
+
 /// Checked against counts in the document before anything of their size is allocated.
 struct ReadLimits {
   std::int64_t max_vertices = 10'000'000;
   std::int64_t max_faces = 20'000'000;
+  std::size_t max_bytes = kNoByteLimit;  ///< of memory, of a job
 };
 
 struct Document;  // the original JSON and buffers, or the OBJ's text; private to asset
@@ -56,8 +60,8 @@ class Asset {
 /// Recognises the format by content. The surfaces are those that the options select; write() then
 /// does what they ask for. Throws Error with a JSON pointer or a file position: unknown_format,
 /// malformed_*, missing_buffer, external_uri, unsupported_extension, too_many_vertices,
-/// too_many_faces, no_triangles, non_finite_position; invalid_option where the asset has none of
-/// what an option names. Throws Error{cancelled}.
+/// too_many_faces, too_much_memory, no_triangles, non_finite_position; invalid_option where the
+/// asset has none of what an option names. Throws Error{cancelled}.
 Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& options = {});
 
 /// Fills Surface::corner_uv from the set of texture coordinates that the options name, as the
@@ -66,7 +70,7 @@ void read_uvs(Asset& asset);
 
 /// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data
 /// URIs). unwrapped has one entry for each of asset.surfaces(). Tangents that belonged to replaced
-/// texture coordinates are left out: a reader makes new ones. Throws Error{cancelled}.
+/// texture coordinates are made anew. Throws Error{cancelled}.
 std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrapped, Format output);
 
 /// Where the vertices come from that write() writes: one entry for each primitive that is
@@ -74,7 +78,7 @@ std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrappe
 std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const UnwrappedSurface> unwrapped,
                                    Format output);
 
-/// Sentences about what write() changes besides: tangents left out, transforms of textures reset,
+/// Sentences about what write() changes besides: tangents made anew, transforms of textures reset,
 /// sets of texture coordinates filled in, polygons written as triangles.
 std::vector<std::string> side_effects(const Asset& asset,
                                       std::span<const UnwrappedSurface> unwrapped, Format output);

@@ -53,13 +53,13 @@ bool is_plain_relative(std::string_view path) {
          !has_parent_segment(path);
 }
 
-std::string data_uri_bytes(const Node& uri) {
+std::string data_uri_bytes(const Node& uri, const std::stop_token& stop) {
   const std::string& text = uri.text();
   const std::size_t comma = text.find(',');
   const std::string_view head = std::string_view(text).substr(0, comma);
   std::optional<std::string> bytes;
   if (comma != std::string::npos && head.ends_with(";base64"))
-    bytes = base64_decoded(std::string_view(text).substr(comma + 1));
+    bytes = base64_decoded(std::string_view(text).substr(comma + 1), stop);
   else if (comma != std::string::npos)  // RFC 2397: percent-encoded
     bytes = percent_decoded(std::string_view(text).substr(comma + 1));
   if (!bytes)
@@ -68,14 +68,19 @@ std::string data_uri_bytes(const Node& uri) {
   return std::move(*bytes);
 }
 
+/// The part of the request that a URI names; end() when there is none.
+auto part_of(const std::string& uri, const Input& input) {
+  const auto part = input.buffers.find(uri);
+  return part != input.buffers.end() ? part : input.buffers.find(percent_decoded(uri));
+}
+
 std::string external_bytes(const Node& uri, const Input& input) {
   const std::string decoded = percent_decoded(uri.text());
   if (!is_plain_relative(decoded))
     fail(ErrorCode::external_uri, uri.place(),
          "no file or address is ever opened; embed the buffer, or send it as a part of the "
          "request under a plain relative name");
-  auto part = input.buffers.find(uri.text());
-  if (part == input.buffers.end()) part = input.buffers.find(decoded);
+  const auto part = part_of(uri.text(), input);
   if (part == input.buffers.end())
     fail(ErrorCode::missing_buffer, uri.place(),
          "the buffer \"" + uri.text() +
@@ -109,8 +114,8 @@ std::string buffer_bytes(const Node& buffer, std::string_view bin, const Input& 
   std::string bytes;
   const auto uri = buffer.find("uri");
   if (uri) {
-    bytes =
-        uri->text().starts_with(kDataScheme) ? data_uri_bytes(*uri) : external_bytes(*uri, input);
+    bytes = uri->text().starts_with(kDataScheme) ? data_uri_bytes(*uri, input.stop)
+                                                 : external_bytes(*uri, input);
   } else if (bin.data() != nullptr) {
     bytes = bin;
   } else {
@@ -137,6 +142,18 @@ void resolve_buffers(Gltf& gltf, std::string_view bin, const Input& input) {
     gltf.buffers.push_back(is_meshopt_fallback(buffer, has_source, uses_meshopt)
                                ? std::string()
                                : buffer_bytes(buffer, own_bin, input));
+  }
+}
+
+void take_images(Gltf& gltf, const Input& input) {
+  const auto images = gltf.json.find("images");
+  if (input.buffers.empty() || images == gltf.json.end() || !images->is_array()) return;
+  for (std::size_t i = 0; i < images->size(); ++i) {
+    const Json& image = (*images)[i];
+    const auto uri = image.is_object() ? image.find("uri") : image.end();
+    if (uri == image.end() || !uri->is_string()) continue;
+    const auto part = part_of(uri->get_ref<const std::string&>(), input);
+    if (part != input.buffers.end()) gltf.sent_images.emplace(i, part->second);
   }
 }
 

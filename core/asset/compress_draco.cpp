@@ -65,6 +65,7 @@ void add_attribute(const Gltf& gltf, const std::string& semantic, std::size_t nu
   const Elements elements(gltf, number);
   const std::string zeros(accessor.element_bytes, '\0');
   for (std::size_t i = 0; i < accessor.count; ++i) {
+    look_now_and_then(i, gltf.stop);
     const char* bytes = elements.at(i);
     mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(static_cast<std::uint32_t>(i)),
                                           bytes == nullptr ? zeros.data() : bytes);
@@ -79,7 +80,10 @@ std::vector<Index> corners_of(const Gltf& gltf, const Primitive& primitive) {
     return corners;
   }
   const Elements indices(gltf, *primitive.indices);
-  for (std::size_t i = 0; i < count; ++i) corners[i] = static_cast<Index>(indices.unsigned_at(i));
+  for (std::size_t i = 0; i < count; ++i) {
+    look_now_and_then(i, gltf.stop);
+    corners[i] = static_cast<Index>(indices.unsigned_at(i));
+  }
   return corners;
 }
 
@@ -105,8 +109,9 @@ std::string bitstream_of(const Gltf& gltf, const Primitive& primitive) {
 
 class DracoPacker {
  public:
-  explicit DracoPacker(const Gltf& gltf)
+  DracoPacker(const Gltf& gltf, bool with_fallback)
       : gltf_(gltf),
+        with_fallback_(with_fallback),
         patched_{gltf.json, {}},
         views_(patched_, gltf.buffers.size()),
         left_(count_accessor_references(gltf.json, gltf.accessors.size())) {}
@@ -133,12 +138,13 @@ class DracoPacker {
 
   PatchedDocument finish() {
     if (done_.empty()) return std::move(patched_);
+    patched_.json["extensionsUsed"].push_back(kExtension);
+    if (with_fallback_) return std::move(patched_);
+    patched_.json["extensionsRequired"].push_back(kExtension);
     for (const auto& [key, done] : done_) {
       for (const auto& [semantic, accessor] : key.first) forget_bytes(accessor);
       if (key.second) forget_bytes(*key.second);
     }
-    for (const char* list : {"extensionsUsed", "extensionsRequired"})
-      patched_.json[list].push_back(kExtension);
     return std::move(patched_);
   }
 
@@ -163,10 +169,13 @@ class DracoPacker {
   /// The accessor of the indices; Draco always has some.
   std::size_t indices_of(const Primitive& primitive) {
     if (primitive.indices) return *primitive.indices;
-    const std::size_t count = gltf_.accessors[primitive.position].count;
+    Json accessor = {{"componentType", ComponentType::u32},
+                     {"count", gltf_.accessors[primitive.position].count},
+                     {"type", "SCALAR"}};
+    if (with_fallback_)
+      accessor = index_accessor(gltf_, std::nullopt, corners_of(gltf_, primitive), views_);
     Json& accessors = patched_.json["accessors"];
-    accessors.push_back(
-        {{"componentType", ComponentType::u32}, {"count", count}, {"type", "SCALAR"}});
+    accessors.push_back(std::move(accessor));
     return accessors.size() - 1;
   }
 
@@ -177,6 +186,7 @@ class DracoPacker {
   }
 
   const Gltf& gltf_;
+  bool with_fallback_;
   PatchedDocument patched_;
   NewViews views_;
   std::vector<std::size_t> left_;  ///< references to accessors that are not packed
@@ -185,8 +195,8 @@ class DracoPacker {
 
 }  // namespace
 
-PatchedDocument draco_compressed(const Gltf& gltf) {
-  DracoPacker packer(gltf);
+PatchedDocument draco_compressed(const Gltf& gltf, bool with_fallback) {
+  DracoPacker packer(gltf, with_fallback);
   for (const Primitive& primitive : gltf.primitives) packer.pack(primitive);
   return packer.finish();
 }

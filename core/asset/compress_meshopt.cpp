@@ -4,19 +4,24 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "core/asset/base64.hpp"
 #include "core/asset/bytes.hpp"
 #include "core/asset/compress.hpp"
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/references.hpp"
+#include "core/asset/runs.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
 
-constexpr const char* kExtension = "EXT_meshopt_compression";
 constexpr std::size_t kMaxStride = 256;
 
 enum class Use { none, vertices, indices, triangles, mixed };
@@ -48,9 +53,7 @@ class Uses {
       for (const Json& primitive : mesh.at("primitives")) add_primitive(primitive, left);
     for (std::size_t a = 0; a < left.size(); ++a)
       if (left[a] > 0) add(a, Use::mixed);  // animations and skins
-    Json copy = document;
-    copy.erase("accessors");
-    for_each_view_reference(copy, [&](Json& view) {
+    for_each_other_view_reference(document, [&](const Json& view) {
       of_view_[view.get<std::size_t>()] = {Use::mixed, 0};
     });
   }
@@ -158,49 +161,132 @@ std::optional<Encoded> encode(const ViewUse& use, const Json& view, std::string_
   return std::nullopt;
 }
 
-void require_extension(Json& document) {
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
-    Json& names = document[list];
-    if (std::find(names.begin(), names.end(), kExtension) == names.end())
-      names.push_back(kExtension);
-  }
+void list_extension(Json& document, const MeshoptStyle& style) {
+  document["extensionsUsed"].push_back(style.name);
+  if (!style.with_fallback) document["extensionsRequired"].push_back(style.name);
 }
+
+/// The buffer that the compressed views lie in when they are not: without bytes of its own unless
+/// readers without the extension shall read it.
+Json fallback_buffer(const std::string& plain, const MeshoptStyle& style,
+                     const std::stop_token& stop) {
+  Json buffer = {{"byteLength", plain.size()},
+                 {"extensions", {{style.name, {{"fallback", true}}}}}};
+  if (style.with_fallback) buffer["uri"] = data_uri(plain, stop);
+  return buffer;
+}
+
+/// Views of one and the same range; no view of another range reaches into it.
+struct Range {
+  std::size_t begin = 0, end = 0;
+  std::vector<std::size_t> views;
+};
+
+/// The ranges that are no part of others.
+std::vector<Range> separate_ranges(const Json& views) {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> by_range;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const std::size_t begin = number(views[i], "byteOffset");
+    by_range[{begin, begin + number(views[i], "byteLength")}].push_back(i);
+  }
+  std::vector<Range> separate;
+  std::size_t reached = 0;
+  for (auto range = by_range.begin(); range != by_range.end(); ++range) {
+    const auto [begin, end] = range->first;
+    const auto next = std::next(range);
+    if (begin >= reached && (next == by_range.end() || next->first.first >= end))
+      separate.push_back({begin, end, std::move(range->second)});
+    reached = std::max(reached, end);
+  }
+  return separate;
+}
+
+/// What the views of a range agree to be.
+ViewUse common_use(const Uses& uses, const Json& views, const Range& range) {
+  const std::size_t first = range.views.front();
+  for (const std::size_t i : range.views)
+    if (uses.of(i).use != uses.of(first).use ||
+        uses.of(i).element_bytes != uses.of(first).element_bytes ||
+        number(views[i], "byteStride") != number(views[first], "byteStride"))
+      return {Use::mixed, 0};
+  return uses.of(first);
+}
+
+class Packer {
+ public:
+  Packer(Json& document, std::string_view bytes, const MeshoptStyle& style)
+      : views_(document["bufferViews"]), bytes_(bytes), style_(style), uses_(document) {}
+
+  /// The compressed bytes, with what stays plain.
+  std::string pack(const std::stop_token& stop) {
+    std::vector<char> is_packed(views_.size(), 0);
+    for (const Range& range : separate_ranges(views_)) {
+      throw_if_cancelled(stop);
+      const std::string_view plain = bytes_.substr(range.begin, range.end - range.begin);
+      const std::optional<Encoded> encoded =
+          encode(common_use(uses_, views_, range), views_[range.views.front()], plain);
+      if (!encoded) continue;
+      add(range, plain, *encoded);
+      for (const std::size_t i : range.views) is_packed[i] = 1;
+    }
+    keep_plain(is_packed);
+    return std::move(packed_);
+  }
+
+  [[nodiscard]] const std::string& unpacked() const { return unpacked_; }
+
+ private:
+  void add(const Range& range, std::string_view plain, const Encoded& encoded) {
+    pad(packed_, 4);
+    pad(unpacked_, 4);
+    for (const std::size_t i : range.views) {
+      views_[i]["buffer"] = 1;
+      views_[i]["byteOffset"] = unpacked_.size();
+      views_[i]["extensions"][style_.name] = {{"buffer", 0},
+                                              {"byteOffset", packed_.size()},
+                                              {"byteLength", encoded.bytes.size()},
+                                              {"byteStride", encoded.stride},
+                                              {"mode", encoded.mode},
+                                              {"count", plain.size() / encoded.stride}};
+    }
+    packed_ += encoded.bytes;
+    unpacked_ += plain;
+  }
+
+  /// The views that are not packed, at the same places relative to each other where they overlap.
+  void keep_plain(const std::vector<char>& is_packed) {
+    std::vector<Run> runs;
+    for (std::size_t i = 0; i < is_packed.size(); ++i) {
+      const std::size_t begin = number(views_[i], "byteOffset");
+      if (is_packed[i] == 0) runs.push_back({0, begin, begin + number(views_[i], "byteLength"), 0});
+    }
+    runs = merged(std::move(runs));
+    append_runs(packed_, {bytes_}, runs);
+    for (std::size_t i = 0; i < is_packed.size(); ++i) {
+      if (is_packed[i] != 0) continue;
+      const std::size_t offset = number(views_[i], "byteOffset");
+      const Run& run = run_of(runs, 0, offset);
+      views_[i]["byteOffset"] = run.target + (offset - run.begin);
+    }
+  }
+
+  Json& views_;
+  std::string_view bytes_;
+  const MeshoptStyle& style_;
+  Uses uses_;
+  std::string packed_, unpacked_;
+};
 
 }  // namespace
 
-void compress_views(Json& document, std::string& bytes) {
+void compress_views(Json& document, std::string& bytes, const MeshoptStyle& style,
+                    const std::stop_token& stop) {
   if (!document.contains("meshes") || !document.contains("accessors")) return;
-  const Uses uses(document);
-  std::string packed;
-  std::size_t unpacked = 0;
-  for (std::size_t i = 0; i < document["bufferViews"].size(); ++i) {
-    Json& view = document["bufferViews"][i];
-    const std::size_t length = number(view, "byteLength");
-    const auto plain = std::string_view(bytes).substr(number(view, "byteOffset"), length);
-    const std::optional<Encoded> encoded = encode(uses.of(i), view, plain);
-    pad(packed, 4);
-    const std::size_t at = packed.size();
-    packed += encoded ? std::string_view(encoded->bytes) : plain;
-    if (!encoded) {
-      view["byteOffset"] = at;
-      continue;
-    }
-    unpacked = (unpacked + 3) / 4 * 4;
-    view["buffer"] = 1;
-    view["byteOffset"] = unpacked;
-    unpacked += length;
-    view["extensions"][kExtension] = {{"buffer", 0},
-                                      {"byteOffset", at},
-                                      {"byteLength", encoded->bytes.size()},
-                                      {"byteStride", encoded->stride},
-                                      {"mode", encoded->mode},
-                                      {"count", length / encoded->stride}};
-  }
-  if (unpacked == 0) return;
-  bytes = std::move(packed);
-  document["buffers"].push_back(
-      {{"byteLength", unpacked}, {"extensions", {{kExtension, {{"fallback", true}}}}}});
-  require_extension(document);
+  Packer packer(document, bytes, style);
+  bytes = packer.pack(stop);
+  if (packer.unpacked().empty()) return;
+  document["buffers"].push_back(fallback_buffer(packer.unpacked(), style, stop));
+  list_extension(document, style);
 }
 
 }  // namespace unwrapd::asset

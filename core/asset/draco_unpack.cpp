@@ -2,8 +2,10 @@
 // primitive names. An accessor that already has data (a fallback for readers without Draco, or the
 // result of another bitstream) is left as it is, and the primitive gets one of its own.
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 
 #include "core/asset/draco.hpp"
 #include "core/asset/gltf_steps.hpp"
@@ -15,6 +17,64 @@ namespace {
 
 constexpr const char* kExtension = "KHR_draco_mesh_compression";
 
+/// The primitives whose geometry lies in the same bitstream.
+using Sharers = std::vector<const DracoSource*>;
+
+/// What a bitstream holds, as it has been written into the document. Each part is written once, for
+/// all accessors that name it.
+class Unpacked {
+ public:
+  Unpacked(const Gltf& gltf, const DracoMesh& mesh, NewViews& views)
+      : gltf_(gltf), mesh_(mesh), views_(views), corners_(mesh.corners()) {}
+
+  [[nodiscard]] std::size_t face_count() const { return corners_.size() / 3; }
+
+  /// The accessor with its elements from the bitstream's attribute `id`.
+  Json attribute(const Accessor& accessor, Json json, std::size_t id) {
+    const Written& elements = written(accessor, id);
+    json["bufferView"] = elements.view;
+    json["count"] = mesh_.point_count();
+    for (const char* stale : {"byteOffset", "sparse"}) json.erase(stale);
+    if (json.contains("min") || json.contains("max"))
+      for (const char* bound : {"min", "max"}) json[bound] = elements.bounds.at(bound);
+    return json;
+  }
+
+  Json indices(std::optional<std::size_t> old) {
+    const bool had_u8 = old && gltf_.accessors[*old].type == ComponentType::u8;
+    const auto found = indices_.find(had_u8);
+    if (found != indices_.end()) return accessor_like(gltf_, old, found->second);
+    return indices_.emplace(had_u8, index_accessor(gltf_, old, corners_, views_)).first->second;
+  }
+
+ private:
+  struct Written {
+    std::size_t view = 0;
+    Json bounds;  ///< min and max
+  };
+
+  const Written& written(const Accessor& accessor, std::size_t id) {
+    const auto [found, is_new] =
+        elements_.try_emplace({id, accessor.type, accessor.components, accessor.element_bytes});
+    if (!is_new) return found->second;
+    throw_if_cancelled(gltf_.stop);
+    const std::string bytes = mesh_.elements(id, accessor);
+    const std::size_t stride = bytes.size() / mesh_.point_count();
+    found->second.bounds = {{"componentType", accessor.type}};
+    set_bounds(found->second.bounds, bytes, stride, accessor.components);
+    found->second.view =
+        views_.add(bytes, stride == accessor.element_bytes ? 0 : stride, kArrayBufferTarget);
+    return found->second;
+  }
+
+  const Gltf& gltf_;
+  const DracoMesh& mesh_;
+  NewViews& views_;
+  std::vector<Index> corners_;
+  std::map<std::tuple<std::size_t, ComponentType, std::size_t, std::size_t>, Written> elements_;
+  std::map<bool, Json> indices_;  ///< [may be bytes]
+};
+
 class Unpacker {
  public:
   Unpacker(const Gltf& gltf, const ReadLimits& limits)
@@ -23,16 +83,20 @@ class Unpacker {
         patched_{gltf.json, {}},
         views_(patched_, gltf.buffers.size()) {}
 
-  void unpack(const DracoSource& source) {
-    const Key key = key_of(source);
-    auto found = done_.find(key);
-    if (found == done_.end()) found = done_.emplace(key, decode(source)).first;
-    Json& primitive = json_of(source);
-    for (const auto& [semantic, accessor] : found->second.attributes)
-      primitive["attributes"][semantic] = accessor;
-    primitive["indices"] = found->second.indices;
-    primitive.erase("mode");  // Draco's faces are a list of triangles, which is the default
-    remove_extension(primitive, kExtension);
+  void unpack(const Sharers& sharers) {
+    throw_if_cancelled(gltf_.stop);
+    const Place place = place_of(*sharers.front());
+    const DracoMesh mesh(bitstream(*sharers.front()), left_, place);
+    throw_if_cancelled(gltf_.stop);
+    Unpacked unpacked(gltf_, mesh, views_);
+    if (unpacked.face_count() == 0)
+      fail(ErrorCode::malformed_draco, place,
+           "the Draco data has no faces; compress the asset again");
+    left_.max_vertices -= static_cast<std::int64_t>(mesh.point_count());
+    left_.max_faces -= static_cast<std::int64_t>(unpacked.face_count());
+    attributes_.clear();
+    indices_.clear();
+    for (const DracoSource* source : sharers) unpack_primitive(*source, unpacked);
   }
 
   PatchedDocument finish() {
@@ -41,27 +105,12 @@ class Unpacker {
   }
 
  private:
-  using Named = std::vector<std::pair<std::string, std::size_t>>;
-  /// Primitives that agree in these get the same accessors.
-  using Key = std::tuple<std::size_t, Named, Named, std::optional<std::size_t>>;
-
-  struct Unpacked {
-    Named attributes;
-    std::size_t indices = 0;
-  };
-
-  [[nodiscard]] Key key_of(const DracoSource& source) const {
-    const Primitive& primitive = gltf_.primitives[source.primitive];
-    return {source.view, source.attributes, primitive.attributes, primitive.indices};
+  [[nodiscard]] const Primitive& primitive_of(const DracoSource& source) const {
+    return gltf_.primitives[source.primitive];
   }
 
   [[nodiscard]] Place place_of(const DracoSource& source) const {
-    return primitive_place(gltf_.primitives[source.primitive]).at("extensions").at(kExtension);
-  }
-
-  Json& json_of(const DracoSource& source) {
-    const Primitive& p = gltf_.primitives[source.primitive];
-    return patched_.json["meshes"][p.mesh]["primitives"][p.number];
+    return primitive_place(primitive_of(source)).at("extensions").at(kExtension);
   }
 
   [[nodiscard]] std::string_view bitstream(const DracoSource& source) const {
@@ -69,51 +118,39 @@ class Unpacker {
     return std::string_view(gltf_.buffers[view.buffer]).substr(view.offset, view.length);
   }
 
-  Unpacked decode(const DracoSource& source) {
-    throw_if_cancelled(gltf_.stop);
-    const DracoMesh mesh(bitstream(source), left_, place_of(source));
-    throw_if_cancelled(gltf_.stop);
-    const std::vector<Index> corners = mesh.corners();
-    left_.max_vertices -= static_cast<std::int64_t>(mesh.point_count());
-    left_.max_faces -= static_cast<std::int64_t>(corners.size() / 3);
-    if (corners.empty())
-      fail(ErrorCode::malformed_draco, place_of(source),
-           "the Draco data has no faces; compress the asset again");
-    Unpacked unpacked;
-    for (const auto& [semantic, id] : source.attributes)
-      unpacked.attributes.emplace_back(semantic, add_attribute(source, semantic, id, mesh));
-    unpacked.indices = add_indices(gltf_.primitives[source.primitive].indices, corners);
-    return unpacked;
+  void unpack_primitive(const DracoSource& source, Unpacked& unpacked) {
+    const Primitive& p = primitive_of(source);
+    std::unordered_map<std::string_view, std::size_t> ids(source.attributes.begin(),
+                                                          source.attributes.end());
+    Json& primitive = patched_.json["meshes"][p.mesh]["primitives"][p.number];
+    for (auto& [semantic, accessor] : primitive["attributes"].items()) {
+      const auto id = ids.find(semantic);
+      if (id == ids.end()) continue;
+      accessor = attribute(accessor.get<std::size_t>(), id->second, unpacked);
+      ids.erase(id);
+    }
+    if (!ids.empty())
+      fail(ErrorCode::malformed_draco, place_of(source).at("attributes"),
+           "the primitive itself has no attribute " + std::string(ids.begin()->first) +
+               "; compress the asset again");
+    primitive["indices"] = indices(p.indices, unpacked);
+    if (primitive.contains("mode")) primitive["mode"] = Mode::triangles;  // as Draco's faces are
+    remove_extension(primitive, kExtension);
   }
 
-  /// The accessor that the primitive has for what the bitstream calls `semantic`.
-  std::size_t accessor_of(const DracoSource& source, const std::string& semantic) const {
-    for (const auto& [name, accessor] : gltf_.primitives[source.primitive].attributes)
-      if (name == semantic) return accessor;
-    fail(ErrorCode::malformed_draco, place_of(source).at("attributes"),
-         "the primitive itself has no attribute " + semantic + "; compress the asset again");
+  std::size_t attribute(std::size_t old, std::size_t id, Unpacked& unpacked) {
+    const auto [found, is_new] = attributes_.try_emplace({old, id});
+    if (is_new)
+      found->second =
+          put(old, unpacked.attribute(gltf_.accessors[old], gltf_.json["accessors"][old], id));
+    return found->second;
   }
 
-  std::size_t add_attribute(const DracoSource& source, const std::string& semantic, std::size_t id,
-                            const DracoMesh& mesh) {
-    throw_if_cancelled(gltf_.stop);
-    const std::size_t old = accessor_of(source, semantic);
-    const Accessor& accessor = gltf_.accessors[old];
-    const std::string bytes = mesh.elements(id, accessor);
-    const std::size_t stride = bytes.size() / mesh.point_count();
-    Json json = patched_.json["accessors"][old];
-    json["bufferView"] =
-        views_.add(bytes, stride == accessor.element_bytes ? 0 : stride, kArrayBufferTarget);
-    json["count"] = mesh.point_count();
-    for (const char* stale : {"byteOffset", "sparse"}) json.erase(stale);
-    if (json.contains("min") || json.contains("max"))
-      set_bounds(json, bytes, stride, accessor.components);
-    return put(old, std::move(json));
-  }
-
-  std::size_t add_indices(std::optional<std::size_t> old, const std::vector<Index>& corners) {
-    Json json = index_accessor(gltf_, old, corners, views_);
-    return old ? put(*old, std::move(json)) : append(std::move(json));
+  std::size_t indices(std::optional<std::size_t> old, Unpacked& unpacked) {
+    const auto [found, is_new] = indices_.try_emplace(old);
+    if (is_new)
+      found->second = old ? put(*old, unpacked.indices(old)) : append(unpacked.indices(old));
+    return found->second;
   }
 
   std::size_t put(std::size_t old, Json accessor) {
@@ -133,15 +170,31 @@ class Unpacker {
   ReadLimits left_;  ///< what all bitstreams together may still hold
   PatchedDocument patched_;
   NewViews views_;
-  std::map<Key, Unpacked> done_;
+  /// Of the bitstream at hand: which accessor the old one and the attribute have become.
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> attributes_;
+  std::map<std::optional<std::size_t>, std::size_t> indices_;
   std::set<std::size_t> filled_;
 };
+
+/// The sources of each run of bytes together, in the order of their first.
+std::vector<Sharers> by_bitstream(const Gltf& gltf, const std::vector<DracoSource>& sources) {
+  std::vector<Sharers> bitstreams;
+  std::map<std::tuple<std::size_t, std::size_t, std::size_t>, std::size_t> number_of;
+  for (const DracoSource& source : sources) {
+    const View& view = gltf.views[source.view];
+    const auto [found, is_new] =
+        number_of.try_emplace({view.buffer, view.offset, view.length}, bitstreams.size());
+    if (is_new) bitstreams.emplace_back();
+    bitstreams[found->second].push_back(&source);
+  }
+  return bitstreams;
+}
 
 }  // namespace
 
 void decode_draco(Gltf& gltf, const std::vector<DracoSource>& sources, const ReadLimits& limits) {
   Unpacker unpacker(gltf, limits);
-  for (const DracoSource& source : sources) unpacker.unpack(source);
+  for (const Sharers& sharers : by_bitstream(gltf, sources)) unpacker.unpack(sharers);
   PatchedDocument unpacked = unpacker.finish();
   gltf.json = std::move(unpacked.json);
   for (const DracoSource& source : sources) gltf.spent_views.push_back(source.view);

@@ -79,6 +79,13 @@ void check_required(const Node& name) {
            ", which is not supported; export it without");
 }
 
+bool lists_extension(const Json& document, std::string_view list, std::string_view name) {
+  const auto names = Node(document).find(list);
+  for (std::size_t i = 0; names && i < names->array_size(); ++i)
+    if (names->at(i).text() == name) return true;
+  return false;
+}
+
 }  // namespace
 
 void check_asset_and_extensions(Gltf& gltf) {
@@ -93,10 +100,11 @@ void check_asset_and_extensions(Gltf& gltf) {
 }
 
 bool uses_extension(const Json& document, std::string_view name) {
-  const auto used = Node(document).find("extensionsUsed");
-  for (std::size_t i = 0; used && i < used->array_size(); ++i)
-    if (used->at(i).text() == name) return true;
-  return false;
+  return lists_extension(document, "extensionsUsed", name);
+}
+
+bool requires_extension(const Json& document, std::string_view name) {
+  return lists_extension(document, "extensionsRequired", name);
 }
 
 void add_buffer(Gltf& gltf, std::string bytes) {

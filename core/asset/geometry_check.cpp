@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxZeroElements = 500'000;  // that exist in no file, only as a count
 constexpr std::size_t kMaxSharing = 64;            // bytes of attributes over bytes of buffers
+constexpr std::size_t kBytesPerFace = 40;          // of memory, that reading it takes
 constexpr std::size_t kFreeAttributeBytes = std::size_t{16} << 20;  // that may share any bytes
 
 void check_position(const Accessor& accessor, bool quantized, const Place& place) {
@@ -82,6 +83,10 @@ class Account {
       fail(ErrorCode::too_many_faces, primitive_place(primitive),
            "the asset has more than " + std::to_string(limits_.max_faces) +
                " triangles; simplify it or split it");
+    if (faces_ > limits_.max_bytes / kBytesPerFace)
+      fail(
+          ErrorCode::too_much_memory, primitive_place(primitive),
+          "the asset's triangles would take more memory than one job may; simplify it or split it");
   }
 
   void add_pool(const Primitive& primitive, const std::vector<std::size_t>& accessors) {

@@ -14,6 +14,7 @@
 
 #include "core/asset/asset.hpp"
 #include "core/asset/json.hpp"
+#include "core/asset/root.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd::asset {
@@ -76,11 +77,16 @@ struct Piece {
 
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct Gltf {
-  Json json;
+  Json json;                            ///< once read: as far as writing may change it
+  Aside aside;                          ///< the rest of the root
   std::string texcoord = "TEXCOORD_0";  ///< the attribute that is replaced
   Compression came_as = Compression::none;
+  bool came_with_fallback = false;  ///< readers that cannot undo came_as found plain data, too
+  std::string meshopt_name = "EXT_meshopt_compression";  ///< or KHR_, as it came in
   std::vector<std::string> buffers;  ///< one for each of the document's, cut to its byteLength
-  std::string other_chunks;          ///< of a GLB, as they came, after JSON and BIN
+  bool came_as_text = false;         ///< a .gltf, whose images may lie in files beside it
+  std::map<std::size_t, std::string> sent_images;  ///< [image]: its bytes, where it was sent along
+  std::string other_chunks;                        ///< of a GLB, as they came, after JSON and BIN
   std::vector<View> views;
   std::vector<Accessor> accessors;
   std::vector<Primitive> primitives;  ///< of all meshes, in order

@@ -7,6 +7,7 @@
 #include "core/asset/convert.hpp"
 #include "core/asset/elements.hpp"
 #include "core/asset/obj_text.hpp"
+#include "core/asset/pace.hpp"
 #include "core/cancel.hpp"
 
 namespace unwrapd::asset {
@@ -38,8 +39,7 @@ class ObjFromGltf {
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
       throw_if_cancelled(gltf_.stop);
       out_ += "o " + object_name(s) + '\n';
-      for (const Vec3& position : surfaces_[s].mesh.positions) append_vec3(out_, "v", position);
-      for (const Vec2& uv : unwrapped_[s].uv) append_vt(out_, uv);
+      append_vertices(s);
       for (; piece < gltf_.pieces.size() && belongs(gltf_.pieces[piece], s); ++piece)
         write_piece(piece);
       vertex_base_ += surfaces_[s].mesh.vertex_count();
@@ -52,6 +52,18 @@ class ObjFromGltf {
   /// Pieces are in the order of their surfaces; those without faces belong to none.
   static bool belongs(const Piece& piece, std::size_t surface) {
     return piece.face_count == 0 || piece.surface == surface;
+  }
+
+  void append_vertices(std::size_t surface) {
+    Pace pace(gltf_.stop);
+    for (const Vec3& position : surfaces_[surface].mesh.positions) {
+      pace.add(8);
+      append_vec3(out_, "v", position);
+    }
+    for (const Vec2& uv : unwrapped_[surface].uv) {
+      pace.add(4);
+      append_vt(out_, uv);
+    }
   }
 
   /// The mesh's name, on one line, or its number.

@@ -23,6 +23,9 @@ void check_asset_and_extensions(Gltf& gltf);
 /// Fills buffers: the GLB's chunk, data URIs, and the request's own parts; nothing else is opened.
 void resolve_buffers(Gltf& gltf, std::string_view bin, const Input& input);
 
+/// Fills sent_images: those that the document names by a URI and the request has as parts.
+void take_images(Gltf& gltf, const Input& input);
+
 void read_views(Gltf& gltf);
 
 /// Decodes the views with EXT_meshopt_compression or KHR_meshopt_compression.
@@ -52,6 +55,7 @@ std::vector<Surface> build_surfaces(Gltf& gltf, const ReadLimits& limits);
 void read_gltf_uvs(const Gltf& gltf, std::vector<Surface>& surfaces);
 
 bool uses_extension(const Json& document, std::string_view name);
+bool requires_extension(const Json& document, std::string_view name);
 
 /// Appends a buffer, in the model and in the document.
 void add_buffer(Gltf& gltf, std::string bytes);

@@ -9,6 +9,7 @@
 #include "core/asset/as_size.hpp"
 #include "core/asset/bytes.hpp"
 #include "core/asset/elements.hpp"
+#include "core/asset/pace.hpp"
 #include "core/cancel.hpp"
 
 namespace unwrapd::asset {
@@ -19,7 +20,9 @@ std::string dense_bytes(const Gltf& gltf, const Accessor& accessor,
                         const std::vector<Index>& copies, std::size_t stride) {
   std::string bytes((accessor.count + copies.size()) * stride, '\0');
   char* to = bytes.data();
+  Pace pace(gltf.stop);
   const auto copy = [&](std::size_t element) {
+    pace.add(1);
     std::memcpy(to, dense_element(gltf, accessor, element), accessor.element_bytes);
     to += stride;
   };
@@ -35,7 +38,9 @@ Json grown_sparse(const Gltf& gltf, const Accessor& accessor, Json sparse,
   std::unordered_map<std::size_t, std::size_t> entry_of;
   std::string indices;
   std::string values;
+  Pace pace(gltf.stop);
   const auto add = [&](std::size_t element, std::size_t entry) {
+    pace.add(4);
     append(indices, static_cast<std::uint32_t>(element));
     values.append(sparse_value(gltf, accessor, entry), accessor.element_bytes);
   };
@@ -77,6 +82,17 @@ Json renewed(const Gltf& gltf, std::optional<std::size_t> old) {
   Json accessor = old ? gltf.json.at("accessors").at(*old) : Json::object();
   for (const char* stale : {"byteOffset", "normalized", "sparse", "min", "max"})
     accessor.erase(stale);
+  return accessor;
+}
+
+template <class Elements>
+Json float_accessor(Json accessor, const char* type, const Elements& elements, NewViews& views) {
+  const std::string_view bytes(reinterpret_cast<const char*>(elements.data()),
+                               elements.size() * sizeof elements[0]);
+  accessor["bufferView"] = views.add(bytes, 0, kArrayBufferTarget);
+  accessor["componentType"] = ComponentType::f32;
+  accessor["count"] = elements.size();
+  accessor["type"] = type;
   return accessor;
 }
 
@@ -124,6 +140,13 @@ Json index_accessor(const Gltf& gltf, std::optional<std::size_t> old,
   return accessor;
 }
 
+Json accessor_like(const Gltf& gltf, std::optional<std::size_t> old, const Json& other) {
+  Json accessor = renewed(gltf, old);
+  for (const char* part : {"bufferView", "componentType", "count", "type"})
+    accessor[part] = other.at(part);
+  return accessor;
+}
+
 void set_bounds(Json& accessor, std::string_view bytes, std::size_t stride,
                 std::size_t components) {
   const auto type = accessor.at("componentType").get<ComponentType>();
@@ -144,13 +167,12 @@ void set_bounds(Json& accessor, std::string_view bytes, std::size_t stride,
 
 Json texcoord_accessor(const Gltf& gltf, std::optional<std::size_t> old,
                        const std::vector<std::array<float, 2>>& uv, NewViews& views) {
-  const std::string_view bytes(reinterpret_cast<const char*>(uv.data()), uv.size() * sizeof uv[0]);
-  Json accessor = renewed(gltf, old);
-  accessor["bufferView"] = views.add(bytes, 0, kArrayBufferTarget);
-  accessor["componentType"] = ComponentType::f32;
-  accessor["count"] = uv.size();
-  accessor["type"] = "VEC2";
-  return accessor;
+  return float_accessor(renewed(gltf, old), "VEC2", uv, views);
+}
+
+Json tangent_accessor(const Gltf& gltf, std::optional<std::size_t> old,
+                      const std::vector<std::array<float, 4>>& tangents, NewViews& views) {
+  return float_accessor(renewed(gltf, old), "VEC4", tangents, views);
 }
 
 }  // namespace unwrapd::asset

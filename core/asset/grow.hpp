@@ -33,10 +33,16 @@ Json grown_accessor(const Gltf& gltf, std::size_t accessor, const std::vector<In
 Json index_accessor(const Gltf& gltf, std::optional<std::size_t> old,
                     const std::vector<Index>& corners, NewViews& views);
 
+/// What is kept of an accessor, over the bytes of another one.
+Json accessor_like(const Gltf& gltf, std::optional<std::size_t> old, const Json& other);
+
 /// min and max over elements of `components` each, `stride` bytes apart, as they are stored.
 void set_bounds(Json& accessor, std::string_view bytes, std::size_t stride, std::size_t components);
 
 Json texcoord_accessor(const Gltf& gltf, std::optional<std::size_t> old,
                        const std::vector<std::array<float, 2>>& uv, NewViews& views);
+
+Json tangent_accessor(const Gltf& gltf, std::optional<std::size_t> old,
+                      const std::vector<std::array<float, 4>>& tangents, NewViews& views);
 
 }  // namespace unwrapd::asset

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <deque>
+#include <iterator>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -19,13 +21,16 @@ constexpr std::size_t kMaxDepth = 128;
 constexpr std::size_t kFewNames = 16;  // up to here comparing all pairs beats hashing
 constexpr double kMaxNumber = 9007199254740992.0;
 
-bool has_duplicates(const std::string* names, std::size_t count) {
+using Names = std::deque<std::string>;
+
+bool has_duplicates(Names::const_iterator begin, Names::const_iterator end) {
+  const auto count = static_cast<std::size_t>(end - begin);
   if (count <= kFewNames) {
-    for (std::size_t i = 1; i < count; ++i)
-      if (std::find(names, names + i, names[i]) != names + i) return true;
+    for (auto name = begin; name != end; ++name)
+      if (std::find(begin, name, *name) != name) return true;
     return false;
   }
-  const std::unordered_set<std::string_view> seen(names, names + count);
+  const std::unordered_set<std::string_view> seen(begin, end);
   return seen.size() < count;
 }
 
@@ -45,6 +50,7 @@ class Builder : public nlohmann::json_sax<Json> {
   bool start_array(std::size_t /*size*/) override { return open(); }
 
   bool key(string_t& name) override {
+    look_now_and_then(++steps_, stop_);
     names_.push_back(std::move(name));
     return true;
   }
@@ -53,7 +59,7 @@ class Builder : public nlohmann::json_sax<Json> {
     const Frame frame = frames_.back();
     Json::object_t object;
     object.reserve(values_.size() - frame.first_value);
-    if (has_duplicates(names_.data() + frame.first_name, names_.size() - frame.first_name))
+    if (has_duplicates(names_.cbegin() + std::ptrdiff_t(frame.first_name), names_.cend()))
       throw Error(ErrorCode::malformed_json,
                   "an object of the document has the same name twice; keep one of them");
     using Members = Json::object_t::Container;  // its own emplace() searches all names again
@@ -111,9 +117,32 @@ class Builder : public nlohmann::json_sax<Json> {
 
   const std::stop_token& stop_;
   std::size_t steps_ = 0;
-  std::vector<Json> values_;
-  std::vector<std::string> names_;
+  std::deque<Json> values_;  // not a vector: that one takes thrice its size while it grows
+  Names names_;
   std::vector<Frame> frames_;
+};
+
+/// The text's characters; at every so many of them it is asked whether the job was told to stop.
+class WatchedText {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  WatchedText(const char* at, const std::stop_token& stop) : at_(at), stop_(&stop) {}
+
+  const char& operator*() const { return *at_; }
+  WatchedText& operator++() {
+    if (reinterpret_cast<std::uintptr_t>(++at_) % 65'536 == 0) throw_if_cancelled(*stop_);
+    return *this;
+  }
+  bool operator==(const WatchedText& other) const { return at_ == other.at_; }
+
+ private:
+  const char* at_;
+  const std::stop_token* stop_;
 };
 
 std::string escaped(std::string_view key) {
@@ -124,9 +153,18 @@ std::string escaped(std::string_view key) {
 
 }  // namespace
 
-Json parse_json(std::string_view text, const std::stop_token& stop) {
+Json parse_json(std::string_view text, const std::stop_token& stop, std::size_t max_bytes) {
+  constexpr std::size_t kFreeBytes = std::size_t{20} << 20;
+  constexpr std::size_t kBytesPerByte = 12;
+  const std::size_t bytes = tree_bytes(text, stop);
+  if (bytes > std::min(max_bytes, kFreeBytes + kBytesPerByte * text.size()))
+    throw Error(ErrorCode::too_much_memory,
+                "the document's JSON would take " + std::to_string(bytes >> 20) +
+                    " MiB of memory, more than is allowed for its size; leave out what is not "
+                    "geometry, as extras");
   Builder builder(stop);
-  Json::sax_parse(text.begin(), text.end(), &builder);
+  Json::sax_parse(WatchedText(text.data(), stop), WatchedText(text.data() + text.size(), stop),
+                  &builder);
   return builder.document();
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stop_token>
@@ -19,8 +20,15 @@ namespace unwrapd::asset {
 using Json = nlohmann::ordered_json;
 
 /// Throws Error{malformed_json} with the byte of the fault: bad syntax or UTF-8, a number that no
-/// double holds, a name that occurs twice in one object, more than 128 levels.
-Json parse_json(std::string_view text, const std::stop_token& stop);
+/// double holds, a name that occurs twice in one object, more than 128 levels. Throws
+/// Error{too_much_memory} before anything is kept when the tree would take more than max_bytes, or
+/// more than twelve times its text and 20 MiB: so dense a text is nothing but tiny values, and a
+/// document is held up to three times while it is written.
+Json parse_json(std::string_view text, const std::stop_token& stop,
+                std::size_t max_bytes = std::numeric_limits<std::size_t>::max());
+
+/// An upper bound of the memory that the text's tree will take, by counting its marks.
+std::size_t tree_bytes(std::string_view text, const std::stop_token& stop);
 
 /// A JSON pointer (RFC 6901) as it grows; a value, cheap to copy, turned into text only on error.
 class Place {

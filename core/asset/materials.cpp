@@ -3,6 +3,9 @@
 #include "core/asset/materials.hpp"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
 
 #include "core/asset/gltf_steps.hpp"
 
@@ -11,7 +14,9 @@ namespace {
 
 constexpr const char* kTransform = "KHR_texture_transform";
 
-Json* transform_of(Json& texture) {
+/// Json or const Json, whichever the texture is.
+template <class Value>
+Value* transform_of(Value& texture) {
   const auto extensions = texture.find("extensions");
   if (extensions == texture.end() || !extensions->is_object()) return nullptr;
   const auto found = extensions->find(kTransform);
@@ -24,12 +29,30 @@ std::size_t whole_number(const Json& object, const char* key, std::size_t otherw
                                                               : otherwise;
 }
 
-std::string set_name(const Json& texture) {
-  return "TEXCOORD_" + std::to_string(texcoord_of(texture));
+/// The set that a textureInfo reads: an override by KHR_texture_transform counts.
+std::size_t texcoord_of(const Json& texture) {
+  const Json* transform = transform_of(texture);
+  const std::size_t own = whole_number(texture, "texCoord", 0);
+  return transform == nullptr ? own : whole_number(*transform, "texCoord", own);
 }
+
+std::string set_name(std::size_t set) { return "TEXCOORD_" + std::to_string(set); }
 
 bool is_texture(const std::string& key, const Json& value) {
   return key.ends_with("Texture") && value.is_object() && value.contains("index");
+}
+
+/// Calls visit with every textureInfo of a material and its key, those of its extensions too.
+template <class Value, class Visit>
+void for_each_texture(Value& material, Pace& pace, const Visit& visit) {
+  if (!material.is_object()) return;
+  for (auto& [key, value] : material.items()) {
+    pace.add(1);
+    if (is_texture(key, value))
+      visit(key, value);
+    else if (key != "extras")
+      for_each_texture(value, pace, visit);
+  }
 }
 
 /// Whether a transform does anything to coordinates; an override of the set alone does not.
@@ -38,83 +61,73 @@ bool moves(const Json& transform) {
          transform.contains("scale");
 }
 
-/// Whether a texture of the material moves the coordinates of this set.
-bool is_moved(Json material, std::string_view texcoord) {
-  bool moved = false;
-  for_each_texture(material, [&](Json& texture) {
-    const Json* transform = transform_of(texture);
-    moved |= transform != nullptr && moves(*transform) && set_name(texture) == texcoord;
-  });
-  return moved;
+std::optional<Vec2> scale_of(const Json& transform) {
+  const auto given = transform.find("scale");
+  const auto is_number = [](const Json& value) { return value.is_number(); };
+  if (given == transform.end() || !given->is_array() || given->size() != 2 ||
+      !std::all_of(given->begin(), given->end(), is_number))
+    return std::nullopt;
+  return Vec2((*given)[0].get<double>(), (*given)[1].get<double>());
 }
 
-Json material_json(const Gltf& gltf, const Primitive& primitive) {
-  return primitive.material ? gltf.json.at("materials").at(*primitive.material) : Json::object();
+/// Textures that are read in tangent space, the one first whose set counts.
+constexpr std::array<std::string_view, 3> kTangentTextures = {
+    "normalTexture", "clearcoatNormalTexture", "anisotropyTexture"};
+
+MaterialUse use_of(const Json& material, std::string_view texcoord, Pace& pace) {
+  MaterialUse use;
+  bool is_read = false;
+  std::array<std::optional<std::size_t>, kTangentTextures.size()> tangent_sets;
+  for_each_texture(material, pace, [&](const std::string& key, const Json& texture) {
+    const std::size_t set = texcoord_of(texture);
+    for (std::size_t k = 0; k < kTangentTextures.size(); ++k)
+      if (key == kTangentTextures[k] && !tangent_sets[k]) tangent_sets[k] = set;
+    if (set_name(set) != texcoord) return;
+    const Json* transform = transform_of(texture);
+    if (transform != nullptr && moves(*transform)) use.moves_texcoord = true;
+    if (!is_read && transform != nullptr) use.scale = scale_of(*transform).value_or(use.scale);
+    is_read = true;
+  });
+  for (std::size_t k = kTangentTextures.size(); k-- > 0;)
+    use.tangent_set = tangent_sets[k].value_or(use.tangent_set);
+  return use;
 }
 
 }  // namespace
 
-void for_each_texture(Json& material, const std::function<void(Json&)>& visit) {
-  if (!material.is_object()) return;
-  for (auto& [key, value] : material.items()) {
-    if (is_texture(key, value))
-      visit(value);
-    else if (key != "extras")
-      for_each_texture(value, visit);
-  }
-}
-
-std::size_t texcoord_of(const Json& texture) {
-  Json copy = texture;
-  const Json* transform = transform_of(copy);
-  const std::size_t own = whole_number(texture, "texCoord", 0);
-  return transform == nullptr ? own : whole_number(*transform, "texCoord", own);
-}
-
-Vec2 texture_scale(const Gltf& gltf, const Primitive& primitive) {
-  std::optional<Vec2> scale;
-  Json material = material_json(gltf, primitive);
-  for_each_texture(material, [&](Json& texture) {
-    if (scale || set_name(texture) != gltf.texcoord) return;
-    scale = Vec2(1, 1);
-    const Json* transform = transform_of(texture);
-    if (transform == nullptr || !transform->contains("scale")) return;
-    const Json& given = transform->at("scale");
-    const auto is_number = [](const Json& value) { return value.is_number(); };
-    if (given.is_array() && given.size() == 2 && std::all_of(given.begin(), given.end(), is_number))
-      scale = Vec2(given[0].get<double>(), given[1].get<double>());
-  });
-  return scale.value_or(Vec2(1, 1));
-}
-
-bool loses_tangents(const Gltf& gltf, const Primitive& primitive) {
-  const auto is_tangent = [](const auto& item) { return item.first == "TANGENT"; };
-  if (std::none_of(primitive.attributes.begin(), primitive.attributes.end(), is_tangent))
-    return false;
-  const Json material = material_json(gltf, primitive);
-  const auto normal_map = material.find("normalTexture");
-  const bool has_map = normal_map != material.end() && normal_map->is_object();
-  return gltf.texcoord == (has_map ? set_name(*normal_map) : "TEXCOORD_0");
-}
-
-std::vector<std::size_t> materials_to_reset(const Gltf& gltf) {
+Materials::Materials(const Gltf& gltf) : gltf_(gltf) {
   const auto list = gltf.json.find("materials");
-  if (list == gltf.json.end()) return {};
-  std::vector<char> is_on(list->size(), 0), is_kept(list->size(), 0);
-  for (const Primitive& primitive : gltf.primitives)
+  if (list == gltf.json.end()) return;
+  Pace pace(gltf.stop);
+  uses_.reserve(list->size());
+  for (const Json& material : *list) uses_.push_back(use_of(material, gltf.texcoord, pace));
+}
+
+const MaterialUse& Materials::of(const Primitive& primitive) const {
+  static const MaterialUse none;
+  return primitive.material ? uses_[*primitive.material] : none;
+}
+
+bool Materials::loses_tangents(const Primitive& primitive) const {
+  const auto is_tangent = [](const auto& item) { return item.first == "TANGENT"; };
+  return std::any_of(primitive.attributes.begin(), primitive.attributes.end(), is_tangent) &&
+         gltf_.texcoord == set_name(of(primitive).tangent_set);
+}
+
+std::vector<std::size_t> Materials::to_reset() const {
+  std::vector<char> is_on(uses_.size(), 0), is_kept(uses_.size(), 0);
+  for (const Primitive& primitive : gltf_.primitives)
     if (primitive.material) (primitive.has_triangles ? is_on : is_kept)[*primitive.material] = 1;
   std::vector<std::size_t> materials;
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    if (is_on[i] == 0 || is_kept[i] != 0) continue;
-    if (is_moved(list->at(i), gltf.texcoord)) materials.push_back(i);
-  }
+  for (std::size_t i = 0; i < uses_.size(); ++i)
+    if (is_on[i] != 0 && is_kept[i] == 0 && uses_[i].moves_texcoord) materials.push_back(i);
   return materials;
 }
 
-void reset_transforms(Json& material, std::string_view texcoord) {
-  for_each_texture(material, [&](Json& texture) {
+void reset_transforms(Json& material, std::string_view texcoord, Pace& pace) {
+  for_each_texture(material, pace, [&](const std::string& /*key*/, Json& texture) {
     Json* transform = transform_of(texture);
-    if (transform == nullptr || set_name(texture) != texcoord) return;
+    if (transform == nullptr || set_name(texcoord_of(texture)) != texcoord) return;
     for (const char* part : {"offset", "rotation", "scale"}) transform->erase(part);
     if (transform->empty()) remove_extension(texture, kTransform);
   });

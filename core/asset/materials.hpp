@@ -1,32 +1,42 @@
 #pragma once
 // What materials do with texture coordinates.
 
-#include <functional>
-#include <optional>
+#include <string_view>
+#include <vector>
 
 #include "core/asset/gltf.hpp"
+#include "core/asset/pace.hpp"
 
 namespace unwrapd::asset {
 
-/// Calls visit with every textureInfo of a material, those of its extensions too.
-void for_each_texture(Json& material, const std::function<void(Json&)>& visit);
+/// What a material makes of the texture coordinates gltf.texcoord.
+struct MaterialUse {
+  bool moves_texcoord = false;  ///< by the KHR_texture_transform of some texture
+  Vec2 scale{1, 1};             ///< of the first texture that reads them; changes shapes, unlike
+                                ///< rotation and offset
+  std::size_t tangent_set = 0;  ///< TEXCOORD_n that tangents belong to
+};
 
-/// The set that a textureInfo reads: an override by KHR_texture_transform counts.
-std::size_t texcoord_of(const Json& texture);
+/// The materials of a document, each looked at once.
+class Materials {
+ public:
+  explicit Materials(const Gltf& gltf);
 
-/// How the textures of a primitive that read gltf.texcoord scale it (KHR_texture_transform): the
-/// first that does. Its rotation and offset change no shape and are not in it.
-Vec2 texture_scale(const Gltf& gltf, const Primitive& primitive);
+  [[nodiscard]] const MaterialUse& of(const Primitive& primitive) const;
 
-/// Whether the primitive has tangents that belong to gltf.texcoord: to the set that its normal map
-/// reads, or without one to TEXCOORD_0.
-bool loses_tangents(const Gltf& gltf, const Primitive& primitive);
+  /// Whether the primitive has tangents that belong to gltf.texcoord.
+  [[nodiscard]] bool loses_tangents(const Primitive& primitive) const;
 
-/// Materials that move gltf.texcoord by KHR_texture_transform, though all that they are on is
-/// unwrapped.
-std::vector<std::size_t> materials_to_reset(const Gltf& gltf);
+  /// Those that move gltf.texcoord by KHR_texture_transform, though all that they are on is
+  /// unwrapped.
+  [[nodiscard]] std::vector<std::size_t> to_reset() const;
+
+ private:
+  const Gltf& gltf_;
+  std::vector<MaterialUse> uses_;
+};
 
 /// Takes the transforms of gltf.texcoord out of a material; an override of the set stays.
-void reset_transforms(Json& material, std::string_view texcoord);
+void reset_transforms(Json& material, std::string_view texcoord, Pace& pace);
 
 }  // namespace unwrapd::asset

@@ -3,12 +3,16 @@
 // 2 bits on 16 bytes, an index stream a byte on a triangle or an index. Only then is memory taken.
 #include <meshoptimizer.h>
 
+#include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
+#include <tuple>
 
 #include "core/asset/bytes.hpp"
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/grow.hpp"
+#include "core/asset/meshopt_filters.hpp"
 #include "core/cancel.hpp"
 
 namespace unwrapd::asset {
@@ -16,6 +20,8 @@ namespace {
 
 constexpr std::size_t kMaxVertexRatio = 64;
 constexpr std::size_t kMaxDecodedBytes = std::size_t{2} << 30;
+constexpr std::size_t kFreeDecodedBytes = std::size_t{16} << 20;  // that any file may have
+constexpr std::size_t kMaxDocumentRatio = 32;                     // of all streams together
 constexpr std::array<std::string_view, 2> kNames = {"EXT_meshopt_compression",
                                                     "KHR_meshopt_compression"};
 
@@ -29,7 +35,7 @@ struct Stream {
   Place place;
 };
 
-[[noreturn]] void refuse(const Place& place, const std::string& message) {
+[[noreturn]] void refuse_stream(const Place& place, const std::string& message) {
   fail(ErrorCode::malformed_meshopt, place, message + "; compress the asset again");
 }
 
@@ -38,7 +44,7 @@ std::string_view stream_bytes(const Gltf& gltf, const Node& node) {
   const std::size_t offset = node.number("byteOffset", 0);
   const std::size_t length = node.at("byteLength").number();
   if (offset > buffer.size() || length > buffer.size() - offset)
-    refuse(node.place(), "the compressed data reaches beyond the end of its buffer");
+    refuse_stream(node.place(), "the compressed data reaches beyond the end of its buffer");
   return std::string_view(buffer).substr(offset, length);
 }
 
@@ -72,19 +78,19 @@ bool count_is_possible(const Stream& stream) {
 void check_names(const Stream& stream) {
   const bool attributes = stream.mode == "ATTRIBUTES";
   if (!attributes && stream.mode != "TRIANGLES" && stream.mode != "INDICES")
-    refuse(stream.place, "the mode is not one of ATTRIBUTES, TRIANGLES, INDICES");
+    refuse_stream(stream.place, "the mode is not one of ATTRIBUTES, TRIANGLES, INDICES");
   if (stream.filter == "NONE") return;
   const bool known = stream.filter == "OCTAHEDRAL" || stream.filter == "QUATERNION" ||
                      stream.filter == "EXPONENTIAL";
   if (attributes && stream.filter == "COLOR")
     fail(ErrorCode::unsupported_extension, stream.place,
          "the filter COLOR is not supported; compress the asset with EXT_meshopt_compression");
-  if (!attributes || !known) refuse(stream.place, "the filter does not go with the mode");
+  if (!attributes || !known) refuse_stream(stream.place, "the filter does not go with the mode");
 }
 
 /// The low half of the first byte is the version: 0 of vertices, 0 or 1 of indices.
 void check_version(const Stream& stream) {
-  if (stream.bytes.empty()) refuse(stream.place, "the compressed data is empty");
+  if (stream.bytes.empty()) refuse_stream(stream.place, "the compressed data is empty");
   const int version = stream.bytes.front() & 0x0f;
   if (version > (stream.mode == "ATTRIBUTES" ? 0 : 1))
     fail(ErrorCode::unsupported_extension, stream.place,
@@ -94,9 +100,9 @@ void check_version(const Stream& stream) {
 
 void apply_filter(const Stream& stream, std::string& bytes) {
   if (stream.filter == "OCTAHEDRAL")
-    meshopt_decodeFilterOct(bytes.data(), stream.count, stream.stride);
+    decode_octahedral(bytes, stream.stride);
   else if (stream.filter == "QUATERNION")
-    meshopt_decodeFilterQuat(bytes.data(), stream.count, stream.stride);
+    decode_quaternions(bytes);
   else if (stream.filter == "EXPONENTIAL")
     meshopt_decodeFilterExp(bytes.data(), stream.count, stream.stride);
 }
@@ -109,7 +115,7 @@ std::string decoded(const Stream& stream) {
                         : stream.mode == "TRIANGLES" ? Decode{meshopt_decodeIndexBuffer}
                                                      : Decode{meshopt_decodeIndexSequence};
   if (decode(bytes.data(), stream.count, stream.stride, from, stream.bytes.size()) != 0)
-    refuse(stream.place, "the compressed data is damaged");
+    refuse_stream(stream.place, "the compressed data is damaged");
   apply_filter(stream, bytes);
   return bytes;
 }
@@ -123,18 +129,53 @@ std::optional<std::pair<Node, std::string_view>> compression_of(const Node& view
   return std::nullopt;
 }
 
-/// The decoded bytes of a view, checked against all that may go wrong before.
-std::string decode_view(const Gltf& gltf, const Node& extension, std::size_t length) {
-  const Stream stream = read_stream(gltf, extension);
+/// The stream of a view, checked against all that may go wrong before it is decoded.
+Stream checked_stream(const Gltf& gltf, const Node& extension, std::size_t length) {
+  Stream stream = read_stream(gltf, extension);
   check_names(stream);
   check_version(stream);
-  if (!stride_fits(stream)) refuse(extension.place(), "the stride does not go with the mode");
+  if (!stride_fits(stream))
+    refuse_stream(extension.place(), "the stride does not go with the mode");
   if (!count_is_possible(stream))
-    refuse(extension.place(), "it states more elements than its data can hold");
+    refuse_stream(extension.place(), "it states more elements than its data can hold");
   if (stream.count * stream.stride != length)
-    refuse(extension.place(), "its count and stride do not give the length of the buffer view");
-  return decoded(stream);
+    refuse_stream(extension.place(),
+                  "its count and stride do not give the length of the buffer view");
+  return stream;
 }
+
+/// The bytes that all views decode to, one after another. Views of the same stream share theirs.
+class Decoded {
+ public:
+  explicit Decoded(const Gltf& gltf) {
+    std::size_t bytes = 0;
+    for (const std::string& buffer : gltf.buffers) bytes += buffer.size();
+    most_ = std::min(kMaxDecodedBytes, kFreeDecodedBytes + kMaxDocumentRatio * bytes);
+  }
+
+  /// Where the decoded stream begins.
+  std::size_t offset_of(const Stream& stream) {
+    const auto [found, is_new] = offsets_.try_emplace(
+        {stream.bytes.data(), stream.bytes.size(), stream.stride, stream.mode, stream.filter});
+    if (!is_new) return found->second;
+    if (stream.count * stream.stride > most_ - std::min(most_, bytes_.size()))
+      refuse_stream(stream.place, "the asset decodes to more than its size allows, or than 2 GiB");
+    pad(bytes_, 4);
+    found->second = bytes_.size();
+    bytes_ += decoded(stream);
+    return found->second;
+  }
+
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  /// The bytes, their number, stride, mode, filter.
+  using Key = std::tuple<const char*, std::size_t, std::size_t, std::string, std::string>;
+
+  std::size_t most_ = 0;
+  std::string bytes_;
+  std::map<Key, std::size_t> offsets_;
+};
 
 /// Removes the buffers without bytes that no view uses any longer.
 void drop_fallback_buffers(Gltf& gltf) {
@@ -159,25 +200,29 @@ void drop_fallback_buffers(Gltf& gltf) {
 }  // namespace
 
 void decode_meshopt(Gltf& gltf) {
-  std::string bytes;
+  Decoded decoded(gltf);
+  bool is_any = false, is_khr = true;
+  bool has_fallback =
+      !requires_extension(gltf.json, kNames[0]) && !requires_extension(gltf.json, kNames[1]);
   for (std::size_t i = 0; i < gltf.views.size(); ++i) {
     const Node view = Node(gltf.json).at("bufferViews").at(i);
     const auto compression = compression_of(view);
     if (!compression) continue;
     throw_if_cancelled(gltf.stop);
-    const std::string decoded = decode_view(gltf, compression->first, gltf.views[i].length);
-    if (bytes.size() + decoded.size() > kMaxDecodedBytes)
-      refuse(view.place(), "the asset decodes to more than 2 GiB");
-    pad(bytes, 4);
+    const Stream stream = checked_stream(gltf, compression->first, gltf.views[i].length);
     Json& json = gltf.json["bufferViews"][i];
+    has_fallback &= gltf.json["buffers"][gltf.views[i].buffer].contains("uri");
     json["buffer"] = gltf.buffers.size();
-    json["byteOffset"] = bytes.size();
+    json["byteOffset"] = decoded.offset_of(stream);
+    is_khr = is_khr && compression->second == kNames[1];
     remove_extension(json, compression->second);
-    bytes += decoded;
+    is_any = true;
   }
-  if (bytes.empty()) return;
+  if (!is_any) return;
   gltf.came_as = Compression::meshopt;
-  add_buffer(gltf, std::move(bytes));
+  gltf.came_with_fallback = has_fallback;
+  if (is_khr) gltf.meshopt_name = kNames[1];
+  add_buffer(gltf, decoded.take());
   for (const std::string_view name : kNames) forget_extension(gltf.json, name);
   drop_fallback_buffers(gltf);
   read_views(gltf);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/asset/asset.hpp"
+#include "core/asset/pace.hpp"
 
 namespace unwrapd::asset {
 
@@ -54,7 +55,8 @@ Obj read_obj(const Input& input, const ReadLimits& limits, Surface& surface);
 std::string write_obj(const Obj& obj, const UnwrappedSurface& unwrapped);
 
 /// Cuts a polygon of at least 3 corners into corner_count - 2 triangles: ears where it is not
-/// convex. Appends corner numbers.
-void triangulate(std::span<const Vec3> polygon, std::vector<std::array<Index, 3>>& triangles);
+/// convex. Appends corner numbers. Throws Error{cancelled}.
+void triangulate(std::span<const Vec3> polygon, std::vector<std::array<Index, 3>>& triangles,
+                 Pace& pace);
 
 }  // namespace unwrapd::asset

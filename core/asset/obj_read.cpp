@@ -26,18 +26,17 @@ std::string line_of(std::string_view text, std::size_t byte) {
 class ObjReader {
  public:
   ObjReader(const Input& input, const ReadLimits& limits, Surface& surface)
-      : limits_(limits), surface_(surface) {
+      : limits_(limits), surface_(surface), pace_(input.stop) {
     obj_.text = input.document;
     obj_.stop = input.stop;
     line_ends_ = replace_lone_returns(obj_.text);
   }
 
   Obj read() {
-    std::size_t lines = 0;
     at_.next = obj_.text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-    for (; at_.next < obj_.text.size(); ++lines) {
-      look_now_and_then(lines, obj_.stop);
+    while (at_.next < obj_.text.size()) {
       at_ = statement_at(obj_.text, at_.next);
+      pace_.add(1 + (at_.next - at_.begin) / 16);
       read_statement(Words(std::string_view(obj_.text).substr(at_.begin, at_.end - at_.begin)));
     }
     check_indices();
@@ -115,8 +114,10 @@ class ObjReader {
 
   void read_element(char keyword, Words& words) {
     ObjElement element{keyword, at_.begin, at_.end, obj_.corners.size(), 0, 0};
-    for (std::string_view word = words.next(); !word.empty(); word = words.next())
+    for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+      pace_.add(1);
       obj_.corners.push_back(read_corner(word));
+    }
     element.corner_count = obj_.corners.size() - element.first_corner;
     element.first_face = face_total_;
     face_total_ += element.face_count();
@@ -167,7 +168,7 @@ class ObjReader {
     const auto vertex_count = surface_.mesh.vertex_count();
     const auto normal_count = static_cast<Index>(obj_.normals.size());
     for (const ObjElement& element : obj_.elements) {
-      look_now_and_then(element.first_face, obj_.stop);
+      pace_.add(1 + element.corner_count);
       at_.begin = element.begin;
       for (std::size_t i = 0; i < element.corner_count; ++i) {
         const ObjCorner& corner = obj_.corners[element.first_corner + i];
@@ -189,12 +190,11 @@ class ObjReader {
     std::vector<Vec3> polygon;
     for (const ObjElement& element : obj_.elements) {
       if (element.face_count() == 0) continue;
-      look_now_and_then(element.first_face, obj_.stop);
       const ObjCorner* corners = &obj_.corners[element.first_corner];
       polygon.clear();
       for (std::size_t i = 0; i < element.corner_count; ++i)
         polygon.push_back(surface_.mesh.positions[static_cast<std::size_t>(corners[i].vertex)]);
-      triangulate(polygon, obj_.face_corners);
+      triangulate(polygon, obj_.face_corners, pace_);
       for (std::size_t t = element.first_face; t < obj_.face_corners.size(); ++t) {
         const std::array<Index, 3>& face = obj_.face_corners[t];
         surface_.mesh.faces.push_back(
@@ -205,6 +205,7 @@ class ObjReader {
 
   const ReadLimits& limits_;
   Surface& surface_;
+  Pace pace_;
   Obj obj_;
   Statement at_;
   std::size_t texcoord_count_ = 0;

@@ -9,12 +9,13 @@ namespace {
 
 class ObjWriter {
  public:
-  ObjWriter(const Obj& obj, const UnwrappedSurface& unwrapped) : obj_(obj), unwrapped_(unwrapped) {}
+  ObjWriter(const Obj& obj, const UnwrappedSurface& unwrapped)
+      : obj_(obj), unwrapped_(unwrapped), pace_(obj.stop) {}
 
   std::string write() {
     out_.reserve(obj_.text.size() + unwrapped_.uv.size() * 42 + obj_.corners.size() * 8);
     for (const ObjElement& element : obj_.elements) {
-      look_now_and_then(element.first_face, obj_.stop);
+      pace_.add(1 + 3 * element.corner_count);
       keep_until(element.begin);
       if (element.face_count() > 0 && !has_texcoords_) append_all_texcoords();
       write_element(element);
@@ -29,6 +30,7 @@ class ObjWriter {
   void keep_until(std::size_t end) {
     const std::string_view text = obj_.text;
     for (; vt_ < obj_.texcoord_lines.size() && obj_.texcoord_lines[vt_].first < end; ++vt_) {
+      pace_.add(1);
       out_ += text.substr(at_, obj_.texcoord_lines[vt_].first - at_);
       at_ = obj_.texcoord_lines[vt_].second;
     }
@@ -38,7 +40,10 @@ class ObjWriter {
 
   /// Before the first face, so that every reader has seen them by then.
   void append_all_texcoords() {
-    for (const Vec2& uv : unwrapped_.uv) append_vt(out_, uv);
+    for (const Vec2& uv : unwrapped_.uv) {
+      pace_.add(4);
+      append_vt(out_, uv);
+    }
     has_texcoords_ = true;
   }
 
@@ -73,6 +78,7 @@ class ObjWriter {
 
   const Obj& obj_;
   const UnwrappedSurface& unwrapped_;
+  Pace pace_;
   std::string out_;
   std::size_t at_ = 0;
   std::size_t vt_ = 0;

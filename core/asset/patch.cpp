@@ -5,21 +5,16 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
+#include "core/asset/cut.hpp"
 #include "core/asset/grow.hpp"
-#include "core/asset/materials.hpp"
+#include "core/asset/images.hpp"
 #include "core/asset/references.hpp"
-#include "core/asset/split.hpp"
 
 namespace unwrapd::asset {
 namespace {
 
-/// The primitives that share a pool's vertices, and which pieces are theirs, in order of first use.
-struct Pool {
-  std::vector<std::size_t> primitives;
-  std::vector<std::size_t> pieces;
-};
+constexpr std::size_t kMostUri = 80;  // characters of a URI that a note repeats
 
 /// The lower sets of texture coordinates that the primitive lacks: a document must not skip any.
 std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primitive) {
@@ -34,39 +29,30 @@ std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primiti
   return missing;
 }
 
-std::vector<Pool> pools_of(const Gltf& gltf) {
-  std::vector<Pool> pools(gltf.pool_count);
-  std::set<std::pair<std::size_t, std::size_t>> seen;
-  for (std::size_t i = 0; i < gltf.primitives.size(); ++i) {
-    const Primitive& primitive = gltf.primitives[i];
-    if (!primitive.has_triangles) continue;
-    Pool& pool = pools[primitive.pool];
-    pool.primitives.push_back(i);
-    if (seen.emplace(primitive.pool, primitive.piece).second)
-      pool.pieces.push_back(primitive.piece);
-  }
-  return pools;
-}
-
 class Patcher {
  public:
   explicit Patcher(const Gltf& gltf)
       : gltf_(gltf),
-        patched_{gltf.json, {}},
+        materials_(gltf),
+        patched_{gltf.json, {}, &gltf.aside},
         views_(patched_, gltf.buffers.size()),
         references_(count_accessor_references(gltf.json, gltf.accessors.size())) {}
 
-  void patch_pool(const Pool& pool, const Split& split) {
-    drop_tangents(pool);
+  void patch_pool(const Pool& pool, const Cut& cut) {
+    const Split& split = cut.split;
     if (!split.copies.empty()) grow_attributes(pool, split);
     for (const auto& [piece, users] : users_of(pool, split))
       set_indices(users, split.corners.at(piece));
     set_texcoords(pool, split);
+    if (!cut.tangents.empty()) set_tangents(pool, cut.tangents);
   }
 
+  void take_images() { embed_images(gltf_, patched_.json, views_); }
+
   PatchedDocument finish() {
-    for (const std::size_t material : materials_to_reset(gltf_))
-      reset_transforms(patched_.json["materials"][material], gltf_.texcoord);
+    Pace pace(gltf_.stop);
+    for (const std::size_t material : materials_.to_reset())
+      reset_transforms(patched_.json["materials"][material], gltf_.texcoord, pace);
     return std::move(patched_);
   }
 
@@ -95,10 +81,10 @@ class Patcher {
     return accessors.size() - 1;
   }
 
-  /// Whether an attribute is carried over: neither replaced nor dropped.
+  /// Whether an attribute is carried over, not replaced.
   [[nodiscard]] bool is_kept(const Primitive& primitive, const std::string& semantic) const {
     return semantic != gltf_.texcoord &&
-           !(semantic == "TANGENT" && loses_tangents(gltf_, primitive));
+           !(semantic == "TANGENT" && materials_.loses_tangents(primitive));
   }
 
   Uses vertex_uses(const Pool& pool) const {
@@ -139,7 +125,7 @@ class Patcher {
                                                            const Split& split) const {
     std::map<std::size_t, std::vector<std::size_t>> users;
     for (const std::size_t i : pool.primitives)
-      if (split.corners.contains(gltf_.primitives[i].piece))
+      if (split.changed.contains(gltf_.primitives[i].piece))
         users[gltf_.primitives[i].piece].push_back(i);
     return users;
   }
@@ -178,16 +164,32 @@ class Patcher {
     }
   }
 
-  void drop_tangents(const Pool& pool) {
-    for (const std::size_t i : pool.primitives) {
-      if (!loses_tangents(gltf_, gltf_.primitives[i])) continue;
-      json_of(i)["attributes"].erase("TANGENT");
+  /// Those that a primitive's tangents lie in, if they belong to what is replaced.
+  [[nodiscard]] std::optional<std::size_t> stale_tangents(std::size_t primitive) const {
+    const Primitive& p = gltf_.primitives[primitive];
+    if (!materials_.loses_tangents(p)) return std::nullopt;
+    for (const auto& [semantic, accessor] : p.attributes)
+      if (semantic == "TANGENT") return accessor;
+    return std::nullopt;
+  }
+
+  void set_tangents(const Pool& pool, const std::vector<Tangent>& tangents) {
+    std::vector<std::size_t> users;
+    for (const std::size_t i : pool.primitives)
+      if (stale_tangents(i)) users.push_back(i);
+    const std::size_t old = *stale_tangents(users.front());
+    const auto is_old = [&](std::size_t i) { return stale_tangents(i) == old; };
+    const auto uses = static_cast<std::size_t>(std::count_if(users.begin(), users.end(), is_old));
+    const std::size_t now = put_accessor(old, uses, tangent_accessor(gltf_, old, tangents, views_));
+    for (const std::size_t i : users) {
+      json_of(i)["attributes"]["TANGENT"] = now;
       if (!json_of(i).contains("targets")) continue;
       for (Json& target : json_of(i)["targets"]) target.erase("TANGENT");
     }
   }
 
   const Gltf& gltf_;
+  Materials materials_;
   PatchedDocument patched_;
   NewViews views_;
   std::vector<std::size_t> references_;
@@ -197,21 +199,43 @@ std::string counted(std::size_t count, const char* thing) {
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
+/// Long names are not repeated, nor cut in the middle of a character.
+std::string named(const std::string& uri) {
+  return uri.size() > kMostUri ? std::string() : ", as " + uri + ",";
+}
+
+bool has_morphed_tangents(const Gltf& gltf, const Primitive& primitive) {
+  const Json& json =
+      gltf.json.at("meshes").at(primitive.mesh).at("primitives").at(primitive.number);
+  const auto targets = json.find("targets");
+  return targets != json.end() &&
+         std::any_of(targets->begin(), targets->end(),
+                     [](const Json& target) { return target.contains("TANGENT"); });
+}
+
 }  // namespace
 
-std::vector<std::string> side_effects_of_patch(const Gltf& gltf) {
-  std::size_t without_tangents = 0, with_lower_sets = 0;
+std::vector<std::string> side_effects_of_patch(const Gltf& gltf, Format output) {
+  const Materials materials(gltf);
+  std::size_t with_tangents = 0, with_morphs = 0, with_lower_sets = 0;
   for (const Primitive& primitive : gltf.primitives) {
     if (!primitive.has_triangles) continue;
-    without_tangents += loses_tangents(gltf, primitive) ? 1 : 0;
+    if (materials.loses_tangents(primitive)) {
+      ++with_tangents;
+      with_morphs += has_morphed_tangents(gltf, primitive) ? 1 : 0;
+    }
     with_lower_sets += missing_sets(gltf, primitive).empty() ? 0 : 1;
   }
-  const std::size_t reset = materials_to_reset(gltf).size();
+  const std::size_t reset = materials.to_reset().size();
   std::vector<std::string> notes;
-  if (without_tangents > 0)
-    notes.push_back("The tangents of " + counted(without_tangents, "primitive") +
-                    " belonged to the replaced texture coordinates and are left out; readers make "
-                    "new ones.");
+  if (with_tangents > 0)
+    notes.push_back(
+        "The tangents of " + counted(with_tangents, "primitive") +
+        " belonged to the replaced texture coordinates and are made anew, as MikkTSpace "
+        "makes them.");
+  if (with_morphs > 0)
+    notes.push_back("The morph targets of " + counted(with_morphs, "primitive") +
+                    " had tangents for the replaced texture coordinates; these are left out.");
   if (reset > 0)
     notes.push_back("The KHR_texture_transform of " + counted(reset, "material") +
                     " is reset for " + gltf.texcoord +
@@ -219,33 +243,34 @@ std::vector<std::string> side_effects_of_patch(const Gltf& gltf) {
   if (with_lower_sets > 0)
     notes.push_back(counted(with_lower_sets, "primitive") + " lacked texture coordinates below " +
                     gltf.texcoord + "; glTF allows no gap, so these sets are the same.");
+  const FilesBeside files = images_beside(gltf);
+  if (gltf.came_as_text && output == Format::glb && files.count > 0)
+    notes.push_back(counted(files.count, "image") + " of the asset" + named(files.first) +
+                    " stay in files of their own; keep them beside the GLB, or send them along.");
   return notes;
 }
 
 std::vector<VertexMap> vertex_maps_of_patch(const Gltf& gltf,
                                             std::span<const UnwrappedSurface> unwrapped) {
   std::vector<VertexMap> maps;
-  Splitter splitter(gltf, unwrapped);
+  Cutter cutter(gltf, unwrapped);
   for (const Pool& pool : pools_of(gltf)) {
-    if (pool.primitives.empty()) continue;
     const std::size_t count =
         gltf.accessors[gltf.primitives[pool.primitives.front()].position].count;
-    const Split split = splitter.split(pool.pieces, count);
+    const Cut cut = cutter.cut(pool);
     for (const std::size_t i : pool.primitives)
       maps.push_back({primitive_place(gltf.primitives[i]).pointer(),
-                      static_cast<std::int64_t>(count), split.copies});
+                      static_cast<std::int64_t>(count), cut.split.copies});
   }
   return maps;
 }
 
-PatchedDocument patch(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped) {
+PatchedDocument patch(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped,
+                      Format output) {
   Patcher patcher(gltf);
-  Splitter splitter(gltf, unwrapped);
-  for (const Pool& pool : pools_of(gltf)) {
-    if (pool.primitives.empty()) continue;
-    const Primitive& first = gltf.primitives[pool.primitives.front()];
-    patcher.patch_pool(pool, splitter.split(pool.pieces, gltf.accessors[first.position].count));
-  }
+  Cutter cutter(gltf, unwrapped);
+  for (const Pool& pool : pools_of(gltf)) patcher.patch_pool(pool, cutter.cut(pool));
+  if (gltf.came_as_text && output == Format::glb) patcher.take_images();
   return patcher.finish();
 }
 

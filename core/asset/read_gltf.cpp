@@ -1,10 +1,23 @@
 #include "core/asset/read_gltf.hpp"
 
+#include <algorithm>
+
 #include "core/asset/container.hpp"
 #include "core/asset/gltf_steps.hpp"
 #include "core/cancel.hpp"
 
 namespace unwrapd::asset {
+namespace {
+
+/// Whether readers without Draco find all of the geometry, too.
+bool has_fallback(const Gltf& gltf, const std::vector<DracoSource>& sources) {
+  return !requires_extension(gltf.json, "KHR_draco_mesh_compression") &&
+         std::all_of(sources.begin(), sources.end(), [&](const DracoSource& source) {
+           return gltf.accessors[gltf.primitives[source.primitive].position].view.has_value();
+         });
+}
+
+}  // namespace
 
 Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
                const AssetOptions& options, std::vector<Surface>& surfaces) {
@@ -13,23 +26,28 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
   const GlbChunks chunks =
       format == Format::glb ? split_glb(input.document) : GlbChunks{input.document, {}, {}};
   gltf.stop = input.stop;
-  gltf.json = parse_json(chunks.json, gltf.stop);
+  gltf.json = parse_json(chunks.json, gltf.stop, limits.max_bytes / 2);  // kept and patched
+  gltf.aside.take_unread(gltf.json);
   gltf.other_chunks = chunks.others;
   if (chunks.unaligned > 0)
     gltf.repairs.push_back({FileRepairKind::chunks_padded, chunks.unaligned});
   check_asset_and_extensions(gltf);
+  gltf.came_as_text = format == Format::gltf;
   resolve_buffers(gltf, chunks.bin, input);
+  take_images(gltf, input);
   read_views(gltf);
   decode_meshopt(gltf);
   read_accessors(gltf);
   if (const std::vector<DracoSource> sources = read_meshes(gltf); !sources.empty()) {
-    decode_draco(gltf, sources, limits);
     gltf.came_as = Compression::draco;
+    gltf.came_with_fallback = has_fallback(gltf, sources);
+    decode_draco(gltf, sources, limits);
     read_views(gltf);
     read_accessors(gltf);
     static_cast<void>(read_meshes(gltf));
   }
   check_nodes(gltf);
+  gltf.aside.take_unwritten(gltf.json);
   select_primitives(gltf, options);
   check_geometry(gltf, limits);
   surfaces = build_surfaces(gltf, limits);

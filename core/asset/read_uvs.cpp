@@ -8,6 +8,7 @@
 #include "core/asset/elements.hpp"
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/materials.hpp"
+#include "core/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -24,17 +25,18 @@ std::optional<std::size_t> uv_accessor(const Gltf& gltf, const Primitive& primit
 
 Vec2 upwards(const Vec2& uv) { return uv.allFinite() ? Vec2(uv.x(), 1 - uv.y()) : kNoUv[0]; }
 
-void read_piece(const Gltf& gltf, const Primitive& primitive, std::size_t accessor,
-                Surface& surface) {
+void read_piece(const Gltf& gltf, const Primitive& primitive, const Vec2& scale,
+                std::size_t accessor, Surface& surface) {
   const Piece& piece = gltf.pieces[primitive.piece];
   const std::vector<Index>& number = gltf.vertices[piece.surface];
   const Elements uv(gltf, accessor);
-  const Vec2 scale = texture_scale(gltf, primitive);
   surface.corner_uv.resize(surface.mesh.faces.size(), kNoUv);
-  for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t)
+  for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
+    look_now_and_then(t, gltf.stop);
     for (std::size_t i = 0; i < 3; ++i)
       surface.corner_uv[t][i] = upwards(
           scale.cwiseProduct(uv.vec2_at(as_size(number[as_size(surface.mesh.faces[t][i])]))));
+  }
 }
 
 /// A vt statement's two numbers; none where they are not to be read.
@@ -55,30 +57,36 @@ Vec2 read_vt(std::string_view line) {
 void read_obj_uvs(const Obj& obj, Surface& surface) {
   std::vector<Vec2> vt;
   vt.reserve(obj.texcoord_lines.size());
-  for (const auto& [begin, end] : obj.texcoord_lines)
+  for (const auto& [begin, end] : obj.texcoord_lines) {
+    look_now_and_then(vt.size(), obj.stop);
     vt.push_back(read_vt(std::string_view(obj.text).substr(begin, end - begin)));
+  }
   if (vt.empty()) return;
   surface.corner_uv.assign(surface.mesh.faces.size(), kNoUv);
   for (const ObjElement& element : obj.elements)
-    for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t)
+    for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
+      look_now_and_then(t, obj.stop);
       for (std::size_t i = 0; i < 3; ++i) {
         const ObjCorner& corner =
             obj.corners[element.first_corner + as_size(obj.face_corners[t][i])];
         if (corner.texcoord >= 0 && as_size(corner.texcoord) < vt.size())
           surface.corner_uv[t][i] = vt[as_size(corner.texcoord)];
       }
+    }
 }
 
 }  // namespace
 
 void read_gltf_uvs(const Gltf& gltf, std::vector<Surface>& surfaces) {
+  const Materials materials(gltf);
   std::vector<char> is_read(gltf.pieces.size(), 0);
   for (const Primitive& primitive : gltf.primitives) {
     if (!primitive.has_triangles || is_read[primitive.piece] != 0) continue;
     const auto accessor = uv_accessor(gltf, primitive);
     if (!accessor) continue;
     is_read[primitive.piece] = 1;
-    read_piece(gltf, primitive, *accessor, surfaces[gltf.pieces[primitive.piece].surface]);
+    read_piece(gltf, primitive, materials.of(primitive).scale, *accessor,
+               surfaces[gltf.pieces[primitive.piece].surface]);
   }
 }
 

@@ -8,7 +8,7 @@
 namespace unwrapd::asset {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+constexpr std::string_view kMarkOfUtf8 = "\xef\xbb\xbf";
 constexpr std::string_view kSpaces = " \t\r\n";
 constexpr std::size_t kMaxScanned = 1 << 16;  // bytes of an OBJ that may go before its first vertex
 
@@ -46,7 +46,7 @@ Format recognise(std::string_view file) {
     if (file.starts_with(refusal.magic))
       throw Error(ErrorCode::unknown_format, std::string(refusal.message));
   std::string_view text = file;
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (text.starts_with(kMarkOfUtf8)) text.remove_prefix(kMarkOfUtf8.size());
   const std::size_t first = text.find_first_not_of(kSpaces);
   if (first != std::string_view::npos && text[first] == '{') return Format::gltf;
   if (looks_like_obj(text)) return Format::obj;

@@ -49,6 +49,30 @@ void visit_accessors(Value& document, const Visit& visit) {
            [&](auto& skin) { visit_index(member(skin, "inverseBindMatrices"), visit); });
 }
 
+template <class Value, class Visit>
+void visit_other_views(Value& document, const Visit& visit) {
+  visit_primitives(document, [&](auto& primitive) {
+    auto* extensions = member(primitive, "extensions");
+    auto* draco =
+        extensions == nullptr ? nullptr : member(*extensions, "KHR_draco_mesh_compression");
+    if (draco != nullptr) visit_index(member(*draco, "bufferView"), visit);
+  });
+  for_each(member(document, "images"),
+           [&](auto& image) { visit_index(member(image, "bufferView"), visit); });
+}
+
+template <class Value, class Visit>
+void visit_views(Value& document, const Visit& visit) {
+  for_each(member(document, "accessors"), [&](auto& accessor) {
+    visit_index(member(accessor, "bufferView"), visit);
+    auto* sparse = member(accessor, "sparse");
+    if (sparse == nullptr) return;
+    for (const char* part : {"indices", "values"})
+      if (auto* node = member(*sparse, part)) visit_index(member(*node, "bufferView"), visit);
+  });
+  visit_other_views(document, visit);
+}
+
 }  // namespace
 
 std::vector<std::size_t> count_accessor_references(const Json& document, std::size_t count) {
@@ -65,21 +89,16 @@ void for_each_accessor_reference(Json& document, const std::function<void(Json&)
 }
 
 void for_each_view_reference(Json& document, const std::function<void(Json&)>& visit) {
-  for_each(member(document, "accessors"), [&](Json& accessor) {
-    visit_index(member(accessor, "bufferView"), visit);
-    Json* sparse = member(accessor, "sparse");
-    if (sparse == nullptr) return;
-    for (const char* part : {"indices", "values"})
-      if (Json* node = member(*sparse, part)) visit_index(member(*node, "bufferView"), visit);
-  });
-  visit_primitives(document, [&](Json& primitive) {
-    Json* extensions = member(primitive, "extensions");
-    Json* draco =
-        extensions == nullptr ? nullptr : member(*extensions, "KHR_draco_mesh_compression");
-    if (draco != nullptr) visit_index(member(*draco, "bufferView"), visit);
-  });
-  for_each(member(document, "images"),
-           [&](Json& image) { visit_index(member(image, "bufferView"), visit); });
+  visit_views(document, visit);
+}
+
+void for_each_view_reference(const Json& document, const std::function<void(const Json&)>& visit) {
+  visit_views(document, visit);
+}
+
+void for_each_other_view_reference(const Json& document,
+                                   const std::function<void(const Json&)>& visit) {
+  visit_other_views(document, visit);
 }
 
 }  // namespace unwrapd::asset

@@ -19,5 +19,10 @@ void for_each_accessor_reference(Json& document, const std::function<void(Json&)
 /// Calls visit with every number that names a buffer view: of accessors, sparse parts, images,
 /// Draco's bitstreams.
 void for_each_view_reference(Json& document, const std::function<void(Json&)>& visit);
+void for_each_view_reference(const Json& document, const std::function<void(const Json&)>& visit);
+
+/// Those of images and Draco's bitstreams alone.
+void for_each_other_view_reference(const Json& document,
+                                   const std::function<void(const Json&)>& visit);
 
 }  // namespace unwrapd::asset

@@ -1,6 +1,6 @@
 // Which primitives are unwrapped. The others are left alone altogether: they make no surface, and
 // what they share with a selected one is copied rather than changed.
-#include <algorithm>
+#include <unordered_map>
 
 #include "core/asset/gltf_steps.hpp"
 
@@ -11,32 +11,48 @@ namespace {
   throw Error(ErrorCode::invalid_option, message, Place().at(list).at(i).pointer());
 }
 
-std::string name_of(const Gltf& gltf, std::size_t material) {
-  const Json& json = gltf.json.at("materials").at(material);
-  const auto name = json.find("name");
-  return name != json.end() && name->is_string() ? name->get<std::string>() : "";
-}
+using PrimitivesByName = std::unordered_map<std::string, std::vector<std::size_t>>;
 
-/// Marks the primitives whose material has this name; false when there is none.
-bool mark_material(const Gltf& gltf, const std::string& name, std::vector<char>& marked) {
-  bool found = false;
-  for (std::size_t i = 0; i < gltf.primitives.size(); ++i) {
-    const Primitive& primitive = gltf.primitives[i];
-    if (!primitive.material || name_of(gltf, *primitive.material) != name) continue;
-    marked[i] = 1;
-    found = true;
+/// The primitives that have a material of this name. Each name is looked at once, however long it
+/// is and however many primitives have it.
+PrimitivesByName by_material(const Gltf& gltf) {
+  const auto list = gltf.json.find("materials");
+  if (list == gltf.json.end()) return {};
+  std::vector<std::vector<std::size_t>> users(list->size());
+  for (std::size_t i = 0; i < gltf.primitives.size(); ++i)
+    if (gltf.primitives[i].material) users[*gltf.primitives[i].material].push_back(i);
+  PrimitivesByName names;
+  for (std::size_t m = 0; m < users.size(); ++m) {
+    if (users[m].empty()) continue;
+    const Json& material = list->at(m);
+    const auto name = material.find("name");
+    const bool is_named = name != material.end() && name->is_string();
+    std::vector<std::size_t>& all = names[is_named ? name->get<std::string>() : std::string()];
+    all.insert(all.end(), users[m].begin(), users[m].end());
   }
-  return found;
+  return names;
 }
 
-bool mark_primitive(const Gltf& gltf, const std::string& pointer, std::vector<char>& marked) {
-  const auto is_meant = [&](const Primitive& primitive) {
-    return primitive_place(primitive).pointer() == pointer;
-  };
-  const auto found = std::find_if(gltf.primitives.begin(), gltf.primitives.end(), is_meant);
-  if (found == gltf.primitives.end()) return false;
-  marked[static_cast<std::size_t>(found - gltf.primitives.begin())] = 1;
-  return true;
+PrimitivesByName by_pointer(const Gltf& gltf) {
+  PrimitivesByName names;
+  for (std::size_t i = 0; i < gltf.primitives.size(); ++i)
+    names[primitive_place(gltf.primitives[i]).pointer()].push_back(i);
+  return names;
+}
+
+/// Marks what these names have. What a name has had is forgotten: giving it again marks nothing.
+void mark(std::string_view option, const std::vector<std::string>& wanted, PrimitivesByName names,
+          std::vector<char>& marked) {
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const auto found = names.find(wanted[k]);
+    if (found == names.end())
+      refuse(option, k,
+             option == "materials"
+                 ? "no primitive has a material of this name; give names of the asset's"
+                 : "the asset has no such primitive; point to one, as in /meshes/0/primitives/1");
+    for (const std::size_t i : found->second) marked[i] = 1;
+    found->second.clear();
+  }
 }
 
 }  // namespace
@@ -44,13 +60,8 @@ bool mark_primitive(const Gltf& gltf, const std::string& pointer, std::vector<ch
 void select_primitives(Gltf& gltf, const AssetOptions& options) {
   if (options.materials.empty() && options.primitives.empty()) return;
   std::vector<char> marked(gltf.primitives.size(), 0);
-  for (std::size_t i = 0; i < options.materials.size(); ++i)
-    if (!mark_material(gltf, options.materials[i], marked))
-      refuse("materials", i, "no primitive has a material of this name; give names of the asset's");
-  for (std::size_t i = 0; i < options.primitives.size(); ++i)
-    if (!mark_primitive(gltf, options.primitives[i], marked))
-      refuse("primitives", i,
-             "the asset has no such primitive; point to one, as in /meshes/0/primitives/1");
+  if (!options.materials.empty()) mark("materials", options.materials, by_material(gltf), marked);
+  if (!options.primitives.empty()) mark("primitives", options.primitives, by_pointer(gltf), marked);
   for (std::size_t i = 0; i < marked.size(); ++i)
     gltf.primitives[i].has_triangles = gltf.primitives[i].has_triangles && marked[i] != 0;
 }

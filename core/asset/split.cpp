@@ -45,7 +45,7 @@ void Splitter::forget(const Piece& piece) {
       placed_[piece.surface][as_size(corner)] = kNotPlaced;
 }
 
-Split Splitter::split(const std::vector<std::size_t>& pieces, std::size_t vertex_count) {
+Split Splitter::split(const std::vector<std::size_t>& pieces, std::size_t vertex_count, bool all) {
   Split split;
   split.uv.resize(vertex_count);
   taken_.assign(vertex_count, 0);
@@ -62,7 +62,8 @@ Split Splitter::split(const std::vector<std::size_t>& pieces, std::size_t vertex
         corners.push_back(place_corner(piece, corner, split));
     }
     const auto is_copy = [&](Index corner) { return as_size(corner) >= vertex_count; };
-    if (std::any_of(corners.begin(), corners.end(), is_copy)) split.corners[p] = std::move(corners);
+    if (std::any_of(corners.begin(), corners.end(), is_copy)) split.changed.insert(p);
+    if (all || split.changed.contains(p)) split.corners[p] = std::move(corners);
   }
   for (const std::size_t p : pieces) forget(gltf_.pieces[p]);
   return split;

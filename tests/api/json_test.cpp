@@ -66,6 +66,8 @@ TEST(ParseJson, KeepsItsLimitsOfDepthAndSize) {
   EXPECT_NO_THROW(parse_json("[1]", {.max_bytes = 3, .max_depth = 4}));
   EXPECT_NO_THROW(parse_json(R"([1, {"a": []}])", {.max_values = 5}));
   EXPECT_EQ(refusal(R"([1, {"a": []}])", {.max_values = 4}).code(), ErrorCode::malformed_request);
+  EXPECT_NO_THROW(parse_json(R"({"a":1,"b":{"c":1,"d":2}})", {.max_members = 2}));
+  EXPECT_EQ(refusal(R"([{"a":1,"b":2,"c":3}])", {.max_members = 2}).where(), "/0/b");
   EXPECT_EQ(refusal("[1] ", {.max_bytes = 3, .max_depth = 4}).code(), ErrorCode::malformed_request);
 }
 

@@ -187,8 +187,17 @@ std::array<Vec3, 3> points_of(const Face& face) {
 
 namespace {
 
-/// "TANGENT", or "0/TANGENT" of a morph target.
 bool is_tangent(const std::string& semantic) { return semantic.ends_with("TANGENT"); }
+
+/// "0/TANGENT": of a morph target.
+bool is_morph_tangent(const std::string& semantic) { return semantic.ends_with("/TANGENT"); }
+
+/// Of unit length, and a sign.
+void expect_tangent(const std::vector<double>& tangent) {
+  ASSERT_EQ(tangent.size(), 4U);
+  EXPECT_NEAR(std::hypot(tangent[0], tangent[1], tangent[2]), 1, 1e-5);
+  EXPECT_EQ(std::abs(tangent[3]), 1);
+}
 
 }  // namespace
 
@@ -202,19 +211,24 @@ void expect_same_but_uv(const std::vector<ReadPrimitive>& input,
       const Face& after = answer[i].faces[t];
       const std::array<Vec3, 3> points = points_of(before);
       ASSERT_TRUE(after.contains("TEXCOORD_0")) << "primitive " << i;
-      const auto tangents = std::count_if(before.begin(), before.end(),
-                                          [](const auto& item) { return is_tangent(item.first); });
+      const auto tangents = std::count_if(before.begin(), before.end(), [](const auto& item) {
+        return is_morph_tangent(item.first);
+      });
       ASSERT_EQ(after.size() + static_cast<std::size_t>(tangents),
                 before.size() + (before.contains("TEXCOORD_0") ? 0 : 1))
-          << "tangents of replaced UVs are left out, and nothing else";
+          << "morphed tangents of replaced UVs are left out, and nothing else";
       for (int k = 0; k < 3; ++k) {
         const std::vector<double>& uv = after.at("TEXCOORD_0")[static_cast<std::size_t>(k)];
         ASSERT_NEAR(uv[0], uv_of(points, k)[0], 1e-6) << "primitive " << i << ", face " << t;
         ASSERT_NEAR(1 - uv[1], uv_of(points, k)[1], 1e-6) << "primitive " << i << ", face " << t;
       }
       for (const auto& [semantic, values] : before) {
-        if (semantic == "TEXCOORD_0" || is_tangent(semantic)) continue;
+        if (semantic == "TEXCOORD_0" || is_morph_tangent(semantic)) continue;
         ASSERT_TRUE(after.contains(semantic)) << semantic;
+        if (is_tangent(semantic)) {
+          for (const std::vector<double>& tangent : after.at(semantic)) expect_tangent(tangent);
+          continue;
+        }
         ASSERT_EQ(after.at(semantic), values)
             << semantic << " of primitive " << i << ", face " << t;
       }

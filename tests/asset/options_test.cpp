@@ -58,14 +58,14 @@ TEST(Texcoord, FillsTheSetsBelowThatAreMissing) {
   EXPECT_EQ(side_effects(asset, split_nowhere(asset), Format::glb).size(), 1U);
 }
 
-TEST(Texcoord, TakesTangentsAndTransformsOfReplacedUvsAway) {
+TEST(Texcoord, MakesTangentsAnewAndTakesTransformsOfReplacedUvsAway) {
   const std::string file = answer(painted().glb(), kPlain);
-  EXPECT_FALSE(first_primitive(file)["attributes"].contains("TANGENT"));
+  EXPECT_TRUE(first_primitive(file)["attributes"].contains("TANGENT"));
   const Json texture = json_of(file)["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
   EXPECT_EQ(texture, Json({{"index", 0}}));
   const Asset asset = read_file(painted().glb());
   EXPECT_EQ(side_effects(asset, split_nowhere(asset), Format::glb).size(), 2U);
-  EXPECT_EQ(json_of(file)["accessors"].size(), 3U);  // of the tangents nothing is left
+  EXPECT_EQ(json_of(file)["accessors"].size(), 4U);  // of the old tangents nothing is left
 }
 
 TEST(Texcoord, ReadsUvsAsTheTextureShowsThem) {

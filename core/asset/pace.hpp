@@ -1,0 +1,31 @@
+#pragma once
+// How work whose steps cost unequally looks whether its job was told to stop.
+
+#include <cstddef>
+#include <stop_token>
+#include <utility>
+
+#include "core/cancel.hpp"
+
+namespace unwrapd::asset {
+
+/// Adds up work in units of some 10 to 100 ns; the start is a look, and so are every so many of
+/// them. Throws Error{cancelled}.
+class Pace {
+ public:
+  explicit Pace(std::stop_token stop) : stop_(std::move(stop)) { throw_if_cancelled(stop_); }
+
+  void add(std::size_t units) {
+    done_ += units;
+    if (done_ < kUnits) return;
+    done_ = 0;
+    throw_if_cancelled(stop_);
+  }
+
+ private:
+  static constexpr std::size_t kUnits = 65'536;
+  std::stop_token stop_;
+  std::size_t done_ = 0;
+};
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,29 @@
+#pragma once
+// Runs of bytes that go into a file: what several views share is taken once.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace unwrapd::asset {
+
+/// A run of bytes of a buffer, and where it lies in the file.
+struct Run {
+  std::size_t buffer = 0;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::size_t target = 0;
+};
+
+/// Those that touch or overlap become one; in order.
+std::vector<Run> merged(std::vector<Run> runs);
+
+/// Appends the bytes of the runs, each at the alignment that it had, and notes where.
+void append_runs(std::string& bytes, const std::vector<std::string_view>& buffers,
+                 std::vector<Run>& runs);
+
+/// The run that holds the byte; there is one.
+const Run& run_of(const std::vector<Run>& runs, std::size_t buffer, std::size_t offset);
+
+}  // namespace unwrapd::asset
