@@ -25,7 +25,8 @@ Json to_json(const Distortion& distortion) {
   return {{"angle", finite(distortion.angle)},
           {"area", finite(distortion.area)},
           {"stretch", finite(distortion.stretch)},
-          {"flipped", distortion.flipped}};
+          {"flipped", distortion.flipped},
+          {"degenerate", distortion.degenerate}};
 }
 
 Json counts_json(const InputReport& input) {

@@ -21,6 +21,8 @@ constexpr double kMostRise = 0.5;     // of a segmented chart's energy, rather t
 DistortionSums in_mesh_units(DistortionSums sums, double unit, double scale) {
   sums.area *= unit * unit;
   sums.uv_area *= scale * scale;
+  sums.measured *= unit * unit;
+  sums.measured_uv *= scale * scale;
   sums.angle *= unit * unit;
   sums.inverse *= unit * unit * (unit / scale) * (unit / scale);
   sums.stretch *= unit * unit * (unit / scale) * (unit / scale);

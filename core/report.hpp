@@ -14,10 +14,11 @@ namespace unwrapd {
 
 /// Distortion of one chart or of all (Sec. 6), after one global scale that makes UV area = 3D area.
 struct Distortion {
-  double angle = 2;    ///< D_angle
-  double area = 2;     ///< D_area
-  double stretch = 1;  ///< root mean square of the Jacobians' Frobenius norm / sqrt 2, ideal 1
-  Index flipped = 0;   ///< triangles of negative orientation; D is computed on |sigma|
+  double angle = 2;      ///< D_angle
+  double area = 2;       ///< D_area
+  double stretch = 1;    ///< root mean square of the Jacobians' Frobenius norm / sqrt 2, ideal 1
+  Index flipped = 0;     ///< triangles of negative orientation; D is computed on |sigma|
+  Index degenerate = 0;  ///< triangles of no height in space to speak of: in none of the means
 };
 
 enum class StopReason {

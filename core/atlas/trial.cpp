@@ -169,7 +169,9 @@ TrialResult tried(const Sheet& sheet, std::span<const char> open, const TrialRul
 }  // namespace
 
 Excess excess_of(const DistortionSums& sums) {
-  return {sums.angle - 2 * sums.area, sums.inverse * sums.uv_area / sums.area - sums.area};
+  if (!(sums.measured > 0)) return {};
+  return {sums.angle - 2 * sums.measured,
+          sums.inverse * sums.measured_uv / sums.measured - sums.measured};
 }
 
 TrialResult try_map(const Sheet& sheet, std::span<const char> open, const TrialRules& rules,

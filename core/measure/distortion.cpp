@@ -12,6 +12,13 @@
 namespace unwrapd {
 namespace {
 
+/// The height over the longest side is that side's length over the sum of the cotangents at its
+/// ends, the two greatest.
+bool is_degenerate(const RestTriangle& rest) {
+  const auto& [a, b, c] = rest.cot;
+  return (a + b + c - std::min({a, b, c})) * kMeasurable >= 1;
+}
+
 /// A part of the faces, and the map of all.
 struct Faces {
   std::span<const RestTriangle> rest;
@@ -47,10 +54,16 @@ Block sum_up(const Faces& faces) {
     const double inverse = 1 / determinant, shape = norm * inverse;
     sums.area += a;
     sums.uv_area += a * std::abs(determinant);
+    if (!(determinant > 0)) ++sums.flipped;
+    if (is_degenerate(faces.rest[t])) {
+      ++sums.degenerate;
+      continue;
+    }
+    sums.measured += a;
+    sums.measured_uv += a * std::abs(determinant);
     sums.angle += a * shape;
     sums.inverse += a * inverse;
     sums.stretch += a * (shape * inverse) / 2;
-    if (!(determinant > 0)) ++sums.flipped;
     block.least_determinant = std::min(block.least_determinant, determinant);
     block.greatest_norm = std::max(block.greatest_norm, norm);
   }
@@ -62,11 +75,12 @@ void add_floored(const Faces& faces, double floor, DistortionSums& sums) {
   for (std::size_t t = 0; t < faces.rest.size(); ++t) {
     const Jacobian j = faces.jacobian_of(t);
     const double a = faces.rest[t].area, sigma_min = j.sigma_min();
+    if (!(sigma_min > 0)) ++sums.flipped;
+    if (is_degenerate(faces.rest[t])) continue;
     const double s1 = std::max(j.sigma_max(), floor), s2 = std::max(std::abs(sigma_min), floor);
     sums.angle += a * (s1 / s2 + s2 / s1);
     sums.inverse += a / (s1 * s2);
     sums.stretch += a * (1 / (s1 * s1) + 1 / (s2 * s2)) / 2;
-    if (!(sigma_min > 0)) ++sums.flipped;
   }
 }
 
@@ -75,10 +89,13 @@ void add_floored(const Faces& faces, double floor, DistortionSums& sums) {
 DistortionSums& DistortionSums::operator+=(const DistortionSums& other) {
   area += other.area;
   uv_area += other.uv_area;
+  measured += other.measured;
+  measured_uv += other.measured_uv;
   angle += other.angle;
   inverse += other.inverse;
   stretch += other.stretch;
   flipped += other.flipped;
+  degenerate += other.degenerate;
   return *this;
 }
 
@@ -114,7 +131,8 @@ DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<con
   if (!std::ranges::all_of(blocks, is_above))
     for_each_part(faces.size(), executor, [&](std::size_t k, std::size_t begin, std::size_t end) {
       if (is_above(blocks[k])) return;
-      blocks[k].sums = {.area = blocks[k].sums.area, .uv_area = blocks[k].sums.uv_area};
+      DistortionSums& sums = blocks[k].sums;
+      sums.angle = sums.inverse = sums.stretch = 0, sums.flipped = 0;
       add_floored(all.part(begin, end), floor, blocks[k].sums);
     });
   DistortionSums sums;
@@ -130,12 +148,13 @@ DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<con
 }
 
 Distortion distortion(const DistortionSums& sums) {
-  if (!(sums.area > 0)) return {};
-  const double scale2 = sums.uv_area / sums.area;  // square of the mean stretch
-  return {.angle = std::max(2.0, sums.angle / sums.area),
-          .area = std::max(2.0, 1 + scale2 * sums.inverse / sums.area),
-          .stretch = std::sqrt(scale2 * sums.stretch / sums.area),
-          .flipped = sums.flipped};
+  if (!(sums.measured > 0)) return {.flipped = sums.flipped, .degenerate = sums.degenerate};
+  const double scale2 = sums.measured_uv / sums.measured;  // square of the mean stretch
+  return {.angle = std::max(2.0, sums.angle / sums.measured),
+          .area = std::max(2.0, 1 + scale2 * sums.inverse / sums.measured),
+          .stretch = std::sqrt(scale2 * sums.stretch / sums.measured),
+          .flipped = sums.flipped,
+          .degenerate = sums.degenerate};
 }
 
 }  // namespace unwrapd

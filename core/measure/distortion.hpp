@@ -12,15 +12,22 @@ namespace unwrapd {
 
 /// Sums over triangles that Distortion is made from; those of several charts add up.
 struct DistortionSums {
-  double area = 0;     ///< sum of A_t
-  double uv_area = 0;  ///< sum of A_t |sigma_max sigma_min|
-  double angle = 0;    ///< sum of A_t (sigma_max / |sigma_min| + |sigma_min| / sigma_max)
-  double inverse = 0;  ///< sum of A_t / |sigma_max sigma_min|
-  double stretch = 0;  ///< sum of A_t (1 / sigma_max^2 + 1 / sigma_min^2) / 2
-  Index flipped = 0;   ///< triangles with sigma_min <= 0
+  double area = 0;                       ///< sum of A_t
+  double uv_area = 0;                    ///< sum of A_t |sigma_max sigma_min|
+  double measured = 0, measured_uv = 0;  ///< the same of triangles that are not degenerate; so are:
+  double angle = 0;      ///< sum of A_t (sigma_max / |sigma_min| + |sigma_min| / sigma_max)
+  double inverse = 0;    ///< sum of A_t / |sigma_max sigma_min|
+  double stretch = 0;    ///< sum of A_t (1 / sigma_max^2 + 1 / sigma_min^2) / 2
+  Index flipped = 0;     ///< triangles with sigma_min <= 0
+  Index degenerate = 0;  ///< triangles thinner than kMeasurable
 
   DistortionSums& operator+=(const DistortionSums& other);
 };
+
+/// Of a triangle's longest side, the height that it has at least where D is taken of it. Thinner
+/// ones have the shape that rounding gave them (of float coordinates, say), and one of them may be
+/// drawn out a million times: they are counted, and have no part in any mean.
+inline constexpr double kMeasurable = 1e-5;
 
 /// A collapsed image has no finite D: |sigma_min| counts as at least this share of the mean
 /// stretch, and so does sigma_max. A chart that reaches the floor shows D in the thousands.

@@ -116,6 +116,48 @@ TEST(Distortion, OfACollapsedMapIsFinite) {
   EXPECT_EQ(d.flipped, mesh.face_count());
 }
 
+/// Three points on a line, as far as floats tell: what shape they have is rounding's, and a map may
+/// draw it out at will.
+TEST(Distortion, IsNoMeanOverTrianglesThatRoundingShaped) {
+  for (const double height : {1e-6, 1e-7, 1e-12, 0.0}) {
+    TriMesh mesh = shapes::grid(1, 1);
+    UvMap uv = flattened(mesh);
+    mesh.positions.emplace_back(0.5, -height, 0);
+    mesh.faces.push_back({0, 4, 1});
+    uv.emplace_back(0.5, -1e3);
+    const DistortionSums sums = distortion_sums(flatten(mesh), mesh.faces, uv);
+    const Distortion d = distortion(sums);
+    EXPECT_EQ(d.degenerate, 1) << height;
+    EXPECT_EQ(d.flipped, 0) << height;
+    EXPECT_NEAR(d.angle, 2, 1e-12) << height;
+    EXPECT_NEAR(d.area, 2, 1e-12) << height;
+    EXPECT_NEAR(d.stretch, 1, 1e-12) << height;
+    EXPECT_NEAR(sums.uv_area, 501, 1e-9) << height;
+  }
+}
+
+TEST(Distortion, OfSuchTrianglesAloneIsToldByTheirNumber) {
+  TriMesh mesh = shapes::grid(3, 1);
+  for (Vec3& p : mesh.positions) p.y() *= 1e-8;
+  const UvMap uv = flattened(shapes::grid(3, 1));
+  const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, uv));
+  EXPECT_EQ(d.degenerate, mesh.face_count());
+  EXPECT_EQ(d.angle, 2);
+  EXPECT_EQ(d.area, 2);
+  EXPECT_EQ(d.stretch, 1);
+}
+
+TEST(Distortion, OfAThinTriangleCounts) {
+  TriMesh mesh = shapes::grid(1, 1);
+  UvMap uv = flattened(mesh);
+  mesh.positions.emplace_back(0.5, -1e-3, 0);
+  mesh.faces.push_back({0, 4, 1});
+  uv.emplace_back(0.5, -1);
+  const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, uv));
+  EXPECT_EQ(d.degenerate, 0);
+  EXPECT_GT(d.angle, 2.4);
+}
+
 /// A map of more faces than are summed up at once, some of which it flips or flattens.
 UvMap bent(const TriMesh& mesh, double wildness, std::mt19937& rng) {
   std::normal_distribution<double> any;
