@@ -6,16 +6,16 @@
 
 namespace unwrapd {
 
-std::vector<Charts> components(std::span<const Surface> surfaces, const UnwrapOptions& options,
-                               const std::stop_token& stop, SolverCore* core) {
+std::vector<Charts> components(std::span<const Surface> surfaces, SeamRules rules) {
   const auto is_empty = [](const Surface& surface) { return surface.mesh.faces.empty(); };
   if (std::all_of(surfaces.begin(), surfaces.end(), is_empty))
     throw Error(ErrorCode::no_triangles, "the asset has no triangles; there is nothing to unwrap");
   std::vector<Charts> parts;
   parts.reserve(surfaces.size());
-  for (const Surface& surface : surfaces)
-    parts.push_back(components_of(surface, {options.seams, options.seam_edges,
-                                            static_cast<Index>(parts.size()), stop, core}));
+  for (const Surface& surface : surfaces) {
+    parts.push_back(components_of(surface, rules));
+    ++rules.surface;
+  }
   return parts;
 }
 
@@ -50,7 +50,7 @@ void require_area(std::span<const Charts> parts) {
 }
 
 InputAnalysis analyse(std::span<const Surface> surfaces, const std::stop_token& stop) {
-  const std::vector<Charts> parts = components(surfaces, {}, stop, nullptr);
+  const std::vector<Charts> parts = components(surfaces, {.stop = stop});
   require_area(parts);
   return analysis_of(parts);
 }

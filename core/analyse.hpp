@@ -20,10 +20,9 @@ struct InputAnalysis {
   std::vector<Repair> repairs;  ///< of every surface in turn
 };
 
-/// The components of every surface, opened as the options say; core: what jobs share, null where
-/// there is none. Throws Error: no_triangles, not_orientable, invalid_option, cancelled.
-std::vector<Charts> components(std::span<const Surface> surfaces, const UnwrapOptions& options,
-                               const std::stop_token& stop, SolverCore* core);
+/// The components of every surface; rules: of the first of them, whose paths are those of all.
+/// Throws Error: no_triangles, not_orientable, invalid_option, cancelled.
+std::vector<Charts> components(std::span<const Surface> surfaces, SeamRules rules);
 
 /// What is known of surfaces by their components. Repairs that taking these apart into charts would
 /// need are among them once that is done.

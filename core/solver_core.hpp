@@ -2,38 +2,15 @@
 // What jobs share. Core keeps nothing from one job to the next: before it makes what is costly and
 // depends on a mesh alone, it asks a SolverCore that it is handed, as it is handed an Executor.
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
 #include <stop_token>
-#include <string_view>
-#include <vector>
+
+#include "core/mesh/digest.hpp"
 
 namespace unwrapd {
-
-/// Stands for the bytes that it was made from.
-using Digest = std::array<std::byte, 32>;
-
-/// What a thing depends on: what kind of thing it is, and views of all bytes that it is made from.
-class Content {
- public:
-  explicit Content(std::string_view kind) { add(kind); }
-
-  /// Values (a vector, an array, a span) whose bytes are all that they are, and which live until
-  /// the digest is taken.
-  template <typename Values>
-  Content& add(const Values& values) {
-    parts_.push_back(std::as_bytes(std::span(values)));
-    return *this;
-  }
-
-  [[nodiscard]] const std::vector<std::span<const std::byte>>& parts() const { return parts_; }
-
- private:
-  std::vector<std::span<const std::byte>> parts_;
-};
 
 class SolverCore {
  public:
@@ -47,8 +24,8 @@ class SolverCore {
   SolverCore& operator=(const SolverCore&) = delete;
   virtual ~SolverCore() = default;
 
-  /// Other digests for other contents, lengths of the parts included.
-  [[nodiscard]] virtual Digest digest(const Content& content) const = 0;
+  /// Another one for other bytes. Keys are written by Fingerprint (fingerprint.hpp).
+  [[nodiscard]] virtual Digest digest(std::span<const std::byte> bytes) const = 0;
 
   /// What was made under this key before, or what make() gives. Jobs that ask for the same key at
   /// once get the same value, made once; where make() throws, so does this, and the next one makes

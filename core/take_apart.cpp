@@ -1,7 +1,6 @@
 #include "core/take_apart.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "core/analyse.hpp"
@@ -29,62 +28,43 @@ std::vector<Disk> disks_of(const Charts& surface, Executor& executor) {
   disks.reserve(surface.charts.size());
   for (const Chart& chart : surface.charts) {
     disks.push_back(make_disk(chart.mesh, chart.loops, executor));
-    disks.back().twin = chart.halfedges.twin;
+    disks.back().twin =
+        known_by_bytes(executor.shared_core(), ListView<Index>(chart.halfedges.twin));
     disks.back().stop = {};  // it may be kept for other jobs
   }
   return disks;
 }
 
-/// Where nothing is set aside it depends on numbers alone; what is follows from the charts, and
-/// what it repeats from positions.
-std::shared_ptr<const VertexPlan> plan_of(const Surface& surface, const Charts& own,
-                                          SolverCore* core, const std::stop_token& stop) {
-  const std::vector<const Chart*> charts = pointers_to(own.charts);
-  Content content("vertex plan");
-  content.add(surface.mesh.faces);
-  if (!own.set_aside.empty()) content.add(surface.mesh.positions);
-  for (const Chart* chart : charts) content.add(chart->mesh.faces).add(chart->face_source);
-  const auto make = [&] {
-    return std::make_shared<const VertexPlan>(plan_vertices(surface, own, charts, stop));
-  };
-  return kept(core, content, make, stop);
+/// All that a job's options say of how surfaces come apart.
+struct TakingApart {
+  SegmentOptions segment;
+  SeamMode seams;
+  std::span<const SeamPath> paths;
+};
+
+void describe(Fingerprint& key, const TakingApart& rules) {
+  const auto& [segment, seams, paths] = rules;
+  key.add(segment).add(seams).add(paths);
 }
 
-std::shared_ptr<const Prepared> prepare(std::span<const Surface> surfaces,
-                                        const UnwrapOptions& options, const SegmentWatch& watch,
-                                        Executor& executor) {
+/// How surfaces are taken apart: watched.
+struct Preparing : Making {
+  const SegmentWatch& watch;
+};
+
+std::shared_ptr<const Prepared> prepare(const Preparing& by, std::span<const Surface> surfaces,
+                                        const TakingApart& rules) {
   auto prepared = std::make_shared<Prepared>();
-  prepared->surfaces = components(surfaces, options, watch.stop, executor.shared_core());
-  prepared->note = segment_charts(prepared->surfaces, segment_options(options), watch, executor);
+  prepared->surfaces = components(surfaces, {rules.seams, rules.paths, 0, by.stop, by.core});
+  prepared->note = segment_charts(prepared->surfaces, rules.segment, by.watch, *by.executor);
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const Charts& own = prepared->surfaces[s];
-    prepared->disks.push_back(disks_of(own, executor));
-    throw_if_cancelled(watch.stop);
-    prepared->plans.push_back(plan_of(surfaces[s], own, executor.shared_core(), watch.stop));
+    prepared->disks.push_back(disks_of(own, *by.executor));
+    throw_if_cancelled(by.stop);
+    prepared->plans.push_back(std::make_shared<const VertexPlan>(
+        plan_vertices(surfaces[s], own, pointers_to(own.charts), by.stop)));
   }
   return prepared;
-}
-
-/// Everything that prepare() looks at.
-Digest digest_of(std::span<const Surface> surfaces, const UnwrapOptions& options,
-                 const SolverCore& core) {
-  const SegmentOptions segment = segment_options(options);
-  const std::array<double, 1> distortion{segment.max_distortion.value_or(0)};  // which none is
-  const std::array<int, 3> numbers{static_cast<int>(options.seams),
-                                   static_cast<int>(segment.one_chart_each),
-                                   segment.max_charts.value_or(0)};
-  Content content("charts");
-  content.add(distortion).add(numbers);
-  std::vector<std::array<Index, 2>> paths;  // how many they are tells where surfaces begin
-  for (const SeamPath& path : options.seam_edges)
-    paths.push_back({path.surface, static_cast<Index>(path.vertices.size())});
-  content.add(paths);
-  for (const SeamPath& path : options.seam_edges) content.add(path.vertices);
-  for (const Surface& surface : surfaces) {
-    content.add(surface.mesh.positions).add(surface.mesh.faces).add(surface.part);
-    if (options.seams == SeamMode::uv0) content.add(surface.corner_uv);
-  }
-  return core.digest(content);
 }
 
 std::size_t bytes_of_charts(const Charts& surface) {
@@ -119,19 +99,10 @@ TakenApart take_apart(std::span<const Surface> surfaces, const UnwrapOptions& op
       progress.on_stage({stage, 0, 0, kChartsBegin + (kSegmentEnd - kChartsBegin) * share});
   };
   const SegmentWatch watch{on_progress, progress.stop};
-  const auto make = [&] { return prepare(surfaces, options, watch, executor); };
   SolverCore* core = executor.shared_core();
-  if (core == nullptr) {
-    taken.all = make();
-    return taken;
-  }
-  check_memory(job_bytes(surfaces), core->memory_limit());
-  const auto made = [&]() -> SolverCore::Made {
-    const std::shared_ptr<const Prepared> prepared = make();
-    return {prepared, bytes_of(*prepared)};
-  };
-  taken.all = std::static_pointer_cast<const Prepared>(
-      core->obtain(digest_of(surfaces, options, *core), made, progress.stop));
+  if (core != nullptr) check_memory(job_bytes(surfaces), core->memory_limit());
+  const TakingApart rules{segment_options(options), options.seams, options.seam_edges};
+  taken.all = kept<prepare>(Preparing{{core, progress.stop, &executor}, watch}, surfaces, rules);
   return taken;
 }
 

@@ -8,7 +8,7 @@ namespace unwrapd::server {
 namespace {
 
 /// Step k makes version k + 1 out of version k. Steps that were released are never edited.
-constexpr std::array<const char*, 8> kSteps = {
+constexpr std::array<const char*, 9> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -111,6 +111,10 @@ ALTER TABLE jobs ADD COLUMN asked TEXT NOT NULL DEFAULT '';
 )sql",
     R"sql(
 ALTER TABLE written ADD COLUMN set_by_ms INTEGER NOT NULL DEFAULT 0;
+)sql",
+    // Answers that were given before may be another method's map: none is given to a new question.
+    R"sql(
+UPDATE jobs SET content_key = '' WHERE state = 'succeeded';
 )sql"};
 
 constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());
@@ -125,14 +129,14 @@ std::int64_t version_of(const Database& database) {
 
 bool has_tables(const Database& database) { return version_of(database) > 0; }
 
-void migrate(Database& database) {
+void migrate(Database& database, std::optional<std::int64_t> last) {
   const std::int64_t found = version_of(database);
   if (found > kVersion || found < 0) {
     throw Error(ErrorCode::storage_failed,
                 "The job store is of another version (schema " + std::to_string(found) +
                     "): start the version that wrote it, or choose another --data directory.");
   }
-  for (std::int64_t version = found; version < kVersion; ++version) {
+  for (std::int64_t version = found; version < last.value_or(kVersion); ++version) {
     Transaction step(database);
     database.run(kSteps.at(static_cast<std::size_t>(version)));
     database.run(("PRAGMA user_version = " + std::to_string(version + 1)).c_str());

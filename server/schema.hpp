@@ -3,6 +3,9 @@
 // one transaction with the version's number: a crash in the middle of it leaves the old version
 // whole. There is no way back: an older unwrapd refuses a newer file rather than guess.
 
+#include <cstdint>
+#include <optional>
+
 #include "server/database.hpp"
 
 namespace unwrapd::server {
@@ -10,8 +13,9 @@ namespace unwrapd::server {
 /// Whether any version has made its tables in this file.
 bool has_tables(const Database& database);
 
-/// Brings the tables to this version, from an empty file or one of any version before. Throws
-/// Error{storage_failed} when they are of a later version.
-void migrate(Database& database);
+/// Brings the tables to this version, from an empty file or one of any version before. last: the
+/// version to end at, where that is not this one. Throws Error{storage_failed} when they are of a
+/// later version.
+void migrate(Database& database, std::optional<std::int64_t> last = {});
 
 }  // namespace unwrapd::server

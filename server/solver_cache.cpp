@@ -27,18 +27,10 @@ SolverCache::SolverCache(const MemoryLimits& limits, int workers)
     : most_bytes_(static_cast<std::size_t>(limits.cache_bytes)),
       job_bytes_(share_of(limits, workers)) {}
 
-Digest SolverCache::digest(const Content& content) const {
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> sha(EVP_MD_CTX_new(),
-                                                                    &EVP_MD_CTX_free);
+Digest SolverCache::digest(std::span<const std::byte> bytes) const {
   Digest digest;
-  bool is_good = sha != nullptr && EVP_DigestInit_ex(sha.get(), EVP_sha256(), nullptr) == 1;
-  for (const std::span<const std::byte> part : content.parts()) {
-    const std::uint64_t size = part.size();
-    is_good = is_good && EVP_DigestUpdate(sha.get(), &size, sizeof size) == 1 &&
-              EVP_DigestUpdate(sha.get(), part.data(), part.size()) == 1;
-  }
   auto* out = reinterpret_cast<unsigned char*>(digest.data());
-  if (!is_good || EVP_DigestFinal_ex(sha.get(), out, nullptr) != 1)
+  if (EVP_Digest(bytes.data(), bytes.size(), out, nullptr, EVP_sha256(), nullptr) != 1)
     throw Error(ErrorCode::internal, "A digest could not be computed.");
   return digest;
 }

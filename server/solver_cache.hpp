@@ -32,7 +32,7 @@ class SolverCache final : public SolverCore {
   /// share the machine's memory.
   SolverCache(const MemoryLimits& limits, int workers);
 
-  [[nodiscard]] Digest digest(const Content& content) const override;
+  [[nodiscard]] Digest digest(std::span<const std::byte> bytes) const override;
   std::shared_ptr<const void> obtain(const Digest& key, const std::function<Made()>& make,
                                      const std::stop_token& stop) override;
   [[nodiscard]] std::size_t memory_limit() const override { return job_bytes_; }

@@ -4,7 +4,6 @@
 #include "core/atlas/charts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <utility>
 
@@ -24,7 +23,7 @@ namespace {
 
 constexpr Index kUnnumbered = -1;
 
-void require_two_sides(const Surface& surface, const Pieces& pieces) {
+void require_two_sides(const SurfaceNumbers& surface, const Pieces& pieces) {
   const auto component = one_sided_component(pieces.clashes, pieces.topology);
   if (!component) return;
   const auto& of = pieces.topology.component_of;
@@ -33,7 +32,7 @@ void require_two_sides(const Surface& surface, const Pieces& pieces) {
               "The piece that face " + std::to_string(pieces.source[face]) +
                   " belongs to is one-sided like a Moebius strip and has no consistent "
                   "orientation; cut it open, or send it with seams=keep and its cut in place.",
-              surface.name);
+              std::string(surface.name));
 }
 
 /// The mesh whose vertices the twins imply; position(h) is where half-edge h starts.
@@ -48,8 +47,8 @@ TriMesh mesh_of(const Halfedges& halfedges, Position position) {
 
 /// Whether materials meet between two half-edges of one edge, or the input has other vertices on
 /// either side: of normals, or of texture coordinates.
-bool is_crease(const Surface& surface, Index g, Index h) {
-  const std::vector<Triangle>& faces = surface.mesh.faces;
+bool is_crease(const SurfaceNumbers& surface, Index g, Index h) {
+  const std::span<const Triangle> faces = surface.faces;
   return surface.part[face_of(g)] != surface.part[face_of(h)] ||
          start_of(faces, g) != end_of(faces, h) || end_of(faces, g) != start_of(faces, h);
 }
@@ -77,7 +76,7 @@ struct Members {
   std::span<const Index> rank;    ///< of each face of pieces: its place in source
 };
 
-void mark_creases(const Surface& surface, const Pieces& pieces, const Members& members,
+void mark_creases(const SurfaceNumbers& surface, const Pieces& pieces, const Members& members,
                   const std::stop_token& stop, Chart& chart) {
   const auto given = [&](Index g) { return 3 * pieces.source[g / 3] + g % 3; };
   for (const Index t : members.source) {
@@ -92,7 +91,7 @@ void mark_creases(const Surface& surface, const Pieces& pieces, const Members& m
 
 /// Numbers the chart's vertices by first use. number: of the vertices of pieces, kUnnumbered at
 /// first. vertex_source: left for each of the chart's vertices.
-void number_vertices(const Surface& surface, const Pieces& pieces, const Members& members,
+void number_vertices(const SurfaceNumbers& surface, const Pieces& pieces, const Members& members,
                      std::vector<Index>& number, std::vector<Index>& vertex_source, Chart& chart) {
   chart.mesh.faces.resize(members.source.size());
   for (std::size_t k = 0; k < members.source.size(); ++k)
@@ -103,11 +102,11 @@ void number_vertices(const Surface& surface, const Pieces& pieces, const Members
         vertex_source.push_back(0);
       }
       chart.mesh.faces[k][i] = own;
-      vertex_source[own] = surface.mesh.faces[chart.face_source[k]][i];
+      vertex_source[own] = surface.faces[chart.face_source[k]][i];
     }
 }
 
-Chart chart_of(const Surface& surface, const Pieces& pieces, const Members& members,
+Chart chart_of(const SurfaceNumbers& surface, const Pieces& pieces, const Members& members,
                const std::stop_token& stop) {
   Chart chart;
   const std::size_t count = members.source.size();
@@ -129,7 +128,7 @@ Chart chart_of(const Surface& surface, const Pieces& pieces, const Members& memb
   return chart;
 }
 
-void separate(const Surface& surface, const Pieces& pieces, const std::stop_token& stop,
+void separate(const SurfaceNumbers& surface, const Pieces& pieces, const std::stop_token& stop,
               Connected& out) {
   const auto& components = pieces.topology.components;
   const auto& of = pieces.topology.component_of;
@@ -152,8 +151,9 @@ void separate(const Surface& surface, const Pieces& pieces, const std::stop_toke
   }
 }
 
-InputReport input_report(const TriMesh& mesh, const Topology& shape, bool welded) {
-  InputReport input{.faces = mesh.face_count(), .vertices = mesh.vertex_count()};
+InputReport input_report(const SurfaceNumbers& surface, const Topology& shape, bool welded) {
+  InputReport input{.faces = static_cast<Index>(surface.faces.size()),
+                    .vertices = surface.vertex_count};
   input.components = static_cast<Index>(shape.components.size());
   for (const Component& component : shape.components) {
     input.boundaries += component.boundaries;
@@ -177,7 +177,7 @@ std::vector<Repair> repairs_of(const FaceStates& states, const Pieces& pieces) {
 }
 
 Connected connect(const Inspected& in, const SeamRules& seams) {
-  const Surface& surface = in.surface;
+  const SurfaceNumbers& surface = in.surface;
   Pairing by_place = pair_welded(in.welded, in.states, seams.stop);
   const auto [pieces, was_welded] = choose_pieces(in, by_place, seams);
   require_two_sides(surface, pieces);
@@ -190,24 +190,23 @@ Connected connect(const Inspected& in, const SeamRules& seams) {
     charts.set_aside.push_back(static_cast<Index>(t));
     charts.repeats.push_back(in.states.same_as[t]);
   }
-  charts.input = input_report(surface.mesh, pieces.topology, was_welded);
+  charts.input = input_report(surface, pieces.topology, was_welded);
   charts.repairs = repairs_of(in.states, pieces);
   const bool all_are_paired = charts.set_aside.empty();
   charts.by_position = std::make_shared<const Halfedges>(
       all_are_paired ? std::move(by_place.halfedges)
-                     : build_halfedges(in.welded, surface.mesh.vertex_count(), seams.stop));
+                     : build_halfedges(in.welded, surface.vertex_count, seams.stop));
   return connected;
 }
 
-/// Everything that connect() looks at: duplicates follow from it.
-Content content_of(const Inspected& in, const SeamRules& seams, const std::array<int, 1>& mode) {
-  Content content("components");
-  content.add(mode).add(in.surface.mesh.faces).add(in.surface.part);
-  content.add(in.first_at).add(in.states.of);
-  if (seams.mode == SeamMode::uv0) content.add(in.surface.corner_uv);
-  for (const SeamPath& path : seams.paths)
-    if (path.surface == seams.surface) content.add(path.vertices);
-  return content;
+/// Of a surface whose vertices and faces that lie at one place, or have no area, are known.
+/// areas: what inspect_areas() says of each face; duplicates are found here.
+Connected connected(const Making&, const SurfaceNumbers& surface, std::span<const Index> first_at,
+                    const std::vector<FaceState>& areas, const SeamRules& seams) {
+  const std::vector<Triangle> welded = renumbered(surface.faces, first_at);
+  FaceStates states{areas, std::vector<Index>(areas.size(), kNoFace)};
+  find_duplicates(welded, surface.vertex_count, seams.stop, states);
+  return connect({surface, first_at, welded, states}, seams);
 }
 
 Charts placed(const Connected& connected, const TriMesh& mesh, const std::stop_token& stop) {
@@ -255,21 +254,25 @@ Charts make_charts(const Surface& surface, SeamMode seams) {
   return charts;
 }
 
+/// Of paths those that are of the surface count, wherever it stands among others.
+void describe(Fingerprint& key, const SeamRules& seams) {
+  const auto& [mode, paths, surface, stop, core] = seams;
+  static_cast<void>(stop), static_cast<void>(core);
+  key.add(mode);
+  for (const SeamPath& path : paths)
+    if (path.surface == surface) key.add(path.vertices);
+}
+
 Charts components_of(const Surface& surface, const SeamRules& seams) {
   assert(surface.part.size() == surface.mesh.faces.size());
   const std::vector<Index> first_at = weld(surface.mesh.positions, seams.stop);
   throw_if_cancelled(seams.stop);
   const std::vector<Triangle> welded = renumbered(surface.mesh.faces, first_at);
-  FaceStates states = inspect_areas(surface.mesh, welded, seams.stop);
+  const FaceStates states = inspect_areas(surface.mesh, welded, seams.stop);
   throw_if_cancelled(seams.stop);
-  const Inspected inspected{surface, first_at, welded, states};
-  const std::array<int, 1> mode{static_cast<int>(seams.mode)};
-  const auto make = [&] {
-    find_duplicates(welded, surface.mesh.vertex_count(), seams.stop, states);
-    return std::make_shared<const Connected>(connect(inspected, seams));
-  };
-  const auto connected = kept(seams.core, content_of(inspected, seams, mode), make, seams.stop);
-  return placed(*connected, surface.mesh, seams.stop);
+  const auto pieces = kept<connected>(Making{seams.core, seams.stop}, SurfaceNumbers(surface),
+                                      first_at, states.of, seams);
+  return placed(*pieces, surface.mesh, seams.stop);
 }
 
 std::size_t bytes_of(const Chart& chart) {

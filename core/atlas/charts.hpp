@@ -7,6 +7,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/fingerprint.hpp"
 #include "core/mesh/halfedges.hpp"
 #include "core/mesh/topology.hpp"
 #include "core/options.hpp"
@@ -45,6 +46,8 @@ struct SeamRules {
   std::stop_token stop = {};
   SolverCore* core = nullptr;  ///< shares what does not depend on places; null: none
 };
+
+void describe(Fingerprint& key, const SeamRules& seams);
 
 /// The components of a surface, which need not be disks: those that are none have yet to be cut or
 /// taken apart, and may be without a loop; by_position is there. Throws Error{not_orientable}, and

@@ -108,7 +108,7 @@ Pieces kept_pieces(const Inspected& in, Pairing pairing, const SeamRules& seams)
 
 std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_place,
                                       const SeamRules& seams) {
-  const bool nothing_to_weld = std::ranges::equal(in.welded, in.surface.mesh.faces);
+  const bool nothing_to_weld = std::ranges::equal(in.welded, in.surface.faces);
   const bool is_plain = nothing_to_weld && !spans_parts(in.surface);  // seams by no rule at all
   const auto kept = [&] {
     Pieces pieces = kept_pieces(

@@ -24,9 +24,9 @@ struct Pieces {
   bool may_crease = true;  ///< false: twins have the same vertices and the same material
 };
 
-/// A surface with what weld() and inspect_faces() say of it.
+/// A surface with what weld() and inspect_faces() say of it: not where its vertices lie.
 struct Inspected {
-  const Surface& surface;
+  SurfaceNumbers surface;
   std::span<const Index> first_at;
   std::span<const Triangle> welded;
   const FaceStates& states;

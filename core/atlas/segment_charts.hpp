@@ -8,6 +8,7 @@
 
 #include "core/atlas/charts.hpp"
 #include "core/executor.hpp"
+#include "core/fingerprint.hpp"
 #include "core/progress.hpp"
 
 namespace unwrapd {
@@ -17,6 +18,11 @@ struct SegmentOptions {
   std::optional<int> max_charts = {};         ///< of all surfaces together; empty: any number
   bool one_chart_each = false;  ///< components stay whole: what is no disk is cut to one
 };
+
+inline void describe(Fingerprint& key, const SegmentOptions& options) {
+  const auto& [max_distortion, max_charts, one_chart_each] = options;
+  key.add(max_distortion).add(max_charts).add(one_chart_each);
+}
 
 /// How the work is watched; calls come from the thread that called.
 struct SegmentWatch {

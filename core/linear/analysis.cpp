@@ -15,13 +15,13 @@ namespace {
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// The matrix's entries by new columns.
-void list_entries(const SparseMatrix& lower, const std::stop_token& stop, Analysis& analysis) {
+void list_entries(const SparsePattern& lower, const std::stop_token& stop, Analysis& analysis) {
   const std::vector<Index>& position = analysis.nodes.position;
   const auto for_each_entry = [&](auto visit) {
-    for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j) {
+    for (Index j = 0; j < lower.columns(); ++j) {
       look_now_and_then(j, stop);
-      for (Index p = lower.outerIndexPtr()[j]; p < lower.outerIndexPtr()[j + 1]; ++p)
-        visit(std::minmax(position[at(j)], position[at(lower.innerIndexPtr()[p])]), p);
+      for (Index p = lower.begin[at(j)]; p < lower.begin[at(j) + 1]; ++p)
+        visit(std::minmax(position[at(j)], position[at(lower.row[at(p)])]), p);
     }
   };
   analysis.entry_begin.assign(position.size() + 1, 0);
@@ -39,20 +39,17 @@ void list_entries(const SparseMatrix& lower, const std::stop_token& stop, Analys
   });
 }
 
-Graph graph_of(const SparseMatrix& lower, const std::stop_token& stop) {
-  assert(lower.isCompressed());
-  const std::span begin(lower.outerIndexPtr(), static_cast<std::size_t>(lower.cols()) + 1);
-  const std::span row(lower.innerIndexPtr(), static_cast<std::size_t>(lower.nonZeros()));
-  return graph_of_lower(begin, row, stop);
+Graph graph_of(const SparsePattern& lower, const std::stop_token& stop) {
+  return graph_of_lower(lower.begin, lower.row, stop);
 }
 
 /// The pattern of a matrix of pairs, one row a pair.
-Graph graph_of_pairs(const SparseMatrix& lower, const std::stop_token& stop) {
-  assert(lower.cols() % 2 == 0);
+Graph graph_of_pairs(const SparsePattern& lower, const std::stop_token& stop) {
+  assert(lower.columns() % 2 == 0);
   std::vector<Index> begin{0}, row;
-  for (Index j = 0; j < static_cast<Index>(lower.cols()); j += 2) {
-    for (Index p = lower.outerIndexPtr()[j]; p < lower.outerIndexPtr()[j + 1]; ++p)
-      if (lower.innerIndexPtr()[p] % 2 == 0) row.push_back(lower.innerIndexPtr()[p] / 2);
+  for (Index j = 0; j < lower.columns(); j += 2) {
+    for (Index p = lower.begin[at(j)]; p < lower.begin[at(j) + 1]; ++p)
+      if (lower.row[at(p)] % 2 == 0) row.push_back(lower.row[at(p)] / 2);
     begin.push_back(static_cast<Index>(row.size()));
   }
   return graph_of_lower(begin, row, stop);
@@ -75,7 +72,7 @@ Supernodes doubled(Supernodes nodes) {
   return nodes;
 }
 
-std::shared_ptr<const Analysis> complete(Supernodes nodes, const SparseMatrix& lower,
+std::shared_ptr<const Analysis> complete(Supernodes nodes, const SparsePattern& lower,
                                          const std::stop_token& stop) {
   Analysis analysis;
   analysis.nodes = std::move(nodes);
@@ -93,6 +90,17 @@ std::shared_ptr<const Analysis> complete(Supernodes nodes, const SparseMatrix& l
 }
 
 }  // namespace
+
+SparsePattern::SparsePattern(const SparseMatrix& matrix)
+    : begin(matrix.outerIndexPtr(), static_cast<std::size_t>(matrix.cols()) + 1),
+      row(matrix.innerIndexPtr(), static_cast<std::size_t>(matrix.nonZeros())) {
+  assert(matrix.isCompressed());
+}
+
+void describe(Fingerprint& key, const SparsePattern& pattern) {
+  const auto& [begin, row] = pattern;
+  key.add(begin).add(row);
+}
 
 /// Updates pile up: a supernode takes those of its children off the pile and puts its own there.
 std::size_t most_pending(const Supernodes& nodes, Branch branch) {
@@ -124,20 +132,19 @@ std::size_t Analysis::scratch_bytes() const {
   return 2 * sizeof(double) * (front + pending_size);  // two threads at least
 }
 
-std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower, const std::stop_token& stop) {
+std::shared_ptr<const Analysis> analyse(const SparsePattern& lower, const std::stop_token& stop) {
   return complete(analyse(graph_of(lower, stop), stop), lower, stop);
 }
 
-std::shared_ptr<const Analysis> analyse_in_order(const SparseMatrix& lower,
+std::shared_ptr<const Analysis> analyse_in_order(const SparsePattern& lower,
                                                  const std::stop_token& stop) {
-  std::vector<Index> order(static_cast<std::size_t>(lower.cols()));
+  std::vector<Index> order(static_cast<std::size_t>(lower.columns()));
   std::iota(order.begin(), order.end(), 0);
   return complete(analyse(graph_of(lower, stop), std::move(order), stop), lower, stop);
 }
 
-std::shared_ptr<const Analysis> analyse_pairs(const SparseMatrix& lower,
+std::shared_ptr<const Analysis> analyse_pairs(const SparsePattern& lower,
                                               const std::stop_token& stop) {
-  assert(lower.isCompressed());
   return complete(doubled(analyse(graph_of_pairs(lower, stop), stop)), lower, stop);
 }
 

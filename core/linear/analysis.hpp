@@ -3,8 +3,10 @@
 // factor's numbers go, how much memory they take.
 
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "core/fingerprint.hpp"
 #include "core/linear/branches.hpp"
 #include "core/linear/front_panel.hpp"
 #include "core/linear/sparse.hpp"
@@ -42,19 +44,31 @@ constexpr std::size_t packed_size(std::size_t n) { return n * (n + 1) / 2; }
 /// The most numbers that the updates of a subtree ever occupy at once.
 std::size_t most_pending(const Supernodes& nodes, Branch branch);
 
-/// lower: the lower triangle, compressed. Throws Error{cancelled}.
-std::shared_ptr<const Analysis> analyse(const SparseMatrix& lower,
+/// Where a matrix has entries: all that an analysis reads of it.
+struct SparsePattern {
+  /// matrix: compressed; it must outlive the pattern.
+  SparsePattern(const SparseMatrix& matrix);  // NOLINT(google-explicit-constructor): it is its own
+
+  std::span<const Index> begin;  ///< of each column among row, and the end of the last
+  std::span<const Index> row;
+
+  [[nodiscard]] Index columns() const { return static_cast<Index>(begin.size()) - 1; }
+};
+void describe(Fingerprint& key, const SparsePattern& pattern);
+
+/// lower: the lower triangle. Throws Error{cancelled}.
+std::shared_ptr<const Analysis> analyse(const SparsePattern& lower,
                                         const std::stop_token& stop = {});
 
 /// The same, of a matrix whose rows are numbered in a good order of elimination: none is looked
 /// for.
-std::shared_ptr<const Analysis> analyse_in_order(const SparseMatrix& lower,
+std::shared_ptr<const Analysis> analyse_in_order(const SparsePattern& lower,
                                                  const std::stop_token& stop = {});
 
 /// As analyse(), of a matrix with two unknowns a vertex, rows 2v and 2v+1, whose entries come in
 /// whole blocks of two by two (of the diagonal ones the lower triangle): ordered by vertices, a
 /// quarter of the graph. Values are those of the given, not the halved, matrix.
-std::shared_ptr<const Analysis> analyse_pairs(const SparseMatrix& lower,
+std::shared_ptr<const Analysis> analyse_pairs(const SparsePattern& lower,
                                               const std::stop_token& stop = {});
 
 }  // namespace unwrapd

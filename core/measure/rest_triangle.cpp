@@ -16,8 +16,8 @@ struct Corners {
   std::array<Vec3, 3> p;
 };
 
-Corners corners_of(const TriMesh& mesh, const Triangle& face) {
-  const auto at = [&](int i) { return mesh.positions[static_cast<std::size_t>(face[i])]; };
+Corners corners_of(std::span<const Vec3> positions, const Triangle& face) {
+  const auto at = [&](int i) { return positions[static_cast<std::size_t>(face[i])]; };
   return {{at(0), at(1), at(2)}};
 }
 
@@ -56,10 +56,11 @@ RestTriangle lay_flat(const Corners& c) {
 
 }  // namespace
 
-std::vector<RestTriangle> flatten(const TriMesh& mesh, Executor& executor) {
-  std::vector<RestTriangle> rest(mesh.faces.size());
+std::vector<RestTriangle> flatten(std::span<const Vec3> positions, std::span<const Triangle> faces,
+                                  Executor& executor) {
+  std::vector<RestTriangle> rest(faces.size());
   for_each_part(rest.size(), executor, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) rest[t] = lay_flat(corners_of(mesh, mesh.faces[t]));
+    for (std::size_t t = begin; t < end; ++t) rest[t] = lay_flat(corners_of(positions, faces[t]));
   });
   return rest;
 }
@@ -67,7 +68,7 @@ std::vector<RestTriangle> flatten(const TriMesh& mesh, Executor& executor) {
 std::vector<RestTriangle> flatten(const TriMesh& mesh, const std::stop_token& stop) {
   SerialExecutor serial;
   JobExecutor job(serial, stop);
-  return flatten(mesh, job);
+  return flatten(mesh.positions, mesh.faces, job);
 }
 
 double face_area(const TriMesh& mesh, const Triangle& face) {  // corners copied: five times slower

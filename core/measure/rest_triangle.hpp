@@ -2,6 +2,7 @@
 // The reference of every measure: each 3D triangle laid flat, isometrically (Sec. 4, Fig. 2).
 
 #include <array>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -23,7 +24,8 @@ inline constexpr double kMinHeight = 1e-6;
 
 /// One rest triangle a face. Faces must not have all three corners at one point.
 /// Throws Error{cancelled}.
-std::vector<RestTriangle> flatten(const TriMesh& mesh, Executor& executor);
+std::vector<RestTriangle> flatten(std::span<const Vec3> positions, std::span<const Triangle> faces,
+                                  Executor& executor);
 std::vector<RestTriangle> flatten(const TriMesh& mesh, const std::stop_token& stop = {});
 
 /// 3D area of one face, unfloored.

@@ -57,12 +57,12 @@ void take_out(std::span<const Triangle> welded, Index face, Halfedges& halfedges
 }
 
 /// Pairs by position what is still open between exactly two half-edges of different primitives.
-void glue_parts(const Surface& surface, std::span<const Triangle> welded, const FaceStates& states,
-                Pairing& out) {
+void glue_parts(const SurfaceNumbers& surface, std::span<const Triangle> welded,
+                const FaceStates& states, Pairing& out) {
   auto sides = edge_sides(welded, [&](Index h) {
     return states.of[face_of(h)] == FaceState::sound && is_open(out.halfedges, h);
   });
-  sort_by_edge(sides, surface.mesh.vertex_count());
+  sort_by_edge(sides, surface.vertex_count);
   for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
     if (last - first != 2) return;
     const Index g = first[0].halfedge, h = first[1].halfedge;
@@ -108,7 +108,7 @@ class Sides {
 
 }  // namespace
 
-bool spans_parts(const Surface& surface) {
+bool spans_parts(const SurfaceNumbers& surface) {
   for (Index part : surface.part)
     if (part != surface.part.front()) return true;
   return false;
@@ -126,9 +126,9 @@ Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states,
   return out;
 }
 
-Pairing pair_keeping_seams(const Surface& surface, std::span<const Triangle> welded,
+Pairing pair_keeping_seams(const SurfaceNumbers& surface, std::span<const Triangle> welded,
                            const FaceStates& states, const std::stop_token& stop) {
-  const std::vector<Triangle>& faces = surface.mesh.faces;
+  const std::span<const Triangle> faces = surface.faces;
   Pairing out{{std::vector<Index>(3 * faces.size(), kNoTwin)}, 0, {}};
   const auto counts = [&](Index h) {
     const FaceState state = states.of[face_of(h)];
@@ -136,9 +136,9 @@ Pairing pair_keeping_seams(const Surface& surface, std::span<const Triangle> wel
            (state == FaceState::collapsed && !repeats_vertex(faces[face_of(h)]));
   };
   auto sides = edge_sides(faces, counts, stop);
-  sort_by_edge(sides, surface.mesh.vertex_count(), stop);
+  sort_by_edge(sides, surface.vertex_count, stop);
   pair_all(faces, sides, stop, out);
-  for (Index t = 0; t < surface.mesh.face_count(); ++t)
+  for (Index t = 0; t < static_cast<Index>(faces.size()); ++t)
     if (states.of[t] == FaceState::collapsed) take_out(welded, t, out.halfedges);
   if (spans_parts(surface)) glue_parts(surface, welded, states, out);
   return out;
@@ -160,7 +160,7 @@ std::optional<EdgeEnds> cut_edges(std::span<const Triangle> welded, std::span<co
   return edges[missing - found.begin()];
 }
 
-void cut_at_uv_seams(const Surface& surface, Halfedges& halfedges) {
+void cut_at_uv_seams(const SurfaceNumbers& surface, Halfedges& halfedges) {
   const auto same = [](const Vec2& a, const Vec2& b) {
     return a == b || (a.hasNaN() && b.hasNaN());
   };

@@ -10,6 +10,7 @@
 
 #include "core/mesh/halfedges.hpp"
 #include "core/mesh/repair.hpp"
+#include "core/mesh/surface_numbers.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace unwrapd {
@@ -27,11 +28,11 @@ Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states,
 
 /// By the surface's own vertex numbers; what is left open between two different primitives is
 /// paired by position where just two half-edges meet. A cut inside a primitive stays open.
-Pairing pair_keeping_seams(const Surface& surface, std::span<const Triangle> welded,
+Pairing pair_keeping_seams(const SurfaceNumbers& surface, std::span<const Triangle> welded,
                            const FaceStates& states, const std::stop_token& stop = {});
 
 /// Whether its faces come from several primitives.
-bool spans_parts(const Surface& surface);
+bool spans_parts(const SurfaceNumbers& surface);
 
 /// An edge by its ends, the lower first.
 using EdgeEnds = std::array<Index, 2>;
@@ -43,7 +44,7 @@ std::optional<EdgeEnds> cut_edges(std::span<const Triangle> welded, std::span<co
 
 /// Opens the edges at which the UVs that the surface came with differ from one side to the other.
 /// Two corners without UVs do not differ.
-void cut_at_uv_seams(const Surface& surface, Halfedges& halfedges);
+void cut_at_uv_seams(const SurfaceNumbers& surface, Halfedges& halfedges);
 
 /// Twins the two half-edges of every boundary loop that has no more than two: the slit that a
 /// non-manifold edge leaves when it is split inside one sheet, of no use to anyone.

@@ -1,15 +1,20 @@
 #pragma once
-// A list that is made once and read by many: copies are the same list, and take no memory.
+// Lists of which copies are the same list, and views of lists, that know the digest of what they
+// hold. A list that takes another's place brings its own digest, or none.
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "core/mesh/digest.hpp"
+
 namespace unwrapd {
 
-/// Thread-safe, as nobody changes it. Moving is copying.
+/// Made once and read by many: copies take no memory. Thread-safe, as nobody changes it. Moving is
+/// copying.
 template <typename T>
 class SharedList {
  public:
@@ -27,9 +32,42 @@ class SharedList {
   [[nodiscard]] const T* begin() const { return items_.data(); }
   [[nodiscard]] const T* end() const { return items_.data() + items_.size(); }
 
+  /// Of the items, or of all that they follow from; nothing where nobody has told it.
+  [[nodiscard]] const std::optional<Digest>& digest() const { return digest_; }
+
+  /// The same list, which has this digest.
+  [[nodiscard]] SharedList known_as(const Digest& digest) const {
+    SharedList known = *this;
+    known.digest_ = digest;
+    return known;
+  }
+
  private:
   std::shared_ptr<const std::vector<T>> owned_;
   std::span<const T> items_;
+  std::optional<Digest> digest_;
+};
+
+/// A view of a list that does not change while it is looked at.
+template <typename T>
+class ListView : public std::span<const T> {
+ public:
+  ListView() = default;
+  ListView(std::span<const T> items)  // NOLINT(google-explicit-constructor): it shows that list
+      : std::span<const T>(items) {}
+  ListView(const std::vector<T>& items)  // NOLINT(google-explicit-constructor)
+      : std::span<const T>(items) {}
+
+  /// As of a SharedList.
+  [[nodiscard]] const std::optional<Digest>& digest() const { return digest_; }
+  [[nodiscard]] ListView known_as(const Digest& digest) const {
+    ListView known = *this;
+    known.digest_ = digest;
+    return known;
+  }
+
+ private:
+  std::optional<Digest> digest_;
 };
 
 }  // namespace unwrapd

@@ -113,26 +113,28 @@ UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
   return uv;
 }
 
-UvMap pinned_or_spectral_map(const Disk& disk, Pins pins) {
+/// Empty where there is none.
+UvMap exact_map(const Disk& disk) {
+  const Holds holds = pinned_at_diameter(disk);
+  const auto system = ConformalSystem::exact(disk, holds);
+  return system ? scaled_to_unit_area(disk, system->solve(holds)) : UvMap();
+}
+
+}  // namespace
+
+UvMap make_conformal_map(const Disk& disk, Pins pins) {
   const Holds holds = pinned_at_diameter(disk);
   UvMap uv = ConformalSystem(disk, holds).solve(holds);
   if (pins == Pins::spectral) uv = SpectralIteration(disk).run(uv);
   return scaled_to_unit_area(disk, std::move(uv));
 }
 
-}  // namespace
-
 UvMap conformal_map(const Disk& disk, Pins pins) {
-  return kept_value(disk, Content("conformal map").add(disk.content).add(std::array{pins}),
-                    [&] { return pinned_or_spectral_map(disk, pins); });
+  return kept_of_disk<make_conformal_map>(disk, pins);
 }
 
 std::optional<UvMap> exact_conformal_map(const Disk& disk) {
-  UvMap uv = kept_value(disk, Content("exact conformal map").add(disk.content), [&] {
-    const Holds holds = pinned_at_diameter(disk);
-    const auto system = ConformalSystem::exact(disk, holds);
-    return system ? scaled_to_unit_area(disk, system->solve(holds)) : UvMap();
-  });
+  UvMap uv = kept_of_disk<exact_map>(disk);
   if (uv.empty()) return std::nullopt;
   return uv;
 }

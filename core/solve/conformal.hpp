@@ -16,6 +16,9 @@ namespace unwrapd {
 /// unit norm on the boundary (Mullen, Tong, Alliez, Desbrun 2008). Throws Error{solver_failed}.
 UvMap conformal_map(const Disk& disk, Pins pins);
 
+/// The same, made anew and kept for nobody: of a disk that is not asked for again.
+UvMap make_conformal_map(const Disk& disk, Pins pins);
+
 /// The map of Pins::diameter where double precision suffices for it. On ribbons a million times
 /// longer than wide it does not: there is no exact map, and conformal_map() gives one that keeps
 /// angles but not areas.

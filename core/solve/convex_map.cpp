@@ -84,14 +84,17 @@ LinearSystem mean_value_system(const Disk& disk, const ConvexMap& map) {
 }  // namespace
 
 UvMap tutte_map(const Disk& disk) {
-  return kept_value(disk, Content("Tutte map").add(disk.content),
-                    [&] { return tutte_map(disk, boundary_points(disk, BoundaryShape::circle)); });
+  constexpr auto kMake = [](const Disk& d) {
+    return tutte_map(d, boundary_points(d, BoundaryShape::circle));
+  };
+  return kept_of_disk<kMake>(disk);
 }
 
 UvMap mean_value_map(const Disk& disk) {
-  return kept_value(disk, Content("mean-value map").add(disk.content), [&] {
-    return mean_value_map(disk, boundary_points(disk, BoundaryShape::circle));
-  });
+  constexpr auto kMake = [](const Disk& d) {
+    return mean_value_map(d, boundary_points(d, BoundaryShape::circle));
+  };
+  return kept_of_disk<kMake>(disk);
 }
 
 UvMap tutte_map(const Disk& disk, std::span<const FixedPoint> boundary) {

@@ -4,6 +4,7 @@
 
 #include "core/cancel.hpp"
 #include "core/error.hpp"
+#include "core/solve/kept.hpp"
 
 namespace unwrapd {
 
@@ -22,7 +23,33 @@ std::vector<Vec3> normalised(std::span<const Vec3> positions, double unit,
   return moved;
 }
 
+std::vector<RestTriangle> rest_of(const Making& by, const SharedList<Vec3>& positions,
+                                  ListView<Triangle> faces) {
+  return flatten(positions, faces, *by.executor);
+}
+
+VertexCorners corners_of(const Making& by, ListView<Triangle> faces, Index vertex_count) {
+  return vertex_corners(faces, vertex_count, by.stop);
+}
+
+/// Long lists are known by a digest, so that their bytes are not read again for every key: faces
+/// and places by that of their bytes, what follows from them by theirs.
+void tell_digests(const SolverCore& core, Disk& disk) {
+  disk.faces = known_by_bytes(&core, disk.faces);
+  disk.positions = known_by_bytes(&core, disk.positions);
+  disk.rest = disk.rest.known_as(key_of<rest_of>(core, disk.positions, disk.faces));
+  const Digest corners = key_of<corners_of>(core, disk.faces, disk.vertex_count());
+  disk.corners = {disk.corners.begin.known_as(corners), disk.corners.corner.known_as(corners)};
+}
+
 }  // namespace
+
+void describe(Fingerprint& key, const Disk& disk) {
+  const auto& [faces, loops, positions, rest, corners, unit, core, twin, is_ordered, stop] = disk;
+  static_cast<void>(core), static_cast<void>(stop);
+  key.add(faces).add(loops).add(positions).add(rest).add(corners.begin).add(corners.corner);
+  key.add(unit).add(twin).add(is_ordered);
+}
 
 Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, Executor& executor) {
   const std::stop_token stop = executor.stop();
@@ -40,14 +67,11 @@ Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, Executo
             .unit = std::sqrt(area),
             .core = executor.shared_core(),
             .stop = stop};
-  TriMesh scaled{normalised(mesh.positions, disk.unit, stop), mesh.faces};
-  disk.rest = flatten(scaled, executor);
-  disk.positions = std::move(scaled.positions);
-  disk.corners = vertex_corners(mesh.faces, mesh.vertex_count(), stop);
-  if (disk.core != nullptr) {
-    disk.connectivity = disk.core->digest(Content("faces").add(disk.faces));
-    disk.content = disk.core->digest(Content("disk").add(disk.connectivity).add(disk.positions));
-  }
+  const Making by{disk.core, stop, &executor};
+  disk.positions = normalised(mesh.positions, disk.unit, stop);
+  disk.rest = rest_of(by, disk.positions, disk.faces);
+  disk.corners = corners_of(by, disk.faces, disk.vertex_count());
+  if (disk.core != nullptr) tell_digests(*disk.core, disk);
   return disk;
 }
 

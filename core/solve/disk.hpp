@@ -5,6 +5,7 @@
 #include <stop_token>
 
 #include "core/executor.hpp"
+#include "core/fingerprint.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/halfedges.hpp"
@@ -16,21 +17,25 @@ namespace unwrapd {
 /// Views into a chart, plus its geometry in units in which the surface area is 1: results do not
 /// depend on the scale or the place of the input. Copies share their lists.
 struct Disk {
-  std::span<const Triangle> faces;
-  std::span<const BoundaryLoop> loops;  ///< the longest first
-  SharedList<Vec3> positions;           ///< one a vertex, centroid at the origin
-  SharedList<RestTriangle> rest;        ///< one a face, areas add up to 1 (up to the height floor)
+  ListView<Triangle> faces;
+  ListView<BoundaryLoop> loops;   ///< the longest first
+  SharedList<Vec3> positions;     ///< one a vertex, centroid at the origin
+  SharedList<RestTriangle> rest;  ///< one a face, areas add up to 1 (up to the height floor)
   VertexCorners corners;
-  double unit = 1;  ///< mesh units in one disk unit of length
-  SolverCore* core =
-      nullptr;  ///< shares what depends on the disk alone with other jobs; null: none
-  Digest connectivity{}, content{};  ///< under core: of the faces; of faces and positions
-  std::span<const Index> twin = {};  ///< of half-edges, as in Chart::halfedges; empty: not known
+  double unit = 1;             ///< mesh units in one disk unit of length
+  SolverCore* core = nullptr;  ///< shares what is made of the disk with other jobs; null: none
+  ListView<Index> twin = {};   ///< of half-edges, as in Chart::halfedges; empty: not known
   bool is_ordered = false;  ///< vertices are numbered in a good order of elimination; core is null
   std::stop_token stop = {};  ///< of the job: what is made of the disk looks at it (cancel.hpp)
 
   [[nodiscard]] Index vertex_count() const { return static_cast<Index>(positions.size()); }
 };
+
+template <>
+inline constexpr bool kIsPlain<RestTriangle> = sizeof(RestTriangle) == 10 * sizeof(double);
+
+/// All of a disk but the job that it belongs to.
+void describe(Fingerprint& key, const Disk& disk);
 
 /// mesh, loops and what the executor's jobs share must outlive the disk. The same bits by any
 /// executor. Throws Error{zero_area, cancelled}.

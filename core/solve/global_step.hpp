@@ -2,6 +2,7 @@
 // The global step: all fitted triangles are stitched together by one linear solve (Sec. 4.4.2).
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,17 @@
 #include "core/solve/holds.hpp"
 
 namespace unwrapd {
+
+/// How vertices are held, wherever that is: all that the matrix reads of Holds.
+struct HeldPattern {
+  FreeVertices free;
+  std::vector<Index> spring;  ///< vertices, and the weights of their springs
+  std::vector<double> weight;
+
+  HeldPattern(std::size_t vertex_count, const Holds& holds);
+  [[nodiscard]] bool is_empty() const;
+};
+void describe(Fingerprint& key, const HeldPattern& held);
 
 /// The matrix of Eq. (4), factored once: the Hessian of Objective for fixed fits. It depends on the
 /// mesh, on which vertices are held and on the springs' weights, not on where they are held: jobs
@@ -50,13 +62,20 @@ class GlobalStep {
   /// the lower triangle is given; nothing is held. Throws Error{solver_failed}.
   void solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const;
 
+  /// What it was made of; nothing where nothing is shared.
+  [[nodiscard]] const std::optional<Digest>& made_of() const { return made_of_; }
+
  private:
-  FreeVertices free_;
+  HeldPattern held_;
+  std::optional<Digest> made_of_;
   std::shared_ptr<const Factor> system_;  // null where no vertex is free
   std::vector<Index> rank_;
   Executor* executor_;
   mutable SerialExecutor serial_;
 };
+
+/// All but what runs it.
+void describe(Fingerprint& key, const GlobalStep& global);
 
 /// One entry a vertex, listed by ranks; and back.
 std::vector<Vec2> by_rank(std::span<const Vec2> by_vertex, std::span<const Index> rank);

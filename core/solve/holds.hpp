@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/fingerprint.hpp"
 #include "core/linear/eliminate.hpp"
 
 namespace unwrapd {
@@ -48,6 +49,19 @@ inline std::vector<char> fixed_vertices(std::size_t vertex_count, const Holds& h
 /// Numbers the vertices that are not fixed.
 inline FreeVertices free_vertices(std::size_t vertex_count, const Holds& holds) {
   return number_free(fixed_vertices(vertex_count, holds));
+}
+
+inline void describe(Fingerprint& key, const FixedPoint& point) {
+  const auto& [vertex, at] = point;
+  key.add(vertex).add(at);
+}
+inline void describe(Fingerprint& key, const Spring& spring) {
+  const auto& [vertex, at, weight] = spring;
+  key.add(vertex).add(at).add(weight);
+}
+inline void describe(Fingerprint& key, const Holds& holds) {
+  const auto& [fixed, springs] = holds;
+  key.add(fixed).add(springs);
 }
 
 /// Whether both hold the same vertices with the same weights, be it at other places.

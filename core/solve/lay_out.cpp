@@ -35,7 +35,7 @@ std::size_t longest_of(const std::array<double, 3>& l) {
 UvMap lay_out(const Disk& disk, std::vector<RestTriangle> flat) {
   Disk other = disk;
   other.rest = std::move(flat);
-  UvMap uv = conformal_map(other, Pins::diameter);
+  UvMap uv = make_conformal_map(other, Pins::diameter);
   scale_to_area(disk, uv);
   return uv;
 }

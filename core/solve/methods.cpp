@@ -10,7 +10,7 @@
 
 namespace unwrapd {
 
-Solution other_method(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,
+Solution other_method(const Disk& disk, const SolveOptions& options, const SolveWatch& watch,
                       Executor& executor) {
   switch (options.method) {
     case Method::abf:

@@ -9,7 +9,7 @@ namespace unwrapd {
 /// Solves one disk by options.method, which is none of ASAP, ARAP and Hybrid. Of the options only
 /// stop counts, and that for SLIM.
 /// Throws Error{solver_failed, cancelled}.
-Solution other_method(const Disk& disk, const UnwrapOptions& options, const SolveWatch& watch,
+Solution other_method(const Disk& disk, const SolveOptions& options, const SolveWatch& watch,
                       Executor& executor);
 
 }  // namespace unwrapd

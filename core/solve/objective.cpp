@@ -16,11 +16,9 @@ Holds renumbered(Holds holds, std::span<const Index> rank) {
   return holds;
 }
 
-std::shared_ptr<const FaceBlocks> kept_blocks(const Disk& disk, std::span<const Index> rank) {
-  const Content content = Content("face blocks").add(disk.content).add(rank);
-  return kept(disk, content, [&] {
-    return std::make_shared<const FaceBlocks>(face_blocks(disk.rest, disk.faces, rank, disk.stop));
-  });
+FaceBlocks blocks_of(const Making& by, const SharedList<RestTriangle>& rest,
+                     ListView<Triangle> faces, std::span<const Index> rank) {
+  return face_blocks(rest, faces, rank, by.stop);
 }
 
 }  // namespace
@@ -30,7 +28,7 @@ Objective::Objective(const Disk& disk, const Rigidity& rigidity, Holds holds,
     : rigidity_(rigidity),
       holds_(renumbered(std::move(holds), rank)),
       executor_(executor),
-      blocks_(kept_blocks(disk, rank)),
+      blocks_(kept<blocks_of>(Making{disk.core, disk.stop}, disk.rest, disk.faces, rank)),
       beyond_(blocks_->beyond.size()) {}
 
 double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const {

@@ -79,12 +79,13 @@ Solution direct(const Disk& disk, const Holds& holds, UvMap uv) {
 /// Nothing where the frames contradict each other so much that the map collapses, as around a
 /// cylinder. global: that of the disk without holds.
 std::optional<UvMap> usable_frame_map(const Disk& disk, const GlobalStep& global) {
-  UvMap start = kept_value(disk, Content("frame map").add(disk.content), [&] {
-    UvMap uv = frame_map(disk, global);
-    const double area = uv_area(disk.rest, disk.faces, uv, global.executor());
+  constexpr auto kMake = [](const Disk& d, const GlobalStep& of_d) {
+    UvMap uv = frame_map(d, of_d);
+    const double area = uv_area(d.rest, d.faces, uv, of_d.executor());
     if (!(area > kMinAreaShare)) return UvMap();
     return scaled_to_unit_area(std::move(uv), area);
-  });
+  };
+  UvMap start = kept_of_disk<kMake>(disk, global);
   if (start.empty()) return std::nullopt;
   return start;
 }
@@ -103,13 +104,24 @@ UvMap initial_map(const Disk& disk, InitialMap kind, const GlobalStep& global) {
   return conformal_map(disk, Pins::diameter);
 }
 
-Solver::Solver(const Disk& disk, const UnwrapOptions& options, Held held, Executor& executor)
+Solver::Solver(const Disk& disk, const SolveOptions& options, Held held, Executor& executor)
     : disk_(disk),
       options_(options),
       holds_(std::move(held.holds)),
       held_start_(std::move(held.start)),
       executor_(executor) {
   assert(held_start_.size() == disk.positions.size() || (held_start_.empty() && holds_.empty()));
+}
+
+void describe(Fingerprint& key, const SolveOptions& options) {
+  const auto& [method, lambda_units, initial, pins, stop] = options;
+  const auto& [iterations, tolerance, max_iterations] = stop;
+  key.add(method).add(lambda_units).add(initial).add(pins);
+  key.add(iterations).add(tolerance).add(max_iterations);
+}
+
+void describe(Fingerprint& key, const Solver& solver) {
+  key.add(solver.disk_).add(solver.options_).add(solver.holds_).add(solver.held_start_);
 }
 
 void Solver::move(Held held) {

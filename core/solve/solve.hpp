@@ -19,14 +19,32 @@ struct SolveWatch {
   LoopWatch loop;
 };
 
+/// What a solver reads of the options of a job.
+struct SolveOptions {
+  SolveOptions(const UnwrapOptions& options)  // NOLINT(google-explicit-constructor): a part of them
+      : method(options.method),
+        lambda_units(options.lambda_units),
+        initial(options.initial),
+        pins(options.pins),
+        stop(options.stop) {}
+
+  Method method;
+  LambdaUnits lambda_units;
+  InitialMap initial;
+  Pins pins;
+  Stop stop;
+};
+
+void describe(Fingerprint& key, const SolveOptions& options);
+
 /// One disk under one set of options. What depends on the mesh and on which vertices are held (the
 /// initial maps, the factored system) is made when it is first needed and kept: another lambda
 /// costs iterations only. Used by one thread at a time.
 class Solver {
  public:
-  /// disk, options and executor must outlive the solver. Under holds, and wherever there is
+  /// disk and executor must outlive the solver. Under holds, and wherever there is
   /// a held.start, the iterations start from it, whatever options.initial says.
-  Solver(const Disk& disk, const UnwrapOptions& options, Held held, Executor& executor);
+  Solver(const Disk& disk, const SolveOptions& options, Held held, Executor& executor);
 
   /// Holds the same vertices, with the same weights, at other places: nothing is factored again.
   void move(Held held);
@@ -34,6 +52,9 @@ class Solver {
   /// Solves by options.method; lambda counts for Method::hybrid, in options.lambda_units. The same
   /// whatever was run before. Throws Error{solver_failed, cancelled}.
   Solution run(double lambda, const SolveWatch& watch);
+
+  /// The disk, the options and what is held: with lambda all that run() depends on.
+  friend void describe(Fingerprint& key, const Solver& solver);
 
  private:
   const UvMap& start();
@@ -48,7 +69,7 @@ class Solver {
   Solution iterate_plainly(const Race& race);
 
   const Disk& disk_;
-  const UnwrapOptions& options_;
+  const SolveOptions options_;
   Holds holds_;
   UvMap held_start_;
   Executor& executor_;

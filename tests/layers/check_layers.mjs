@@ -22,7 +22,7 @@ const MAY_INCLUDE = {
 };
 
 /** Plain structs that may be included from any folder listed. */
-const PLAIN = ["core/error.hpp", "core/options.hpp", "core/report.hpp", "core/progress.hpp", "core/executor.hpp", "core/solver_core.hpp", "core/cancel.hpp"];
+const PLAIN = ["core/error.hpp", "core/options.hpp", "core/report.hpp", "core/progress.hpp", "core/executor.hpp", "core/solver_core.hpp", "core/fingerprint.hpp", "core/cancel.hpp"];
 const PLAIN_FOR = {
   "core/mesh": ["core/cancel.hpp", "core/error.hpp"],
   "core/asset": ["core/cancel.hpp", "core/error.hpp", "core/asset_options.hpp", "core/file_repair.hpp"],

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "server/database.hpp"
+#include "server/schema.hpp"
+#include "temp_dir.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -77,6 +79,28 @@ TEST_F(Upgrade, ARequestIsKnownAgainByItsName) {
   restart_with("DELETE FROM jobs");
   static_cast<void>(send("two", 4));
   expect_problem(send("two", 4, "?resolution=512"), 409, "idempotency_conflict");
+}
+
+/// Version 8 kept answers that were another method's map. A question is asked anew, what was
+/// answered stays under its name.
+TEST(Schema, AnswersOfVersionEightAreGivenToNoNewQuestion) {
+  TempDir dir;
+  Database database(dir.path() / "jobs.sqlite");
+  migrate(database, 8);
+  for (const char* state : {"succeeded", "queued"})
+    database.run(("INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256, "
+                  "bytes, buffers, content_key) VALUES ('" +
+                  std::string(state) + "', '" + state +
+                  "', 1, 0, '{}', '[]', '', 0, '[]', 'the question')")
+                     .c_str());
+  migrate(database);
+  Statement answered(database, "SELECT id FROM jobs WHERE content_key = 'the question'");
+  ASSERT_TRUE(answered.step());
+  EXPECT_EQ(answered.text(0), "queued");
+  EXPECT_FALSE(answered.step());
+  Statement all(database, "SELECT COUNT(*) FROM jobs");
+  all.step();
+  EXPECT_EQ(all.number(0), 2);
 }
 
 TEST_F(Upgrade, OfAJobWithoutItsMapTheResultIsThere) {

@@ -80,6 +80,26 @@ TEST(Snap, TurnsNeedleFansWithoutMovingFarVertices) {
   expect_floats(uv);
 }
 
+/// The rest of the chart reaches beyond the page and lies on a coarser lattice.
+TEST(Snap, WritesHeldVerticesAsExactlyAsTheyCanBe) {
+  const auto owned = disk_of(shapes::random_disk(12, 5));
+  for (const double side : {0.5, 1.9, 3.7, 40.0}) {
+    const UvMap before = on_page(*owned.chart, side);
+    UvMap uv = before;
+    std::vector<char> held(uv.size(), 0);
+    for (std::size_t v = 0; v < uv.size(); v += 3) held[v] = 1;
+    EXPECT_EQ(snap(*owned.chart, held, {}, uv), 0);
+    expect_floats(uv);
+    for (std::size_t v = 0; v < uv.size(); v += 3)
+      for (const int i : {0, 1}) {
+        const double reach = std::max({1.0, std::abs(before[v][i]), std::abs(1 - before[v][i])});
+        EXPECT_LE(std::abs(uv[v][i] - before[v][i]),
+                  kUvStep / 2 * std::exp2(std::ceil(std::log2(reach))))
+            << side;
+      }
+  }
+}
+
 TEST(Snap, SaysWhatHeldVerticesDoNotLeaveRoomFor) {
   const auto owned = disk_of(shapes::grid(1, 1));
   UvMap uv;

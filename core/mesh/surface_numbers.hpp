@@ -1,0 +1,27 @@
+#pragma once
+// What topology is read from: a surface without the places of its vertices.
+
+#include <span>
+#include <string_view>
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// A view of a surface, which must outlive it.
+struct SurfaceNumbers {
+  SurfaceNumbers(const Surface& surface)  // NOLINT(google-explicit-constructor): a part of it
+      : faces(surface.mesh.faces),
+        vertex_count(surface.mesh.vertex_count()),
+        part(surface.part),
+        name(surface.name),
+        corner_uv(surface.corner_uv) {}
+
+  std::span<const Triangle> faces;
+  Index vertex_count;
+  std::span<const Index> part;
+  std::string_view name;
+  std::span<const CornerUv> corner_uv;
+};
+
+}  // namespace unwrapd
