@@ -27,7 +27,10 @@ constexpr int kCostlySize = 4095;  // the same, and not drawn
 
 class Makers : public RunningServer {
  protected:
-  ~Makers() override { let_go(); }
+  ~Makers() override {
+    let_go();
+    service_.reset();  // whose threads use the members
+  }
 
   void start_held_up() {
     Duties duties;
@@ -63,6 +66,10 @@ class Makers : public RunningServer {
   int made() {
     const std::lock_guard lock(mutex_);
     return made_;
+  }
+  int nice() {
+    const std::lock_guard lock(mutex_);
+    return nice_;
   }
   int stopped() {
     const std::lock_guard lock(mutex_);
@@ -140,7 +147,7 @@ TEST_F(Makers, YieldToAnswers) {
   start_held_up();
   let_go();
   EXPECT_EQ(get(succeeded(), "preview.png?size=64")->status, 200);
-  EXPECT_GT(nice_, ::getpriority(PRIO_PROCESS, 0));
+  EXPECT_GT(nice(), ::getpriority(PRIO_PROCESS, 0));
 }
 
 TEST_F(Makers, DrawOneAtATimeOfThoseThatCostMuchAndAreNotKept) {

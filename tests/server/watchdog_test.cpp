@@ -23,7 +23,10 @@ class Deaf : public RunningServer {
     config_.grace_seconds = 0;
     config_.admin = Address{"127.0.0.1", 0};
   }
-  ~Deaf() override { let_go(); }
+  ~Deaf() override {
+    let_go();
+    service_.reset();  // whose lost threads use the members
+  }
 
   void start_deaf() {
     Duties duties;
