@@ -77,6 +77,26 @@ TEST(CameAs, OptionalDracoStaysOptionalAndKeepsAFallback) {
                     "extensionsRequired", kDraco));
 }
 
+TEST(CameAs, ABitstreamIsDecodedOnceForAllIndicesThatNameIt) {
+  const std::string draco = packed(grid(4).glb(), Compression::draco);
+  Builder b;
+  b.json = json_of(draco);
+  b.bin = bin_of(draco);
+  Json& primitives = b.json["meshes"][0]["primitives"];
+  const Json primitive = primitives[0];
+  const Json indices = b.json["accessors"][primitive["indices"].get<std::size_t>()];
+  for (int i = 0; i < 50; ++i) {
+    b.json["accessors"].push_back(indices);
+    b.json["accessors"].back()["name"] = std::to_string(i);
+    primitives.push_back(primitive);
+    primitives.back()["indices"] = b.json["accessors"].size() - 1;
+  }
+  const Asset asset = read_file(b.glb());
+  EXPECT_EQ(asset.surfaces()[0].mesh.face_count(), 51 * 32);
+  const Json document = json_of(write(asset, split_nowhere(asset), Format::glb));
+  EXPECT_LE(document["bufferViews"].size(), 4U);
+}
+
 std::string renamed(std::string text, const std::string& from, const std::string& to) {
   for (auto at = text.find(from); from != to && at != std::string::npos; at = text.find(from))
     text.replace(at, from.size(), to);
