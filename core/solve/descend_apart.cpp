@@ -1,7 +1,9 @@
 // Projected Newton on the energies of barrier.hpp plus the barrier between boundaries. A contact is
 // one more triangle of the matrix, so that two sides that press on each other move as one: with its
 // curvature on the diagonal alone, steps are several times as many. The pattern has room for
-// contacts that are only near: it is analysed anew where others act.
+// contacts that are only near: it is analysed anew where others act. Far from the least energy
+// Newton's steps are short (plane_holes starts at 2e8 and falls by 5 % in one): there the proxy of
+// SLIM (Rabinovich et al. 2017) takes its place.
 #include "core/solve/descend_apart.hpp"
 
 #include <algorithm>
@@ -16,12 +18,14 @@
 #include "core/solve/boundary_barrier.hpp"
 #include "core/solve/injective_step.hpp"
 #include "core/solve/kept.hpp"
+#include "core/solve/symmetric_dirichlet.hpp"
 
 namespace unwrapd {
 namespace {
 
 constexpr std::size_t kWindow = 3;
 constexpr double kAhead = 2;      // reaches, within which a contact has room in the pattern
+constexpr double kFarAbove = 10;  // of the energy's mean over the surface
 constexpr double kShift = 1e-10;  // of the mean of a face's diagonal: turns cost nothing
 
 PairElement shifted(const BarrierElement& e) {
@@ -57,9 +61,7 @@ class ContactSystem {
     check_memory(disk_, system_->bytes());
   }
 
-  void add(std::size_t face, const BarrierElement& element) {
-    system_->add(face, shifted(element));
-  }
+  void add(std::size_t face, const PairElement& element) { system_->add(face, element); }
 
   void add(const Contact& contact, const UvMap& uv) {
     const auto at = std::lower_bound(contact_.begin(), contact_.end(), vertices_of(contact));
@@ -109,6 +111,7 @@ class Descending {
       share += mesh.share.empty() ? mesh.rest[t].area : mesh.share[t];
     }
     share_ = share / rest;
+    weight_ = share;
   }
 
   void descend(const ApartStage& stage) {
@@ -120,7 +123,7 @@ class Descending {
     };
     for (int k = 0; k < stage.most_steps && !has_settled(); ++k) {
       throw_if_cancelled(mesh_.stop);
-      const std::optional<double> after = step();
+      const std::optional<double> after = step(energy.back() > kFarAbove * weight_);
       if (!after) return;
       energy.push_back(*after);
     }
@@ -128,8 +131,8 @@ class Descending {
 
  private:
   /// The energy after it; none where no step lowers it.
-  std::optional<double> step() {
-    const std::vector<Vec2> gradient = fill_model();
+  std::optional<double> step(bool is_far) {
+    const std::vector<Vec2> gradient = fill_model(is_far && stage_->may_use_proxy);
     const std::optional<std::vector<Vec2>> step = system_.step(gradient);
     if (!step) return std::nullopt;
     double slope = 0;
@@ -138,14 +141,19 @@ class Descending {
     return injective_step(disk_, *step, slope, energy, uv_);
   }
 
-  /// Fills the matrix; returns the gradient, which counts where vertices are free.
-  std::vector<Vec2> fill_model() {
+  /// Fills the matrix, far from the least energy with SLIM's proxy; returns the gradient, which
+  /// counts where vertices are free.
+  std::vector<Vec2> fill_model(bool is_far) {
     const std::vector<Contact> acting = contacts(uv_, 1);
     system_.prepare(contacts(uv_, kAhead), acting);
     std::vector<Vec2> gradient(uv_.size(), Vec2::Zero());
     for (std::size_t t = 0; t < mesh_.faces.size(); ++t) {
       const BarrierElement e = barrier_element(mesh_, t, uv_, stage_->barrier);
-      system_.add(t, e);
+      if (is_far)
+        system_.add(t, proxy_element(disk_.rest[t],
+                                     jacobian(disk_.rest[t], uv_edges(disk_.faces[t], uv_))));
+      else
+        system_.add(t, shifted(e));
       for (std::size_t i = 0; i < 3; ++i)
         gradient[static_cast<std::size_t>(mesh_.faces[t][i])] +=
             e.gradient.segment<2>(2 * static_cast<Eigen::Index>(i));
@@ -181,7 +189,8 @@ class Descending {
   BoundaryBarrier boundary_;
   ContactSystem system_;
   UvMap& uv_;
-  double share_ = 1;  ///< of a face in the energy, in its rest area
+  double weight_ = 1;  ///< of all faces in the energy
+  double share_ = 1;   ///< of a face in the energy, in its rest area
   const ApartStage* stage_ = nullptr;
 };
 

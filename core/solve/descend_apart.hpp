@@ -14,6 +14,7 @@ struct ApartStage {
   double contact;    ///< weight of the barrier between boundaries
   double tolerance;  ///< ends where three steps lower the energy by no more than this share of it
   int most_steps;
+  bool may_use_proxy = false;  ///< of SLIM: the symmetric Dirichlet energy, faces weigh their areas
 };
 
 /// Lowers the energies of the stages, one after the other. All of them are 0 at their least, so

@@ -13,8 +13,9 @@ namespace {
 constexpr ApartStage kUnfolding{
     .barrier = {.rigidity = {}, .weight = 0, .own = OwnEnergy::symmetric_dirichlet},
     .contact = 1,
-    .tolerance = 0.1,
-    .most_steps = 300};
+    .tolerance = 0.02,
+    .most_steps = 300,
+    .may_use_proxy = true};
 
 constexpr ApartStage kIsometric{
     .barrier = {.rigidity = {}, .weight = 0, .own = OwnEnergy::symmetric_dirichlet},
@@ -59,7 +60,9 @@ BarrierMesh loose(const Disk& disk, const std::vector<double>& share,
 
 void unfold_apart(const Disk& disk, const std::vector<double>& share, const std::stop_token& stop,
                   UvMap& uv) {
-  descend_apart(disk, loose(disk, share, {}, stop), {&kUnfolding, 1}, uv);
+  ApartStage stage = kUnfolding;
+  stage.may_use_proxy = share.empty();
+  descend_apart(disk, loose(disk, share, {}, stop), {&stage, 1}, uv);
 }
 
 void settle_apart(const Disk& disk, const MapIntent& intent, UvMap& uv,
