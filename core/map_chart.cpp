@@ -151,7 +151,8 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
                            .held = fixed_vertices(disk.positions.size(), hold.held.holds),
                            .stop = watch.stop(),
                            .own = own_energy_of(disk, options, rigidity),
-                           .springs = hold.held.holds.springs},
+                           .springs = hold.held.holds.springs,
+                           .executor = &executor},
                           most_rise_of(chart)};
     if (options.guarantee != Guarantee::none) watch.tell(Stage::untangle);
     Kept kept = keep_promise(job.chart, disk, std::move(solution.uv), promise);

@@ -18,9 +18,9 @@
 #include "core/atlas/halve.hpp"
 #include "core/atlas/hang.hpp"
 #include "core/atlas/loosen.hpp"
-#include "core/atlas/side_by_side.hpp"
 #include "core/atlas/straighten.hpp"
 #include "core/cancel.hpp"
+#include "core/solve/side_by_side.hpp"
 
 namespace unwrapd {
 namespace {

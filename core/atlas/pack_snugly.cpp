@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "core/atlas/page_layout.hpp"
-#include "core/atlas/side_by_side.hpp"
 #include "core/atlas/snug.hpp"
+#include "core/solve/side_by_side.hpp"
 
 namespace unwrapd {
 namespace {

@@ -188,7 +188,10 @@ std::vector<Index> flips_left(KeptPart& part, const MapIntent& intent) {
   std::vector<Index> flipped = flipped_faces(part.chart->mesh.faces, part.uv, intent.stop);
   if (flipped.empty()) return flipped;
   const Disk disk = make_disk(part.chart->mesh, part.chart->loops, intent.stop);
-  untangle(disk, {.rigidity = intent.rigidity, .held = {}, .stop = intent.stop}, part.uv);
+  untangle(
+      disk,
+      {.rigidity = intent.rigidity, .held = {}, .stop = intent.stop, .executor = intent.executor},
+      part.uv);
   return flipped_faces(part.chart->mesh.faces, part.uv);
 }
 

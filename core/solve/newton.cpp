@@ -68,29 +68,28 @@ struct Trial {
 
 }  // namespace
 
-std::unique_ptr<RealSystem> Newton::factor() {
+bool Newton::factor(Executor& job) {
   SparseMatrix& hessian = model_.hessian;
-  if (analysis_ == nullptr) analysis_ = analyse(hessian, mesh_.stop);
+  if (!factor_) factor_.emplace(analyse_pairs(hessian, mesh_.stop));
   const double mean = hessian.diagonal().sum() / static_cast<double>(hessian.rows());
   double added = 0;
-  SerialExecutor serial;
-  JobExecutor job(serial, mesh_.stop);
   for (double shift = kLeastShift; shift <= kMostShift; shift *= 1e3) {
     for (Index k = 0; k < hessian.rows(); ++k)
       hessian.valuePtr()[hessian.outerIndexPtr()[k]] += shift * mean - added;
     added = shift * mean;
-    if (std::unique_ptr<RealSystem> system = try_factor(analysis_, hessian, job)) return system;
+    if (factor_->refill(hessian, job)) return true;
   }
-  return nullptr;
+  return false;
 }
 
 double Newton::step(UvMap& uv, const Barrier& barrier) {
   fill_barrier_model(mesh_, uv, barrier, model_);
-  const std::unique_ptr<RealSystem> system = factor();
-  if (system == nullptr) return 0;
+  SerialExecutor serial;
+  JobExecutor job(executor_ != nullptr ? *executor_ : serial, mesh_.stop);
+  if (!factor(job)) return 0;
   std::vector<Vec2> x(static_cast<std::size_t>(model_.gradient.size()), Vec2::Zero());
   for (std::size_t k = 0; k < x.size(); ++k) x[k].x() = -model_.gradient[static_cast<Index>(k)];
-  system->solve(x, mesh_.stop);
+  factor_->solve(x, job);
   double slope = 0;
   for (std::size_t k = 0; k < x.size(); ++k)
     slope += model_.gradient[static_cast<Index>(k)] * x[k].x();

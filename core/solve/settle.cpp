@@ -10,6 +10,7 @@
 
 #include "core/cancel.hpp"
 #include "core/solve/newton.hpp"
+#include "core/solve/side_by_side.hpp"
 
 namespace unwrapd {
 namespace {
@@ -23,7 +24,9 @@ constexpr double kFloor = 1e-3;  // of the symmetric Dirichlet energy
 constexpr std::array kFading{Fading{1e-1, 0, 1e-2}, Fading{0, 1e-2, 1e-3}, Fading{0, kFloor, 1e-4}};
 constexpr int kMostFading = 20;       // Newton steps for each weight
 constexpr int kMostFadingWhole = 60;  // where the way may be long
-constexpr double kWhole = 3;          // tolerances then: a step costs ten iterations of the solve
+constexpr int kMostFadingLarge = 15;  // of a whole beyond kLarge faces, where a step takes seconds
+constexpr std::size_t kLarge = 200'000;
+constexpr double kWhole = 5;  // tolerances then: a step costs ten iterations of the solve
 
 constexpr int kNeedleRings = 2;  // around a needle
 constexpr double kRaise = 4;     // of the floor, from one round to the next
@@ -32,25 +35,23 @@ constexpr int kMostRaises = 4;
 constexpr double kConformalBelow = 0.01;  // lambda: below, sizes are not the energy's business
 constexpr double kLeastStretch = 1e-12;
 
-/// The factor by which each rest triangle is taken larger or smaller. Angles alone say nothing
-/// about size: there the neighbours' mean stretch is kept.
-double target_scale(const Disk& disk, Index face, const UvMap& uv) {
-  double sum = 0;
-  int count = 0;
-  for (Index v : disk.faces[face])
-    for (Index c = disk.corners.begin[v]; c < disk.corners.begin[v + 1]; ++c) {
-      const Index t = disk.corners.corner[c] / 3;
-      const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
-      sum += std::log(std::max(kLeastStretch, std::hypot(j.turn_scale(), j.deformation())));
-      ++count;
+/// Targets of the size that the map has there, for energies that do not care about size: the mean
+/// stretch of the triangles around each is kept.
+void follow_sizes(const UvMap& own, BarrierMesh& mesh) {
+  std::vector<double> sum(own.size(), 0), count(own.size(), 0);
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    const Jacobian j = jacobian(mesh.rest[t], uv_edges(mesh.faces[t], own));
+    const double stretch = std::hypot(j.turn_scale(), j.deformation());
+    for (Index v : mesh.faces[t]) {
+      sum[v] += std::log(std::max(kLeastStretch, stretch));
+      ++count[v];
     }
-  return std::exp(sum / count);
-}
-
-/// Targets of the size that the map has there, for energies that do not care about size.
-void follow_sizes(const Disk& disk, const UvMap& uv, Patch& patch) {
-  for (std::size_t k = 0; k < patch.face.size(); ++k)
-    patch.mesh.rest[k] = scaled(patch.mesh.rest[k], target_scale(disk, patch.face[k], uv));
+  }
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    const auto& [a, b, c] = mesh.faces[t];
+    const double mean = (sum[a] + sum[b] + sum[c]) / (count[a] + count[b] + count[c]);
+    mesh.rest[t] = scaled(mesh.rest[t], std::exp(mean));
+  }
 }
 
 /// The springs at vertices of the patch, by its own numbers.
@@ -66,24 +67,40 @@ std::vector<Spring> springs_at(const Patch& patch, const std::vector<Spring>& sp
   return own;
 }
 
+int most_steps(const Patch& patch, bool is_whole) {
+  if (!is_whole) return kMostFading;
+  return patch.face.size() > kLarge ? kMostFadingLarge : kMostFadingWhole;
+}
+
 /// From a map without flips to one of little energy without flips.
 void descend(const Disk& disk, const MapIntent& intent, std::span<const Fading> fadings,
-             Patch& patch, UvMap& uv) {
+             Patch& patch, UvMap& own) {
   const bool is_whole = patch.face.size() == disk.faces.size();
-  if (intent.rigidity.lambda < kConformalBelow) follow_sizes(disk, uv, patch);
+  if (intent.rigidity.lambda < kConformalBelow) follow_sizes(own, patch.mesh);
   patch.mesh.springs = springs_at(patch, intent.springs);
-  UvMap own = map_of(patch, uv);
-  Newton newton(patch.mesh);
+  Newton newton(patch.mesh, intent.executor);
   for (const Fading& fading : fadings) {
     const double tolerance = is_whole ? kWhole * fading.tolerance : fading.tolerance;
     const Barrier barrier{intent.rigidity, fading.wall, 0, fading.dirichlet};
-    for (int k = 0; k < (is_whole ? kMostFadingWhole : kMostFading); ++k) {
+    for (int k = 0; k < most_steps(patch, is_whole); ++k) {
       throw_if_cancelled(intent.stop);
       if (newton.step(own, barrier) < tolerance) break;
     }
     if (intent.in_place) break;
   }
-  put_back(patch, own, uv);
+}
+
+void descend_all(const Disk& disk, const MapIntent& intent, std::span<const Fading> fadings,
+                 std::span<Patch> patches, UvMap& uv) {
+  const MapIntent own_intent = intent_of_one(intent, patches.size());
+  SerialExecutor serial;
+  Executor& executor = intent.executor != nullptr ? *intent.executor : serial;
+  const auto maps = side_by_side<UvMap>(patches.size(), executor, [&](std::size_t k) {
+    UvMap own = map_of(patches[k], uv);
+    descend(disk, own_intent, fadings, patches[k], own);
+    return own;
+  });
+  for (std::size_t k = 0; k < patches.size(); ++k) put_back(patches[k], maps[k], uv);
 }
 
 std::vector<Index> needles(const Disk& disk, std::span<const char> is_candidate, const UvMap& uv) {
@@ -99,8 +116,12 @@ std::vector<Index> needles(const Disk& disk, std::span<const char> is_candidate,
 
 }  // namespace
 
-void settle(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv) {
-  descend(disk, intent, kFading, patch, uv);
+void settle(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& own) {
+  descend(disk, intent, kFading, patch, own);
+}
+
+void settle_all(const Disk& disk, const MapIntent& intent, std::span<Patch> patches, UvMap& uv) {
+  descend_all(disk, intent, kFading, patches, uv);
 }
 
 void widen_needles(const Disk& disk, const MapIntent& intent, std::span<const char> is_candidate,
@@ -110,8 +131,8 @@ void widen_needles(const Disk& disk, const MapIntent& intent, std::span<const ch
     const std::vector<Index> found = needles(disk, is_candidate, uv);
     if (found.empty()) return;
     fading.dirichlet *= kRaise;
-    for (Patch& patch : patches_around(disk, found, kNeedleRings, intent.held))
-      descend(disk, intent, {&fading, 1}, patch, uv);
+    std::vector<Patch> patches = patches_around(disk, found, kNeedleRings, intent.held);
+    descend_all(disk, intent, {&fading, 1}, patches, uv);
   }
 }
 

@@ -14,10 +14,16 @@ namespace {
 
 constexpr int kMostTurning = 90;       // Newton steps under the regularised barrier
 constexpr int kPatience = 15;          // steps in which the flips must halve, after the first ones
+constexpr std::size_t kLarge = 4096;   // faces: beyond that, flips must be fewer by then
+constexpr double kWholeWall = 3;       // beside an energy; with 1 single flips stay, with 10 steps
 constexpr double kEpsilonShare = 0.2;  // of the worst determinant
 constexpr double kFirstEpsilon = 0.1;  // collapsed triangles open under a large one
 constexpr double kLeastEpsilon = 1e-6;
 constexpr double kStuck = 1e-5;  // relative fall of the energy in one step
+
+bool has_rim(const BarrierMesh& mesh) {
+  return mesh.free.count < static_cast<Index>(mesh.free.slot.size());
+}
 
 /// The patch with targets that fit into its rim, which encloses the same area however the triangles
 /// lie: else the best of maps has tiny determinants, and nothing tells them from flips.
@@ -29,8 +35,7 @@ BarrierMesh fitted(const BarrierMesh& mesh, const UvMap& uv) {
   }
   BarrierMesh fit = mesh;
   fit.springs.clear();  // they come when nothing is flipped
-  const bool has_rim = mesh.free.count < static_cast<Index>(mesh.free.slot.size());
-  if (has_rim && room > 0)
+  if (has_rim(mesh) && room > 0)
     for (RestTriangle& rest : fit.rest) rest = scaled(rest, std::sqrt(room / wanted));
   return fit;
 }
@@ -43,18 +48,24 @@ bool is_untangled(const BarrierMesh& mesh, std::span<const Vec2> uv) {
 
 void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t enough, UvMap& uv) {
   const BarrierMesh mesh = fitted(patch, uv);
-  Newton newton(mesh);
-  std::size_t target = mesh.faces.size();
+  Newton newton(mesh, intent.executor);
+  // What no rim holds is kept near the map that it has by the method's own energy: else it takes
+  // several times as many steps to come back to it.
+  Barrier barrier{Rigidity{0.0}, 1};
+  if (!has_rim(mesh)) barrier = {intent.rigidity, kWholeWall};
+  const std::size_t first = flipped_faces(mesh.faces, uv, mesh.stop).size();
+  std::size_t target = mesh.faces.size(), last = target;
   double floor = kFirstEpsilon;
   for (int k = 0; k < kMostTurning; ++k, floor = std::max(kLeastEpsilon, floor / 2)) {
     const std::size_t flips = flipped_faces(mesh.faces, uv, mesh.stop).size();
     const double worst = least_determinant(mesh, uv);
-    if (flips <= enough && (flips > 0 || worst > 0)) return;
+    const bool is_slow = flips > std::exchange(last, flips) / 2;
+    if (flips <= enough && (flips > 0 ? is_slow : worst > 0)) return;
     if (k > 0 && k % kPatience == 0 && flips > std::exchange(target, flips / 2)) return;
+    if (k == kPatience && mesh.faces.size() > kLarge && flips >= first) return;
     throw_if_cancelled(intent.stop);
-    const double epsilon = std::max(floor, -kEpsilonShare * worst);
-    const double fall = newton.step(uv, {{0.0}, 1, epsilon});
-    if (fall < kStuck && epsilon == kLeastEpsilon) return;
+    barrier.epsilon = std::max(floor, -kEpsilonShare * worst);
+    if (newton.step(uv, barrier) < kStuck && barrier.epsilon == kLeastEpsilon) return;
   }
 }
 

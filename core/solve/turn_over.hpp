@@ -9,8 +9,8 @@
 
 namespace unwrapd {
 
-/// Turns the triangles of a patch over until at most `enough` are flipped. Gives up where they do
-/// not grow fewer. Throws Error{cancelled}.
+/// Turns the triangles of a patch over until none is flipped, or at most `enough` and a step no
+/// longer halves them. Gives up where they do not grow fewer. Throws Error{cancelled}.
 void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t enough, UvMap& uv);
 
 /// Whether every triangle is counter-clockwise by the exact test, with a positive determinant.

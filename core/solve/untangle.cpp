@@ -20,6 +20,7 @@
 #include "core/solve/hold_align.hpp"
 #include "core/solve/patch.hpp"
 #include "core/solve/settle.hpp"
+#include "core/solve/side_by_side.hpp"
 #include "core/solve/turn_over.hpp"
 #include "core/solve/virtual_boundary.hpp"
 
@@ -47,7 +48,8 @@ enum State : char { kUntouched, kRough, kSettled };  // rough: turned over, but 
 /// What rounds of patches leave.
 struct Left {
   std::vector<Index> flipped;
-  std::vector<char> state;  ///< of each face
+  std::vector<char> state;           ///< of each face
+  bool has_tried_the_whole = false;  ///< at once; to repeat that would be in vain
 
   void mark(const Patch& patch, State now) {
     for (Index t : patch.face) state[t] = now;
@@ -60,17 +62,40 @@ struct Left {
   }
 };
 
-/// Mends one patch. Where that fails the map stays as it is, unless half of the flips are gone:
-/// then it has yet to settle.
-void mend(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& uv, Left& left) {
-  UvMap own = map_of(patch, uv);
-  const std::size_t before = flipped_faces(patch.mesh.faces, own, disk.stop).size();
-  turn_over(patch.mesh, intent, 0, own);
-  const bool is_mended = is_untangled(patch.mesh, own);
-  if (!is_mended && flipped_faces(patch.mesh.faces, own, disk.stop).size() > before / 2) return;
-  put_back(patch, own, uv);
-  if (is_mended) settle(disk, intent, patch, uv);
-  left.mark(patch, is_mended ? kSettled : kRough);
+/// A patch after an attempt to mend it. Where that fails the map stays as it is, unless half of the
+/// flips are gone: then it has yet to settle.
+struct Attempt {
+  UvMap own;
+  State state = kUntouched;
+};
+
+Attempt mended(const Disk& disk, const MapIntent& intent, Patch& patch, const UvMap& uv) {
+  Attempt attempt{map_of(patch, uv)};
+  const std::size_t before = flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size();
+  turn_over(patch.mesh, intent, 0, attempt.own);
+  if (is_untangled(patch.mesh, attempt.own)) {
+    settle(disk, intent, patch, attempt.own);
+    attempt.state = kSettled;
+  } else if (flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size() <= before / 2) {
+    attempt.state = kRough;
+  }
+  return attempt;
+}
+
+/// Mends patches that share no triangle, side by side.
+void mend_all(const Disk& disk, const MapIntent& intent, std::span<Patch> patches, UvMap& uv,
+              Left& left) {
+  const MapIntent own_intent = intent_of_one(intent, patches.size());
+  SerialExecutor serial;
+  Executor& executor = intent.executor != nullptr ? *intent.executor : serial;
+  const auto attempts = side_by_side<Attempt>(patches.size(), executor, [&](std::size_t k) {
+    return mended(disk, own_intent, patches[k], uv);
+  });
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    if (attempts[k].state == kUntouched) continue;
+    put_back(patches[k], attempts[k].own, uv);
+    left.mark(patches[k], attempts[k].state);
+  }
 }
 
 Patch whole(const Disk& disk) {
@@ -117,12 +142,12 @@ bool is_crowded(const Patch& patch, const UvMap& uv) {
 void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
   bool was_whole = false;
   for (int rings = intent.rings; !was_whole && !left.flipped.empty(); rings *= 2) {
-    for (Patch& patch : patches_around(disk, left.flipped, rings, intent.held)) {
-      was_whole = was_whole || patch.face.size() == disk.faces.size();
-      const bool may_grow = may_move_all(intent) && !was_whole && rings < kMostRings;
-      if (may_grow && is_crowded(patch, uv)) continue;
-      mend(disk, intent, patch, uv, left);
-    }
+    std::vector<Patch> patches = patches_around(disk, left.flipped, rings, intent.held);
+    was_whole = patches.size() == 1 && patches[0].face.size() == disk.faces.size();
+    if (was_whole && std::exchange(left.has_tried_the_whole, true)) return;
+    if (may_move_all(intent) && !was_whole && rings < kMostRings)
+      std::erase_if(patches, [&](const Patch& patch) { return is_crowded(patch, uv); });
+    mend_all(disk, intent, patches, uv, left);
     left.flipped = flipped_faces(disk.faces, uv, disk.stop);
     if (rings >= kMostRings) break;
   }
@@ -150,7 +175,7 @@ bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& u
   if (!flipped_faces(disk.faces, start, disk.stop).empty()) return false;
   uv = std::move(start);
   Patch patch = whole(disk);
-  settle(disk, intent, patch, uv);
+  settle_all(disk, intent, {&patch, 1}, uv);
   widen_needles(disk, intent, std::vector<char>(disk.faces.size(), 1), uv);
   return true;
 }
@@ -165,10 +190,9 @@ Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   mend_in_rounds(disk, intent, uv, left);
   if (!left.flipped.empty())
     return start_over(disk, intent, uv) ? 0 : static_cast<Index>(left.flipped.size());
-  for (Patch& patch : patches_around(disk, left.rough(), kSettlingRings, intent.held)) {
-    settle(disk, intent, patch, uv);
-    left.mark(patch, kSettled);
-  }
+  std::vector<Patch> rough = patches_around(disk, left.rough(), kSettlingRings, intent.held);
+  settle_all(disk, intent, rough, uv);
+  for (const Patch& patch : rough) left.mark(patch, kSettled);
   if (!intent.in_place) widen_needles(disk, intent, left.state, uv);
   return 0;
 }

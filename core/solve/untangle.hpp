@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/executor.hpp"
 #include "core/solve/disk.hpp"
 #include "core/solve/holds.hpp"
 #include "core/solve/local_step.hpp"
@@ -21,11 +22,13 @@ struct MapIntent {
   int rings = 2;                   ///< how far around a flip vertices are let loose at first; >= 1
   OwnEnergy own = OwnEnergy::fit;  ///< of a new map of the whole (bijective.hpp)
   std::vector<Spring> springs = {};  ///< what draws vertices to places, weighed like rigidity
+  Executor* executor = nullptr;      ///< on which patches are mended side by side; null: none
 };
 
 /// Moves the vertices near flipped or collapsed triangles (not counter-clockwise, by the exact
 /// test) until there are none, as few as possible of them. Returns how many are left: above zero
 /// only where held vertices leave no way, or double precision none.
+/// The same map by any executor.
 /// Throws Error{cancelled}.
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv);
 

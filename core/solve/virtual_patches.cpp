@@ -95,8 +95,8 @@ bool mend_by_virtual_boundary(const Disk& disk, const MapIntent& intent, UvMap& 
       const UvMap old = map_of(patch, uv);
       UvMap own = partway(patch, intent, old, bent_into(patch, old, map_of(patch, upright)));
       if (own.empty()) continue;
+      settle(disk, intent, patch, own);
       put_back(patch, own, uv);
-      settle(disk, intent, patch, uv);
       for (Index t : patch.face) is_mended[t] = 1;
       has_mended = true;
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -10,10 +11,10 @@
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
 #include "core/measure/orientation.hpp"
-#include "core/solve/patch.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
+#include "tests/core/two_threads.hpp"
 
 namespace unwrapd {
 namespace {
@@ -221,6 +222,25 @@ TEST(Untangle, KeepsTheDistortionOfThePapersModelsLow) {
   }
 }
 
+/// By any executor: patches that are apart, and the whole at once where flips are many.
+TEST(Untangle, GivesTheSameMapOnAnyThreads) {
+  TwoThreads two;
+  for (const double shake : {0.035, 0.08}) {
+    SCOPED_TRACE(shake);
+    const auto owned = disk_of(shapes::grid(30, 30));
+    const UvMap shaken = shapes::shaken(from_above(owned.disk), shake, 5);
+    ASSERT_GT(flips(owned.disk, shaken), 3U);
+    for (const double lambda : {0.0, std::numeric_limits<double>::infinity()}) {
+      UvMap alone = shaken, abreast = shaken;
+      EXPECT_EQ(untangle(owned.disk, {.rigidity = {lambda}, .held = {}, .stop = {}}, alone), 0);
+      EXPECT_EQ(untangle(owned.disk,
+                         {.rigidity = {lambda}, .held = {}, .stop = {}, .executor = &two}, abreast),
+                0);
+      EXPECT_EQ(alone, abreast);
+    }
+  }
+}
+
 TEST(Untangle, SettlesOnlyAroundWhatItTurnedOver) {  // many flips, on which several rounds work
   if (test_data().empty()) GTEST_SKIP() << "no test data (UNWRAPD_TEST_DATA)";
   TriMesh balls = read_obj(test_data() / "paper" / "Balls.obj");
@@ -236,47 +256,6 @@ TEST(Untangle, SettlesOnlyAroundWhatItTurnedOver) {  // many flips, on which sev
   std::size_t moved = 0;
   for (std::size_t v = 0; v < before.size(); ++v) moved += before[v] != after[v] ? 1 : 0;
   EXPECT_LT(moved, before.size() / 4);
-}
-
-TEST(Patches, LetRingsLooseAndHoldTheRim) {
-  const auto owned = disk_of(shapes::grid(12, 12));
-  const Index face = 2 * (6 * 12 + 6);
-  for (int rings : {0, 1, 2}) {
-    const auto patches = patches_around(owned.disk, std::vector{face}, rings, {});
-    ASSERT_EQ(patches.size(), 1U);
-    const Patch& patch = patches[0];
-    std::vector<int> faces_of(owned.disk.positions.size(), 0);
-    for (Index t : patch.face)
-      for (Index v : owned.disk.faces[std::size_t(t)]) ++faces_of[std::size_t(v)];
-    for (std::size_t k = 0; k < patch.vertex.size(); ++k) {
-      const auto v = std::size_t(patch.vertex[k]);
-      const Index all = owned.disk.corners.begin[v + 1] - owned.disk.corners.begin[v];
-      EXPECT_TRUE(patch.mesh.free.slot[k] == kFixed || faces_of[v] == all) << v;
-    }
-    for (std::size_t k = 0; k < patch.face.size(); ++k)
-      for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_EQ(patch.vertex[std::size_t(patch.mesh.faces[k][i])],
-                  owned.disk.faces[std::size_t(patch.face[k])][i]);
-  }
-}
-
-TEST(Patches, AreTheWholeWhereMostOfItWouldBeLoose) {
-  const auto owned = disk_of(shapes::grid(12, 12));
-  const Index face = 2 * (6 * 12 + 6);
-  const auto small = patches_around(owned.disk, std::vector{face}, 3, {});
-  const auto large = patches_around(owned.disk, std::vector{face}, 5, {});
-  ASSERT_EQ(small.size(), 1U);
-  ASSERT_EQ(large.size(), 1U);
-  EXPECT_LT(small[0].face.size(), owned.disk.faces.size() / 2);
-  EXPECT_EQ(large[0].face.size(), owned.disk.faces.size());
-  EXPECT_EQ(large[0].mesh.free.count, owned.disk.vertex_count());
-}
-
-TEST(Patches, ThatDoNotTouchAreApart) {
-  const auto owned = disk_of(shapes::grid(40, 4));
-  const std::vector<Index> faces{0, 300};
-  EXPECT_EQ(patches_around(owned.disk, faces, 1, {}).size(), 2U);
-  EXPECT_EQ(patches_around(owned.disk, faces, 60, {}).size(), 1U);
 }
 
 }  // namespace
