@@ -1,5 +1,6 @@
 #include "server/blob_store.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <set>
 #include <system_error>
@@ -11,68 +12,6 @@ namespace unwrapd::server {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view kBufferPrefix = "buffer_";
-
-/// What the sender brought: it stays as it came.
-bool is_input(std::string_view file) {
-  return file == kDocumentFile || file == kOptionsFile || file.starts_with(kBufferPrefix);
-}
-
-void remove_unfinished(const fs::path& folder) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (is_unfinished(entry.path())) remove_tree(entry.path());
-  }
-}
-
-std::vector<fs::path> chosen_files(const fs::path& folder,
-                                   const std::function<bool(std::string_view)>& chosen) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename();
-    const bool is_content = name != kDigestsFile && !is_unfinished(entry.path());
-    if (is_content && chosen(name)) files.push_back(entry.path());
-  }
-  return files;
-}
-
-/// Syncs the files that are chosen, and replaces their digests: by those that are known, or by
-/// those of the bytes that are there. Digests have their name when all files are on the disk. The
-/// folder is not synced.
-void seal_files(const fs::path& folder, const std::function<bool(std::string_view)>& chosen,
-                const Digests& known = {}) {
-  const std::vector<fs::path> files = chosen_files(folder, chosen);
-  Syncs syncs(files);
-  Digests digests = read_digests(folder);
-  std::erase_if(digests, [&](const auto& noted) { return chosen(noted.first); });
-  for (const fs::path& file : files) {
-    const std::string name = file.filename();
-    const auto found = known.find(name);
-    digests[name] = found != known.end() ? found->second : sha256_of(File::open(file));
-  }
-  write_digests(folder, digests, [&] { syncs.finish(); });
-}
-
-/// Whether a document has several names: a mesh's and those of the jobs that share it.
-bool is_shared_file(const fs::path& file) {
-  std::error_code gone;
-  const std::uintmax_t names = fs::hard_link_count(file, gone);
-  return !gone && names > 1;
-}
-
-std::int64_t bytes_below(const fs::path& folder) {
-  const bool of_job = !is_mesh_id(folder.filename().native());
-  std::int64_t bytes = 0;
-  std::error_code gone;  // what somebody removes meanwhile counts nothing
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, gone)) {
-    const std::string name = entry.path().filename();
-    if (name == kDigestsFile) continue;  // ours, not the owner's
-    if (of_job && is_input(name) && is_shared_file(entry.path())) continue;  // it counts there
-    const std::uintmax_t size = entry.file_size(gone);
-    if (!gone) bytes += static_cast<std::int64_t>(size);
-  }
-  return bytes;
-}
 
 /// The names of all results, whether noted or there: where both are not the same, not all is whole.
 std::set<std::string> results_in(const fs::path& folder, const Digests& noted) {
@@ -86,17 +25,12 @@ std::set<std::string> results_in(const fs::path& folder, const Digests& noted) {
   return files;
 }
 
-/// Once: version 0.1.0 noted no digests. Every later one begins a folder with some, so that one
-/// which has lost them is told from one that never had any.
-void note_first_version(const fs::path& blobs, const fs::path& done) {
-  if (fs::exists(done)) return;
-  for (const fs::directory_entry& entry : fs::directory_iterator(blobs)) {
-    const bool has_none = entry.is_directory() && !fs::exists(entry.path() / kDigestsFile);
-    if (!has_none) continue;
-    seal_files(entry.path(), [](std::string_view) { return true; });
-    sync_directory(entry.path());
-  }
-  write_file(done, "Every folder of blobs/ has its file `digests`.\n");
+/// Throws Error{storage_corrupt} for a file of which nothing is there.
+void check_there(const fs::path& path) {
+  std::error_code gone;
+  if (fs::is_regular_file(path, gone)) return;
+  throw Error(ErrorCode::storage_corrupt,
+              "The stored file " + path.filename().string() + " is missing; send the job again.");
 }
 
 [[noreturn]] void corrupt(std::string_view file) {
@@ -107,12 +41,11 @@ void note_first_version(const fs::path& blobs, const fs::path& done) {
 
 }  // namespace
 
-std::string result_file(std::string_view format) { return "result." + std::string(format); }
-
-std::string buffer_file(std::size_t k) { return std::string(kBufferPrefix) + std::to_string(k); }
-
 BlobStore::BlobStore(const fs::path& data, const DiskLimits& limits)
-    : incoming_(data / "incoming"), blobs_(data / "blobs"), room_(data, limits) {
+    : incoming_(data / "incoming"),
+      blobs_(data / "blobs"),
+      room_(data, limits),
+      lost_(data, room_) {
   make_directories(incoming_);
   make_directories(blobs_);
   note_first_version(blobs_, data / "digests-noted");
@@ -129,7 +62,33 @@ void BlobStore::keep_upload(std::string_view upload, std::string_view job, const
   rename_unsynced(incoming_ / upload, blobs_ / job);
   Syncs({blobs_ / job, blobs_, incoming_}).finish();
   room_.give_back(upload);
-  room_.set(job, bytes_below(blobs_ / job));
+  const std::lock_guard lock(counting_);
+  count(std::string(job));
+}
+
+/// Counts what is in a folder now, and what others have of it, and returns its bytes.
+std::int64_t BlobStore::count(const std::string& name) {
+  const FolderBytes bytes = bytes_in(blobs_ / name);
+  std::set<SharedFiles::Inode> several;
+  for (const auto& [file, size] : bytes.several) several.insert(file);
+  const std::vector<std::string> changed = shared_.set(name, several);
+  std::int64_t all = bytes.alone;
+  for (const auto& [file, size] : bytes.several)
+    if (shared_.counts_for(name, file)) all += size;
+  room_.set(name, all);
+  count_again(changed);
+  return all;
+}
+
+/// Files that they share count for others of them now.
+void BlobStore::count_again(const std::vector<std::string>& holders) {
+  for (const std::string& holder : holders) {
+    const std::int64_t bytes = count(holder);
+    try {
+      if (keeping_.kept) keeping_.kept(holder, bytes);
+    } catch (const Error&) {  // a row that is not told is mended at the next start
+    }
+  }
 }
 
 void BlobStore::drop_upload(std::string_view upload) noexcept {
@@ -155,38 +114,50 @@ void BlobStore::write_unsealed(std::string_view job, std::string_view file,
 }
 
 void BlobStore::remove(std::string_view job) noexcept {
+  if (!is_file_name(job)) return;  // of a damaged row
   left_.remove(blobs_ / job);
   room_.give_back(job);
   room_.make_reserve();
+  const std::lock_guard lock(counting_);
+  count_again(shared_.set(std::string(job), {}));
 }
 
 bool BlobStore::share_document(std::string_view mesh, std::string_view upload) {
   std::error_code failed;
   fs::create_hard_link(path(mesh, kDocumentFile), incoming_ / upload / kDocumentFile, failed);
-  if (!failed) return true;
+  if (!failed) {
+    const std::lock_guard lock(counting_);
+    count(std::string(mesh));  // for it, and for the job from keep_upload() on
+    return true;
+  }
   if (failed == std::errc::no_such_file_or_directory) return false;
   throw Error(ErrorCode::storage_failed,
               "The store cannot give one more job a share of this mesh (" + failed.message() +
                   "); send the mesh itself with the job.");
 }
 
-bool BlobStore::is_shared(std::string_view mesh) const noexcept {
-  return is_shared_file(path(mesh, kDocumentFile));
+bool BlobStore::is_shared(std::string_view mesh) const {
+  const std::lock_guard lock(counting_);
+  const FolderBytes bytes = bytes_in(blobs_ / mesh);
+  return std::ranges::any_of(bytes.several, [&](const auto& file) {
+    return shared_.has_others(std::string(mesh), file.first);
+  });
 }
 
 bool BlobStore::has(std::string_view job, std::string_view file) const {
   return read_digests(blobs_ / job).contains(file);
 }
 
-std::int64_t BlobStore::bytes(std::string_view job) const { return bytes_below(blobs_ / job); }
+std::int64_t BlobStore::bytes(std::string_view job) {
+  const std::lock_guard lock(counting_);
+  return count(std::string(job));
+}
 
 std::int64_t BlobStore::seal(std::string_view job) {
   const std::lock_guard lock(noting_);
   seal_files(blobs_ / job, [](std::string_view file) { return !is_input(file); });
   sync_directory(blobs_ / job);
-  const std::int64_t bytes = bytes_below(blobs_ / job);
-  room_.set(job, bytes);
-  return bytes;
+  return bytes(job);
 }
 
 void BlobStore::note(std::string_view job, const std::string& file) {
@@ -195,7 +166,8 @@ void BlobStore::note(std::string_view job, const std::string& file) {
   digests[file] = sha256_of(File::open(path(job, file)));
   write_digests(blobs_ / job, digests);
   sync_directory(blobs_ / job);
-  if (keeping_.kept) keeping_.kept(job, bytes_below(blobs_ / job));
+  const std::int64_t counted = bytes(job);
+  if (keeping_.kept) keeping_.kept(job, counted);
 }
 
 bool BlobStore::try_keep(std::string_view job, const std::string& file, std::string_view bytes) {
@@ -246,7 +218,9 @@ bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
     digests.merge(Digests(adopted));
     write_digests(blobs_ / job, digests);
     sync_directory(blobs_ / job);
-    room_.set(job, bytes_below(blobs_ / job));
+    const std::lock_guard counting(counting_);
+    count(std::string(from));  // for it, while it is there
+    count(std::string(job));
     return true;
   } catch (const std::exception&) {  // then the job is run like any other
     for (const auto& [file, digest] : adopted) remove_tree(path(job, file));
@@ -255,6 +229,7 @@ bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
 }
 
 std::shared_ptr<const File> BlobStore::open(std::string_view job, std::string_view file) const {
+  check_there(path(job, file));
   auto opened = std::make_shared<const File>(File::open(path(job, file)));
   const Digests digests = read_digests(blobs_ / job);
   const auto noted = digests.find(file);
@@ -263,6 +238,7 @@ std::shared_ptr<const File> BlobStore::open(std::string_view job, std::string_vi
 }
 
 std::string BlobStore::read(std::string_view job, std::string_view file) const {
+  check_there(path(job, file));
   std::string bytes = read_file(path(job, file));
   const Digests digests = read_digests(blobs_ / job);
   const auto noted = digests.find(file);
@@ -278,23 +254,6 @@ std::string BlobStore::digest(std::string_view job, std::string_view file) const
 
 int BlobStore::folder_count() const {
   return static_cast<int>(std::distance(fs::directory_iterator(blobs_), fs::directory_iterator()));
-}
-
-int BlobStore::sweep(const std::function<bool(const std::string& job)>& keeps_files) {
-  int removed = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(incoming_))
-    remove_tree(entry.path());
-  for (const fs::directory_entry& entry : fs::directory_iterator(blobs_)) {
-    const std::string job = entry.path().filename();
-    if (!keeps_files(job)) {
-      remove_tree(entry.path());
-      ++removed;
-      continue;
-    }
-    remove_unfinished(entry.path());
-    room_.set(job, bytes_below(entry.path()));
-  }
-  return removed;
 }
 
 }  // namespace unwrapd::server

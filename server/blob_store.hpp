@@ -3,8 +3,9 @@
 // uv.bin*}; and of stored meshes, alike: DIR/blobs/<mesh>/{document,digests,analysis.json}. An
 // upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is written under
 // another name and renamed, and synced before the job counts as done. What a crash leaves behind is
-// swept at the next start. `digests` has the SHA-256 of each file (digests.hpp): what is read is
-// checked against it. DIR/digests-noted says that all folders have one, which 0.1.0 did not write.
+// swept at the next start; what no row knows then is set aside (lost_folders.hpp). `digests` has
+// the SHA-256 of each file (digests.hpp): what is read is checked against it. DIR/digests-noted
+// says that all folders have one, which 0.1.0 did not write.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,26 +14,18 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "server/blob_files.hpp"
 #include "server/checked_files.hpp"
 #include "server/digests.hpp"
 #include "server/disk_room.hpp"
 #include "server/files.hpp"
 #include "server/left_folders.hpp"
+#include "server/lost_folders.hpp"
+#include "server/shared_files.hpp"
 
 namespace unwrapd::server {
-
-inline constexpr std::string_view kDocumentFile = "document";
-inline constexpr std::string_view kOptionsFile = "options.json";  ///< of long options alone
-inline constexpr std::string_view kReportFile = "report.json";
-inline constexpr std::string_view kTotalsFile = "totals.json";
-inline constexpr std::string_view kUvFile = "uv.bin";
-
-/// "result.glb", "result.gltf", "result.obj" or "result.json".
-std::string result_file(std::string_view format);
-
-/// "buffer_0": the file of an upload's k-th buffer.
-std::string buffer_file(std::size_t k);
 
 /// What try_keep() asks and tells of.
 struct Keeping {
@@ -41,6 +34,24 @@ struct Keeping {
   std::function<std::shared_ptr<void>(const std::string& job, std::int64_t bytes)> claim = {};
   /// The bytes of all the job's files now.
   std::function<void(std::string_view job, std::int64_t bytes)> kept = {};
+};
+
+/// Whose a folder of blobs/ is.
+enum class FolderFate {
+  kept,
+  gone,     ///< of a job whose files are not kept
+  unknown,  ///< nobody's
+};
+using Fates = std::function<FolderFate(const std::string& name)>;
+
+/// What a sweep has done.
+struct Swept {
+  int removed = 0;
+  int returned = 0;               ///< from lost
+  std::vector<std::string> lost;  ///< set aside
+  std::vector<std::pair<std::string, std::int64_t>> sharing =
+      {};                           ///< jobs, and what counts for them
+  std::vector<std::string> failed;  ///< left where they are, for they cannot be read or moved
 };
 
 class BlobStore {
@@ -65,11 +76,12 @@ class BlobStore {
   /// has no hard links, or no more of this file.
   bool share_document(std::string_view mesh, std::string_view upload);
   /// Whether a job shares the document of a mesh.
-  [[nodiscard]] bool is_shared(std::string_view mesh) const noexcept;
+  [[nodiscard]] bool is_shared(std::string_view mesh) const;
   /// Whether a file is noted: it is there, or was.
   [[nodiscard]] bool has(std::string_view job, std::string_view file) const;
-  /// Bytes of all files, without `digests`, and a document that is shared with a mesh.
-  [[nodiscard]] std::int64_t bytes(std::string_view job) const;
+  /// Bytes of all files, without `digests`; those that count for another (shared_files.hpp) are
+  /// left out.
+  [[nodiscard]] std::int64_t bytes(std::string_view job);
 
   /// Syncs all results and notes their digests, replacing those of an attempt before: on return
   /// they survive a loss of power. Returns the bytes of all files of the job.
@@ -99,10 +111,13 @@ class BlobStore {
 
   /// Folders of jobs and meshes.
   [[nodiscard]] int folder_count() const;
-  /// Removes unfinished uploads and files, and the folders of jobs that keeps_files refuses;
-  /// returns how many of these.
-  int sweep(const std::function<bool(const std::string& job)>& keeps_files);
+  /// At the start: removes unfinished uploads and files and the folders of jobs that are gone, and
+  /// sets aside in DIR/lost what nobody knows or is no folder. now_ms: of Moment::kept_ms().
+  [[nodiscard]] Swept sweep(const Fates& fates, std::int64_t now_ms);
+  /// Moves a job's folder to DIR/lost. False when there is none.
+  bool set_aside(const std::string& job, std::int64_t now_ms);
 
+  LostFolders& lost() { return lost_; }
   DiskRoom& room() { return room_; }
   [[nodiscard]] bool holds(std::string_view job) const;
 
@@ -113,11 +128,18 @@ class BlobStore {
   std::filesystem::path incoming_;
   std::filesystem::path blobs_;
   DiskRoom room_;
+  LostFolders lost_;
+  std::int64_t count(const std::string& name);
+  void count_again(const std::vector<std::string>& holders);
+  void sweep_one(const std::filesystem::directory_entry& entry, const Fates& fates,
+                 std::int64_t now_ms, Swept& swept);
   void note(std::string_view job, const std::string& file);
 
   Keeping keeping_;
   mutable CheckedFiles checked_;
   LeftFolders left_;
+  mutable std::mutex counting_;
+  SharedFiles shared_;
   mutable std::mutex noting_;  // one writer of `digests` at a time
 };
 

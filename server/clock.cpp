@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
 
 namespace unwrapd::server {
 
@@ -19,13 +20,26 @@ std::int64_t elapsed_ms() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(since_boot).count();
 }
 
+namespace {
+
+/// Linux makes a random one at every boot; empty where it cannot be read.
+std::string read_boot() {
+  std::ifstream file("/proc/sys/kernel/random/boot_id");
+  std::string boot;
+  std::getline(file, boot);
+  return boot;
+}
+
+}  // namespace
+
 Times read_clocks() {
+  static const std::string boot = read_boot();
   constexpr std::int64_t kLongestMs = 1000;  // this process may be held between any two reads
   while (true) {
     const std::int64_t before_ms = elapsed_ms();
     const std::int64_t of_day_ms = now_ms();
     const std::int64_t after_ms = elapsed_ms();
-    if (after_ms - before_ms < kLongestMs) return {of_day_ms, after_ms};
+    if (after_ms - before_ms < kLongestMs) return {of_day_ms, after_ms, boot};
   }
 }
 

@@ -17,6 +17,7 @@ std::int64_t elapsed_ms();
 struct Times {
   std::int64_t of_day_ms = 0;
   std::int64_t elapsed_ms = 0;
+  std::string boot = {};  ///< since when elapsed_ms counts: the same within one run of the kernel
 };
 
 /// Of one moment, within a second.

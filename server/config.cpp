@@ -25,6 +25,10 @@ constexpr const char* kAbout =
     "environment variable and in a TOML file: --max-queue 9, UNWRAPD_MAX_QUEUE=9, max-queue = 9; "
     "the flag wins over the variable, the variable over the file.";
 
+constexpr const char* kCommands =
+    "Other commands, each with --help: unwrapd keys (API keys), unwrapd backup, restore and check "
+    "(copies of a data directory).";
+
 [[noreturn]] void wrong(const std::string& what) { throw Error(ErrorCode::invalid_option, what); }
 
 /// "max-queue" -> "UNWRAPD_MAX_QUEUE"
@@ -75,6 +79,7 @@ class Reading {
 };
 
 void Reading::declare(CLI::App& app) {
+  app.footer(kCommands);
   app.set_version_flag("--version", "unwrapd " UNWRAPD_VERSION);
   app.add_option("--config", file_, "A TOML file of options")->type_name("FILE");
   app.add_flag("--print-config", print_, "Print all options as they are, as such a file, and exit");

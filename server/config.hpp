@@ -42,6 +42,7 @@ struct Config {
   int workers = 1;
   int threads = 1;  ///< for each job
   int keep_seconds = 7 * 24 * 60 * 60;
+  std::int64_t max_stored_jobs = 100'000;  ///< that have ended; 0: no limit
   int drain_seconds = 30;
   int grace_seconds = 5;  ///< for a job that was told to stop (worker_pool.hpp)
   Isolate isolate = Isolate::automatic;

@@ -124,6 +124,10 @@ ConfigGroup storing() {
   return {.title = "Storing",
           .rows = {number({"keep-seconds", "N", "How long results are kept"}, {1, kMaxCount},
                           &Config::keep_seconds),
+                   number({"max-stored-jobs", "N",
+                           "Ended jobs of which anything is known; beyond it expired ones go, then "
+                           "the oldest of the key that has the most; 0: no limit"},
+                          {0, kMaxCount}, &Config::max_stored_jobs),
                    number({"max-disk-bytes", "N",
                            "Files of all jobs; results that ended first go earlier to keep within "
                            "it; 0: no limit"},

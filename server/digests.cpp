@@ -27,11 +27,15 @@ Digests read_digests(const std::filesystem::path& folder) {
   return digests;
 }
 
-void write_digests(const std::filesystem::path& folder, const Digests& digests,
-                   const std::function<void()>& before_naming) {
+std::string to_text(const Digests& digests) {
   std::string text;
   for (const auto& [file, digest] : digests) text += digest + std::string(kSeparator) + file + "\n";
-  write_file_unlisted(folder / kDigestsFile, text, before_naming);
+  return text;
+}
+
+void write_digests(const std::filesystem::path& folder, const Digests& digests,
+                   const std::function<void()>& before_naming) {
+  write_file_unlisted(folder / kDigestsFile, to_text(digests), before_naming);
 }
 
 std::string sha256_of(const File& file) {

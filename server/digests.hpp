@@ -20,6 +20,8 @@ using Digests = std::map<std::string, std::string, std::less<>>;
 /// Of a job's folder; empty when nothing has been noted there. Lines of another form are passed
 /// over: their files then count as not noted.
 Digests read_digests(const std::filesystem::path& folder);
+/// As they are written.
+std::string to_text(const Digests& digests);
 /// All but the folder is synced; before_naming: as of write_file_unlisted().
 void write_digests(
     const std::filesystem::path& folder, const Digests& digests,

@@ -165,6 +165,11 @@ void Syncs::finish() {
   shares_.clear();
 }
 
+bool is_file_name(std::string_view text) {
+  return !text.empty() && text != "." && text != ".." && text.find('/') == std::string_view::npos &&
+         text.find('\0') == std::string_view::npos;
+}
+
 bool is_unfinished(const std::filesystem::path& path) { return path.extension() == kPartSuffix; }
 
 void sync_directory(const std::filesystem::path& directory) {

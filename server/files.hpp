@@ -90,6 +90,9 @@ bool is_unfinished(const std::filesystem::path& path);
 /// Makes the names in a directory survive a loss of power.
 void sync_directory(const std::filesystem::path& directory);
 
+/// Whether text names something in a folder, and nothing outside of it.
+bool is_file_name(std::string_view text);
+
 /// Renames; no directory is synced.
 void rename_unsynced(const std::filesystem::path& from, const std::filesystem::path& to);
 

@@ -93,6 +93,7 @@ void JobQueue::enqueue(JobRecord& job, const Submission& submission, const Answe
   if (const Quota& quota = submission.quota; quota.max_jobs > 0 || quota.max_bytes > 0)
     door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
   door_.leave(submission.sender);
+  give_up_excess();
   job.seq = store_.insert(job);
   if (!answer || !answer_from_store(job, *answer)) wait_again(job);
 }
@@ -100,7 +101,7 @@ void JobQueue::enqueue(JobRecord& job, const Submission& submission, const Answe
 /// If its files are whole: they become this job's, too, and count as such. Reads all of them.
 JobQueue::Answer JobQueue::find_answer(JobRecord& job) {
   Answer same = store_.find_same(job.owner, job.content_key);
-  if (same && !blobs_.adopt(job.id, same->id)) same.reset();
+  if (same && (!same->unreadable.empty() || !blobs_.adopt(job.id, same->id))) same.reset();
   if (same) job.stored_bytes = blobs_.bytes(job.id);
   return same;
 }
@@ -131,15 +132,27 @@ bool JobQueue::await_turn(std::unique_lock<std::mutex>& lock) {
   return false;
 }
 
+/// A job whose row cannot be read is nobody's turn.
 std::shared_ptr<RunningJob> JobQueue::take() {
   std::unique_lock lock(mutex_);
-  if (!await_turn(lock)) return nullptr;
-  const std::string owner = share_.next();
-  std::optional<JobRecord> record = store_.take(owner, elapsed_ms() + config_.lease.count());
-  if (!record) throw Error(ErrorCode::internal, "The store has lost a queued job.");
-  share_.start(owner);
+  while (await_turn(lock)) {
+    const std::string owner = share_.next();
+    std::optional<JobRecord> record = store_.take(owner, elapsed_ms() + config_.lease.count());
+    if (record && record->unreadable.empty()) return begin(std::move(*record));
+    share_.remove(owner);
+    if (record) {
+      set_aside(*record);
+    } else {
+      log_.error("the store has lost a queued job", {{"owner", owner}});
+    }
+  }
+  return nullptr;
+}
+
+std::shared_ptr<RunningJob> JobQueue::begin(JobRecord record) {
+  share_.start(record.owner);
   auto job = std::make_shared<RunningJob>();
-  job->record = std::move(*record);
+  job->record = std::move(record);
   job->feed = events_.find(job->record.id);
   job->started_ms = now_ms();
   running_[job->record.id] = job;
@@ -156,8 +169,7 @@ bool JobQueue::wait_for_room(const RunningJob& job, const JobOutcome& outcome) {
   pause_.note(again);
   if (!again) return false;
   log_.warning("the disk is full, the job waits", {{"job", job.record.id}});
-  store_.requeue(job.record.id, false);
-  wait_again(job.record);
+  wait_or_end(job.record);
   return true;
 }
 
@@ -179,8 +191,7 @@ void JobQueue::finish(const RunningJob& job, JobOutcome outcome,
   changed_.notify_all();
   share_.end(job.record.owner, job.seconds());
   if (outcome.state == JobState::cancelled && job.cause == StopCause::draining) {
-    store_.requeue(job.record.id, false);
-    wait_again(job.record);  // its readers are told so
+    wait_or_end(job.record);  // its readers are told so
     return;
   }
   if (wait_for_room(job, outcome)) return;
@@ -217,23 +228,35 @@ bool JobQueue::cancel_or_remove(const std::string& id) {
     cancel_live(*job);
     return true;
   }
+  remove_ended(id);
+  log_.info("job removed", {{"job", id}});
+  return false;
+}
+
+void JobQueue::remove_ended(const std::string& id) {
   blobs_.room().free_by([&] { store_.remove(id); });
   events_.forget(id);
   blobs_.remove(id);
-  log_.info("job removed", {{"job", id}});
-  return false;
 }
 
 void JobQueue::cancel_live(const JobRecord& job) {
   if (job.state == JobState::queued) {
     blobs_.room().free_by(
         [&] { end_job(job, ended(JobState::cancelled, cancelled_by_owner(), job.id)); });
-    share_.remove(job.owner);
+    if (std::erase(left_, job.id) == 0) share_.remove(job.owner);
     return;
   }
   blobs_.room().free_by([&] { store_.request_cancel(job.id); });
   const auto running = running_.find(job.id);
   if (running != running_.end()) running->second->request_stop(StopCause::cancelled);
+}
+
+void JobQueue::note_process_end(const RunningJob& job) {
+  try {
+    store_.note_process_end(job.record.id);
+  } catch (const Error& error) {  // the job goes on
+    if (error.code() != ErrorCode::storage_full) throw;
+  }
 }
 
 void JobQueue::close() {
@@ -259,7 +282,10 @@ bool JobQueue::drain(std::chrono::seconds patience) {
     job->request_stop(StopCause::draining);
   }
   if (changed_.wait_for(lock, config_.stop, idle)) return true;
-  for (const auto& [id, job] : running_) store_.requeue(id, false);
+  for (const auto& [id, job] : running_) {
+    const std::optional<JobRecord> stored = store_.find(id);
+    if (stored && stored->state == JobState::running) take_up(*stored, Found::not_stopping);
+  }
   return false;
 }
 

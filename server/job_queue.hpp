@@ -69,6 +69,7 @@ struct RunningJob {
 struct QueueConfig {
   int max_queue = 256;
   int workers = 1;
+  std::int64_t max_stored = 0;  ///< ended jobs; 0: no limit
   std::chrono::milliseconds lease = std::chrono::seconds(30);
   std::chrono::milliseconds stop = std::chrono::seconds(10);  ///< for jobs told to stop, at the end
 };
@@ -88,10 +89,10 @@ class JobQueue {
   JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const Log& log,
            const QueueConfig& config);
 
-  /// Once, before any worker: what the last process left running waits again. Its death is held
-  /// against those jobs: they are given up at the third, where they are tried apart from this
-  /// process from now on, at the tenth. Those that find no room on the disk for that wait for a
-  /// beat() that does.
+  /// Once, before any worker: what the last process left running waits again; a job whose row
+  /// cannot be read is set aside. The death of that process is held against those jobs: they are
+  /// given up at the third, where they are tried apart from this process from now on, at the tenth.
+  /// Those that find no room on the disk for that wait for a beat() that does.
   void recover(bool tried_apart);
 
   /// Throws RetryLater{queue_full, draining} when a submission would be refused now, else keeps a
@@ -109,7 +110,11 @@ class JobQueue {
   /// the store has its end, and before anybody is told of it.
   void finish(const RunningJob& job, JobOutcome outcome, const std::function<void()>& stored = {});
 
-  /// Prolongs the leases of the jobs at work, and queues those whose lease has ended.
+  /// Remembers, over the end of this server, too, that a job has ended a process of its own.
+  void note_process_end(const RunningJob& job);
+
+  /// Prolongs the leases of the jobs at work, queues those whose lease has ended, and gives up
+  /// ended jobs beyond max_stored.
   void beat();
 
   /// Cancels a live job (true), or removes a finished one and its files (false). Throws not_found.
@@ -118,7 +123,8 @@ class JobQueue {
   /// No new jobs from now on; those waiting stay in the store for the next start.
   void close();
   /// Waits for the running jobs; those that are not done by then go back to the queue. False when
-  /// some have not even stopped: then they are in the queue, too, but their threads do not end.
+  /// some have not even stopped: then they are suspected of what ends servers, and in the queue,
+  /// too, or have ended as cancelled, but their threads do not end.
   bool drain(std::chrono::seconds patience);
   /// Takes all patience from drain().
   void hurry();
@@ -132,11 +138,17 @@ class JobQueue {
   [[nodiscard]] Answer find_answer(JobRecord& job);
   void enqueue(JobRecord& job, const Submission& submission, const Answer& answer);
   [[nodiscard]] bool answer_from_store(const JobRecord& job, const JobRecord& answer);
-  enum class Found { lapsed, by_death, too_often_by_death };
+  enum class Found { lapsed, by_death, not_stopping };
+  [[nodiscard]] bool is_poison(const JobRecord& job, Found found) const;
+  void wait_or_end(const JobRecord& job);
+  void give_up_excess();
+  void remove_ended(const std::string& id);
   void take_up_left();
   void take_up(const JobRecord& job, Found found);
   void give_up(const JobRecord& job, const Error& why);
+  void set_aside(const JobRecord& unreadable);
   void wait_again(const JobRecord& job);
+  [[nodiscard]] std::shared_ptr<RunningJob> begin(JobRecord record);
   [[nodiscard]] bool await_turn(std::unique_lock<std::mutex>& lock);
   [[nodiscard]] JobOutcome sealed(const std::string& id, JobOutcome outcome);
   [[nodiscard]] bool wait_for_room(const RunningJob& job, const JobOutcome& outcome);

@@ -38,7 +38,8 @@ struct JobRecord {
   std::int64_t created_ms = 0;
   std::int64_t finished_ms = 0;  ///< 0 while it is not final
   int attempt = 0;               ///< how often a worker has begun it
-  int crashes = 0;               ///< how often the server died while it ran
+  int crashes = 0;               ///< how often the server died, or could not stop it, while it ran
+  int process_ends = 0;          ///< how often it has ended a process of its own
   bool cancel_requested = false;
   bool synchronous = false;        ///< came by POST /v1/unwrap, with its lower limit of faces
   bool expired = false;            ///< its files are gone
@@ -56,6 +57,7 @@ struct JobRecord {
   std::int64_t stored_bytes = 0;  ///< of its files, as far as quotas count them
   std::string webhook;            ///< called at its end, empty for none
   std::string trace;              ///< id of the trace that it came in and all is done in
+  std::string unreadable;  ///< why its row cannot be read, and it counts as failed; else empty
 };
 
 /// The job as its owner sees it, without live progress.

@@ -138,7 +138,9 @@ Response answer_with_files(JobStore& store, const Request& request,
   try {
     return answer(job);
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::storage_failed) require_result(find_job(store, request));
+    const bool may_be_gone =
+        error.code() == ErrorCode::storage_failed || error.code() == ErrorCode::storage_corrupt;
+    if (may_be_gone) require_result(find_job(store, request));
     throw;
   }
 }

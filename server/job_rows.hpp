@@ -16,7 +16,7 @@ std::string select_jobs(std::string_view rest);
 /// " RETURNING <all columns>".
 std::string returning_jobs();
 
-/// All rows of a statement with these columns.
+/// All rows of a statement with these columns; of one that cannot be read `unreadable` says why.
 std::vector<JobRecord> job_rows(Statement& statement);
 
 /// JSON as text; what is not UTF-8 in it is replaced.

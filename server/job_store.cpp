@@ -1,7 +1,7 @@
 #include "server/job_store.hpp"
 
+#include <algorithm>
 #include <cstdlib>
-#include <exception>
 #include <limits>
 
 #include "api/error_table.hpp"
@@ -14,6 +14,7 @@ namespace {
 using api::JobState;
 using api::state_name;
 
+constexpr std::int64_t kNotePauseMs = 60'000;  // an idle server writes no more often
 constexpr auto kAnySeq = std::numeric_limits<std::int64_t>::max();
 
 /// What a reader of a job's row finds there of its input.
@@ -43,40 +44,40 @@ JobOutcome ended(JobState state, const Error& why, std::string_view job) {
   return outcome;
 }
 
-/// The store while it is written: it remembers whether that came about.
-class JobStore::Writing {
- public:
-  explicit Writing(JobStore& store)
-      : store_(store), lock_(store.mutex_), errors_(std::uncaught_exceptions()) {}
-  Writing(const Writing&) = delete;
-  Writing& operator=(const Writing&) = delete;
-  ~Writing() { store_.write_failed_ = std::uncaught_exceptions() > errors_; }
-
- private:
-  JobStore& store_;
-  const std::lock_guard<std::mutex> lock_;
-  const int errors_;
-};
-
 JobStore::JobStore(const std::filesystem::path& path, KeptTime::Read read) : database_(path) {
+  database_.check();
   migrate(database_);
-  Statement noted(database_, "SELECT set_by_ms FROM written");
-  if (noted.step()) noted_set_by_ms_ = noted.number(0);
-  time_.emplace(std::move(read), noted_set_by_ms_);
+  Statement noted(database_, "SELECT set_by_ms, noted_ms, noted_elapsed_ms, boot FROM written");
+  if (noted.step())
+    noted_ = {.times = {noted.number(1), noted.number(2), noted.text(3)},
+              .set_by_ms = noted.number(0)};
+  time_.emplace(read, noted_);
   check_writable();
+  if (!write_failed_) mend_sums();
 }
 
 std::int64_t JobStore::note_time() {
   const Writing writing(*this);
+  const Times clocks = time_->clocks();
   const std::int64_t set_by_ms = now().set_by_ms;
-  const std::int64_t by_ms = set_by_ms - noted_set_by_ms_;
-  if (std::abs(by_ms) < kSetByMs) return 0;
-  Statement(database_, "UPDATE written SET set_by_ms = ?").with(set_by_ms).run();
-  noted_set_by_ms_ = set_by_ms;
-  return by_ms;
+  const std::int64_t by_ms = set_by_ms - noted_.set_by_ms;
+  const bool was_set = std::abs(by_ms) >= kSetByMs;
+  const bool is_noted = noted_.times.of_day_ms != 0 && noted_.times.boot == clocks.boot &&
+                        clocks.elapsed_ms - noted_.times.elapsed_ms < kNotePauseMs;
+  if (is_noted && !was_set) return 0;
+  Statement(database_,
+            "UPDATE written SET set_by_ms = ?, noted_ms = ?, noted_elapsed_ms = ?, boot = ?")
+      .with(set_by_ms, clocks.of_day_ms, clocks.elapsed_ms, clocks.boot)
+      .run();
+  noted_ = {.times = clocks, .set_by_ms = set_by_ms};
+  return was_set ? by_ms : 0;
 }
 
 void JobStore::check_writable() {
+  if (database_.is_damaged()) {
+    throw Error(ErrorCode::storage_failed,
+                "The server's store is damaged; its operator must repair it.");
+  }
   if (!write_failed_) return;
   try {
     const Writing writing(*this);
@@ -127,10 +128,13 @@ std::optional<JobRecord> JobStore::find_same(std::string_view owner, std::string
       owner, content_key);
 }
 
-std::vector<JobRecord> JobStore::all(JobState state) {
+std::vector<JobRecord> JobStore::unfinished() {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_, select_jobs("WHERE state = ? ORDER BY seq"));
-  return job_rows(statement.with(state_name(state)));
+  Statement statement(
+      database_,
+      select_jobs("WHERE seq IN (SELECT seq FROM jobs INDEXED BY jobs_in_state"
+                  " WHERE state NOT IN ('succeeded', 'failed', 'cancelled')) ORDER BY seq"));
+  return job_rows(statement);
 }
 
 std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
@@ -140,30 +144,6 @@ std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
   const std::int64_t before = filter.before_seq > 0 ? filter.before_seq : kAnySeq;
   return job_rows(
       statement.with(filter.owner.value_or(""), state, before, std::int64_t{filter.limit}));
-}
-
-OwnerUsage JobStore::usage(std::string_view owner) {
-  const std::lock_guard lock(mutex_);
-  Statement statement(database_,
-                      "SELECT (SELECT COUNT(*) FROM jobs"
-                      " WHERE owner = ?1 AND state IN ('queued', 'running')),"
-                      " COALESCE((SELECT bytes FROM stored WHERE owner = ?1), 0)"
-                      " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes WHERE owner = ?1)");
-  statement.with(owner).step();
-  return {.live_jobs = statement.number(0), .stored_bytes = statement.number(1)};
-}
-
-std::int64_t JobStore::evictable_bytes() {
-  const std::lock_guard lock(mutex_);
-  Statement statement(database_,
-                      "SELECT (SELECT COALESCE(SUM(bytes), 0) FROM stored)"
-                      " - (SELECT COALESCE(SUM(stored_bytes), 0) FROM jobs"
-                      " WHERE state IN ('queued', 'running'))"
-                      " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes"
-                      " WHERE (owner, sha256) NOT IN (SELECT owner, sha256 FROM jobs"
-                      " WHERE state IN ('queued', 'running')))");
-  statement.step();
-  return statement.number(0);
 }
 
 std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t lease_ms) {
@@ -206,20 +186,48 @@ bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
             outcome.last_event, outcome.finished_ms, outcome.stored_bytes, kept_since_ms)
       .run();
   if (database_.changes() != 1) return false;
-  if (!known.webhook.empty()) {
-    Statement(database_,
-              "INSERT INTO deliveries (job, owner, trace, url, body, due_ms)"
-              " VALUES (?, ?, ?, ?, ?, ?)")
-        .with(known.id, known.owner, known.trace, known.webhook, outcome.delivery, kept_since_ms)
-        .run();
-  }
+  queue_delivery(known, outcome);
   both.commit();
   return true;
+}
+
+void JobStore::queue_delivery(const JobRecord& job, const JobOutcome& outcome) {
+  if (job.webhook.empty()) return;
+  Statement(database_,
+            "INSERT INTO deliveries (job, owner, trace, url, body, due_ms)"
+            " VALUES (?, ?, ?, ?, ?, ?)")
+      .with(job.id, job.owner, job.trace, job.webhook, outcome.delivery,
+            outcome.finished_ms - outcome.set_by_ms)
+      .run();
+}
+
+void JobStore::set_aside(const JobRecord& unreadable, const JobOutcome& outcome) {
+  const Writing writing(*this);
+  Transaction both(database_);
+  Statement(database_,
+            "UPDATE jobs SET state = ?2, problem = ?3, finished_ms = ?4, kept_since_ms = ?5,"
+            " options = '{}', notes = '[]', buffers = '[]', attempt = ?6, crashes = 0, "
+            "process_ends = 0, urgency = ?7,"
+            " stored_bytes = 0 WHERE seq = ?1")
+      .with(unreadable.seq, state_name(outcome.state), text_of(outcome.problem),
+            outcome.finished_ms, outcome.finished_ms - outcome.set_by_ms,
+            std::int64_t{std::max(0, unreadable.attempt)}, std::int64_t{kUsualUrgency})
+      .run();
+  queue_delivery(unreadable, outcome);
+  both.commit();
 }
 
 void JobStore::request_cancel(std::string_view id) {
   const Writing writing(*this);
   Statement(database_, "UPDATE jobs SET cancel_requested = 1 WHERE id = ?").with(id).run();
+}
+
+void JobStore::note_process_end(std::string_view id) {
+  const Writing writing(*this);
+  Statement(database_,
+            "UPDATE jobs SET process_ends = process_ends + 1 WHERE id = ? AND state = 'running'")
+      .with(id)
+      .run();
 }
 
 void JobStore::requeue(std::string_view id, bool crashed) {
@@ -229,47 +237,6 @@ void JobStore::requeue(std::string_view id, bool crashed) {
             " WHERE id = ?1 AND state = 'running'")
       .with(id, std::int64_t{crashed})
       .run();
-}
-
-bool JobStore::keeps_files(std::string_view id) {
-  const std::optional<JobRecord> job = find(id);
-  if (!job || job->expired) return false;
-  return !api::is_final(job->state) || job->state == JobState::succeeded;
-}
-
-std::vector<std::string> JobStore::finished_before(std::int64_t epoch_ms, int limit) {
-  const std::lock_guard lock(mutex_);
-  Statement statement(database_,
-                      "SELECT id FROM jobs WHERE state IN ('succeeded', 'failed', 'cancelled')"
-                      " AND expired = 0 AND kept_since_ms < ? ORDER BY kept_since_ms, seq LIMIT ?");
-  statement.with(epoch_ms, std::int64_t{limit});
-  std::vector<std::string> ids;
-  while (statement.step()) ids.push_back(statement.text(0));
-  return ids;
-}
-
-void JobStore::set_stored_bytes(std::string_view id, std::int64_t bytes) {
-  const Writing writing(*this);
-  Statement(database_, "UPDATE jobs SET stored_bytes = ?2 WHERE id = ?1 AND expired = 0")
-      .with(id, bytes)
-      .run();
-}
-
-void JobStore::set_expired(std::string_view id) {
-  const Writing writing(*this);
-  Statement(database_, "UPDATE jobs SET expired = 1, stored_bytes = 0 WHERE id = ?").with(id).run();
-}
-
-void JobStore::forget_before(std::int64_t epoch_ms) {
-  const Writing writing(*this);
-  Statement(database_, "DELETE FROM jobs WHERE expired = 1 AND kept_since_ms < ?")
-      .with(epoch_ms)
-      .run();
-}
-
-void JobStore::remove(std::string_view id) {
-  const Writing writing(*this);
-  Statement(database_, "DELETE FROM jobs WHERE id = ?").with(id).run();
 }
 
 }  // namespace unwrapd::server

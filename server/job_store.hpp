@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "server/blob_store.hpp"
 #include "server/database.hpp"
 #include "server/job_record.hpp"
 #include "server/kept_time.hpp"
@@ -59,10 +61,12 @@ class JobStore {
   explicit JobStore(const std::filesystem::path& path, KeptTime::Read read = read_clocks);
 
   [[nodiscard]] Moment now() const { return time_->now(); }
-  /// By how much the time of day was set since the last call, which is noted; 0 when it was not.
+  /// By how much the time of day was set since the last call, or the last one of the server before;
+  /// 0 when it was not. What the clocks show is noted for the next start.
   std::int64_t note_time();
 
   /// Writes to it when the last write has failed, or none was tried; does not throw storage_full.
+  /// Throws where the file was found damaged since the start.
   void check_writable();
 
   /// Adds a queued job and returns its seq.
@@ -72,10 +76,15 @@ class JobStore {
   std::optional<JobRecord> find_request(std::string_view owner, std::string_view request_key);
   /// A succeeded job of this owner that was asked the same and still has its files.
   std::optional<JobRecord> find_same(std::string_view owner, std::string_view content_key);
-  /// All jobs in this state, the oldest first.
-  std::vector<JobRecord> all(api::JobState state);
+  /// All jobs that have not ended, the oldest first; with those whose state cannot be read.
+  std::vector<JobRecord> unfinished();
   std::vector<JobRecord> list(const JobFilter& filter);
   OwnerUsage usage(std::string_view owner);
+  /// Rows of all jobs.
+  std::int64_t job_count();
+  /// The job to give up where there are too many: the expired one that ended first, or of the owner
+  /// with the most jobs the ended one that came first.
+  std::optional<std::string> first_to_go();
   /// Bytes of finished jobs, and of stored meshes that no other job is about.
   std::int64_t evictable_bytes();
 
@@ -88,17 +97,25 @@ class JobStore {
   /// Ends a job and queues the call to its webhook. False, and nothing is changed, when it is no
   /// longer in the state and attempt that the caller knows it in.
   bool finish(const JobRecord& known, const JobOutcome& outcome);
+  /// Ends a job whose row cannot be read, so that it can be, and queues the call to its webhook.
+  void set_aside(const JobRecord& unreadable, const JobOutcome& outcome);
   /// Remembers that a running job shall end, even over a crash.
   void request_cancel(std::string_view id);
-  /// A running job waits again; crashed: because the server died.
+  /// Remembers that a running job has ended a process of its own.
+  void note_process_end(std::string_view id);
+  /// A running job waits again; crashed: because the server died, or could not stop it.
   void requeue(std::string_view id, bool crashed);
 
-  /// Whether the job's files are to be kept: it is not final, or has succeeded and not expired.
-  bool keeps_files(std::string_view id);
+  /// The job's files are kept while it is not final, or has succeeded and not expired; they are
+  /// nobody's when there is no row of it that can be read.
+  FolderFate fate_of(std::string_view id);
   /// Final jobs that ended before this time (of Moment::kept_ms(), like all below) and still have
   /// their files, the oldest first.
   std::vector<std::string> finished_before(std::int64_t epoch_ms, int limit = -1);
   void set_stored_bytes(std::string_view id, std::int64_t bytes);
+  /// The same of many succeeded jobs, in one transaction; what is right stays as it is. Does not
+  /// throw storage_full.
+  void mend_stored_bytes(const std::vector<std::pair<std::string, std::int64_t>>& jobs);
   void set_expired(std::string_view id);
   /// Removes the rows of expired jobs that ended before this time.
   void forget_before(std::int64_t epoch_ms);
@@ -109,13 +126,29 @@ class JobStore {
   template <class... Values>
   std::optional<JobRecord> first(std::string_view rest, const Values&... values);
 
-  class Writing;
+  void mend_sums();
+  void queue_delivery(const JobRecord& job, const JobOutcome& outcome);
 
   std::mutex mutex_;
   Database database_;
-  std::int64_t noted_set_by_ms_ = 0;
+  NotedTime noted_;
   std::optional<const KeptTime> time_;
   std::atomic<bool> write_failed_ = true;  // or was not tried
+
+  /// The store while it is written: it remembers whether that came about.
+  class Writing {
+   public:
+    explicit Writing(JobStore& store)
+        : store_(store), lock_(store.mutex_), errors_(std::uncaught_exceptions()) {}
+    Writing(const Writing&) = delete;
+    Writing& operator=(const Writing&) = delete;
+    ~Writing() { store_.write_failed_ = std::uncaught_exceptions() > errors_; }
+
+   private:
+    JobStore& store_;
+    const std::lock_guard<std::mutex> lock_;
+    const int errors_;
+  };
 };
 
 }  // namespace unwrapd::server

@@ -140,6 +140,7 @@ std::string to_text(const Scopes& scopes) {
 
 KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::path& given)
     : database_(file_in(data)), given_(given.empty() ? "" : sha256(key_in(given))) {
+  database_.check();
   database_.run(kSchema);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "server/clock.hpp"
+#include "server/inside_error.hpp"
 #include "server/key_store.hpp"
 #include "server/signed_link.hpp"
 #include "server/webhooks.hpp"
@@ -104,7 +105,7 @@ int run_keys_command(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error);
   } catch (const Error& error) {
-    std::fprintf(stderr, "unwrapd keys: %s\n", error.what());
+    std::fprintf(stderr, "unwrapd keys: %s\n", reason_of(error).c_str());
     return 1;
   }
 }

@@ -2,6 +2,8 @@
 
 #include <exception>
 
+#include "server/inside_error.hpp"
+
 namespace unwrapd::server {
 
 Periodic::Periodic(const std::string& name, std::chrono::milliseconds pause,
@@ -12,7 +14,7 @@ Periodic::Periodic(const std::string& name, std::chrono::milliseconds pause,
           try {
             action();
           } catch (const std::exception& error) {
-            log.error(name + " failed", {{"reason", error.what()}});
+            log.error(name + " failed", {{"reason", reason_of(error)}});
           }
           wake_.wait_for(lock, stop, pause, [] { return false; });
         }

@@ -14,9 +14,11 @@
 #include <string_view>
 #include <thread>
 
+#include "server/backup_command.hpp"
 #include "server/config.hpp"
 #include "server/descriptors.hpp"
 #include "server/http_probe.hpp"
+#include "server/inside_error.hpp"
 #include "server/job_worker.hpp"
 #include "server/keys_command.hpp"
 #include "server/log.hpp"
@@ -98,6 +100,7 @@ int run_program(int argc, char** argv, Duties duties) {
   ::umask(kNotOfOthers);
   if (is_job_worker(argc, argv)) return run_job_worker(duties);
   if (argc > 1 && std::string_view(argv[1]) == "keys") return run_keys_command(argc, argv);
+  if (argc > 1 && is_backup_command(argv[1])) return run_backup_command(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);
   if (line.task == Task::leave) return line.exit_code;
   if (line.task == Task::healthcheck) return probe(*line.config.admin);
@@ -108,7 +111,7 @@ int run_program(int argc, char** argv, Duties duties) {
     return 0;
   } catch (const std::exception& error) {
     log.error("unwrapd cannot run",
-              {{"reason", error.what()}, {"data", line.config.data.string()}});
+              {{"reason", reason_of(error)}, {"data", line.config.data.string()}});
     return 1;
   }
 }

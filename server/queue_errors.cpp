@@ -52,6 +52,11 @@ Error cancelled_by_owner() {
   return {ErrorCode::cancelled, "The job was cancelled; send it again to have it done."};
 }
 
+Error unreadable_job() {
+  return {ErrorCode::storage_corrupt,
+          "What the server has stored of this job cannot be read; send the job again."};
+}
+
 Error poison() {
   return {
       ErrorCode::poison,

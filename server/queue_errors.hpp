@@ -15,6 +15,7 @@ Error quota_exceeded(std::int64_t most_bytes);
 Error unknown_job();
 Error another_question();
 Error cancelled_by_owner();
+Error unreadable_job();
 Error poison();
 
 }  // namespace unwrapd::server

@@ -5,6 +5,7 @@
 
 #include "api/error_table.hpp"
 #include "server/identity.hpp"
+#include "server/inside_error.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -75,10 +76,10 @@ Response Router::guarded(Request& request, std::string_view& route) const noexce
     return dispatch(request, route);
   } catch (const Error& error) {
     if (is_ours(error.code()))
-      log_.error("request failed", {{"job", request.id}, {"reason", error.what()}});
+      log_.error("request failed", {{"job", request.id}, {"reason", reason_of(error)}});
     return error_response(error, request.id);
   } catch (const std::exception& error) {  // the caller learns nothing of our insides
-    log_.error("unhandled exception", {{"job", request.id}, {"reason", error.what()}});
+    log_.error("unhandled exception", {{"job", request.id}, {"reason", reason_of(error)}});
     return error_response(Error(ErrorCode::internal, "The server failed to answer; try again."));
   }
 }

@@ -8,7 +8,7 @@ namespace unwrapd::server {
 namespace {
 
 /// Step k makes version k + 1 out of version k. Steps that were released are never edited.
-constexpr std::array<const char*, 9> kSteps = {
+constexpr std::array<const char*, 10> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -115,6 +115,23 @@ ALTER TABLE written ADD COLUMN set_by_ms INTEGER NOT NULL DEFAULT 0;
     // Answers that were given before may be another method's map: none is given to a new question.
     R"sql(
 UPDATE jobs SET content_key = '' WHERE state = 'succeeded';
+)sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN process_ends INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE written ADD COLUMN noted_ms INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE written ADD COLUMN noted_elapsed_ms INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE written ADD COLUMN boot TEXT NOT NULL DEFAULT '';
+ALTER TABLE stored ADD COLUMN jobs INTEGER NOT NULL DEFAULT 0;
+UPDATE stored SET jobs = (SELECT COUNT(*) FROM jobs WHERE jobs.owner = stored.owner);
+DROP TRIGGER jobs_stored;
+DROP TRIGGER jobs_removed;
+CREATE TRIGGER jobs_stored AFTER INSERT ON jobs BEGIN
+  INSERT INTO stored VALUES (NEW.owner, NEW.stored_bytes, 1)
+    ON CONFLICT (owner) DO UPDATE SET bytes = bytes + excluded.bytes, jobs = jobs + 1;
+END;
+CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
+  UPDATE stored SET bytes = bytes - OLD.stored_bytes, jobs = jobs - 1 WHERE owner = OLD.owner;
+END;
 )sql"};
 
 constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());
@@ -129,14 +146,26 @@ std::int64_t version_of(const Database& database) {
 
 bool has_tables(const Database& database) { return version_of(database) > 0; }
 
-void migrate(Database& database, std::optional<std::int64_t> last) {
+void refuse_newer(const Database& database) {
   const std::int64_t found = version_of(database);
-  if (found > kVersion || found < 0) {
-    throw Error(ErrorCode::storage_failed,
-                "The job store is of another version (schema " + std::to_string(found) +
-                    "): start the version that wrote it, or choose another --data directory.");
+  if (found >= 0 && found <= kVersion) return;
+  throw Error(ErrorCode::storage_failed,
+              "The job store is of another version (schema " + std::to_string(found) +
+                  "): start the version that wrote it, or choose another --data directory.");
+}
+
+void require_current(const Database& database) {
+  refuse_newer(database);
+  if (const std::int64_t found = version_of(database); found < kVersion) {
+    throw Error(ErrorCode::storage_failed, "The job store is of an older version (schema " +
+                                               std::to_string(found) +
+                                               "): start this version's server on it once.");
   }
-  for (std::int64_t version = found; version < last.value_or(kVersion); ++version) {
+}
+
+void migrate(Database& database, std::optional<std::int64_t> last) {
+  refuse_newer(database);
+  for (std::int64_t version = version_of(database); version < last.value_or(kVersion); ++version) {
     Transaction step(database);
     database.run(kSteps.at(static_cast<std::size_t>(version)));
     database.run(("PRAGMA user_version = " + std::to_string(version + 1)).c_str());

@@ -13,6 +13,12 @@ namespace unwrapd::server {
 /// Whether any version has made its tables in this file.
 bool has_tables(const Database& database);
 
+/// Throws Error{storage_failed} when they are of a later version than this program's.
+void refuse_newer(const Database& database);
+
+/// Throws Error{storage_failed} when they are of any other version.
+void require_current(const Database& database);
+
 /// Brings the tables to this version, from an empty file or one of any version before. last: the
 /// version to end at, where that is not this one. Throws Error{storage_failed} when they are of a
 /// later version.

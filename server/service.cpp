@@ -13,6 +13,7 @@
 #include "server/data_lock.hpp"
 #include "server/identity.hpp"
 #include "server/info_routes.hpp"
+#include "server/inside_error.hpp"
 #include "server/job_routes.hpp"
 #include "server/mesh_routes.hpp"
 #include "server/parts_config.hpp"
@@ -46,6 +47,7 @@ struct Service::Parts {
         queue(store, blobs, events, log,
               {.max_queue = config.limits.max_queue,
                .workers = config.workers,
+               .max_stored = config.max_stored_jobs,
                .stop = most_stopping(config)}),
         streams(events, config.limits.max_streams),
         keys(config.data, config.access.key_file),
@@ -80,9 +82,10 @@ struct Service::Parts {
     tell_state();
     tell_isolation(isolation, config, log, metrics);
     queue.recover(isolation.possible);
-    sweep_blobs(log);
-    blobs.room().on_shortage({.evict = [this] { return evict_oldest(store, mesh_store, blobs); },
-                              .bytes = [this] { return store.evictable_bytes(); }});
+    sweep_at_start(store, mesh_store, blobs, log);
+    blobs.room().on_shortage(
+        {.evict = [this] { return evict_oldest(store, mesh_store, blobs); },
+         .bytes = [this] { return store.evictable_bytes() + blobs.lost().bytes(); }});
     blobs.on_keeping({.claim = [this](const std::string& id,
                                       std::int64_t bytes) { return claim_to_keep(id, bytes); },
                       .kept =
@@ -169,13 +172,6 @@ struct Service::Parts {
         "calling webhooks", kWebhookPause, [this] { webhooks.call_due(); }, log);
     trimming.emplace(  // what large jobs leave free in the heaps of their threads
         "giving memory back", kTrimPause, [] { ::malloc_trim(0); }, log);
-  }
-
-  void sweep_blobs(const Log& log) {
-    const int removed = blobs.sweep([&](const std::string& owner) {
-      return is_mesh_id(owner) ? mesh_store.has(owner) : store.keeps_files(owner);
-    });
-    if (removed > 0) log.warning("folders of no job removed", {{"folders", removed}});
   }
 
   void tell_state() {
@@ -271,8 +267,11 @@ struct Service::Parts {
   std::jthread serving_admin;
 };
 
-Service::Service(const Config& config, const Log& log, const Duties& duties)
-    : parts_(std::make_unique<Parts>(config, log, duties)) {}
+Service::Service(const Config& config, const Log& log, const Duties& duties) try
+    : parts_(std::make_unique<Parts>(config, log, duties)) {
+} catch (const InsideError& error) {  // read by the operator alone
+  throw Error(error.code(), error.reason());
+}
 
 Service::~Service() {
   if (!parts_->serving.joinable()) return;

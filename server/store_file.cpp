@@ -1,5 +1,7 @@
 #include "server/store_file.hpp"
 
+#include <system_error>
+
 #include "core/error.hpp"
 #include "server/schema.hpp"
 
@@ -8,7 +10,10 @@ namespace unwrapd::server {
 std::filesystem::path store_in(const std::filesystem::path& data, const BlobStore& blobs) {
   std::filesystem::path file = data / kStoreFile;
   const int folders = blobs.folder_count();
-  if (folders == 0 || has_tables(Database(file))) return file;
+  if (folders == 0) return file;
+  std::error_code none;  // what is opened to be written may lose a -wal file that is damaged
+  const bool is_empty = std::filesystem::file_size(file, none) == 0 || none;
+  if (!is_empty && has_tables(Database(file, Database::Access::read))) return file;
   throw Error(
       ErrorCode::storage_failed,
       "The file " + file.string() + " is missing or empty, and " + (data / "blobs").string() +

@@ -19,9 +19,13 @@ void sweep(JobStore& store, BlobStore& blobs, std::int64_t now_ms, std::chrono::
 /// The same of stored meshes: those that were not used for so long, and that no job shares.
 void sweep(MeshStore& meshes, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep);
 
-/// Gives up the files of the job that ended first, or the mesh that is unused for longer and that
-/// no job shares; false when there is neither.
+/// Gives up what is in DIR/lost, then the files of the job that ended first, or the mesh that is
+/// unused for longer and that no job shares; false when there is nothing.
 bool evict_oldest(JobStore& store, MeshStore& meshes, BlobStore& blobs);
+
+/// Before anything else has files: BlobStore::sweep() by the rows of both, and what it has done is
+/// told.
+void sweep_at_start(JobStore& store, MeshStore& meshes, BlobStore& blobs, const Log& log);
 
 /// Sweeps, whatever the time of day is set to, and has it noted when it was.
 class Sweeper {
@@ -35,6 +39,8 @@ class Sweeper {
   void sweep_once();
 
  private:
+  void note_time();
+
   JobStore& store_;
   MeshStore& meshes_;
   BlobStore& blobs_;

@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "server/identity.hpp"
+#include "server/inside_error.hpp"
 #include "server/trace.hpp"
 #include "server/webhook_http.hpp"
 
@@ -152,7 +153,7 @@ bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
   try {
     settle(delivery, failure, now_().kept_ms());
   } catch (const Error& error) {
-    log_.error("a webhook's call was not noted", {{"reason", error.what()}});
+    log_.error("a webhook's call was not noted", {{"reason", reason_of(error)}});
   }
   return failure.empty();
 }
@@ -180,7 +181,7 @@ void Webhooks::go_on() {
   try {
     call_due();
   } catch (const Error& error) {
-    log_.error("calling webhooks failed", {{"reason", error.what()}});
+    log_.error("calling webhooks failed", {{"reason", reason_of(error)}});
   }
 }
 

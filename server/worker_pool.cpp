@@ -8,6 +8,7 @@
 
 #include "api/error_table.hpp"
 #include "server/feed_output.hpp"
+#include "server/inside_error.hpp"
 #include "server/job_input.hpp"
 #include "server/priority.hpp"
 #include "server/thread_executor.hpp"
@@ -74,7 +75,7 @@ void WorkerPool::work() {
       const std::shared_ptr<RunningJob> job = queue_.take();
       if (!job || work_on(*job, executor) == Then::leave) return;
     } catch (const std::exception& error) {  // the store: the job is run again at the next start
-      log_.error("a worker failed", {{"reason", error.what()}});
+      log_.error("a worker failed", {{"reason", reason_of(error)}});
       std::this_thread::sleep_for(kPauseAfterFailure);
     }
   }
@@ -101,8 +102,8 @@ WorkerPool::Then WorkerPool::work_on(RunningJob& job, Executor& executor) {
 
 /// In a process of its own.
 bool WorkerPool::is_apart(const JobRecord& job) const {
-  const bool suspected = job.crashes > 0 && config_.isolation.possible;
-  return config_.isolation.on || suspected;
+  const bool has_crashed = job.crashes > 0 || job.process_ends > 0;
+  return config_.isolation.on || (has_crashed && config_.isolation.possible);
 }
 
 /// From the watchdog's thread, of a job whose own goes on without hearing its stop. At the end of
@@ -174,16 +175,19 @@ std::string WorkerPool::run(const RunningJob& job, const Means& means) {
 }
 
 /// Again after a crash, which may have been an accident: the memory of the machine, an operator.
+/// Crashes under servers before this one count.
 std::string WorkerPool::run_patiently(const RunningJob& job, const Means& means) {
-  for (int crashes = 1;; ++crashes) {
+  for (int crashes = job.record.process_ends; crashes < kMaxCrashes;) {
     try {
       return run(job, means);
     } catch (const WorkerCrashed& crash) {
+      ++crashes;
+      queue_.note_process_end(job);
       log_.warning("a worker process ended",
                    {{"job", job.record.id}, {"how", crash.what()}, {"crashes", crashes}});
     }
-    if (crashes == kMaxCrashes) throw too_many_crashes();
   }
+  throw too_many_crashes();
 }
 
 JobOutcome WorkerPool::attempt(const RunningJob& job, const Means& means) {
@@ -198,7 +202,7 @@ JobOutcome WorkerPool::attempt(const RunningJob& job, const Means& means) {
                       "The memory of the server did not suffice; send a smaller mesh.");
     return ended(JobState::failed, error, job.record.id);
   } catch (const std::exception& error) {  // the owner learns nothing of our insides
-    log_.error("unhandled exception", {{"job", job.record.id}, {"reason", error.what()}});
+    log_.error("unhandled exception", {{"job", job.record.id}, {"reason", reason_of(error)}});
     return ended(JobState::failed, Error(ErrorCode::internal, "The server made a mistake."),
                  job.record.id);
   }

@@ -229,3 +229,25 @@ test("a clock that is set ten days ahead takes no result away and stops no job",
   assert.equal((await server.finished(running)).state, "succeeded");
   await server.end("SIGTERM");
 });
+
+test("a clock that is two days ahead at the next start takes no result away", async (t) => {
+  if (!existsSync(FAKETIME)) return t.skip("libfaketime is not installed");
+  const data = dataDirectory(t);
+  const clock = join(dataDirectory(t), "clock");
+  writeFileSync(clock, "+0");
+  const env = {
+    LD_PRELOAD: FAKETIME,
+    FAKETIME_TIMESTAMP_FILE: clock,
+    FAKETIME_NO_CACHE: "1",
+    FAKETIME_DONT_FAKE_MONOTONIC: "1",
+  };
+  const flags = ["--keep-seconds", "3600", "--log-level", "warning"];
+  const first = await Server.startIn(env, data, ...flags);
+  const { links } = await first.finished(await first.submit(QUICK, 5));
+  await first.end("SIGTERM");
+  writeFileSync(clock, "+2d");
+  const second = await Server.startIn(env, data, ...flags);
+  while (!second.log.includes("the time of day was set")) await sleep(5); // by the first sweep
+  assert.equal((await fetch(`${second.url}${links.result}`)).status, 200);
+  await second.end("SIGTERM");
+});

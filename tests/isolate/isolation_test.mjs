@@ -259,6 +259,30 @@ test('without --isolate a mesh ends the server once, and its neighbour is not bl
   await second.end('SIGKILL');
 });
 
+test('processes that a job has ended count over the death of the server', async (t) => {
+  const data = dataDirectory(t);
+  const endWorker = async (server) => {
+    while (children(server.process.pid).length === 0) await sleep(5);
+    const [worker] = children(server.process.pid);
+    process.kill(Number(worker), 'SIGKILL');
+    while (children(server.process.pid).includes(worker)) await sleep(5);
+  };
+  const first = await Server.start(data, '--isolate', '--log-level', 'warning');
+  const id = await first.submit(...ENDLESS);
+  for (let end = 1; end <= 2; end++) {
+    await first.iterates(id);
+    await endWorker(first);
+    while (first.log.split('a worker process ended').length - 1 < end) await sleep(5);
+  }
+  await first.end('SIGKILL');
+  const second = await Server.start(data, '--isolate');
+  await second.iterates(id);
+  await endWorker(second);
+  const job = await second.finished(id);
+  assert.deepEqual([job.state, job.problem.code, job.attempt], ['failed', 'poison', 2]);
+  await second.end('SIGTERM');
+});
+
 test('where there are no worker processes, three deaths of the server are held against a job', async (t) => {
   const data = dataDirectory(t);
   const alone = () => Server.startIn({NO_WORKER: '1'}, data);

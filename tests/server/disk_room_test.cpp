@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -102,6 +103,59 @@ TEST(DiskPause, GrowsWithEachJobInARowThatFindsTheDiskFull) {
   pause.note(false);
   pause.note(true);
   EXPECT_EQ(pause.seconds_left(), 1);
+}
+
+TEST_F(FilesOfJobs, ThatAnswerAgainCountOnceForTheOneThatIsLeft) {
+  constexpr std::int64_t kDocument = 7;
+  BlobStore blobs(dir_.path());
+  std::map<std::string, std::int64_t> told;
+  blobs.on_keeping(
+      {.kept = [&](std::string_view job, std::int64_t bytes) { told[std::string(job)] = bytes; }});
+  add_sealed(blobs, "j_1");
+  blobs.write_unsealed("j_1", kUvFile, std::string(1000, 'x'));
+  const std::int64_t first = blobs.seal("j_1");
+  EXPECT_EQ(first, blobs.room().used_bytes());
+  for (const char* again : {"j_2", "j_3"}) {
+    write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+    blobs.keep_upload("u", again);
+    ASSERT_TRUE(blobs.adopt(again, "j_1"));
+    EXPECT_EQ(blobs.bytes(again), kDocument);
+    EXPECT_EQ(blobs.bytes("j_1"), first);
+  }
+  EXPECT_EQ(blobs.room().used_bytes(), first + 2 * kDocument);
+  BlobStore restarted(dir_.path());
+  const Swept swept = restarted.sweep([](const std::string&) { return FolderFate::kept; }, 0);
+  EXPECT_EQ(swept.sharing.size(), 3U);
+  EXPECT_EQ(restarted.room().used_bytes(), first + 2 * kDocument);
+  blobs.remove("j_1");
+  EXPECT_EQ(told, (std::map<std::string, std::int64_t>{{"j_2", first}}));
+  EXPECT_EQ(blobs.room().used_bytes(), first + kDocument);
+  blobs.remove("j_2");
+  EXPECT_EQ(told["j_3"], first);
+  blobs.remove("j_3");
+  EXPECT_EQ(blobs.room().used_bytes(), 0);
+}
+
+TEST_F(FilesOfJobs, CountThoughABackupHasLinksToThem) {
+  BlobStore blobs(dir_.path());
+  add_sealed(blobs, "j_1");
+  const std::int64_t before = blobs.bytes("j_1");
+  for (const std::string_view file : {kDocumentFile, kReportFile})
+    std::filesystem::create_hard_link(blobs.path("j_1", file), dir_.path() / file);
+  EXPECT_EQ(blobs.bytes("j_1"), before);
+  EXPECT_FALSE(blobs.is_shared("j_1"));
+}
+
+TEST_F(FilesOfJobs, ThatAreMadeAgainCountForEach) {
+  BlobStore blobs(dir_.path());
+  add_sealed(blobs, "j_1");
+  write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+  blobs.keep_upload("u", "j_2");
+  ASSERT_TRUE(blobs.adopt("j_2", "j_1"));
+  const std::int64_t alone = blobs.bytes("j_2");
+  write_file(blobs.path("j_1", kReportFile), "{}");
+  EXPECT_EQ(blobs.bytes("j_1"), alone + 2);
+  EXPECT_EQ(blobs.room().used_bytes(), 2 * (alone + 2));
 }
 
 }  // namespace

@@ -101,6 +101,40 @@ TEST_F(ClockThatIsSet, IsRememberedAtTheNextStart) {
   EXPECT_EQ(next.now().kept_ms(), 50 * kDay);
 }
 
+TEST_F(ClockThatIsSet, BetweenTwoServersOfOneBootIsNotTimeThatHasPassed) {
+  times_.boot = "a";
+  finish();
+  sweeper_.sweep_once();
+  for (const std::int64_t by_ms : {2 * kDay, -5 * kDay}) {
+    set_by(by_ms);
+    pass(40'000);
+    JobStore next(path(), [this] { return times_; });
+    Sweeper sweeper(next, meshes_, blobs_, log_, std::chrono::seconds(100));
+    sweeper.sweep_once();
+    EXPECT_FALSE(next.find("j_1")->expired);
+  }
+  JobStore last(path(), [this] { return times_; });
+  EXPECT_EQ(last.now().kept_ms(), 50 * kDay + 80'000);
+  pass(21'000);
+  Sweeper(last, meshes_, blobs_, log_, std::chrono::seconds(100)).sweep_once();
+  EXPECT_TRUE(last.find("j_1")->expired) << "101 s have passed";
+}
+
+TEST_F(ClockThatIsSet, IsNotBelievedOverABootUnlessThePauseWasShort) {
+  struct Case {
+    std::int64_t day_ms, kept_ms;
+  };
+  for (const auto& [day_ms, kept_ms] :
+       {Case{2 * kDay, 0}, Case{-3 * kDay, 0}, Case{kLongestBelievedMs, kLongestBelievedMs}}) {
+    const TempDir dir;
+    Times times{.of_day_ms = 50 * kDay, .elapsed_ms = 900'000, .boot = "a"};
+    JobStore(dir.path() / "jobs.sqlite", [&] { return times; }).note_time();
+    times = {.of_day_ms = 50 * kDay + day_ms, .elapsed_ms = 20'000, .boot = "b"};
+    const JobStore next(dir.path() / "jobs.sqlite", [&] { return times; });
+    EXPECT_EQ(next.now().kept_ms(), 50 * kDay + kept_ms);
+  }
+}
+
 TEST_F(ClockThatIsSet, MayDrift) {
   set_by(kSetByMs - 1);
   EXPECT_EQ(store_.now().kept_ms(), times_.of_day_ms);

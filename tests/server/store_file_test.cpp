@@ -43,7 +43,27 @@ TEST_F(StoreFile, ThatIsLostOrEmptyTakesNoResultsWithIt) {
   EXPECT_EQ(get(id, "report")->status, 200);
 }
 
-TEST_F(StoreFile, SweepsSayHowMuchTheyRemove) {
+TEST_F(StoreFile, ThatHasItsRowsInADamagedWalKeepsThatFile) {
+  start();
+  const std::string id = submit();
+  await_state(id, "succeeded");
+  const std::filesystem::path killed = dir_.path() / "killed";  // as kill -9 would leave it
+  std::filesystem::create_directories(killed);
+  for (const char* name : {"jobs.sqlite", "jobs.sqlite-wal", "blobs", "digests-noted"})
+    std::filesystem::copy(config_.data / name, killed / name,
+                          std::filesystem::copy_options::recursive);
+  service_.reset();
+  config_.data = killed;
+  const std::filesystem::path wal = killed / "jobs.sqlite-wal";
+  std::string bytes = read_file(wal);
+  bytes.replace(0, 32, 32, 'x');
+  write_file(wal, bytes);
+  expect_refused(id);
+  ASSERT_TRUE(std::filesystem::exists(wal));
+  EXPECT_EQ(read_file(wal), bytes);
+}
+
+TEST_F(StoreFile, SweepsSayHowMuchTheySetAside) {
   start();
   service_.reset();
   for (const char* job : {"j_a", "j_b"}) make_directories(config_.data / "blobs" / job);

@@ -238,28 +238,14 @@ TEST_F(Store, WhatACrashLeavesBehindIsSwept) {
   blobs.begin_upload("j_upload");
   const auto part = blobs.path("j_known", "result.glb.part");
   File::create(part).append("half");
-  blobs.sweep([](const std::string& job) { return job == "j_known"; });
+  const Swept swept = blobs.sweep(
+      [](const std::string& job) { return job == "j_known" ? FolderFate::kept : FolderFate::gone; },
+      0);
+  EXPECT_EQ(swept.removed, 1);
   EXPECT_FALSE(std::filesystem::exists(part));
   EXPECT_TRUE(std::filesystem::exists(blobs.path("j_known", kDocumentFile)));
   EXPECT_FALSE(std::filesystem::exists(blobs.path("j_orphan", "")));
   EXPECT_TRUE(std::filesystem::is_empty(dir_.path() / "incoming"));
-}
-
-TEST_F(Store, AJobThatDoesNotStopIsLeftToTheNextStartAndNotBlamed) {
-  store_->insert(some_job("j_1"));
-  BlobStore blobs(dir_.path());
-  std::filesystem::create_directories(blobs.path("j_1", "uv.bin").parent_path());
-  EventFeed events;
-  const Log log(LogLevel::off);
-  JobQueue queue(*store_, blobs, events, log, {.stop = std::chrono::milliseconds(1)});
-  queue.recover(false);
-  const std::shared_ptr<RunningJob> job = queue.take();
-  EXPECT_FALSE(queue.drain(std::chrono::seconds(0)));
-  EXPECT_TRUE(job->stop.stop_requested());
-  EXPECT_EQ(store_->find("j_1")->state, JobState::queued);
-  queue.finish(*job, succeeded());  // too late
-  EXPECT_EQ(store_->find("j_1")->state, JobState::queued);
-  EXPECT_EQ(store_->find("j_1")->crashes, 0);
 }
 
 TEST_F(Store, TheEndOfAJobIsTellableBeforeItIsTold) {
@@ -280,20 +266,6 @@ TEST_F(Store, TheEndOfAJobIsTellableBeforeItIsTold) {
   });
   EXPECT_EQ(calls, 1);
   EXPECT_TRUE(job->feed->read(0).end);
-}
-
-TEST_F(Store, AJobAtWorkAtTenDeathsIsGivenUpThoughItWasTriedApart) {
-  store_->insert(some_job("j_1"));
-  BlobStore blobs(dir_.path());
-  const Log log(LogLevel::off);
-  for (int death = 1; death <= 10; ++death) {
-    ASSERT_EQ(store_->find("j_1")->state, JobState::queued) << death;
-    store_->take("", 1);
-    EventFeed events;
-    JobQueue(*store_, blobs, events, log, {}).recover(true);
-  }
-  EXPECT_EQ(store_->find("j_1")->state, JobState::failed);
-  EXPECT_EQ(store_->find("j_1")->problem.at("code"), "poison");
 }
 
 }  // namespace
