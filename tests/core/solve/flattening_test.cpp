@@ -26,7 +26,7 @@ class Flattening : public testing::TestWithParam<Method> {
  protected:
   static Solution solved(const Disk& disk, const SolveWatch& watch = {}) {
     SerialExecutor serial;
-    return other_method(disk, {.method = GetParam()}, watch, serial);
+    return other_method(disk, UnwrapOptions{.method = GetParam()}, watch, serial);
   }
 
   /// An answer without NaN, or an error that says what to do.
@@ -124,7 +124,8 @@ TEST_P(Flattening, GivesTheSameBytesForOneAndTwoThreads) {
   for (const TriMesh& mesh : {shapes::random_disk(25, 7), shapes::cylinder(20, 8)}) {
     const OwnedDisk d = disk_of(mesh);
     TwoThreads two;
-    const Solution a = solved(d.disk), b = other_method(d.disk, {.method = GetParam()}, {}, two);
+    const UnwrapOptions options{.method = GetParam()};
+    const Solution a = solved(d.disk), b = other_method(d.disk, options, {}, two);
     EXPECT_EQ(0, std::memcmp(a.uv.data(), b.uv.data(), a.uv.size() * sizeof(Vec2)));
     EXPECT_EQ(a.energy, b.energy);
   }
