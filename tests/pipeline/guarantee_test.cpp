@@ -160,7 +160,9 @@ TEST(Guarantee, OfNothingReportsWhatIsFlipped) {
   const Answer kept = answer(obj, {.stop = {.iterations = 10}});
   EXPECT_EQ(kept.report.distortion.flipped, 0);
   EXPECT_GT(kept.report.charts[0].mending.flips, 0);
-  EXPECT_LT(kept.report.charts[0].mending.energy_rise, 0.01);
+  // a mended map has no needles: D_angle falls from 10.1 to 7.1, the energy pays for it (ADR 0032)
+  EXPECT_LT(kept.report.distortion.angle, 8);
+  EXPECT_LT(kept.report.charts[0].mending.energy_rise, 0.03);
 }
 
 TEST(Guarantee, HoldsForThePapersModelsAndForAGlb) {
