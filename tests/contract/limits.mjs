@@ -49,10 +49,14 @@ export function tinyLimits(run, binary) {
   });
 }
 
-export function littleMemory(run, binary) {
-  const flags = ['--workers', '1', '--memory-limit', '1000', '--max-vertices', '30'];
-  return withServer(binary, flags, async ({base}) => {
+export function fewVertices(run, binary) {
+  return withServer(binary, ['--workers', '1', '--max-vertices', '30'], async ({base}) => {
     await failure(run, base, {body: meshes.glb(8), code: 'too_many_vertices', status: 413});
+  });
+}
+
+export function littleMemory(run, binary) {
+  return withServer(binary, ['--workers', '1', '--memory-limit', '1000'], async ({base}) => {
     await failure(run, base, {body: meshes.glb(2), code: 'too_much_memory', status: 413});
   });
 }

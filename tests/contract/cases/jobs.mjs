@@ -87,10 +87,15 @@ export async function preferWait(run, base) {
   run.expectEqual('the OBJ has texture coordinates', /^vt /m.test(result.body.toString()), true);
 }
 
+/** The four corners of a cell, held as seen from behind. */
+const kTurnedOver = [[0, .8, .2], [1, .2, .2], [3, .8, .8], [4, .2, .8]]
+  .map(([vertex, ...uv]) => ({vertex, uv}));
+
 /** Options that a mesh without UVs cannot be done with. */
 const kRefusedWith = {
   no_texture_coordinates: {repack_only: true},
   does_not_fit: {texels_per_unit: 1e5, resolution: 64},
+  guarantee_failed: {constraints: JSON.stringify(kTurnedOver)},
 };
 
 export async function failedJobs(run, base) {
