@@ -94,10 +94,9 @@ void note_new_maps(Layout& layout, const UnwrapOptions& options) {
   const auto& charts = layout.report.charts;
   if (const auto count = std::count_if(charts.begin(), charts.end(), is_new); count > 0)
     layout.report.notes.push_back(
-        std::to_string(count) +
-        " of the charts overlapped themselves and have new maps without overlaps, which keep as "
-        "near as they can to " +
-        kept_of(options.method) + ". energy_rise of their mending is what that took.");
+        "Charts that overlapped themselves and have a new map without overlaps: " +
+        std::to_string(count) + ". The new map keeps as near as it can to " +
+        kept_of(options.method) + "; energy_rise of the chart's mending is the cost.");
 }
 
 /// page: the position constraints of every chart of every surface.
