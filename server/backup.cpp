@@ -182,10 +182,21 @@ void check_database(const Database& database, StoreReport& report) {
   }
 }
 
+/// Whether a path is a folder or lies in it; links are resolved.
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  const fs::path inner = fs::weakly_canonical(path), outer = fs::weakly_canonical(folder);
+  return std::ranges::mismatch(outer, inner).in1 == outer.end();
+}
+
 }  // namespace
 
 StoreReport back_up(const fs::path& data, const fs::path& to) {
   require_store(data);
+  if (lies_in(to, data))
+    throw Error(ErrorCode::invalid_option,
+                to.string() +
+                    " lies in the data directory, whose unknown files the server "
+                    "removes; name a place outside of it.");
   require_current(Database(data / kStoreFile));
   const fs::path part = fs::path(to) += ".part";
   for (const fs::path& there : {to, part}) {

@@ -127,6 +127,9 @@ TEST_F(Backup, IsNotMadeOverAnythingNorRestoredIntoADirectoryInUse) {
   back_up(config_.data, backup());
   EXPECT_EQ(error_of([&] { back_up(config_.data, backup()); }).code(), ErrorCode::invalid_option);
   EXPECT_EQ(error_of([&] { restore(backup(), config_.data); }).code(), ErrorCode::storage_failed);
+  for (const char* inside : {"in", "blobs/in", "lost/in", "../data/in"})
+    EXPECT_THAT(error_of([&] { back_up(config_.data, config_.data / inside); }).what(),
+                HasSubstr("lies in the data directory"));
   stop();
   EXPECT_THAT(error_of([&] { restore(backup(), config_.data); }).what(), HasSubstr("not empty"));
   EXPECT_EQ(error_of([&] { back_up(dir_.path(), dir_.path() / "b"); }).code(),
