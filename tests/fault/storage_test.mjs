@@ -206,8 +206,8 @@ test("what is beyond a key's quota takes nobody's result away, and the same may 
   await server.end("SIGTERM");
 });
 
-test("a clock that is set ten days ahead takes no result away and stops no job", async (t) => {
-  if (!existsSync(FAKETIME)) return t.skip("libfaketime is not installed");
+/** A file that says what time of day it is ("+10d"), and the environment of a server that believes it. */
+function settableClock(t) {
   const clock = join(dataDirectory(t), "clock");
   writeFileSync(clock, "+0");
   const env = {
@@ -216,6 +216,12 @@ test("a clock that is set ten days ahead takes no result away and stops no job",
     FAKETIME_NO_CACHE: "1",
     FAKETIME_DONT_FAKE_MONOTONIC: "1",
   };
+  return { clock, env };
+}
+
+test("a clock that is set ten days ahead takes no result away and stops no job", async (t) => {
+  if (!existsSync(FAKETIME)) return t.skip("libfaketime is not installed");
+  const { clock, env } = settableClock(t);
   const server = await Server.startIn(env, dataDirectory(t), "--keep-seconds", "24", "--log-level", "warning");
   const before = await server.finished(await server.submit(QUICK, 5));
   const running = await server.submit("stop.iterations=400", 30);
@@ -233,14 +239,7 @@ test("a clock that is set ten days ahead takes no result away and stops no job",
 test("a clock that is two days ahead at the next start takes no result away", async (t) => {
   if (!existsSync(FAKETIME)) return t.skip("libfaketime is not installed");
   const data = dataDirectory(t);
-  const clock = join(dataDirectory(t), "clock");
-  writeFileSync(clock, "+0");
-  const env = {
-    LD_PRELOAD: FAKETIME,
-    FAKETIME_TIMESTAMP_FILE: clock,
-    FAKETIME_NO_CACHE: "1",
-    FAKETIME_DONT_FAKE_MONOTONIC: "1",
-  };
+  const { clock, env } = settableClock(t);
   const flags = ["--keep-seconds", "3600", "--log-level", "warning"];
   const first = await Server.startIn(env, data, ...flags);
   const { links } = await first.finished(await first.submit(QUICK, 5));
