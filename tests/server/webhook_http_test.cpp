@@ -9,6 +9,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "server/listener.hpp"
@@ -16,17 +17,31 @@
 namespace unwrapd::server {
 namespace {
 
-/// What post_webhook() says of a receiver that answers with these bytes.
+/// Reads until the sender's bytes end so, or there are no more.
+void read_until(int sender, std::string_view end) {
+  std::string all;
+  std::array<char, 4096> some{};
+  while (end.empty() || !all.ends_with(end)) {
+    const ssize_t count = ::recv(sender, some.data(), some.size(), 0);
+    if (count <= 0) return;
+    all.append(some.data(), static_cast<std::size_t>(count));
+  }
+}
+
+/// What post_webhook() says of a receiver that answers with these bytes. The receiver takes the
+/// whole request and waits for its end: a connection that is closed with bytes unread would be
+/// reset, and the sender might lose the answer.
 std::string said_of(const std::string& answer) {
   const Listener listener("127.0.0.1", 0);
   const std::jthread receiver([&] {
     std::array<pollfd, 1> door = {pollfd{listener.socket(), POLLIN, 0}};
     if (::poll(door.data(), 1, 60'000) != 1) return;
     const int client = listener.accept()->socket;
-    std::array<pollfd, 1> sender = {pollfd{client, POLLIN, 0}};
-    ::poll(sender.data(), 1, 60'000);
     ::fcntl(client, F_SETFL, 0);
+    read_until(client, "{}");
     ::send(client, answer.data(), answer.size(), MSG_NOSIGNAL);
+    ::shutdown(client, SHUT_WR);
+    read_until(client, "");
     ::close(client);
   });
   WebhookCall call;
