@@ -8,6 +8,7 @@
 #include "core/atlas/promise.hpp"
 #include "core/cancel.hpp"
 #include "core/error.hpp"
+#include "core/measure/distortion.hpp"
 #include "core/solve/hold_page.hpp"
 #include "core/solve_once.hpp"
 
@@ -16,18 +17,6 @@ namespace {
 
 constexpr double kMindsSizes = 0.01;  // lambda
 constexpr double kMostRise = 0.5;     // of a segmented chart's energy, rather than a split
-
-/// Sums in disk units as they are in mesh units, scale UV units in one disk unit.
-DistortionSums in_mesh_units(DistortionSums sums, double unit, double scale) {
-  sums.area *= unit * unit;
-  sums.uv_area *= scale * scale;
-  sums.measured *= unit * unit;
-  sums.measured_uv *= scale * scale;
-  sums.angle *= unit * unit;
-  sums.inverse *= unit * unit * (unit / scale) * (unit / scale);
-  sums.stretch *= unit * unit * (unit / scale) * (unit / scale);
-  return sums;
-}
 
 /// The energy that keeping a promise shall raise as little as it can: the method's own. Methods
 /// that draw a map from angles or scales have that of angles.
@@ -71,20 +60,18 @@ Held held_or_begun(const Chart& chart, const Disk& disk, const UnwrapOptions& op
 MappedChart finish(const Disk& disk, KeptPart part, const ChartHold& hold, const Solution& solution,
                    Executor& executor) {
   MappedChart mapped;
-  const DistortionSums own = distortion_sums(disk.rest, disk.faces, part.uv, executor);
-  const double even = std::sqrt(own.area / own.uv_area);
+  double area = 0;
+  for (const RestTriangle& rest : disk.rest) area += rest.area;
+  const double even = std::sqrt(area / uv_area(disk.rest, disk.faces, part.uv, executor));
   if (!std::isfinite(even))
     throw Error(ErrorCode::solver_failed,
                 "a chart collapsed to zero area; choose another method or initial map");
   const PageFrame frame = hold.frame.value_or(PageFrame{Vec2::Zero(), disk.unit * even});
   mapped.uv = frame.to_page(std::move(part.uv), hold.page);
   mapped.held = fixed_vertices(disk.positions.size(), hold.page);
-  mapped.sums = in_mesh_units(own, disk.unit, frame.scale);
   mapped.report = {.faces = part.chart->mesh.face_count(),
                    .vertices = part.chart->mesh.vertex_count(),
                    .boundaries = static_cast<Index>(part.chart->loops.size()),
-                   .area = mapped.sums.area,
-                   .distortion = distortion(mapped.sums),
                    .iterations = solution.iterations,
                    .stop_reason = solution.stop_reason,
                    .energy = solution.energy};

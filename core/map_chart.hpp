@@ -6,7 +6,6 @@
 
 #include "core/atlas/charts.hpp"
 #include "core/chart_watch.hpp"
-#include "core/measure/distortion.hpp"
 #include "core/solve/holds.hpp"
 
 namespace unwrapd {
@@ -16,8 +15,7 @@ struct MappedChart {
   std::shared_ptr<const Chart> chart;
   UvMap uv;  ///< in mesh units, UV area = 3D area; under position constraints the page's
   std::vector<char> held = {};  ///< one a vertex, 1: fixed by a position constraint
-  DistortionSums sums;          ///< of that map, in mesh units
-  ChartReport report;           ///< surface is left 0 for the caller to fill in
+  ChartReport report;           ///< of the solve alone: figures of the map are left to the caller
 };
 
 /// Whether a map is wanted for each value of a list, which counts for Method::hybrid alone.

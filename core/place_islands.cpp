@@ -34,8 +34,8 @@ void note_stacks(const Packed& packed, Report& report) {
 
 }  // namespace
 
-double place_islands(std::span<const Outline> outlines, const UnwrapOptions& options,
-                     Executor& executor, std::span<UvMap* const> maps, Report& report) {
+void place_islands(std::span<const Outline> outlines, const UnwrapOptions& options,
+                   Executor& executor, std::span<UvMap* const> maps, Report& report) {
   const Packed packed =
       pack(outlines, {options.resolution, options.padding, options.packing}, executor);
   double covered = 0;
@@ -49,7 +49,6 @@ double place_islands(std::span<const Outline> outlines, const UnwrapOptions& opt
   report.fill = covered / packed.pages;
   note_padding(packed, options.padding, report);
   note_stacks(packed, report);
-  return packed.placements.front().scale;
 }
 
 }  // namespace unwrapd

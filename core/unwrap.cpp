@@ -16,6 +16,8 @@
 #include "core/atlas/promise.hpp"
 #include "core/error.hpp"
 #include "core/map_chart.hpp"
+#include "core/measure/distortion.hpp"
+#include "core/measure/rest_triangle.hpp"
 #include "core/measure/seam_length.hpp"
 #include "core/place_islands.hpp"
 #include "core/repack.hpp"
@@ -33,7 +35,7 @@ struct Layout {
   std::vector<std::vector<std::shared_ptr<const Chart>>> charts;  ///< of each surface, as mapped
   std::vector<std::vector<UvMap>> islands;           ///< islands[s][k]: the map of charts[s][k]
   std::vector<std::vector<std::vector<char>>> held;  ///< held[s][k]: see MappedChart
-  DistortionSums sums;                               ///< of all charts, in mesh units
+  DistortionSums sums;  ///< of all charts, from space to the page as it is written
   Report report;
 };
 
@@ -55,7 +57,6 @@ std::vector<Layout> empty_layouts(const std::vector<Charts>& parts, std::size_t 
 
 void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
   mapped.report.surface = static_cast<Index>(surface);
-  layout.sums += mapped.sums;
   layout.report.charts.push_back(std::move(mapped.report));
   layout.charts[surface].push_back(std::move(mapped.chart));
   layout.islands[surface].push_back(std::move(mapped.uv));
@@ -115,15 +116,12 @@ std::vector<Layout> map_charts(const TakenApart& taken, const std::vector<std::v
       for (std::size_t k = 0; k < maps.size(); ++k)
         for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped));
     }
-  for (Layout& layout : layouts) {
-    layout.report.distortion = distortion(layout.sums);
-    note_new_maps(layout, options);
-  }
+  for (Layout& layout : layouts) note_new_maps(layout, options);
   return layouts;
 }
 
-/// Places every chart on the page; the maps become page UVs. Returns their common scale.
-double place(Layout& layout, const UnwrapOptions& options, Executor& executor) {
+/// Places every chart on the page; the maps become page UVs.
+void place(Layout& layout, const UnwrapOptions& options, Executor& executor) {
   std::vector<Outline> outlines;
   std::vector<UvMap*> maps;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
@@ -131,7 +129,7 @@ double place(Layout& layout, const UnwrapOptions& options, Executor& executor) {
       outlines.push_back(outline_of(*layout.charts[s][k], layout.islands[s][k]));
       maps.push_back(&layout.islands[s][k]);
     }
-  return place_islands(outlines, options, executor, maps, layout.report);
+  place_islands(outlines, options, executor, maps, layout.report);
 }
 
 /// Says where constraints reach beyond the page.
@@ -149,18 +147,16 @@ void note_charts_beyond(Layout& layout) {
 
 /// Charts under position constraints are on the page already.
 void lay_out_page(Layout& layout, const UnwrapOptions& options, Executor& executor) {
-  layout.report.fill = layout.sums.uv_area;
-  const double scale = options.constraints.empty() ? place(layout, options, executor) : 1;
-  const double density = std::sqrt(layout.sums.uv_area / layout.sums.area);
-  layout.report.texel_density = scale * density * options.resolution;
-  if (!options.constraints.empty()) note_charts_beyond(layout);
+  if (options.constraints.empty())
+    place(layout, options, executor);
+  else
+    note_charts_beyond(layout);
 }
 
-/// The promise kept in what is written; the report tells what is true there.
+/// The promise kept in what is written.
 void keep_on_page(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop) {
   auto report = layout.report.charts.begin();
   layout.report.guarantee = options.guarantee;
-  layout.report.distortion.flipped = 0;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
       Promise promise{.guarantee = options.guarantee};
@@ -168,8 +164,26 @@ void keep_on_page(Layout& layout, const UnwrapOptions& options, const std::stop_
       const Written written = keep_on_page(*layout.charts[s][k], promise, layout.islands[s][k]);
       report->distortion.flipped = written.flipped;
       report->overlaps = written.overlaps;
-      layout.report.distortion.flipped += written.flipped;
     }
+}
+
+/// Distortion and density of the triangles as they are written: rounding counts, too.
+void measure(Layout& layout, const UnwrapOptions& options, Executor& executor) {
+  auto report = layout.report.charts.begin();
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
+      const TriMesh& mesh = layout.charts[s][k]->mesh;
+      DistortionSums own = distortion_sums(flatten(mesh.positions, mesh.faces, executor),
+                                           mesh.faces, layout.islands[s][k], executor);
+      own.flipped = report->distortion.flipped;  // by exact signs
+      report->area = own.area;
+      report->distortion = distortion(own);
+      layout.sums += own;
+    }
+  const DistortionSums& sums = layout.sums;
+  layout.report.distortion = distortion(sums);
+  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * options.resolution;
+  if (!options.constraints.empty()) layout.report.fill = sums.uv_area;
 }
 
 /// What the whole atlas comes to; overlaps only where they were counted in every chart.
@@ -253,6 +267,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
     keep_on_page(layout, options, progress.stop);
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
+  for (Layout& layout : layouts) measure(layout, options, job);
   std::vector<Unwrapped> maps;
   for (Layout& layout : layouts)
     maps.push_back(put_back(surfaces, *taken.all, std::move(layout), progress.stop));

@@ -133,7 +133,7 @@ function flipsByOtherFans({ format, bytes }) {
 }
 
 /** Bytes of the largest file whose answer is counted: exact arithmetic takes minutes on large ones. */
-const mostCounted = Number(process.env.UNWRAPD_SWEEP_BYTES ?? 60_000);
+const mostCounted = Number(process.env.SWEEP_BYTES ?? 60_000);
 
 /** What the report says of an answer that is not so in the file. */
 async function untrueFigures(answer) {
@@ -143,7 +143,7 @@ async function untrueFigures(answer) {
   } catch (error) {
     return [String(error)];
   }
-  const { distortion, fill, pages, overlaps } = answer.report;
+  const { distortion, fill, pages, overlaps, texel_density: density } = answer.report;
   const untrue = [];
   const expect = (name, told, found, by) => {
     if (!(Math.abs(told - found) <= by)) untrue.push(`${name}: told ${told}, found ${found}`);
@@ -154,8 +154,9 @@ async function untrueFigures(answer) {
   expect("triangles without area that span others", 0, counted.stray, 0);
   expect("overlaps", overlaps, counted.overlaps, 0);
   if (counted.overlaps === 0) expect("fill", fill, counted.covered / pages, 1e-5);
-  for (const figure of ["angle", "area"])
-    expect(`D_${figure}`, distortion[figure], counted.distortion[figure], 1e-4 * distortion[figure]);
+  for (const figure of ["angle", "area", "stretch"])
+    expect(figure, distortion[figure], counted.distortion[figure], 1e-6 * distortion[figure]);
+  expect("texel_density", density, 1024 * counted.density, 1e-6 * density);
   return untrue;
 }
 

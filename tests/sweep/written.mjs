@@ -186,9 +186,12 @@ function liesOnAnEdge(uv, edges) {
   return points.length === 1 || (points.length === 2 && edges.has([...points].sort().join(" ")));
 }
 
-/** D_angle and D_area (Sec. 6 of the paper) from the Frobenius norm and |determinant| of each map. */
+/**
+ * D_angle and D_area (Sec. 6 of the paper) from the Frobenius norm and |determinant| of each map;
+ * stretch is the root mean square of the inverse singular values at equal areas.
+ */
 function distortionOf(triangles) {
-  const sum = { area: 0, image: 0, inverse: 0, angle: 0 };
+  const sum = { area: 0, image: 0, inverse: 0, angle: 0, stretch: 0 };
   for (const { at, uv } of triangles) {
     const [u, v] = [minus(at[1], at[0]), minus(at[2], at[0])];
     const [p, q] = [minus(uv[1], uv[0]), minus(uv[2], uv[0])].map((d) => d.map((x) => x * STEP));
@@ -201,15 +204,27 @@ function distortionOf(triangles) {
     sum.area += area;
     sum.image += area * det;
     sum.inverse += area / det;
-    sum.angle += (area * (dot(first, first) + dot(second, second))) / det;
+    const norm = dot(first, first) + dot(second, second);
+    sum.angle += (area * norm) / det;
+    sum.stretch += (area * norm) / det ** 2 / 2;
   }
-  return { angle: sum.angle / sum.area, area: 1 + (sum.image * sum.inverse) / sum.area ** 2 };
+  return {
+    angle: sum.angle / sum.area,
+    area: 1 + (sum.image * sum.inverse) / sum.area ** 2,
+    stretch: Math.sqrt(sum.image * sum.stretch) / sum.area,
+  };
+}
+
+/** Of what has an area in space, the length on the page for one in space, by areas. */
+function densityOf(triangles) {
+  const total = (of) => triangles.reduce((sum, triangle) => sum + of(triangle), 0);
+  return STEP * Math.sqrt(total(({ uv }) => Math.abs(turn(...uv)) / 2) / total(({ at }) => areaInSpace(at)));
 }
 
 /**
  * Counts over all triangles: flipped ones; `lost`, without area on the page though they have some in
  * space; `stray`, without area on the page but not on an edge or point of others; overlapping
- * pairs; the area that is covered; D.
+ * pairs; the area that is covered; D and stretch; the density.
  */
 export function measure(triangles) {
   const all = distinct(triangles);
@@ -227,5 +242,6 @@ export function measure(triangles) {
     overlaps: overlappingPairs(up.map(({ uv }) => uv)),
     covered: up.reduce((sum, { uv }) => sum + turn(...uv), 0) * (STEP ** 2 / 2),
     distortion: distortionOf(all.filter((face, t) => signs[t] !== 0 && !isThin(face))),
+    density: densityOf(all.filter(({ at }) => !isFlat(at, reach))),
   };
 }
