@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kOfTheServer = 32;  // stores, listeners, bells, folders
 constexpr std::int64_t kOfARequest = 3;    // a file, its digests, the folder of both
-constexpr std::int64_t kOfAWorker = 12;    // a mesh with buffers, its results, a process' pipes
+constexpr std::int64_t kOfAWorker = 13;    // a mesh with buffers, its results, two processes
 constexpr std::int64_t kFewestParts = 4;   // at least a quarter is for connections
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <memory>
 
 #include "api/error_table.hpp"
 #include "server/blob_store.hpp"
@@ -163,11 +164,6 @@ class Conversation {
   AnswerFiles files_;
 };
 
-void send_limits(WorkerProcess& worker, const SandboxLimits& limits) {
-  BytePacker bytes;
-  worker.send(bytes.add(limits).take());
-}
-
 void send_asset(Conversation& worker, const asset::Input& input) {
   worker.send(FrameKind::document, {}, input.document);
   for (const auto& [uri, bytes] : input.buffers) worker.send(FrameKind::buffer, uri, bytes);
@@ -180,6 +176,31 @@ class NoOutput final : public JobOutput {
   void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
   void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
 };
+
+/// A worker process that tell() has told all of a job: one that has waited for it or else a new
+/// one. That a process ends before it has all of a job is not that job's doing; it may have ended
+/// while it waited.
+template <class Tell>
+std::unique_ptr<WorkerProcess> worker_on(const Isolation& isolation, const api::Limits& limits,
+                                         const Stopping& stopping, const Tell& tell) {
+  const auto told = [&](StartedWorker started) {
+    auto worker = std::make_unique<WorkerProcess>(std::move(started), stopping);
+    NoOutput none;
+    Conversation conversation(*worker, none, isolation.memory_bytes);
+    conversation.await_ready();
+    tell(conversation);
+    conversation.send(FrameKind::begin, {}, {});
+    return worker;
+  };
+  auto spare = isolation.spares ? isolation.spares->take() : std::nullopt;
+  try {
+    if (spare) return told(std::move(*spare));
+  } catch (const WorkerCrashed&) {
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::internal) throw;
+  }
+  return told(StartedWorker(isolation.program, sandbox_limits(limits, isolation)));
+}
 
 /// Calls use(stop token), which needs a worker process. Throws Error{internal} when there is none.
 template <class Use>
@@ -203,8 +224,8 @@ void try_out(Use use) {
 
 void check_isolation(const Isolation& isolation) {
   try_out([&](const std::stop_token& stop) {
-    WorkerProcess worker(isolation.program, {stop, isolation.grace});
-    send_limits(worker, sandbox_limits({}, isolation));
+    WorkerProcess worker(StartedWorker(isolation.program, sandbox_limits({}, isolation)),
+                         {stop, isolation.grace});
     NoOutput none;
     Conversation(worker, none, isolation.memory_bytes).await_ready();
   });
@@ -232,40 +253,45 @@ std::string why_not(const Isolation& isolation) {
 #endif
 }
 
+std::shared_ptr<SpareWorkers> spare_workers(int count, const api::Limits& limits,
+                                            const Isolation& isolation) {
+  const auto start = [program = isolation.program, bounds = sandbox_limits(limits, isolation)] {
+    return StartedWorker(program, bounds);
+  };
+  return std::make_shared<SpareWorkers>(count, start);
+}
+
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
                              const api::Limits& limits, const Isolation& isolation) {
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - task.began;
-  WorkerProcess worker(isolation.program, {task.stop, isolation.grace, isolation.on_kill});
-  send_limits(worker, sandbox_limits(limits, isolation));
-  Conversation conversation(worker, output, isolation.memory_bytes, map_count(task.record));
-  conversation.await_ready();
-  const WorkerTask shape{.limits = limits,
-                         .memory_bytes = isolation.memory_bytes,
-                         .queue_ms = task.queue_ms,
-                         .elapsed_ms = elapsed.count()};
-  conversation.send(FrameKind::task, {}, pack_task(shape, task.record));
-  send_asset(conversation, input);
-  conversation.send(FrameKind::begin, {}, {});
-  return conversation.listen();
+  const auto tell = [&](Conversation& conversation) {
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - task.began;
+    const WorkerTask shape{.limits = limits,
+                           .memory_bytes = isolation.memory_bytes,
+                           .queue_ms = task.queue_ms,
+                           .elapsed_ms = elapsed.count()};
+    conversation.send(FrameKind::task, {}, pack_task(shape, task.record));
+    send_asset(conversation, input);
+  };
+  const auto worker =
+      worker_on(isolation, limits, {task.stop, isolation.grace, isolation.on_kill}, tell);
+  return Conversation(*worker, output, isolation.memory_bytes, map_count(task.record)).listen();
 }
 
 std::string render_isolated(const Rendering& rendering, const RenderingInput& input,
                             const std::stop_token& stop, const api::Limits& limits,
                             const Isolation& isolation) {
-  WorkerProcess worker(isolation.program, {stop, isolation.grace});
-  send_limits(worker, sandbox_limits(limits, isolation));
+  const auto tell = [&](Conversation& conversation) {
+    const WorkerTask shape{
+        .limits = limits, .memory_bytes = isolation.memory_bytes, .rendering = rendering};
+    conversation.send(FrameKind::task, {}, pack_task(shape, input.record));
+    send_asset(conversation, input.asset);
+    conversation.send(FrameKind::uvs, {}, input.uvs);
+    conversation.send(FrameKind::report, {}, input.report);
+  };
+  const auto worker = worker_on(isolation, limits, {stop, isolation.grace}, tell);
   NoOutput none;
-  Conversation conversation(worker, none, isolation.memory_bytes);
-  conversation.await_ready();
-  const WorkerTask shape{
-      .limits = limits, .memory_bytes = isolation.memory_bytes, .rendering = rendering};
-  conversation.send(FrameKind::task, {}, pack_task(shape, input.record));
-  send_asset(conversation, input.asset);
-  conversation.send(FrameKind::uvs, {}, input.uvs);
-  conversation.send(FrameKind::report, {}, input.report);
-  conversation.send(FrameKind::begin, {}, {});
-  return conversation.listen_for_file();
+  return Conversation(*worker, none, isolation.memory_bytes).listen_for_file();
 }
 
 }  // namespace unwrapd::server

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
@@ -17,6 +18,7 @@
 #include "server/job_output.hpp"
 #include "server/rendering.hpp"
 #include "server/run_job.hpp"
+#include "server/spare_workers.hpp"
 
 namespace unwrapd::server {
 
@@ -34,7 +36,8 @@ struct Isolation {
   int threads = 1;                                    ///< of a job
   std::chrono::seconds grace{5};                      ///< for a process that was told to stop
   std::string program = {};                           ///< what --job-worker starts
-  std::function<void()> on_kill = {};  ///< called when one has not ended within its grace
+  std::function<void()> on_kill = {};         ///< called when one has not ended within its grace
+  std::shared_ptr<SpareWorkers> spares = {};  ///< for the jobs to come
 };
 
 /// Throws Error{internal} when no worker process can be started and locked in on this machine.
@@ -42,6 +45,10 @@ void check_isolation(const Isolation& isolation);
 
 /// Why jobs cannot have processes here, in words; empty when they can.
 std::string why_not(const Isolation& isolation);
+
+/// As many processes as are given, for jobs and files to come under these limits.
+std::shared_ptr<SpareWorkers> spare_workers(int count, const api::Limits& limits,
+                                            const Isolation& isolation);
 
 /// run_job() in a process of its own. Throws what that throws, and WorkerCrashed.
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,

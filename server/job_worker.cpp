@@ -25,7 +25,8 @@ constexpr int kSocket = STDIN_FILENO;
 constexpr std::int64_t kAnyBytes = std::int64_t{1} << 40;  // the server is trusted
 constexpr std::int64_t kCacheShare = 4;  // of the memory, for what the charts of a job share
 
-[[noreturn]] void gone() { throw Error(ErrorCode::internal, "The server is gone."); }
+/// The server is, or has no job for us: nobody is left to be told.
+[[noreturn]] void gone() { std::_Exit(EXIT_FAILURE); }
 
 void send_all(std::string_view bytes) {
   while (!bytes.empty()) {
@@ -115,7 +116,9 @@ bool keep(Frame& frame, ReceivedJob& job) {
   return frame.kind != FrameKind::begin;
 }
 
-ReceivedJob receive_job() {
+/// A process that is told to stop before its job has begun ends, so that it is no job that does.
+ReceivedJob receive_job(const std::stop_token& stop) {
+  const std::stop_callback end_at_stop(stop, gone);
   ReceivedJob job;
   for (Frame frame; receive_frame(receive_all, kAnyBytes, frame);)
     if (!keep(frame, job)) return job;
@@ -191,7 +194,7 @@ void run(const ReceivedJob& job, Crew& crew, const Duties& duties) {
 }
 
 void work(Crew& crew, const Duties& duties) {
-  const ReceivedJob job = receive_job();
+  const ReceivedJob job = receive_job(crew.stop.get_token());
   if (job.task.rendering) return draw(job, crew, duties);
   run(job, crew, duties);
 }

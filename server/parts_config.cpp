@@ -50,6 +50,7 @@ Isolation isolation_of(const Config& config, const SolverCache& cache, const Dut
     isolation.why_not = isolation.program.empty() ? "There is no program." : why_not(isolation);
   isolation.possible = isolation.why_not.empty();
   isolation.on = isolation.possible && config.isolate != Isolate::off;
+  if (isolation.on) isolation.spares = spare_workers(config.workers, config.limits, isolation);
   return isolation;
 }
 

@@ -1,15 +1,14 @@
 #pragma once
-// A worker process at the other end of a socket. When the stop token says so it gets SIGTERM and,
-// should it not end then, SIGKILL; it never outlives this object.
-
-#include <sys/types.h>
+// A worker process at work on a job. When the stop token says so it gets SIGTERM and, should it not
+// end then, SIGKILL.
 
 #include <chrono>
 #include <functional>
 #include <optional>
 #include <stop_token>
-#include <string>
 #include <string_view>
+
+#include "server/started_worker.hpp"
 
 namespace unwrapd::server {
 
@@ -22,8 +21,8 @@ struct Stopping {
 
 class WorkerProcess {
  public:
-  /// Starts program --job-worker with an empty environment. Throws Error{internal} when it cannot.
-  WorkerProcess(const std::string& program, Stopping stopping);
+  /// Throws Error{internal} when too many files are open.
+  WorkerProcess(StartedWorker worker, Stopping stopping);
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
   ~WorkerProcess();
@@ -43,10 +42,9 @@ class WorkerProcess {
   [[nodiscard]] int patience_ms() const;
   void await(short events);
 
+  StartedWorker worker_;
   const Stopping stopping_;
-  int socket_ = -1;
-  int stopped_ = -1;  // an eventfd: readable once a stop was requested
-  pid_t process_ = -1;
+  const int stopped_;  // an eventfd: readable once a stop was requested
   std::optional<std::chrono::steady_clock::time_point> kill_at_;  // set by SIGTERM
   bool killed_ = false;
   std::optional<std::stop_callback<std::function<void()>>> on_stop_;

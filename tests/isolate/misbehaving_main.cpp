@@ -46,10 +46,17 @@ void send(server::FrameKind kind, std::string_view name, std::string_view bytes)
       kind, name, bytes);
 }
 
+[[noreturn]] void hang() {
+  while (true) ::usleep(1000);
+}
+
+void tell_of_work() {
+  send(server::FrameKind::stage, {}, server::pack(unwrapd::StageEvent{.fraction = 0.1}));
+}
+
 /// Events without end, however often it is told to stop.
 [[noreturn]] void flood() {
-  while (true)
-    send(server::FrameKind::stage, {}, server::pack(unwrapd::StageEvent{.fraction = 0.1}));
+  while (true) tell_of_work();
 }
 
 /// Many, on small stacks, so that the bound of the memory does not stop them.
@@ -81,7 +88,7 @@ void claim(std::string_view code) {
   std::string text(8, '\0');
   text[0] = 1;
   send(server::FrameKind::failed, code, text + "x" + std::string(8, '\0'));
-  while (true) ::usleep(1000);
+  hang();
 }
 
 void write_many(server::JobOutput& output) {
@@ -97,9 +104,11 @@ const std::map<std::string, Deed> kDeeds = {
     {"abort", [](auto&) { std::abort(); }},
     {"leave", [](auto&) { std::_Exit(3); }},
     {"memory", [](auto&) { eat_memory(); }},
-    {"hang",
+    {"hang", [](auto&) { hang(); }},
+    {"stay",
      [](auto&) {
-       while (true) ::usleep(1000);
+       tell_of_work();
+       hang();
      }},
     {"connect", [](auto&) { ::socket(AF_INET, SOCK_STREAM, 0); }},
     {"fork", [](auto&) { ::fork(); }},
@@ -118,6 +127,8 @@ const std::map<std::string, Deed> kDeeds = {
     {"unauthorized", [](auto&) { claim("unauthorized"); }},
     {"time_limit", [](auto&) { claim("time_limit"); }},
     {"no_such_code", [](auto&) { claim("no_such_code"); }},
+    {"tell_process",
+     [](auto&) { throw Error(ErrorCode::solver_failed, std::to_string(::getpid())); }},
     {"files", write_many},
     {"twice",
      [](auto& output) {

@@ -1,0 +1,112 @@
+// Worker processes that wait for their jobs: what they may is bounded before a job comes, each is for
+// one job, and what becomes of them while they wait is held against none. UNWRAPD names the server of
+// misbehaving_main.cpp.
+import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
+import test, {after, before} from 'node:test';
+import {setTimeout as sleep} from 'node:timers/promises';
+
+import {request} from '../contract/http.mjs';
+import * as meshes from '../contract/meshes.mjs';
+import {startServer, withServer} from '../contract/server.mjs';
+import {hasEnded, niceness, spares} from './processes.mjs';
+
+const kWorkers = 2;
+const kFlags = ['--isolate', '--workers', String(kWorkers), '--threads', '3', '--memory-limit', '200000000',
+                '--max-job-seconds', '40'];
+const kMegabyte = 1024 * 1024;
+
+let server;
+before(async () => (server = await startServer(process.env.UNWRAPD, kFlags)));
+after(() => server.stop());
+
+const waiting = () => spares(server.pid, kWorkers);
+
+/** Sends an OBJ as a job and resolves to the job once it is final. */
+async function done(body) {
+  const headers = {'Content-Type': 'model/obj', Prefer: 'wait=60'};
+  const answer = await request(server.base, {method: 'POST', path: '/v1/jobs', headers, body});
+  assert.equal(answer.status, 200, answer.body.toString());
+  return JSON.parse(answer.body.toString());
+}
+
+let count = 0;
+
+/** A mesh that no job has had: a repeated job takes no process. */
+const another = () => Buffer.concat([Buffer.from(`# ${++count}\n`), meshes.obj()]);
+
+/** Does a job, and resolves to the process that has done it. */
+async function processOfAJob() {
+  const job = await done(Buffer.concat([Buffer.from('# do tell_process\n'), another()]));
+  assert.equal(job.problem.code, 'solver_failed');
+  return job.problem.detail;
+}
+
+test('a process waits for each worker, with the bounds that its job will have', async () => {
+  for (const pid of await waiting()) {
+    const limits = readFileSync(`/proc/${pid}/limits`, 'utf8');
+    const of = (what) => limits.match(new RegExp(`^${what} +(\\S+) +(\\S+)`, 'm')).slice(1).map(Number);
+    const memory = 200_000_000 + 256 * kMegabyte + 3 * 80 * kMegabyte;
+    assert.deepEqual(of('Max address space'), [memory, memory]);
+    assert.deepEqual(of('Max cpu time'), [300, 300]);
+    assert.deepEqual(of('Max open files'), [3, 3]);
+    assert.deepEqual(of('Max file size'), [0, 0]);
+    assert.match(readFileSync(`/proc/${pid}/status`, 'utf8'), /^NoNewPrivs:\s+1$/m);
+    assert.equal(readFileSync(`/proc/${pid}/oom_score_adj`, 'utf8'), '1000\n');
+    assert.equal(niceness(pid), Math.min(niceness(server.pid) + 10, 19), 'work on meshes yields to answers');
+  }
+});
+
+test('a job is done by a process that waited, and each by another', async () => {
+  const used = new Set();
+  for (let job = 1; job <= 4; job++) {
+    const ready = await waiting();
+    const pid = await processOfAJob();
+    assert.ok(ready.includes(pid), `${pid} is none of ${ready}`);
+    assert.equal(used.has(pid), false);
+    used.add(pid);
+  }
+});
+
+test('a file is made by a process that waited; the next waits longer than the thread that wanted it', async () => {
+  const {id} = await done(another());
+  const before = await waiting();
+  const answer = await request(server.base, {path: `/v1/jobs/${id}/preview.png?size=64`});
+  assert.equal(answer.status, 200);
+  const later = await waiting();
+  assert.equal(later.filter((pid) => before.includes(pid)).length, kWorkers - 1);
+  for (let job = 1; job <= kWorkers; job++) assert.ok(later.includes(await processOfAJob()));
+});
+
+const kWork = {
+  job: async () => assert.equal((await done(another())).state, 'succeeded'),
+  file: async () => {
+    const {id} = await done(another());
+    assert.equal((await request(server.base, {path: `/v1/jobs/${id}/layout.png`})).status, 200);
+  },
+};
+
+for (const [work, doIt] of Object.entries(kWork))
+  for (const signal of ['SIGKILL', 'SIGTERM'])
+    test(`a process that ends by ${signal} while it waits is not held against a ${work}`, async () => {
+      const doomed = await waiting();
+      for (const pid of doomed) process.kill(Number(pid), signal);
+      while (!doomed.every(hasEnded)) await sleep(5);
+      for (let time = 1; time <= kWorkers; time++) await doIt();
+      assert.doesNotMatch(server.log(), /a worker process ended/);
+    });
+
+test('no process outlives its server', async () => {
+  let left;
+  await withServer(process.env.UNWRAPD, kFlags,
+                   async ({pid}) => (left = await spares(pid, kWorkers)));
+  assert.deepEqual(left.filter((pid) => !hasEnded(pid)), []);
+});
+
+test('no process outlives a server that is killed', async (t) => {
+  const other = await startServer(process.env.UNWRAPD, kFlags);
+  t.after(() => other.stop());
+  const left = await spares(other.pid, kWorkers);
+  process.kill(other.pid, 'SIGKILL');
+  while (!left.every(hasEnded)) await sleep(5);
+});
