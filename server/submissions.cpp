@@ -91,7 +91,8 @@ JobRecord Submissions::begin_job(const Request& request, const std::string& uplo
   job.trace = current_trace();
   job.synchronous = synchronous;
   job.webhook = request.header("Unwrapd-Webhook");
-  if (!job.webhook.empty()) static_cast<void>(parse_webhook(job.webhook, webhooks_));
+  if (request.headers.contains("Unwrapd-Webhook"))
+    static_cast<void>(parse_webhook(job.webhook, webhooks_));
   return job;
 }
 

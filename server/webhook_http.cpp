@@ -121,6 +121,7 @@ std::string post(Client& client, const WebhookCall& call, const std::stop_token&
   request.path = call.url.target;
   for (const auto& [name, value] : call.headers) request.set_header(name.c_str(), value);
   request.set_header("Content-Type", "application/json");
+  request.set_header("User-Agent", "unwrapd/" UNWRAPD_VERSION);
   request.body = call.body;
   request.response_handler = [&](const httplib::Response& answer) {
     status = answer.status;

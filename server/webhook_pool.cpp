@@ -6,12 +6,17 @@
 namespace unwrapd::server {
 namespace {
 
-constexpr std::size_t kHostsRemembered = 1024;
+constexpr std::size_t kRemembered = 1024;
+
+/// Of so many places, those that this owner may have: where no keys are asked for, all are one.
+int share(int places, const std::string& owner) {
+  return owner.empty() ? places : places - places / 4;
+}
 
 }  // namespace
 
-WebhookPool::WebhookPool(int at_once, int per_host, std::function<void()> freed)
-    : at_once_(at_once), per_host_(per_host), freed_(std::move(freed)) {
+WebhookPool::WebhookPool(int at_once, int per_receiver, std::function<void()> freed)
+    : at_once_(at_once), per_receiver_(per_receiver), freed_(std::move(freed)) {
   threads_.reserve(static_cast<std::size_t>(at_once));
   for (int i = 0; i < at_once; ++i)
     threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
@@ -27,27 +32,43 @@ bool WebhookPool::is_full() const {
   return taken_ >= at_once_;
 }
 
-bool WebhookPool::is_proven(const std::string& host) const {
-  return std::ranges::find(proven_, host) != proven_.end();
+bool WebhookPool::is_proven(const WebhookReceiver& receiver) const {
+  return std::ranges::find(proven_, receiver) != proven_.end();
 }
 
-bool WebhookPool::has_room(const std::string& host) const {
+template <class Is>
+int WebhookPool::count(Is&& is) const {
+  int found = 0;
+  for (const auto& [receiver, calls] : calls_)
+    if (is(receiver)) found += calls;
+  return found;
+}
+
+int WebhookPool::of_owner(const std::string& owner) const {
   const std::lock_guard lock(mutex_);
-  const auto known = of_host_.find(host);
-  const int of_host = known == of_host_.end() ? 0 : known->second;
-  if (is_proven(host)) return taken_ < at_once_ && of_host < per_host_;
-  int of_unproven = 0;
-  for (const auto& [name, count] : of_host_)
-    if (!is_proven(name)) of_unproven += count;
-  return taken_ < at_once_ && of_host == 0 && of_unproven < at_once_ / 2;
+  return count([&](const WebhookReceiver& other) { return other.owner == owner; });
 }
 
-void WebhookPool::begin(const std::string& host, Call call) {
+bool WebhookPool::has_room(const WebhookReceiver& receiver) const {
+  const std::lock_guard lock(mutex_);
+  const auto is_ours = [&](const WebhookReceiver& other) { return other.owner == receiver.owner; };
+  const auto is_unproven = [&](const WebhookReceiver& other) { return !is_proven(other); };
+  if (taken_ >= at_once_ || count(is_ours) >= share(at_once_, receiver.owner)) return false;
+  const auto known = calls_.find(receiver);
+  const int of_receiver = known == calls_.end() ? 0 : known->second;
+  if (is_proven(receiver)) return of_receiver < per_receiver_;
+  const int places = at_once_ / 2;
+  const int ours =
+      count([&](const WebhookReceiver& other) { return is_ours(other) && is_unproven(other); });
+  return of_receiver == 0 && count(is_unproven) < places && ours < share(places, receiver.owner);
+}
+
+void WebhookPool::begin(const WebhookReceiver& receiver, Call call) {
   {
     const std::lock_guard lock(mutex_);
-    ++of_host_[host];
+    ++calls_[receiver];
     ++taken_;
-    waiting_.push_back({host, std::move(call)});
+    waiting_.push_back({receiver, std::move(call)});
   }
   arrived_.notify_one();
 }
@@ -59,19 +80,19 @@ void WebhookPool::work(const std::stop_token& stop) {
     waiting_.pop_front();
     lock.unlock();
     const bool answered = task.call(stop);
-    end(task.host, answered);
+    end(task.receiver, answered);
     freed_();
     lock.lock();
   }
 }
 
-void WebhookPool::end(const std::string& host, bool answered) {
+void WebhookPool::end(const WebhookReceiver& receiver, bool answered) {
   const std::lock_guard lock(mutex_);
   --taken_;
-  if (--of_host_[host] == 0) of_host_.erase(host);
-  proven_.remove(host);
-  if (answered) proven_.push_front(host);
-  if (proven_.size() > kHostsRemembered) proven_.pop_back();
+  if (--calls_[receiver] == 0) calls_.erase(receiver);
+  proven_.remove(receiver);
+  if (answered) proven_.push_front(receiver);
+  if (proven_.size() > kRemembered) proven_.pop_back();
 }
 
 }  // namespace unwrapd::server

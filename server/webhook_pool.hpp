@@ -1,9 +1,11 @@
 #pragma once
-// Threads that call webhooks: a few calls at once, and of these fewer to one host. A host is proven
-// when it has answered its last call. Those that are not have one call each, and half of all places
-// together: so receivers that hang, however many, delay neither proven ones nor, while they are
-// few, new ones.
+// Threads that call webhooks: a few calls at once, and of these fewer to one receiver, which is a
+// host as one owner of jobs calls it. A receiver is proven when it has answered its last call.
+// Those that are not have one call each, and half of all places together; one owner has three
+// quarters of either at most, where there are several. So receivers that hang, however many, delay
+// neither proven ones nor, while they are few or another owner's, new ones.
 
+#include <compare>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -17,45 +19,57 @@
 
 namespace unwrapd::server {
 
+/// Ordered, for maps.
+struct WebhookReceiver {
+  std::string owner;
+  std::string host;
+  auto operator<=>(const WebhookReceiver&) const = default;
+};
+
 /// Thread-safe.
 class WebhookPool {
  public:
-  /// One call; it ends early when the token asks for it. Whether the host has answered.
+  /// One call; it ends early when the token asks for it. Whether the receiver has answered.
   using Call = std::function<bool(const std::stop_token& stop)>;
 
-  /// at_once: calls in all; per_host: of these, to one proven host; freed: called after each, by
-  /// its thread, when its place is free again.
-  WebhookPool(int at_once, int per_host, std::function<void()> freed);
+  /// at_once: calls in all; per_receiver: of these, to one that is proven; freed: called after
+  /// each, by its thread, when its place is free again.
+  WebhookPool(int at_once, int per_receiver, std::function<void()> freed);
   WebhookPool(const WebhookPool&) = delete;
   WebhookPool& operator=(const WebhookPool&) = delete;
   /// Asks all calls to end, and waits for them.
   ~WebhookPool();
 
   [[nodiscard]] bool is_full() const;
-  /// Whether this host may be called now.
-  [[nodiscard]] bool has_room(const std::string& host) const;
+  /// Whether this receiver may be called now.
+  [[nodiscard]] bool has_room(const WebhookReceiver& receiver) const;
+  /// Calls of this owner that wait for a thread or are being made.
+  [[nodiscard]] int of_owner(const std::string& owner) const;
   /// Begins a call, for which there must be room.
-  void begin(const std::string& host, Call call);
+  void begin(const WebhookReceiver& receiver, Call call);
 
  private:
   struct Task {
-    std::string host;
+    WebhookReceiver receiver;
     Call call;
   };
   void work(const std::stop_token& stop);
-  void end(const std::string& host, bool answered);
-  [[nodiscard]] bool is_proven(const std::string& host) const;
+  void end(const WebhookReceiver& receiver, bool answered);
+  [[nodiscard]] bool is_proven(const WebhookReceiver& receiver) const;
+  /// Calls to those receivers for which is() holds.
+  template <class Is>
+  [[nodiscard]] int count(Is&& is) const;
 
   const int at_once_;
-  const int per_host_;
+  const int per_receiver_;
   const std::function<void()> freed_;
   mutable std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::deque<Task> waiting_;
-  std::map<std::string, int> of_host_;  // waiting or being made
-  int taken_ = 0;                       // the same, in all
-  std::list<std::string> proven_;       // hosts, the last to answer first
-  std::vector<std::jthread> threads_;   // last: they use the others
+  std::map<WebhookReceiver, int> calls_;  // waiting or being made
+  int taken_ = 0;                         // the same, in all
+  std::list<WebhookReceiver> proven_;     // the last to answer first
+  std::vector<std::jthread> threads_;     // last: they use the others
 };
 
 }  // namespace unwrapd::server

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "core/error.hpp"
 #include "server/identity.hpp"
@@ -17,7 +18,7 @@ namespace {
 constexpr std::string_view kSecretPrefix = "whsec_";
 constexpr int kMaxTries = 10;
 constexpr int kAtOnce = 16;
-constexpr int kPerHost = 2;
+constexpr int kPerReceiver = 2;
 constexpr std::int64_t kMsPerSecond = 1000;
 constexpr std::int64_t kLongestPauseMs = 3'600'000;
 
@@ -60,7 +61,7 @@ Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret
       log_(log),
       now_(std::move(now)),
       database_(store),
-      pool_(kAtOnce, kPerHost, [this] { go_on(); }) {
+      pool_(kAtOnce, kPerReceiver, [this] { go_on(); }) {
   try {
     put_forward();
   } catch (const Error& error) {
@@ -77,15 +78,24 @@ void Webhooks::put_forward() {
       .run();
 }
 
-/// Without those that are being made.
+/// Without those that are being made; in the order of their turns.
 std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
   Statement statement(database_,
-                      "SELECT seq, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
+                      "SELECT seq, owner, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
   statement.with(now_ms);
   std::vector<Due> found;
-  while (statement.step())
-    if (!being_made_.contains(statement.number(0)))
-      found.push_back({.seq = statement.number(0), .url = statement.text(1)});
+  std::map<std::string, int> turns;
+  while (statement.step()) {
+    if (being_made_.contains(statement.number(0))) continue;
+    const std::string owner = statement.text(1);
+    const auto [turn, is_first] = turns.try_emplace(owner);
+    if (is_first) turn->second = pool_.of_owner(owner);
+    found.push_back({.seq = statement.number(0),
+                     .owner = owner,
+                     .url = statement.text(2),
+                     .turn = turn->second++});
+  }
+  std::ranges::stable_sort(found, {}, &Due::turn);
   return found;
 }
 
@@ -159,11 +169,11 @@ bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
 }
 
 void Webhooks::begin(const Due& due) {
-  const std::string host = webhook_host(due.url);
-  if (!pool_.has_room(host)) return;
+  const WebhookReceiver receiver{.owner = due.owner, .host = webhook_host(due.url)};
+  if (!pool_.has_room(receiver)) return;
   Delivery delivery = load(due.seq);
   being_made_.insert(due.seq);
-  pool_.begin(host, [this, delivery = std::move(delivery)](const std::stop_token& stop) {
+  pool_.begin(receiver, [this, delivery = std::move(delivery)](const std::stop_token& stop) {
     return make(delivery, stop);
   });
 }

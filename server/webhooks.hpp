@@ -4,7 +4,7 @@
 // loses it. Tries go on with doubled pauses, ten in all. It is signed as Standard Webhooks has it:
 // webhook-id, webhook-timestamp, and webhook-signature, the HMAC-SHA256 of both and the body under
 // a secret of the job's owner; traceparent is of the job's trace. Sixteen calls at once, two to one
-// host (webhook_pool.hpp).
+// receiver (webhook_pool.hpp); owners take turns.
 
 #include <cstdint>
 #include <filesystem>
@@ -51,14 +51,16 @@ class Webhooks {
   Webhooks(const std::filesystem::path& store, std::string server_secret, WebhookConfig config,
            const Log& log, std::function<Moment()> now);
 
-  /// Begins the calls that are due, the longest due first, as far as there is room; the others
-  /// follow when there is.
+  /// Begins the calls that are due as far as there is room: of the owner who has the fewest first,
+  /// and of its calls the one that was due first. The others follow when there is room.
   void call_due();
 
  private:
   struct Due {
     std::int64_t seq;
+    std::string owner;
     std::string url;
+    int turn;  ///< calls of its owner that come before it
   };
 
   void put_forward();

@@ -66,6 +66,7 @@ test("a webhook is called, signed, until it answers, over a kill -9", async (t) 
   for (const call of hook.calls) {
     assertSigned(call, secret);
     assert.equal(call.url, "/done?a=b");
+    assert.match(call.headers["user-agent"], /^unwrapd\/\d/);
     assert.equal(call.headers["webhook-id"], id);
     assert.deepEqual(JSON.parse(call.body), await second.job(id));
   }
@@ -99,9 +100,26 @@ test("a call is signed for its owner and tells its trace, also when the job is r
   for (const line of lines.filter(({ event }) => event !== "job removed")) assert.equal(line.trace, trace, line.event);
 });
 
+test("a receiver that hangs for one key keeps nobody else's calls waiting", async (t) => {
+  const data = dataDirectory(t);
+  const hangs = await receiver(t);
+  hangs.status = 0;
+  const answers = await receiver(t);
+  const holder = (name) => ({ Authorization: `Bearer ${execFileSync(process.env.UNWRAPD,
+    ["keys", "add", "--name", name, "--data", data], { stdio: ["ignore", "pipe", "ignore"] }).toString().trim()}` });
+  const [one, other] = [holder("one"), holder("other")];
+  const server = await Server.start(data, ...ALLOWED, "--require-keys");
+  for (const path of ["a", "b", "c", "d"]) await submit(server, `${hangs.url}&${path}`, QUICK, one);
+  await hangs.called(1);
+  await submit(server, answers.url, QUICK, other);
+  await answers.called(1);
+  assert.equal(hangs.calls.length, 1);
+  await server.end("SIGTERM");
+});
+
 test("hosts that are not allowed are refused at once", async (t) => {
   const server = await Server.start(dataDirectory(t), ...ALLOWED);
-  for (const url of ["http://127.0.0.1/", "http://example.com/", "file:///etc/passwd", "http://u@localhost/"]) {
+  for (const url of ["http://127.0.0.1/", "http://example.com/", "file:///etc/passwd", "http://u@localhost/", ""]) {
     const answer = await submit(server, url);
     assert.deepEqual([answer.status, (await answer.json()).code], [422, "webhook_refused"], url);
   }

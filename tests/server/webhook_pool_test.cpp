@@ -12,14 +12,18 @@ namespace unwrapd::server {
 namespace {
 
 constexpr int kAtOnce = 16;
-constexpr int kPerHost = 2;
+constexpr int kPerReceiver = 2;
 
 class WebhookPlaces : public testing::Test {
  protected:
   ~WebhookPlaces() override { go_.count_down(); }
 
-  void hang(const std::string& host) {
-    pool_.begin(host, [this](const std::stop_token&) {
+  static WebhookReceiver of(const std::string& host, const std::string& owner = "ours") {
+    return {.owner = owner, .host = host};
+  }
+  bool has_room(const std::string& host) { return pool_.has_room(of(host)); }
+  void hang(const std::string& host, const std::string& owner = "ours") {
+    pool_.begin(of(host, owner), [this](const std::stop_token&) {
       go_.wait();
       return false;
     });
@@ -27,34 +31,57 @@ class WebhookPlaces : public testing::Test {
   /// A call that has ended by now.
   void call(const std::string& host, bool answered) {
     const int before = ended_;
-    pool_.begin(host, [=](const std::stop_token&) { return answered; });
+    pool_.begin(of(host), [=](const std::stop_token&) { return answered; });
     while (ended_ == before) std::this_thread::yield();
   }
 
   std::latch go_{1};
   std::atomic<int> ended_ = 0;
-  WebhookPool pool_{kAtOnce, kPerHost, [this] { ++ended_; }};
+  WebhookPool pool_{kAtOnce, kPerReceiver, [this] { ++ended_; }};
 };
 
 TEST_F(WebhookPlaces, FourHostsThatHangLeaveRoomForANewOne) {
   for (const char* host : {"a", "b", "c", "d"}) {
-    EXPECT_TRUE(pool_.has_room(host));
+    EXPECT_TRUE(has_room(host));
     hang(host);
-    EXPECT_FALSE(pool_.has_room(host));
+    EXPECT_FALSE(has_room(host));
   }
-  EXPECT_TRUE(pool_.has_room("new"));
+  EXPECT_TRUE(has_room("new"));
 }
 
 TEST_F(WebhookPlaces, HostsThatHangHaveHalfOfThePlacesHoweverManyTheyAre) {
   call("proven", true);
-  for (int i = 0; i < kAtOnce / 2; ++i) hang(std::to_string(i));
-  EXPECT_FALSE(pool_.has_room("new"));
-  EXPECT_TRUE(pool_.has_room("proven"));
+  for (int i = 0; i < kAtOnce / 2; ++i) hang(std::to_string(i), std::to_string(i % 2));
+  EXPECT_FALSE(has_room("new"));
+  EXPECT_TRUE(has_room("proven"));
   hang("proven");
-  EXPECT_TRUE(pool_.has_room("proven"));
+  EXPECT_TRUE(has_room("proven"));
   hang("proven");
-  EXPECT_FALSE(pool_.has_room("proven"));
+  EXPECT_FALSE(has_room("proven"));
   EXPECT_FALSE(pool_.is_full());
+}
+
+TEST_F(WebhookPlaces, AHostThatHangsForOneOwnerIsNewToAnother) {
+  hang("host");
+  EXPECT_FALSE(has_room("host"));
+  EXPECT_TRUE(pool_.has_room(of("host", "theirs")));
+}
+
+TEST_F(WebhookPlaces, ReceiversOfOneOwnerLeavePlacesToAnother) {
+  int hanging = 0;
+  for (; has_room(std::to_string(hanging)); ++hanging) hang(std::to_string(hanging));
+  EXPECT_GE(hanging, kAtOnce / 4);
+  EXPECT_EQ(pool_.of_owner("ours"), hanging);
+  EXPECT_TRUE(pool_.has_room(of("new", "theirs")));
+}
+
+TEST_F(WebhookPlaces, ProvenReceiversOfOneOwnerLeavePlacesToAnother) {
+  for (int i = 0; i < kAtOnce; ++i) call(std::to_string(i), true);
+  int hanging = 0;
+  for (; has_room(std::to_string(hanging)); ++hanging) hang(std::to_string(hanging));
+  EXPECT_GT(hanging, kAtOnce / 2);
+  EXPECT_LT(hanging, kAtOnce);
+  EXPECT_TRUE(pool_.has_room(of("new", "theirs")));
 }
 
 TEST_F(WebhookPlaces, AHostIsWhatTheAddressNamesHoweverItIsWritten) {
@@ -70,7 +97,7 @@ TEST_F(WebhookPlaces, AHostThatFailsHasToProveItselfAgain) {
   call("host", true);
   call("host", false);
   hang("host");
-  EXPECT_FALSE(pool_.has_room("host"));
+  EXPECT_FALSE(has_room("host"));
 }
 
 }  // namespace
