@@ -1,9 +1,14 @@
 #pragma once
 // The cells of a page, the padding to its border taken off.
 
+#include <algorithm>
 #include <cmath>
 
 namespace unwrapd {
+
+/// Of the padding: masks are made in time of its cells squared, and islands between such gaps are
+/// placed to a 128th of them.
+inline constexpr int kMostPaddingCells = 128;
 
 struct PageGrid {
   double border = 0;  ///< the padding in page units, below 1/2
@@ -14,10 +19,10 @@ struct PageGrid {
   /// The padding in such cells.
   [[nodiscard]] double padding(double side) const { return border * side / (1 - 2 * border); }
 
-  /// A side of about so many cells for which the padding is a little less than whole cells: what
-  /// is rounded up to the next is lost at every gap.
+  /// A side of about so many cells, fewer where padding has many, for which the padding is a little
+  /// less than whole cells: what is rounded up to the next is lost at every gap.
   [[nodiscard]] int tight_side(int side) const {
-    const double margin = std::round(padding(side));
+    const double margin = std::min<double>(std::round(padding(side)), kMostPaddingCells);
     return margin > 0 ? static_cast<int>(std::ceil(margin / padding(1))) - 1 : side;
   }
 };

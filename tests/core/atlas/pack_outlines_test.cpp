@@ -212,5 +212,16 @@ TEST(PageGrid, GapsOfWholeCellsAreWideEnoughAndHardlyWider) {
       }
 }
 
+/// What masks cost grows with the square of it.
+TEST(PageGrid, PaddingHasFewCellsHoweverMuchOfThePageItIs) {
+  for (const double border : {0.002, 0.05, 0.1, 0.2, 0.25})
+    for (const int wanted : {512, 1024, 4096}) {
+      const PageGrid grid{border};
+      const double cells = grid.padding(grid.tight_side(wanted));
+      EXPECT_LE(std::ceil(cells), kMostPaddingCells) << border << " of " << wanted;
+      EXPECT_GT(std::ceil(cells), 0);
+    }
+}
+
 }  // namespace
 }  // namespace unwrapd
