@@ -14,6 +14,7 @@ struct FrameHead {
   std::uint64_t bytes;
 };
 constexpr std::size_t kHeadBytes = 1 + 8 + 8;
+constexpr std::size_t kShortBytes = 4096;
 constexpr std::uint64_t kPieceBytes = std::uint64_t{1} << 20;
 
 [[noreturn]] void no_frame() {
@@ -62,8 +63,11 @@ void send_frame(const SendAll& send, FrameKind kind, std::string_view name,
                 std::string_view bytes) {
   BytePacker head;
   head.add(kind).add(std::uint64_t{name.size()}).add(std::uint64_t{bytes.size()});
-  send(head.take() + std::string(name));
-  if (!bytes.empty()) send(bytes);
+  std::string first = head.take() + std::string(name);
+  const bool is_short = bytes.size() <= kShortBytes;  // an event wakes its reader once
+  if (is_short) first += bytes;
+  send(first);
+  if (!is_short) send(bytes);
 }
 
 bool receive_frame(const ReceiveAll& receive, std::int64_t max_bytes, Frame& frame) {
