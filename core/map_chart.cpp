@@ -139,7 +139,8 @@ std::vector<std::vector<MappedChart>> map_chart(const ChartJob& job, const Unwra
                            .stop = watch.stop(),
                            .own = own_energy_of(disk, options, rigidity),
                            .springs = hold.held.holds.springs,
-                           .executor = &executor},
+                           .executor = &executor,
+                           .global = solver.global()},
                           most_rise_of(chart)};
     if (options.guarantee != Guarantee::none) watch.tell(Stage::untangle);
     Kept kept = keep_promise(job.chart, disk, std::move(solution.uv), promise);

@@ -45,4 +45,9 @@ inline Jacobian jacobian(const RestTriangle& rest, const UvEdges& u) {
   return {k * (j00 + j11), k * (j10 - j01), k * (j00 - j11), k * (j10 + j01)};
 }
 
+/// J x.
+inline Vec2 apply(const Jacobian& j, const Vec2& x) {
+  return {(j.e + j.f) * x.x() + (j.g - j.h) * x.y(), (j.g + j.h) * x.x() + (j.e - j.f) * x.y()};
+}
+
 }  // namespace unwrapd

@@ -131,6 +131,13 @@ void add_lower(const Eigen::Matrix<double, 6, 6>& hessian, const std::array<Inde
 
 }  // namespace
 
+std::size_t Quadratic::bytes() const {
+  const auto entries = static_cast<std::size_t>(hessian.nonZeros());
+  const auto columns = static_cast<std::size_t>(hessian.cols());
+  return entries * (sizeof(double) + sizeof(Index)) + columns * (sizeof(double) + sizeof(Index)) +
+         place.size() * sizeof(place[0]);
+}
+
 BarrierElement barrier_element(const BarrierMesh& mesh, std::size_t t, std::span<const Vec2> uv,
                                const Barrier& barrier) {
   return element(jacobian_of(mesh, t, uv), mesh.rest[t], share_of(mesh, t), barrier);

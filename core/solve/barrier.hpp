@@ -3,6 +3,7 @@
 // a term that grows without bound as a triangle's area goes to zero.
 
 #include <array>
+#include <limits>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -26,6 +27,12 @@ struct Barrier {
   OwnEnergy own = OwnEnergy::fit;
 };
 
+/// Bytes of a job: those that it takes anyhow, and those that it may take.
+struct JobMemory {
+  std::size_t taken = 0;
+  std::size_t limit = std::numeric_limits<std::size_t>::max();
+};
+
 /// Triangles whose free vertices are to be moved. Vertices are numbered by faces.
 struct BarrierMesh {
   std::vector<Triangle> faces;
@@ -34,6 +41,7 @@ struct BarrierMesh {
   std::vector<Spring> springs = {};
   std::stop_token stop = {};  ///< of the job: what goes over all faces looks at it (cancel.hpp)
   std::vector<double> share = {};  ///< A_t in the energy, one a face; empty: that of rest
+  JobMemory memory = {};           ///< that Newton's factor is looked at for
 };
 
 /// The same shape, larger or smaller: all that a barrier's target is looked at for.
@@ -67,6 +75,8 @@ struct Quadratic {
   /// Where the lower triangle of each face's Hessian goes, by rows, among the values of hessian;
   /// -1: nowhere.
   std::vector<std::array<Index, 21>> place;
+
+  [[nodiscard]] std::size_t bytes() const;
 };
 
 /// All zeros, to be refilled as often as one likes: the pattern depends on the mesh alone.

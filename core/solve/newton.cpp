@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/solver_core.hpp"
 
 namespace unwrapd {
 namespace {
@@ -70,7 +73,11 @@ struct Trial {
 
 bool Newton::factor(Executor& job) {
   SparseMatrix& hessian = model_.hessian;
-  if (!factor_) factor_.emplace(analyse_pairs(hessian, mesh_.stop));
+  if (!factor_) {
+    auto analysis = analyse_pairs(hessian, mesh_.stop);
+    check_memory(mesh_.memory.taken + analysis->job_bytes() + model_.bytes(), mesh_.memory.limit);
+    factor_.emplace(std::move(analysis));
+  }
   const double mean = hessian.diagonal().sum() / static_cast<double>(hessian.rows());
   double added = 0;
   for (double shift = kLeastShift; shift <= kMostShift; shift *= 1e3) {

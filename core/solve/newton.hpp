@@ -17,7 +17,8 @@ class Newton {
       : mesh_(mesh), executor_(executor), model_(barrier_pattern(mesh)) {}
 
   /// One step. Returns the share by which the energy fell: 0 when it can fall no further. With
-  /// epsilon 0 the triangles must be positive, and remain so. Throws Error{cancelled}.
+  /// epsilon 0 the triangles must be positive, and remain so. Throws Error{too_much_memory,
+  /// cancelled}.
   double step(UvMap& uv, const Barrier& barrier);
 
  private:

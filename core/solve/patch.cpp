@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/cancel.hpp"
+#include "core/solver_core.hpp"
 
 namespace unwrapd {
 namespace {
@@ -90,6 +91,8 @@ class Cutter {
     for (Index v : patch.vertex) number_[v] = kFixed;
     patch.mesh.free = number_free(fixed);
     patch.mesh.stop = disk_.stop;
+    if (disk_.core != nullptr)
+      patch.mesh.memory = {kJobBytesPerFace * disk_.faces.size(), disk_.core->memory_limit()};
     return patch;
   }
 

@@ -11,6 +11,7 @@
 #include "core/cancel.hpp"
 #include "core/solve/newton.hpp"
 #include "core/solve/side_by_side.hpp"
+#include "core/solve/sizes.hpp"
 
 namespace unwrapd {
 namespace {
@@ -32,26 +33,11 @@ constexpr int kNeedleRings = 2;  // around a needle
 constexpr double kRaise = 4;     // of the floor, from one round to the next
 constexpr int kMostRaises = 4;
 
-constexpr double kConformalBelow = 0.01;  // lambda: below, sizes are not the energy's business
-constexpr double kLeastStretch = 1e-12;
-
 /// Targets of the size that the map has there, for energies that do not care about size: the mean
 /// stretch of the triangles around each is kept.
 void follow_sizes(const UvMap& own, BarrierMesh& mesh) {
-  std::vector<double> sum(own.size(), 0), count(own.size(), 0);
-  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
-    const Jacobian j = jacobian(mesh.rest[t], uv_edges(mesh.faces[t], own));
-    const double stretch = std::hypot(j.turn_scale(), j.deformation());
-    for (Index v : mesh.faces[t]) {
-      sum[v] += std::log(std::max(kLeastStretch, stretch));
-      ++count[v];
-    }
-  }
-  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
-    const auto& [a, b, c] = mesh.faces[t];
-    const double mean = (sum[a] + sum[b] + sum[c]) / (count[a] + count[b] + count[c]);
-    mesh.rest[t] = scaled(mesh.rest[t], std::exp(mean));
-  }
+  const std::vector<double> size = sizes_around(mesh.faces, mesh.rest, own);
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) mesh.rest[t] = scaled(mesh.rest[t], size[t]);
 }
 
 /// The springs at vertices of the patch, by its own numbers.

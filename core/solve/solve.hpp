@@ -53,6 +53,9 @@ class Solver {
   /// whatever was run before. Throws Error{solver_failed, cancelled}.
   Solution run(double lambda, const SolveWatch& watch);
 
+  /// The system of the iterations; null where no run has needed it yet.
+  [[nodiscard]] const GlobalStep* global() const { return global_ ? &*global_ : nullptr; }
+
   /// The disk, the options and what is held: with lambda all that run() depends on.
   friend void describe(Fingerprint& key, const Solver& solver);
 

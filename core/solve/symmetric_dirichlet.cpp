@@ -41,10 +41,6 @@ Jacobian energy_slope(const Jacobian& j) {
   return {(p + q) * j.e, (p + q) * j.h, (p - q) * j.f, (p - q) * j.g};
 }
 
-Vec2 apply(const Jacobian& j, const Vec2& x) {
-  return {(j.e + j.f) * x.x() + (j.g - j.h) * x.y(), (j.g + j.h) * x.x() + (j.e - j.f) * x.y()};
-}
-
 double proxy_weight(double s) { return (s + 1) * (s * s + 1) / (s * s * s); }
 
 /// The least positive root of c + b t + a t^2, c > 0.

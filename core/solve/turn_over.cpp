@@ -19,6 +19,8 @@ constexpr double kWholeWall = 3;       // beside an energy; with 1 single flips 
 constexpr double kEpsilonShare = 0.2;  // of the worst determinant
 constexpr double kFirstEpsilon = 0.1;  // collapsed triangles open under a large one
 constexpr double kLeastEpsilon = 1e-6;
+constexpr int kSweeps = 5;
+constexpr double kSweep = 0.7;   // of the way
 constexpr double kStuck = 1e-5;  // relative fall of the energy in one step
 
 bool has_rim(const BarrierMesh& mesh) {
@@ -41,6 +43,24 @@ BarrierMesh fitted(const BarrierMesh& mesh, const UvMap& uv) {
 }
 
 }  // namespace
+
+UvMap evened_out(const BarrierMesh& patch, UvMap uv) {
+  std::vector<Vec2> sum(uv.size());
+  std::vector<double> count(uv.size());
+  for (int k = 0; k < kSweeps; ++k) {
+    std::fill(sum.begin(), sum.end(), Vec2::Zero());
+    std::fill(count.begin(), count.end(), 0);
+    for (std::size_t t = 0; t < patch.faces.size(); ++t) {
+      look_now_and_then(t, patch.stop);
+      const auto& [a, b, c] = patch.faces[t];
+      const Vec2 all = uv[a] + uv[b] + uv[c];
+      for (Index v : patch.faces[t]) sum[v] += all - uv[v], count[v] += 2;
+    }
+    for (std::size_t v = 0; v < uv.size(); ++v)
+      if (patch.free.slot[v] != kFixed) uv[v] += kSweep * (sum[v] / count[v] - uv[v]);
+  }
+  return uv;
+}
 
 bool is_untangled(const BarrierMesh& mesh, std::span<const Vec2> uv) {
   return least_determinant(mesh, uv) > 0 && flipped_faces(mesh.faces, uv, mesh.stop).empty();

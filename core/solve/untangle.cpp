@@ -3,7 +3,7 @@
 // energy is minimised under a barrier that fades, and triangles left as needles are widened. Where
 // that fails the patch grows, in the end to the whole chart, which at last starts anew from Tutte's
 // map. Where flips are many, patches hold each other's folds fast: there the whole comes first, at
-// many times the cost.
+// many times the cost; of a large disk, by steps that need no factor of their own (turn_over_all).
 #include "core/solve/untangle.hpp"
 
 #include <algorithm>
@@ -22,6 +22,7 @@
 #include "core/solve/settle.hpp"
 #include "core/solve/side_by_side.hpp"
 #include "core/solve/turn_over.hpp"
+#include "core/solve/turn_over_all.hpp"
 #include "core/solve/virtual_boundary.hpp"
 
 namespace unwrapd {
@@ -31,8 +32,10 @@ constexpr int kMostRings = 64;
 constexpr int kMostRounds = 4;     // from small patches to large ones
 constexpr double kCrowded = 0.25;  // share of flips beyond which only the whole is worth a try
 constexpr double kMany = 0.05;     // share of flips beyond which the whole comes first
-constexpr double kFew = 0.02;      // of those flips, to be left to patches
-constexpr int kSettlingRings = 2;  // around what is rough
+constexpr std::size_t kLargeDisk = 4096;  // faces; below, Newton steps on the whole take little
+constexpr double kManyOfLarge = 0.005;    // the same of a large disk, where the whole costs less
+constexpr double kFew = 0.02;             // of those flips, to be left to patches
+constexpr int kSettlingRings = 2;         // around what is rough
 bool may_move_all(const MapIntent& intent) {
   return !intent.in_place &&
          std::none_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
@@ -69,10 +72,21 @@ struct Attempt {
   State state = kUntouched;
 };
 
+/// Where triangles that were turned over hold each other flat, tries again from a map that is even:
+/// a larger patch would hold the same knot.
+void untie(const Patch& patch, const MapIntent& intent, const UvMap& uv, UvMap& own) {
+  const bool has_rim = patch.mesh.free.count < static_cast<Index>(own.size());
+  if (!has_rim || is_untangled(patch.mesh, own)) return;
+  UvMap even = evened_out(patch.mesh, map_of(patch, uv));
+  turn_over(patch.mesh, intent, 0, even);
+  if (is_untangled(patch.mesh, even)) own = std::move(even);
+}
+
 Attempt mended(const Disk& disk, const MapIntent& intent, Patch& patch, const UvMap& uv) {
   Attempt attempt{map_of(patch, uv)};
   const std::size_t before = flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size();
   turn_over(patch.mesh, intent, 0, attempt.own);
+  untie(patch, intent, uv, attempt.own);
   if (is_untangled(patch.mesh, attempt.own)) {
     settle(disk, intent, patch, attempt.own);
     attempt.state = kSettled;
@@ -117,9 +131,25 @@ UvMap tutte_without_holes(const Disk& disk) {
   return uv;
 }
 
-/// Turns over all at once where flips are many, so that few are left; a map that this does not help
-/// stays as it is.
+/// Turns over all of a large disk at once where flips are many; Newton steps on the whole would
+/// take several times as long as its solve, and four times the memory. False, and uv as it was,
+/// where that leaves many flips.
+bool thin_out_large(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+  const std::size_t before = left.flipped.size(), all = disk.faces.size();
+  if (intent.in_place || all <= kLargeDisk || !exceeds(before, kManyOfLarge, all)) return false;
+  UvMap own = uv;
+  turn_over_all(disk, intent, own);
+  std::vector<Index> flipped = flipped_faces(disk.faces, own, disk.stop);
+  if (exceeds(flipped.size(), kFew, before) && exceeds(flipped.size(), kFew * kMany, all))
+    return false;
+  uv = std::move(own);
+  left.flipped = std::move(flipped);
+  return true;
+}
+
+/// The same of any disk: a map that this does not help stays as it is.
 void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+  if (thin_out_large(disk, intent, uv, left)) return;
   const std::size_t before = left.flipped.size();
   if (!may_move_all(intent) || !exceeds(before, kMany, disk.faces.size())) return;
   Patch patch = whole(disk);

@@ -7,6 +7,7 @@
 
 #include "core/executor.hpp"
 #include "core/solve/disk.hpp"
+#include "core/solve/global_step.hpp"
 #include "core/solve/holds.hpp"
 #include "core/solve/local_step.hpp"
 #include "core/solve/profile.hpp"
@@ -21,15 +22,16 @@ struct MapIntent {
   bool in_place = false;           ///< only near the flips: never a new map of the whole disk
   int rings = 2;                   ///< how far around a flip vertices are let loose at first; >= 1
   OwnEnergy own = OwnEnergy::fit;  ///< of a new map of the whole (bijective.hpp)
-  std::vector<Spring> springs = {};  ///< what draws vertices to places, weighed like rigidity
-  Executor* executor = nullptr;      ///< on which patches are mended side by side; null: none
+  std::vector<Spring> springs = {};    ///< what draws vertices to places, weighed like rigidity
+  Executor* executor = nullptr;        ///< on which patches are mended side by side; null: none
+  const GlobalStep* global = nullptr;  ///< of the disk, held and springs; null: made when needed
 };
 
 /// Moves the vertices near flipped or collapsed triangles (not counter-clockwise, by the exact
 /// test) until there are none, as few as possible of them. Returns how many are left: above zero
 /// only where held vertices leave no way, or double precision none.
 /// The same map by any executor.
-/// Throws Error{cancelled}.
+/// Throws Error{too_much_memory, cancelled}.
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv);
 
 /// A new map of the whole disk: start, scaled to the surface's area or, where there are springs,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <string>
@@ -11,6 +12,7 @@
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
 #include "core/measure/orientation.hpp"
+#include "core/solve/patch.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
@@ -238,6 +240,25 @@ TEST(Untangle, GivesTheSameMapOnAnyThreads) {
                 0);
       EXPECT_EQ(alone, abreast);
     }
+  }
+}
+
+TEST(Untangle, UntiesAKnotWithinTwoRings) {  // where flipped triangles hold each other flat
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto owned = disk_of(shapes::random_disk(40, seed));
+    const UvMap flat = from_above(owned.disk);
+    UvMap uv = flat;
+    for (std::size_t k = 0; k < 5; ++k)
+      uv[(200 + 300 * k)] += 0.06 * Vec2(std::cos(k + seed), std::sin(k + seed));
+    const UvMap before = uv;
+    std::vector<char> near(uv.size(), 0);  // and as far around the needles that are left
+    for (const Patch& patch :
+         patches_around(owned.disk, flipped_faces(owned.disk.faces, uv), 5, {}))
+      for (Index v : patch.vertex) near[std::size_t(v)] = 1;
+    EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
+    for (std::size_t v = 0; v < uv.size(); ++v)
+      EXPECT_TRUE(near[v] != 0 || uv[v] == before[v]) << v;
   }
 }
 

@@ -1,0 +1,18 @@
+#pragma once
+// The sizes that triangles have in a map: what energies that do not care about size shall keep.
+
+#include <span>
+#include <vector>
+
+#include "core/measure/rest_triangle.hpp"
+
+namespace unwrapd {
+
+/// Rigidities below this lambda (Rigidity) do not care about size.
+inline constexpr double kConformalBelow = 0.01;
+
+/// For each face, by how much the map stretches it and the faces around it: their geometric mean.
+std::vector<double> sizes_around(std::span<const Triangle> faces,
+                                 std::span<const RestTriangle> rest, std::span<const Vec2> uv);
+
+}  // namespace unwrapd
