@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <exception>
 
+#include "client/bounded_http.hpp"
 #include "client/failure.hpp"
 
 namespace unwrapd::client {
@@ -17,16 +18,27 @@ namespace {
 constexpr int kConnectSeconds = 5;
 constexpr int kSilenceSeconds = 60;  // event streams send a heartbeat every 15 s
 constexpr std::size_t kBlockBytes = 65'536;
+constexpr std::size_t kMostText = std::size_t{64} << 20;  // of an answer that is kept in memory
+constexpr std::string_view kPlain = "http://";
 
-httplib::Client connection(const ServerUrl& server) {
-  httplib::Client client(server.origin);
+template <class Client>
+void prepare(Client& client) {
   client.set_connection_timeout(kConnectSeconds);
   client.set_read_timeout(kSilenceSeconds);
   client.set_write_timeout(kSilenceSeconds);
   client.set_tcp_nodelay(true);
   // From the environment alone: a command line is seen by everybody on the machine.
   if (const char* key = std::getenv("UNWRAP_API_KEY")) client.set_bearer_token_auth(key);
-  return client;
+}
+
+/// "host:port", the host in brackets or not.
+std::pair<std::string, int> host_and_port(std::string_view authority) {
+  const std::size_t end = authority.starts_with('[') ? authority.find(']') : authority.find(':');
+  const std::size_t colon = authority.find(':', std::min(end, authority.size()));
+  std::string host(authority.substr(0, colon));
+  if (host.starts_with('[')) host = host.substr(1, host.size() - 2);
+  const std::string port(colon == std::string_view::npos ? "80" : authority.substr(colon + 1));
+  return {host, std::stoi(port)};
 }
 
 httplib::Headers to_httplib(const Headers& headers) { return {headers.begin(), headers.end()}; }
@@ -63,11 +75,10 @@ class Guard {
   std::exception_ptr thrown_;
 };
 
-/// Sends one request with the stop token watching it; guard is that of its callbacks.
-template <class Send>
-httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, const Guard& guard,
-                        Send&& send) {
-  httplib::Client client = connection(server);
+template <class Client, class Send>
+httplib::Result perform(Client&& client, const ServerUrl& server, const std::stop_token& stop,
+                        const Guard& guard, Send&& send) {
+  prepare(client);
   const std::stop_callback on_stop(stop, [&] { client.stop(); });
   if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
   httplib::Result result = send(client);
@@ -78,6 +89,17 @@ httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, co
                                              httplib::to_string(result.error()) +
                                              "); start it, or name another with --server.");
   return result;
+}
+
+/// Sends one request with the stop token watching it; guard is that of its callbacks.
+template <class Send>
+httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, const Guard& guard,
+                        Send&& send) {
+  const std::string_view origin = server.origin;
+  if (!origin.starts_with(kPlain))
+    return perform(httplib::Client(server.origin), server, stop, guard, send);
+  const auto [host, port] = host_and_port(origin.substr(kPlain.size()));
+  return perform(BoundedHttp(host, port), server, stop, guard, send);
 }
 
 /// Hands the library the next block of an upload.
@@ -98,6 +120,8 @@ struct Receiver {
     if (to_sink) {
       sink(bytes);
     } else {
+      if (text.size() + bytes.size() > kMostText)
+        throw Failure(ExitCode::unreachable, "The server's answer has no end; check the address.");
       text += bytes;
     }
   }
@@ -123,11 +147,22 @@ Reply Http::post(const std::string& path, const Upload& upload, const Headers& h
   const auto next_block = [&](std::size_t, std::size_t length, httplib::DataSink& sink) {
     return guard([&] { send_block(reader, length, sink); });
   };
-  const auto send = [&](httplib::Client& client) {
-    return client.Post(server_.prefix + path, to_httplib(headers), upload.bytes(), next_block,
-                       upload.content_type);
+  Receiver receiver{.sink = {}, .text = {}};
+  httplib::Request request;
+  request.method = "POST";
+  request.path = server_.prefix + path;
+  request.headers = to_httplib(headers);
+  request.set_header("Content-Type", upload.content_type);
+  request.content_length_ = upload.bytes();
+  request.content_provider_ = next_block;
+  request.content_receiver = [&](const char* data, std::size_t length, std::uint64_t,
+                                 std::uint64_t) {
+    return guard([&] { receiver.take({data, length}); });
   };
-  return to_reply(perform(server_, stop_, guard, send));
+  const auto send = [&](auto& client) { return client.send(request); };
+  Reply reply = to_reply(perform(server_, stop_, guard, send));
+  reply.body = std::move(receiver.text);
+  return reply;
 }
 
 Reply Http::get(const std::string& path, const Headers& headers, const BytesSink& sink) const {
@@ -140,7 +175,7 @@ Reply Http::get(const std::string& path, const Headers& headers, const BytesSink
   const auto on_bytes = [&](const char* data, std::size_t length) {
     return !stop_.stop_requested() && guard([&] { receiver.take({data, length}); });
   };
-  const auto send = [&](httplib::Client& client) {
+  const auto send = [&](auto& client) {
     return client.Get(server_.prefix + path, to_httplib(headers), on_head, on_bytes);
   };
   Reply reply = to_reply(perform(server_, stop_, guard, send));
@@ -149,7 +184,7 @@ Reply Http::get(const std::string& path, const Headers& headers, const BytesSink
 }
 
 Reply Http::remove(const std::string& path) const {
-  const auto send = [&](httplib::Client& client) { return client.Delete(server_.prefix + path); };
+  const auto send = [&](auto& client) { return client.Delete(server_.prefix + path); };
   return to_reply(perform(server_, stop_, {}, send));
 }
 

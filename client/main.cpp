@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "client/interrupt.hpp"
+#include "client/printable.hpp"
 #include "client/run.hpp"
 
 namespace {
@@ -33,8 +34,8 @@ ExitCode perform(const Arguments& arguments) {
     return ExitCode::ok;
   } catch (const Failure& failure) {
     const bool timed_out = failure.code() == ExitCode::interrupted && interrupt.timed_out();
-    std::cerr << "unwrap: " << (timed_out ? "No result within --timeout. " : "") << failure.what()
-              << std::endl;
+    std::cerr << "unwrap: " << (timed_out ? "No result within --timeout. " : "")
+              << printable(failure.what()) << std::endl;
     return timed_out ? ExitCode::unreachable : failure.code();
   }
 }

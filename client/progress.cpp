@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <ostream>
 
+#include "client/printable.hpp"
+
 namespace unwrapd::client {
 namespace {
 
@@ -69,7 +71,7 @@ ProgressState advance(ProgressState state, const std::string& event, const api::
   }
   if (event == "stage") {
     const auto name = data.find("name");
-    if (name != data.end() && name->is_string()) state.stage = name->get<std::string>();
+    if (name != data.end() && name->is_string()) state.stage = printable(name->get<std::string>());
     take(data, "of", state.charts);
     state.iteration = 0;
   } else if (event == "iteration") {
@@ -79,7 +81,7 @@ ProgressState advance(ProgressState state, const std::string& event, const api::
     take(data, "area", state.area);
     take(data, "flipped", state.flipped);
   } else if (event == "queued" || event == "started") {
-    state.stage = event;
+    state.stage = printable(event);
   }
   return state;
 }

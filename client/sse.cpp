@@ -2,7 +2,14 @@
 // that ends its lines with LF or CRLF needs: a lone CR as a line end is not known here.
 #include "client/sse.hpp"
 
+#include "client/failure.hpp"
+
 namespace unwrapd::client {
+namespace {
+
+constexpr std::size_t kMostEvent = std::size_t{16} << 20;
+
+}  // namespace
 
 void SseParser::feed(std::string_view bytes, const Sink& sink) {
   for (std::size_t newline = bytes.find('\n'); newline != std::string_view::npos;
@@ -14,6 +21,8 @@ void SseParser::feed(std::string_view bytes, const Sink& sink) {
     line_.clear();
   }
   line_.append(bytes);
+  if (line_.size() + event_.data.size() > kMostEvent)
+    throw Failure(ExitCode::unreachable, "An event of the server has no end; check the address.");
 }
 
 void SseParser::take_line(std::string_view line, const Sink& sink) {

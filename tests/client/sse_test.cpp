@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "api/events.hpp"
+#include "expect_failure.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -34,6 +35,15 @@ TEST(Sse, ReadsWhatTheServerWritesHoweverItIsCut) {
 
 TEST(Sse, AnEventThatHasNotEndedIsNotHandedOn) {
   EXPECT_TRUE(parse("id: 1\nevent: started\ndata: {}\n", 7).empty());
+}
+
+TEST(Sse, AnEventWithoutEndIsAFailure) {
+  SseParser parser;
+  const std::string block(1 << 20, 'x');
+  const auto feed_all = [&] {
+    for (int k = 0; k < 64; ++k) parser.feed(block, [](const SseEvent&) {});
+  };
+  expect_failure(ExitCode::unreachable, feed_all);
 }
 
 TEST(Sse, JoinsDataLinesAndTakesCarriageReturns) {
