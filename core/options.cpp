@@ -74,6 +74,8 @@ void validate(const UnwrapOptions& options, int max_iterations) {
           "/boundary");
   require(!options.repack_only || options.boundary == BoundaryShape::free,
           "repack_only keeps the islands as they are; leave out boundary", "/boundary");
+  require(!options.repack_only || options.guarantee != Guarantee::bijective,
+          "repack_only keeps overlaps that are there; leave out guarantee=bijective", "/guarantee");
   require_packing(options);
   require_charts(options);
   require(options.padding >= 0 && 4 * options.padding <= options.resolution,

@@ -132,6 +132,11 @@ TEST(Options, ResolvedOnesCanBeSentAgainAndStayAsTheyAre) {
   }
 }
 
+TEST(Options, RepackingMakesNothingBijective) {
+  const std::string text = R"({"repack_only":true,"guarantee":"bijective"})";
+  expect_refused(refusal(text), "guarantee", text.c_str());
+}
+
 TEST(Options, RefuseAWrongTypeOfEveryOption) {
   for (const OptionRow& row : option_table()) {
     const std::string name(row.name);

@@ -89,12 +89,13 @@ function someOptions(properties) {
 /** What the schema cannot say: which options go together. */
 function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary = 'free',
                      constraints = [], repack_only = false, texels_per_unit = null, max_pages = 1,
-                     stack_identical = false, max_distortion = null}) {
+                     stack_identical = false, max_distortion = null, guarantee = 'flip_free'}) {
   const free = boundary === 'free';
   const unpacked = !repack_only && texels_per_unit === null && max_pages === 1 && !stack_identical;
   const held = ['asap', 'arap', 'hybrid'].includes(method) && free && unpacked;
   const loose = constraints.length === 0;
   return 4 * padding <= resolution && (loose || held) && (free || !repack_only) &&
+      (guarantee !== 'bijective' || !repack_only) &&
       (max_distortion === null || (loose && free));
 }
 
