@@ -81,6 +81,9 @@ Response sync_response(const JobServices& services, const JobRecord& job, const 
   return response;
 }
 
+/// Beyond the limit of a job that began at once: it is told that its time is over, and ends.
+constexpr std::chrono::seconds kTimeToEnd{5};
+
 /// For who wants to wait and finds no place. It is told before the body is read.
 RetryLater too_many_wait() {
   return {ErrorCode::rate_limited,
@@ -93,7 +96,7 @@ Response post_unwrap(const JobServices& services, const Request& request) {
   const auto place = services.waiters.let_in(request.caller.owner);
   if (!place) throw too_many_wait();
   const std::string id = services.submissions.accept(request, true);
-  wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds));
+  wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds) + kTimeToEnd);
   const JobRecord job = stored_job(services.store, id);
   Response response;
   try {

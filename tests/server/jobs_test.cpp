@@ -226,6 +226,13 @@ TEST_F(Jobs, AJobThatTakesTooLongFails) {
   EXPECT_EQ(job(id).at("problem").at("code"), "time_limit");
 }
 
+TEST_F(Jobs, AJobThatTakesTooLongIsToldToWhoWaitsForIt) {
+  config_.limits.max_job_seconds = 1;
+  start();
+  expect_problem(client().Post("/v1/unwrap?stop.iterations=10000", grid_obj(120), "model/obj"), 422,
+                 "time_limit");
+}
+
 TEST_F(Jobs, ManySendersAtOnceEachGetTheirOwnAnswer) {
   constexpr int kSenders = 8;
   constexpr int kJobsEach = 20;
