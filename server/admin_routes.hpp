@@ -3,6 +3,8 @@
 // have an address of their own, so that they answer when the service itself is full, and need no
 // key.
 
+#include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "server/job_queue.hpp"
@@ -12,10 +14,18 @@
 
 namespace unwrapd::server {
 
+/// Who says whether jobs are taken.
+struct Readiness {
+  const JobQueue& queue;
+  JobStore& store;
+  std::filesystem::path data;
+  std::function<bool()> has_workers;
+};
+
 /// GET /healthz, /readyz, /metrics, /version.
-std::vector<Route> admin_routes(const JobQueue& queue, JobStore& store, const Metrics& metrics);
+std::vector<Route> admin_routes(const Readiness& readiness, const Metrics& metrics);
 
 /// The first two alone, which the service's own port has as well.
-void add_probe_routes(std::vector<Route>& routes, const JobQueue& queue, JobStore& store);
+void add_probe_routes(std::vector<Route>& routes, const Readiness& readiness);
 
 }  // namespace unwrapd::server

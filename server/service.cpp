@@ -68,7 +68,7 @@ struct Service::Parts {
         router(routes(), log,
                [this](Request& request, std::string_view route) { access.admit(request, route); }),
         http(http_config(config), main_uses(log), log),
-        admin_router(admin_routes(queue, store, metrics), log) {
+        admin_router(admin_routes(readiness, metrics), log) {
     if (config.admin) {
       const bool only_here = !asks_for_keys({}, config.admin->host);
       const auto told = [this, only_here](const Request& request) {
@@ -222,7 +222,7 @@ struct Service::Parts {
     add_mesh_routes(all, meshes, std::chrono::seconds(config.keep_seconds));
     add_picture_routes(all, store, pictures);
     add_info_routes(all, config.limits);
-    add_probe_routes(all, queue, store);
+    add_probe_routes(all, readiness);
     return all;
   }
 
@@ -254,6 +254,8 @@ struct Service::Parts {
   ResultStore results;
   Sweeper sweeper;
   PictureStore pictures;
+  const Readiness readiness{queue, store, config.data,
+                            [this] { return !workers || workers->are_left(); }};
   Router router;
   HttpServer http;
   Router admin_router;
@@ -263,8 +265,7 @@ struct Service::Parts {
   std::optional<Periodic> calling;
   std::optional<Periodic> trimming;
   std::optional<WorkerPool> workers;
-  std::jthread serving;
-  std::jthread serving_admin;
+  std::jthread serving, serving_admin;
 };
 
 Service::Service(const Config& config, const Log& log, const Duties& duties) try

@@ -62,6 +62,11 @@ int WorkerPool::lost() const {
   return lost_;
 }
 
+bool WorkerPool::are_left() const {
+  const std::lock_guard lock(mutex_);
+  return lost_ < config_.workers + replaced_;
+}
+
 /// With the mutex held.
 void WorkerPool::begin_thread() {
   threads_.emplace_back([this] { work(); });

@@ -51,6 +51,8 @@ class WorkerPool {
 
   /// Threads that are still at work on a job that was given up.
   [[nodiscard]] int lost() const;
+  /// Whether a thread is there that takes jobs.
+  [[nodiscard]] bool are_left() const;
 
  private:
   /// What a job is run with.

@@ -120,6 +120,17 @@ TEST_F(Operations, TheServerIsNotReadyWhileNothingCanBeStored) {
   await_state(submit(), "succeeded");
 }
 
+TEST_F(Operations, TheServerIsNotReadyWithoutItsFiles) {
+  start();
+  for (const char* name : {"blobs", kStoreFile}) {
+    const auto place = config_.data / name, away = config_.data / "away";
+    std::filesystem::rename(place, away);
+    expect_problem(client().Get("/readyz"), 500, "storage_failed");
+    std::filesystem::rename(away, place);
+    EXPECT_EQ(client().Get("/readyz")->status, 200) << name;
+  }
+}
+
 TEST_F(Operations, TheHealthCheckOfTheProgramAsksTheAdminPort) {
   start();
   const Address address{"0.0.0.0", *service_->admin_port()};

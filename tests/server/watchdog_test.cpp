@@ -114,6 +114,7 @@ TEST_F(Deaf, AJobBeyondItsTimeIsEndedThoughItDoesNotStop) {
 TEST_F(Deaf, NoMoreThreadsAreReplacedThanThereAreWorkers) {
   start_deaf();
   for (int lost = 1; lost <= 2; ++lost) {
+    EXPECT_EQ(client().Get("/readyz")->status, 200);
     const std::string id = submit_deaf();
     EXPECT_EQ(client().Delete("/v1/jobs/" + id)->status, 202);
     await_state(id, "cancelled");
@@ -121,9 +122,11 @@ TEST_F(Deaf, NoMoreThreadsAreReplacedThanThereAreWorkers) {
   }
   const std::string waits = submit();
   EXPECT_EQ(state(waits), "queued");
+  expect_problem(client().Get("/readyz"), 500, "internal");  // no worker is left
   let_go();
   expect_done(waits);
   await([&] { return tells("unwrapd_lost_threads 0"); });
+  EXPECT_EQ(client().Get("/readyz")->status, 200);
   expect_done(submit("", 5));
 }
 
