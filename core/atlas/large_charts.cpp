@@ -7,6 +7,7 @@
 #include "core/atlas/large_charts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "core/atlas/chart_excess.hpp"
@@ -59,6 +60,7 @@ class Search {
   Found find(double hidden, bool is_quick, const Span& work) {
     SegmentRules rules = rules_;
     rules.max_distortion -= hidden;
+    rules.first_distortion = std::numeric_limits<double>::infinity();
     rules.is_quick = is_quick;
     rules.on_progress = [&](Stage stage, double share) {
       if (rules_.on_progress)

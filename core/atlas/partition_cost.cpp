@@ -47,12 +47,12 @@ PartitionCost partition_cost(const Sheet& sheet, const Partition& partition,
                              const CostRules& rules) {
   const std::vector<Index> owner = owners(sheet, partition);
   const double seam = seam_of(sheet, partition, owner);
-  if (seam <= 0) return {0, 0};
+  if (seam <= 0) return {0, 0, 0};
   double charts = 0;
   for (const MappedRegion& patch : partition.patches)
     charts += patch.area < kSmallRegion ? rules.small_chart : rules.chart;
-  PartitionCost cost{rounded(seam + charts)};
-  if (cost.seams >= rules.limit) return cost;
+  PartitionCost cost{.seams = rounded(seam + charts), .seam = rounded(seam)};
+  if (cost.seam >= rules.longest || cost.seams >= rules.limit) return cost;
   cost.all = cost.seams;
   if (rules.page_area > kMostPage) return cost;
   const double fill = rough_fill(outlines(sheet, partition, owner), rules.wanted_fill, rules.stop);

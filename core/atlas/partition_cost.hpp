@@ -14,6 +14,7 @@ inline constexpr double kCostOfEmptiness = 40;  ///< of a whole page, in length 
 struct PartitionCost {
   double seams = std::numeric_limits<double>::infinity();  ///< and charts; area of the sheet: 1
   double all = std::numeric_limits<double>::infinity();    ///< and what the page leaves empty
+  double seam = std::numeric_limits<double>::infinity();   ///< alone
 };
 
 struct CostRules {
@@ -21,7 +22,8 @@ struct CostRules {
   double small_chart = 0;  ///< one below kSmallRegion: most of them can be hung on others
   double page_area = 1;    ///< of all that comes onto the page, in units of the sheet's
   double wanted_fill = 1;  ///< share of the page; a page that is fuller costs nothing
-  double limit = std::numeric_limits<double>::infinity();  ///< from here on it is all the same
+  double limit = std::numeric_limits<double>::infinity();    ///< from here on it is all the same
+  double longest = std::numeric_limits<double>::infinity();  ///< seams of which cost without limit
   std::stop_token stop = {};
 };
 

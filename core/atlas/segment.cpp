@@ -7,6 +7,8 @@
 #include "core/atlas/segment.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -31,6 +33,9 @@ constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a n
 constexpr double kPatchesShare = 0.1, kFacesOfPatches = 6;  // of the work; for each face
 constexpr std::size_t kPatchesAtOnce = 16;                  // then progress is told
 constexpr double kFacesOfQuick = 20, kQuickPrice = 1;
+constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of excess, in each decade
+constexpr int kDecades = 4;
+constexpr double kSameBound = 1e-9;
 constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
 
 /// How the work is watched and done.
@@ -100,10 +105,9 @@ std::vector<MappedRegion> sound_patches(const Sheet& sheet, double flatness,
   return patches;
 }
 
-std::vector<MappedRegion> over_segment(const Sheet& sheet, double max_distortion,
-                                       const Work& work) {
+std::vector<MappedRegion> over_segment(const Sheet& sheet, double excess, const Work& work) {
   work.effort.begin(kPatchesShare, kFacesOfPatches * sheet.face_count());
-  const double allowed = kShareOfPatches * (max_distortion - 2);
+  const double allowed = kShareOfPatches * excess;
   double flatness = kFlatness;
   for (int round = 1;; ++round, flatness /= 2) {
     std::vector<Index> label = cluster_faces(sheet, sheet.normal, flatness, work.stop);
@@ -113,9 +117,27 @@ std::vector<MappedRegion> over_segment(const Sheet& sheet, double max_distortion
   }
 }
 
+/// The excess of the bound that is searched for.
+double first_excess(const SegmentRules& rules) {
+  return std::min(rules.max_distortion, rules.first_distortion) - 2;
+}
+
+/// The budgets of all steps above the first bound up to the one that is asked for: the same for
+/// every bound as far as they go.
+std::vector<double> looser_budgets(const SegmentRules& rules) {
+  std::vector<double> budgets;
+  double decade = rules.first_distortion - 2;
+  if (rules.is_quick || !std::isfinite(decade)) return budgets;
+  for (int k = 0; k < kDecades; ++k, decade *= 10)
+    for (const double step : kSteps)
+      if (2 + step * decade <= rules.max_distortion + kSameBound)
+        budgets.push_back(kMargin * step * decade);
+  return budgets;
+}
+
 Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& rules,
                  const Work& work) {
-  const double budget = kMargin * (rules.max_distortion - 2);
+  const double budget = kMargin * first_excess(rules);
   MergeRules merging{.budget = budget, .cap = kCapOfOnePatch * budget, .stop = rules.stop};
   merging.page_area = rules.page_area;
   merging.effort = &work.effort;
@@ -124,7 +146,7 @@ Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& 
     merging.price = kQuickPrice;
     return merge_patches(Joiner(sheet), sheet, from, merging, work.executor);
   }
-  return best_merge(sheet, from, merging, work.executor);
+  return best_merge(sheet, from, merging, looser_budgets(rules), work.executor);
 }
 
 }  // namespace
@@ -135,7 +157,7 @@ Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& execut
     if (rules.on_progress) rules.on_progress(stage, share);
   });
   const Work work{rules.stop, effort, executor};
-  Partition best{over_segment(sheet, rules.max_distortion, work),
+  Partition best{over_segment(sheet, first_excess(rules), work),
                  std::vector<char>(sheet.length.size(), 0)};
   stage = Stage::merge;
   best = merged(sheet, best, rules, work);

@@ -9,12 +9,16 @@
 #include "core/atlas/merge.hpp"
 #include "core/atlas/sheet.hpp"
 #include "core/executor.hpp"
+#include "core/options.hpp"
 #include "core/progress.hpp"
 
 namespace unwrapd {
 
 struct SegmentRules {
   double max_distortion = 2.02;  ///< of all regions together, D_angle and D_area each; > 2
+  /// A looser bound is approached in steps from this one, so that it never has longer seams than a
+  /// tighter one above this. At the bound itself it is searched for anew.
+  double first_distortion = kDefaultDistortion;
   Index most_regions = std::numeric_limits<Index>::max();  ///< however distorted, if maps allow it
   double page_area = 1;   ///< of all that lies on one page with this sheet, in units of its area
   bool is_quick = false;  ///< one merge, no search for the best

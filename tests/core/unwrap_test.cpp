@@ -1,6 +1,7 @@
 #include "core/unwrap.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <array>
 #include <limits>
