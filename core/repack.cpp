@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/atlas/assemble.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/atlas/snap.hpp"
 #include "core/atlas/uv_islands.hpp"

@@ -5,7 +5,7 @@
 
 #include "core/executor.hpp"
 #include "core/progress.hpp"
-#include "core/unwrap.hpp"
+#include "core/report.hpp"
 
 namespace unwrapd {
 

@@ -102,4 +102,10 @@ struct Report {
   std::vector<CurvePoint> curve = {};     ///< one for each lambda of a curve, in its order
 };
 
+/// What a job makes of its surfaces.
+struct Unwrapped {
+  std::vector<UnwrappedSurface> surfaces;  ///< one for each input surface, in order
+  Report report;
+};
+
 }  // namespace unwrapd

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/analyse.hpp"
+#include "core/atlas/assemble.hpp"
 #include "core/atlas/segment_charts.hpp"
 #include "core/cancel.hpp"
 #include "core/chart_watch.hpp"

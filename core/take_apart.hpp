@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/atlas/assemble.hpp"
 #include "core/atlas/charts.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/executor.hpp"

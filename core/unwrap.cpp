@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/analyse.hpp"
+#include "core/atlas/assemble.hpp"
 #include "core/atlas/constraints.hpp"
 #include "core/atlas/outline.hpp"
 #include "core/atlas/pack.hpp"

@@ -12,11 +12,6 @@
 
 namespace unwrapd {
 
-struct Unwrapped {
-  std::vector<UnwrappedSurface> surfaces;  ///< one for each input surface, in order
-  Report report;
-};
-
 /// Unwraps all surfaces into one atlas in [0,1]^2 at one texel density; under position constraints
 /// the charts lie where these put them instead. The same input gives the same bytes whatever the
 /// executor.

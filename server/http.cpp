@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "api/error_table.hpp"
-#include "server/job_queue.hpp"
+#include "server/retry_later.hpp"
 #include "server/utf8.hpp"
 
 namespace unwrapd::server {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "api/error_table.hpp"
-#include "server/job_queue.hpp"
+#include "server/retry_later.hpp"
 
 namespace unwrapd::server {
 namespace {

@@ -5,7 +5,9 @@
 
 #include "api/options.hpp"
 #include "core/error.hpp"
-#include "server/long_options.hpp"
+#include "server/blob_store.hpp"
+#include "server/files.hpp"
+#include "server/identity.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -155,20 +157,6 @@ Upload receive_parts(BodyReader& body, const UploadFolder& folder) {
   body.read_parts([&](const Part& part) { writer.start(part); },
                   [&](std::string_view bytes) { writer.append(bytes); });
   return writer.finish();
-}
-
-LoadedInput::LoadedInput(const BlobStore& blobs, const JobRecord& job)
-    : record_(job), document_(blobs.read(job.id, kDocumentFile)) {
-  record_.options = whole_options(blobs, job);
-  buffers_.reserve(job.input.buffers.size());
-  for (const StoredBuffer& buffer : job.input.buffers)
-    buffers_.emplace_back(buffer.uri, blobs.read(job.id, buffer.file));
-}
-
-asset::Input LoadedInput::input() const {
-  asset::Input input{.document = document_, .buffers = {}};
-  for (const auto& [uri, bytes] : buffers_) input.buffers[uri] = bytes;
-  return input;
 }
 
 }  // namespace unwrapd::server

@@ -4,8 +4,8 @@
 
 #include "api/json.hpp"
 #include "server/blob_store.hpp"
-#include "server/job_input.hpp"
 #include "server/job_record.hpp"
+#include "server/take_room.hpp"
 
 namespace unwrapd::server {
 

@@ -4,7 +4,6 @@
 #include "api/report.hpp"
 #include "core/analyse.hpp"
 #include "core/solver_core.hpp"
-#include "server/result_store.hpp"
 #include "server/run_job.hpp"
 
 namespace unwrapd::server {
@@ -16,7 +15,7 @@ api::Json analysis_json(const RenderingInput& mesh, std::size_t memory_bytes,
       asset::read(mesh.asset, read_limits(mesh.record, limits, memory_bytes));
   check_memory(job_bytes(asset.surfaces()), memory_bytes);
   const InputAnalysis analysis = analyse(asset.surfaces(), mesh.asset.stop);
-  api::Json json = {{"format", format_name(asset.format())}};
+  api::Json json = {{"format", asset::format_name(asset.format())}};
   json.update(api::to_json(analysis.input, analysis.repairs, asset.repairs()));
   return json;
 }

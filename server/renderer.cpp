@@ -7,7 +7,7 @@
 #include <system_error>
 #include <thread>
 
-#include "server/job_input.hpp"
+#include "server/loaded_input.hpp"
 #include "server/map_choice.hpp"
 #include "server/priority.hpp"
 #include "server/trace.hpp"

@@ -16,18 +16,6 @@ std::optional<asset::Format> format_named(std::string_view name) {
 
 }  // namespace
 
-std::string_view format_name(asset::Format format) {
-  switch (format) {
-    case asset::Format::glb:
-      return "glb";
-    case asset::Format::gltf:
-      return "gltf";
-    case asset::Format::obj:
-      return "obj";
-  }
-  return "glb";
-}
-
 std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string& job,
                                        const std::string& file) {
   if (!std::filesystem::exists(blobs.path(job, file))) return std::nullopt;

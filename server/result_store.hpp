@@ -16,9 +16,6 @@
 
 namespace unwrapd::server {
 
-/// "glb", "gltf" or "obj".
-std::string_view format_name(asset::Format format);
-
 struct StoredResult {
   std::shared_ptr<const File> file;  ///< stays readable when the job is removed meanwhile
   std::string sha256;                ///< becomes the ETag

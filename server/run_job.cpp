@@ -10,7 +10,6 @@
 #include "core/unwrap.hpp"
 #include "server/blob_store.hpp"
 #include "server/map_choice.hpp"
-#include "server/result_store.hpp"
 #include "server/stage_clock.hpp"
 #include "server/uv_file.hpp"
 
@@ -120,7 +119,7 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   progress.on_stage(
       {.stage = Stage::write, .chart = 0, .chart_count = 0, .fraction = kWriteFraction});
   const asset::Format format = output_format(options.output, asset.format());
-  std::string name(format_name(format));
+  std::string name(asset::format_name(format));
   const std::vector<UnwrappedSurface>& first = maps.front().surfaces;
   output.result(name, asset::write(asset, first, format));
   write_maps(task, output, {asset, format, maps}, clock, options.asset.vertex_map);

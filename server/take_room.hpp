@@ -1,6 +1,8 @@
 #pragma once
+// Where an upload goes, and where it counts what it writes.
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 
 namespace unwrapd::server {
@@ -11,6 +13,12 @@ struct TakeRoom {
   std::function<void(std::int64_t bytes)> take = [](std::int64_t) {};
   /// Told of bytes that were written, and are gone again; does not throw.
   std::function<void(std::int64_t bytes)> put_back = [](std::int64_t) {};
+};
+
+/// Where an upload goes.
+struct UploadFolder {
+  std::filesystem::path path;
+  TakeRoom room = {};
 };
 
 }  // namespace unwrapd::server

@@ -9,7 +9,7 @@
 #include "api/error_table.hpp"
 #include "server/feed_output.hpp"
 #include "server/inside_error.hpp"
-#include "server/job_input.hpp"
+#include "server/loaded_input.hpp"
 #include "server/priority.hpp"
 #include "server/thread_executor.hpp"
 #include "server/trace.hpp"

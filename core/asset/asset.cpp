@@ -14,6 +14,18 @@
 
 namespace unwrapd::asset {
 
+std::string_view format_name(Format format) {
+  switch (format) {
+    case Format::glb:
+      return "glb";
+    case Format::gltf:
+      return "gltf";
+    case Format::obj:
+      return "obj";
+  }
+  return "glb";
+}
+
 Asset::Asset(std::unique_ptr<Document> document) : document_(std::move(document)) {}
 Asset::Asset(Asset&&) noexcept = default;
 Asset& Asset::operator=(Asset&&) noexcept = default;

@@ -20,6 +20,9 @@ namespace unwrapd::asset {
 
 enum class Format { glb, gltf, obj };
 
+/// "glb", "gltf" or "obj".
+std::string_view format_name(Format format);
+
 /// The bytes of a request. Nothing else is ever opened or fetched.
 /// buffers: a .gltf's external buffers by the URI that the document uses for them.
 struct Input {

@@ -3,9 +3,10 @@
 //
 // A corner is a pair (vertex of the surface, vertex of a chart). Equal pairs are found by sorting,
 // so a vertex with a million copies costs no more than a million vertices.
+#include "core/atlas/assemble.hpp"
+
 #include <cassert>
 
-#include "core/atlas/pack.hpp"
 #include "core/atlas/set_aside.hpp"
 #include "core/cancel.hpp"
 #include "core/mesh/counting_sort.hpp"

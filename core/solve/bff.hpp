@@ -1,7 +1,8 @@
 #pragma once
 // Boundary First Flattening: first the curve that the boundary becomes, then the map inside it.
 
-#include "core/solve/solve.hpp"
+#include "core/solve/disk.hpp"
+#include "core/solve/solution.hpp"
 
 namespace unwrapd {
 

@@ -1,7 +1,8 @@
 #pragma once
 // Conformal flattening by curvature prescription and metric scaling: one Poisson equation.
 
-#include "core/solve/solve.hpp"
+#include "core/solve/disk.hpp"
+#include "core/solve/solution.hpp"
 
 namespace unwrapd {
 

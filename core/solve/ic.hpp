@@ -1,7 +1,8 @@
 #pragma once
 // The inverse curvature map: from the curvature wanted back to the lengths that have it.
 
-#include "core/solve/solve.hpp"
+#include "core/solve/disk.hpp"
+#include "core/solve/solution.hpp"
 
 namespace unwrapd {
 

@@ -3,7 +3,8 @@
 
 #include "core/executor.hpp"
 #include "core/solve/angle_system.hpp"
-#include "core/solve/solve.hpp"
+#include "core/solve/disk.hpp"
+#include "core/solve/solution.hpp"
 
 namespace unwrapd {
 

@@ -1,30 +1,11 @@
 #pragma once
 // The local/global iteration of Secs. 4.4 and 5: fit every triangle, stitch, repeat.
 
-#include <functional>
-#include <stop_token>
-#include <vector>
-
-#include "core/report.hpp"
 #include "core/solve/global_step.hpp"
 #include "core/solve/objective.hpp"
+#include "core/solve/solution.hpp"
 
 namespace unwrapd {
-
-/// A chart's map. uv is in disk units (the surface has area 1); energies are divided by the surface
-/// area and hence without unit.
-struct Solution {
-  UvMap uv;
-  std::vector<double> energy;  ///< energy[0] of the start, energy[k] after iteration k
-  int iterations = 0;
-  StopReason stop_reason = StopReason::iterations;
-};
-
-struct LoopWatch {
-  std::function<void(const Solution&)>
-      on_iteration;  ///< after every iteration: the solution so far
-  std::stop_token stop;
-};
 
 /// A disk, its held vertices, and the system that was factored for both.
 struct Assembly {

@@ -3,7 +3,8 @@
 // 2017) for the symmetric Dirichlet energy: isometric as far as it goes, and never a flip.
 
 #include "core/executor.hpp"
-#include "core/solve/solve.hpp"
+#include "core/solve/disk.hpp"
+#include "core/solve/solution.hpp"
 
 namespace unwrapd {
 

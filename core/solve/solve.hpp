@@ -1,23 +1,16 @@
 #pragma once
 // One chart, one method: ASAP directly, ARAP and Hybrid by local/global iterations.
 
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "core/options.hpp"
-#include "core/progress.hpp"
 #include "core/solve/accelerate_race.hpp"
 #include "core/solve/conformal_system.hpp"
 #include "core/solve/local_global.hpp"
+#include "core/solve/solution.hpp"
 
 namespace unwrapd {
-
-/// What a caller may watch while a chart is solved.
-struct SolveWatch {
-  std::function<void(Stage)> on_stage;  ///< setup, factor, solve
-  LoopWatch loop;
-};
 
 /// What a solver reads of the options of a job.
 struct SolveOptions {

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "core/atlas/assemble.hpp"
 #include "core/atlas/carry.hpp"
 #include "core/atlas/coarsen.hpp"
 #include "core/atlas/pack.hpp"

@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "core/atlas/assemble.hpp"
 #include "core/atlas/pack.hpp"
 #include "core/measure/seam_length.hpp"
 #include "tests/core/shapes.hpp"
