@@ -5,7 +5,7 @@
 #include <limits>
 #include <string_view>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::api {
 namespace {

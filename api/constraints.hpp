@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "api/json.hpp"
-#include "core/options.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd::api {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "api/json.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::api {
 

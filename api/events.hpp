@@ -9,7 +9,7 @@
 
 #include "api/job.hpp"
 #include "api/json.hpp"
-#include "core/progress.hpp"
+#include "core/types/progress.hpp"
 
 namespace unwrapd::api {
 

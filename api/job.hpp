@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "api/json.hpp"
-#include "core/progress.hpp"
+#include "core/types/progress.hpp"
 
 namespace unwrapd::api {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::api {
 namespace {

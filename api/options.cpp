@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "api/option_values.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::api {
 namespace {

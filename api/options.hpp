@@ -11,8 +11,8 @@
 
 #include "api/json.hpp"
 #include "api/limits.hpp"
-#include "core/asset_options.hpp"
-#include "core/options.hpp"
+#include "core/types/asset_options.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd::api {
 

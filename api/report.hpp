@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "api/json.hpp"
-#include "core/asset_options.hpp"
-#include "core/file_repair.hpp"
-#include "core/report.hpp"
+#include "core/types/asset_options.hpp"
+#include "core/types/file_repair.hpp"
+#include "core/types/report.hpp"
 
 namespace unwrapd::api {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "api/json.hpp"
-#include "core/options.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd::api {
 

@@ -9,20 +9,20 @@
 #include <string>
 #include <utility>
 
-#include "core/analyse.hpp"
-#include "core/atlas/assemble.hpp"
-#include "core/atlas/constraints.hpp"
-#include "core/atlas/outline.hpp"
-#include "core/atlas/pack.hpp"
-#include "core/atlas/promise.hpp"
-#include "core/error.hpp"
-#include "core/map_chart.hpp"
+#include "core/base/error.hpp"
+#include "core/charts/constraints.hpp"
+#include "core/charts/outline.hpp"
+#include "core/guarantee/promise.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/measure/seam_length.hpp"
-#include "core/place_islands.hpp"
-#include "core/repack.hpp"
-#include "core/take_apart.hpp"
+#include "core/pack/pack.hpp"
+#include "core/pipeline/analyse.hpp"
+#include "core/pipeline/assemble.hpp"
+#include "core/pipeline/map_chart.hpp"
+#include "core/pipeline/place_islands.hpp"
+#include "core/pipeline/repack.hpp"
+#include "core/pipeline/take_apart.hpp"
 
 namespace unwrapd {
 namespace {

@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 #include "core/mesh/tri_mesh.hpp"
-#include "core/options.hpp"
-#include "core/progress.hpp"
-#include "core/report.hpp"
+#include "core/types/options.hpp"
+#include "core/types/progress.hpp"
+#include "core/types/report.hpp"
 
 namespace unwrapd {
 

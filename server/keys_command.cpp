@@ -4,11 +4,11 @@
 
 #include <cstdio>
 
-#include "server/clock.hpp"
-#include "server/inside_error.hpp"
-#include "server/key_store.hpp"
-#include "server/signed_link.hpp"
-#include "server/webhooks.hpp"
+#include "server/access/key_store.hpp"
+#include "server/access/signed_link.hpp"
+#include "server/base/clock.hpp"
+#include "server/base/inside_error.hpp"
+#include "server/webhooks/webhooks.hpp"
 
 namespace unwrapd::server {
 namespace {

@@ -14,15 +14,15 @@
 #include <string_view>
 #include <thread>
 
-#include "server/backup_command.hpp"
-#include "server/config.hpp"
-#include "server/descriptors.hpp"
-#include "server/http_probe.hpp"
-#include "server/inside_error.hpp"
-#include "server/job_worker.hpp"
+#include "server/backup/backup_command.hpp"
+#include "server/base/inside_error.hpp"
+#include "server/base/log.hpp"
+#include "server/config/config.hpp"
+#include "server/config/descriptors.hpp"
+#include "server/http/http_probe.hpp"
 #include "server/keys_command.hpp"
-#include "server/log.hpp"
 #include "server/service.hpp"
+#include "server/work/job_worker.hpp"
 
 namespace unwrapd::server {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // The program unwrapd, as a function: tests build programs of their own around it.
 
-#include "server/duties.hpp"
+#include "server/work/duties.hpp"
 
 namespace unwrapd::server {
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "server/config.hpp"
-#include "server/duties.hpp"
-#include "server/log.hpp"
+#include "server/base/log.hpp"
+#include "server/config/config.hpp"
+#include "server/work/duties.hpp"
 
 namespace unwrapd::server {
 

@@ -10,7 +10,7 @@
 #include "core/asset/patch.hpp"
 #include "core/asset/references.hpp"
 #include "core/asset/runs.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/asset_options.hpp"
-#include "core/file_repair.hpp"
 #include "core/mesh/tri_mesh.hpp"
+#include "core/types/asset_options.hpp"
+#include "core/types/file_repair.hpp"
 
 namespace unwrapd::asset {
 

@@ -7,7 +7,7 @@
 
 #include "core/asset/base64.hpp"
 #include "core/asset/gltf_steps.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -14,7 +14,7 @@
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/grow.hpp"
 #include "core/asset/references.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -17,7 +17,7 @@
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/references.hpp"
 #include "core/asset/runs.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/asset/bytes.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/asset/draco.hpp"
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/grow.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/asset/elements.hpp"
 #include "core/asset/obj_text.hpp"
 #include "core/asset/pace.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/asset/bytes.hpp"
 #include "core/asset/elements.hpp"
 #include "core/asset/pace.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

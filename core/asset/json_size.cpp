@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/asset/json.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/grow.hpp"
 #include "core/asset/meshopt_filters.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/asset/convert.hpp"
 #include "core/asset/grow.hpp"
 #include "core/asset/patch.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "core/asset/obj.hpp"
 #include "core/asset/obj_words.hpp"
-#include "core/cancel.hpp"
-#include "core/error.hpp"
+#include "core/base/cancel.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::asset {
 namespace {

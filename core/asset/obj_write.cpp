@@ -2,7 +2,7 @@
 #include "core/asset/as_size.hpp"
 #include "core/asset/obj_polygons.hpp"
 #include "core/asset/obj_text.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

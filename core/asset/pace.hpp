@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <utility>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 

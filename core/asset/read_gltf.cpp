@@ -4,7 +4,7 @@
 
 #include "core/asset/container.hpp"
 #include "core/asset/gltf_steps.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

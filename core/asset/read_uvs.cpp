@@ -8,7 +8,7 @@
 #include "core/asset/elements.hpp"
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/materials.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <unordered_set>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

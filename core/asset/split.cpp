@@ -6,7 +6,7 @@
 #include <cassert>
 
 #include "core/asset/as_size.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/asset/as_size.hpp"
 #include "core/asset/elements.hpp"
 #include "core/asset/gltf_steps.hpp"
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
 namespace {

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/figure/image.hpp"
 #include "core/figure/scan.hpp"
 #include "core/mesh/counting_sort.hpp"

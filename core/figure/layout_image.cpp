@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/figure/legend.hpp"
 #include "core/figure/lettering.hpp"
 #include "core/figure/painting.hpp"

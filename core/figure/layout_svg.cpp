@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/figure/legend.hpp"
 #include "core/figure/painting.hpp"
 

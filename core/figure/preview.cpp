@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/figure/bands.hpp"
 #include "core/figure/colour_scale.hpp"
 #include "core/figure/raster.hpp"

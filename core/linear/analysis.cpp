@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd {
 namespace {

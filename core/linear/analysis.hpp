@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "core/fingerprint.hpp"
 #include "core/linear/branches.hpp"
 #include "core/linear/front_panel.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/linear/supernodal.hpp"
+#include "core/types/fingerprint.hpp"
 
 namespace unwrapd {
 

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/cancel.hpp"
-#include "core/error.hpp"
+#include "core/base/cancel.hpp"
+#include "core/base/error.hpp"
 #include "core/linear/supernodal.hpp"
 
 namespace unwrapd {

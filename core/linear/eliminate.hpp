@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/linear/sparse.hpp"
 
 namespace unwrapd {

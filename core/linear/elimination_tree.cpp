@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd {
 namespace {

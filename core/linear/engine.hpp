@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 #include "core/linear/analysis.hpp"
 #include "core/linear/factor.hpp"
 #include "core/linear/large_array.hpp"

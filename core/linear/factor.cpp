@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/cancel.hpp"
-#include "core/error.hpp"
+#include "core/base/cancel.hpp"
+#include "core/base/error.hpp"
 #include "core/linear/engine.hpp"
 
 namespace unwrapd {

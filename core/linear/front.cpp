@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/linear/front_kernels.hpp"
 
 namespace unwrapd {

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 #include "core/linear/front_panel.hpp"
 #include "core/linear/large_array.hpp"
 

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd {
 namespace {

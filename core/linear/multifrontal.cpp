@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <new>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/linear/front.hpp"
 
 namespace unwrapd {

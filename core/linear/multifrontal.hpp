@@ -1,7 +1,7 @@
 #pragma once
 // The numbers of a Cholesky factor, by the multifrontal method.
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 #include "core/linear/analysis.hpp"
 
 namespace unwrapd {

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/linear/minimum_degree.hpp"
 
 namespace unwrapd {

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 #include "core/linear/analysis.hpp"
 
 namespace unwrapd {

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 #include "core/mesh/shared_list.hpp"
 #include "core/mesh/tri_mesh.hpp"
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <stop_token>
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 #include "core/measure/jacobian.hpp"
-#include "core/report.hpp"
+#include "core/types/report.hpp"
 
 namespace unwrapd {
 

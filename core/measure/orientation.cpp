@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 
 namespace unwrapd {
 namespace {

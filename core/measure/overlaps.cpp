@@ -12,7 +12,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/winding.hpp"
 #include "core/mesh/edges.hpp"

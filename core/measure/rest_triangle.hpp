@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd {

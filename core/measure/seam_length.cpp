@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/mesh/weld.hpp"
 

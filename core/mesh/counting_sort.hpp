@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd {

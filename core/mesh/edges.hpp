@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/mesh/halfedges.hpp"
 
 namespace unwrapd {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/mesh/digest.hpp"
+#include "core/base/digest.hpp"
 
 namespace unwrapd {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "core/cancel.hpp"
+#include "core/base/cancel.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd {

@@ -6,11 +6,11 @@
 #include <cassert>
 #include <utility>
 
-#include "core/error.hpp"
-#include "core/solve/boundary_shape.hpp"
-#include "core/solve/conformal.hpp"
-#include "core/solve/convex_map.hpp"
-#include "core/solve/hold_align.hpp"
+#include "core/base/error.hpp"
+#include "core/solve/base/hold_align.hpp"
+#include "core/solve/maps/boundary_shape.hpp"
+#include "core/solve/maps/conformal.hpp"
+#include "core/solve/maps/convex_map.hpp"
 #include "core/solve/solve.hpp"
 
 namespace unwrapd {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <stop_token>
 
-#include "core/executor.hpp"
-#include "core/options.hpp"
-#include "core/solve/disk.hpp"
-#include "core/solve/holds.hpp"
+#include "core/base/executor.hpp"
+#include "core/solve/base/disk.hpp"
+#include "core/solve/base/holds.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd {
 

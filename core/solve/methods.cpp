@@ -1,12 +1,12 @@
 #include "core/solve/methods.hpp"
 
-#include "core/error.hpp"
-#include "core/solve/abf.hpp"
-#include "core/solve/bff.hpp"
-#include "core/solve/cp.hpp"
-#include "core/solve/ic.hpp"
-#include "core/solve/linabf.hpp"
-#include "core/solve/slim.hpp"
+#include "core/base/error.hpp"
+#include "core/solve/methods/abf.hpp"
+#include "core/solve/methods/bff.hpp"
+#include "core/solve/methods/cp.hpp"
+#include "core/solve/methods/ic.hpp"
+#include "core/solve/methods/linabf.hpp"
+#include "core/solve/methods/slim.hpp"
 
 namespace unwrapd {
 

@@ -1,8 +1,8 @@
 #pragma once
 // The methods that Table 1 compares with, and SLIM: one file each.
 
-#include "core/options.hpp"
 #include "core/solve/solve.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd {
 

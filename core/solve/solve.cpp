@@ -13,15 +13,15 @@
 #include <optional>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
-#include "core/solve/accelerate_race.hpp"
-#include "core/solve/conformal.hpp"
-#include "core/solve/convex_map.hpp"
-#include "core/solve/frames.hpp"
-#include "core/solve/hold_align.hpp"
-#include "core/solve/kept.hpp"
+#include "core/solve/arap/accelerate_race.hpp"
+#include "core/solve/arap/frames.hpp"
+#include "core/solve/base/hold_align.hpp"
+#include "core/solve/base/kept.hpp"
+#include "core/solve/maps/conformal.hpp"
+#include "core/solve/maps/convex_map.hpp"
 #include "core/solve/methods.hpp"
 
 namespace unwrapd {

@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/options.hpp"
-#include "core/solve/accelerate_race.hpp"
-#include "core/solve/conformal_system.hpp"
-#include "core/solve/local_global.hpp"
-#include "core/solve/solution.hpp"
+#include "core/solve/arap/accelerate_race.hpp"
+#include "core/solve/arap/local_global.hpp"
+#include "core/solve/base/solution.hpp"
+#include "core/solve/maps/conformal_system.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "error_of.hpp"
 
 namespace unwrapd::api {

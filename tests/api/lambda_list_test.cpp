@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "api/options.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "error_of.hpp"
 
 namespace unwrapd::api {

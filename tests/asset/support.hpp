@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/asset/asset.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::asset::test {
 

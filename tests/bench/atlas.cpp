@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/asset/asset.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/unwrap.hpp"
 #include "tests/bench/creases.hpp"
 #include "tests/bench/measure.hpp"

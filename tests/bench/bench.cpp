@@ -12,8 +12,8 @@
 
 #include "core/solve/solve.hpp"
 #include "core/unwrap.hpp"
-#include "server/solver_cache.hpp"
-#include "server/thread_executor.hpp"
+#include "server/work/solver_cache.hpp"
+#include "server/work/thread_executor.hpp"
 #include "tests/bench/cgal_arap.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/measure.hpp"

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "core/atlas/charts.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
+#include "core/charts/charts.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/core/counting_executor.hpp"

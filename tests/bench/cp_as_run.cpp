@@ -8,9 +8,9 @@
 
 #include "core/linear/eliminate.hpp"
 #include "core/linear/factor.hpp"
-#include "core/solve/conformal.hpp"
-#include "core/solve/fill_holes.hpp"
-#include "core/solve/metric.hpp"
+#include "core/solve/base/metric.hpp"
+#include "core/solve/maps/conformal.hpp"
+#include "core/solve/maps/fill_holes.hpp"
 
 namespace unwrapd::bench {
 namespace {

@@ -6,7 +6,7 @@
 //   z_i - z_k = r (z_j - z_k),  r = |ki| / |kj| exp(i angle at k),  k the face's third corner,
 // divided by the size of the face's three coefficients, the two farthest vertices held.
 
-#include "core/solve/disk.hpp"
+#include "core/solve/base/disk.hpp"
 
 namespace unwrapd::bench {
 

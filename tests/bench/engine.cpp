@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/measure/rest_triangle.hpp"
-#include "core/solve/conformal_system.hpp"
+#include "core/solve/maps/conformal_system.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/rivals.hpp"

@@ -3,8 +3,8 @@
 //   unwrapd_looks [--least MS] CASE...
 //   CASE: noisy:FACES (closed, like a scan), disk:FACES, boxes:COUNT, or a file: read, unwrapped,
 //   written as it came
-// The program has its own core/cancel.cpp: the linker takes the functions below.
-#include "core/cancel.hpp"
+// The program has its own core/base/cancel.cpp: the linker takes the functions below.
+#include "core/base/cancel.hpp"
 
 #include <cxxabi.h>
 #include <execinfo.h>
@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "core/asset/asset.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/unwrap.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/noisy_body.hpp"

@@ -10,7 +10,7 @@
 #include <functional>
 #include <utility>
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::bench {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "core/atlas/charts.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
+#include "core/charts/charts.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/bench/measure.hpp"

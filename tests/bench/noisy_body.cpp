@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/atlas/scrambled.hpp"
+#include "core/base/scrambled.hpp"
 
 namespace unwrapd::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "core/options.hpp"
 #include "core/solve/solve.hpp"
+#include "core/types/options.hpp"
 #include "tests/bench/cp_as_run.hpp"
 
 namespace unwrapd::bench {

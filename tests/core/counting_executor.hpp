@@ -1,7 +1,7 @@
 #pragma once
 // An executor that counts: work without a clock.
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 
 namespace unwrapd {
 

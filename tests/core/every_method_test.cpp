@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/unwrap.hpp"
 #include "tests/core/hard_shapes.hpp"
 

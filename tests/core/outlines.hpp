@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/atlas/outline.hpp"
-#include "core/atlas/pack.hpp"
+#include "core/charts/outline.hpp"
+#include "core/pack/pack.hpp"
 
 namespace unwrapd::shapes {
 

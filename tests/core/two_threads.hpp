@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "core/executor.hpp"
+#include "core/base/executor.hpp"
 
 namespace unwrapd {
 

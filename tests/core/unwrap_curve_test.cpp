@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/unwrap.hpp"
 #include "tests/core/shapes.hpp"
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/shapes.hpp"
 

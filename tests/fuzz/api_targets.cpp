@@ -3,7 +3,7 @@
 #include <array>
 
 #include "api/options.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace unwrapd::fuzz {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/asset/asset.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace unwrapd::fuzz {

@@ -7,12 +7,12 @@
 
 #include "api/json.hpp"
 #include "api/options.hpp"
-#include "core/error.hpp"
-#include "server/connection.hpp"
-#include "server/http_exchange.hpp"
-#include "server/http_head.hpp"
-#include "server/identity.hpp"
-#include "server/mesh_reference.hpp"
+#include "core/base/error.hpp"
+#include "server/base/identity.hpp"
+#include "server/http/connection.hpp"
+#include "server/http/http_exchange.hpp"
+#include "server/http/http_head.hpp"
+#include "server/uploads/mesh_reference.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace unwrapd::fuzz {

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 
-#include "server/http_head.hpp"
-#include "server/parking.hpp"
+#include "server/http/http_head.hpp"
+#include "server/http/parking.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace unwrapd::fuzz {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 
-#include "core/error.hpp"
-#include "server/byte_pack.hpp"
-#include "server/job_frames.hpp"
-#include "server/uv_file.hpp"
+#include "core/base/error.hpp"
+#include "server/base/byte_pack.hpp"
+#include "server/work/job_frames.hpp"
+#include "server/work/uv_file.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace unwrapd::fuzz {

@@ -16,9 +16,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
-#include "server/job_frames.hpp"
+#include "core/base/error.hpp"
 #include "server/program.hpp"
+#include "server/work/job_frames.hpp"
 
 namespace {
 

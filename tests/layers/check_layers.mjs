@@ -5,46 +5,18 @@ import { readFileSync, readdirSync } from "node:fs";
 import { dirname, join, relative, sep } from "node:path";
 import { fileURLToPath } from "node:url";
 
-/** Folder -> the folders whose headers it may include, itself always. The longest prefix counts. */
-const MAY_INCLUDE = {
-  "core/mesh": [],
-  "core/measure": ["core/mesh"],
-  "core/linear": ["core/mesh"],
-  "core/solve": ["core/linear", "core/measure", "core/mesh"],
-  "core/atlas": ["core/solve", "core/linear", "core/measure", "core/mesh"],
-  "core/figure": ["core/measure", "core/mesh"],
-  "core/asset": ["core/mesh"],
-  core: ["core/atlas", "core/solve", "core/linear", "core/measure", "core/mesh"],
-  api: [],
-  web: [],
-  server: ["api", "web", "core", "core/asset", "core/atlas", "core/figure", "core/measure", "core/mesh", "core/solve", "core/linear"],
-  client: ["api"],
-};
-
-/** Plain structs that may be included from any folder listed. */
-const PLAIN = ["core/error.hpp", "core/options.hpp", "core/report.hpp", "core/progress.hpp", "core/executor.hpp", "core/solver_core.hpp", "core/fingerprint.hpp", "core/cancel.hpp"];
-const PLAIN_FOR = {
-  "core/mesh": ["core/cancel.hpp", "core/error.hpp"],
-  "core/asset": ["core/cancel.hpp", "core/error.hpp", "core/asset_options.hpp", "core/file_repair.hpp"],
-  "core/measure": PLAIN,
-  "core/linear": PLAIN,
-  "core/solve": PLAIN,
-  "core/atlas": PLAIN,
-  "core/figure": PLAIN,
-  api: ["core/error.hpp", "core/options.hpp", "core/asset_options.hpp", "core/file_repair.hpp", "core/report.hpp", "core/progress.hpp", "core/mesh/tri_mesh.hpp"],
-  client: [],
-};
+import { HOUSES, ROOMS, roomOf, table, upward } from "./rooms.mjs";
 
 /** A header (or the start of its name) -> where alone it may be included. */
 const ONLY_IN = [
-  { header: /^httplib\.h$/, files: /^(server|client)\/[a-z_]*http[a-z_]*\.(cpp|hpp)$|^tests\// },
+  { header: /^httplib\.h$/, files: /^(server|client)\/([a-z]+\/)?[a-z_]*http[a-z_]*\.(cpp|hpp)$|^tests\// },
   { header: /^nlohmann\//, files: /^(core\/asset|api|server|client|tests)\// },
   { header: /^(thread|chrono|iostream|mutex|atomic|future)$/, files: /^(?!core\/)/ },
   { header: /^spdlog\//, files: /^server\// },
-  { header: /^toml\+\+\//, files: /^server\/config\.cpp$/ },
+  { header: /^toml\+\+\//, files: /^server\/config\/config\.cpp$/ },
   { header: /^CLI\//, files: /^(server|client)\// },
-  { header: /^seccomp\.h$/, files: /^server\/sandbox\.cpp$/ },
-  { header: /^png\.h$/, files: /^(server\/png_file\.cpp$|tests\/server\/)/ },
+  { header: /^seccomp\.h$/, files: /^server\/work\/sandbox\.cpp$/ },
+  { header: /^png\.h$/, files: /^(server\/work\/png_file\.cpp$|tests\/server\/)/ },
   { header: /^yaml\.h$/, files: /^api\/contract\// },
   { header: /^sqlite3\.h$/, files: /^(server|tests\/server)\// },
   { header: /^(draco\/|meshoptimizer\.h|tiny_gltf\.h)/, files: /^(core\/asset|tests\/asset|tests\/fuzz)\// },
@@ -73,24 +45,14 @@ function* files(root, folder = root) {
   }
 }
 
-/** The layer of a file, or undefined: tests may include everything. */
-function layerOf(path) {
-  const layers = Object.keys(MAY_INCLUDE).filter((layer) => path.startsWith(layer + "/"));
-  return layers.sort((a, b) => b.length - a.length)[0];
-}
-
-function mayInclude(layer, header) {
-  const target = layerOf(header);
-  if (target === layer) return true;
-  if (layer === "core" || layer === "server") return MAY_INCLUDE[layer].includes(target);
-  return MAY_INCLUDE[layer].includes(target) || (PLAIN_FOR[layer] ?? []).includes(header);
-}
-
 function includeBreaches(path, header, quoted) {
   const breaches = [];
-  const layer = layerOf(path);
-  if (quoted && layer && layerOf(header) && !mayInclude(layer, header))
-    breaches.push(`${layer} may not include ${header}`);
+  const room = roomOf(path);
+  const other = roomOf(header);
+  if (quoted && room && other && other !== room && !room.includes.includes(other.folder))
+    breaches.push(`${room.folder} may not include ${header}`);
+  if (quoted && HOUSES.some((house) => header.startsWith(`${house}/`)) && !other)
+    breaches.push(`${header} is in no room`);
   if (quoted && header.startsWith("server/") && !/^(server|tests\/(server|fault|fuzz|isolate|bench))\//.test(path))
     breaches.push("nothing includes server");
   for (const rule of ONLY_IN)
@@ -104,6 +66,8 @@ export function check(path, text) {
   const breaches = [];
   const lines = text.split("\n");
   const isCode = /\.(cpp|hpp)$/.test(path);
+  if (isCode && HOUSES.some((house) => path.startsWith(`${house}/`)) && !roomOf(path))
+    breaches.push(`${path}: is in no room`);
   lines.forEach((line, number) => {
     const include = isCode && line.match(/^\s*#\s*include\s+(["<])([^">]+)[">]/);
     const found = include ? includeBreaches(path, include[2], include[1] === '"') : [];
@@ -157,7 +121,9 @@ export function checkTree(root) {
     breaches.push(...check(path, text));
     if (/^(core|api|server|client)\/.*\.hpp$/.test(path)) headers.push({ path, text });
   }
-  return { breaches: [...breaches, ...twins(headers)], count };
+  if (!readFileSync(join(root, "docs/architecture.md"), "utf8").includes(table()))
+    breaches.push("docs/architecture.md: its table of rooms is not that of `node tests/layers/rooms.mjs`");
+  return { breaches: [...breaches, ...upward(ROOMS), ...twins(headers)], count };
 }
 
 const self = fileURLToPath(import.meta.url);

@@ -3,47 +3,68 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { check, twins } from "./check_layers.mjs";
+import { ROOMS, upward } from "./rooms.mjs";
 
 const including = (path, header) => check(path, `#include ${header}\n`);
 const refuses = (path, header) => assert.notDeepEqual(including(path, header), [], `${path} ${header}`);
 const accepts = (path, header) => assert.deepEqual(including(path, header), [], `${path} ${header}`);
 
-test("core's folders include downwards only", () => {
-  refuses("core/mesh/weld.cpp", '"core/solve/arap.hpp"');
+test("rooms include the rooms before them only", () => {
+  refuses("core/mesh/weld.cpp", '"core/solve/solve.hpp"');
   refuses("core/measure/energy.cpp", '"core/linear/cholesky.hpp"');
-  refuses("core/solve/arap.cpp", '"core/atlas/pack.hpp"');
-  refuses("core/asset/gltf.cpp", '"core/atlas/pack.hpp"');
-  refuses("core/asset/gltf.cpp", '"core/options.hpp"');
-  refuses("core/atlas/pack.cpp", '"core/unwrap.hpp"');
+  refuses("core/solve/arap/objective.cpp", '"core/pack/pack.hpp"');
+  refuses("core/solve/maps/conformal.cpp", '"core/solve/repair/untangle.hpp"');
+  refuses("core/asset/gltf.cpp", '"core/pack/pack.hpp"');
+  refuses("core/pack/pack.cpp", '"core/unwrap.hpp"');
+  refuses("core/pack/pack.cpp", '"core/segment/segment.hpp"');
   refuses("core/unwrap.cpp", '"core/asset/asset.hpp"');
-  refuses("core/measure/energy.cpp", '"core/figure/image.hpp"');
-  refuses("core/figure/preview.cpp", '"core/solve/arap.hpp"');
+  refuses("core/figure/preview.cpp", '"core/solve/solve.hpp"');
+  refuses("server/http/http.cpp", '"server/store/job_store.hpp"');
+  refuses("server/store/job_store.cpp", '"server/http/http.hpp"');
+  refuses("server/jobs/job_queue.cpp", '"server/routes/job_routes.hpp"');
+  refuses("server/base/log.cpp", '"server/service.hpp"');
   accepts("core/figure/preview.cpp", '"core/measure/jacobian.hpp"');
-  accepts("core/solve/arap.cpp", '"core/linear/cholesky.hpp"');
-  accepts("core/atlas/charts.cpp", '"core/options.hpp"');
-  accepts("core/unwrap.cpp", '"core/atlas/pack.hpp"');
+  accepts("core/solve/arap/global_step.cpp", '"core/linear/cholesky.hpp"');
+  accepts("core/charts/charts.cpp", '"core/types/options.hpp"');
+  accepts("core/unwrap.cpp", '"core/pack/pack.hpp"');
+  accepts("server/jobs/job_queue.cpp", '"server/store/job_store.hpp"');
+});
+
+test("every source is in a room", () => {
+  assert.deepEqual(check("core/attic/a.cpp", ""), ["core/attic/a.cpp: is in no room"]);
+  assert.deepEqual(check("server/http/a.cpp", ""), []);
+  refuses("server/service.cpp", '"server/attic/a.hpp"');
+});
+
+test("a table that goes both ways is refused", () => {
+  const upstairs = { folder: "a", includes: ["b"] };
+  const downstairs = { folder: "b", includes: [] };
+  assert.deepEqual(upward([downstairs, upstairs]), []);
+  assert.equal(upward([upstairs, downstairs]).length, 1);
+  assert.equal(upward([{ folder: "a", includes: ["unknown"] }]).length, 1);
+  assert.deepEqual(upward(ROOMS), []);
 });
 
 test("nobody reaches past the layer below", () => {
   refuses("api/job.cpp", '"core/unwrap.hpp"');
   refuses("api/job.cpp", '"client/http.hpp"');
-  refuses("client/run.cpp", '"core/report.hpp"');
-  refuses("client/run.cpp", '"server/queue.hpp"');
-  refuses("tests/api/job_test.cpp", '"server/queue.hpp"');
-  accepts("api/job.cpp", '"core/report.hpp"');
+  refuses("client/run.cpp", '"core/types/report.hpp"');
+  refuses("client/run.cpp", '"server/jobs/job_queue.hpp"');
+  refuses("tests/api/job_test.cpp", '"server/jobs/job_queue.hpp"');
+  accepts("api/job.cpp", '"core/types/report.hpp"');
   accepts("client/run.cpp", '"api/job.hpp"');
-  accepts("server/worker.cpp", '"core/asset/asset.hpp"');
+  accepts("server/work/run_job.cpp", '"core/asset/asset.hpp"');
 });
 
 test("a library is seen by its own folder only", () => {
   refuses("client/run.cpp", "<httplib.h>");
   refuses("core/unwrap.cpp", "<nlohmann/json.hpp>");
   refuses("core/unwrap.cpp", "<thread>");
-  refuses("core/solve/arap.cpp", "<chrono>");
-  refuses("core/solve/arap.cpp", "<iostream>");
+  refuses("core/solve/solve.cpp", "<chrono>");
+  refuses("core/solve/solve.cpp", "<iostream>");
   refuses("client/run.cpp", "<spdlog/spdlog.h>");
   refuses("core/figure/image.cpp", "<png.h>");
-  accepts("server/png_file.cpp", "<png.h>");
+  accepts("server/work/png_file.cpp", "<png.h>");
   refuses("api/job.cpp", "<draco/compression/decode.h>");
   accepts("client/http.cpp", "<httplib.h>");
   accepts("core/asset/gltf.cpp", "<nlohmann/json.hpp>");

@@ -4,14 +4,14 @@
 
 #include <limits>
 
-#include "core/atlas/trial.hpp"
-#include "core/error.hpp"
-#include "core/solve/barrier.hpp"
-#include "core/solve/conformal.hpp"
-#include "core/solve/fill_holes.hpp"
-#include "core/solve/metric.hpp"
-#include "core/solve/newton.hpp"
-#include "core/solve/patch.hpp"
+#include "core/base/error.hpp"
+#include "core/segment/trial.hpp"
+#include "core/solve/base/metric.hpp"
+#include "core/solve/maps/conformal.hpp"
+#include "core/solve/maps/fill_holes.hpp"
+#include "core/solve/repair/barrier.hpp"
+#include "core/solve/repair/newton.hpp"
+#include "core/solve/repair/patch.hpp"
 #include "core/unwrap.hpp"
 #include "tests/core/solve/disk_of.hpp"
 

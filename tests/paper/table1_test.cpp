@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/atlas/charts.hpp"
+#include "core/charts/charts.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/bench/table1.hpp"

@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/unwrap.hpp"
 #include "tests/asset/support.hpp"
 #include "tests/core/obj_reader.hpp"

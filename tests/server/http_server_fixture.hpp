@@ -1,7 +1,7 @@
 #pragma once
 // An HttpServer by itself on a free port, what it answers, and what it tells of it.
 
-#include "server/http_server.hpp"
+#include "server/http/http_server.hpp"
 
 #include "running_server.hpp"  // Eigen before httplib, whose headers define _res
 

@@ -6,9 +6,9 @@
 
 #include "api/report.hpp"
 #include "core/unwrap.hpp"
-#include "server/solver_cache.hpp"
-#include "server/thread_executor.hpp"
-#include "server/uv_file.hpp"
+#include "server/work/solver_cache.hpp"
+#include "server/work/thread_executor.hpp"
+#include "server/work/uv_file.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::server {

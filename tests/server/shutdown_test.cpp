@@ -8,7 +8,7 @@
 #include <memory>
 #include <thread>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::server {
 namespace {

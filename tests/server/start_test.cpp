@@ -7,7 +7,7 @@
 
 #include "http_server_fixture.hpp"
 #include "running_server.hpp"
-#include "server/files.hpp"
+#include "server/base/files.hpp"
 #include "tests/api/error_of.hpp"
 
 namespace unwrapd::server {

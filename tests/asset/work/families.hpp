@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/asset_options.hpp"
+#include "core/types/asset_options.hpp"
 
 namespace unwrapd::asset::test {
 

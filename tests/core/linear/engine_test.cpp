@@ -5,9 +5,9 @@
 #include <Eigen/SparseCholesky>
 
 #include "core/measure/energy.hpp"
-#include "core/solve/conformal_system.hpp"
-#include "core/solve/convex_map.hpp"
-#include "core/solve/objective.hpp"
+#include "core/solve/arap/objective.hpp"
+#include "core/solve/maps/conformal_system.hpp"
+#include "core/solve/maps/convex_map.hpp"
 #include "tests/core/linear/systems.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"

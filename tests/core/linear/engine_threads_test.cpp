@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/linear/engine.hpp"
 #include "core/linear/solve_panels.hpp"
 #include "tests/core/linear/systems.hpp"

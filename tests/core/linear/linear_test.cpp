@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/linear/dominant_lu.hpp"
 #include "core/linear/eliminate.hpp"
 #include "core/linear/factor.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/linear/elimination_tree.hpp"
 #include "tests/core/linear/graphs.hpp"
 

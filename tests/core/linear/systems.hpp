@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/linear/factor.hpp"
-#include "core/solve/disk.hpp"
+#include "core/solve/base/disk.hpp"
 
 namespace unwrapd {
 

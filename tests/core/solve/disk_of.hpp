@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "core/atlas/charts.hpp"
-#include "core/solve/disk.hpp"
+#include "core/charts/charts.hpp"
+#include "core/solve/base/disk.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::shapes {

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "core/solve/disk.hpp"
-#include "core/solve/holds.hpp"
+#include "core/solve/base/disk.hpp"
+#include "core/solve/base/holds.hpp"
 
 namespace unwrapd {
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
 #include "tests/core/solve/cancel_at.hpp"

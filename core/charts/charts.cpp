@@ -1,0 +1,286 @@
+// A surface taken apart: weld, set bad faces aside, pair half-edges, separate components, cut.
+// Once it is known which vertices are welded and which faces have no area, all but the order of
+// boundaries follows from numbers alone, and is kept for the next mesh of the same faces.
+#include "core/charts/charts.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "core/base/cancel.hpp"
+#include "core/base/error.hpp"
+#include "core/charts/cut.hpp"
+#include "core/charts/pieces.hpp"
+#include "core/mesh/counting_sort.hpp"
+#include "core/mesh/edges.hpp"
+#include "core/mesh/repair.hpp"
+#include "core/mesh/seams.hpp"
+#include "core/mesh/weld.hpp"
+#include "core/solve/base/kept.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr Index kUnnumbered = -1;
+
+void require_two_sides(const SurfaceNumbers& surface, const Pieces& pieces) {
+  const auto component = one_sided_component(pieces.clashes, pieces.topology);
+  if (!component) return;
+  const auto& of = pieces.topology.component_of;
+  const auto face = std::find(of.begin(), of.end(), *component) - of.begin();
+  throw Error(ErrorCode::not_orientable,
+              "The piece that face " + std::to_string(pieces.source[face]) +
+                  " belongs to is one-sided like a Moebius strip and has no consistent "
+                  "orientation; cut it open, or send it with seams=keep and its cut in place.",
+              std::string(surface.name));
+}
+
+/// The mesh whose vertices the twins imply; position(h) is where half-edge h starts.
+template <class Position>
+TriMesh mesh_of(const Halfedges& halfedges, Position position) {
+  CornerVertices corners = corner_vertices(halfedges);
+  TriMesh mesh{std::vector<Vec3>(corners.count), std::move(corners.faces)};
+  for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h)
+    mesh.positions[mesh.faces[h / 3][h % 3]] = position(h);
+  return mesh;
+}
+
+/// Whether materials meet between two half-edges of one edge, or the input has other vertices on
+/// either side: of normals, or of texture coordinates.
+bool is_crease(const SurfaceNumbers& surface, Index g, Index h) {
+  const std::span<const Triangle> faces = surface.faces;
+  return surface.part[face_of(g)] != surface.part[face_of(h)] ||
+         start_of(faces, g) != end_of(faces, h) || end_of(faces, g) != start_of(faces, h);
+}
+
+/// What a surface comes to wherever its vertices lie, as long as the same ones lie at one place and
+/// the same faces have no area.
+struct Connected {
+  Charts charts;                                  ///< without positions, loops in any order
+  std::vector<std::vector<Index>> vertex_source;  ///< of each chart: the surface's vertices
+};
+
+std::size_t bytes_of(const Connected& connected) {
+  using unwrapd::bytes_of;
+  const Charts& charts = connected.charts;
+  std::size_t bytes = bytes_of(charts.set_aside) + bytes_of(charts.repeats);
+  bytes += bytes_of(*charts.by_position);
+  for (const std::vector<Index>& source : connected.vertex_source) bytes += bytes_of(source);
+  for (const Chart& chart : charts.charts) bytes += bytes_of(chart);
+  return bytes;
+}
+
+/// The faces of one component.
+struct Members {
+  std::span<const Index> source;  ///< as numbers of pieces
+  std::span<const Index> rank;    ///< of each face of pieces: its place in source
+};
+
+void mark_creases(const SurfaceNumbers& surface, const Pieces& pieces, const Members& members,
+                  const std::stop_token& stop, Chart& chart) {
+  const auto given = [&](Index g) { return 3 * pieces.source[g / 3] + g % 3; };
+  for (const Index t : members.source) {
+    look_now_and_then(members.rank[t], stop);
+    for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+      const Index twin = pieces.halfedges.twin[h];
+      if (twin != kNoTwin && is_crease(surface, given(h), given(twin)))
+        chart.crease[3 * members.rank[t] + h % 3] = 1;
+    }
+  }
+}
+
+/// Numbers the chart's vertices by first use. number: of the vertices of pieces, kUnnumbered at
+/// first. vertex_source: left for each of the chart's vertices.
+void number_vertices(const SurfaceNumbers& surface, const Pieces& pieces, const Members& members,
+                     std::vector<Index>& number, std::vector<Index>& vertex_source, Chart& chart) {
+  chart.mesh.faces.resize(members.source.size());
+  for (std::size_t k = 0; k < members.source.size(); ++k)
+    for (std::size_t i = 0; i < 3; ++i) {
+      Index& own = number[pieces.corners.faces[members.source[k]][i]];
+      if (own == kUnnumbered) {
+        own = static_cast<Index>(vertex_source.size());
+        vertex_source.push_back(0);
+      }
+      chart.mesh.faces[k][i] = own;
+      vertex_source[own] = surface.faces[chart.face_source[k]][i];
+    }
+}
+
+Chart chart_of(const SurfaceNumbers& surface, const Pieces& pieces, const Members& members,
+               const std::stop_token& stop) {
+  Chart chart;
+  const std::size_t count = members.source.size();
+  chart.face_source.resize(count);
+  chart.halfedges.twin.resize(3 * count);
+  chart.crease.assign(3 * count, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    look_now_and_then(k, stop);
+    const Index t = members.source[k];
+    chart.face_source[k] = pieces.source[t];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index twin = pieces.halfedges.twin[3 * t + i];
+      chart.halfedges.twin[3 * k + i] =
+          twin == kNoTwin ? kNoTwin : 3 * members.rank[twin / 3] + twin % 3;
+    }
+  }
+  if (pieces.may_crease) mark_creases(surface, pieces, members, stop, chart);
+  chart.loops = boundary_loops(chart.halfedges, stop);
+  return chart;
+}
+
+void separate(const SurfaceNumbers& surface, const Pieces& pieces, const std::stop_token& stop,
+              Connected& out) {
+  const auto& components = pieces.topology.components;
+  const auto& of = pieces.topology.component_of;
+  std::vector<Index> order(pieces.source.size());
+  for (std::size_t t = 0; t < order.size(); ++t) order[t] = static_cast<Index>(t);
+  counting_sort(
+      order, static_cast<Index>(components.size()), [&](Index t) { return of[t]; }, stop);
+  out.charts.charts.reserve(components.size());
+  out.vertex_source.resize(components.size());
+  std::vector<Index> rank(order.size()), number(pieces.corners.count, kUnnumbered);
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < components.size(); ++k) {
+    const std::span<const Index> source(order.data() + first, components[k].faces);
+    for (std::size_t i = 0; i < source.size(); ++i) rank[source[i]] = static_cast<Index>(i);
+    first += source.size();
+    Chart chart = chart_of(surface, pieces, {source, rank}, stop);
+    number_vertices(surface, pieces, {source, rank}, number, out.vertex_source[k], chart);
+    out.charts.charts.push_back(std::move(chart));
+    throw_if_cancelled(stop);
+  }
+}
+
+InputReport input_report(const SurfaceNumbers& surface, const Topology& shape, bool welded) {
+  InputReport input{.faces = static_cast<Index>(surface.faces.size()),
+                    .vertices = surface.vertex_count};
+  input.components = static_cast<Index>(shape.components.size());
+  for (const Component& component : shape.components) {
+    input.boundaries += component.boundaries;
+    input.genus += component.genus;
+  }
+  input.welded = welded;
+  return input;
+}
+
+std::vector<Repair> repairs_of(const FaceStates& states, const Pieces& pieces) {
+  const auto faces = [&](FaceState state) {
+    return static_cast<Index>(std::count(states.of.begin(), states.of.end(), state));
+  };
+  std::vector<Repair> repairs{
+      {RepairKind::degenerate_faces_set_aside, 0,
+       faces(FaceState::collapsed) + faces(FaceState::flat)},
+      {RepairKind::duplicate_faces_set_aside, 0, faces(FaceState::duplicate)},
+      {RepairKind::non_manifold_edges_split, 0, pieces.split_edges}};
+  std::erase_if(repairs, [](const Repair& repair) { return repair.count == 0; });
+  return repairs;
+}
+
+Connected connect(const Inspected& in, const SeamRules& seams) {
+  const SurfaceNumbers& surface = in.surface;
+  Pairing by_place = pair_welded(in.welded, in.states, seams.stop);
+  const auto [pieces, was_welded] = choose_pieces(in, by_place, seams);
+  require_two_sides(surface, pieces);
+  throw_if_cancelled(seams.stop);
+  Connected connected;
+  Charts& charts = connected.charts;
+  separate(surface, pieces, seams.stop, connected);
+  for (std::size_t t = 0; t < in.states.of.size(); ++t) {
+    if (in.states.of[t] == FaceState::sound) continue;
+    charts.set_aside.push_back(static_cast<Index>(t));
+    charts.repeats.push_back(in.states.same_as[t]);
+  }
+  charts.input = input_report(surface, pieces.topology, was_welded);
+  charts.repairs = repairs_of(in.states, pieces);
+  const bool all_are_paired = charts.set_aside.empty();
+  charts.by_position = std::make_shared<const Halfedges>(
+      all_are_paired ? std::move(by_place.halfedges)
+                     : build_halfedges(in.welded, surface.vertex_count, seams.stop));
+  return connected;
+}
+
+/// Of a surface whose vertices and faces that lie at one place, or have no area, are known.
+/// areas: what inspect_areas() says of each face; duplicates are found here.
+Connected connected(const Making&, const SurfaceNumbers& surface, std::span<const Index> first_at,
+                    const std::vector<FaceState>& areas, const SeamRules& seams) {
+  const std::vector<Triangle> welded = renumbered(surface.faces, first_at);
+  FaceStates states{areas, std::vector<Index>(areas.size(), kNoFace)};
+  find_duplicates(welded, surface.vertex_count, seams.stop, states);
+  return connect({surface, first_at, welded, states}, seams);
+}
+
+Charts placed(const Connected& connected, const TriMesh& mesh, const std::stop_token& stop) {
+  Charts charts = connected.charts;
+  for (std::size_t k = 0; k < charts.charts.size(); ++k) {
+    throw_if_cancelled(stop);
+    Chart& chart = charts.charts[k];
+    chart.mesh.positions.reserve(connected.vertex_source[k].size());
+    for (const Index v : connected.vertex_source[k])
+      chart.mesh.positions.push_back(mesh.positions[v]);
+    sort_by_length(chart.mesh, chart.loops);
+  }
+  return charts;
+}
+
+}  // namespace
+
+bool is_disk(const Chart& component) {
+  std::size_t sides = 0;  // on the boundary
+  for (const BoundaryLoop& loop : component.loops) sides += loop.size();
+  const Index faces = component.mesh.face_count();
+  const Index edges = (3 * faces + static_cast<Index>(sides)) / 2;
+  const Index euler = component.mesh.vertex_count() - edges + faces;
+  const auto boundaries = static_cast<Index>(component.loops.size());
+  return boundaries > 0 && euler == 2 - boundaries;
+}
+
+void cut(Chart& component) {
+  cut_to_disk(component.mesh, component.halfedges);
+  const TriMesh closed = std::move(component.mesh);
+  component.mesh = mesh_of(component.halfedges,
+                           [&](Index h) { return closed.positions[closed.faces[h / 3][h % 3]]; });
+  component.loops = boundary_loops(component.mesh, component.halfedges);
+}
+
+Charts make_charts(const Surface& surface, SeamMode seams) {
+  Charts charts = components_of(surface, {seams});
+  Index count = 0;
+  for (Chart& component : charts.charts) {
+    if (is_disk(component)) continue;
+    cut(component);
+    ++count;
+  }
+  if (count > 0) charts.repairs.push_back({RepairKind::cut_to_disk, 0, count});
+  return charts;
+}
+
+/// Of paths those that are of the surface count, wherever it stands among others.
+void describe(Fingerprint& key, const SeamRules& seams) {
+  const auto& [mode, paths, surface, stop, core] = seams;
+  static_cast<void>(stop), static_cast<void>(core);
+  key.add(mode);
+  for (const SeamPath& path : paths)
+    if (path.surface == surface) key.add(path.vertices);
+}
+
+Charts components_of(const Surface& surface, const SeamRules& seams) {
+  assert(surface.part.size() == surface.mesh.faces.size());
+  const std::vector<Index> first_at = weld(surface.mesh.positions, seams.stop);
+  throw_if_cancelled(seams.stop);
+  const std::vector<Triangle> welded = renumbered(surface.mesh.faces, first_at);
+  const FaceStates states = inspect_areas(surface.mesh, welded, seams.stop);
+  throw_if_cancelled(seams.stop);
+  const auto pieces = kept<connected>(Making{seams.core, seams.stop}, SurfaceNumbers(surface),
+                                      first_at, states.of, seams);
+  return placed(*pieces, surface.mesh, seams.stop);
+}
+
+std::size_t bytes_of(const Chart& chart) {
+  std::size_t bytes = sizeof(Chart) + bytes_of(chart.mesh.positions) + bytes_of(chart.mesh.faces) +
+                      bytes_of(chart.halfedges) + bytes_of(chart.face_source) +
+                      bytes_of(chart.start) + bytes_of(chart.crease);
+  for (const BoundaryLoop& loop : chart.loops) bytes += sizeof(BoundaryLoop) + bytes_of(loop);
+  return bytes;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,23 @@
+#include "core/charts/outline.hpp"
+
+#include "core/measure/orientation.hpp"
+
+namespace unwrapd {
+
+Outline outline_of(const Chart& chart, std::span<const Vec2> uv) {
+  Outline outline;
+  const auto corner = [&](Index face, std::size_t i) {
+    return uv[static_cast<std::size_t>(chart.mesh.faces[static_cast<std::size_t>(face)][i])];
+  };
+  const auto add = [&](Index h) {
+    const auto i = static_cast<std::size_t>(h % 3);
+    outline.push_back({corner(face_of(h), i), corner(face_of(h), (i + 1) % 3)});
+  };
+  for (const BoundaryLoop& loop : chart.loops)
+    for (Index h : loop) add(h);
+  for (Index t : flipped_faces(chart.mesh.faces, uv))
+    for (Index h = 3 * t; h < 3 * t + 3; ++h) add(h);
+  return outline;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,18 @@
+#pragma once
+// The part of the plane that a chart's map covers, as segments.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/charts/charts.hpp"
+
+namespace unwrapd {
+
+/// Closed loops of directed segments. Points that they wind around are inside.
+using Outline = std::vector<std::array<Vec2, 2>>;
+
+/// The chart's boundary loops, and the sides of flipped triangles, which may stick out of them.
+Outline outline_of(const Chart& chart, std::span<const Vec2> uv);
+
+}  // namespace unwrapd

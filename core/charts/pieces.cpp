@@ -1,0 +1,132 @@
+// SeamMode::automatic keeps the surface's own cuts when they make it a few disks: that is what
+// someone did who opened a model on purpose. A flat-shaded export or a triangle soup is hundreds of
+// tiny "disks", and a model with the seams of an old atlas is many more than it has components;
+// both are welded. The bounds below part the two by a wide margin.
+#include "core/charts/pieces.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "core/base/cancel.hpp"
+#include "core/base/error.hpp"
+#include "core/mesh/seams.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr std::size_t kMostKeptDisks = 64;           // in all
+constexpr std::size_t kMostKeptDisksAComponent = 4;  // for each component of the welded surface
+constexpr std::size_t kLeastFacesADisk = 8;          // on average
+
+/// Leaves out the faces that are set aside.
+Pieces pieces_of(const Pairing& pairing, const FaceStates& states, const std::stop_token& stop) {
+  throw_if_cancelled(stop);
+  Pieces pieces;
+  std::vector<Index> rank(states.of.size(), kNoFace);
+  for (std::size_t t = 0; t < states.of.size(); ++t) {
+    look_now_and_then(t, stop);
+    if (states.of[t] != FaceState::sound) continue;
+    rank[t] = static_cast<Index>(pieces.source.size());
+    pieces.source.push_back(static_cast<Index>(t));
+  }
+  const auto moved = [&](Index h) { return h == kNoTwin ? kNoTwin : 3 * rank[h / 3] + h % 3; };
+  pieces.halfedges.twin.resize(3 * pieces.source.size());
+  for (std::size_t h = 0; h < pieces.halfedges.twin.size(); ++h) {
+    look_now_and_then(h, stop);
+    pieces.halfedges.twin[h] = moved(pairing.halfedges.twin[3 * pieces.source[h / 3] + h % 3]);
+  }
+  close_slits(pieces.halfedges, stop);
+  throw_if_cancelled(stop);
+  pieces.corners = corner_vertices(pieces.halfedges, stop);
+  pieces.topology = topology(pieces.corners.faces, pieces.halfedges, stop);
+  pieces.split_edges = pairing.split_edges;
+  for (const auto& [g, h] : pairing.clashes)
+    if (rank[g / 3] != kNoFace && rank[h / 3] != kNoFace)
+      pieces.clashes.push_back({moved(g), moved(h)});
+  return pieces;
+}
+
+bool is_a_few_disks(const Pieces& kept, const Pieces& welded) {
+  const auto& components = kept.topology.components;
+  const std::size_t count = components.size();
+  const auto is_disk = [](const Component& c) { return c.is_disk(); };
+  return count <= kMostKeptDisks &&
+         count <= kMostKeptDisksAComponent * welded.topology.components.size() &&
+         count * kLeastFacesADisk <= kept.source.size() &&
+         std::all_of(components.begin(), components.end(), is_disk);
+}
+
+[[noreturn]] void refuse_path(std::size_t path, const std::string& why) {
+  throw Error(ErrorCode::invalid_option, "seam_edges: " + why,
+              "/seam_edges/" + std::to_string(path));
+}
+
+std::string text(const EdgeEnds& edge) {
+  return std::to_string(edge[0]) + " and " + std::to_string(edge[1]);
+}
+
+/// The edges of one path, in ascending order, over welded vertices.
+std::vector<EdgeEnds> edges_of(const Inspected& in, const SeamPath& path, std::size_t number) {
+  const auto count = static_cast<Index>(in.first_at.size());
+  std::vector<EdgeEnds> edges;
+  for (std::size_t k = 0; k < path.vertices.size(); ++k) {
+    const Index v = path.vertices[k];
+    if (v < 0 || v >= count)
+      refuse_path(number, "there is no vertex " + std::to_string(v) + " in a mesh of " +
+                              std::to_string(count) + "; give vertices of this mesh");
+    if (k == 0) continue;
+    const auto ends = std::minmax(in.first_at[path.vertices[k - 1]], in.first_at[v]);
+    edges.push_back({ends.first, ends.second});
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+void cut_paths(const Inspected& in, const SeamRules& seams, Halfedges& halfedges) {
+  for (std::size_t k = 0; k < seams.paths.size(); ++k) {
+    if (seams.paths[k].surface != seams.surface) continue;
+    const std::vector<EdgeEnds> edges = edges_of(in, seams.paths[k], k);
+    if (const auto missing = cut_edges(in.welded, edges, halfedges))
+      refuse_path(k, "no edge joins vertices " + text(*missing) +
+                         "; give vertices that follow each other along edges");
+  }
+}
+
+Pieces welded_pieces(const Inspected& in, Pairing pairing, const SeamRules& seams) {
+  if (seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty())
+    cut_at_uv_seams(in.surface, pairing.halfedges);
+  cut_paths(in, seams, pairing.halfedges);
+  return pieces_of(pairing, in.states, seams.stop);
+}
+
+Pieces kept_pieces(const Inspected& in, Pairing pairing, const SeamRules& seams) {
+  cut_paths(in, seams, pairing.halfedges);
+  return pieces_of(pairing, in.states, seams.stop);
+}
+
+}  // namespace
+
+std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_place,
+                                      const SeamRules& seams) {
+  const bool nothing_to_weld = std::ranges::equal(in.welded, in.surface.faces);
+  const bool is_plain = nothing_to_weld && !spans_parts(in.surface);  // seams by no rule at all
+  const auto kept = [&] {
+    Pieces pieces = kept_pieces(
+        in, is_plain ? by_place : pair_keeping_seams(in.surface, in.welded, in.states, seams.stop),
+        seams);
+    pieces.may_crease = !is_plain;
+    return pieces;
+  };
+  const bool by_uv = seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty();
+  if (seams.mode == SeamMode::none || by_uv)
+    return {welded_pieces(in, by_place, seams), !nothing_to_weld};
+  if (seams.mode == SeamMode::keep || nothing_to_weld) return {kept(), false};
+  Pieces with_cuts = kept();
+  throw_if_cancelled(seams.stop);
+  Pieces without = welded_pieces(in, by_place, seams);
+  const bool same = with_cuts.halfedges.twin == without.halfedges.twin;
+  if (same || is_a_few_disks(with_cuts, without)) return {std::move(with_cuts), false};
+  return {std::move(without), true};
+}
+
+}  // namespace unwrapd

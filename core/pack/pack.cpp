@@ -1,0 +1,227 @@
+// One page: few islands are squeezed together, many set down snugly. Several pages, or a given
+// density: on the cells of coarse grids first, where a search among orders and turns is cheap, then
+// with what was found on a fine one. Islands keep their scale and the page shrinks; the cells' size
+// in texels, and with it the padding in cells, follows from its side.
+#include "core/pack/pack.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/base/error.hpp"
+#include "core/pack/pack_few.hpp"
+#include "core/pack/pack_search.hpp"
+#include "core/pack/pack_snugly.hpp"
+#include "core/pack/pack_stacked.hpp"
+#include "core/pack/page_grid.hpp"
+#include "core/pack/page_layout.hpp"
+#include "core/pack/squeeze.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// Grids on which several pages are searched, the coarse first.
+struct Level {
+  int cells = 0;          ///< a side, at least
+  double per_island = 0;  ///< cells along a side, for each of as many islands
+  std::int64_t work = 0;  ///< words a share
+};
+constexpr std::array kLevels = {Level{96, 12, 18'000'000}, Level{160, 20, 6'000'000}};
+constexpr Level kRough = {96, 12, 350'000};  // for a glance
+constexpr double kRoughHeat = 0.1;
+constexpr std::int64_t kRoughSqueezeWork = 1'000'000, kFineWork = 1'000'000;  // words a share
+constexpr std::size_t kSearched = 400;    // islands at most that are searched on a coarse grid
+constexpr std::size_t kMostApart = 5000;  // islands: more lie in rows, on one page
+
+int turns_for(std::size_t islands) {
+  if (islands <= kFewOnAPage) return 48;
+  return islands <= 100 ? 8 : 4;
+}
+
+class Packer {
+ public:
+  Packer(std::span<const Outline> outlines, const PageOptions& page, Executor& executor)
+      : outlines_(outlines),
+        arranger_(outlines, turns_for(outlines.size())),
+        shares_(shares_of(outlines)),
+        page_(page),
+        padding_(kept_padding(page, outlines.size())),
+        grid_{padding_ / page.resolution},
+        executor_(executor),
+        stop_(executor.stop()) {}
+
+  /// As large as fits on the pages that are allowed.
+  Packed largest() {
+    if (page_.packing.max_pages > 1) return on_several();
+    if (arranger_.size() <= kFewOnAPage) {
+      auto few = packed_few(outlines_, grid_, executor_);
+      if (few) return {std::move(*few), 1, padding_, {}};
+    }
+    return {packed_snugly(arranger_, grid_, executor_), 1, padding_, {}};
+  }
+
+  /// The share of the page that is filled after a short search on coarse grids, which ends where it
+  /// is `enough`. area: of all islands.
+  double rough_fill(double area, double enough) {
+    const std::size_t n = arranger_.size();
+    const int side = cells_for(n, kRough.per_island, kRough.cells);
+    double scale = side * std::sqrt(kUsualFill / box_area(arranger_));
+    std::vector<Arrangement> starts = usual_arrangements(arranger_);
+    if (n > kSearched) starts.resize(1);
+    const double tightest = std::sqrt(area / enough);  // page, in the islands' units
+    const StripRules strip{side, kRoughHeat, static_cast<int>(scale * tightest)};
+    arranger_.set_scale(scale, 0);
+    Budget budget{work(kRough.work), stop_};
+    Found found = smallest_page(arranger_, starts, strip, budget).front();
+    if (n <= kFewOnAPage && found.side > strip.enough) {
+      SqueezeRules rules = kFirstSqueeze;
+      const double ratio = double(rules.side) / found.side;
+      rules.enough = static_cast<int>(scale * ratio * tightest);
+      arranger_.set_scale(scale * ratio, 0);
+      budget = {work(kRoughSqueezeWork), stop_};
+      const Found tight = squeezed(arranger_, found, rules, budget);
+      if (tight.side > 0) scale *= ratio, found = tight;
+    }
+    return area * scale * scale / (double(found.side) * found.side);
+  }
+
+  /// At the density that is asked for, on as few pages as can be had.
+  Packed at_density(double texels_per_unit) {
+    const int side = grid_.tight_side(fine_cells(arranger_.size()));
+    const double page_per_unit = texels_per_unit / page_.resolution;
+    if (is_too_large(page_per_unit))
+      refuse(
+          "An island at this density is larger than a page; lower texels_per_unit, or raise "
+          "resolution.");
+    arranger_.set_scale(page_per_unit / grid_.cell(side), grid_.padding(side));
+    Budget budget{work(kFineWork), stop_};
+    const Found found = fewest_pages(arranger_, usual_arrangements(arranger_),
+                                     {side, side, page_.packing.max_pages}, budget);
+    if (found.side == 0)
+      refuse(
+          "The islands at this density do not fit on the pages; raise max_pages or resolution, or "
+          "lower texels_per_unit.");
+    return placed(found);
+  }
+
+ private:
+  [[noreturn]] static void refuse(const std::string& message) {
+    throw Error(ErrorCode::does_not_fit, message, "/texels_per_unit");
+  }
+
+  /// Looked at before any island is turned into cells, which would be too many. A square of the
+  /// smallest box's shorter side lies in it; an island never fits where not even that does.
+  [[nodiscard]] bool is_too_large(double page_per_unit) const {
+    for (std::size_t k = 0; k < arranger_.size(); ++k) {
+      const Vec2 size = page_per_unit * arranger_.box(k).size;
+      if (size.minCoeff() > 1 || size.maxCoeff() > std::sqrt(2.0)) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::int64_t work(std::int64_t a_share) const {
+    return static_cast<std::int64_t>(shares_ * static_cast<double>(a_share));
+  }
+
+  Packed on_several() {
+    std::vector<Arrangement> starts = usual_arrangements(arranger_);
+    const std::size_t n = arranger_.size();
+    double side = fine_cells(n);
+    double scale = usual_scale(arranger_, grid_, page_.packing.max_pages, side);
+    if (n > kSearched) starts.resize(1);
+    for (const Level& level : kLevels) {
+      if (n > kSearched) break;
+      const int cells = cells_for(n, level.per_island, level.cells);
+      const double loose = scale / side * cells;
+      const Found found = on_grid(starts, cells, loose, work(level.work));
+      starts = {found.arrangement};
+      scale = loose;
+      side = found.side;
+    }
+    const int fine = grid_.tight_side(fine_cells(n));
+    return placed(on_grid_exactly(starts, fine, fine * scale / side / kSpareSide));
+  }
+
+  /// A search at this scale, with the padding of pages of `side` cells.
+  Found on_grid(const std::vector<Arrangement>& starts, int side, double cells_per_unit,
+                std::int64_t work) {
+    arranger_.set_scale(cells_per_unit, grid_.padding(side));
+    Budget budget{work, stop_};
+    return smallest_pages(arranger_, starts, page_.packing.max_pages, budget);
+  }
+
+  /// The same where the padding must be kept: should pages come out larger than `side`, the islands
+  /// shrink and all is done again.
+  Found on_grid_exactly(const std::vector<Arrangement>& starts, int side, double cells_per_unit) {
+    for (;;) {
+      Found found = on_grid(starts, side, cells_per_unit, work(kFineWork));
+      if (found.side <= side) return found;
+      cells_per_unit *= double(side) / found.side / kSpareSide;
+    }
+  }
+
+  Packed placed(const Found& found) {
+    return {placements_of(found, arranger_, grid_), static_cast<Index>(found.pages), padding_, {}};
+  }
+
+  std::span<const Outline> outlines_;
+  Arranger arranger_;
+  double shares_;
+  PageOptions page_;
+  double padding_;
+  PageGrid grid_;
+  Executor& executor_;
+  std::stop_token stop_;
+};
+
+std::vector<UvMap> points_of(std::span<const Outline> islands) {
+  std::vector<UvMap> points(islands.size());
+  for (std::size_t k = 0; k < islands.size(); ++k)
+    for (const auto& [a, b] : islands[k]) points[k].push_back(a);
+  return points;
+}
+
+bool has_extent(std::span<const UvMap> points) {
+  return std::any_of(points.begin(), points.end(),
+                     [](const UvMap& own) { return smallest_box(own).size.prod() > 0; });
+}
+
+Packed pack_apart(std::span<const Outline> islands, const PageOptions& page, Executor& executor) {
+  if (page.packing.texels_per_unit)
+    return Packer(islands, page, executor).at_density(*page.packing.texels_per_unit);
+  const std::vector<UvMap> points = points_of(islands);
+  Packed rows{pack_in_rows(points, page), 1, kept_padding(page, islands.size()), {}};
+  const bool are_too_many = islands.size() > kMostApart && page.packing.max_pages == 1;
+  if (islands.size() < 2 || are_too_many || !has_extent(points)) return rows;
+  Packed tight = Packer(islands, page, executor).largest();
+  return tight.placements.front().scale > rows.placements.front().scale ? tight : rows;
+}
+
+double area_of(const Outline& outline) {
+  double area = 0;
+  for (const auto& [a, b] : outline) area += (a.x() * b.y() - a.y() * b.x()) / 2;
+  return area;
+}
+
+}  // namespace
+
+double rough_fill(std::span<const Outline> islands, double enough, const std::stop_token& stop) {
+  if (islands.empty() || !has_extent(points_of(islands))) return 1;
+  double area = 0;
+  for (const Outline& island : islands) area += area_of(island);
+  SerialExecutor serial;
+  JobExecutor executor(serial, stop);
+  return Packer(islands, {.padding = 0}, executor).rough_fill(area, enough);
+}
+
+Packed pack(std::span<const Outline> islands, const PageOptions& page, Executor& executor) {
+  if (islands.empty()) return {};
+  const auto apart = [&](std::span<const Outline> each) {
+    return pack_apart(each, page, executor);
+  };
+  return page.packing.stack_identical ? pack_stacked(islands, apart, executor.stop())
+                                      : apart(islands);
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,134 @@
+// How well islands are squeezed together is partly luck: it depends on how they lie at first and on
+// which turns there are. So several starts are squeezed on a coarse grid without gaps, and the best
+// go on to fine grids, where the gaps come in.
+#include "core/pack/pack_few.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "core/pack/page_layout.hpp"
+#include "core/pack/snug.hpp"
+#include "core/solve/base/side_by_side.hpp"
+
+namespace unwrapd {
+namespace {
+
+struct Try {
+  int turns = 0;  ///< that a full circle is divided into
+  SnugRules rules;
+};
+constexpr std::array kTries = {Try{72, {.2, .45}}, Try{48, {.1, .9}}, Try{96, {.2, .45}},
+                               Try{60, {.2, .45}}, Try{72, {.4, .7}}, Try{48, {.4, .7}}};
+constexpr std::size_t kFinished = 2;  // of the tries
+
+struct Squeeze {
+  SqueezeRules rules;     ///< for 1024 cells a side; the first grid's side as it is
+  std::int64_t work = 0;  ///< words a share
+};
+constexpr Squeeze kFirst{kFirstSqueeze, 20'000'000};
+constexpr std::array kGrids = {Squeeze{{512, 8, 2, 3}, 8'000'000},
+                               Squeeze{{1024, 8, 1, 3}, 8'000'000}};
+constexpr double kMostShares = 12;
+constexpr double kSidesAShare = 30;  // of outlines: small shapes need no long search
+constexpr double kSmaller = 0.9;     // where islands did not fit in
+
+/// Islands on a page, and the arranger whose masks these are.
+struct Tried {
+  std::optional<Arranger> arranger = {};
+  Found found = {};
+  [[nodiscard]] double density() const {  ///< pages a unit
+    return found.side > 0 ? arranger->scale() / found.side : 0;
+  }
+};
+
+class FewPacker {
+ public:
+  FewPacker(std::span<const Outline> islands, const PageGrid& grid, Executor& executor)
+      : islands_(islands), grid_(grid), executor_(executor), shares_(shares_of(islands)) {}
+
+  std::optional<std::vector<Placement>> packed() {
+    auto tried = side_by_side<Tried>(kTries.size(), executor_,
+                                     [&](std::size_t k) { return squeezed_from(kTries[k]); });
+    std::ranges::stable_sort(tried, std::greater(), &Tried::density);
+    tried.resize(kFinished);
+    tried = side_by_side<Tried>(kFinished, executor_,
+                                [&](std::size_t k) { return finished(std::move(tried[k])); });
+    Tried& best = *std::ranges::max_element(tried, {}, &Tried::density);
+    if (best.found.side == 0) return std::nullopt;
+    return placements_of(best.found, *best.arranger, grid_);
+  }
+
+ private:
+  Tried squeezed_from(const Try& own) const {
+    Tried tried{Arranger(islands_, own.turns)};
+    tried.found = start(*tried.arranger, own.rules);
+    const double scale = tried.arranger->scale() * kFirst.rules.side / tried.found.side;
+    tried.found = squeezed_on(kFirst, tried, scale);
+    return tried;
+  }
+
+  /// Twice: the second time at the scale at which the first suggests that the islands just fit.
+  Found start(Arranger& arranger, const SnugRules& rules) const {
+    const int side = kFirst.rules.side;
+    SnugPage page;
+    double scale = side * std::sqrt(kUsualFill / box_area(arranger));
+    for (; page.found.side == 0; scale *= kSmaller) {
+      arranger.set_scale(scale, 0);
+      page = laid_snugly(arranger, side, rules, executor_.stop());
+    }
+    const double first = arranger.scale();
+    arranger.set_scale(first * std::sqrt(double(side) / page.height), 0);
+    const SnugPage again = laid_snugly(arranger, side, rules, executor_.stop());
+    if (again.found.side > 0 && arranger.scale() / again.found.side > first / page.found.side)
+      return again.found;
+    arranger.set_scale(first, 0);
+    return page.found;
+  }
+
+  Tried finished(Tried tried) const {
+    for (const Squeeze& grid : kGrids) {
+      if (tried.found.side == 0) return tried;
+      Squeeze own = grid;
+      own.rules.side = grid_.tight_side(grid.rules.side);
+      const double scale = tried.arranger->scale() * own.rules.side / tried.found.side;
+      tried.found = squeezed_on(own, tried, scale);
+    }
+    return tried;
+  }
+
+  /// Pages must be no larger than those for which the padding was made: the islands shrink until
+  /// they are.
+  Found squeezed_on(const Squeeze& grid, Tried& tried, double scale) const {
+    const bool has_gaps = grid.rules.reach > 0;
+    for (;;) {
+      tried.arranger->set_scale(scale, has_gaps ? grid_.padding(grid.rules.side) : 0);
+      Budget budget{static_cast<std::int64_t>(shares_ * static_cast<double>(grid.work)),
+                    executor_.stop()};
+      Found found = squeezed(*tried.arranger, tried.found, grid.rules, budget);
+      if (!has_gaps || found.side <= grid.rules.side) return found;
+      scale *= double(grid.rules.side) / found.side / kSpareSide;
+    }
+  }
+
+  std::span<const Outline> islands_;
+  const PageGrid& grid_;
+  Executor& executor_;
+  double shares_;
+};
+
+}  // namespace
+
+double shares_of(std::span<const Outline> islands) {
+  double sides = 0;
+  for (const Outline& island : islands) sides += static_cast<double>(island.size());
+  return std::min({static_cast<double>(islands.size()), sides / kSidesAShare, kMostShares});
+}
+
+std::optional<std::vector<Placement>> packed_few(std::span<const Outline> islands,
+                                                 const PageGrid& grid, Executor& executor) {
+  return FewPacker(islands, grid, executor).packed();
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,58 @@
+#include "core/pipeline/analyse.hpp"
+
+#include <algorithm>
+
+#include "core/base/error.hpp"
+
+namespace unwrapd {
+
+std::vector<Charts> components(std::span<const Surface> surfaces, SeamRules rules) {
+  const auto is_empty = [](const Surface& surface) { return surface.mesh.faces.empty(); };
+  if (std::all_of(surfaces.begin(), surfaces.end(), is_empty))
+    throw Error(ErrorCode::no_triangles, "the asset has no triangles; there is nothing to unwrap");
+  std::vector<Charts> parts;
+  parts.reserve(surfaces.size());
+  for (const Surface& surface : surfaces) {
+    parts.push_back(components_of(surface, rules));
+    ++rules.surface;
+  }
+  return parts;
+}
+
+InputAnalysis analysis_of(std::span<const Charts> parts) {
+  InputAnalysis analysis;
+  InputReport& input = analysis.input;
+  for (std::size_t s = 0; s < parts.size(); ++s) {
+    input.faces += parts[s].input.faces;
+    input.vertices += parts[s].input.vertices;
+    input.components += parts[s].input.components;
+    input.boundaries += parts[s].input.boundaries;
+    input.genus += parts[s].input.genus;
+    input.welded = input.welded || parts[s].input.welded;
+    for (Repair repair : parts[s].repairs) {
+      repair.surface = static_cast<Index>(s);
+      analysis.repairs.push_back(repair);
+    }
+  }
+  return analysis;
+}
+
+std::size_t job_bytes(std::span<const Surface> surfaces) {
+  std::size_t faces = 0;
+  for (const Surface& surface : surfaces) faces += surface.mesh.faces.size();
+  return kJobBytesPerFace * faces;
+}
+
+void require_area(std::span<const Charts> parts) {
+  const auto is_empty = [](const Charts& part) { return part.charts.empty(); };
+  if (std::all_of(parts.begin(), parts.end(), is_empty))
+    throw Error(ErrorCode::zero_area, "every triangle has zero area; there is nothing to unwrap");
+}
+
+InputAnalysis analyse(std::span<const Surface> surfaces, const std::stop_token& stop) {
+  const std::vector<Charts> parts = components(surfaces, {.stop = stop});
+  require_area(parts);
+  return analysis_of(parts);
+}
+
+}  // namespace unwrapd

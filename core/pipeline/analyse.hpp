@@ -1,0 +1,40 @@
+#pragma once
+// What surfaces are as they come in, and what of them would have to be repaired: how unwrap()
+// begins, for who wants to know no more.
+
+#include <cstddef>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "core/base/solver_core.hpp"
+#include "core/charts/charts.hpp"
+#include "core/mesh/tri_mesh.hpp"
+#include "core/types/options.hpp"
+#include "core/types/report.hpp"
+
+namespace unwrapd {
+
+struct InputAnalysis {
+  InputReport input;            ///< over all surfaces
+  std::vector<Repair> repairs;  ///< of every surface in turn
+};
+
+/// The components of every surface; rules: of the first of them, whose paths are those of all.
+/// Throws Error: no_triangles, not_orientable, invalid_option, cancelled.
+std::vector<Charts> components(std::span<const Surface> surfaces, SeamRules rules);
+
+/// What is known of surfaces by their components. Repairs that taking these apart into charts would
+/// need are among them once that is done.
+InputAnalysis analysis_of(std::span<const Charts> parts);
+
+/// Memory that a job on these surfaces takes, beside its factors.
+std::size_t job_bytes(std::span<const Surface> surfaces);
+
+/// Throws Error: no_triangles, zero_area, not_orientable, cancelled.
+InputAnalysis analyse(std::span<const Surface> surfaces, const std::stop_token& stop = {});
+
+/// Throws Error{zero_area} when there is no chart, so that nothing can be unwrapped.
+void require_area(std::span<const Charts> parts);
+
+}  // namespace unwrapd

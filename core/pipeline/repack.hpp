@@ -1,0 +1,18 @@
+#pragma once
+// The UVs that surfaces came with, on a page of their own again.
+
+#include <span>
+
+#include "core/base/executor.hpp"
+#include "core/types/progress.hpp"
+#include "core/types/report.hpp"
+
+namespace unwrapd {
+
+/// Packs the islands of the surfaces' corner_uv; none is deformed or mirrored. At a given density
+/// each has it; else they keep their sizes beside each other.
+/// Throws Error{no_texture_coordinates, does_not_fit, cancelled}.
+Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options,
+                 const Progress& progress, Executor& executor);
+
+}  // namespace unwrapd

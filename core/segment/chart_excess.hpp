@@ -1,0 +1,19 @@
+#pragma once
+// What charts will come to when they are solved.
+
+#include <span>
+#include <stop_token>
+
+#include "core/base/executor.hpp"
+#include "core/charts/charts.hpp"
+#include "core/segment/trial.hpp"
+
+namespace unwrapd {
+
+/// The excess of charts after some iterations of ARAP from their starts, over the area of all;
+/// faces that are flipped or collapsed then are left out. A chart that cannot be factored counts as
+/// flat. The same for any executor.
+/// Throws Error{cancelled}.
+Excess chart_excess(std::span<const Chart> charts, Executor& executor, const std::stop_token& stop);
+
+}  // namespace unwrapd

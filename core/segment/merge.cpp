@@ -1,0 +1,252 @@
+// A queue of neighbours, the union that promises most first: much border gone, little distortion
+// added. A promise is what the two parts were worth when they were last tried; a union is tried
+// when it comes to the top (lazy greedy, Minoux 1978), some at a time so that threads have work,
+// always the same ones. Merging by normals alone stops far too early: what counts is whether ARAP
+// can lay the union flat, and only ARAP knows.
+#include "core/segment/merge.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "core/base/cancel.hpp"
+#include "core/base/scrambled.hpp"
+#include "core/pack/box.hpp"
+#include "core/segment/labels.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr std::size_t kBatch = 4;   // unions tried at once
+constexpr double kWideShare = 0.2;  // what the wider patch's share of border counts
+constexpr double kLarge = 0.04;     // of the page: of a union whose shape matters
+constexpr double kLast = 1e99;      // the key of unions that failed before
+
+double area_within(const UvMap& hull) {
+  double area = 0;
+  for (std::size_t k = 2; k < hull.size(); ++k) {
+    const Vec2 a = hull[k - 1] - hull[0], b = hull[k] - hull[0];
+    area += (a.x() * b.y() - a.y() * b.x()) / 2;
+  }
+  return area;
+}
+
+/// What is known of a pair of neighbours.
+struct Promise {
+  double rise = 0;  ///< excess that their union is thought to add
+  bool was_flawed = false;
+  bool is_impossible = false;
+};
+
+struct Union {
+  double key = 0;
+  Index a = 0, b = 0;
+  std::shared_ptr<Joined> tried = {};  ///< nothing: not yet
+
+  bool operator>(const Union& other) const {
+    return std::tie(key, a, b) > std::tie(other.key, other.a, other.b);
+  }
+};
+
+class Merging {
+ public:
+  Merging(const Joiner& joiner, const Sheet& sheet, Partition from, const MergeRules& rules)
+      : joiner_(joiner),
+        sheet_(sheet),
+        rules_(rules),
+        open_(std::move(from.open)),
+        patches_(std::move(from.patches)) {
+    alive_.assign(patches_.size(), 1);
+    count_ = patches_.size();
+    for (const MappedRegion& patch : patches_) total_ += patch.excess;
+    measure_borders();
+  }
+
+  void run(Executor& executor) {
+    for (Index a = 0; a < static_cast<Index>(patches_.size()); ++a)
+      for (const auto& [b, unused] : borders_[a])
+        if (a < b) propose(a, b, {});
+    while (!queue_.empty() && count_ > static_cast<std::size_t>(rules_.enough)) {
+      throw_if_cancelled(rules_.stop);
+      Union best = queue_.top();
+      if (best.tried == nullptr) {
+        try_batch(executor);
+        continue;
+      }
+      queue_.pop();
+      if (is_alive(best)) accept(best);
+    }
+  }
+
+  [[nodiscard]] Partition take() {
+    Partition left{{}, std::move(open_)};
+    for (std::size_t k = 0; k < patches_.size(); ++k)
+      if (alive_[k] != 0) left.patches.push_back(std::move(patches_[k]));
+    return left;
+  }
+
+ private:
+  void measure_borders() {
+    std::vector<Index> owner(sheet_.mesh.faces.size(), -1);
+    for (std::size_t k = 0; k < patches_.size(); ++k)
+      for (const Index t : patches_[k].region.faces) owner[t] = static_cast<Index>(k);
+    borders_.resize(patches_.size());
+    perimeter_.assign(patches_.size(), 0);
+    for (Index h = 0; h < static_cast<Index>(sheet_.halfedges.twin.size()); ++h) {
+      const Index twin = sheet_.halfedges.twin[h], own = owner[face_of(h)];
+      const Index other = twin == kNoTwin ? -1 : owner[face_of(twin)];
+      if (own < 0 || own == other) continue;
+      perimeter_[own] += sheet_.seam_cost[h];
+      if (other >= 0 && open_[h] == 0) borders_[own][other] += sheet_.seam_cost[h];
+    }
+  }
+
+  [[nodiscard]] bool is_alive(const Union& u) const { return alive_[u.a] != 0 && alive_[u.b] != 0; }
+
+  /// Lower is better.
+  [[nodiscard]] double key(Index a, Index b, double rise) const {
+    const double border = borders_[a].at(b);
+    const double narrow = std::min(perimeter_[a], perimeter_[b]);
+    const double wide = std::max(perimeter_[a], perimeter_[b]);
+    const double price = rules_.budget > 0 ? rules_.price * rise / rules_.budget : 0;
+    const double worth = border / narrow + kWideShare * border / wide;
+    return rounded(price - worth * (1 + rules_.whim * drawn(a, b)));
+  }
+
+  /// A number in [0, 1) for this pair in this lot.
+  [[nodiscard]] double drawn(Index a, Index b) const {
+    const auto pair = std::minmax(a, b);
+    const std::uint64_t both =
+        static_cast<std::uint64_t>(pair.first) << 32 | static_cast<std::uint64_t>(pair.second);
+    const std::uint64_t lot = static_cast<std::uint64_t>(rules_.lot + 1) * kGoldenStep;
+    return static_cast<double>(scrambled(both + lot) >> 11) * 0x1p-53;
+  }
+
+  void propose(Index a, Index b, const Promise& promise) {
+    if (std::max(a, b) < rules_.whole) return;
+    if (promise.is_impossible || !patches_[a].is_sound || !patches_[b].is_sound) return;
+    const double promised = promise.was_flawed ? kLast : key(a, b, promise.rise);
+    queue_.push({promised, std::min(a, b), std::max(a, b)});
+  }
+
+  /// Tries the best unions that were not tried yet.
+  void try_batch(Executor& executor) {
+    std::vector<Union> batch;
+    while (!queue_.empty() && batch.size() < kBatch && queue_.top().tried == nullptr) {
+      if (is_alive(queue_.top())) batch.push_back(queue_.top());
+      queue_.pop();
+    }
+    executor.for_each_block(static_cast<int>(batch.size()), [&](int k) {
+      Union& own = batch[static_cast<std::size_t>(k)];
+      own.tried =
+          std::make_shared<Joined>(joiner_.join(patches_[own.a], patches_[own.b], open_, rules_.cap,
+                                                {.stop = rules_.stop, .memory = rules_.memory}));
+    });
+    throw_if_cancelled(rules_.stop);
+    for (Union& both : batch) {
+      if (rules_.effort != nullptr) rules_.effort->add(both.tried->patch.region.faces.size());
+      judge(std::move(both));
+    }
+  }
+
+  /// Whether a page that holds the patch could not be filled as it shall.
+  [[nodiscard]] bool is_awkward(const MappedRegion& patch) const {
+    if (rules_.least_fill <= 0 || patch.area < kLarge * rules_.page_area) return false;
+    UvMap points;
+    points.reserve(3 * patch.region.uv.size());
+    for (const CornerUv& uv : patch.region.uv) points.insert(points.end(), uv.begin(), uv.end());
+    points = convex_hull(std::move(points));
+    const double side = squarest_box(points).size.maxCoeff();
+    return side * side * rules_.least_fill > rules_.page_area ||
+           rules_.least_solid * area_within(points) > patch.area;
+  }
+
+  void judge(Union both) {
+    Promise& known = known_[{both.a, both.b}];
+    Joined& joined = *both.tried;
+    if (joined.patch.is_sound && is_awkward(joined.patch)) joined.patch.is_sound = false;
+    const Excess rise = joined.patch.excess - patches_[both.a].excess - patches_[both.b].excess;
+    known = {std::max(rise.worst(), 0.0), !joined.patch.is_sound,
+             joined.verdict == Verdict::impossible};
+    if (!joined.patch.is_sound) return;
+    both.key = key(both.a, both.b, known.rise);
+    queue_.push(std::move(both));
+  }
+
+  void accept(const Union& best) {
+    const Excess after =
+        total_ + best.tried->patch.excess - patches_[best.a].excess - patches_[best.b].excess;
+    if (after.worst() > std::max(rules_.budget, total_.worst())) return;
+    total_ = after;
+    const auto joined = static_cast<Index>(patches_.size());
+    double slit = 0;
+    for (const Index h : best.tried->slit) {
+      open_[h] = 1;
+      slit += sheet_.seam_cost[h];
+    }
+    perimeter_.push_back(perimeter_[best.a] + perimeter_[best.b] - 2 * borders_[best.a].at(best.b) +
+                         slit);
+    patches_.push_back(std::move(best.tried->patch));
+    alive_.push_back(1);
+    borders_.push_back(joined_borders(best.a, best.b));
+    for (const Index part : {best.a, best.b}) {
+      alive_[part] = 0;
+      patches_[part] = {};
+    }
+    --count_;
+    for (const auto& [other, length] : borders_[joined]) meet(joined, other, length, best);
+  }
+
+  [[nodiscard]] std::map<Index, double> joined_borders(Index a, Index b) const {
+    std::map<Index, double> borders;
+    for (const Index part : {a, b})
+      for (const auto& [other, length] : borders_[part])
+        if (other != a && other != b) borders[other] += length;
+    return borders;
+  }
+
+  /// other has a new neighbour, of which it knows what it knew of the parts.
+  void meet(Index joined, Index other, double length, const Union& parts) {
+    Promise promise;
+    for (const Index part : {parts.a, parts.b}) {
+      borders_[other].erase(part);
+      const auto known = known_.find(std::minmax(part, other));
+      if (known == known_.end()) continue;
+      promise.rise = std::max(promise.rise, known->second.rise);
+      promise.was_flawed = promise.was_flawed || known->second.was_flawed;
+      promise.is_impossible = promise.is_impossible || known->second.is_impossible;
+    }
+    borders_[other][joined] = length;
+    known_[std::minmax(joined, other)] = promise;
+    propose(joined, other, promise);
+  }
+
+  const Joiner& joiner_;
+  const Sheet& sheet_;
+  const MergeRules& rules_;
+  std::vector<char> open_;
+  std::vector<MappedRegion> patches_;  ///< those that were merged are dead and empty
+  std::vector<char> alive_;
+  std::vector<std::map<Index, double>> borders_;  ///< lengths to each neighbour
+  std::vector<double> perimeter_;
+  std::map<std::pair<Index, Index>, Promise> known_;
+  std::priority_queue<Union, std::vector<Union>, std::greater<>> queue_;
+  Excess total_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+Partition merge_patches(const Joiner& joiner, const Sheet& sheet, Partition from,
+                        const MergeRules& rules, Executor& executor) {
+  Merging merging(joiner, sheet, std::move(from), rules);
+  merging.run(executor);
+  return merging.take();
+}
+
+}  // namespace unwrapd

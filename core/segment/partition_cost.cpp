@@ -1,0 +1,64 @@
+// Packing takes as long as merging, so it is left out where it can change nothing: where seams and
+// charts alone cost too much, and where the sheet has but a part of a page, for then other charts
+// fill the gaps. It ends where the page is as full as it need be.
+#include "core/segment/partition_cost.hpp"
+
+#include <algorithm>
+
+#include "core/pack/pack.hpp"
+#include "core/segment/labels.hpp"
+#include "core/segment/loosen.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr double kMostPage = 1.5;  // of the sheet
+
+std::vector<Outline> outlines(const Sheet& sheet, const Partition& partition,
+                              const std::vector<Index>& owner) {
+  std::vector<Outline> all(partition.patches.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Region& region = partition.patches[k].region;
+    for (std::size_t f = 0; f < region.faces.size(); ++f)
+      for (Index i = 0; i < 3; ++i) {
+        const Index h = 3 * region.faces[f] + i, twin = sheet.halfedges.twin[h];
+        const CornerUv& uv = region.uv[f];
+        if (twin == kNoTwin || partition.open[h] != 0 ||
+            owner[face_of(twin)] != static_cast<Index>(k))
+          all[k].push_back({uv[i], uv[(i + 1) % 3]});
+      }
+  }
+  return all;
+}
+
+double seam_of(const Sheet& sheet, const Partition& partition, const std::vector<Index>& owner) {
+  double seam = 0;
+  for (std::size_t h = 0; h < partition.open.size(); ++h) {
+    const Index twin = sheet.halfedges.twin[h];
+    if (twin == kNoTwin) continue;
+    if (partition.open[h] != 0 || owner[face_of(twin)] != owner[h / 3]) seam += sheet.length[h] / 2;
+  }
+  return seam;
+}
+
+}  // namespace
+
+PartitionCost partition_cost(const Sheet& sheet, const Partition& partition,
+                             const CostRules& rules) {
+  const std::vector<Index> owner = owners(sheet, partition);
+  const double seam = seam_of(sheet, partition, owner);
+  if (seam <= 0) return {0, 0, 0};
+  double charts = 0;
+  for (const MappedRegion& patch : partition.patches)
+    charts += patch.area < kSmallRegion ? rules.small_chart : rules.chart;
+  PartitionCost cost{.seams = rounded(seam + charts), .seam = rounded(seam)};
+  if (cost.seam >= rules.longest || cost.seams >= rules.limit) return cost;
+  cost.all = cost.seams;
+  if (rules.page_area > kMostPage) return cost;
+  const double fill = rough_fill(outlines(sheet, partition, owner), rules.wanted_fill, rules.stop);
+  const double emptiness = std::max(0.0, rules.wanted_fill - fill);
+  cost.all = rounded(seam + charts + kCostOfEmptiness * emptiness);
+  return cost;
+}
+
+}  // namespace unwrapd

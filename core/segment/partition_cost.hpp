@@ -1,0 +1,36 @@
+#pragma once
+// What a partition of a sheet costs: what its user would see of it.
+
+#include <limits>
+#include <stop_token>
+
+#include "core/segment/hang.hpp"
+#include "core/segment/merge.hpp"
+
+namespace unwrapd {
+
+inline constexpr double kCostOfEmptiness = 40;  ///< of a whole page, in length of seams
+
+struct PartitionCost {
+  double seams = std::numeric_limits<double>::infinity();  ///< and charts; area of the sheet: 1
+  double all = std::numeric_limits<double>::infinity();    ///< and what the page leaves empty
+  double seam = std::numeric_limits<double>::infinity();   ///< alone
+};
+
+struct CostRules {
+  double chart = 0;        ///< what each chart costs, in length of seams
+  double small_chart = 0;  ///< one below kSmallRegion: most of them can be hung on others
+  double page_area = 1;    ///< of all that comes onto the page, in units of the sheet's
+  double wanted_fill = 1;  ///< share of the page; a page that is fuller costs nothing
+  double limit = std::numeric_limits<double>::infinity();    ///< from here on it is all the same
+  double longest = std::numeric_limits<double>::infinity();  ///< seams of which cost without limit
+  std::stop_token stop = {};
+};
+
+/// Seams by their lengths, so much for each chart, and more for each share of a rough packing
+/// that is wanted and left empty; nothing for what needs no cut. Where `all` is not below the limit
+/// it may be infinite instead. Rounded: equal costs tie. Throws Error{cancelled}.
+PartitionCost partition_cost(const Sheet& sheet, const Partition& partition,
+                             const CostRules& rules);
+
+}  // namespace unwrapd

@@ -1,0 +1,22 @@
+#pragma once
+// Regions of a surface as charts.
+
+#include <stop_token>
+#include <vector>
+
+#include "core/charts/charts.hpp"
+#include "core/segment/coarsen.hpp"
+#include "core/segment/segment.hpp"
+
+namespace unwrapd {
+
+/// The regions of a component, each with its map for a start.
+std::vector<Chart> region_charts(const Chart& component, const Segments& segments);
+
+/// The regions of the small surface that stands for a component, carried to the component. The
+/// starts follow the maps of the small surface: they may have flips where triangles are rough.
+/// Throws Error{cancelled}.
+std::vector<Chart> region_charts(const Chart& component, const Coarse& coarse,
+                                 const Segments& segments, const std::stop_token& stop);
+
+}  // namespace unwrapd

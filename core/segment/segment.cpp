@@ -1,0 +1,177 @@
+// Over-segment by normals, then merge with ARAP as the judge.
+//
+// The patches to begin with shall use but a part of the distortion that is allowed, so that merging
+// has something to spend: their flatness is tightened until they do. A patch that has no sound map
+// (a tube, a fold) is clustered again by itself, ever more tightly; single triangles always have
+// one, so this ends.
+#include "core/segment/segment.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "core/base/cancel.hpp"
+#include "core/segment/best_merge.hpp"
+#include "core/segment/cluster.hpp"
+#include "core/segment/labels.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr double kFlatness = 0.06;  // mean 1 - cosine within a patch; half for each next round
+constexpr int kFlatnessRounds = 6;
+constexpr double kShareOfPatches = 0.3;  // of the budget, that patches may use before they merge
+constexpr double kRefinement = 0.3;      // of flatness, each time a patch has no sound map
+constexpr int kRefinements = 4;          // then the patch falls into its triangles
+constexpr int kSmoothingPasses = 3;
+constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
+constexpr double kMargin = 0.97;  // of what is allowed: solving on may shift some between the two
+constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a number of regions
+constexpr double kPatchesShare = 0.1, kFacesOfPatches = 6;  // of the work; for each face
+constexpr std::size_t kPatchesAtOnce = 16;                  // then progress is told
+constexpr double kFacesOfQuick = 20, kQuickPrice = 1;
+constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of excess, in each decade
+constexpr int kDecades = 4;
+constexpr double kSameBound = 1e-9;
+constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
+
+/// How the work is watched and done.
+struct Work {
+  const std::stop_token& stop;
+  Effort& effort;
+  Executor& executor;
+};
+
+Excess total_of(std::span<const MappedRegion> patches) {
+  Excess total;
+  for (const MappedRegion& patch : patches) total += patch.excess;
+  return total;
+}
+
+/// The faces of each label with a map of their own, from their projection.
+std::vector<MappedRegion> map_patches(const Sheet& sheet, std::vector<Index>& label,
+                                      const Work& work) {
+  std::vector<std::vector<Index>> faces = faces_by_label(label, renumber(label));
+  std::vector<MappedRegion> patches(faces.size());
+  const auto map = [&](std::size_t k) {
+    MappedRegion& patch = patches[k];
+    patch.region.faces = std::move(faces[k]);
+    patch.region.uv = projected(sheet, patch.region.faces);
+    const TrialRules rules{.most_excess = std::numeric_limits<double>::infinity(),
+                           .stop = work.stop};
+    const TrialResult result = try_map(sheet, {}, rules, patch.region);
+    patch.excess = result.excess;
+    patch.is_sound = result.verdict == Verdict::sound;
+    for (const Index t : patch.region.faces) patch.area += sheet.area(t);
+  };
+  for (std::size_t first = 0; first < patches.size(); first += kPatchesAtOnce) {
+    const std::size_t count = std::min(kPatchesAtOnce, patches.size() - first);
+    work.executor.for_each_block(static_cast<int>(count),
+                                 [&](int block) { map(first + static_cast<std::size_t>(block)); });
+    throw_if_cancelled(work.stop);
+    std::size_t mapped = 0;
+    for (std::size_t k = first; k < first + count; ++k) mapped += patches[k].region.faces.size();
+    work.effort.add(mapped);
+  }
+  return patches;
+}
+
+/// Patches without a sound map fall into smaller ones: those of `finer` labels.
+void split_unsound(const Sheet& sheet, std::span<const MappedRegion> patches,
+                   std::span<const Index> finer, std::vector<Index>& label) {
+  const auto face_count = static_cast<Index>(label.size());
+  for (const MappedRegion& patch : patches) {
+    if (patch.is_sound) continue;
+    for (const Index t : patch.region.faces) label[t] = face_count + finer[t];
+  }
+  separate_labels(sheet.halfedges, label);
+}
+
+std::vector<MappedRegion> sound_patches(const Sheet& sheet, double flatness,
+                                        std::vector<Index> label, const Work& work) {
+  std::vector<MappedRegion> patches = map_patches(sheet, label, work);
+  const auto is_sound = [](const MappedRegion& patch) { return patch.is_sound; };
+  for (int k = 0; k <= kRefinements && !std::ranges::all_of(patches, is_sound); ++k) {
+    flatness *= kRefinement;
+    std::vector<Index> finer(label.size());
+    std::iota(finer.begin(), finer.end(), 0);
+    if (k < kRefinements) finer = cluster_faces(sheet, sheet.normal, flatness, work.stop);
+    split_unsound(sheet, patches, finer, label);
+    patches = map_patches(sheet, label, work);
+  }
+  return patches;
+}
+
+std::vector<MappedRegion> over_segment(const Sheet& sheet, double excess, const Work& work) {
+  work.effort.begin(kPatchesShare, kFacesOfPatches * sheet.face_count());
+  const double allowed = kShareOfPatches * excess;
+  double flatness = kFlatness;
+  for (int round = 1;; ++round, flatness /= 2) {
+    std::vector<Index> label = cluster_faces(sheet, sheet.normal, flatness, work.stop);
+    smooth_labels(sheet, kSmoothingPasses, kSmoothCosine, label);
+    std::vector<MappedRegion> patches = sound_patches(sheet, flatness, label, work);
+    if (round == kFlatnessRounds || total_of(patches).worst() <= allowed) return patches;
+  }
+}
+
+/// The excess of the bound that is searched for.
+double first_excess(const SegmentRules& rules) {
+  return std::min(rules.max_distortion, rules.first_distortion) - 2;
+}
+
+/// The budgets of all steps above the first bound up to the one that is asked for: the same for
+/// every bound as far as they go.
+std::vector<double> looser_budgets(const SegmentRules& rules) {
+  std::vector<double> budgets;
+  double decade = rules.first_distortion - 2;
+  if (rules.is_quick || !std::isfinite(decade)) return budgets;
+  for (int k = 0; k < kDecades; ++k, decade *= 10)
+    for (const double step : kSteps)
+      if (2 + step * decade <= rules.max_distortion + kSameBound)
+        budgets.push_back(kMargin * step * decade);
+  return budgets;
+}
+
+Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& rules,
+                 const Work& work) {
+  const double budget = kMargin * first_excess(rules);
+  MergeRules merging{.budget = budget, .cap = kCapOfOnePatch * budget, .stop = rules.stop};
+  merging.page_area = rules.page_area;
+  merging.effort = &work.effort;
+  if (rules.is_quick) {
+    work.effort.begin(1, kFacesOfQuick * sheet.face_count());
+    merging.price = kQuickPrice;
+    return merge_patches(Joiner(sheet), sheet, from, merging, work.executor);
+  }
+  return best_merge(sheet, from, merging, looser_budgets(rules), work.executor);
+}
+
+}  // namespace
+
+Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
+  Stage stage = Stage::segment;
+  Effort effort([&](double share) {
+    if (rules.on_progress) rules.on_progress(stage, share);
+  });
+  const Work work{rules.stop, effort, executor};
+  Partition best{over_segment(sheet, first_excess(rules), work),
+                 std::vector<char>(sheet.length.size(), 0)};
+  stage = Stage::merge;
+  best = merged(sheet, best, rules, work);
+  if (best.patches.size() > static_cast<std::size_t>(rules.most_regions)) {
+    const MergeRules merging{.budget = kAnyExcess,
+                             .cap = kAnyExcess,
+                             .price = kFarPrice * kAnyExcess,
+                             .enough = rules.most_regions,
+                             .stop = rules.stop};
+    best = merge_patches(Joiner(sheet), sheet, std::move(best), merging, executor);
+  }
+  Segments segments{{}, std::move(best.open), total_of(best.patches)};
+  for (MappedRegion& patch : best.patches) segments.regions.push_back(std::move(patch.region));
+  return segments;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,42 @@
+#pragma once
+// Components made charts, each by the way that suits it and what was asked for.
+
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "core/base/executor.hpp"
+#include "core/charts/charts.hpp"
+#include "core/types/fingerprint.hpp"
+#include "core/types/progress.hpp"
+
+namespace unwrapd {
+
+struct SegmentOptions {
+  std::optional<double> max_distortion = {};  ///< empty: none for disks, kDefaultDistortion else
+  std::optional<int> max_charts = {};         ///< of all surfaces together; empty: any number
+  bool one_chart_each = false;  ///< components stay whole: what is no disk is cut to one
+};
+
+inline void describe(Fingerprint& key, const SegmentOptions& options) {
+  const auto& [max_distortion, max_charts, one_chart_each] = options;
+  key.add(max_distortion).add(max_charts).add(one_chart_each);
+}
+
+/// How the work is watched; calls come from the thread that called.
+struct SegmentWatch {
+  std::function<void(Stage, double)> on_progress = {};  ///< the share that is done, [0, 1]
+  std::stop_token stop = {};
+};
+
+/// The components of surfaces (components_of()) become charts, all of them disks, and the repairs
+/// tell what was done. A disk stays as it is unless a distortion is asked for; any other component
+/// is taken apart by segment(), or cut to one disk where the number of charts leaves no more.
+/// Returns a sentence where more charts than asked for are needed, or noise leaves no room for the
+/// distortion, else nothing.
+/// The same for any executor. Throws Error{cancelled}.
+std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& options,
+                           const SegmentWatch& watch, Executor& executor);
+
+}  // namespace unwrapd

@@ -1,0 +1,32 @@
+#pragma once
+// The local/global iteration of Secs. 4.4 and 5: fit every triangle, stitch, repeat.
+
+#include "core/solve/arap/global_step.hpp"
+#include "core/solve/arap/objective.hpp"
+#include "core/solve/base/solution.hpp"
+
+namespace unwrapd {
+
+/// A disk, its held vertices, and the system that was factored for both.
+struct Assembly {
+  const Disk& disk;
+  const Holds& holds;
+  const GlobalStep& global;
+};
+
+struct LocalGlobalOptions {
+  Rigidity rigidity;
+  int iterations = 10;
+};
+
+/// Runs plain iterations from the map start, in which fixed vertices lie where they are held. The
+/// energy never rises. A step that would leave less than kMinAreaShare of the start's UV area is
+/// rejected and ends the run (collapse_guard).
+/// Throws Error{cancelled} within one iteration of a stop request.
+Solution local_global(const Assembly& assembly, const UvMap& start,
+                      const LocalGlobalOptions& options, const LoopWatch& watch,
+                      Executor& executor);
+
+inline constexpr double kMinAreaShare = 0.01;
+
+}  // namespace unwrapd

@@ -1,0 +1,41 @@
+#pragma once
+// What the iterations of ARAP and Hybrid minimise: the energy of the method, each triangle's fit
+// being the best there is (min over L of Eq. 2, 5), plus that of the springs (Sec. 7).
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/base/executor.hpp"
+#include "core/solve/arap/local_step.hpp"
+#include "core/solve/base/disk.hpp"
+#include "core/solve/base/holds.hpp"
+
+namespace unwrapd {
+
+class Objective {
+ public:
+  /// executor must outlive the objective. rank: that of GlobalStep, or any permutation.
+  Objective(const Disk& disk, const Rigidity& rigidity, Holds holds, std::span<const Index> rank,
+            Executor& executor);
+
+  /// Returns E(uv). force becomes -dE/du: zero at fixed vertices. For fixed fits the Hessian of E
+  /// is the matrix of GlobalStep, so that one plain iteration is uv += A^-1 force. Both spans have
+  /// one entry a vertex, by ranks. The same for any executor.
+  double evaluate(std::span<const Vec2> uv, std::span<Vec2> force);
+
+  /// The area that the images of the map evaluated last cover, counted with multiplicity.
+  [[nodiscard]] double uv_area() const { return uv_area_; }
+
+ private:
+  double pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const;
+
+  Rigidity rigidity_;
+  Holds holds_;  // by ranks
+  Executor& executor_;
+  std::shared_ptr<const FaceBlocks> blocks_;
+  std::vector<Vec2> beyond_;  // scratch of the local step
+  double uv_area_ = 0;
+};
+
+}  // namespace unwrapd

@@ -1,0 +1,32 @@
+#pragma once
+// ASAP solved directly (Sec. 4.2): the least-squares conformal map.
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "core/solve/base/disk.hpp"
+#include "core/types/options.hpp"
+
+namespace unwrapd {
+
+/// The map of least conformal energy, scaled so that UV area = 3D area.
+/// Pins::diameter fixes the two boundary vertices that lie farthest apart in space (Sec. 4.2; Levy
+/// et al. 2002). Pins::spectral fixes none: the smallest eigenvector that is not constant, under
+/// unit norm on the boundary (Mullen, Tong, Alliez, Desbrun 2008). Throws Error{solver_failed}.
+UvMap conformal_map(const Disk& disk, Pins pins);
+
+/// The same, made anew and kept for nobody: of a disk that is not asked for again.
+UvMap make_conformal_map(const Disk& disk, Pins pins);
+
+/// The map of Pins::diameter where double precision suffices for it. On ribbons a million times
+/// longer than wide it does not: there is no exact map, and conformal_map() gives one that keeps
+/// angles but not areas.
+std::optional<UvMap> exact_conformal_map(const Disk& disk);
+
+/// The two points of greatest distance, {a, b} with a < b. Exact, unless more than some twenty
+/// million pairs are left after pruning (nearly spherical clouds of many thousand points): then the
+/// best pair found by then.
+std::array<Index, 2> diameter(std::span<const Vec3> positions);
+
+}  // namespace unwrapd

@@ -1,0 +1,110 @@
+// The conformal energy is Hermitian in z = u_x + i u_y, n by n instead of 2n by 2n:
+//   4 E(z) = z* H z,  H = L - 4 M,
+// L the cotangent Laplacian (z* L z = 2 sum A_t |J_t|^2) and M the area form (z* M z = sum of
+// A_t det J_t), which only lives on the boundary: each boundary half-edge (i, j), the surface to
+// its left, adds Im(conj(z_i) z_j) / 2. A spring w |z_v - p|^2 adds 4 w to H_vv and 4 w p to the
+// right-hand side; fixed vertices are eliminated.
+#include "core/solve/maps/conformal_system.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "core/solve/base/kept.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr Complex kI(0, 1);
+
+/// Bending a ribbon a million times longer than wide costs less energy than rounding: H is then
+/// indefinite in double precision. Some of L, which holds lengths, makes it definite again.
+constexpr double kLeastSoftening = 1e-12, kMostSoftening = 1e-2;
+
+std::pair<Index, Index> ends(const Disk& disk, Index h) {
+  const Triangle& face = disk.faces[static_cast<std::size_t>(h / 3)];
+  return {face[static_cast<std::size_t>(h % 3)], face[static_cast<std::size_t>((h + 1) % 3)]};
+}
+
+Complex as_complex(const Vec2& u) { return {u.x(), u.y()}; }
+
+}  // namespace
+
+ComplexMatrix conformal_matrix(const Disk& disk, double softening) {
+  std::vector<double> weight;
+  weight.reserve(3 * disk.rest.size());
+  for (const RestTriangle& rest : disk.rest)
+    for (double cot : rest.cot) weight.push_back((1 + softening) * cot);
+  ComplexMatrix lower =
+      lower_laplacian(disk.faces, disk.vertex_count(), weight, disk.stop).cast<Complex>();
+  for (const BoundaryLoop& loop : disk.loops)
+    for (Index h : loop) {
+      const auto [i, j] = ends(disk, h);
+      if (i > j)
+        lower.coeffRef(i, j) += kI;  // H_ij += i
+      else
+        lower.coeffRef(j, i) -= kI;  // H_ji = conj(H_ij)
+    }
+  return lower;
+}
+
+std::unique_ptr<HermitianSystem> try_softened(const ComplexMatrix& lower, double softening,
+                                              const MemoryCheck& check,
+                                              const std::stop_token& stop) {
+  std::unique_ptr<HermitianSystem> system = try_factor(lower, check, stop);
+  return softening < kMostSoftening ? std::move(system) : definite(std::move(system));
+}
+
+double more_softening(double softening) { return std::max(100 * softening, kLeastSoftening); }
+
+bool ConformalSystem::try_build(const Disk& disk, const Holds& holds, double softening,
+                                bool may_throw) {
+  stop_ = disk.stop;
+  lower_ = conformal_matrix(disk, softening);
+  for (const Spring& spring : holds.springs)
+    lower_.coeffRef(spring.vertex, spring.vertex) += 4 * spring.weight;
+  free_ = free_vertices(disk.positions.size(), holds);
+  if (free_.count == 0) return true;
+  const std::vector<Complex> nowhere(free_.slot.size());  // only the matrix is wanted
+  const auto reduced = eliminate<ComplexMatrix, Complex>(lower_, free_, nowhere, stop_);
+  const auto check = [&](std::size_t bytes) { check_memory(disk, bytes); };
+  system_ = may_throw ? try_softened(reduced.lower, softening, check, disk.stop)
+                      : try_factor(reduced.lower, check, disk.stop);
+  return system_ != nullptr;
+}
+
+ConformalSystem::ConformalSystem(const Disk& disk, const Holds& holds) {
+  assert(holds.count() >= 2);
+  for (double softening = 0; !try_build(disk, holds, softening, true);)
+    softening = more_softening(softening);
+}
+
+std::optional<ConformalSystem> ConformalSystem::exact(const Disk& disk, const Holds& holds) {
+  ConformalSystem system;
+  if (!system.try_build(disk, holds, 0, false)) return std::nullopt;
+  return system;
+}
+
+UvMap ConformalSystem::solve(const Holds& holds) const {
+  using Vector = Eigen::Matrix<Complex, Eigen::Dynamic, 1>;
+  Vector z = Vector::Zero(lower_.cols());
+  for (const FixedPoint& point : holds.fixed) z[point.vertex] = as_complex(point.at);
+  Vector pull = -(lower_.selfadjointView<Eigen::Lower>() * z);
+  for (const Spring& spring : holds.springs)
+    pull[spring.vertex] += 4 * spring.weight * as_complex(spring.at);
+  std::vector<Complex> rhs(static_cast<std::size_t>(free_.count));
+  for (std::size_t v = 0; v < free_.slot.size(); ++v)
+    if (free_.slot[v] != kFixed)
+      rhs[static_cast<std::size_t>(free_.slot[v])] = pull[static_cast<Eigen::Index>(v)];
+  if (system_) system_->solve(rhs, stop_);
+  UvMap uv;
+  uv.reserve(free_.slot.size());
+  for (std::size_t v = 0; v < free_.slot.size(); ++v) {
+    const Complex& u = free_.slot[v] == kFixed ? z[static_cast<Eigen::Index>(v)]
+                                               : rhs[static_cast<std::size_t>(free_.slot[v])];
+    uv.emplace_back(u.real(), u.imag());
+  }
+  return uv;
+}
+
+}  // namespace unwrapd

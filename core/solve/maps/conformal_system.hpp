@@ -1,0 +1,54 @@
+#pragma once
+// The matrix of the conformal energy (Sec. 4.2), with vertices held, factored once.
+
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "core/linear/eliminate.hpp"
+#include "core/linear/factor.hpp"
+#include "core/solve/base/disk.hpp"
+#include "core/solve/base/holds.hpp"
+
+namespace unwrapd {
+
+/// The lower triangle of H + softening L: 4 E(z) = z* H z for the map z = u_x + i u_y, L the
+/// cotangent Laplacian.
+ComplexMatrix conformal_matrix(const Disk& disk, double softening = 0);
+
+/// As try_factor(), but throws Error{solver_failed} when softening is the most there is to try.
+std::unique_ptr<HermitianSystem> try_softened(const ComplexMatrix& lower, double softening,
+                                              const MemoryCheck& check,
+                                              const std::stop_token& stop);
+
+/// The softening to try after this one.
+double more_softening(double softening);
+
+/// Depends on the mesh, on which vertices are held and on the springs' weights, not on where they
+/// are held.
+class ConformalSystem {
+ public:
+  /// At least two vertices are held. Where double precision does not suffice for H, softens it;
+  /// throws Error{solver_failed} when that does not help either.
+  ConformalSystem(const Disk& disk, const Holds& holds);
+
+  /// Nothing where double precision does not suffice for H.
+  static std::optional<ConformalSystem> exact(const Disk& disk, const Holds& holds);
+
+  /// The map of least E + sum of weight |u_v - at|^2 over the springs, fixed vertices at their
+  /// places. holds: the same vertices and weights as those of the constructor. Thread-safe. Throws
+  /// Error{cancelled}, as the disk's job.
+  [[nodiscard]] UvMap solve(const Holds& holds) const;
+
+ private:
+  ConformalSystem() = default;
+  bool try_build(const Disk& disk, const Holds& holds, double softening, bool may_throw);
+
+  ComplexMatrix lower_;
+  FreeVertices free_;
+  std::unique_ptr<HermitianSystem> system_;
+  std::stop_token stop_;
+};
+
+}  // namespace unwrapd

@@ -1,0 +1,23 @@
+#pragma once
+// Maps with the boundary on a circle and every inner vertex a convex combination of its neighbours:
+// without flips where the triangulation is 3-connected (Tutte 1963, Floater 1997).
+
+#include <span>
+
+#include "core/solve/base/disk.hpp"
+#include "core/solve/base/holds.hpp"
+
+namespace unwrapd {
+
+/// Equal weights. The longest boundary loop lies on the circle by arc length; vertices of other
+/// loops are inner vertices.
+UvMap tutte_map(const Disk& disk);
+
+/// Mean-value weights (Floater 2003), otherwise as tutte_map().
+UvMap mean_value_map(const Disk& disk);
+
+/// The same with the longest loop where boundary has it: every vertex of it, on a convex curve.
+UvMap tutte_map(const Disk& disk, std::span<const FixedPoint> boundary);
+UvMap mean_value_map(const Disk& disk, std::span<const FixedPoint> boundary);
+
+}  // namespace unwrapd

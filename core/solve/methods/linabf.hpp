@@ -1,0 +1,20 @@
+#pragma once
+// Linear ABF (Zayer, Levy, Seidel, "Linear Angle Based Parameterization", SGP 2007).
+
+#include "core/base/executor.hpp"
+#include "core/solve/base/disk.hpp"
+#include "core/solve/base/solution.hpp"
+#include "core/solve/methods/angle_system.hpp"
+
+namespace unwrapd {
+
+/// The angles that lie flat to first order and deviate least, relative to each, from the targets:
+/// one linear solve. Where a target is far from flat an angle may leave (0, pi).
+/// Throws Error{solver_failed}.
+std::vector<FaceAngles> linear_angles(const Disk& disk, Executor& executor);
+
+/// The map of linear_angles(), laid out. energy as in FlatAngles: of the targets, then of the
+/// angles. Throws Error{solver_failed, cancelled}.
+Solution linabf(const Disk& disk, const SolveWatch& watch, Executor& executor);
+
+}  // namespace unwrapd

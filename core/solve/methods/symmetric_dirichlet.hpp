@@ -1,0 +1,39 @@
+#pragma once
+// The symmetric Dirichlet energy (Schreiner, Asirvatham, Praun, Hoppe 2004; Smith, Schaefer 2015):
+// isometric maps are best, and a triangle that is about to flip costs without bound.
+
+#include <limits>
+#include <span>
+
+#include "core/base/executor.hpp"
+#include "core/linear/pair_system.hpp"
+#include "core/measure/jacobian.hpp"
+#include "core/solve/base/disk.hpp"
+
+namespace unwrapd {
+
+/// |J|^2 + |J^-1|^2: sigma^2 + 1 / sigma^2 summed over both, 4 where the map is isometric. Infinite
+/// where the determinant is not positive.
+double symmetric_dirichlet(const Jacobian& j);
+
+/// The sum of A_t symmetric_dirichlet(J_t), at least 4 on a disk of area 1. Infinite where a
+/// triangle is not strictly counter-clockwise, by an exact test. The same for any executor.
+double symmetric_dirichlet_energy(const Disk& disk, std::span<const Vec2> uv, Executor& executor);
+
+/// gradient[v] becomes dE/du_v. uv must have finite energy.
+void symmetric_dirichlet_gradient(const Disk& disk, std::span<const Vec2> uv,
+                                  std::span<Vec2> gradient, Executor& executor);
+
+/// The scale s at which s uv has the least energy; uv must have a finite one.
+double best_scale(const Disk& disk, std::span<const Vec2> uv);
+
+/// The Hessian of the quadratic proxy of one face (Rabinovich et al. 2017, Sec. 4): the convex
+/// |W (J - R)|^2, R the nearest rotation, whose gradient is the energy's at the current J.
+PairElement proxy_element(const RestTriangle& rest, const Jacobian& j);
+
+/// The least t > 0 at which a triangle of uv + t step has no area; infinite when none ever has
+/// (Smith, Schaefer 2015, Sec. 3.3).
+double step_to_flip(const Disk& disk, std::span<const Vec2> uv, std::span<const Vec2> step,
+                    Executor& executor);
+
+}  // namespace unwrapd

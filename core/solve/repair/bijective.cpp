@@ -1,0 +1,150 @@
+// After Smith and Schaefer (2015): from an injective map downhill in the symmetric Dirichlet energy
+// plus the boundary's own barrier, by steps after which the map is still injective; then in the
+// method's own energy (settle_apart()). Maps of angles are unfolded over the surface, too, before
+// they are over the method's own map: straight to that one Cow's legs get stuck. Neither a scaffold
+// of triangles around the boundary nor collision times along the step: the exact test of the
+// boundary alone is cheap, and a map that passes it is right whatever came between.
+#include "core/solve/repair/bijective.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/base/cancel.hpp"
+#include "core/base/error.hpp"
+#include "core/measure/distortion.hpp"
+#include "core/measure/orientation.hpp"
+#include "core/measure/overlaps.hpp"
+#include "core/solve/base/hold_align.hpp"
+#include "core/solve/maps/convex_map.hpp"
+#include "core/solve/maps/fill_holes.hpp"
+#include "core/solve/methods/symmetric_dirichlet.hpp"
+#include "core/solve/repair/settle_apart.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// What a map shall be like: a disk with rest triangles, and what each of them weighs (empty: its
+/// area).
+struct Target {
+  Disk disk;
+  std::vector<double> share;
+};
+
+/// The surface itself. For angles the method's own map, without flips: the new one then has the
+/// angles nearest to its, and its sizes where nothing presses.
+Target target_of(const Disk& disk, const MapIntent& intent, const UvMap& uv) {
+  if (intent.own != OwnEnergy::mips || !flipped_faces(disk.faces, uv, intent.stop).empty())
+    return {disk, {}};
+  TriMesh mesh;
+  mesh.faces.assign(disk.faces.begin(), disk.faces.end());
+  for (const Vec2& u : uv) mesh.positions.emplace_back(u.x(), u.y(), 0);
+  Target target{disk, {}};
+  target.disk.rest = flatten(mesh, intent.stop);
+  for (const RestTriangle& rest : disk.rest) target.share.push_back(rest.area);
+  return target;
+}
+
+UvMap to_best_scale(const Disk& disk, UvMap uv) {
+  const double scale = best_scale(disk, uv);
+  for (Vec2& u : uv) u *= scale;
+  return uv;
+}
+
+/// A map to begin with; none where double precision has none.
+template <class Map>
+std::optional<UvMap> start_from(const Disk& disk, Map map) {
+  try {
+    UvMap uv = map(fill_holes(disk).disk);
+    uv.resize(disk.positions.size());
+    if (!is_plainly_injective(disk.faces, disk.loops, uv)) return std::nullopt;
+    uv = to_best_scale(disk, std::move(uv));
+    if (is_plainly_injective(disk.faces, disk.loops, uv)) return uv;
+  } catch (const Error&) {  // no such map of this mesh: there is another
+    throw_if_cancelled(disk.stop);
+  }
+  return std::nullopt;
+}
+
+std::optional<UvMap> injective_start(const Disk& disk) {
+  std::optional<UvMap> start = start_from(disk, [](const Disk& d) { return mean_value_map(d); });
+  return start ? start : start_from(disk, [](const Disk& d) { return tutte_map(d); });
+}
+
+Vec2 middle_of(const UvMap& uv) {
+  Vec2 sum = Vec2::Zero();
+  for (const Vec2& u : uv) sum += u;
+  return sum / static_cast<double>(uv.size());
+}
+
+/// The map turned and moved to where the old one was.
+UvMap laid_along(const UvMap& old, const UvMap& uv) {
+  const Vec2 from = middle_of(uv), to = middle_of(old);
+  double cosine = 0, sine = 0;
+  for (std::size_t v = 0; v < uv.size(); ++v) {
+    const Vec2 a = uv[v] - from, b = old[v] - to;
+    cosine += a.dot(b);
+    sine += a.x() * b.y() - a.y() * b.x();
+  }
+  const double length = std::hypot(cosine, sine);
+  if (length > 0) cosine /= length, sine /= length;
+  UvMap laid;
+  laid.reserve(uv.size());
+  for (const Vec2& u : uv) {
+    const Vec2 a = u - from;
+    laid.push_back(to + Vec2(cosine * a.x() - sine * a.y(), sine * a.x() + cosine * a.y()));
+  }
+  return laid;
+}
+
+UvMap of_the_area_of(const UvMap& old, const Disk& disk, UvMap uv) {
+  const double scale =
+      std::sqrt(uv_area(disk.rest, disk.faces, old) / uv_area(disk.rest, disk.faces, uv));
+  for (Vec2& u : uv) u *= scale;
+  return uv;
+}
+
+/// The map moved to where its springs pull it no further: nothing else feels where it lies.
+UvMap moved_to_rest(UvMap uv, const std::vector<Spring>& springs) {
+  Vec2 pull = Vec2::Zero();
+  double weight = 0;
+  for (const Spring& spring : springs) {
+    pull += spring.weight * (spring.at - uv[static_cast<std::size_t>(spring.vertex)]);
+    weight += spring.weight;
+  }
+  for (Vec2& u : uv) u += pull / weight;
+  return uv;
+}
+
+/// Replaces uv by the map moved, unless moving has rounded it into an overlap.
+void keep_apart(const Disk& disk, UvMap moved, UvMap& uv) {
+  if (is_plainly_injective(disk.faces, disk.loops, moved)) uv = std::move(moved);
+}
+
+}  // namespace
+
+bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv) {
+  throw_if_cancelled(intent.stop);
+  std::optional<UvMap> start = injective_start(disk);
+  throw_if_cancelled(intent.stop);
+  if (!start) return false;
+  const Target target = target_of(disk, intent, uv);
+  UvMap settled = std::move(*start);
+  unfold_apart(disk, {}, intent.stop, settled);
+  if (!target.share.empty()) {
+    keep_apart(disk, of_the_area_of(uv, disk, settled), settled);
+    unfold_apart(target.disk, target.share, intent.stop, settled);
+  }
+  throw_if_cancelled(intent.stop);
+  const bool is_drawn = !intent.springs.empty();
+  if (is_drawn) keep_apart(disk, held_start(settled, {{}, intent.springs}), settled);
+  settle_apart(target.disk, intent, settled, target.share);
+  throw_if_cancelled(intent.stop);
+  keep_apart(disk, is_drawn ? moved_to_rest(settled, intent.springs) : laid_along(uv, settled),
+             settled);
+  uv = std::move(settled);
+  return true;
+}
+
+}  // namespace unwrapd

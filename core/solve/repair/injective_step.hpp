@@ -1,0 +1,44 @@
+#pragma once
+// A step downhill after which an injective map is still injective.
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/measure/overlaps.hpp"
+#include "core/solve/methods/symmetric_dirichlet.hpp"
+
+namespace unwrapd {
+
+/// What its line search goes by.
+struct InjectiveStep {
+  static constexpr double kShareOfFlip = 0.8;  ///< of the step at which the first triangle flips
+  static constexpr double kArmijo = 1e-4;      ///< of the decrease that the gradient promises
+  static constexpr int kMostHalvings = 40;
+};
+
+/// Takes the step, or the half of it, or a quarter, ..., but none that turns a triangle over: the
+/// first that lowers the energy by enough (Armijo) and leaves the map injective by the exact test.
+/// energy(uv): infinite where a triangle is flipped; slope: the gradient times the step. Returns
+/// the energy then; nothing, and uv as it was, where no step will do.
+template <class Energy>
+std::optional<double> injective_step(const Disk& disk, std::span<const Vec2> step, double slope,
+                                     const Energy& energy, UvMap& uv) {
+  if (!(slope < 0)) return std::nullopt;
+  SerialExecutor serial;
+  const double before = energy(uv);
+  double length = std::min(1.0, InjectiveStep::kShareOfFlip * step_to_flip(disk, uv, step, serial));
+  for (int k = 0; k < InjectiveStep::kMostHalvings; ++k, length /= 2) {
+    UvMap next = uv;
+    for (std::size_t v = 0; v < next.size(); ++v) next[v] += length * step[v];
+    const double after = energy(next);
+    if (!(after <= before + InjectiveStep::kArmijo * length * slope)) continue;
+    if (!is_plainly_injective(disk.faces, disk.loops, next)) continue;
+    uv = std::move(next);
+    return after;
+  }
+  return std::nullopt;
+}
+
+}  // namespace unwrapd

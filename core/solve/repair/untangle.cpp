@@ -1,0 +1,230 @@
+// Around the flips, everything within a few rings of triangles is let loose; the rest of the map
+// holds the rim. First the regularised barrier turns the triangles over; then the method's own
+// energy is minimised under a barrier that fades, and triangles left as needles are widened. Where
+// that fails the patch grows, in the end to the whole chart, which at last starts anew from Tutte's
+// map. Where flips are many, patches hold each other's folds fast: there the whole comes first, at
+// many times the cost; of a large disk, by steps that need no factor of their own (turn_over_all).
+#include "core/solve/repair/untangle.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "core/base/cancel.hpp"
+#include "core/measure/distortion.hpp"
+#include "core/measure/orientation.hpp"
+#include "core/solve/base/hold_align.hpp"
+#include "core/solve/base/side_by_side.hpp"
+#include "core/solve/maps/convex_map.hpp"
+#include "core/solve/maps/fill_holes.hpp"
+#include "core/solve/repair/patch.hpp"
+#include "core/solve/repair/settle.hpp"
+#include "core/solve/repair/turn_over.hpp"
+#include "core/solve/repair/turn_over_all.hpp"
+#include "core/solve/repair/virtual_boundary.hpp"
+
+namespace unwrapd {
+namespace {
+
+constexpr int kMostRings = 64;
+constexpr int kMostRounds = 4;     // from small patches to large ones
+constexpr double kCrowded = 0.25;  // share of flips beyond which only the whole is worth a try
+constexpr double kMany = 0.05;     // share of flips beyond which the whole comes first
+constexpr std::size_t kLargeDisk = 4096;  // faces; below, Newton steps on the whole take little
+constexpr double kManyOfLarge = 0.005;    // the same of a large disk, where the whole costs less
+constexpr double kFew = 0.02;             // of those flips, to be left to patches
+constexpr int kSettlingRings = 2;         // around what is rough
+bool may_move_all(const MapIntent& intent) {
+  return !intent.in_place &&
+         std::none_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
+}
+
+bool exceeds(std::size_t count, double share, std::size_t all) {
+  return static_cast<double>(count) > share * static_cast<double>(all);
+}
+
+/// What became of a face.
+enum State : char { kUntouched, kRough, kSettled };  // rough: turned over, but not settled since
+
+/// What rounds of patches leave.
+struct Left {
+  std::vector<Index> flipped;
+  std::vector<char> state;           ///< of each face
+  bool has_tried_the_whole = false;  ///< at once; to repeat that would be in vain
+
+  void mark(const Patch& patch, State now) {
+    for (Index t : patch.face) state[t] = now;
+  }
+  [[nodiscard]] std::vector<Index> rough() const {
+    std::vector<Index> faces;
+    for (std::size_t t = 0; t < state.size(); ++t)
+      if (state[t] == kRough) faces.push_back(static_cast<Index>(t));
+    return faces;
+  }
+};
+
+/// A patch after an attempt to mend it. Where that fails the map stays as it is, unless half of the
+/// flips are gone: then it has yet to settle.
+struct Attempt {
+  UvMap own;
+  State state = kUntouched;
+};
+
+/// Where triangles that were turned over hold each other flat, tries again from a map that is even:
+/// a larger patch would hold the same knot.
+void untie(const Patch& patch, const MapIntent& intent, const UvMap& uv, UvMap& own) {
+  const bool has_rim = patch.mesh.free.count < static_cast<Index>(own.size());
+  if (!has_rim || is_untangled(patch.mesh, own)) return;
+  UvMap even = evened_out(patch.mesh, map_of(patch, uv));
+  turn_over(patch.mesh, intent, 0, even);
+  if (is_untangled(patch.mesh, even)) own = std::move(even);
+}
+
+Attempt mended(const Disk& disk, const MapIntent& intent, Patch& patch, const UvMap& uv) {
+  Attempt attempt{map_of(patch, uv)};
+  const std::size_t before = flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size();
+  turn_over(patch.mesh, intent, 0, attempt.own);
+  untie(patch, intent, uv, attempt.own);
+  if (is_untangled(patch.mesh, attempt.own)) {
+    settle(disk, intent, patch, attempt.own);
+    attempt.state = kSettled;
+  } else if (flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size() <= before / 2) {
+    attempt.state = kRough;
+  }
+  return attempt;
+}
+
+/// Mends patches that share no triangle, side by side.
+void mend_all(const Disk& disk, const MapIntent& intent, std::span<Patch> patches, UvMap& uv,
+              Left& left) {
+  const MapIntent own_intent = intent_of_one(intent, patches.size());
+  SerialExecutor serial;
+  Executor& executor = intent.executor != nullptr ? *intent.executor : serial;
+  const auto attempts = side_by_side<Attempt>(patches.size(), executor, [&](std::size_t k) {
+    return mended(disk, own_intent, patches[k], uv);
+  });
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    if (attempts[k].state == kUntouched) continue;
+    put_back(patches[k], attempts[k].own, uv);
+    left.mark(patches[k], attempts[k].state);
+  }
+}
+
+Patch whole(const Disk& disk) {
+  std::vector<Index> all(disk.faces.size());
+  std::iota(all.begin(), all.end(), 0);
+  return std::move(patches_around(disk, all, 0, {}).front());
+}
+
+/// A new map at the surface's size or, where there are springs, where they draw it.
+UvMap at_its_place(const Disk& disk, const MapIntent& intent, UvMap uv) {
+  const double area = uv_area(disk.rest, disk.faces, uv);
+  for (Vec2& u : uv) u /= std::sqrt(area);
+  return intent.springs.empty() ? uv : held_start(std::move(uv), {{}, intent.springs});
+}
+
+UvMap tutte_without_holes(const Disk& disk) {
+  UvMap uv = tutte_map(fill_holes(disk).disk);
+  uv.resize(disk.positions.size());
+  return uv;
+}
+
+/// Turns over all of a large disk at once where flips are many; Newton steps on the whole would
+/// take several times as long as its solve, and four times the memory. False, and uv as it was,
+/// where that leaves many flips.
+bool thin_out_large(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+  const std::size_t before = left.flipped.size(), all = disk.faces.size();
+  if (intent.in_place || all <= kLargeDisk || !exceeds(before, kManyOfLarge, all)) return false;
+  UvMap own = uv;
+  turn_over_all(disk, intent, own);
+  std::vector<Index> flipped = flipped_faces(disk.faces, own, disk.stop);
+  if (exceeds(flipped.size(), kFew, before) && exceeds(flipped.size(), kFew * kMany, all))
+    return false;
+  uv = std::move(own);
+  left.flipped = std::move(flipped);
+  return true;
+}
+
+/// The same of any disk: a map that this does not help stays as it is.
+void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+  if (thin_out_large(disk, intent, uv, left)) return;
+  const std::size_t before = left.flipped.size();
+  if (!may_move_all(intent) || !exceeds(before, kMany, disk.faces.size())) return;
+  Patch patch = whole(disk);
+  const auto few = static_cast<std::size_t>(kFew * static_cast<double>(before));
+  UvMap own = map_of(patch, uv);
+  turn_over(patch.mesh, intent, few, own);
+  if (flipped_faces(patch.mesh.faces, own, disk.stop).size() > few) return;
+  put_back(patch, own, uv);
+  left.flipped = flipped_faces(disk.faces, uv, disk.stop);
+  left.mark(patch, kRough);
+}
+
+/// Whether a patch holds more flips than there is hope for within its rim.
+bool is_crowded(const Patch& patch, const UvMap& uv) {
+  const std::size_t flips = flipped_faces(patch.mesh.faces, map_of(patch, uv)).size();
+  return exceeds(flips, kCrowded, patch.face.size());
+}
+
+/// Patches of growing size, in the end the whole.
+void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+  bool was_whole = false;
+  for (int rings = intent.rings; !was_whole && !left.flipped.empty(); rings *= 2) {
+    std::vector<Patch> patches = patches_around(disk, left.flipped, rings, intent.held);
+    was_whole = patches.size() == 1 && patches[0].face.size() == disk.faces.size();
+    if (was_whole && std::exchange(left.has_tried_the_whole, true)) return;
+    if (may_move_all(intent) && !was_whole && rings < kMostRings)
+      std::erase_if(patches, [&](const Patch& patch) { return is_crowded(patch, uv); });
+    mend_all(disk, intent, patches, uv, left);
+    left.flipped = flipped_faces(disk.faces, uv, disk.stop);
+    if (rings >= kMostRings) break;
+  }
+}
+
+/// Rounds of patches as long as each leaves half of the flips at most.
+void mend_in_rounds(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+  for (int round = 0; round < kMostRounds && !left.flipped.empty(); ++round) {
+    const std::size_t before = left.flipped.size();
+    mend_patches(disk, intent, uv, left);
+    if (left.flipped.size() > before / 2) break;
+  }
+}
+
+/// Other maps, which have no flips to begin with.
+bool start_over(const Disk& disk, const MapIntent& intent, UvMap& uv) {
+  return may_move_all(intent) && (start_anew(disk, intent, virtual_boundary_map(disk, uv), uv) ||
+                                  start_anew(disk, intent, tutte_without_holes(disk), uv));
+}
+
+}  // namespace
+
+bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv) {
+  start = at_its_place(disk, intent, std::move(start));
+  if (!flipped_faces(disk.faces, start, disk.stop).empty()) return false;
+  uv = std::move(start);
+  Patch patch = whole(disk);
+  settle_all(disk, intent, {&patch, 1}, uv);
+  widen_needles(disk, intent, std::vector<char>(disk.faces.size(), 1), uv);
+  return true;
+}
+
+Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
+  assert(intent.rings >= 1);
+  Left left{flipped_faces(disk.faces, uv, disk.stop),
+            std::vector<char>(disk.faces.size(), kUntouched)};
+  thin_out(disk, intent, uv, left);
+  if (exceeds(left.flipped.size(), kMany, disk.faces.size()) && start_over(disk, intent, uv))
+    return 0;
+  mend_in_rounds(disk, intent, uv, left);
+  if (!left.flipped.empty())
+    return start_over(disk, intent, uv) ? 0 : static_cast<Index>(left.flipped.size());
+  std::vector<Patch> rough = patches_around(disk, left.rough(), kSettlingRings, intent.held);
+  settle_all(disk, intent, rough, uv);
+  for (const Patch& patch : rough) left.mark(patch, kSettled);
+  if (!intent.in_place) widen_needles(disk, intent, left.state, uv);
+  return 0;
+}
+
+}  // namespace unwrapd

@@ -1,0 +1,85 @@
+#include "core/types/options.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "core/base/error.hpp"
+
+namespace unwrapd {
+namespace {
+
+void require(bool holds, const std::string& what, const std::string& pointer) {
+  if (!holds) throw Error(ErrorCode::invalid_option, what, pointer);
+}
+
+/// Constraints say themselves where charts lie.
+void require_packing(const UnwrapOptions& options) {
+  const Packing& packing = options.packing;
+  const bool is_packed = options.constraints.empty();
+  const std::string placed = "constraints say where charts lie; leave out ";
+  require(is_packed || !options.repack_only, placed + "repack_only", "/repack_only");
+  require(is_packed || !packing.texels_per_unit, placed + "texels_per_unit", "/texels_per_unit");
+  require(is_packed || packing.max_pages == 1, placed + "max_pages", "/max_pages");
+  require(is_packed || !packing.stack_identical, placed + "stack_identical", "/stack_identical");
+  require(!packing.texels_per_unit ||
+              (*packing.texels_per_unit > 0 && std::isfinite(*packing.texels_per_unit)),
+          "texels_per_unit must be a finite number above 0", "/texels_per_unit");
+  require(packing.max_pages >= 1 && packing.max_pages <= kMaxPages,
+          "max_pages must lie between 1 and " + std::to_string(kMaxPages), "/max_pages");
+}
+
+/// Constraints and boundary shapes are about components that stay whole.
+void require_charts(const UnwrapOptions& options) {
+  const bool whole = !options.constraints.empty() || options.boundary != BoundaryShape::free;
+  require(!options.max_distortion ||
+              (*options.max_distortion >= kMinDistortion && std::isfinite(*options.max_distortion)),
+          "max_distortion must be a number of at least 2.0001; 2 is no distortion at all",
+          "/max_distortion");
+  require(!options.max_distortion || !whole,
+          "max_distortion may take a mesh apart, which constraints and a boundary shape exclude; "
+          "leave one of them out",
+          "/max_distortion");
+  require(!options.max_charts || *options.max_charts >= 1, "max_charts must be at least 1",
+          "/max_charts");
+  for (std::size_t k = 0; k < options.seam_edges.size(); ++k)
+    require(options.seam_edges[k].vertices.size() >= 2,
+            "a path of seam_edges needs at least two vertices",
+            "/seam_edges/" + std::to_string(k) + "/vertices");
+}
+
+}  // namespace
+
+void validate(const UnwrapOptions& options, int max_iterations) {
+  require(options.lambda >= 0 && !std::isnan(options.lambda),
+          "lambda must be a number of at least 0", "/lambda");
+  for (double lambda : options.lambda_curve)
+    require(lambda >= 0 && !std::isnan(lambda), "every lambda must be a number of at least 0",
+            "/lambda");
+  const Stop& stop = options.stop;
+  const std::string range = "between 1 and " + std::to_string(max_iterations);
+  require(!stop.iterations || (*stop.iterations >= 1 && *stop.iterations <= max_iterations),
+          "stop.iterations must lie " + range, "/stop/iterations");
+  require(stop.max_iterations >= 1 && stop.max_iterations <= max_iterations,
+          "stop.max_iterations must lie " + range, "/stop/max_iterations");
+  require(stop.tolerance > 0 && stop.tolerance < 1, "stop.tolerance must lie between 0 and 1",
+          "/stop/tolerance");
+  require(options.resolution >= kMinResolution && options.resolution <= kMaxResolution,
+          "resolution must lie between " + std::to_string(kMinResolution) + " and " +
+              std::to_string(kMaxResolution) + " texels",
+          "/resolution");
+  require(options.constraints.empty() || can_hold(options.method),
+          "constraints need method asap, arap or hybrid", "/constraints");
+  require(options.constraints.empty() || options.boundary == BoundaryShape::free,
+          "constraints and a boundary shape exclude each other; leave one of them out",
+          "/boundary");
+  require(!options.repack_only || options.boundary == BoundaryShape::free,
+          "repack_only keeps the islands as they are; leave out boundary", "/boundary");
+  require(!options.repack_only || options.guarantee != Guarantee::bijective,
+          "repack_only keeps overlaps that are there; leave out guarantee=bijective", "/guarantee");
+  require_packing(options);
+  require_charts(options);
+  require(options.padding >= 0 && 4 * options.padding <= options.resolution,
+          "padding must lie between 0 and a quarter of resolution", "/padding");
+}
+
+}  // namespace unwrapd

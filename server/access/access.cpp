@@ -1,0 +1,128 @@
+#include "server/access/access.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "core/figure/image.hpp"
+#include "server/http/addresses.hpp"
+#include "server/jobs/job_queue.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::string_view kScheme = "Bearer ";
+constexpr double kSecondsPerMinute = 60;
+constexpr double kMegapixel = 1024.0 * 1024.0;
+// Open to everybody: what the server is and whether it is well, and no job.
+constexpr auto kPublic = std::to_array<std::string_view>(
+    {"/", "/page.css", "/page.js", "/docs", "/docs.css", "/openapi.yaml", "/openapi.json",
+     "/v1/methods", "/v1/limits", "/healthz", "/readyz"});
+
+/// Schemes have no case (RFC 9110, 11.1).
+bool is_bearer(std::string_view field) {
+  const std::string_view scheme = field.substr(0, kScheme.size());
+  return !IgnoreCase()(scheme, kScheme) && !IgnoreCase()(kScheme, scheme);
+}
+
+bool is_public(std::string_view route) { return std::ranges::count(kPublic, route) > 0; }
+
+bool only_reads(const Request& request) {
+  return request.method == "GET" || request.method == "HEAD";
+}
+
+bool allows(const Scopes& scopes, const Request& request) {
+  return scopes.admin || (only_reads(request) ? scopes.read : scopes.submit);
+}
+
+}  // namespace
+
+bool asks_for_keys(const AccessConfig& config, std::string_view host) {
+  const bool wanted = config.require_keys || !config.key_file.empty();
+  const bool is_here = host == "localhost" || is_loopback(host);  // no name that begins so
+  return wanted || (!is_here && !config.insecure);
+}
+
+double cost_of(const Request& request, std::string_view route) {
+  const auto size = request.query.find("size");
+  if (!route.ends_with(".png") || size == request.query.end()) return 1;
+  const std::string& text = size->second;
+  int pixels = 0;  // what is no size costs nothing to refuse
+  std::from_chars(text.data(), text.data() + text.size(), pixels);
+  pixels = std::clamp(pixels, 0, kMaxImageSize);
+  return std::max(1.0, pixels * static_cast<double>(pixels) / kMegapixel);
+}
+
+int RateLimit::wait_seconds(const std::string& key, std::int64_t per_minute, Clock::time_point now,
+                            double cost) {
+  if (per_minute == 0) return 0;
+  const auto most = static_cast<double>(per_minute);
+  cost = std::min(cost, most);
+  const std::lock_guard lock(mutex_);
+  const auto [found, is_new] = buckets_.try_emplace(key, Bucket{.tokens = most, .filled = now});
+  Bucket& bucket = found->second;
+  const std::chrono::duration<double> since = now - bucket.filled;
+  bucket.tokens = std::min(most, bucket.tokens + since.count() * most / kSecondsPerMinute);
+  bucket.filled = now;
+  if (bucket.tokens >= cost) {
+    bucket.tokens -= cost;
+    return 0;
+  }
+  return static_cast<int>(std::ceil((cost - bucket.tokens) * kSecondsPerMinute / most));
+}
+
+ApiKey Access::key_of(const Request& request) {
+  const std::string field = request.header("Authorization");
+  std::optional<ApiKey> key;
+  if (is_bearer(field)) key = keys_.find(std::string_view(field).substr(kScheme.size()));
+  if (key) return std::move(*key);
+  throw Error(ErrorCode::unauthorized,
+              "This server asks for an API key; send it as Authorization: Bearer KEY.");
+}
+
+void Access::admit(Request& request, std::string_view route) {
+  if (is_public(route)) return;
+  const double cost = cost_of(request, route);
+  if (links_.is_signed(request)) return open_link(request, cost);
+  request.caller = caller_of(request, cost);
+}
+
+/// What is opened by a link is asked for by its key.
+void Access::open_link(Request& request, double cost) {
+  const std::string id = LinkSigner::key_of(request);
+  const std::optional<ApiKey> key = id.empty() ? std::nullopt : keys_.with_id(id);
+  if (!key && (ask_ || !id.empty()))
+    throw Error(ErrorCode::invalid_link,
+                "The link was made with no API key, or with one that was removed; ask for a new "
+                "one.");
+  links_.check(request, key ? LinkKey{.id = id, .sha256 = key->sha256} : LinkKey());
+  if (key) spend(*key, cost);
+  request.query = unsigned_query(request);
+}
+
+void Access::spend(const ApiKey& key, double cost) {
+  const auto now = std::chrono::steady_clock::now();
+  const int wait = rates_.wait_seconds(key.id, key.requests_per_minute, now, cost);
+  if (wait == 0) return;
+  throw RetryLater(ErrorCode::rate_limited,
+                   "This API key may be used " + std::to_string(key.requests_per_minute) +
+                       " times a minute, a large picture counting for several; go on after "
+                       "Retry-After.",
+                   wait);
+}
+
+Caller Access::caller_of(const Request& request, double cost) {
+  if (!ask_) return {};
+  const ApiKey key = key_of(request);
+  spend(key, cost);
+  if (!allows(key.scopes, request)) {
+    throw Error(ErrorCode::forbidden, "This API key lacks the scope " +
+                                          std::string(only_reads(request) ? "read" : "submit") +
+                                          "; use another one.");
+  }
+  return {
+      .owner = key.id, .sees_all = key.scopes.admin, .quota = key.quota, .key_sha256 = key.sha256};
+}
+
+}  // namespace unwrapd::server

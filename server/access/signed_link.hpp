@@ -1,0 +1,55 @@
+#pragma once
+// Links that open one file of one job without an API key, until they expire: for a browser, or for
+// whoever a result is passed on to. A link ends in ?expires=SECONDS&key=ID&signature=HEX, the
+// HMAC-SHA256 of its path, that time and the digest of the API key that it was made with, under a
+// secret of this server: it goes when the key does. Where no keys are asked for, there is no `key`.
+// Other parameters, which choose among the forms of that file, stay free.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "server/http/http.hpp"
+
+namespace unwrapd::server {
+
+inline constexpr const char* kSecretFile = "secret";  // in the data directory
+inline constexpr std::string_view kExpiresParameter = "expires";
+inline constexpr std::string_view kKeyParameter = "key";
+inline constexpr std::string_view kSignatureParameter = "signature";
+
+/// The secret in a file, readable by its owner alone; made of 256 random bits when it is missing.
+std::string secret_in(const std::filesystem::path& file);
+
+/// The API key that a link is made with; empty where there is none.
+struct LinkKey {
+  std::string id;
+  std::string sha256;
+};
+
+class LinkSigner {
+ public:
+  explicit LinkSigner(std::string secret) : secret_(std::move(secret)) {}
+
+  /// The path with the parameters that open it until then (seconds since 1970).
+  [[nodiscard]] std::string sign(const std::string& path, std::int64_t expires,
+                                 const LinkKey& key = {}) const;
+  [[nodiscard]] bool is_signed(const Request& request) const;
+  /// The id of the key that a link says it was made with; empty when it names none.
+  [[nodiscard]] static std::string key_of(const Request& request);
+  /// Throws Error{invalid_link} unless the link is for this, of this server, made with this key and
+  /// not expired.
+  void check(const Request& request, const LinkKey& key) const;
+
+ private:
+  [[nodiscard]] std::string signature(const std::string& path, const std::string& expires,
+                                      const LinkKey& key) const;
+
+  const std::string secret_;
+};
+
+/// The query of a request without what signs it.
+std::multimap<std::string, std::string> unsigned_query(const Request& request);
+
+}  // namespace unwrapd::server

@@ -1,0 +1,82 @@
+#include "server/backup/backup_command.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "server/backup/backup.hpp"
+#include "server/base/inside_error.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::array<std::string_view, 3> kCommands = {"backup", "restore", "check"};
+constexpr int kFailed = 1;
+constexpr int kDamaged = 3;
+
+struct Asked {
+  std::string data = "data";
+  std::string backup;
+};
+
+CLI::App* command(CLI::App& app, const std::string& name, const std::string& what, Asked& asked) {
+  CLI::App* found = app.add_subcommand(name, what);
+  found->add_option("--data", asked.data, "Directory of jobs and results")
+      ->envname("UNWRAPD_DATA")
+      ->capture_default_str();
+  return found;
+}
+
+int tell(const std::string& done, const StoreReport& report) {
+  std::printf("%s: %lld jobs and meshes, %lld files, %lld bytes\n", done.c_str(),
+              static_cast<long long>(report.jobs), static_cast<long long>(report.files),
+              static_cast<long long>(report.bytes));
+  for (const std::string& notice : report.notices) std::printf("note: %s\n", notice.c_str());
+  for (const std::string& what : report.damaged)
+    std::fprintf(stderr, "damaged: %s\n", what.c_str());
+  return report.damaged.empty() ? 0 : kDamaged;
+}
+
+}  // namespace
+
+bool is_backup_command(std::string_view word) {
+  return std::ranges::find(kCommands, word) != kCommands.end();
+}
+
+int run_backup_command(int argc, const char* const* argv) {
+  CLI::App app("Copies of a data directory. Run them as the server's user.", "unwrapd");
+  app.require_subcommand(1);
+  Asked asked;
+  int code = 0;
+  CLI::App* backup =
+      command(app, "backup",
+              "Copy a data directory, also while a server runs on it; exit with 3 when "
+              "damaged files were left out",
+              asked);
+  backup->add_option("DEST", asked.backup, "A folder that is not there yet")->required();
+  backup->callback([&] { code = tell("backed up", back_up(asked.data, asked.backup)); });
+  CLI::App* restoring =
+      command(app, "restore", "Make an empty data directory of a backup that is whole", asked);
+  restoring->add_option("BACKUP", asked.backup, "That backup has made")->required();
+  restoring->callback([&] { code = tell("restored", restore(asked.backup, asked.data)); });
+  command(app, "check",
+          "Read all of a data directory, also while a server runs on it, or of a backup; exit "
+          "with 3 when something is damaged",
+          asked)
+      ->callback([&] { code = tell("checked", check_store(asked.data)); });
+  try {
+    app.parse(argc, argv);
+    return code;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "unwrapd %s: %s\n", argv[1], reason_of(error).c_str());
+    return kFailed;
+  }
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,24 @@
+#include "server/base/doorbell.hpp"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "core/base/error.hpp"
+
+namespace unwrapd::server {
+
+Doorbell::Doorbell() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (descriptor_ < 0)
+    throw Error(ErrorCode::internal, "There is no file descriptor left; allow more (ulimit -n).");
+}
+
+Doorbell::~Doorbell() { ::close(descriptor_); }
+
+void Doorbell::ring() const { ::eventfd_write(descriptor_, 1); }
+
+void Doorbell::answer() const {
+  eventfd_t rings = 0;
+  ::eventfd_read(descriptor_, &rings);
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,67 @@
+#include "server/base/queue_errors.hpp"
+
+#include "server/base/files.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr int kDrainRetrySeconds = 5;
+
+}  // namespace
+
+RetryLater draining() {
+  return {ErrorCode::draining,
+          "The server is shutting down and takes no new jobs; send it again shortly.",
+          kDrainRetrySeconds};
+}
+
+RetryLater no_room(int seconds) {
+  return {ErrorCode::storage_full, std::string(kStorageFull), seconds};
+}
+
+RetryLater queue_full(int places, int seconds) {
+  return {ErrorCode::queue_full,
+          "All " + std::to_string(places) +
+              " places in the queue are taken; send the job again after Retry-After.",
+          seconds};
+}
+
+RetryLater too_many_jobs(std::int64_t most, int seconds) {
+  return {ErrorCode::too_many_jobs,
+          "This API key may have " + std::to_string(most) +
+              " jobs waiting or running; send the job again when one has ended.",
+          seconds};
+}
+
+Error quota_exceeded(std::int64_t most_bytes) {
+  return {ErrorCode::quota_exceeded, "The jobs of this API key may take " +
+                                         std::to_string(most_bytes) +
+                                         " bytes; remove finished jobs, then send this one again."};
+}
+
+Error unknown_job() {
+  return {ErrorCode::not_found, "There is no job of this id; check the address."};
+}
+
+Error another_question() {
+  return {ErrorCode::idempotency_conflict,
+          "This name was given to another mesh or other options; take a new name."};
+}
+
+Error cancelled_by_owner() {
+  return {ErrorCode::cancelled, "The job was cancelled; send it again to have it done."};
+}
+
+Error unreadable_job() {
+  return {ErrorCode::storage_corrupt,
+          "What the server has stored of this job cannot be read; send the job again."};
+}
+
+Error poison() {
+  return {
+      ErrorCode::poison,
+      "The server ended several times while it worked on this job; it is not tried again. Check "
+      "the mesh, or send a smaller part of it."};
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,77 @@
+#include "server/config/parts_config.hpp"
+
+#include <algorithm>
+
+namespace unwrapd::server {
+namespace {
+
+constexpr int kLeastMakers = 4;
+constexpr std::chrono::seconds kStopPatience{5};  // beyond the grace of a job
+constexpr int kAdminThreads = 4;
+constexpr int kAdminConnections = 64;
+constexpr int kAdminParked = 48;  // so that idle ones keep nobody out
+
+}  // namespace
+
+HttpConfig http_config(const Config& config) {
+  const EdgeConfig& edge = config.edge;
+  HttpConfig http;
+  http.address = config.listen;
+  const MakingLimits making = making_limits(config, 0);
+  http.max_requests = edge.max_requests;
+  http.max_held = most_waiting(config) + making.waiting + making.places;
+  http.max_connections = edge.max_connections;
+  http.max_connections_per_address = edge.max_connections_per_address;
+  http.parking.max_idle = edge.max_idle_connections;
+  http.tls_certificate = edge.tls_cert;
+  http.tls_key = edge.tls_key;
+  http.limits.max_body_bytes = config.limits.max_body_bytes;
+  return http;
+}
+
+HttpConfig admin_config(const Address& address) {
+  HttpConfig http;
+  http.address = address;
+  http.option = "--admin-listen";
+  http.max_requests = kAdminThreads;
+  http.max_connections = kAdminConnections;
+  http.parking.max_parked = kAdminParked;
+  return http;
+}
+
+Isolation isolation_of(const Config& config, const SolverCache& cache, const Duties& duties) {
+  Isolation isolation{.program = duties.program};
+  isolation.grace = std::chrono::seconds(config.grace_seconds);
+  isolation.threads = config.threads;
+  isolation.memory_bytes = static_cast<std::int64_t>(cache.memory_limit());
+  if (config.isolate == Isolate::on)
+    check_isolation(isolation);
+  else
+    isolation.why_not = isolation.program.empty() ? "There is no program." : why_not(isolation);
+  isolation.possible = isolation.why_not.empty();
+  isolation.on = isolation.possible && config.isolate != Isolate::off;
+  if (isolation.on) isolation.spares = spare_workers(config.workers, config.limits, isolation);
+  return isolation;
+}
+
+int most_waiting(const Config& config) { return std::max(1, config.edge.max_requests / 2); }
+
+std::chrono::seconds most_stopping(const Config& config) {
+  return std::chrono::seconds(config.grace_seconds) + kStopPatience;
+}
+
+void tell_isolation(const Isolation& isolation, const Config& config, const Log& log,
+                    Metrics& metrics) {
+  metrics.tell(Metric::isolation, {}, [on = isolation.on] { return on ? 1 : 0; });
+  if (isolation.on) return log.info("each job has a process of its own");
+  const bool wanted = config.isolate == Isolate::automatic && !isolation.program.empty();
+  if (wanted) log.warning("no job has a process of its own", {{"reason", isolation.why_not}});
+}
+
+MakingLimits making_limits(const Config& config, std::size_t memory_bytes) {
+  return {.places = std::max(kLeastMakers, config.workers),
+          .waiting = most_waiting(config),
+          .bytes = memory_bytes};
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,145 @@
+#include "server/http/addresses.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "core/base/error.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+using Bytes = std::array<unsigned char, 16>;
+
+constexpr int kV4Bits = 96;  // of an IPv6 address before an IPv4 one in it
+constexpr int kAllBits = 128;
+constexpr std::size_t kNetworkBytes = 8;
+
+/// As IPv6; an IPv4 address as one mapped into it.
+std::optional<Bytes> parse(std::string_view text) {
+  const std::string address(text);
+  Bytes bytes{};
+  if (::inet_pton(AF_INET6, address.c_str(), bytes.data()) == 1) return bytes;
+  bytes[10] = bytes[11] = 0xff;
+  if (::inet_pton(AF_INET, address.c_str(), bytes.data() + kV4Bits / 8) == 1) return bytes;
+  return std::nullopt;
+}
+
+bool is_mapped(const Bytes& address) {
+  static const Bytes mapped = *parse("0.0.0.0");
+  return std::equal(mapped.begin(), mapped.begin() + kV4Bits / 8, address.begin());
+}
+
+bool same_start(const Bytes& left, const Bytes& right, int bits) {
+  const auto whole = static_cast<std::size_t>(bits / 8);
+  if (!std::equal(left.begin(), left.begin() + whole, right.begin())) return false;
+  const int rest = bits % 8;
+  return rest == 0 || ((left[whole] ^ right[whole]) >> (8 - rest)) == 0;
+}
+
+/// The bits of "/24", all when there is none; nothing when it is no number.
+std::optional<int> prefix_bits(std::string_view text, int most) {
+  if (text.empty()) return most;
+  int bits = 0;
+  const auto parsed = std::from_chars(text.data() + 1, text.data() + text.size(), bits);
+  const bool whole = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+  if (!whole || bits < 0 || bits > most) return std::nullopt;
+  return bits;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr const char* space = " \t";
+  const std::size_t first = text.find_first_not_of(space);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(space) - first + 1);
+}
+
+/// The address of "10.0.0.1", "10.0.0.1:80", "::1", "[::1]" and "[::1]:80": some proxies tell
+/// ports.
+std::string_view without_port(std::string_view text) {
+  const std::size_t bracket = text.find(']');
+  if (text.starts_with('[') && bracket != std::string_view::npos)
+    return text.substr(1, bracket - 1);
+  const std::size_t colon = text.find(':');
+  const bool has_port = colon != std::string_view::npos && text.rfind(':') == colon;
+  return has_port ? text.substr(0, colon) : text;
+}
+
+/// What connections are counted by.
+std::string counted_by(const std::string& address) {
+  const std::optional<Bytes> bytes = parse(address);
+  if (!bytes || address.find(':') == std::string::npos) return address;
+  return {bytes->begin(), bytes->begin() + kNetworkBytes};
+}
+
+}  // namespace
+
+AddressSet::AddressSet(const std::vector<std::string>& ranges) {
+  for (const std::string& text : ranges) {
+    const std::size_t slash = std::min(text.find('/'), text.size());
+    const std::optional<Bytes> bytes = parse(text.substr(0, slash));
+    const bool is_v4 = text.find(':') == std::string::npos;
+    const std::optional<int> bits =
+        prefix_bits(std::string_view(text).substr(slash), is_v4 ? kAllBits - kV4Bits : kAllBits);
+    if (!bytes || !bits)
+      throw Error(ErrorCode::invalid_option, "addresses and ranges such as 10.0.0.0/8 or ::1");
+    if (!is_v4 && is_mapped(*bytes) && *bits < kV4Bits) {
+      throw Error(ErrorCode::invalid_option,
+                  "IPv4 ranges as 10.0.0.0/8 or ::ffff:10.0.0.0/104: with fewer than 96 bits a "
+                  "mapped one is every IPv4 address");
+    }
+    ranges_.push_back({*bytes, *bits + (is_v4 ? kV4Bits : 0)});
+  }
+}
+
+bool AddressSet::contains(std::string_view address) const {
+  const std::optional<Bytes> bytes = parse(address);
+  return bytes && std::ranges::any_of(ranges_, [&](const Range& range) {
+           return same_start(range.bytes, *bytes, range.bits);
+         });
+}
+
+std::string client_behind(const std::string& peer, std::string_view forwarded,
+                          const AddressSet& trusted) {
+  std::string client = peer;
+  while (!forwarded.empty() && trusted.contains(client)) {
+    const std::size_t comma = forwarded.rfind(',');
+    const std::size_t start = comma == std::string_view::npos ? 0 : comma + 1;
+    const std::string_view next = without_port(trimmed(forwarded.substr(start)));
+    if (!parse(next)) break;
+    client = next;
+    forwarded = forwarded.substr(0, comma == std::string_view::npos ? 0 : comma);
+  }
+  return client;
+}
+
+bool is_loopback(std::string_view address) {
+  static const AddressSet loopback({"127.0.0.0/8", "::1"});
+  return loopback.contains(address);
+}
+
+std::shared_ptr<void> Places::take(const std::string& address, bool counted, Refusal& refusal) {
+  const std::string key = counted ? counted_by(address) : std::string();
+  const std::lock_guard lock(taken_->mutex);
+  refusal = Refusal::full;
+  if (taken_->all >= most_) return nullptr;
+  refusal = Refusal::too_many_of_address;
+  int& of_address = taken_->of_address[key];
+  if (counted && most_of_address_ > 0 && of_address >= most_of_address_) return nullptr;
+  refusal = Refusal::none;
+  ++of_address;
+  ++taken_->all;
+  return {taken_.get(), [taken = taken_, key](void*) {
+            const std::lock_guard back(taken->mutex);
+            --taken->all;
+            if (--taken->of_address[key] == 0) taken->of_address.erase(key);
+          }};
+}
+
+int Places::taken() const {
+  const std::lock_guard lock(taken_->mutex);
+  return taken_->all;
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,32 @@
+#include "server/http/greeters.hpp"
+
+#include <utility>
+
+namespace unwrapd::server {
+
+Greeters::Greeters(int threads, std::function<void(Client)> back) : back_(std::move(back)) {
+  threads_.reserve(static_cast<std::size_t>(threads));
+  for (int i = 0; i < threads; ++i)
+    threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+}
+
+void Greeters::greet(Client client) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(client));
+  }
+  arrived_.notify_one();
+}
+
+void Greeters::work(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (arrived_.wait(lock, stop, [&] { return !waiting_.empty(); }) && !stop.stop_requested()) {
+    Client client = std::move(waiting_.front());
+    waiting_.pop_front();
+    lock.unlock();
+    if (client.transport->greet()) back_(std::move(client));
+    lock.lock();
+  }
+}
+
+}  // namespace unwrapd::server

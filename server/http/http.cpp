@@ -1,0 +1,65 @@
+#include "server/http/http.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+
+#include "api/error_table.hpp"
+#include "server/base/retry_later.hpp"
+#include "server/base/utf8.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::size_t kMaxProblemText = 500;  // bytes of a detail, or of a pointer
+
+char lower(char letter) {
+  return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+}
+
+/// A name that a request brings may be as long as the request.
+std::string bounded(const std::string& text) {
+  if (text.size() <= kMaxProblemText) return text;
+  return std::string(within_bytes(text, kMaxProblemText)) + "...";
+}
+
+}  // namespace
+
+bool IgnoreCase::operator()(std::string_view left, std::string_view right) const {
+  return std::ranges::lexicographical_compare(left, right, {}, lower, lower);
+}
+
+std::string Request::header(std::string_view name) const {
+  const auto [first, end] = headers.equal_range(name);
+  if (first == end) return {};
+  std::string all = first->second;
+  for (auto before = first, at = std::next(first); at != end; before = at++)
+    if (at->second != before->second) all.append(", ").append(at->second);
+  return all;
+}
+
+Response json_response(int status, std::string_view json) {
+  Response response;
+  response.status = status;
+  response.content_type = "application/json";
+  response.body = std::string(json);
+  return response;
+}
+
+Response error_response(const Error& error, std::string_view job) {
+  api::Json problem = api::problem(error, job);
+  for (const char* member : {"detail", "pointer"})
+    if (problem.contains(member)) problem[member] = bounded(problem[member]);
+  Response response =
+      json_response(api::error_row(error.code()).status,
+                    problem.dump(-1, ' ', false, api::Json::error_handler_t::replace));
+  response.content_type = "application/problem+json";
+  response.problem = api::error_row(error.code()).name;
+  if (error.code() == ErrorCode::unauthorized)
+    response.headers.emplace_back("WWW-Authenticate", "Bearer");
+  if (const auto* later = dynamic_cast<const RetryLater*>(&error))
+    response.headers.emplace_back("Retry-After", std::to_string(later->seconds()));
+  return response;
+}
+
+}  // namespace unwrapd::server

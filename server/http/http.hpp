@@ -1,0 +1,123 @@
+#pragma once
+// Requests and answers as plain values. Handlers see no socket and no HTTP library, so that they
+// can be read, and tested, without either.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "server/base/files.hpp"
+#include "server/http/caller.hpp"
+
+namespace unwrapd::server {
+
+/// A part of a multipart/form-data body.
+struct Part {
+  std::string name;
+  std::string filename;
+};
+
+/// The body of a request, handed over in pieces as it arrives. Read it once, or not at all.
+/// Throws Error: body_too_large, request_timeout, malformed_request.
+class BodyReader {
+ public:
+  using Sink = std::function<void(std::string_view bytes)>;
+  using PartStart = std::function<void(const Part& part)>;
+
+  BodyReader() = default;
+  BodyReader(const BodyReader&) = delete;
+  BodyReader& operator=(const BodyReader&) = delete;
+  virtual ~BodyReader() = default;
+
+  virtual void read(const Sink& sink) = 0;
+  /// Calls start before the bytes of each part.
+  virtual void read_parts(const PartStart& start, const Sink& sink) = 0;
+};
+
+struct IgnoreCase {
+  using is_transparent = void;
+  bool operator()(std::string_view left, std::string_view right) const;
+};
+
+/// Whether a client has closed its connection meanwhile; empty where nobody can tell.
+using HasLeft = std::function<bool()>;
+
+struct Request {
+  std::string method;
+  std::string path;  ///< percent-decoded
+  std::multimap<std::string, std::string> query;
+  std::multimap<std::string, std::string, IgnoreCase> headers;
+  std::string id;      ///< the {id} of the path, once a route has matched
+  std::string sha256;  ///< the {sha256} of the path, the same
+  Caller caller;       ///< who asks, once that has been found out
+  std::string client;  ///< the address of who asks
+  std::string host;    ///< by which the server was reached, and its port; empty when not told
+  BodyReader* body = nullptr;                   ///< of POST, PUT and PATCH
+  std::int64_t declared_bytes = 0;              ///< of the body; 0 when not told beforehand
+  std::optional<Error> refusal = std::nullopt;  ///< what its head has against it, to be answered
+  HasLeft has_left = {};
+
+  /// The headers of this name as one list (RFC 9110, 5.3), one that repeats the one before left
+  /// out; empty when there is none.
+  [[nodiscard]] std::string header(std::string_view name) const;
+};
+
+/// Bytes of a file, sent as they are read.
+struct FileBody {
+  std::shared_ptr<const File> file;
+  std::int64_t offset = 0;
+  std::int64_t length = 0;
+};
+
+struct StreamPiece {
+  std::string bytes;  ///< empty when there is nothing new
+  bool end = false;   ///< nothing will follow
+};
+
+/// A body that comes with time. Whoever makes one rings the bell (HttpUses::news) when next() has
+/// more.
+struct StreamBody {
+  std::function<StreamPiece()> next;  ///< what is there by now, some kB at most; never waits
+  std::string_view ping = {};         ///< sent after a silence; outlives the body
+};
+
+struct Response {
+  int status = 200;
+  std::string content_type;
+  std::vector<std::pair<std::string, std::string>> headers;
+  std::variant<std::string, FileBody, StreamBody> body;
+  std::string_view route;    ///< the path of the route that answered, "" for none
+  std::string_view problem;  ///< the code of an error, else ""
+};
+
+using Handler = std::function<Response(const Request&)>;
+
+/// A request and its answer when all is said, for the log and the metrics.
+struct Exchanged {
+  std::string method;  ///< "" when the request could not be read
+  std::string path;
+  std::string client;
+  std::string_view route;
+  std::string_view problem;
+  int status = 0;
+  std::int64_t received_bytes = 0;  ///< of the body
+  std::int64_t sent_bytes = 0;
+  double seconds = 0;
+};
+using Observer = std::function<void(const Exchanged&)>;
+
+/// An answer with a JSON body.
+Response json_response(int status, std::string_view json);
+
+/// The problem document of an error, with Retry-After where it is one that passes.
+Response error_response(const Error& error, std::string_view job = {});
+
+}  // namespace unwrapd::server

@@ -1,0 +1,197 @@
+#include "server/http/media_types.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <limits>
+#include <vector>
+
+#include "core/base/error.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+struct Representation {
+  std::string_view format;
+  std::string_view type;
+};
+
+constexpr std::array kRepresentations = {
+    Representation{"glb", "model/gltf-binary"}, Representation{"gltf", "model/gltf+json"},
+    Representation{"obj", "model/obj"}, Representation{"json", "application/json"}};
+
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> items;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(separator), text.size());
+    items.push_back(trim(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return items;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& letter : result)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return result;
+}
+
+std::string_view unquoted(std::string_view text) {
+  const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+template <class Number>
+std::optional<Number> number(std::string_view text) {
+  Number value{};
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (parsed.ec == std::errc::result_out_of_range) return std::numeric_limits<Number>::max();
+  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// An entry of an Accept header.
+struct MediaRange {
+  std::string type;
+  double quality = 1;
+};
+
+MediaRange media_range(std::string_view entry) {
+  const std::vector<std::string_view> parts = split(entry, ';');
+  MediaRange range{.type = parts.empty() ? std::string() : lower(parts.front()), .quality = 1};
+  for (const std::string_view part : parts) {
+    if (part.starts_with("q=")) range.quality = number<double>(part.substr(2)).value_or(0);
+  }
+  return range;
+}
+
+/// How exactly a range names a type: 0 not at all, then */*, model/*, model/obj.
+int closeness(std::string_view range, std::string_view type) {
+  if (range == type) return 3;
+  if (range == "*/*") return 1;
+  const std::string_view group = type.substr(0, type.find('/') + 1);
+  return range.ends_with("/*") && range.substr(0, range.size() - 1) == group ? 2 : 0;
+}
+
+std::vector<MediaRange> media_ranges(std::string_view accept) {
+  std::vector<MediaRange> ranges;
+  for (const std::string_view entry : split(accept, ',')) ranges.push_back(media_range(entry));
+  return ranges;
+}
+
+/// How much a type is liked, and how exactly it was named.
+struct Liking {
+  double quality = 0;
+  int closeness = 0;
+  auto operator<=>(const Liking&) const = default;
+};
+
+/// What the closest range says of a type.
+Liking liking(const std::vector<MediaRange>& ranges, std::string_view type) {
+  Liking found;
+  for (const MediaRange& range : ranges) {
+    const int close = closeness(range.type, type);
+    if (close > found.closeness) found = {.quality = range.quality, .closeness = close};
+  }
+  return found;
+}
+
+double quality(const std::vector<MediaRange>& ranges, std::string_view type) {
+  return liking(ranges, type).quality;
+}
+
+}  // namespace
+
+BodyKind body_kind(std::string_view content_type) {
+  const std::string type = lower(trim(content_type.substr(0, content_type.find(';'))));
+  if (type == "multipart/form-data") return BodyKind::multipart;
+  if (type == media_type("json")) return BodyKind::reference;
+  const bool is_asset = type.empty() || type == "application/octet-stream" ||
+                        type == media_type("glb") || type == media_type("gltf") ||
+                        type == media_type("obj");
+  if (is_asset) return BodyKind::asset;
+  throw Error(ErrorCode::unsupported_media_type,
+              "The Content-Type is none of model/gltf-binary, model/gltf+json, model/obj, "
+              "application/octet-stream, multipart/form-data or, for a stored mesh, "
+              "application/json; say which of them the body is.");
+}
+
+std::string multipart_boundary(std::string_view content_type) {
+  const std::vector<std::string_view> fields = split(content_type, ';');
+  if (fields.empty() || lower(fields.front()) != "multipart/form-data") return {};
+  for (const std::string_view field : fields) {
+    const std::size_t equals = field.find('=');
+    if (equals == std::string_view::npos || lower(trim(field.substr(0, equals))) != "boundary")
+      continue;
+    return std::string(unquoted(trim(field.substr(equals + 1))));
+  }
+  return {};
+}
+
+std::string_view media_type(std::string_view format) {
+  const auto found = std::ranges::find(kRepresentations, format, &Representation::format);
+  return found == kRepresentations.end() ? "application/octet-stream" : found->type;
+}
+
+std::string choose_format(std::string_view accept, std::string_view usual) {
+  const std::vector<MediaRange> ranges = media_ranges(accept);
+  if (ranges.empty()) return std::string(usual);
+  std::string_view best = usual;
+  double best_quality = quality(ranges, media_type(usual));
+  for (const Representation& candidate : kRepresentations) {
+    const double candidate_quality = quality(ranges, candidate.type);
+    if (candidate_quality > best_quality) best = candidate.format;
+    best_quality = std::max(best_quality, candidate_quality);
+  }
+  if (best_quality > 0) return std::string(best);
+  throw Error(ErrorCode::not_acceptable,
+              "The result can be had as model/gltf-binary, model/gltf+json, model/obj or "
+              "application/json; name one of them in Accept.");
+}
+
+bool prefers_events(std::string_view accept) {
+  const std::vector<MediaRange> ranges = media_ranges(accept);
+  const Liking events = liking(ranges, "text/event-stream");
+  return events.quality > 0 && events > liking(ranges, "application/json");
+}
+
+std::optional<int> preferred_wait(std::string_view prefer) {
+  for (const std::string_view preference : split(prefer, ',')) {
+    const std::string_view named = preference.substr(0, preference.find(';'));  // its parameters
+    const std::size_t equals = std::min(named.find('='), named.size());
+    if (lower(trim(named.substr(0, equals))) != "wait" || equals == named.size()) continue;
+    const std::optional<int> seconds = number<int>(unquoted(trim(named.substr(equals + 1))));
+    if (seconds && *seconds >= 0) return seconds;
+  }
+  return std::nullopt;
+}
+
+std::optional<ByteRange> single_range(std::string_view range, std::int64_t size) {
+  constexpr std::string_view unit = "bytes=";
+  if (!range.starts_with(unit)) return std::nullopt;
+  range.remove_prefix(unit.size());
+  const std::size_t dash = range.find('-');
+  if (dash == std::string_view::npos) return std::nullopt;
+  const auto first = number<std::int64_t>(range.substr(0, dash));
+  const auto last = number<std::int64_t>(range.substr(dash + 1));
+  if (range.front() == '-') {  // the last bytes of the file
+    if (!last || *last <= 0) return std::nullopt;
+    const std::int64_t length = std::min(*last, size);
+    return ByteRange{size - length, length};
+  }
+  const bool open_end = dash + 1 == range.size();
+  if (!first || (!last && !open_end) || *first >= size) return std::nullopt;
+  const std::int64_t end = open_end ? size - 1 : std::min(*last, size - 1);
+  if (end < *first) return std::nullopt;
+  return ByteRange{*first, end - *first + 1};
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,42 @@
+#pragma once
+// From a request to its handler, and from an error to its answer: every handler runs inside
+// answer(), the one door at which what was thrown becomes a problem document.
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/base/log.hpp"
+#include "server/http/http.hpp"
+
+namespace unwrapd::server {
+
+/// A segment "{id}" of the path matches a job id, "{sha256}" a digest.
+struct Route {
+  std::string_view method;
+  std::string_view path;
+  Handler handler;
+};
+
+/// Called before the handler with the path of its route: says who asks, or throws Error.
+using Admit = std::function<void(Request& request, std::string_view route)>;
+
+class Router {
+ public:
+  Router(std::vector<Route> routes, const Log& log, Admit admit = {})
+      : routes_(std::move(routes)), log_(log), admit_(std::move(admit)) {}
+
+  /// Never throws. HEAD is answered as GET is; the caller leaves the body out.
+  [[nodiscard]] Response answer(Request request) const noexcept;
+
+ private:
+  [[nodiscard]] Response guarded(Request& request, std::string_view& route) const noexcept;
+  [[nodiscard]] Response dispatch(Request& request, std::string_view& matched) const;
+
+  std::vector<Route> routes_;
+  const Log& log_;
+  const Admit admit_;
+};
+
+}  // namespace unwrapd::server

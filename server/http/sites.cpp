@@ -1,0 +1,73 @@
+#include "server/http/sites.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace unwrapd::server {
+namespace {
+
+constexpr auto kSafe = std::to_array<std::string_view>({"GET", "HEAD", "OPTIONS"});
+
+/// Names have no case; origins and rules are written in small letters.
+std::string in_small_letters(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](char letter) {
+    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+  });
+  return result;
+}
+
+/// "[::1]:80" without its port.
+std::string_view host_name(std::string_view host) {
+  const std::size_t bracket = std::min(host.find(']'), host.size());
+  const std::size_t colon = host.starts_with('[') ? host.find(':', bracket) : host.find(':');
+  return host.substr(0, colon);
+}
+
+/// In the notations that every browser sends: no name can be one.
+bool is_numeric_host(const std::string& host) {
+  std::array<std::uint8_t, 16> bytes{};
+  if (!host.starts_with('[')) return inet_pton(AF_INET, host.c_str(), bytes.data()) == 1;
+  const std::string within = host.substr(1, host.size() - 2);
+  return host.ends_with(']') && inet_pton(AF_INET6, within.c_str(), bytes.data()) == 1;
+}
+
+/// "https://example.com:8080" -> "example.com:8080"; a proxy may add or end TLS.
+std::string_view host_of_origin(std::string_view origin) {
+  const std::size_t scheme = origin.find("://");
+  return scheme == std::string_view::npos ? std::string_view() : origin.substr(scheme + 3);
+}
+
+}  // namespace
+
+bool is_named(std::string_view host, const std::vector<std::string>& rules) {
+  return std::ranges::any_of(rules, [&](std::string_view rule) {
+    if (rule == "*") return true;
+    if (!rule.starts_with("*.")) return rule == host;
+    return host.size() > rule.size() - 1 && host.ends_with(rule.substr(1));
+  });
+}
+
+std::optional<Error> Sites::refusal(const Request& request) const {
+  const std::string host = in_small_letters(request.host);
+  const std::string name(host_name(host));
+  const bool known = host.empty() || name == "localhost" || is_numeric_host(name) ||
+                     is_named(name, hosts_);  // HTTP/1.0, which no browser speaks, needs none
+  if (!known) {
+    return Error(ErrorCode::forbidden,
+                 "Without API keys this server answers to addresses, localhost and the names of "
+                 "--allowed-hosts; ask its operator to add yours.");
+  }
+  const std::string origin = in_small_letters(request.header("Origin"));
+  const bool safe = std::ranges::count(kSafe, request.method) > 0;
+  if (safe || origin.empty() || host_of_origin(origin) == host || cors_.allows(origin))
+    return std::nullopt;
+  return Error(ErrorCode::forbidden,
+               "Without API keys this server takes nothing from the pages of other sites; its "
+               "operator can allow one by --cors-origins.");
+}
+
+}  // namespace unwrapd::server

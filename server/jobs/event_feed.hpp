@@ -1,0 +1,108 @@
+#pragma once
+// The events of jobs on their way from the worker to any number of readers. A feed is a bounded
+// ring: a worker never waits for a reader, and a reader that is too slow is told of the gap.
+// Sequence numbers go up over attempts and restarts: attempt k of a job begins at k * 10^9.
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "api/events.hpp"
+#include "server/base/doorbell.hpp"
+#include "server/jobs/job_watch.hpp"
+
+namespace unwrapd::server {
+
+/// What a reader gets from one call.
+struct Reading {
+  std::string frames;         ///< whole frames, empty when nothing is new
+  std::int64_t last_seq = 0;  ///< where to go on
+  bool end = false;           ///< nothing will follow
+};
+
+/// The events of one job. Thread-safe.
+class JobFeed {
+ public:
+  /// Works for the trace of the thread that makes it, or for one of its own.
+  JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics = nullptr,
+          std::shared_ptr<const Doorbell> news = nullptr);
+
+  /// The trace id that the job's log lines tell.
+  [[nodiscard]] const std::string& trace() const { return trace_; }
+
+  /// Appends the event that make(seq) returns; a final event finishes the feed.
+  void publish(const std::function<api::Event(std::int64_t seq)>& make);
+  void set_progress(const api::JobProgress& progress);
+  [[nodiscard]] std::optional<api::JobProgress> progress() const;
+  /// Ends all readings and waits without a final event: the server stops.
+  void end();
+
+  /// The sequence number that the next event will get.
+  [[nodiscard]] std::int64_t next_seq() const;
+  /// Where a reader with this Last-Event-ID goes on; one that has seen the end sees it again.
+  [[nodiscard]] std::int64_t resume_after(std::optional<std::int64_t> last_event_id) const;
+  /// The events after `after` by now, some kB of them at most. The bell tells when there are more.
+  [[nodiscard]] Reading read(std::int64_t after) const;
+  /// True when the final event has come by then.
+  [[nodiscard]] bool wait_finished(std::chrono::steady_clock::time_point until) const;
+
+ private:
+  struct Frame {
+    std::int64_t seq;
+    std::string text;
+  };
+  [[nodiscard]] bool over() const { return finished_ || ended_; }
+  void tell_news(bool is_over);
+
+  const std::int64_t base_;
+  const std::string trace_;
+  mutable std::mutex mutex_;
+  mutable std::condition_variable over_;
+  const std::shared_ptr<const Doorbell> news_;
+  std::int64_t newest_;
+  const std::size_t capacity_;
+  std::deque<Frame> ring_;
+  std::optional<api::JobProgress> progress_;
+  std::optional<JobWatch> watch_;
+  bool finished_ = false;
+  bool ended_ = false;
+};
+
+/// All feeds: of the live jobs and, for readers who come late, of the last finished ones.
+class EventFeed {
+ public:
+  /// ring: events kept of a job; kept_finished: finished feeds kept; metrics: told of all events,
+  /// must outlive all feeds; news: rung at all events.
+  explicit EventFeed(std::size_t ring = 1024, std::size_t kept_finished = 64,
+                     Metrics* metrics = nullptr, std::shared_ptr<const Doorbell> news = nullptr)
+      : ring_(ring), kept_finished_(kept_finished), metrics_(metrics), news_(std::move(news)) {}
+
+  /// The feed of a job that waits for its next attempt; attempt: those begun before.
+  std::shared_ptr<JobFeed> open(const std::string& job, int attempt);
+  [[nodiscard]] std::shared_ptr<JobFeed> find(std::string_view job) const;
+  /// The job is final: its feed is kept until others push it out.
+  void retire(const std::string& job);
+  void forget(const std::string& job);
+  void end_all();
+
+ private:
+  const std::size_t ring_;
+  const std::size_t kept_finished_;
+  Metrics* const metrics_;
+  const std::shared_ptr<const Doorbell> news_;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<JobFeed>, std::less<>> feeds_;
+  std::list<std::string> finished_;
+};
+
+}  // namespace unwrapd::server

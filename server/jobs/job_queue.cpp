@@ -1,0 +1,292 @@
+#include "server/jobs/job_queue.hpp"
+
+#include "api/error_table.hpp"
+#include "server/base/clock.hpp"
+#include "server/base/queue_errors.hpp"
+#include "server/base/trace.hpp"
+#include "server/jobs/question.hpp"
+#include "server/store/job_rows.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+using api::JobState;
+
+constexpr int kMaxAttemptsWhenFull = 20;
+
+}  // namespace
+
+JobQueue::JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const Log& log,
+                   const QueueConfig& config)
+    : store_(store),
+      blobs_(blobs),
+      events_(events),
+      log_(log),
+      config_(config),
+      door_(config.max_queue, config.workers) {}
+
+void JobQueue::wait_again(const JobRecord& job) {
+  const TraceScope trace(job.trace);
+  std::shared_ptr<JobFeed> feed = events_.find(job.id);  // with its readers, if it ran already
+  if (!feed) feed = events_.open(job.id, job.attempt);
+  feed->publish([&](std::int64_t seq) { return api::queued_event(seq, share_.waiting()); });
+  share_.add(job.owner);
+  changed_.notify_all();
+}
+
+void JobQueue::check_open() const {
+  if (closed_) throw server::draining();
+  if (const int seconds = pause_.seconds_left(); seconds > 0) throw no_room(seconds);
+}
+
+std::vector<AtWork> JobQueue::at_work() const {
+  std::vector<AtWork> all;
+  for (const auto& [id, job] : running_) all.push_back({job->record.owner, job->seconds()});
+  return all;
+}
+
+void JobQueue::check_room(const Asker& sender) {
+  const std::lock_guard lock(mutex_);
+  check_open();
+  door_.check_place(sender, share_, at_work());
+}
+
+void JobQueue::give_back(std::string_view sender) {
+  const std::lock_guard lock(mutex_);
+  door_.leave(sender);
+}
+
+std::optional<JobRecord> JobQueue::same_name(const JobRecord& job) {
+  if (job.request_key.empty()) return std::nullopt;
+  std::optional<JobRecord> known = store_.find_request(job.owner, job.request_key);
+  if (!known) known = store_.find(job.id);
+  if (!known) return std::nullopt;
+  if (known->owner != job.owner) throw unknown_job();
+  if (!is_same_question(*known, job)) throw another_question();
+  return known;
+}
+
+JobRecord JobQueue::submit(Submission submission) {
+  JobRecord& job = submission.job;
+  std::unique_lock named(naming_, std::defer_lock);
+  if (!job.request_key.empty()) named.lock();
+  if (std::optional<JobRecord> known = same_name(job)) {
+    give_back(submission.sender);
+    blobs_.drop_upload(submission.upload);
+    return std::move(*known);
+  }
+  blobs_.keep_upload(submission.upload, job.id, digests_of(job.input));
+  try {
+    enqueue(job, submission, submission.anew ? std::nullopt : find_answer(job));
+  } catch (...) {
+    blobs_.remove(job.id);
+    throw;
+  }
+  log_.info("job queued", {{"job", job.id}, {"bytes", job.input.bytes}});
+  return std::move(job);
+}
+
+void JobQueue::enqueue(JobRecord& job, const Submission& submission, const Answer& answer) {
+  const std::lock_guard lock(mutex_);
+  check_open();
+  door_.check_place({.who = submission.sender, .owner = job.owner}, share_, at_work());
+  if (const Quota& quota = submission.quota; quota.max_jobs > 0 || quota.max_bytes > 0)
+    door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
+  door_.leave(submission.sender);
+  give_up_excess();
+  job.seq = store_.insert(job);
+  if (!answer || !answer_from_store(job, *answer)) wait_again(job);
+}
+
+/// If its files are whole: they become this job's, too, and count as such. Reads all of them.
+JobQueue::Answer JobQueue::find_answer(JobRecord& job) {
+  Answer same = store_.find_same(job.owner, job.content_key);
+  if (same && (!same->unreadable.empty() || !blobs_.adopt(job.id, same->id))) same.reset();
+  if (same) job.stored_bytes = blobs_.bytes(job.id);
+  return same;
+}
+
+bool JobQueue::answer_from_store(const JobRecord& job, const JobRecord& answer) {
+  events_.open(job.id, job.attempt);
+  try {
+    end_job(
+        job,
+        {.result_format = answer.result_format, .problem = {}, .stored_bytes = job.stored_bytes});
+    return true;
+  } catch (const Error&) {  // the job is stored and waits, as it would without the answer
+    return false;
+  }
+}
+
+/// False when the queue is closed.
+bool JobQueue::await_turn(std::unique_lock<std::mutex>& lock) {
+  while (!closed_) {
+    if (share_.waiting() == 0) {
+      changed_.wait(lock);
+    } else if (pause_.seconds_left() > 0) {
+      changed_.wait_until(lock, pause_.until());
+    } else {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// A job whose row cannot be read is nobody's turn.
+std::shared_ptr<RunningJob> JobQueue::take() {
+  std::unique_lock lock(mutex_);
+  while (await_turn(lock)) {
+    const std::string owner = share_.next();
+    std::optional<JobRecord> record = store_.take(owner, elapsed_ms() + config_.lease.count());
+    if (record && record->unreadable.empty()) return begin(std::move(*record));
+    share_.remove(owner);
+    if (record) {
+      set_aside(*record);
+    } else {
+      log_.error("the store has lost a queued job", {{"owner", owner}});
+    }
+  }
+  return nullptr;
+}
+
+std::shared_ptr<RunningJob> JobQueue::begin(JobRecord record) {
+  share_.start(record.owner);
+  auto job = std::make_shared<RunningJob>();
+  job->record = std::move(record);
+  job->feed = events_.find(job->record.id);
+  job->started_ms = now_ms();
+  running_[job->record.id] = job;
+  job->feed->publish(
+      [&](std::int64_t seq) { return api::started_event(seq, job->record.attempt); });
+  return job;
+}
+
+/// Whether the job, whose results found no room, waits until there is some.
+bool JobQueue::wait_for_room(const RunningJob& job, const JobOutcome& outcome) {
+  const bool full = outcome.state == JobState::failed &&
+                    api::error_from_problem(outcome.problem).code() == ErrorCode::storage_full;
+  const bool again = full && !closed_ && job.record.attempt < kMaxAttemptsWhenFull;
+  pause_.note(again);
+  if (!again) return false;
+  log_.warning("the disk is full, the job waits", {{"job", job.record.id}});
+  wait_or_end(job.record);
+  return true;
+}
+
+/// The success that it is, if its files can be noted.
+JobOutcome JobQueue::sealed(const std::string& id, JobOutcome outcome) {
+  try {
+    outcome.stored_bytes = blobs_.seal(id);
+    return outcome;
+  } catch (const Error& error) {
+    return ended(JobState::failed, error, id);
+  }
+}
+
+void JobQueue::finish(const RunningJob& job, JobOutcome outcome,
+                      const std::function<void()>& stored) {
+  if (outcome.state == JobState::succeeded) outcome = sealed(job.record.id, std::move(outcome));
+  const std::lock_guard lock(mutex_);
+  running_.erase(job.record.id);
+  changed_.notify_all();
+  share_.end(job.record.owner, job.seconds());
+  if (outcome.state == JobState::cancelled && job.cause == StopCause::draining) {
+    wait_or_end(job.record);  // its readers are told so
+    return;
+  }
+  if (wait_for_room(job, outcome)) return;
+  end_job(job.record, std::move(outcome), stored);
+}
+
+void JobQueue::end_job(const JobRecord& job, JobOutcome outcome,
+                       const std::function<void()>& stored) {
+  const std::shared_ptr<JobFeed> feed = events_.find(job.id);
+  outcome.last_event = feed->next_seq();
+  const Moment now = store_.now();
+  outcome.finished_ms = now.of_day_ms;
+  outcome.set_by_ms = now.set_by_ms;
+  JobRecord record = job;
+  record.state = outcome.state;
+  record.problem = outcome.problem;
+  if (!job.webhook.empty()) outcome.delivery = text_of(api::to_json(to_job(record)));
+  if (!store_.finish(job, outcome)) return;
+  if (stored) stored();
+  feed->publish([&](std::int64_t seq) { return api::final_event(seq, to_job(record)); });
+  events_.retire(job.id);
+  if (outcome.state != JobState::succeeded) blobs_.remove(job.id);
+  log_.info("job ended", {{"job", job.id},
+                          {"state", api::state_name(outcome.state)},
+                          {"attempt", job.attempt},
+                          {"problem", outcome.problem}});
+}
+
+bool JobQueue::cancel_or_remove(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const std::optional<JobRecord> job = store_.find(id);
+  if (!job) throw unknown_job();
+  if (!api::is_final(job->state)) {
+    cancel_live(*job);
+    return true;
+  }
+  remove_ended(id);
+  log_.info("job removed", {{"job", id}});
+  return false;
+}
+
+void JobQueue::remove_ended(const std::string& id) {
+  blobs_.room().free_by([&] { store_.remove(id); });
+  events_.forget(id);
+  blobs_.remove(id);
+}
+
+void JobQueue::cancel_live(const JobRecord& job) {
+  if (job.state == JobState::queued) {
+    blobs_.room().free_by(
+        [&] { end_job(job, ended(JobState::cancelled, cancelled_by_owner(), job.id)); });
+    if (std::erase(left_, job.id) == 0) share_.remove(job.owner);
+    return;
+  }
+  blobs_.room().free_by([&] { store_.request_cancel(job.id); });
+  const auto running = running_.find(job.id);
+  if (running != running_.end()) running->second->request_stop(StopCause::cancelled);
+}
+
+void JobQueue::note_process_end(const RunningJob& job) {
+  try {
+    store_.note_process_end(job.record.id);
+  } catch (const Error& error) {  // the job goes on
+    if (error.code() != ErrorCode::storage_full) throw;
+  }
+}
+
+void JobQueue::close() {
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
+  changed_.notify_all();
+}
+
+void JobQueue::hurry() {
+  const std::lock_guard lock(mutex_);
+  hurried_ = true;
+  changed_.notify_all();
+}
+
+bool JobQueue::drain(std::chrono::seconds patience) {
+  close();
+  std::unique_lock lock(mutex_);
+  const auto idle = [&] { return running_.empty(); };
+  changed_.wait_for(lock, patience, [&] { return idle() || hurried_; });
+  if (idle()) return true;
+  for (const auto& [id, job] : running_) {
+    log_.warning("job interrupted by the shutdown, queued again", {{"job", id}});
+    job->request_stop(StopCause::draining);
+  }
+  if (changed_.wait_for(lock, config_.stop, idle)) return true;
+  for (const auto& [id, job] : running_) {
+    const std::optional<JobRecord> stored = store_.find(id);
+    if (stored && stored->state == JobState::running) take_up(*stored, Found::not_stopping);
+  }
+  return false;
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,177 @@
+#pragma once
+// The bounded queue of jobs and their life: queued -> running -> succeeded | failed | cancelled.
+// The store is the truth; this class adds the waiting, whose turn it is (fair_share.hpp), the stop
+// requests and the events. A full queue refuses at once rather than let requests pile up.
+//
+// A job at work is on lease, which beat() prolongs. One whose end could not be stored, for a disk
+// that is full, keeps its lease until that ends, and is then run again.
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "server/base/log.hpp"
+#include "server/base/retry_later.hpp"
+#include "server/http/caller.hpp"
+#include "server/jobs/disk_pause.hpp"
+#include "server/jobs/event_feed.hpp"
+#include "server/jobs/fair_share.hpp"
+#include "server/jobs/queue_door.hpp"
+#include "server/store/blob_store.hpp"
+#include "server/store/job_store.hpp"
+
+namespace unwrapd::server {
+
+enum class StopCause { none, cancelled, time_limit, draining };
+
+/// A job in the hands of a worker. Its end is stored by one alone: the worker, or whoever gives the
+/// worker up.
+struct RunningJob {
+  JobRecord record;
+  std::shared_ptr<JobFeed> feed;
+  std::int64_t started_ms = 0;
+  std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
+  std::stop_source stop;
+  std::atomic<StopCause> cause = StopCause::none;
+  mutable std::mutex output;  ///< held while something is put out
+  bool has_ended = false;     ///< guarded by output; nothing is put out then
+
+  /// Since it began.
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  }
+  /// Asks the worker to stop; the first cause counts.
+  void request_stop(StopCause why) {
+    StopCause none = StopCause::none;
+    cause.compare_exchange_strong(none, why);
+    stop.request_stop();
+  }
+  /// Whether the job's end is the caller's to store. Of two callers it is the first's.
+  [[nodiscard]] bool take_end() {
+    const std::lock_guard lock(output);
+    return !std::exchange(has_ended, true);
+  }
+};
+
+struct QueueConfig {
+  int max_queue = 256;
+  int workers = 1;
+  std::int64_t max_stored = 0;  ///< ended jobs; 0: no limit
+  std::chrono::milliseconds lease = std::chrono::seconds(30);
+  std::chrono::milliseconds stop = std::chrono::seconds(10);  ///< for jobs told to stop, at the end
+};
+
+/// A job whose upload is complete, and how it is to be taken.
+struct Submission {
+  JobRecord job;
+  std::string sender = {};  ///< as check_room() was told
+  std::string upload;       ///< the folder of its files, of BlobStore::begin_upload()
+  Quota quota;              ///< of its owner
+  bool anew = false;        ///< run it even when the same question has been answered
+};
+
+/// Thread-safe.
+class JobQueue {
+ public:
+  JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const Log& log,
+           const QueueConfig& config);
+
+  /// Once, before any worker: what the last process left running waits again; a job whose row
+  /// cannot be read is set aside. The death of that process is held against those jobs: they are
+  /// given up at the third, where they are tried apart from this process from now on, at the tenth.
+  /// Those that find no room on the disk for that wait for a beat() that does.
+  void recover(bool tried_apart);
+
+  /// Throws RetryLater{queue_full, draining} when a submission would be refused now, else keeps a
+  /// place for it until submit() or give_back(). sender: the same for a request that is sent again
+  /// when told so, if possible another for each other request.
+  void check_room(const Asker& sender);
+  void give_back(std::string_view sender);
+  /// Stores a job; one of the same name that is there already is returned instead. A question that
+  /// this owner has had answered is answered from the store. Throws like check_room(), and
+  /// idempotency_conflict, too_many_jobs, quota_exceeded, storage_full.
+  JobRecord submit(Submission submission);
+  /// Waits for the job whose turn it is; nullptr when the queue is closed.
+  std::shared_ptr<RunningJob> take();
+  /// Ends what take() returned. Its files are complete when it has succeeded. stored: called when
+  /// the store has its end, and before anybody is told of it.
+  void finish(const RunningJob& job, JobOutcome outcome, const std::function<void()>& stored = {});
+
+  /// Remembers, over the end of this server, too, that a job has ended a process of its own.
+  void note_process_end(const RunningJob& job);
+
+  /// Prolongs the leases of the jobs at work, queues those whose lease has ended, and gives up
+  /// ended jobs beyond max_stored.
+  void beat();
+
+  /// Cancels a live job (true), or removes a finished one and its files (false). Throws not_found.
+  bool cancel_or_remove(const std::string& id);
+
+  /// No new jobs from now on; those waiting stay in the store for the next start.
+  void close();
+  /// Waits for the running jobs; those that are not done by then go back to the queue. False when
+  /// some have not even stopped: then they are suspected of what ends servers, and in the queue,
+  /// too, or have ended as cancelled, but their threads do not end.
+  bool drain(std::chrono::seconds patience);
+  /// Takes all patience from drain().
+  void hurry();
+  [[nodiscard]] bool draining() const { return closed_; }
+
+ private:
+  void check_open() const;
+  [[nodiscard]] std::vector<AtWork> at_work() const;
+  [[nodiscard]] std::optional<JobRecord> same_name(const JobRecord& job);
+  using Answer = std::optional<JobRecord>;  // the job that has had the same question
+  [[nodiscard]] Answer find_answer(JobRecord& job);
+  void enqueue(JobRecord& job, const Submission& submission, const Answer& answer);
+  [[nodiscard]] bool answer_from_store(const JobRecord& job, const JobRecord& answer);
+  enum class Found { lapsed, by_death, not_stopping };
+  [[nodiscard]] bool is_poison(const JobRecord& job, Found found) const;
+  void wait_or_end(const JobRecord& job);
+  void give_up_excess();
+  void remove_ended(const std::string& id);
+  void take_up_left();
+  void take_up(const JobRecord& job, Found found);
+  void give_up(const JobRecord& job, const Error& why);
+  void set_aside(const JobRecord& unreadable);
+  void wait_again(const JobRecord& job);
+  [[nodiscard]] std::shared_ptr<RunningJob> begin(JobRecord record);
+  [[nodiscard]] bool await_turn(std::unique_lock<std::mutex>& lock);
+  [[nodiscard]] JobOutcome sealed(const std::string& id, JobOutcome outcome);
+  [[nodiscard]] bool wait_for_room(const RunningJob& job, const JobOutcome& outcome);
+  void cancel_live(const JobRecord& job);
+  void end_job(const JobRecord& job, JobOutcome outcome, const std::function<void()>& stored = {});
+
+  JobStore& store_;
+  BlobStore& blobs_;
+  EventFeed& events_;
+  const Log& log_;
+  const QueueConfig config_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::atomic<bool> closed_ = false;
+  bool hurried_ = false;
+  std::mutex naming_;  // one request with a name of its own at a time
+  FairShare share_;
+  QueueDoor door_;
+  DiskPause pause_;
+  std::deque<std::string> left_;  // by the last process, and not taken up yet
+  bool tried_apart_ = false;
+  std::map<std::string, std::shared_ptr<RunningJob>, std::less<>> running_;
+};
+
+}  // namespace unwrapd::server

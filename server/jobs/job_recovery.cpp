@@ -1,0 +1,124 @@
+// Of job_queue.hpp: the jobs that nobody works on any longer.
+#include <algorithm>
+
+#include "server/base/clock.hpp"
+#include "server/base/queue_errors.hpp"
+#include "server/base/trace.hpp"
+#include "server/jobs/job_queue.hpp"
+#include "server/store/job_rows.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+using api::JobState;
+
+constexpr std::int64_t kMostGivenUp = 64;
+constexpr int kMaxCrashes = 3;
+constexpr int kMaxCrashesApart = 10;  // where one that is to blame should end its own process alone
+
+}  // namespace
+
+void JobQueue::recover(bool tried_apart) {
+  const std::lock_guard lock(mutex_);
+  tried_apart_ = tried_apart;
+  for (const JobRecord& job : store_.unfinished()) {
+    const bool is_whole = job.unreadable.empty();
+    if (is_whole && job.state == JobState::queued && !job.cancel_requested) {
+      wait_again(job);
+      continue;
+    }
+    const TraceScope trace(job.trace);
+    if (is_whole) events_.open(job.id, job.attempt);
+    left_.push_back(job.id);
+  }
+  try {
+    take_up_left();
+  } catch (const Error& error) {  // what is done can be read and removed meanwhile
+    if (error.code() != ErrorCode::storage_full) throw;
+    log_.warning("the disk is full, jobs of the last process wait", {{"jobs", left_.size()}});
+  }
+}
+
+void JobQueue::take_up_left() {
+  for (; !left_.empty(); left_.pop_front()) {
+    const std::optional<JobRecord> job = store_.find(left_.front());
+    if (!job || (job->unreadable.empty() && api::is_final(job->state))) continue;
+    take_up(*job, Found::by_death);
+  }
+}
+
+/// A job that does not stop is held against it as a death of the server would be.
+bool JobQueue::is_poison(const JobRecord& job, Found found) const {
+  if (found == Found::lapsed) return false;
+  return job.crashes + 1 >= (tried_apart_ ? kMaxCrashesApart : kMaxCrashes);
+}
+
+void JobQueue::take_up(const JobRecord& job, Found found) {
+  const TraceScope trace(job.trace);
+  if (!job.unreadable.empty()) {
+    set_aside(job);
+  } else if (job.cancel_requested) {
+    give_up(job, cancelled_by_owner());
+  } else if (is_poison(job, found)) {
+    give_up(job, poison());
+  } else {
+    store_.requeue(job.id, found != Found::lapsed);
+    wait_again(job);
+    log_.warning(found == Found::not_stopping ? "job that does not stop queued again, suspected"
+                                              : "job found at nobody's hands, queued again",
+                 {{"job", job.id}, {"attempt", job.attempt}});
+  }
+}
+
+/// A running job that goes back to the queue, unless its owner has cancelled it meanwhile.
+void JobQueue::wait_or_end(const JobRecord& job) {
+  const std::optional<JobRecord> stored = store_.find(job.id);
+  if (stored && stored->cancel_requested) return give_up(job, cancelled_by_owner());
+  store_.requeue(job.id, false);
+  wait_again(job);
+}
+
+void JobQueue::give_up(const JobRecord& job, const Error& why) {
+  if (!events_.find(job.id)) events_.open(job.id, job.attempt);
+  const bool cancelled = why.code() == ErrorCode::cancelled;
+  end_job(job, ended(cancelled ? JobState::cancelled : JobState::failed, why, job.id));
+}
+
+/// Its folder goes to lost, and it counts as failed: nobody waits for it, and nobody works on it.
+void JobQueue::set_aside(const JobRecord& unreadable) {
+  const Moment now = store_.now();
+  JobOutcome outcome = ended(JobState::failed, unreadable_job(), unreadable.id);
+  outcome.finished_ms = now.of_day_ms;
+  outcome.set_by_ms = now.set_by_ms;
+  if (!unreadable.webhook.empty()) outcome.delivery = text_of(api::to_json(to_job(unreadable)));
+  store_.set_aside(unreadable, outcome);
+  const bool has_files = blobs_.set_aside(unreadable.id, now.kept_ms());
+  log_.error("job set aside: its row cannot be read", {{"job", unreadable.id},
+                                                       {"seq", unreadable.seq},
+                                                       {"reason", unreadable.unreadable},
+                                                       {"files", has_files ? "lost" : "none"}});
+}
+
+/// A few at a time: the queue is locked meanwhile, and a bound that was lowered is met by and by.
+void JobQueue::give_up_excess() {
+  if (config_.max_stored == 0) return;
+  const auto live = share_.waiting() + static_cast<std::int64_t>(running_.size() + left_.size());
+  std::int64_t excess = store_.job_count() - live - config_.max_stored;
+  for (excess = std::min(excess, kMostGivenUp); excess > 0; --excess) {
+    const std::optional<std::string> first = store_.first_to_go();
+    if (!first) return;
+    remove_ended(*first);
+    log_.info("job given up, more are stored than --max-stored-jobs", {{"job", *first}});
+  }
+}
+
+void JobQueue::beat() {
+  const std::lock_guard lock(mutex_);
+  const std::int64_t now = elapsed_ms();
+  for (const auto& [id, job] : running_) store_.renew(id, now + config_.lease.count());
+  take_up_left();
+  for (const JobRecord& job : store_.lapsed(now)) take_up(job, Found::lapsed);
+  give_up_excess();
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,216 @@
+#include "server/jobs/worker_pool.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <new>
+
+#include "api/error_table.hpp"
+#include "server/base/inside_error.hpp"
+#include "server/base/priority.hpp"
+#include "server/base/trace.hpp"
+#include "server/jobs/feed_output.hpp"
+#include "server/jobs/watchdog.hpp"
+#include "server/store/loaded_input.hpp"
+#include "server/work/thread_executor.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+using api::JobState;
+
+constexpr std::chrono::seconds kPauseAfterFailure{1};
+constexpr int kMaxCrashes = 3;
+constexpr std::chrono::seconds kTimeToKill{10};  // a process, and to reap it
+
+/// A stop is a failure when time ran out; else the owner, or the server's end, has stopped the job.
+JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds) {
+  if (error.code() != ErrorCode::cancelled) return ended(JobState::failed, error, job.record.id);
+  if (job.cause != StopCause::time_limit) return ended(JobState::cancelled, error, job.record.id);
+  const Error late(ErrorCode::time_limit, "The job took longer than the " +
+                                              std::to_string(max_seconds) +
+                                              " s allowed; ask for fewer iterations, or send a "
+                                              "smaller mesh.");
+  return ended(JobState::failed, late, job.record.id);
+}
+
+Error too_many_crashes() {
+  return {ErrorCode::poison,
+          "The process of this job ended three times while it worked on it; it is not tried "
+          "again. Check the mesh, or send a smaller part of it."};
+}
+
+}  // namespace
+
+WorkerPool::WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
+                       const WorkerConfig& config)
+    : queue_(queue), blobs_(blobs), limits_(limits), log_(log), config_(config) {
+  const std::lock_guard lock(mutex_);
+  for (int worker = 0; worker < config.workers; ++worker) begin_thread();
+}
+
+/// A thread that leaves now wants the mutex: it is not held while they are awaited.
+WorkerPool::~WorkerPool() {
+  Threads threads;
+  const std::lock_guard lock(mutex_);
+  threads.swap(threads_);
+}
+
+int WorkerPool::lost() const {
+  const std::lock_guard lock(mutex_);
+  return lost_;
+}
+
+bool WorkerPool::are_left() const {
+  const std::lock_guard lock(mutex_);
+  return lost_ < config_.workers + replaced_;
+}
+
+/// With the mutex held.
+void WorkerPool::begin_thread() {
+  threads_.emplace_back([this] { work(); });
+}
+
+void WorkerPool::work() {
+  give_way();
+  ThreadExecutor executor(config_.threads, config_.core);
+  while (true) {
+    try {
+      const std::shared_ptr<RunningJob> job = queue_.take();
+      if (!job || work_on(*job, executor) == Then::leave) return;
+    } catch (const std::exception& error) {  // the store: the job is run again at the next start
+      log_.error("a worker failed", {{"reason", reason_of(error)}});
+      std::this_thread::sleep_for(kPauseAfterFailure);
+    }
+  }
+}
+
+WorkerPool::Then WorkerPool::work_on(RunningJob& job, Executor& executor) {
+  const TraceScope trace(job.feed->trace());
+  log_.info("job started", {{"job", job.record.id}, {"attempt", job.record.attempt}});
+  Claim claim(*config_.claims, job.record.owner);  // until the store counts the results
+  const auto to_kill = is_apart(job.record) ? kTimeToKill : std::chrono::seconds(0);
+  JobOutcome outcome;
+  {
+    const Watchdog watchdog(
+        job.stop.get_token(),
+        {std::chrono::seconds(limits_.max_job_seconds), config_.isolation.grace + to_kill},
+        {.late = [&] { job.request_stop(StopCause::time_limit); },
+         .overdue = [&] { give_up(job, claim); }});
+    outcome = attempt(job, {executor, claim});
+  }
+  if (!job.take_end()) return come_back(job);
+  queue_.finish(job, std::move(outcome), [&] { claim.give_up(); });
+  return Then::next_job;
+}
+
+/// In a process of its own.
+bool WorkerPool::is_apart(const JobRecord& job) const {
+  const bool has_crashed = job.crashes > 0 || job.process_ends > 0;
+  return config_.isolation.on || (has_crashed && config_.isolation.possible);
+}
+
+/// From the watchdog's thread, of a job whose own goes on without hearing its stop. At the end of
+/// the server the queue has other means.
+void WorkerPool::give_up(RunningJob& job, Claim& claim) {
+  if (job.cause == StopCause::draining || !job.take_end()) return;
+  const TraceScope trace(job.feed->trace());
+  lose_thread(job);
+  config_.on_force("given_up");
+  const Error stopped(ErrorCode::cancelled, "The job was stopped; send it again to have it done.");
+  try {
+    queue_.finish(job, outcome_of(stopped, job, limits_.max_job_seconds), [&] { claim.give_up(); });
+  } catch (const std::exception& error) {  // the store: the job is run again at the next start
+    log_.error("a worker failed", {{"reason", error.what()}});
+  }
+}
+
+void WorkerPool::lose_thread(const RunningJob& job) {
+  const std::lock_guard lock(mutex_);
+  ended_.clear();
+  ++lost_;
+  const bool has_heir = replaced_ < config_.workers;
+  if (has_heir) {
+    ++replaced_;
+    begin_thread();
+  }
+  log_.error("a job does not stop, and is given up", {{"job", job.record.id},
+                                                      {"seconds", job.seconds()},
+                                                      {"threads_lost", lost_},
+                                                      {"replaced", has_heir}});
+}
+
+/// Of a thread whose job was given up meanwhile: it works on where no other has its place.
+WorkerPool::Then WorkerPool::come_back(const RunningJob& job) {
+  const std::lock_guard lock(mutex_);
+  --lost_;
+  log_.warning("a job that was given up has stopped",
+               {{"job", job.record.id}, {"seconds", job.seconds()}, {"threads_lost", lost_}});
+  if (replaced_ <= lost_) return Then::next_job;
+  --replaced_;
+  const auto self = std::ranges::find(threads_, std::this_thread::get_id(), &std::jthread::get_id);
+  if (self != threads_.end()) ended_.splice(ended_.end(), threads_, self);
+  return Then::leave;
+}
+
+std::string WorkerPool::run(const RunningJob& job, const Means& means) {
+  const LoadedInput loaded(blobs_, job.record);
+  FeedOutput output(job, blobs_, {means.claim, config_.most_bytes});
+  const auto queue_ms = static_cast<double>(job.started_ms - job.record.created_ms);
+  const JobTask task{.record = loaded.record(),
+                     .queue_ms = std::max(0.0, queue_ms),
+                     .began = job.began,
+                     .stop = job.stop.get_token()};
+  if (!is_apart(job.record))
+    return config_.duties.run(task, loaded.input(), output, limits_, means.executor);
+  Isolation isolation = config_.isolation;
+  isolation.on_kill = [&] {
+    log_.error("a job does not stop, and its process is killed",
+               {{"job", job.record.id}, {"seconds", job.seconds()}});
+    config_.on_force("killed");
+  };
+  try {
+    return run_job_isolated(task, loaded.input(), output, limits_, isolation);
+  } catch (const Error& error) {
+    const bool asked = error.code() != ErrorCode::cancelled || job.stop.stop_requested();
+    if (!asked) throw WorkerCrashed("somebody else told it to stop");
+    throw;
+  }
+}
+
+/// Again after a crash, which may have been an accident: the memory of the machine, an operator.
+/// Crashes under servers before this one count.
+std::string WorkerPool::run_patiently(const RunningJob& job, const Means& means) {
+  for (int crashes = job.record.process_ends; crashes < kMaxCrashes;) {
+    try {
+      return run(job, means);
+    } catch (const WorkerCrashed& crash) {
+      ++crashes;
+      queue_.note_process_end(job);
+      log_.warning("a worker process ended",
+                   {{"job", job.record.id}, {"how", crash.what()}, {"crashes", crashes}});
+    }
+  }
+  throw too_many_crashes();
+}
+
+JobOutcome WorkerPool::attempt(const RunningJob& job, const Means& means) {
+  try {
+    JobOutcome outcome;
+    outcome.result_format = run_patiently(job, means);
+    return outcome;
+  } catch (const Error& error) {
+    return outcome_of(error, job, limits_.max_job_seconds);
+  } catch (const std::bad_alloc&) {
+    const Error error(ErrorCode::memory_limit,
+                      "The memory of the server did not suffice; send a smaller mesh.");
+    return ended(JobState::failed, error, job.record.id);
+  } catch (const std::exception& error) {  // the owner learns nothing of our insides
+    log_.error("unhandled exception", {{"job", job.record.id}, {"reason", reason_of(error)}});
+    return ended(JobState::failed, Error(ErrorCode::internal, "The server made a mistake."),
+                 job.record.id);
+  }
+}
+
+}  // namespace unwrapd::server

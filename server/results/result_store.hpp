@@ -1,0 +1,51 @@
+#pragma once
+// The results of jobs as files, in the job's own format and, made when somebody asks, in others.
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/asset/asset.hpp"
+#include "server/base/file_counts.hpp"
+#include "server/base/files.hpp"
+#include "server/results/renderer.hpp"
+#include "server/store/blob_store.hpp"
+#include "server/store/job_record.hpp"
+
+namespace unwrapd::server {
+
+struct StoredResult {
+  std::shared_ptr<const File> file;  ///< stays readable when the job is removed meanwhile
+  std::string sha256;                ///< becomes the ETag
+};
+
+/// A file of a job that is there and whole.
+std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string& job,
+                                       const std::string& file);
+/// A file that was made after the end of its job, kept where that takes nothing from others.
+StoredResult keep(BlobStore& blobs, const std::string& job, const std::string& file,
+                  std::string_view bytes);
+/// One that is handed out once.
+StoredResult lend(const BlobStore& blobs, std::string_view bytes);
+
+/// Thread-safe.
+class ResultStore {
+ public:
+  ResultStore(BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
+
+  /// The result of a succeeded job by one of its maps (see map_choice.hpp), in a format (glb, gltf,
+  /// obj, json); one that is missing or damaged is made from the job's input and map. Throws what
+  /// Renderer::render() throws.
+  StoredResult open(const JobRecord& job, std::size_t map, std::string_view format,
+                    const HasLeft& has_left = {});
+  [[nodiscard]] const FileCounts& counts() const { return counts_; }
+
+ private:
+  BlobStore& blobs_;
+  Renderer& renderer_;
+  FileCounts counts_;
+};
+
+}  // namespace unwrapd::server

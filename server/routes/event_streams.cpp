@@ -1,0 +1,100 @@
+#include "server/routes/event_streams.hpp"
+
+#include <charconv>
+#include <utility>
+
+#include "server/jobs/job_queue.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr int kRetrySeconds = 5;
+
+std::optional<std::int64_t> parse_event_id(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::int64_t id = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, id);
+  if (parsed.ec != std::errc() || parsed.ptr != end || id < 0) {
+    throw Error(ErrorCode::malformed_request,
+                "Last-Event-ID is not the id of an event; leave it out to read from the first.");
+  }
+  return id;
+}
+
+/// Where a reader is, and its place among the streams.
+struct Reader {
+  std::shared_ptr<const JobFeed> feed;
+  std::int64_t after = 0;
+  std::shared_ptr<void> place;
+  std::string greeting;  // comes first
+};
+
+StreamPiece next_piece(Reader& reader) {
+  if (!reader.greeting.empty()) return {.bytes = std::exchange(reader.greeting, {}), .end = false};
+  Reading reading = reader.feed->read(reader.after);
+  reader.after = reading.last_seq;
+  return {.bytes = std::move(reading.frames), .end = reading.end};
+}
+
+Watcher watcher_of(const Request& request) {
+  return {.owner = request.caller.owner,
+          .seen = parse_event_id(request.header("Last-Event-ID")),
+          .place = {}};
+}
+
+/// What is left to tell of a job whose events are no longer kept.
+std::string last_frames(const JobRecord& job, std::int64_t seen) {
+  std::string frames;
+  if (seen + 1 < job.last_event)
+    frames = api::sse_frame(api::gap_event(seen + 1, job.last_event - 1));
+  return frames + api::sse_frame(api::final_event(job.last_event, to_job(job)));
+}
+
+}  // namespace
+
+std::shared_ptr<void> EventStreams::take_place(const std::string& owner) {
+  std::shared_ptr<void> place = places_.let_in(owner);
+  if (place) return place;
+  throw RetryLater(
+      ErrorCode::too_many_streams,
+      "All " + std::to_string(max_streams_) +
+          " event streams are taken, or this API key has its share of them; come back after "
+          "Retry-After.",
+      kRetrySeconds);
+}
+
+Response EventStreams::stream(const JobRecord& job, Watcher watcher, std::string greeting) {
+  Response response;
+  response.content_type = "text/event-stream";
+  response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
+  const std::shared_ptr<JobFeed> feed = events_.find(job.id);
+  if (!feed) {
+    response.body = greeting + last_frames(job, watcher.seen.value_or(0));
+    return response;
+  }
+  if (!watcher.place) watcher.place = take_place(watcher.owner);
+  auto reader = std::make_shared<Reader>(Reader{.feed = feed,
+                                                .after = feed->resume_after(watcher.seen),
+                                                .place = std::move(watcher.place),
+                                                .greeting = std::move(greeting)});
+  response.body = StreamBody{.next = [reader] { return next_piece(*reader); }, .ping = api::kPing};
+  return response;
+}
+
+Response EventStreams::open(const JobRecord& job, const Request& request) {
+  return stream(job, watcher_of(request), {});
+}
+
+Watcher EventStreams::let_in(const Request& request) {
+  Watcher watcher = watcher_of(request);
+  watcher.place = take_place(watcher.owner);
+  return watcher;
+}
+
+Response EventStreams::open_accepted(const JobRecord& job, Watcher watcher) {
+  if (job.request_key.empty()) watcher.seen.reset();
+  return stream(job, std::move(watcher), api::sse_frame(api::accepted_event(to_job(job))));
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,67 @@
+#include "server/routes/info_routes.hpp"
+
+#include "api/openapi.hpp"
+#include "api/options.hpp"
+#include "server/base/identity.hpp"
+#include "server/routes/result_routes.hpp"
+#include "web/page.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+/// Nothing comes from elsewhere, whatever should get into a page; the contract's runs nothing.
+constexpr std::string_view kDocsPolicy =
+    "default-src 'none'; style-src 'self'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'";
+constexpr std::string_view kPagePolicy =
+    "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; "
+    "img-src data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+constexpr std::string_view kHtml = "text/html; charset=utf-8";
+constexpr std::string_view kCss = "text/css; charset=utf-8";
+constexpr std::string_view kScript = "text/javascript; charset=utf-8";
+
+/// A text that is part of the program, with its ETag.
+Handler text_handler(std::string_view text, std::string_view type) {
+  return [text, type, etag = "\"" + sha256(text) + "\""](const Request& request) {
+    Response response;
+    response.headers = {{"ETag", etag}, {"Cache-Control", "no-cache"}};
+    if (has_copy(request, etag)) {
+      response.status = 304;
+      return response;
+    }
+    response.content_type = type;
+    response.body = std::string(text);
+    return response;
+  };
+}
+
+/// A text that a browser shows or runs.
+Handler page_handler(std::string_view text, std::string_view type, std::string_view policy) {
+  return [answer = text_handler(text, type), policy](const Request& request) {
+    Response response = answer(request);
+    response.headers.emplace_back("Content-Security-Policy", policy);
+    response.headers.emplace_back("X-Content-Type-Options", "nosniff");
+    response.headers.emplace_back("Referrer-Policy", "no-referrer");
+    return response;
+  };
+}
+
+}  // namespace
+
+void add_info_routes(std::vector<Route>& routes, const api::Limits& limits) {
+  routes.push_back({"GET", "/v1/methods", [&limits](const Request&) {
+                      return json_response(200, api::methods_json(limits).dump());
+                    }});
+  routes.push_back({"GET", "/v1/limits", [&limits](const Request&) {
+                      return json_response(200, api::to_json(limits).dump());
+                    }});
+  routes.push_back({"GET", "/openapi.yaml", text_handler(api::openapi_yaml(), "application/yaml")});
+  routes.push_back({"GET", "/openapi.json", text_handler(api::openapi_json(), "application/json")});
+  routes.push_back({"GET", "/docs", page_handler(api::docs_html(), kHtml, kDocsPolicy)});
+  routes.push_back({"GET", "/docs.css", page_handler(api::docs_css(), kCss, kDocsPolicy)});
+  routes.push_back({"GET", "/", page_handler(web::index_html(), kHtml, kPagePolicy)});
+  routes.push_back({"GET", "/page.css", page_handler(web::page_css(), kCss, kPagePolicy)});
+  routes.push_back({"GET", "/page.js", page_handler(web::page_js(), kScript, kPagePolicy)});
+}
+
+}  // namespace unwrapd::server

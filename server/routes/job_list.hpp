@@ -1,0 +1,13 @@
+#pragma once
+// GET /v1/jobs: the caller's jobs, the newest first, in pages.
+
+#include "server/http/http.hpp"
+#include "server/store/job_store.hpp"
+
+namespace unwrapd::server {
+
+/// Parameters state, limit (1 to 200) and cursor (the `next` of the page before). Throws
+/// Error{invalid_option} naming the parameter that is unknown, given twice or out of range.
+Response list_jobs(JobStore& store, const Request& request);
+
+}  // namespace unwrapd::server

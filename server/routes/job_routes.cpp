@@ -1,0 +1,181 @@
+#include "server/routes/job_routes.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "server/base/retry_later.hpp"
+#include "server/http/media_types.hpp"
+#include "server/routes/job_link.hpp"
+#include "server/routes/job_list.hpp"
+#include "server/routes/result_routes.hpp"
+#include "server/work/map_choice.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr int kRetryAfterSeconds = 5;
+
+/// The job with its live progress.
+Response job_response(int status, const JobRecord& record, const EventFeed& events) {
+  api::Job job = to_job(record);
+  const std::shared_ptr<JobFeed> feed = events.find(record.id);
+  if (feed && record.state == api::JobState::running) job.progress = feed->progress();
+  Response response = json_response(status, api::to_json(job).dump());
+  response.headers.emplace_back("Cache-Control", "no-store");
+  return response;
+}
+
+/// Waits for the end of a job, at most so long.
+void wait_for(const EventFeed& events, const std::string& id, std::chrono::seconds time) {
+  const std::shared_ptr<JobFeed> feed = events.find(id);
+  if (feed) static_cast<void>(feed->wait_finished(std::chrono::steady_clock::now() + time));
+}
+
+/// The job that a call of the same request has made.
+JobRecord stored_job(JobStore& store, const std::string& id) {
+  std::optional<JobRecord> job = store.find(id);
+  if (!job) throw Error(ErrorCode::not_found, "The job was removed meanwhile; send it again.");
+  return std::move(*job);
+}
+
+/// Who has no place among the streams is told so before anything is accepted.
+Response post_watched(const JobServices& services, const Request& request) {
+  Watcher watcher = services.streams.let_in(request);
+  const std::string id = services.submissions.accept(request, false);
+  const JobRecord job = stored_job(services.store, id);
+  Response response = services.streams.open_accepted(job, std::move(watcher));
+  response.headers.emplace_back("Location", api::job_path(id));
+  return response;
+}
+
+Response post_job(const JobServices& services, const Request& request) {
+  if (prefers_events(request.header("Accept"))) return post_watched(services, request);
+  const std::string id = services.submissions.accept(request, false);
+  std::optional<int> wait = preferred_wait(request.header("Prefer"));
+  const int seconds = std::min(wait.value_or(0), services.limits.max_wait_seconds);
+  const auto place = seconds > 0 ? services.waiters.let_in(request.caller.owner) : nullptr;
+  if (!place && seconds > 0) wait.reset();  // a preference (RFC 7240), not a promise
+  if (place) wait_for(services.events, id, std::chrono::seconds(seconds));
+  const JobRecord job = stored_job(services.store, id);
+  const bool finished = wait && api::is_final(job.state);
+  Response response = job_response(finished ? 200 : 202, job, services.events);
+  response.headers.emplace_back("Location", api::job_path(id));
+  if (wait) response.headers.emplace_back("Preference-Applied", "wait=" + std::to_string(seconds));
+  return response;
+}
+
+Response delete_job(const JobServices& services, const Request& request) {
+  static_cast<void>(find_job(services.store, request));
+  const bool was_live = services.queue.cancel_or_remove(request.id);
+  if (was_live) return job_response(202, stored_job(services.store, request.id), services.events);
+  Response response;
+  response.status = 204;
+  return response;
+}
+
+/// The answer to a synchronous call, once its job is final.
+Response sync_response(const JobServices& services, const JobRecord& job, const Request& request) {
+  require_result(job);
+  Response response = get_result(services.results, job, 0, request);
+  response.headers.emplace_back("Unwrapd-Report", services.blobs.read(job.id, kTotalsFile));
+  return response;
+}
+
+/// Beyond the limit of a job that began at once: it is told that its time is over, and ends.
+constexpr std::chrono::seconds kTimeToEnd{5};
+
+/// For who wants to wait and finds no place. It is told before the body is read.
+RetryLater too_many_wait() {
+  return {ErrorCode::rate_limited,
+          "Too many requests wait for the ends of their jobs; come back after Retry-After, or send "
+          "the mesh to /v1/jobs, which does not wait.",
+          kRetryAfterSeconds};
+}
+
+Response post_unwrap(const JobServices& services, const Request& request) {
+  const auto place = services.waiters.let_in(request.caller.owner);
+  if (!place) throw too_many_wait();
+  const std::string id = services.submissions.accept(request, true);
+  wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds) + kTimeToEnd);
+  const JobRecord job = stored_job(services.store, id);
+  Response response;
+  try {
+    response = sync_response(services, job, request);
+  } catch (const Error& error) {
+    response = error_response(error, id);
+  }
+  response.headers.emplace_back("Location", api::job_path(id));
+  return response;
+}
+
+void add_files(std::vector<Route>& routes, const JobServices& services) {
+  const auto add = [&](std::string_view path, auto answer) {
+    routes.push_back({"GET", path, [services, answer](const Request& request) {
+                        return answer_with_files(
+                            services.store, request, [&](const JobRecord& job) {
+                              return answer(job, only_chosen_map(job, request.query), request);
+                            });
+                      }});
+  };
+  add("/v1/jobs/{id}/result",
+      [services](const JobRecord& job, std::size_t map, const Request& request) {
+        return get_result(services.results, job, map, request);
+      });
+  add("/v1/jobs/{id}/report", [services](const JobRecord& job, std::size_t map, const Request&) {
+    return get_file(services.blobs, job, map_file(kReportFile, map), "application/json");
+  });
+}
+
+}  // namespace
+
+JobRecord find_job(JobStore& store, const Request& request) {
+  std::optional<JobRecord> job = store.find(request.id);
+  const bool seen = job && (request.caller.sees_all || job->owner == request.caller.owner);
+  if (!seen) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
+  return std::move(*job);
+}
+
+Response answer_with_files(JobStore& store, const Request& request,
+                           const std::function<Response(const JobRecord& job)>& answer) {
+  const JobRecord job = find_job(store, request);
+  try {
+    return answer(job);
+  } catch (const Error& error) {
+    const bool may_be_gone =
+        error.code() == ErrorCode::storage_failed || error.code() == ErrorCode::storage_corrupt;
+    if (may_be_gone) require_result(find_job(store, request));
+    throw;
+  }
+}
+
+void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
+  const auto find = [services](const Request& request) {
+    return find_job(services.store, request);
+  };
+  routes.push_back({"POST", "/v1/jobs",
+                    [services](const Request& request) { return post_job(services, request); }});
+  routes.push_back({"GET", "/v1/jobs", [services](const Request& request) {
+                      return list_jobs(services.store, request);
+                    }});
+  routes.push_back({"GET", "/v1/jobs/{id}/link", [services, find](const Request& request) {
+                      return get_link(find(request), services.links, request);
+                    }});
+  routes.push_back({"PUT", "/v1/jobs/{id}",
+                    [services](const Request& request) { return post_job(services, request); }});
+  routes.push_back({"GET", "/v1/jobs/{id}", [services, find](const Request& request) {
+                      return job_response(200, find(request), services.events);
+                    }});
+  routes.push_back({"DELETE", "/v1/jobs/{id}",
+                    [services](const Request& request) { return delete_job(services, request); }});
+  routes.push_back({"GET", "/v1/jobs/{id}/events", [services, find](const Request& request) {
+                      return services.streams.open(find(request), request);
+                    }});
+  add_files(routes, services);
+}
+
+void add_unwrap_route(std::vector<Route>& routes, const JobServices& services) {
+  routes.push_back({"POST", "/v1/unwrap",
+                    [services](const Request& request) { return post_unwrap(services, request); }});
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,18 @@
+#pragma once
+// GET /v1/jobs/{id}/layout.svg, layout.png and preview.png.
+
+#include <vector>
+
+#include "server/http/router.hpp"
+#include "server/results/picture_store.hpp"
+#include "server/store/job_store.hpp"
+
+namespace unwrapd::server {
+
+void add_picture_routes(std::vector<Route>& routes, JobStore& jobs, PictureStore& pictures);
+
+/// What a query string asks of a picture of this kind. Throws Error{invalid_option} with the
+/// pointer "/name" of the first parameter that is unknown, given twice or out of range.
+Picture picture_of(PictureKind kind, const std::multimap<std::string, std::string>& query);
+
+}  // namespace unwrapd::server

@@ -1,0 +1,146 @@
+#pragma once
+// The files of jobs: DIR/blobs/<job>/{document,buffer_N,options.json,digests,result.*,report.json*,
+// uv.bin*}; and of stored meshes, alike: DIR/blobs/<mesh>/{document,digests,analysis.json}. An
+// upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is written under
+// another name and renamed, and synced before the job counts as done. What a crash leaves behind is
+// swept at the next start; what no row knows then is set aside (lost_folders.hpp). `digests` has
+// the SHA-256 of each file (digests.hpp): what is read is checked against it. DIR/digests-noted
+// says that all folders have one, which 0.1.0 did not write.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/base/files.hpp"
+#include "server/store/blob_files.hpp"
+#include "server/store/checked_files.hpp"
+#include "server/store/digests.hpp"
+#include "server/store/disk_room.hpp"
+#include "server/store/left_folders.hpp"
+#include "server/store/lost_folders.hpp"
+#include "server/store/shared_files.hpp"
+
+namespace unwrapd::server {
+
+/// What try_keep() asks and tells of.
+struct Keeping {
+  /// So many bytes more, claimed for the job's owner while the caller keeps what is returned;
+  /// nothing where he may not have them.
+  std::function<std::shared_ptr<void>(const std::string& job, std::int64_t bytes)> claim = {};
+  /// The bytes of all the job's files now.
+  std::function<void(std::string_view job, std::int64_t bytes)> kept = {};
+};
+
+/// Whose a folder of blobs/ is.
+enum class FolderFate {
+  kept,
+  gone,     ///< of a job whose files are not kept
+  unknown,  ///< nobody's
+};
+using Fates = std::function<FolderFate(const std::string& name)>;
+
+/// What a sweep has done.
+struct Swept {
+  int removed = 0;
+  int returned = 0;               ///< from lost
+  std::vector<std::string> lost;  ///< set aside
+  std::vector<std::pair<std::string, std::int64_t>> sharing =
+      {};                           ///< jobs, and what counts for them
+  std::vector<std::string> failed;  ///< left where they are, for they cannot be read or moved
+};
+
+class BlobStore {
+ public:
+  /// Creates the directories below data where they are missing.
+  explicit BlobStore(const std::filesystem::path& data, const DiskLimits& limits = {});
+
+  /// A new empty folder for an upload.
+  std::filesystem::path begin_upload(std::string_view upload);
+  /// The upload, its files synced and their digests noted, becomes the job's folder. known: digests
+  /// of files as they came, which are noted as they are.
+  void keep_upload(std::string_view upload, std::string_view job, const Digests& known = {});
+  void drop_upload(std::string_view upload) noexcept;
+
+  [[nodiscard]] std::filesystem::path path(std::string_view job, std::string_view file) const;
+  /// A file of a job at work, which seal() syncs. Throws Error{storage_full} when there is no room,
+  /// or storage_failed.
+  void write_unsealed(std::string_view job, std::string_view file, std::string_view bytes);
+  void remove(std::string_view job) noexcept;
+  /// The document of a stored mesh becomes that of an upload, too; its bytes are shared, and count
+  /// for the mesh. False when it is not there. Throws Error{storage_failed} where the file system
+  /// has no hard links, or no more of this file.
+  bool share_document(std::string_view mesh, std::string_view upload);
+  /// Whether a job shares the document of a mesh.
+  [[nodiscard]] bool is_shared(std::string_view mesh) const;
+  /// Whether a file is noted: it is there, or was.
+  [[nodiscard]] bool has(std::string_view job, std::string_view file) const;
+  /// Bytes of all files, without `digests`; those that count for another (shared_files.hpp) are
+  /// left out.
+  [[nodiscard]] std::int64_t bytes(std::string_view job);
+
+  /// Syncs all results and notes their digests, replacing those of an attempt before: on return
+  /// they survive a loss of power. Returns the bytes of all files of the job.
+  std::int64_t seal(std::string_view job);
+  /// Keeps a file that was made after seal() and can be made again, and notes its digest. False
+  /// when that would take something from others: there is no room for it, or its owner may not
+  /// have so much. Throws Error{storage_failed}.
+  [[nodiscard]] bool try_keep(std::string_view job, const std::string& file,
+                              std::string_view bytes);
+  /// A file without a name, for what is handed out once. Throws Error: storage_full,
+  /// storage_failed.
+  [[nodiscard]] std::shared_ptr<const File> lend(std::string_view bytes) const;
+  /// Gives a job, which nobody else knows yet, the results of another; the bytes are shared, not
+  /// copied. Every file is read and checked: false, and none is given, when one is not whole.
+  bool adopt(std::string_view job, std::string_view from) noexcept;
+
+  /// A file whose bytes are those that were noted, checked once while it stays as it is
+  /// (checked_files.hpp). Throws Error{storage_corrupt} when they are not,
+  /// or none were.
+  [[nodiscard]] std::shared_ptr<const File> open(std::string_view job, std::string_view file) const;
+  /// The same, read whole.
+  [[nodiscard]] std::string read(std::string_view job, std::string_view file) const;
+  /// The noted digest; of a file without one, computed.
+  [[nodiscard]] std::string digest(std::string_view job, std::string_view file) const;
+
+  void on_keeping(Keeping keeping) { keeping_ = std::move(keeping); }
+
+  /// Folders of jobs and meshes.
+  [[nodiscard]] int folder_count() const;
+  /// At the start: removes unfinished uploads and files and the folders of jobs that are gone, and
+  /// sets aside in DIR/lost what nobody knows or is no folder. now_ms: of Moment::kept_ms().
+  [[nodiscard]] Swept sweep(const Fates& fates, std::int64_t now_ms);
+  /// Moves a job's folder to DIR/lost. False when there is none.
+  bool set_aside(const std::string& job, std::int64_t now_ms);
+
+  LostFolders& lost() { return lost_; }
+  DiskRoom& room() { return room_; }
+  [[nodiscard]] bool holds(std::string_view job) const;
+
+  /// Removes what could not be removed before; returns how much that was.
+  int remove_left() noexcept { return left_.retry(); }
+
+ private:
+  std::filesystem::path incoming_;
+  std::filesystem::path blobs_;
+  DiskRoom room_;
+  LostFolders lost_;
+  std::int64_t count(const std::string& name);
+  void count_again(const std::vector<std::string>& holders);
+  void sweep_one(const std::filesystem::directory_entry& entry, const Fates& fates,
+                 std::int64_t now_ms, Swept& swept);
+  void note(std::string_view job, const std::string& file);
+
+  Keeping keeping_;
+  mutable CheckedFiles checked_;
+  LeftFolders left_;
+  mutable std::mutex counting_;
+  SharedFiles shared_;
+  mutable std::mutex noting_;  // one writer of `digests` at a time
+};
+
+}  // namespace unwrapd::server

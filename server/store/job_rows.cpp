@@ -1,0 +1,148 @@
+#include "server/store/job_rows.hpp"
+
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "api/error_table.hpp"
+#include "server/base/files.hpp"
+#include "server/base/queue_errors.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+using api::JobState;
+
+constexpr std::string_view kColumns =
+    " seq, id, state, created_ms, finished_ms, attempt, crashes, process_ends, cancel_requested, "
+    "synchronous,"
+    " expired, sha256, bytes, result_format, last_event, owner, urgency, request_key, content_key,"
+    " stored_bytes, webhook, trace, asked, options, notes, buffers, problem ";
+
+[[noreturn]] void unreadable(const std::string& column) {
+  throw std::runtime_error("the column " + column + " cannot be read");
+}
+
+std::vector<StoredBuffer> buffers_of(const api::Json& json) {
+  std::vector<StoredBuffer> buffers;
+  for (const api::Json& entry : json)
+    buffers.push_back({.uri = entry.at(0), .file = entry.at(1), .sha256 = {}});
+  return buffers;
+}
+
+/// Columns of a row, from the first on.
+class Columns {
+ public:
+  explicit Columns(const Statement& row) : row_(row) {}
+  std::int64_t number() { return row_.number(column_++); }
+  /// What an int cannot hold is told by is_whole() afterwards.
+  int integer() {
+    const std::int64_t value = number();
+    is_whole_ = is_whole_ && std::in_range<int>(value);
+    return static_cast<int>(value);
+  }
+  bool flag() { return number() != 0; }
+  std::string text() { return row_.text(column_++); }
+  [[nodiscard]] bool is_whole() const { return is_whole_; }
+
+ private:
+  const Statement& row_;
+  int column_ = 0;
+  bool is_whole_ = true;
+};
+
+/// The first columns, none of which is JSON. Returns the state as it is written.
+std::string read_plain(Columns& next, JobRecord& job) {
+  job.seq = next.number();
+  job.id = next.text();
+  std::string state = next.text();
+  job.created_ms = next.number();
+  job.finished_ms = next.number();
+  job.attempt = next.integer();
+  job.crashes = next.integer();
+  job.process_ends = next.integer();
+  job.cancel_requested = next.flag();
+  job.synchronous = next.flag();
+  job.expired = next.flag();
+  job.input.sha256 = next.text();
+  job.input.bytes = next.number();
+  job.result_format = next.text();
+  job.last_event = next.number();
+  job.owner = next.text();
+  job.urgency = next.integer();
+  job.request_key = next.text();
+  job.content_key = next.text();
+  job.stored_bytes = next.number();
+  job.webhook = next.text();
+  job.trace = next.text();
+  job.asked = next.text();
+  return state;
+}
+
+template <class Read>
+void read_json(Columns& next, const std::string& column, const Read& read) {
+  try {
+    read(api::Json::parse(next.text()));
+  } catch (const api::Json::exception&) {
+    unreadable(column);
+  }
+}
+
+void read_whole(Columns& next, const std::string& state, JobRecord& job) {
+  if (!is_file_name(job.id)) unreadable("id");
+  const std::optional<JobState> known = api::state_named(state);
+  if (!known) unreadable("state");
+  job.state = *known;
+  if (!next.is_whole()) unreadable("attempt, crashes, process_ends or urgency");
+  read_json(next, "options", [&](api::Json json) { job.options = std::move(json); });
+  read_json(next, "notes", [&](const api::Json& json) { json.get_to(job.notes); });
+  read_json(next, "buffers", [&](const api::Json& json) { job.input.buffers = buffers_of(json); });
+  read_json(next, "problem", [&](api::Json json) {
+    if (!json.is_null()) static_cast<void>(json.at("code"));
+    job.problem = std::move(json);
+  });
+}
+
+/// A row that cannot be read is that of a failed job, so that one of them stops nobody.
+JobRecord record_of(const Statement& row) {
+  Columns next(row);
+  JobRecord job;
+  const std::string state = read_plain(next, job);
+  try {
+    read_whole(next, state, job);
+  } catch (const std::exception& error) {
+    job.unreadable = error.what();
+    job.state = JobState::failed;
+    job.options = api::Json::object();
+    job.notes.clear();
+    job.input.buffers.clear();
+    job.problem = api::problem(unreadable_job(), job.id);
+  }
+  return job;
+}
+
+}  // namespace
+
+std::string select_jobs(std::string_view rest) {
+  return "SELECT" + std::string(kColumns) + "FROM jobs " + std::string(rest);
+}
+
+std::string returning_jobs() { return " RETURNING" + std::string(kColumns); }
+
+std::vector<JobRecord> job_rows(Statement& statement) {
+  std::vector<JobRecord> found;
+  while (statement.step()) found.push_back(record_of(statement));
+  return found;
+}
+
+std::string text_of(const api::Json& json) {
+  return json.dump(-1, ' ', false, api::Json::error_handler_t::replace);
+}
+
+api::Json buffers_json(const std::vector<StoredBuffer>& buffers) {
+  api::Json json = api::Json::array();
+  for (const StoredBuffer& buffer : buffers) json.push_back({buffer.uri, buffer.file});
+  return json;
+}
+
+}  // namespace unwrapd::server

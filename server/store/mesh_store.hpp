@@ -1,0 +1,51 @@
+#pragma once
+// The meshes table: who stores which mesh, since when. A mesh's bytes are the document in a folder
+// of its own (blob_store.hpp), under a name that nobody learns.
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/store/database.hpp"
+
+namespace unwrapd::server {
+
+struct MeshRecord {
+  std::string id;          ///< of its folder
+  std::string owner;       ///< id of the API key that sent it; empty without keys
+  std::string sha256;      ///< of its bytes; an owner has one of this digest
+  std::int64_t bytes = 0;  ///< of the document
+  std::string media_type;  ///< as it was sent last
+  std::int64_t created_ms = 0;
+  std::int64_t kept_since_ms = 0;  ///< when it was sent or made a job of last
+  std::int64_t stored_bytes = 0;   ///< of all its files, as quotas count them
+};
+
+/// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
+class MeshStore {
+ public:
+  /// store: the file of the jobs, whose tables are there already.
+  explicit MeshStore(const std::filesystem::path& store) : database_(store) {}
+
+  /// Replaces the owner's mesh of this digest, if there is one.
+  void put(const MeshRecord& mesh);
+  [[nodiscard]] std::optional<MeshRecord> find(std::string_view owner, std::string_view sha256);
+  /// It was used now, and sent as this type, if any.
+  void use(std::string_view id, std::int64_t now_ms, std::string_view media_type = {});
+  void set_stored_bytes(std::string_view id, std::int64_t bytes);
+
+  [[nodiscard]] bool has(std::string_view id);
+  /// The meshes that were used last before this time, the longest unused first.
+  std::vector<MeshRecord> unused_since(std::int64_t epoch_ms);
+  void remove(std::string_view id);
+
+ private:
+  std::mutex mutex_;
+  Database database_;
+};
+
+}  // namespace unwrapd::server

@@ -1,0 +1,162 @@
+#include "server/uploads/job_input.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "api/options.hpp"
+#include "core/base/error.hpp"
+#include "server/base/files.hpp"
+#include "server/base/identity.hpp"
+#include "server/store/blob_store.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
+constexpr std::size_t kMaxBuffers = 1000;
+constexpr std::string_view kSentOptionsFile = "options.sent";  // until they are read
+
+/// A file that grows in pieces worth a system call each.
+class GrowingFile {
+ public:
+  GrowingFile(const std::filesystem::path& path, const TakeRoom& room)
+      : file_(File::create(path)), room_(room) {}
+
+  void append(std::string_view bytes) {
+    pending_.append(bytes);
+    if (pending_.size() >= kPieceBytes) flush();
+  }
+  /// BlobStore::keep_upload() syncs it.
+  void finish() {
+    flush();
+    file_.begin_sync();
+  }
+
+ private:
+  void flush() {
+    room_.take(static_cast<std::int64_t>(pending_.size()));
+    file_.append(pending_);
+    pending_.clear();
+  }
+
+  File file_;
+  const TakeRoom& room_;
+  std::string pending_;
+};
+
+[[noreturn]] void malformed(const std::string& what) {
+  throw Error(ErrorCode::malformed_request, what);
+}
+
+/// The parts of a form, each to its place.
+class PartWriter {
+ public:
+  explicit PartWriter(const UploadFolder& folder) : folder_(folder) {}
+
+  void start(const Part& part) {
+    finish_file();
+    in_options_ = part.name == "options";
+    in_document_ = part.name == "mesh";
+    if (in_options_) {
+      start_options();
+    } else if (in_document_) {
+      start_document();
+    } else if (part.name == "buffer") {
+      start_buffer(part);
+    } else {
+      malformed("A part is none of \"options\", \"mesh\" and \"buffer\"; name it as what it is.");
+    }
+  }
+
+  void append(std::string_view bytes) {
+    if (in_options_) return append_option_text(bytes);
+    hash_->add(bytes);
+    upload_.input.bytes += static_cast<std::int64_t>(bytes.size());
+    file_->append(bytes);
+  }
+
+  Upload finish() {
+    finish_file();
+    if (!has_document_) malformed("There is no part named \"mesh\"; send the asset in it.");
+    return std::move(upload_);
+  }
+
+ private:
+  void start_options() {
+    if (upload_.options) malformed("There are two parts named \"options\"; send one.");
+    upload_.options = std::make_unique<SpooledText>(folder_.path / kSentOptionsFile, folder_.room);
+  }
+
+  void append_option_text(std::string_view bytes) {
+    if (upload_.options->size() + bytes.size() > api::kMaxOptionsBytes)
+      throw Error(ErrorCode::body_too_large, "The part \"options\" exceeds 16 MiB; shorten it.");
+    upload_.options->append(bytes);
+  }
+
+  void start_document() {
+    if (has_document_) malformed("There are two parts named \"mesh\"; send one.");
+    has_document_ = true;
+    open(kDocumentFile, upload_.input.sha256);
+  }
+
+  void start_buffer(const Part& part) {
+    std::vector<StoredBuffer>& buffers = upload_.input.buffers;
+    if (part.filename.empty())
+      malformed("A part has no filename; a buffer's is the URI by which the asset names it.");
+    if (std::ranges::find(buffers, part.filename, &StoredBuffer::uri) != buffers.end())
+      malformed("Two parts have the same filename; send every buffer once.");
+    if (buffers.size() == kMaxBuffers) malformed("There are over 1000 buffers; send fewer.");
+    buffers.push_back({.uri = part.filename, .file = buffer_file(buffers.size()), .sha256 = {}});
+    open(buffers.back().file, buffers.back().sha256);
+  }
+
+  /// The next bytes go to this file; its digest will be put there.
+  void open(std::string_view file, std::string& digest) {
+    file_.emplace(folder_.path / file, folder_.room);
+    hash_.emplace();
+    digest_ = &digest;
+  }
+
+  void finish_file() {
+    if (!file_) return;
+    file_->finish();
+    file_.reset();
+    *digest_ = hash_->finish();
+  }
+
+  const UploadFolder& folder_;
+  Upload upload_;
+  std::optional<Sha256> hash_;
+  std::string* digest_ = nullptr;  // of the open file
+  std::optional<GrowingFile> file_;
+  bool in_options_ = false;
+  bool in_document_ = false;
+  bool has_document_ = false;
+};
+
+}  // namespace
+
+Upload receive_asset(BodyReader& body, const UploadFolder& folder) {
+  Upload upload;
+  Sha256 hash;
+  GrowingFile file(folder.path / kDocumentFile, folder.room);
+  body.read([&](std::string_view bytes) {
+    hash.add(bytes);
+    upload.input.bytes += static_cast<std::int64_t>(bytes.size());
+    file.append(bytes);
+  });
+  if (upload.input.bytes == 0)
+    throw Error(ErrorCode::unknown_format, "The body is empty; send a GLB, glTF or OBJ file.");
+  file.finish();
+  upload.input.sha256 = hash.finish();
+  return upload;
+}
+
+Upload receive_parts(BodyReader& body, const UploadFolder& folder) {
+  PartWriter writer(folder);
+  body.read_parts([&](const Part& part) { writer.start(part); },
+                  [&](std::string_view bytes) { writer.append(bytes); });
+  return writer.finish();
+}
+
+}  // namespace unwrapd::server

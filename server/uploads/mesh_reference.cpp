@@ -1,0 +1,57 @@
+#include "server/uploads/mesh_reference.hpp"
+
+#include "api/options.hpp"
+#include "core/base/error.hpp"
+#include "server/base/identity.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::size_t kMaxBytes = api::kMaxOptionsBytes + 1024;
+
+[[noreturn]] void refuse_member(const std::string& member, const std::string& what) {
+  throw Error(ErrorCode::invalid_option, what, "/" + api::pointer_token(member));
+}
+
+std::string mesh_of(const api::Json& value) {
+  if (!value.is_string() || !is_sha256(value.get_ref<const std::string&>()))
+    refuse_member("mesh", "The mesh is named by its SHA-256; send its 64 lowercase hex digits.");
+  return value;
+}
+
+std::string options_of(const api::Json& value) {
+  if (!value.is_object()) refuse_member("options", "The options must be a JSON object.");
+  return value.dump();
+}
+
+}  // namespace
+
+MeshReference parse_mesh_reference(std::string_view text) {
+  const api::Json json = api::parse_json(text, {.max_bytes = kMaxBytes});
+  if (!json.is_object()) {
+    throw Error(ErrorCode::malformed_request,
+                "The body is no JSON object; send {\"mesh\": SHA-256, \"options\": {...}}.");
+  }
+  MeshReference reference;
+  for (const auto& [member, value] : json.items()) {
+    if (member == "mesh") {
+      reference.sha256 = mesh_of(value);
+    } else if (member == "options") {
+      reference.options = options_of(value);
+    } else {
+      refuse_member(member, "There is no member of this name; there are mesh and options.");
+    }
+  }
+  if (reference.sha256.empty()) refuse_member("mesh", "No mesh is named; send its SHA-256.");
+  return reference;
+}
+
+void receive_reference_text(BodyReader& body, SpooledText& text) {
+  body.read([&](std::string_view bytes) {
+    if (text.size() + bytes.size() > kMaxBytes)
+      throw Error(ErrorCode::body_too_large, "The JSON exceeds 16 MiB; shorten the options.");
+    text.append(bytes);
+  });
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,44 @@
+#pragma once
+// A text that comes slowly and may be long: in memory while it is short, then in a file, so that
+// many who send long ones at once take no memory.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/base/files.hpp"
+#include "server/store/take_room.hpp"
+
+namespace unwrapd::server {
+
+class SpooledText {
+ public:
+  /// file: created when it is needed, removed with this.
+  explicit SpooledText(std::filesystem::path file, TakeRoom room = {})
+      : path_(std::move(file)), room_(std::move(room)) {}
+  SpooledText(const SpooledText&) = delete;
+  SpooledText& operator=(const SpooledText&) = delete;
+  ~SpooledText();
+
+  /// Throws what TakeRoom throws, and storage_failed.
+  void append(std::string_view bytes);
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool is_long() const { return file_.has_value(); }
+  /// The whole text. Throws Error{storage_failed}.
+  [[nodiscard]] std::string read();
+
+ private:
+  void spill();
+
+  const std::filesystem::path path_;
+  const TakeRoom room_;
+  std::string unwritten_;
+  std::size_t size_ = 0;
+  std::int64_t taken_ = 0;  // of room
+  std::optional<File> file_;
+};
+
+}  // namespace unwrapd::server

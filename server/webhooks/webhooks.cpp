@@ -1,0 +1,198 @@
+#include "server/webhooks/webhooks.hpp"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "core/base/error.hpp"
+#include "server/base/identity.hpp"
+#include "server/base/inside_error.hpp"
+#include "server/base/trace.hpp"
+#include "server/webhooks/webhook_http.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::string_view kSecretPrefix = "whsec_";
+constexpr int kMaxTries = 10;
+constexpr int kAtOnce = 16;
+constexpr int kPerReceiver = 2;
+constexpr std::int64_t kMsPerSecond = 1000;
+constexpr std::int64_t kLongestPauseMs = 3'600'000;
+
+std::string base64(std::string_view bytes) {
+  std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // EVP ends it with a NUL
+  const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
+  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), from,
+                                   static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(size));
+  return text;
+}
+
+std::string from_base64(std::string_view text) {
+  std::string bytes(text.size() / 4 * 3, '\0');
+  const auto* from = reinterpret_cast<const unsigned char*>(text.data());
+  const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()), from,
+                                   static_cast<int>(text.size()));
+  if (size < 1) throw Error(ErrorCode::internal, "The secret of webhooks cannot be read.");
+  const auto padding = std::ranges::count(text, '=');
+  bytes.resize(static_cast<std::size_t>(size - padding));
+  return bytes;
+}
+
+}  // namespace
+
+std::string webhook_secret(std::string_view server_secret, std::string_view owner) {
+  const std::string bytes = hmac_sha256(server_secret, "webhooks of " + std::string(owner));
+  return std::string(kSecretPrefix) + base64(bytes);
+}
+
+std::string webhook_signature(const std::string& secret, std::string_view signed_text) {
+  const std::string key = from_base64(std::string_view(secret).substr(kSecretPrefix.size()));
+  return "v1," + base64(hmac_sha256(key, signed_text));
+}
+
+Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret,
+                   WebhookConfig config, const Log& log, std::function<Moment()> now)
+    : secret_(std::move(server_secret)),
+      config_(std::move(config)),
+      log_(log),
+      now_(std::move(now)),
+      database_(store),
+      pool_(kAtOnce, kPerReceiver, [this] { go_on(); }) {
+  try {
+    put_forward();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::storage_full) throw;
+    log_.warning("the disk is full, calls of webhooks may be late");
+  }
+}
+
+/// Whoever set the clock back while no server ran did not mean to put calls off.
+void Webhooks::put_forward() {
+  const std::string latest = "?1 + MIN(?2 << MAX(tries - 1, 0), ?3)";
+  Statement(database_, "UPDATE deliveries SET due_ms = " + latest + " WHERE due_ms > " + latest)
+      .with(now_().kept_ms(), config_.retry_seconds * kMsPerSecond, kLongestPauseMs)
+      .run();
+}
+
+/// Without those that are being made; in the order of their turns.
+std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
+  Statement statement(database_,
+                      "SELECT seq, owner, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
+  statement.with(now_ms);
+  std::vector<Due> found;
+  std::map<std::string, int> turns;
+  while (statement.step()) {
+    if (being_made_.contains(statement.number(0))) continue;
+    const std::string owner = statement.text(1);
+    const auto [turn, is_first] = turns.try_emplace(owner);
+    if (is_first) turn->second = pool_.of_owner(owner);
+    found.push_back({.seq = statement.number(0),
+                     .owner = owner,
+                     .url = statement.text(2),
+                     .turn = turn->second++});
+  }
+  std::ranges::stable_sort(found, {}, &Due::turn);
+  return found;
+}
+
+Delivery Webhooks::load(std::int64_t seq) {
+  Statement statement(database_,
+                      "SELECT job, owner, trace, url, body, tries FROM deliveries WHERE seq = ?");
+  statement.with(seq).step();
+  return {.seq = seq,
+          .job = statement.text(0),
+          .owner = statement.text(1),
+          .trace = statement.text(2),
+          .url = statement.text(3),
+          .body = statement.text(4),
+          .tries = static_cast<int>(statement.number(5))};
+}
+
+std::string Webhooks::call(const Delivery& delivery, const std::stop_token& stop) const {
+  try {
+    const WebhookUrl url = parse_webhook(delivery.url, config_);
+    const std::string address = resolve_webhook(url, config_).front();
+    const std::string timestamp = std::to_string(now_().of_day_ms / kMsPerSecond);
+    const std::string signed_text = delivery.job + "." + timestamp + "." + delivery.body;
+    return post_webhook(
+        {.url = url,
+         .address = address,
+         .headers = {{"webhook-id", delivery.job},
+                     {"webhook-timestamp", timestamp},
+                     {"traceparent", to_traceparent(step_of(delivery.trace))},
+                     {"webhook-signature",
+                      webhook_signature(webhook_secret(secret_, delivery.owner), signed_text)}},
+         .body = delivery.body},
+        stop);
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+void Webhooks::settle(const Delivery& delivery, const std::string& failure, std::int64_t now_ms) {
+  const int tries = delivery.tries + 1;
+  if (failure.empty() || tries >= kMaxTries) {
+    Statement(database_, "DELETE FROM deliveries WHERE seq = ?").with(delivery.seq).run();
+  } else {
+    const std::int64_t first_ms = config_.retry_seconds * kMsPerSecond;
+    const std::int64_t pause_ms = std::min(first_ms << delivery.tries, kLongestPauseMs);
+    Statement(database_, "UPDATE deliveries SET tries = ?2, due_ms = ?3 WHERE seq = ?1")
+        .with(delivery.seq, std::int64_t{tries}, now_ms + pause_ms)
+        .run();
+  }
+  if (failure.empty()) {
+    log_.info("webhook called", {{"job", delivery.job}, {"tries", tries}});
+  } else {  // neither the address, which may hold a token, nor the signature
+    log_.warning(tries >= kMaxTries ? "webhook given up" : "webhook not reached",
+                 {{"job", delivery.job}, {"tries", tries}, {"reason", failure}});
+  }
+}
+
+/// True when it was answered. What cannot be settled is called again: once too often rather than
+/// never.
+bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
+  const TraceScope trace(delivery.trace);
+  const std::string failure = call(delivery, stop);
+  const std::lock_guard lock(mutex_);
+  being_made_.erase(delivery.seq);
+  if (stop.stop_requested() && !failure.empty()) return false;  // cut off by us
+  try {
+    settle(delivery, failure, now_().kept_ms());
+  } catch (const Error& error) {
+    log_.error("a webhook's call was not noted", {{"reason", reason_of(error)}});
+  }
+  return failure.empty();
+}
+
+void Webhooks::begin(const Due& due) {
+  const WebhookReceiver receiver{.owner = due.owner, .host = webhook_host(due.url)};
+  if (!pool_.has_room(receiver)) return;
+  Delivery delivery = load(due.seq);
+  being_made_.insert(due.seq);
+  pool_.begin(receiver, [this, delivery = std::move(delivery)](const std::stop_token& stop) {
+    return make(delivery, stop);
+  });
+}
+
+void Webhooks::call_due() {
+  const std::lock_guard lock(mutex_);
+  if (pool_.is_full()) return;
+  for (const Due& next : due(now_().kept_ms())) {
+    begin(next);
+    if (pool_.is_full()) return;
+  }
+}
+
+void Webhooks::go_on() {
+  try {
+    call_due();
+  } catch (const Error& error) {
+    log_.error("calling webhooks failed", {{"reason", reason_of(error)}});
+  }
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,85 @@
+#pragma once
+// Calls to the webhooks of jobs that have ended. The call is a row, written in the transaction that
+// ends the job, and goes when it was answered with 2xx: neither a crash nor a receiver that is down
+// loses it. Tries go on with doubled pauses, ten in all. It is signed as Standard Webhooks has it:
+// webhook-id, webhook-timestamp, and webhook-signature, the HMAC-SHA256 of both and the body under
+// a secret of the job's owner; traceparent is of the job's trace. Sixteen calls at once, two to one
+// receiver (webhook_pool.hpp); owners take turns.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/base/kept_time.hpp"
+#include "server/base/log.hpp"
+#include "server/store/database.hpp"
+#include "server/webhooks/webhook_pool.hpp"
+#include "server/webhooks/webhook_url.hpp"
+
+namespace unwrapd::server {
+
+/// A call that is still to be answered.
+struct Delivery {
+  std::int64_t seq = 0;
+  std::string job;
+  std::string owner;  ///< of the job, which may be removed meanwhile
+  std::string trace;  ///< of the job
+  std::string url;
+  std::string body;
+  int tries = 0;
+};
+
+/// The secret under which calls for this owner are signed: "whsec_" and Base64, derived from the
+/// server's own.
+std::string webhook_secret(std::string_view server_secret, std::string_view owner);
+
+/// "v1," and the Base64 of the HMAC-SHA256 of "id.timestamp.body". Throws Error{internal} when the
+/// secret is not of the form of webhook_secret().
+std::string webhook_signature(const std::string& secret, std::string_view signed_text);
+
+/// Thread-safe. The end cuts off the calls that are being made; they are made again at the next
+/// start.
+class Webhooks {
+ public:
+  /// store: the file of the jobs, whose tables are there already. now: JobStore::now().
+  Webhooks(const std::filesystem::path& store, std::string server_secret, WebhookConfig config,
+           const Log& log, std::function<Moment()> now);
+
+  /// Begins the calls that are due as far as there is room: of the owner who has the fewest first,
+  /// and of its calls the one that was due first. The others follow when there is room.
+  void call_due();
+
+ private:
+  struct Due {
+    std::int64_t seq;
+    std::string owner;
+    std::string url;
+    int turn;  ///< calls of its owner that come before it
+  };
+
+  void put_forward();
+  std::vector<Due> due(std::int64_t now_ms);
+  Delivery load(std::int64_t seq);
+  void begin(const Due& due);
+  bool make(const Delivery& delivery, const std::stop_token& stop);
+  [[nodiscard]] std::string call(const Delivery& delivery, const std::stop_token& stop) const;
+  void settle(const Delivery& delivery, const std::string& failure, std::int64_t now_ms);
+  void go_on();
+
+  const std::string secret_;
+  const WebhookConfig config_;
+  const Log& log_;
+  const std::function<Moment()> now_;
+  std::mutex mutex_;  // of the next two
+  Database database_;
+  std::set<std::int64_t> being_made_;  // seq
+  WebhookPool pool_;                   // last: its threads use the others
+};
+
+}  // namespace unwrapd::server

@@ -1,0 +1,297 @@
+#include "server/work/job_process.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <memory>
+
+#include "api/error_table.hpp"
+#include "server/base/byte_pack.hpp"
+#include "server/base/deadline.hpp"
+#include "server/store/blob_store.hpp"
+#include "server/work/job_frames.hpp"
+#include "server/work/job_worker.hpp"
+#include "server/work/map_choice.hpp"
+#include "server/work/sandbox.hpp"
+#include "server/work/worker_answer.hpp"
+#include "server/work/worker_process.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr std::int64_t kProgramReserve = std::int64_t{256} << 20;
+constexpr std::int64_t kThreadReserve = std::int64_t{80} << 20;  // its stack and its arena
+constexpr int kSpareSeconds = 60;  // of processor time: the deadline comes first
+constexpr std::size_t kMaxTotals = 16384;
+constexpr std::size_t kMaxErrorText = 65536;
+constexpr std::chrono::seconds kProbePatience{20};
+
+SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolation) {
+  const std::int64_t seconds =
+      (std::int64_t{limits.max_job_seconds} + kSpareSeconds) * isolation.threads;
+  return {
+      .memory_bytes = isolation.memory_bytes + kProgramReserve + isolation.threads * kThreadReserve,
+      .processor_seconds =
+          static_cast<int>(std::min<std::int64_t>(seconds, std::numeric_limits<int>::max())),
+      .threads = isolation.threads};
+}
+
+[[noreturn]] void misbehaved() { throw WorkerCrashed("it sent what no worker sends"); }
+
+/// The text of an error, which may quote a mesh: what is no UTF-8 in it is replaced, and what
+/// nobody would read is cut off.
+std::string readable(std::string_view text) {
+  constexpr auto replace = api::Json::error_handler_t::replace;
+  const std::string json = api::Json(text.substr(0, kMaxErrorText)).dump(-1, ' ', false, replace);
+  return api::Json::parse(json).get<std::string>();
+}
+
+/// What reading what a worker has sent gives. What cannot be read is no error of the job's.
+template <class Read>
+auto believed(Read read) {
+  try {
+    return read();
+  } catch (const Error&) {
+    misbehaved();
+  }
+}
+
+/// The error that a worker tells of, if it is one that it can know of.
+Error error_told(const Frame& frame) {
+  return believed([&] {
+    ByteUnpacker from(frame.bytes);
+    const std::string message = readable(from.next_text());
+    const std::string where = readable(from.next_text());
+    const std::optional<ErrorCode> code = api::code_named(frame.name);
+    if (!code || !is_of_work(*code)) misbehaved();
+    return Error(*code, message, where);
+  });
+}
+
+/// The totals become a field of an answer's head.
+bool is_totals(std::string_view bytes) {
+  return bytes.size() <= kMaxTotals && api::Json::accept(bytes) &&
+         bytes.find_first_of("\r\n") == std::string_view::npos;
+}
+
+/// The events of a frame, for an output that may fail for reasons of its own.
+class EventCopy final : public JobOutput {
+ public:
+  void stage(const StageEvent& event) override { stage_ = event; }
+  void iteration(const IterationEvent& event, double elapsed_ms) override {
+    iteration_ = event;
+    elapsed_ms_ = elapsed_ms;
+  }
+  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
+  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
+
+  void hand_to(JobOutput& output) const {
+    if (stage_) output.stage(*stage_);
+    if (iteration_) output.iteration(*iteration_, elapsed_ms_);
+  }
+
+ private:
+  std::optional<StageEvent> stage_;
+  std::optional<IterationEvent> iteration_;
+  double elapsed_ms_ = 0;
+};
+
+/// One conversation with a worker.
+class Conversation {
+ public:
+  /// maps: that the answer has.
+  Conversation(WorkerProcess& worker, JobOutput& output, std::int64_t max_bytes,
+               std::size_t maps = 0)
+      : worker_(worker), output_(output), left_(max_bytes), files_(maps) {}
+
+  void send(FrameKind kind, std::string_view name, std::string_view bytes) {
+    send_frame([&](std::string_view piece) { worker_.send(piece); }, kind, name, bytes);
+  }
+
+  void await_ready() {
+    if (next().kind != FrameKind::ready) misbehaved();
+  }
+
+  /// Hands over what comes, until the end. Returns the format of the result.
+  std::string listen() {
+    while (true) {
+      const Frame frame = next();
+      if (frame.kind == FrameKind::done && is_result_format(frame.name)) return frame.name;
+      hand_over(frame);
+    }
+  }
+
+  /// The one file that comes, or none.
+  std::string listen_for_file() {
+    Frame frame = next();
+    if (frame.kind != FrameKind::rendered) misbehaved();
+    return frame.bytes;
+  }
+
+ private:
+  /// What comes next. Throws the error that the worker ends with.
+  Frame next() {
+    Frame frame;
+    const auto receive = [&](char* data, std::size_t size) { return worker_.receive(data, size); };
+    if (!believed([&] { return receive_frame(receive, left_, frame); })) worker_.reap();
+    left_ -= static_cast<std::int64_t>(frame.bytes.size());
+    if (frame.kind == FrameKind::failed) throw error_told(frame);
+    return frame;
+  }
+
+  void hand_over(const Frame& frame) {
+    if (frame.kind == FrameKind::stage || frame.kind == FrameKind::iteration)
+      return hand_over_event(frame);
+    if (frame.kind == FrameKind::result && files_.take_result(frame.name))
+      return output_.result(frame.name, frame.bytes);
+    const bool is_file = frame.kind == FrameKind::file && files_.take(frame.name);
+    if (!is_file || (frame.name == kTotalsFile && !is_totals(frame.bytes))) misbehaved();
+    output_.file(frame.name, frame.bytes);
+  }
+
+  void hand_over_event(const Frame& frame) {
+    EventCopy event;
+    believed([&] {
+      frame.kind == FrameKind::stage ? unpack_stage(frame.bytes, event)
+                                     : unpack_iteration(frame.bytes, event);
+    });
+    event.hand_to(output_);
+  }
+
+  WorkerProcess& worker_;
+  JobOutput& output_;
+  std::int64_t left_;  // bytes that may still come
+  AnswerFiles files_;
+};
+
+void send_asset(Conversation& worker, const asset::Input& input) {
+  worker.send(FrameKind::document, {}, input.document);
+  for (const auto& [uri, bytes] : input.buffers) worker.send(FrameKind::buffer, uri, bytes);
+}
+
+class NoOutput final : public JobOutput {
+ public:
+  void stage(const StageEvent& /*event*/) override {}
+  void iteration(const IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
+  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
+  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
+};
+
+/// A worker process that tell() has told all of a job: one that has waited for it or else a new
+/// one. That a process ends before it has all of a job is not that job's doing; it may have ended
+/// while it waited.
+template <class Tell>
+std::unique_ptr<WorkerProcess> worker_on(const Isolation& isolation, const api::Limits& limits,
+                                         const Stopping& stopping, const Tell& tell) {
+  const auto told = [&](StartedWorker started) {
+    auto worker = std::make_unique<WorkerProcess>(std::move(started), stopping);
+    NoOutput none;
+    Conversation conversation(*worker, none, isolation.memory_bytes);
+    conversation.await_ready();
+    tell(conversation);
+    conversation.send(FrameKind::begin, {}, {});
+    return worker;
+  };
+  auto spare = isolation.spares ? isolation.spares->take() : std::nullopt;
+  try {
+    if (spare) return told(std::move(*spare));
+  } catch (const WorkerCrashed&) {
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::internal) throw;
+  }
+  return told(StartedWorker(isolation.program, sandbox_limits(limits, isolation)));
+}
+
+/// Calls use(stop token), which needs a worker process. Throws Error{internal} when there is none.
+template <class Use>
+void try_out(Use use) {
+  const auto cannot = [](const std::string& why) {
+    return Error(ErrorCode::internal,
+                 "A worker process cannot run here: " + why + "; run with --isolate=off.");
+  };
+  std::stop_source late;
+  const Deadline deadline(kProbePatience, [&] { late.request_stop(); });
+  try {
+    use(late.get_token());
+  } catch (const WorkerCrashed& crash) {
+    throw cannot(crash.what());
+  } catch (const Error& error) {
+    throw cannot(error.code() == ErrorCode::cancelled ? "it does not answer" : error.what());
+  }
+}
+
+}  // namespace
+
+void check_isolation(const Isolation& isolation) {
+  try_out([&](const std::stop_token& stop) {
+    WorkerProcess worker(StartedWorker(isolation.program, sandbox_limits({}, isolation)),
+                         {stop, isolation.grace});
+    NoOutput none;
+    Conversation(worker, none, isolation.memory_bytes).await_ready();
+  });
+}
+
+/// Does a whole job: the calls that the C library makes differ between machines.
+std::string why_not(const Isolation& isolation) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  static_cast<void>(isolation);
+  return "A sanitizer needs more memory and files than a worker process may have.";
+#else
+  const asset::Input triangle{.document = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", .buffers = {}};
+  JobRecord record;
+  record.options = api::Json::object();
+  NoOutput none;
+  try {
+    try_out([&](const std::stop_token& stop) {
+      const JobTask task{.record = record, .began = std::chrono::steady_clock::now(), .stop = stop};
+      run_job_isolated(task, triangle, none, {}, isolation);
+    });
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+#endif
+}
+
+std::shared_ptr<SpareWorkers> spare_workers(int count, const api::Limits& limits,
+                                            const Isolation& isolation) {
+  const auto start = [program = isolation.program, bounds = sandbox_limits(limits, isolation)] {
+    return StartedWorker(program, bounds);
+  };
+  return std::make_shared<SpareWorkers>(count, start);
+}
+
+std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
+                             const api::Limits& limits, const Isolation& isolation) {
+  const auto tell = [&](Conversation& conversation) {
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - task.began;
+    const WorkerTask shape{.limits = limits,
+                           .memory_bytes = isolation.memory_bytes,
+                           .queue_ms = task.queue_ms,
+                           .elapsed_ms = elapsed.count()};
+    conversation.send(FrameKind::task, {}, pack_task(shape, task.record));
+    send_asset(conversation, input);
+  };
+  const auto worker =
+      worker_on(isolation, limits, {task.stop, isolation.grace, isolation.on_kill}, tell);
+  return Conversation(*worker, output, isolation.memory_bytes, map_count(task.record)).listen();
+}
+
+std::string render_isolated(const Rendering& rendering, const RenderingInput& input,
+                            const std::stop_token& stop, const api::Limits& limits,
+                            const Isolation& isolation) {
+  const auto tell = [&](Conversation& conversation) {
+    const WorkerTask shape{
+        .limits = limits, .memory_bytes = isolation.memory_bytes, .rendering = rendering};
+    conversation.send(FrameKind::task, {}, pack_task(shape, input.record));
+    send_asset(conversation, input.asset);
+    conversation.send(FrameKind::uvs, {}, input.uvs);
+    conversation.send(FrameKind::report, {}, input.report);
+  };
+  const auto worker = worker_on(isolation, limits, {stop, isolation.grace}, tell);
+  NoOutput none;
+  return Conversation(*worker, none, isolation.memory_bytes).listen_for_file();
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,63 @@
+#pragma once
+// --isolate: a job is read, unwrapped and written, and what is made of it later, in a process of
+// its own that has no files, no network and bounded memory (sandbox.hpp), so that a crash, whoever
+// brought it about, costs this job or request and nothing else. Rejected: a process kept for many
+// jobs (a crash would leave the next one a stranger's memory), fork without exec (of a program with
+// threads).
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <stop_token>
+#include <string>
+
+#include "api/limits.hpp"
+#include "core/asset/asset.hpp"
+#include "server/work/job_output.hpp"
+#include "server/work/rendering.hpp"
+#include "server/work/run_job.hpp"
+#include "server/work/spare_workers.hpp"
+
+namespace unwrapd::server {
+
+/// The worker process ended without an answer.
+class WorkerCrashed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Isolation {
+  bool on = false;                                    ///< for all jobs
+  bool possible = false;                              ///< for those that may have ended a server
+  std::string why_not = {};                           ///< if it is not
+  std::int64_t memory_bytes = std::int64_t{4} << 30;  ///< of a job
+  int threads = 1;                                    ///< of a job
+  std::chrono::seconds grace{5};                      ///< for a process that was told to stop
+  std::string program = {};                           ///< what --job-worker starts
+  std::function<void()> on_kill = {};         ///< called when one has not ended within its grace
+  std::shared_ptr<SpareWorkers> spares = {};  ///< for the jobs to come
+};
+
+/// Throws Error{internal} when no worker process can be started and locked in on this machine.
+void check_isolation(const Isolation& isolation);
+
+/// Why jobs cannot have processes here, in words; empty when they can.
+std::string why_not(const Isolation& isolation);
+
+/// As many processes as are given, for jobs and files to come under these limits.
+std::shared_ptr<SpareWorkers> spare_workers(int count, const api::Limits& limits,
+                                            const Isolation& isolation);
+
+/// run_job() in a process of its own. Throws what that throws, and WorkerCrashed.
+std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
+                             const api::Limits& limits, const Isolation& isolation);
+
+/// render() in a process of its own. Throws what that throws, and WorkerCrashed; Error{cancelled}
+/// once it was stopped.
+std::string render_isolated(const Rendering& rendering, const RenderingInput& input,
+                            const std::stop_token& stop, const api::Limits& limits,
+                            const Isolation& isolation);
+
+}  // namespace unwrapd::server

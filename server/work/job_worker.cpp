@@ -1,0 +1,242 @@
+#include "server/work/job_worker.hpp"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <new>
+#include <string_view>
+#include <thread>
+
+#include "api/error_table.hpp"
+#include "server/base/byte_pack.hpp"
+#include "server/work/job_frames.hpp"
+#include "server/work/sandbox.hpp"
+#include "server/work/solver_cache.hpp"
+#include "server/work/thread_executor.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr int kSocket = STDIN_FILENO;
+constexpr std::int64_t kAnyBytes = std::int64_t{1} << 40;  // the server is trusted
+constexpr std::int64_t kCacheShare = 4;  // of the memory, for what the charts of a job share
+
+/// The server is, or has no job for us: nobody is left to be told.
+[[noreturn]] void gone() { std::_Exit(EXIT_FAILURE); }
+
+void send_all(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::send(kSocket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) gone();
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
+}
+
+bool receive_all(char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t got = ::recv(kSocket, data, size, 0);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) gone();
+    data += got;
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+/// Everything of a job goes to the server.
+class SocketOutput final : public JobOutput {
+ public:
+  void stage(const StageEvent& event) override {
+    send_frame(send_all, FrameKind::stage, {}, pack(event));
+  }
+  void iteration(const IterationEvent& event, double elapsed_ms) override {
+    send_frame(send_all, FrameKind::iteration, {}, pack(event, elapsed_ms));
+  }
+  void result(std::string_view format, std::string_view bytes) override {
+    send_frame(send_all, FrameKind::result, format, bytes);
+  }
+  void file(std::string_view name, std::string_view bytes) override {
+    send_frame(send_all, FrameKind::file, name, bytes);
+  }
+};
+
+/// A job as it has come over the socket.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
+struct ReceivedJob {
+  WorkerTask task;
+  JobRecord record;
+  std::string document;
+  std::vector<std::pair<std::string, std::string>> buffers;
+  std::string uvs;
+  std::string report;
+
+  [[nodiscard]] asset::Input input() const {
+    asset::Input input{.document = document, .buffers = {}};
+    for (const auto& [uri, bytes] : buffers) input.buffers[uri] = bytes;
+    return input;
+  }
+};
+
+void unpack_task(std::string_view bytes, ReceivedJob& job) {
+  ByteUnpacker from(bytes);
+  job.task = from.next<WorkerTask>();
+  job.record.synchronous = from.next<std::uint8_t>() != 0;
+  job.record.input.bytes = from.next<std::int64_t>();
+  job.record.input.sha256 = from.next_text();
+  job.record.options = api::Json::parse(from.next_text());
+  while (!from.empty()) job.record.notes.emplace_back(from.next_text());
+}
+
+/// Keeps what a frame has brought. False when that was all.
+bool keep(Frame& frame, ReceivedJob& job) {
+  switch (frame.kind) {
+    case FrameKind::task:
+      unpack_task(frame.bytes, job);
+      break;
+    case FrameKind::document:
+      job.document = std::move(frame.bytes);
+      break;
+    case FrameKind::buffer:
+      job.buffers.emplace_back(std::move(frame.name), std::move(frame.bytes));
+      break;
+    case FrameKind::uvs:
+      job.uvs = std::move(frame.bytes);
+      break;
+    case FrameKind::report:
+      job.report = std::move(frame.bytes);
+      break;
+    default:
+      break;
+  }
+  return frame.kind != FrameKind::begin;
+}
+
+/// A process that is told to stop before its job has begun ends, so that it is no job that does.
+ReceivedJob receive_job(const std::stop_token& stop) {
+  const std::stop_callback end_at_stop(stop, gone);
+  ReceivedJob job;
+  for (Frame frame; receive_frame(receive_all, kAnyBytes, frame);)
+    if (!keep(frame, job)) return job;
+  gone();
+}
+
+/// SIGTERM asks for a stop. The thread waits for it as long as the process lives.
+std::stop_source stop_at_sigterm() {
+  std::stop_source stop;
+  std::thread([stop]() mutable {
+    sigset_t term;
+    sigemptyset(&term);
+    sigaddset(&term, SIGTERM);
+    int signal = 0;
+    sigwait(&term, &signal);
+    stop.request_stop();
+  }).detach();
+  return stop;
+}
+
+void fail_with(ErrorCode code, std::string_view message, std::string_view where) {
+  BytePacker text;
+  text.add_text(message).add_text(where);
+  send_frame(send_all, FrameKind::failed, api::error_row(code).name, text.take());
+}
+
+/// All threads that the process will ever have (sandbox.hpp).
+struct Crew {
+  explicit Crew(int count) : threads(count) {}
+
+  std::stop_source stop = stop_at_sigterm();
+  ThreadExecutor threads;
+};
+
+/// The threads of a crew, with what the charts of one job share.
+class SharingExecutor final : public Executor {
+ public:
+  SharingExecutor(ThreadExecutor& threads, SolverCore& core) : threads_(threads), core_(core) {}
+
+  void for_each_block(int block_count, const std::function<void(int)>& body) override {
+    threads_.for_each_block(block_count, body);
+  }
+  [[nodiscard]] SolverCore* shared_core() const override { return &core_; }
+
+ private:
+  ThreadExecutor& threads_;
+  SolverCore& core_;
+};
+
+void draw(const ReceivedJob& job, const Crew& crew, const Duties& duties) {
+  const std::stop_callback end_at_stop(  // a file half made is of no use to anybody
+      crew.stop.get_token(), [] { std::_Exit(EXIT_FAILURE); });
+  const RenderingInput input{
+      .record = job.record, .asset = job.input(), .uvs = job.uvs, .report = job.report};
+  const std::string bytes = duties.draw(*job.task.rendering, input, job.task.limits);
+  send_frame(send_all, FrameKind::rendered, {}, bytes);
+}
+
+void run(const ReceivedJob& job, Crew& crew, const Duties& duties) {
+  const std::int64_t memory = job.task.memory_bytes;
+  SolverCache core({.cache_bytes = memory / kCacheShare, .job_bytes = memory}, 1);
+  SharingExecutor executor(crew.threads, core);
+  SocketOutput output;
+  const auto elapsed = std::chrono::duration<double, std::milli>(job.task.elapsed_ms);
+  const JobTask task{
+      .record = job.record,
+      .queue_ms = job.task.queue_ms,
+      .began = std::chrono::steady_clock::now() -
+               std::chrono::duration_cast<std::chrono::steady_clock::duration>(elapsed),
+      .stop = crew.stop.get_token()};
+  const std::string format = duties.run(task, job.input(), output, job.task.limits, executor);
+  send_frame(send_all, FrameKind::done, format, {});
+}
+
+void work(Crew& crew, const Duties& duties) {
+  const ReceivedJob job = receive_job(crew.stop.get_token());
+  if (job.task.rendering) return draw(job, crew, duties);
+  run(job, crew, duties);
+}
+
+/// They come before anything else: nothing may be read without them.
+SandboxLimits sandbox_limits() {
+  SandboxLimits limits;
+  if (!receive_all(reinterpret_cast<char*>(&limits), sizeof limits)) gone();
+  return limits;
+}
+
+}  // namespace
+
+bool is_job_worker(int argc, const char* const* argv) {
+  return argc == 2 && std::string_view(argv[1]) == kWorkerFlag;
+}
+
+std::string pack_task(const WorkerTask& task, const JobRecord& job) {
+  BytePacker pack;
+  pack.add(task).add(std::uint8_t{job.synchronous}).add(job.input.bytes);
+  pack.add_text(job.input.sha256).add_text(job.options.dump());
+  for (const std::string& note : job.notes) pack.add_text(note);
+  return pack.take();
+}
+
+int run_job_worker(const Duties& duties) {
+  try {
+    be_first_to_go();
+    const SandboxLimits limits = sandbox_limits();
+    auto* crew = new Crew(limits.threads);  // NOLINT: its threads end with the process
+    enter_sandbox(limits);
+    send_frame(send_all, FrameKind::ready, {}, {});
+    work(*crew, duties);
+  } catch (const Error& error) {
+    fail_with(error.code(), error.what(), error.where());
+  } catch (const std::bad_alloc&) {
+    fail_with(ErrorCode::memory_limit,
+              "The job needed more memory than this server gives to one; send a smaller mesh.", {});
+  } catch (const std::exception&) {  // the owner learns nothing of our insides
+    fail_with(ErrorCode::internal, "The server made a mistake.", {});
+  }
+  std::_Exit(EXIT_SUCCESS);  // nothing is left to be done, and a thread still waits for a signal
+}
+
+}  // namespace unwrapd::server

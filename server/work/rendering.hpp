@@ -1,0 +1,47 @@
+#pragma once
+// What is made of a finished job when somebody asks: its result in a format, or a picture of one of
+// its maps; and of a stored mesh: its analysis. All begin with the mesh, so that all are work for a
+// worker process (--isolate).
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "api/limits.hpp"
+#include "core/asset/asset.hpp"
+#include "core/figure/colour_scale.hpp"
+#include "server/store/job_record.hpp"
+
+namespace unwrapd::server {
+
+enum class PictureKind { layout_svg, layout_png, preview_png };
+
+struct Picture {
+  PictureKind kind = PictureKind::layout_svg;
+  Colouring colouring = Colouring::stretch;  ///< of layouts
+  int size = kDefaultImageSize;              ///< of PNGs, pixels
+};
+
+struct Rendering {
+  std::size_t map = 0;                  ///< of the job, see map_choice.hpp
+  std::optional<Picture> picture;       ///< none: the result
+  std::optional<asset::Format> format;  ///< of the result; none: JSON
+  /// What the mesh is, where a job may take so much memory; there is no map then.
+  std::optional<std::size_t> analysis = {};
+};
+
+/// What a job keeps. Of its record only the options and whether somebody waited for it count.
+struct RenderingInput {
+  const JobRecord& record;
+  asset::Input asset;
+  std::string_view uvs;     ///< of the map: what encode_uvs() wrote
+  std::string_view report;  ///< of the map, JSON
+};
+
+/// The bytes of the file. Throws what reading and writing the asset throw, storage_failed when the
+/// map is none, cancelled once the asset's token asks for a stop.
+std::string render(const Rendering& rendering, const RenderingInput& input,
+                   const api::Limits& limits);
+
+}  // namespace unwrapd::server

@@ -1,0 +1,129 @@
+#include "server/work/run_job.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "api/options.hpp"
+#include "api/report.hpp"
+#include "core/base/error.hpp"
+#include "core/base/solver_core.hpp"
+#include "core/unwrap.hpp"
+#include "server/store/blob_store.hpp"
+#include "server/work/map_choice.hpp"
+#include "server/work/stage_clock.hpp"
+#include "server/work/uv_file.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+constexpr double kWriteFraction = 0.95;  // of the job is done when writing begins
+
+void check_stop(const JobTask& task) {
+  if (task.stop.stop_requested())
+    throw Error(ErrorCode::cancelled, "The job was stopped; send it again to have it done.");
+}
+
+Progress progress_of(const JobTask& task, JobOutput& output, StageClock& clock) {
+  return {.on_stage =
+              [&](const StageEvent& event) {
+                clock.enter(event.stage);
+                output.stage(event);
+              },
+          .on_iteration =
+              [&](const IterationEvent& event) { output.iteration(event, clock.elapsed_ms()); },
+          .stop = task.stop};
+}
+
+asset::Format output_format(api::OutputFormat wanted, asset::Format came_as) {
+  switch (wanted) {
+    case api::OutputFormat::automatic:
+      return came_as;
+    case api::OutputFormat::glb:
+      return asset::Format::glb;
+    case api::OutputFormat::gltf:
+      return asset::Format::gltf;
+    case api::OutputFormat::obj:
+      return asset::Format::obj;
+  }
+  return came_as;
+}
+
+api::ReportContext context_of(const JobTask& task, StageClock& clock) {
+  return {.sha256 = task.record.input.sha256,
+          .bytes = task.record.input.bytes,
+          .version = UNWRAPD_VERSION,
+          .timings_ms = clock.timings_ms(task.queue_ms),
+          .notes = task.record.notes};
+}
+
+/// What a job has made.
+struct Made {
+  const asset::Asset& asset;
+  asset::Format format;
+  const std::vector<Unwrapped>& maps;
+};
+
+/// A map's report, with what writing the asset adds to it.
+api::Json report_json(const Made& made, const Unwrapped& map, api::ReportContext context,
+                      bool with_vertex_maps) {
+  for (std::string& note : asset::side_effects(made.asset, map.surfaces, made.format))
+    context.notes.push_back(std::move(note));
+  context.file_repairs.assign(made.asset.repairs().begin(), made.asset.repairs().end());
+  if (with_vertex_maps)
+    context.vertex_maps = asset::vertex_maps(made.asset, map.surfaces, made.format);
+  return api::to_json(map.report, context);
+}
+
+/// What every map of a job needs to be answered with: the rest is made when somebody asks.
+void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageClock& clock,
+                bool with_vertex_maps) {
+  const std::vector<Unwrapped>& maps = made.maps;
+  for (std::size_t map = 0; map < maps.size(); ++map)
+    output.file(map_file(kUvFile, map), encode_uvs(maps[map].surfaces));
+  check_stop(task);
+  output.file(kTotalsFile, api::totals_json(maps.front().report).dump());
+  const api::ReportContext context = context_of(task, clock);
+  for (std::size_t map = 0; map < maps.size(); ++map)
+    output.file(map_file(kReportFile, map),
+                report_json(made, maps[map], context, with_vertex_maps).dump());
+}
+
+}  // namespace
+
+asset::ReadLimits read_limits(const JobRecord& job, const api::Limits& limits,
+                              std::size_t memory_bytes) {
+  const std::int64_t faces = job.synchronous ? limits.max_sync_faces : limits.max_faces;
+  return {.max_vertices = limits.max_vertices,
+          .max_faces = std::min(faces, limits.max_faces),
+          .max_bytes = memory_bytes};
+}
+
+std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& output,
+                    const api::Limits& limits, Executor& executor) {
+  const JobRecord& record = task.record;
+  StageClock clock(task.began);
+  const Progress progress = progress_of(task, output, clock);
+  progress.on_stage({.stage = Stage::read, .chart = 0, .chart_count = 0, .fraction = 0});
+  const api::JobOptions options = api::parse_stored_options(record.options);
+  asset::Input watched = input;
+  watched.stop = task.stop;
+  const SolverCore* core = executor.shared_core();
+  const std::size_t memory = core != nullptr ? core->memory_limit() : asset::kNoByteLimit;
+  asset::Asset asset = asset::read(watched, read_limits(record, limits, memory), options.asset);
+  if (options.unwrap.repack_only || options.unwrap.seams == SeamMode::uv0) asset::read_uvs(asset);
+  check_stop(task);
+
+  const std::vector<Unwrapped> maps =
+      unwrap_curve(asset.surfaces(), options.unwrap, progress, executor);
+
+  progress.on_stage(
+      {.stage = Stage::write, .chart = 0, .chart_count = 0, .fraction = kWriteFraction});
+  const asset::Format format = output_format(options.output, asset.format());
+  std::string name(asset::format_name(format));
+  const std::vector<UnwrappedSurface>& first = maps.front().surfaces;
+  output.result(name, asset::write(asset, first, format));
+  write_maps(task, output, {asset, format, maps}, clock, options.asset.vertex_map);
+  return name;
+}
+
+}  // namespace unwrapd::server

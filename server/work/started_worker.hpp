@@ -1,0 +1,34 @@
+#pragma once
+// The start of a worker process: the one place that knows with what it begins.
+
+#include <sys/types.h>
+
+#include <string>
+
+#include "server/work/sandbox.hpp"
+
+namespace unwrapd::server {
+
+/// A worker process (job_worker.hpp) and our end of the socket to it. It never outlives this
+/// object, nor the thread that has started it (sandbox.hpp).
+class StartedWorker {
+ public:
+  /// Starts program --job-worker with none of our environment, and tells it its limits. Throws
+  /// Error{internal} when it cannot.
+  StartedWorker(const std::string& program, const SandboxLimits& limits);
+  StartedWorker(StartedWorker&& other) noexcept;
+  StartedWorker& operator=(StartedWorker&&) = delete;
+  ~StartedWorker();
+
+  [[nodiscard]] int socket() const { return socket_; }
+  [[nodiscard]] pid_t process() const { return process_; }
+
+  /// Ends the process if it has not ended yet. Returns how it ended, as wait(2) tells it.
+  int end();
+
+ private:
+  int socket_ = -1;
+  pid_t process_ = -1;
+};
+
+}  // namespace unwrapd::server

@@ -1,0 +1,95 @@
+#include "server/work/worker_answer.hpp"
+
+#include "server/store/blob_store.hpp"
+#include "server/work/map_choice.hpp"
+
+namespace unwrapd::server {
+
+bool is_of_work(ErrorCode code) {
+  using enum ErrorCode;
+  switch (code) {  // each code is here, so that a new one is not forgotten
+    case invalid_option:
+    case body_too_large:  // a GLB beyond 4 GiB
+    case unknown_format:
+    case malformed_glb:
+    case malformed_json:
+    case malformed_gltf:
+    case malformed_obj:
+    case malformed_draco:
+    case malformed_meshopt:
+    case missing_buffer:
+    case external_uri:
+    case unsupported_extension:
+    case too_many_vertices:
+    case too_many_faces:
+    case too_much_memory:
+    case no_triangles:
+    case zero_area:
+    case non_finite_position:
+    case not_orientable:
+    case invalid_constraint:
+    case no_texture_coordinates:
+    case does_not_fit:
+    case solver_failed:
+    case guarantee_failed:
+    case memory_limit:
+    case cancelled:
+    case storage_failed:  // a stored map that is none
+    case internal:
+      return true;
+    case malformed_request:
+    case not_found:
+    case method_not_allowed:
+    case not_acceptable:
+    case request_timeout:
+    case job_unfinished:
+    case result_expired:
+    case length_required:
+    case unsupported_media_type:
+    case headers_too_large:
+    case queue_full:
+    case draining:
+    case too_many_streams:
+    case unauthorized:
+    case forbidden:
+    case invalid_link:
+    case idempotency_conflict:
+    case rate_limited:
+    case too_many_jobs:
+    case quota_exceeded:
+    case webhook_refused:
+    case mesh_not_found:
+    case digest_mismatch:
+    case time_limit:
+    case poison:
+    case storage_full:
+    case storage_corrupt:
+      return false;
+  }
+  return false;
+}
+
+bool is_result_format(std::string_view name) {
+  return name == "glb" || name == "gltf" || name == "obj";
+}
+
+AnswerFiles::AnswerFiles(std::size_t maps) : left_{std::string(kTotalsFile)} {
+  for (std::size_t map = 0; map < maps; ++map) {
+    left_.insert(map_file(kUvFile, map));
+    left_.insert(map_file(kReportFile, map));
+  }
+}
+
+bool AnswerFiles::take(std::string_view name) {
+  const auto file = left_.find(name);
+  if (file == left_.end()) return false;
+  left_.erase(file);
+  return true;
+}
+
+bool AnswerFiles::take_result(std::string_view format) {
+  if (has_result_ || !is_result_format(format)) return false;
+  return has_result_ = true;
+}
+
+}  // namespace unwrapd::server

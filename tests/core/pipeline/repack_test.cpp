@@ -1,0 +1,99 @@
+// UVs that are there, packed anew through the front door.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.hpp"
+#include "core/unwrap.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// n separate quads, quad k at size 1 + k in space and 1 / (1 + k) in UV, the odd ones mirrored.
+Surface quads(int n) {
+  Surface surface{{}, {}, "quads"};
+  for (Index k = 0; k < n; ++k) {
+    const double size = 1 + k, uv = 1 / size;
+    for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
+      surface.mesh.positions.emplace_back(size * x, size * y, 10.0 * k);
+    const auto corner = [&](int x, int y) { return Vec2((k % 2 == 0 ? uv : -uv) * x, uv * y); };
+    surface.mesh.faces.push_back({4 * k, 4 * k + 1, 4 * k + 2});
+    surface.corner_uv.push_back({corner(0, 0), corner(1, 0), corner(1, 1)});
+    surface.mesh.faces.push_back({4 * k, 4 * k + 2, 4 * k + 3});
+    surface.corner_uv.push_back({corner(0, 0), corner(1, 1), corner(0, 1)});
+  }
+  surface.part.assign(surface.mesh.faces.size(), 0);
+  return surface;
+}
+
+Unwrapped repacked(const Surface& surface, const Packing& packing = {}) {
+  SerialExecutor serial;
+  return unwrap(std::span(&surface, 1),
+                {.resolution = 256, .packing = packing, .repack_only = true}, {}, serial);
+}
+
+double side(const UnwrappedSurface& s, std::size_t face) {
+  return (s.uv[std::size_t(s.faces[face][1])] - s.uv[std::size_t(s.faces[face][0])]).norm();
+}
+
+double signed_area(const UnwrappedSurface& s, std::size_t face) {
+  const auto at = [&](int i) { return s.uv[std::size_t(s.faces[face][std::size_t(i)])]; };
+  const Vec2 a = at(1) - at(0), b = at(2) - at(0);
+  return (a.x() * b.y() - a.y() * b.x()) / 2;
+}
+
+TEST(Repack, KeepsShapesSidesAndSizesBesideEachOther) {
+  const Unwrapped u = repacked(quads(4));
+  const UnwrappedSurface& s = u.surfaces[0];
+  EXPECT_EQ(u.report.charts.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_NEAR(side(s, 2 * k) * double(1 + k), side(s, 0), 1e-6);
+    EXPECT_GT(signed_area(s, 2 * k) * (k % 2 == 0 ? 1 : -1), 0) << "mirrored ones stay so";
+  }
+  EXPECT_GT(u.report.fill, 0.5);
+}
+
+TEST(Repack, GivesEveryIslandTheDensityThatIsAskedFor) {
+  const Unwrapped u = repacked(quads(3), {.texels_per_unit = 20.0});
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(side(u.surfaces[0], 2 * k) * 256, 20.0 * double(1 + k), 1e-4);
+  EXPECT_NEAR(u.report.texel_density, 20, 1e-3);
+}
+
+TEST(Repack, KeepsFacesTogetherThatShareCornersInSpaceAndPlane) {
+  const Unwrapped u = repacked(quads(2));
+  EXPECT_EQ(u.surfaces[0].source.size(), 8U);  // nothing is split
+  EXPECT_EQ(u.report.seam_length, 0);
+}
+
+TEST(Repack, StacksMirroredQuadsOnlyOnTheirLike) {
+  Surface surface = quads(4);
+  for (std::size_t t = 0; t < surface.corner_uv.size(); ++t)
+    for (Vec2& uv : surface.corner_uv[t]) uv *= double(1 + t / 2);  // all of one size
+  const Unwrapped u = repacked(surface, {.stack_identical = true});
+  EXPECT_EQ(u.report.notes.size(), 1U);
+  EXPECT_GT(side(u.surfaces[0], 0), 0.4);
+}
+
+TEST(Repack, RefusesWhatHasNoUvs) {
+  Surface surface = quads(2);
+  surface.corner_uv.clear();
+  try {
+    repacked(surface);
+    ADD_FAILURE() << "it was packed";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::no_texture_coordinates);
+  }
+}
+
+TEST(Repack, TellsOfFacesWithoutUvs) {
+  Surface surface = quads(2);
+  surface.corner_uv[3][0] = Vec2(std::nan(""), 0);
+  const Unwrapped u = repacked(surface);
+  ASSERT_EQ(u.report.notes.size(), 1U);
+  EXPECT_TRUE(u.report.notes[0].starts_with("1 faces"));
+}
+
+}  // namespace
+}  // namespace unwrapd

@@ -1,0 +1,85 @@
+#include "core/segment/large_charts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/segment/chart_excess.hpp"
+#include "core/unwrap.hpp"
+#include "tests/bench/noisy_body.hpp"
+#include "tests/core/hard_shapes.hpp"
+#include "tests/core/two_threads.hpp"
+
+namespace unwrapd {
+namespace {
+
+using namespace shapes;
+
+Unwrapped unwrapped(const TriMesh& mesh) {
+  TwoThreads two;
+  const std::vector<Surface> surfaces{surface_of(mesh)};
+  return unwrap(surfaces, {}, {}, two);
+}
+
+long notes_on_the_bound(const Report& report) {
+  return std::ranges::count_if(report.notes, [](const std::string& note) {
+    return note.find("max_distortion") != std::string::npos;
+  });
+}
+
+TEST(LargeCharts, KeepTheBoundOnTheSurfaceThatWasGiven) {
+  const std::vector<NamedMesh> meshes{{"body like a scan", bench::noisy_body(20'000, 0.25)},
+                                      {"smooth torus", torus(140, 70)}};
+  for (const auto& [name, mesh] : meshes) {
+    ASSERT_GT(mesh.face_count(), 18'000);
+    const Report report = unwrapped(mesh).report;
+    EXPECT_LE(report.distortion.angle, kDefaultDistortion) << name;
+    EXPECT_LE(report.distortion.area, kDefaultDistortion) << name;
+    EXPECT_LE(report.charts.size(), 20U) << name;
+    EXPECT_EQ(notes_on_the_bound(report), 0) << name;
+  }
+}
+
+TEST(LargeCharts, SaySoWhereNoiseLeavesNoRoomForTheBound) {
+  const Report report = unwrapped(bench::noisy_body(20'000, 0.5)).report;
+  EXPECT_GT(report.distortion.angle, kDefaultDistortion);
+  EXPECT_LE(report.charts.size(), 60U);  // not ever more for a bound that none of them keeps
+  EXPECT_EQ(notes_on_the_bound(report), 1);
+}
+
+TEST(LargeCharts, AreTheSameForAnyExecutor) {
+  const Charts whole = components_of(surface_of(bench::noisy_body(20'000, 0.25)), {});
+  SerialExecutor serial;
+  TwoThreads two;
+  const auto one = large_charts(whole.charts.front(), {}, serial).charts;
+  const auto other = large_charts(whole.charts.front(), {}, two).charts;
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    EXPECT_EQ(one[k].face_source, other[k].face_source);
+    EXPECT_EQ(one[k].start, other[k].start);
+  }
+}
+
+/// A disk that begins with its shadow.
+Chart chart_of(const TriMesh& mesh) {
+  Chart chart = std::move(components_of(surface_of(mesh), {}).charts.front());
+  for (const Vec3& p : chart.mesh.positions) chart.start.emplace_back(p.x(), p.y());
+  return chart;
+}
+
+TEST(ChartExcess, IsNoneOfWhatLiesFlatAndThatOfTheSolvedMapElse) {
+  SerialExecutor serial;
+  const std::vector<Chart> flat{chart_of(grid(20, 20))};
+  EXPECT_NEAR(chart_excess(flat, serial, {}).worst(), 0, 1e-9);
+  const TriMesh bowl = mapped_grid(30, 30, Wrap::none, [](double u, double v) {
+    return Vec3(3 * u, 3 * v, 4 * (u - u * u + v - v * v));
+  });
+  const std::vector<Chart> charts{chart_of(bowl)};
+  const Excess excess = chart_excess(charts, serial, {});
+  const Distortion solved = unwrapped(bowl).report.distortion;
+  EXPECT_NEAR(excess.angle, solved.angle - 2, 0.05 * (solved.angle - 2));
+  EXPECT_NEAR(excess.area, solved.area - 2, 0.05 * (solved.area - 2));
+}
+
+}  // namespace
+}  // namespace unwrapd

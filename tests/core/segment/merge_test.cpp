@@ -1,0 +1,169 @@
+#include "core/segment/merge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+/// Patches of a flat sheet, one for each value of label(middle of a face), with their own places
+/// for maps.
+template <class Label>
+Partition parted(const Sheet& sheet, Label label) {
+  Partition parts{{}, std::vector<char>(sheet.length.size(), 0)};
+  for (Index t = 0; t < sheet.face_count(); ++t) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : sheet.mesh.faces[std::size_t(t)])
+      middle += sheet.mesh.positions[std::size_t(v)] / 3;
+    const auto k = std::size_t(label(middle));
+    if (parts.patches.size() <= k) parts.patches.resize(k + 1);
+    parts.patches[k].region.faces.push_back(t);
+  }
+  for (MappedRegion& patch : parts.patches) {
+    patch.region.uv = projected(sheet, patch.region.faces);
+    for (const Index t : patch.region.faces) patch.area += sheet.area(t);
+    patch.is_sound = true;
+  }
+  return parts;
+}
+
+Sheet sheet_of(const TriMesh& mesh) {
+  return make_sheet(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+}
+
+std::size_t merged_count(const Sheet& sheet, const Partition& from, MergeRules rules) {
+  SerialExecutor serial;
+  rules.budget = rules.cap = 0.02;
+  return merge_patches(Joiner(sheet), sheet, from, rules, serial).patches.size();
+}
+
+/// Halves of a strip 16 wide and 1 high, and of one 2 wide.
+TEST(Merge, RefusesWhatIsTooLongForAPageOnlyWhereThePageShallBeFilled) {
+  const auto half = [](const Vec3& middle) { return middle.x() < 0 ? 0 : 1; };
+  const Sheet strip = sheet_of(shapes::grid(16, 1, 16, 1)), brick = sheet_of(shapes::grid(4, 2, 2));
+  EXPECT_EQ(merged_count(strip, parted(strip, half), {}), 1U);
+  EXPECT_EQ(merged_count(strip, parted(strip, half), {.least_fill = 0.3}), 2U);
+  EXPECT_EQ(merged_count(brick, parted(brick, half), {.least_fill = 0.3}), 1U);
+  EXPECT_EQ(merged_count(strip, parted(strip, half), {.page_area = 10, .least_fill = 0.3}), 1U);
+}
+
+/// An L of three squares covers 6/7 of its convex hull.
+TEST(Merge, RefusesALargeUnionThatFillsItsHullTooLittle) {
+  TriMesh corner = shapes::grid(4, 4);
+  std::erase_if(corner.faces, [&](const Triangle& face) {
+    return std::ranges::all_of(face, [&](Index v) {
+      const Vec3& p = corner.positions[std::size_t(v)];
+      return p.x() >= 0.5 && p.y() >= 0.5;
+    });
+  });
+  std::vector<Index> number(corner.positions.size(), -1);
+  TriMesh mesh;
+  for (const Triangle& face : corner.faces) {
+    mesh.faces.push_back(face);
+    for (Index& v : mesh.faces.back()) {
+      if (number[std::size_t(v)] < 0) {
+        number[std::size_t(v)] = mesh.vertex_count();
+        mesh.positions.push_back(corner.positions[std::size_t(v)]);
+      }
+      v = number[std::size_t(v)];
+    }
+  }
+  const Sheet sheet = sheet_of(mesh);
+  const double bend = sheet.mesh.positions[std::size_t(number[12])].y();  // (0.5, 0.5)
+  const Partition halves = parted(sheet, [&](const Vec3& m) { return m.y() < bend ? 0 : 1; });
+  const auto count = [&](double least_solid, double page_area) {
+    return merged_count(sheet, halves,
+                        {.page_area = page_area, .least_fill = 0.01, .least_solid = least_solid});
+  };
+  EXPECT_EQ(count(0.8, 1), 1U);
+  EXPECT_EQ(count(0.9, 1), 2U);
+  EXPECT_EQ(count(0.9, 30), 1U);  // too small a share of the page to matter
+}
+
+/// Sixteen squares: which unions come first is all the same by their borders.
+TEST(Merge, DrawsLotsWhereItHasAWhim) {
+  const Sheet sheet = sheet_of(shapes::grid(8, 8));
+  const double side = sheet.mesh.positions.back().x() - sheet.mesh.positions.front().x();
+  const Vec3 corner = sheet.mesh.positions.front();
+  const Partition squares = parted(sheet, [&](const Vec3& m) {
+    const auto cell = [&](int axis) { return int(4 * (m[axis] - corner[axis]) / side); };
+    return 4 * cell(1) + cell(0);
+  });
+  const auto merged = [&](double whim, int lot) {
+    SerialExecutor serial;
+    std::vector<std::vector<Index>> faces;
+    const MergeRules rules{.budget = 0.02, .cap = 0.02, .whim = whim, .lot = lot, .enough = 6};
+    for (const MappedRegion& patch :
+         merge_patches(Joiner(sheet), sheet, squares, rules, serial).patches)
+      faces.push_back(patch.region.faces);
+    return faces;
+  };
+  EXPECT_EQ(merged(0, 1), merged(0, 2));
+  EXPECT_EQ(merged(0.3, 1), merged(0.3, 1));
+  EXPECT_NE(merged(0.3, 1), merged(0.3, 2));
+  EXPECT_NE(merged(0.3, 1), merged(0, 1));
+}
+
+/// Six sides of a cube lie flat as a cross, but only with slits, which are told.
+TEST(Merge, TellsOfSlitsOnBothSides) {
+  const TriMesh mesh = shapes::cube(1);
+  const Sheet sheet = sheet_of(mesh);
+  const auto side = [](const Vec3& m) {
+    Eigen::Index axis = 0;
+    m.cwiseAbs().maxCoeff(&axis);
+    return 2 * int(axis) + (m[axis] > 0 ? 1 : 0);
+  };
+  SerialExecutor serial;
+  const Partition all = merge_patches(Joiner(sheet), sheet, parted(sheet, side),
+                                      {.budget = 0.02, .cap = 0.08}, serial);
+  double slit = 0;
+  for (std::size_t h = 0; h < all.open.size(); ++h) {
+    if (all.open[h] == 0) continue;
+    EXPECT_EQ(all.open[std::size_t(sheet.halfedges.twin[h])], 1);
+    slit += sheet.length[h] / 2;
+  }
+  EXPECT_EQ(all.patches.size(), 1U);
+  EXPECT_NEAR(slit, 7 * std::sqrt(1.0 / 6), 1e-9);  // of twelve edges a tree of five is glued
+}
+
+/// The two halves of a tube, rolled out, joined: both stretches of their border are as long.
+std::vector<Index> slit_of_tube(const Vec3& offset, double scale) {
+  TriMesh mesh = shapes::cylinder(24, 17);
+  const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
+  std::vector<Vec2> flat;
+  for (Vec3& p : mesh.positions) {
+    flat.emplace_back(std::atan2(p.y(), p.x()), p.z());
+    p = scale * (turn * p) + offset;
+  }
+  const Sheet sheet = sheet_of(mesh);
+  std::array<MappedRegion, 2> halves;
+  for (Index t = 0; t < sheet.face_count(); ++t) {
+    CornerUv uv;
+    for (std::size_t i = 0; i < 3; ++i) uv[i] = flat[std::size_t(mesh.faces[std::size_t(t)][i])];
+    const bool is_upper = uv[0].y() + uv[1].y() + uv[2].y() > 0 && t % 48 < 24;
+    for (Vec2& p : uv)
+      if (!is_upper && p.x() > 1.5) p.x() -= 2 * M_PI;
+    MappedRegion& half = halves[is_upper ? 0 : 1];
+    half.region.faces.push_back(t);
+    half.region.uv.push_back(uv);
+    half.area += sheet.area(t);
+  }
+  const std::vector<char> open(sheet.length.size(), 0);
+  return Joiner(sheet).join(halves[0], halves[1], open, 1, {}).slit;
+}
+
+TEST(Join, SlitsATubeAtTheSamePlaceWhereverItLies) {
+  const std::vector<Index> slit = slit_of_tube(Vec3::Zero(), 1);
+  EXPECT_EQ(slit.size(), 2U * 17);
+  for (const double scale : {1e-6, 0.3, 7.0, 1e6})
+    for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(3, -5, 7), Vec3(1e3, 1e2, -1e3)})
+      EXPECT_EQ(slit_of_tube(scale * offset, scale), slit) << scale << ' ' << offset.transpose();
+}
+
+}  // namespace
+}  // namespace unwrapd

@@ -1,0 +1,184 @@
+// Seams where they show least, and no longer than they must be.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/mesh/edges.hpp"
+#include "core/segment/glue_slits.hpp"
+#include "core/segment/segment_charts.hpp"
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+using namespace shapes;
+
+Sheet sheet_of(const TriMesh& mesh, std::span<const char> crease = {}) {
+  return make_sheet(mesh, build_halfedges(mesh.faces, mesh.vertex_count()), crease);
+}
+
+/// Half-edges whose length counts less.
+std::size_t creases_of(const Sheet& sheet) {
+  std::size_t count = 0;
+  for (std::size_t h = 0; h < sheet.length.size(); ++h)
+    if (sheet.seam_cost[h] != sheet.length[h]) {
+      EXPECT_LT(sheet.seam_cost[h], sheet.length[h]);
+      ++count;
+    }
+  return count;
+}
+
+TEST(SeamCost, IsLessAlongSharpEdgesAndGivenOnesUnlessMostAre) {
+  EXPECT_EQ(creases_of(sheet_of(cube(1))), 2U * 12 * 2);  // twelve edges in two pieces, both sides
+  EXPECT_EQ(creases_of(sheet_of(sphere(3))), 0U);
+  const TriMesh plane = grid(4, 4);
+  std::vector<char> given(3 * plane.faces.size(), 0);
+  EXPECT_EQ(creases_of(sheet_of(plane, given)), 0U);
+  const Sheet sheet = sheet_of(plane);
+  const auto h = std::size_t(
+      std::ranges::find_if(sheet.halfedges.twin, [](Index twin) { return twin != kNoTwin; }) -
+      sheet.halfedges.twin.begin());
+  given[h] = given[std::size_t(sheet.halfedges.twin[h])] = 1;
+  EXPECT_EQ(creases_of(sheet_of(plane, given)), 2U);
+  EXPECT_EQ(creases_of(sheet_of(plane, std::vector<char>(given.size(), 1))), 0U);
+}
+
+/// 1 for each face above the equator, else 0.
+std::vector<Index> halves(const TriMesh& mesh) {
+  std::vector<Index> half;
+  for (const Triangle& face : mesh.faces) {
+    double z = 0;
+    for (const Index v : face) z += mesh.positions[std::size_t(v)].z();
+    half.push_back(z > 0 ? 1 : 0);
+  }
+  return half;
+}
+
+std::ptrdiff_t flagged(const Surface& surface) {
+  const Charts charts = components_of(surface, {.mode = SeamMode::none});
+  return std::ranges::count(charts.charts.front().crease, 1);
+}
+
+TEST(SeamCost, KnowsWhereMaterialsMeetAndWhereTheInputWasSplit) {
+  const TriMesh mesh = sphere(2);
+  const std::vector<Index> half = halves(mesh);
+  const std::vector<Index> one(half.size(), 0);
+  const Surface painted{mesh, half, "two materials on the same vertices"};
+  EXPECT_EQ(flagged(painted), 2 * 16);  // the equator
+  EXPECT_EQ(flagged(in_parts(mesh, half)), 2 * 16);
+  EXPECT_EQ(flagged(surface_of(in_parts(mesh, half).mesh)), 2 * 16);  // one material, split there
+  EXPECT_EQ(flagged(surface_of(mesh)), 0);
+}
+
+/// The share of all chart borders that lies at |z| <= height.
+double share_at_equator(const Surface& surface, double height) {
+  std::vector<Charts> surfaces{components_of(surface, {})};
+  SerialExecutor serial;
+  segment_charts(surfaces, {}, {}, serial);
+  double all = 0, there = 0;
+  for (const Chart& chart : surfaces.front().charts)
+    for (const BoundaryLoop& loop : chart.loops)
+      for (const Index h : loop) {
+        const Vec3 &a = chart.mesh.positions[std::size_t(start_of(chart.mesh.faces, h))],
+                   &b = chart.mesh.positions[std::size_t(end_of(chart.mesh.faces, h))];
+        all += (a - b).norm();
+        if (std::abs(a.z()) <= height && std::abs(b.z()) <= height) there += (a - b).norm();
+      }
+  return there / all;
+}
+
+TEST(SeamCost, DrawsSeamsToWhereMaterialsMeet) {
+  const TriMesh mesh = sphere(3);
+  const std::vector<Index> half = halves(mesh);
+  const double plain = share_at_equator(surface_of(mesh), 1e-9);
+  const double painted = share_at_equator({mesh, half, "painted"}, 1e-9);
+  EXPECT_GT(painted, plain + 0.02) << plain;
+}
+
+/// All faces as one region, mapped by `place`, slit along the edges for which is_slit is true.
+template <class IsSlit>
+Partition slit_open(const Sheet& sheet, IsSlit is_slit) {
+  Partition whole{std::vector<MappedRegion>(1), std::vector<char>(sheet.length.size(), 0)};
+  for (Index h = 0; h < Index(sheet.length.size()); ++h)
+    if (sheet.halfedges.twin[std::size_t(h)] != kNoTwin &&
+        is_slit(sheet.mesh.positions[std::size_t(start_of(sheet.mesh.faces, h))],
+                sheet.mesh.positions[std::size_t(end_of(sheet.mesh.faces, h))]))
+      whole.open[std::size_t(h)] = 1;
+  MappedRegion& region = whole.patches.front();
+  for (Index t = 0; t < sheet.face_count(); ++t) region.region.faces.push_back(t);
+  region.region.uv = projected(sheet, region.region.faces);
+  region.area = 1;
+  region.excess =
+      try_map(sheet, whole.open, {.iterations = 40, .most_excess = 1}, region.region).excess;
+  region.is_sound = true;
+  return whole;
+}
+
+double slit_length(const Sheet& sheet, const Partition& partition) {
+  double length = 0;
+  for (std::size_t h = 0; h < partition.open.size(); ++h)
+    if (partition.open[h] != 0) length += sheet.length[h] / 2;
+  return length;
+}
+
+TEST(GlueSlits, ClosesOnesThatAreOfNoUse) {
+  const Sheet sheet = sheet_of(grid(8, 8));
+  const auto on_line = [](const Vec3& a, const Vec3& b) {
+    return std::abs(a.y()) < 1e-9 && std::abs(b.y()) < 1e-9 && std::min(a.x(), b.x()) > -0.3;
+  };
+  Partition whole = slit_open(sheet, on_line);
+  EXPECT_GT(slit_length(sheet, whole), 0.5);
+  glue_slits(sheet, {.budget = 0.02, .cap = 0.08}, whole);
+  EXPECT_EQ(slit_length(sheet, whole), 0);
+  EXPECT_LT(whole.patches.front().excess.worst(), 1e-6);
+}
+
+/// A cap opened from its rim to the pole.
+Partition opened_cap(const Sheet& sheet) {
+  const Vec3 pole =
+      *std::ranges::max_element(sheet.mesh.positions, {}, [](const Vec3& p) { return p.z(); });
+  return slit_open(sheet, [&](const Vec3& a, const Vec3& b) {
+    return std::abs(a.y() - pole.y()) < 1e-9 && std::abs(b.y() - pole.y()) < 1e-9 &&
+           std::min(a.x(), b.x()) > pole.x() - 1e-9;
+  });
+}
+
+/// The more may be bent, by either bound, the less stays open; the rest would bend it more.
+TEST(GlueSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound) {
+  const Sheet sheet = sheet_of(sphere_cap(24, 12, 1.3));
+  const Partition open = opened_cap(sheet);
+  const double least = open.patches.front().excess.worst();
+  for (const bool is_of_all : {true, false}) {
+    double last = slit_length(sheet, open);
+    for (const double bound : {0.01, 0.02, 0.2}) {
+      Partition glued = open;
+      glue_slits(sheet, {.budget = is_of_all ? bound : 1, .cap = is_of_all ? 1 : bound}, glued);
+      EXPECT_LT(slit_length(sheet, glued), last) << bound;
+      last = slit_length(sheet, glued);
+      const MappedRegion& region = glued.patches.front();
+      EXPECT_LE(region.excess.worst(), std::max(bound, least)) << is_of_all;
+      Region again = region.region;
+      EXPECT_EQ(try_map(sheet, glued.open, {.most_excess = 1}, again).verdict, Verdict::sound);
+    }
+    EXPECT_EQ(last, 0);
+  }
+}
+
+/// The bound of all regions counts what the others have.
+TEST(GlueSlits, LeavesOneOpenWhereTheOthersHaveAllThatThereIs) {
+  const Sheet sheet = sheet_of(sphere_cap(24, 12, 1.3));
+  Partition open = opened_cap(sheet);
+  MappedRegion& elsewhere = open.patches.emplace_back();
+  elsewhere.excess = {0.19, 0.19};
+  const double before = slit_length(sheet, open);
+  Partition glued = open;
+  glue_slits(sheet, {.budget = 1, .cap = 0.2}, glued);
+  EXPECT_EQ(slit_length(sheet, glued), 0);
+  glued = open;
+  glue_slits(sheet, {.budget = 0.2, .cap = 0.2}, glued);
+  EXPECT_GT(slit_length(sheet, glued), before / 2);
+  EXPECT_LE((glued.patches[0].excess + glued.patches[1].excess).worst(), 0.2);
+}
+
+}  // namespace
+}  // namespace unwrapd

@@ -1,0 +1,77 @@
+// The rooms of the source tree: what each is for, and whose headers it may include beside its own.
+// A room includes only rooms that stand before it here, so that no two include each other.
+// `node rooms.mjs` prints the table of docs/architecture.md.
+import { fileURLToPath } from "node:url";
+
+const TERMS = ["core/base", "core/mesh", "core/types"];
+const SOLVING = [...TERMS, "core/linear", "core/measure", "core/solve/base"];
+const STORED = ["core/base", "api", "server/base", "server/store"];
+
+/** Folder, duty, the rooms that it may include. */
+export const ROOMS = [
+  ["core/base", "errors, cancelling, executors, the cache that jobs share", []],
+  ["core/mesh", "triangles, half-edges, topology, welding, repair", ["core/base"]],
+  ["core/types", "plain types: options, progress, report, cache keys", ["core/base", "core/mesh"]],
+  ["core/linear", "sparse systems, factored once, solved often", TERMS],
+  ["core/measure", "singular values, energies, distortion, exact orientation, overlaps, seams", TERMS],
+  ["core/solve/base", "a disk, its rest triangles, hard and soft constraints, a solution", [...TERMS, "core/linear", "core/measure"]],
+  ["core/solve/maps", "initial maps: convex, conformal, laid out triangle by triangle", SOLVING],
+  ["core/solve/methods", "ABF, LinABF, BFF, CP, IC, SLIM", [...SOLVING, "core/solve/maps"]],
+  ["core/solve/arap", "local and global steps, their acceleration, initial rotations", SOLVING],
+  ["core/solve/repair", "flipped triangles turned over, overlaps taken apart", [...SOLVING, "core/solve/maps", "core/solve/methods", "core/solve/arap"]],
+  ["core/solve", "one chart by one method", [...SOLVING, "core/solve/maps", "core/solve/methods", "core/solve/arap"]],
+  ["core/charts", "surfaces cut to disks, constraints and seams of the caller", [...TERMS, "core/measure", "core/solve/base"]],
+  ["core/guarantee", "no flip and no overlap, in the very numbers that are written", [...SOLVING, "core/charts", "core/solve/methods", "core/solve/repair"]],
+  ["core/pack", "islands onto pages", [...TERMS, "core/charts", "core/solve/base"]],
+  ["core/segment", "which faces become a chart: merging, cutting, shortening seams", [...SOLVING, "core/charts", "core/pack", "core/solve", "core/solve/arap"]],
+  ["core/pipeline", "the steps of unwrapping", [...SOLVING, "core/charts", "core/guarantee", "core/pack", "core/segment", "core/solve"]],
+  ["core", "the front door: unwrap()", [...TERMS, "core/charts", "core/guarantee", "core/measure", "core/pack", "core/pipeline"]],
+  ["core/figure", "layouts and previews as SVG and pixels", [...TERMS, "core/measure"]],
+  ["core/asset", "glTF, Draco, meshopt and OBJ, in and out; a library of its own", TERMS],
+  ["api/contract", "`openapi.yaml` as JSON and as a page", []],
+  ["api", "the contract; the tables of options and of errors", TERMS],
+  ["web", "the page at `/`, texts in the program", []],
+  ["client", "uploads, follows, downloads; the program `unwrap`", ["api"]],
+  ["server/base", "files, clocks, log, metrics, waiting", ["core/base", "api"]],
+  ["server/http", "the edge: connections, TLS, limits, framing, routing", ["core/base", "api", "server/base"]],
+  ["server/store", "jobs in SQLite, their files, quotas, sweeping", ["core/asset", ...STORED]],
+  ["server/work", "one job from bytes to bytes, in a process of its own", [...TERMS, ...STORED, "core", "core/asset", "core/figure", "core/pipeline"]],
+  ["server/jobs", "the queue, whose turn it is, workers, events", [...STORED, "server/http", "server/work"]],
+  ["server/access", "API keys, signed links", [...STORED, "core/figure", "server/http", "server/jobs"]],
+  ["server/webhooks", "calls when a job ends", [...STORED, "server/http"]],
+  ["server/backup", "backup, restore and check of a data directory", [...STORED, "server/access"]],
+  ["server/results", "results and pictures, made when asked for", [...STORED, "core/asset", "server/http", "server/work", "server/jobs"]],
+  ["server/config", "options, variables and the configuration file", [...STORED, "server/http", "server/work", "server/access", "server/webhooks", "server/results"]],
+  ["server/uploads", "meshes and jobs as they arrive", [...STORED, "server/http", "server/jobs", "server/webhooks", "server/results"]],
+  ["server/routes", "what each address answers", [...STORED, "web", "server/http", "server/work", "server/jobs", "server/access", "server/results", "server/uploads"]],
+  ["server", "the program `unwrapd`", [...STORED, "server/http", "server/work", "server/jobs", "server/access", "server/webhooks", "server/backup", "server/config", "server/routes"]],
+].map(([folder, duty, includes]) => ({ folder, duty, includes: [...new Set(includes)].filter((room) => room !== folder) }));
+
+/** The room of a file or header; undefined for tests, which may include everything. */
+export function roomOf(path) {
+  const folder = path.slice(0, Math.max(path.lastIndexOf("/"), 0));
+  return ROOMS.find((room) => room.folder === folder);
+}
+
+/** Top folders whose files must all be in a room. */
+export const HOUSES = [...new Set(ROOMS.map(({ folder }) => folder.split("/")[0]))];
+
+/** Rooms that include one that does not stand before them. */
+export function upward(rooms) {
+  const order = new Map(rooms.map(({ folder }, place) => [folder, place]));
+  return rooms.flatMap(({ folder, includes }) =>
+    includes
+      .filter((room) => !(order.get(room) < order.get(folder)))
+      .map((room) => `${folder} may not include ${room}, which does not stand before it`),
+  );
+}
+
+/** The table of docs/architecture.md. */
+export function table() {
+  const names = ({ folder, includes }) =>
+    includes.map((room) => room.replace(`${folder.split("/")[0]}/`, "")).join(", ") || "–";
+  const row = (room) => `| \`${room.folder}\` | ${room.duty} | ${names(room)} |`;
+  return ["| room | duty | may include |", "|---|---|---|", ...ROOMS.map(row)].join("\n");
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) console.log(table());

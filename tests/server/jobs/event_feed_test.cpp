@@ -1,0 +1,195 @@
+// The event ring: readers get every event once and in order, or a gap that says what they missed;
+// whoever publishes never waits.
+#include "server/jobs/event_feed.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <atomic>
+#include <thread>
+
+namespace unwrapd::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr std::chrono::seconds kLong{60};  // never waited for when the feed works
+
+void publish_iteration(JobFeed& feed, int iteration) {
+  feed.publish([&](std::int64_t seq) {
+    IterationEvent event;
+    event.iteration = iteration;
+    return api::iteration_event(seq, event, 0);
+  });
+}
+
+void publish_end(JobFeed& feed) {
+  feed.publish([](std::int64_t seq) {
+    return api::final_event(seq, {.id = "j_1", .state = api::JobState::succeeded});
+  });
+}
+
+int count(const std::string& text, const std::string& word) {
+  int found = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
+  return found;
+}
+
+TEST(EventFeed, AReaderGetsEveryEventInOrderAndThenTheEnd) {
+  JobFeed feed(0, 100);
+  for (int i = 1; i <= 3; ++i) publish_iteration(feed, i);
+  publish_end(feed);
+  const Reading reading = feed.read(feed.resume_after({}));
+  EXPECT_EQ(reading.last_seq, 4);
+  EXPECT_TRUE(reading.end);
+  EXPECT_EQ(reading.frames.find("id: 1\n"), 0U);
+  EXPECT_LT(reading.frames.find("id: 3\n"), reading.frames.find("event: succeeded"));
+  EXPECT_THAT(reading.frames, Not(HasSubstr("gap")));
+}
+
+TEST(EventFeed, AReaderGoesOnAfterTheLastEventItHasSeen) {
+  JobFeed feed(0, 100);
+  for (int i = 1; i <= 5; ++i) publish_iteration(feed, i);
+  const Reading reading = feed.read(feed.resume_after(3));
+  EXPECT_EQ(count(reading.frames, "event: iteration"), 2);
+  EXPECT_EQ(reading.frames.find("id: 4\n"), 0U);
+  EXPECT_FALSE(reading.end);
+}
+
+TEST(EventFeed, AReaderThatIsTooSlowIsToldWhatItMissed) {
+  JobFeed feed(0, 4);
+  for (int i = 1; i <= 10; ++i) publish_iteration(feed, i);
+  const Reading reading = feed.read(feed.resume_after(2));
+  EXPECT_EQ(reading.frames.find("id: 6\nevent: gap\ndata: {\"first\":3,\"last\":6}"), 0U);
+  EXPECT_EQ(count(reading.frames, "event: iteration"), 4);
+  EXPECT_EQ(reading.last_seq, 10);
+}
+
+TEST(EventFeed, ALaterAttemptGoesOnCounting) {
+  EventFeed events;
+  const auto feed = events.open("j_1", 2);
+  publish_iteration(*feed, 1);
+  EXPECT_EQ(feed->read(feed->resume_after({})).frames.find("id: 2000000001\n"), 0U);
+  // A reader of an earlier attempt learns that there is a gap.
+  const Reading resumed = feed->read(feed->resume_after(1'000'000'007));
+  EXPECT_EQ(resumed.frames.find("id: 2000000000\nevent: gap"), 0U);
+}
+
+TEST(EventFeed, AReaderThatHasSeenTheEndSeesItAgain) {
+  JobFeed feed(0, 100);
+  publish_iteration(feed, 1);
+  publish_end(feed);
+  const Reading reading = feed.read(feed.resume_after(2));
+  EXPECT_EQ(reading.frames.find("id: 2\nevent: succeeded"), 0U);
+  EXPECT_TRUE(reading.end);
+}
+
+TEST(EventFeed, AnIdFromTheFutureStartsFromTheFirst) {
+  JobFeed feed(0, 100);
+  publish_iteration(feed, 1);
+  EXPECT_EQ(feed.read(feed.resume_after(999)).frames.find("id: 1\n"), 0U);
+}
+
+TEST(EventFeed, NothingFollowsTheFinalEvent) {
+  JobFeed feed(0, 100);
+  publish_end(feed);
+  publish_iteration(feed, 1);
+  EXPECT_EQ(feed.next_seq(), 2);
+}
+
+TEST(EventFeed, AReadingIsIdleWhenNothingHappens) {
+  const JobFeed feed(0, 100);
+  const Reading reading = feed.read(0);
+  EXPECT_THAT(reading.frames, IsEmpty());
+  EXPECT_FALSE(reading.end);
+}
+
+TEST(EventFeed, EndingEndsReadersAndWaitsWithoutAFinalEvent) {
+  EventFeed events;
+  const auto feed = events.open("j_1", 0);
+  bool finished = true;
+  std::jthread waiting(
+      [&] { finished = feed->wait_finished(std::chrono::steady_clock::now() + kLong); });
+  events.end_all();
+  waiting.join();
+  EXPECT_FALSE(finished);
+  const Reading reading = feed->read(0);
+  EXPECT_TRUE(reading.end);
+  EXPECT_THAT(reading.frames, IsEmpty());
+}
+
+TEST(EventFeed, TheBellRingsAtEventsAndAtTheEndOfAll) {
+  const auto bell = std::make_shared<Doorbell>();
+  const auto has_rung = [&] {
+    pollfd polled{bell->descriptor(), POLLIN, 0};
+    const bool rung = ::poll(&polled, 1, 0) == 1;
+    bell->answer();
+    return rung;
+  };
+  EventFeed events(16, 2, nullptr, bell);
+  const auto feed = events.open("j_1", 0);
+  EXPECT_FALSE(has_rung());
+  publish_iteration(*feed, 1);
+  publish_iteration(*feed, 2);
+  EXPECT_TRUE(has_rung());
+  EXPECT_FALSE(has_rung());
+  events.end_all();
+  EXPECT_TRUE(has_rung());
+}
+
+TEST(EventFeed, AReadingIsShortAndTheNextGoesOn) {
+  JobFeed feed(0, 1000);
+  for (int i = 1; i <= 500; ++i) publish_iteration(feed, i);
+  int frames = 0;
+  for (Reading reading = feed.read(0); !reading.frames.empty();
+       reading = feed.read(reading.last_seq)) {
+    EXPECT_LT(reading.frames.size(), 8192U);
+    frames += count(reading.frames, "event: iteration");
+  }
+  EXPECT_EQ(frames, 500);
+}
+
+TEST(EventFeed, OldFinishedFeedsMakeRoomForNewOnes) {
+  EventFeed events(16, 2);
+  for (const char* job : {"j_1", "j_2", "j_3"}) {
+    publish_end(*events.open(job, 0));
+    events.retire(job);
+  }
+  EXPECT_FALSE(events.find("j_1"));
+  EXPECT_TRUE(events.find("j_2"));
+  EXPECT_TRUE(events.find("j_3"));
+}
+
+TEST(EventFeed, ManyReadersOfABusyFeedMissNothingUntold) {
+  constexpr int kEvents = 5000;
+  JobFeed feed(0, 64);
+  std::atomic<int> complete = 0;
+  std::vector<std::jthread> readers;
+  for (int r = 0; r < 4; ++r) {
+    readers.emplace_back([&] {
+      std::int64_t after = 0;
+      bool end = false;
+      bool in_order = true;
+      while (!end) {
+        const Reading reading = feed.read(after);
+        in_order = in_order && reading.last_seq >= after;
+        const bool gap = reading.frames.find("event: gap") != std::string::npos;
+        const int frames = count(reading.frames, "\n\n") - (gap ? 1 : 0);
+        in_order = in_order && (gap || reading.last_seq - after == frames);
+        after = reading.last_seq;
+        end = reading.end;
+      }
+      if (in_order && after == kEvents + 1) ++complete;
+    });
+  }
+  for (int i = 1; i <= kEvents; ++i) publish_iteration(feed, i);
+  publish_end(feed);
+  readers.clear();
+  EXPECT_EQ(complete, 4);
+}
+
+}  // namespace
+}  // namespace unwrapd::server

@@ -1,0 +1,61 @@
+#include "server/jobs/feed_output.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/api/error_of.hpp"
+#include "tests/server/temp_dir.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+/// Events in the order told, of a ring that forgets none of them.
+class FeedOutputs : public testing::Test {
+ protected:
+  FeedOutputs() {
+    job_.record.id = "j_1";
+    job_.record.owner = "his";
+    std::filesystem::create_directories(blobs_.path("j_1", ""));
+    job_.feed = std::make_shared<JobFeed>(0, 100'000);
+  }
+
+  [[nodiscard]] std::int64_t told() const { return job_.feed->next_seq() - 1; }
+
+  TempDir dir_;
+  BlobStore blobs_{dir_.path()};
+  JobStore store_{dir_.path() / "jobs.sqlite"};
+  Claims claims_{store_};
+  Claim claim_{claims_, "his"};
+  std::int64_t most_ = 0;
+  const std::function<std::int64_t(const std::string&)> most_bytes_ =
+      [this](const std::string& owner) { return owner == "his" ? most_ : 0; };
+  RunningJob job_;
+  FeedOutput output_{job_, blobs_, {claim_, most_bytes_}};
+};
+
+TEST_F(FeedOutputs, TellAStageAsItMovesOnAndNotEachStep) {
+  for (int k = 0; k <= 10'000; ++k)
+    output_.stage({.stage = Stage::segment, .fraction = .1 + .5 * k / 10'000});
+  EXPECT_GE(told(), 90) << "half of the job, by half percents";
+  EXPECT_LE(told(), 101);
+  EXPECT_DOUBLE_EQ(job_.feed->progress()->fraction, .6) << "who asks is told all";
+}
+
+TEST_F(FeedOutputs, TellEachStageAndChartThatBegins) {
+  for (const Index chart : {0, 1, 2})
+    for (const Stage stage : {Stage::solve, Stage::untangle})
+      output_.stage({.stage = stage, .chart = chart, .chart_count = 3, .fraction = .5});
+  EXPECT_EQ(told(), 6);
+}
+
+TEST_F(FeedOutputs, WriteNothingBeyondTheQuota) {
+  most_ = 10;
+  output_.result("obj", "123456");
+  EXPECT_EQ(error_of([&] { output_.file("uv.bin", "12345"); }).code(), ErrorCode::quota_exceeded);
+  EXPECT_FALSE(std::filesystem::exists(blobs_.path("j_1", "uv.bin")));
+  output_.file("uv.bin", "1234");
+  FeedOutput again(job_, blobs_, {claim_, most_bytes_});
+  again.result("obj", "1234567890");
+}
+
+}  // namespace
+}  // namespace unwrapd::server

@@ -1,0 +1,159 @@
+// The pictures of jobs: what they are, what may be asked of them, when there are none.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <set>
+
+#include "tests/server/decode_png.hpp"
+#include "tests/server/running_server.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Pictures : public RunningServer {
+ protected:
+  std::string succeeded() {
+    const std::string id = submit();
+    await_state(id, "succeeded");
+    return id;
+  }
+  /// How many files of the job have this in their names.
+  long files(const std::string& id, const std::string& part) {
+    long count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(config_.data / "blobs" / id))
+      count += entry.path().filename().string().find(part) != std::string::npos ? 1 : 0;
+    return count;
+  }
+};
+
+TEST_F(Pictures, AreWhatTheirNamesSay) {
+  start();
+  const std::string id = succeeded();
+  const api::Json links = job(id).at("links");
+  for (const auto& [link, width, height] :
+       {std::tuple{"layout_png", 1024, 1104}, std::tuple{"preview", 1024, 1024}}) {
+    const auto answer = client().Get(links.at(link).get<std::string>());
+    EXPECT_EQ(answer->status, 200) << answer->body;
+    EXPECT_EQ(answer->get_header_value("Content-Type"), "image/png");
+    const Image image = decode_png(answer->body);
+    EXPECT_EQ(image.width, width);
+    EXPECT_EQ(image.height, height);
+  }
+  const auto svg = get(id, "layout.svg");
+  EXPECT_EQ(svg->get_header_value("Content-Type"), "image/svg+xml");
+  EXPECT_THAT(svg->body, HasSubstr("coloured by stretch"));
+}
+
+TEST_F(Pictures, HaveTheSizeAndTheColouringAskedFor) {
+  start();
+  const std::string id = succeeded();
+  EXPECT_EQ(decode_png(get(id, "preview.png?size=100")->body).width, 100);
+  EXPECT_EQ(decode_png(get(id, "layout.png?size=64&colour=area")->body).height, 69);
+  std::set<std::string> svgs, pngs;
+  for (const std::string colour : {"stretch", "angle", "area", "flips"}) {
+    const auto svg = get(id, "layout.svg?colour=" + colour);
+    EXPECT_THAT(svg->body, HasSubstr("coloured by " + colour));
+    svgs.insert(svg->body);
+    pngs.insert(get(id, "layout.png?size=256&colour=" + colour)->body);
+  }
+  EXPECT_EQ(svgs.size(), 4U);
+  EXPECT_EQ(pngs.size(), 4U);
+}
+
+TEST_F(Pictures, AreDrawnOnceAndKeptAtTheUsualSizesOnly) {
+  start();
+  const std::string id = succeeded();
+  EXPECT_EQ(files(id, ".png"), 0);
+  EXPECT_EQ(files(id, ".svg"), 0);
+  const std::string drawn = get(id, "preview.png?size=128")->body;
+  EXPECT_EQ(files(id, "preview.128.png"), 1);
+  EXPECT_EQ(get(id, "preview.png?size=128")->body, drawn);
+  EXPECT_THAT(get(id, "preview.png?size=129")->body, StartsWith(kSignature));
+  EXPECT_EQ(files(id, "preview.129.png"), 0);
+}
+
+TEST_F(Pictures, AreDrawnAgainWhenTheyAreDamaged) {
+  start();
+  const std::string id = succeeded();
+  for (const std::string picture : {"layout.svg", "preview.png"}) {
+    const std::string whole = get(id, picture)->body;
+    for (const auto& entry : std::filesystem::directory_iterator(config_.data / "blobs" / id)) {
+      const std::string name = entry.path().filename();
+      if (name.ends_with(".png") || name.ends_with(".svg"))
+        std::fstream(entry.path()).seekp(100).put('\0');
+    }
+    EXPECT_EQ(get(id, picture)->body, whole) << picture;
+  }
+}
+
+TEST_F(Pictures, ComeWithATagAndInParts) {
+  start();
+  const std::string id = succeeded();
+  for (const std::string what : {"layout.svg", "layout.png?size=130", "preview.png?size=64"}) {
+    const auto whole = get(id, what);
+    const std::string etag = whole->get_header_value("ETag");
+    EXPECT_EQ(etag.size(), 66U);
+    EXPECT_EQ(get(id, what, {{"If-None-Match", etag}})->status, 304);
+    const auto part = get(id, what, {{"Range", "bytes=2-9"}});
+    EXPECT_EQ(part->status, 206);
+    EXPECT_EQ(part->body, whole->body.substr(2, 8));
+  }
+}
+
+TEST_F(Pictures, AreTheSameAfterARestart) {
+  start();
+  const std::string id = succeeded();
+  const std::string before = get(id, "preview.png?size=90")->body;
+  restart();
+  EXPECT_EQ(get(id, "preview.png?size=90")->body, before);
+}
+
+TEST_F(Pictures, RefuseWhatTheyDoNotHave) {
+  start();
+  const std::string id = succeeded();
+  for (const auto& [what, pointer] :
+       std::vector<std::pair<std::string, std::string>>{{"layout.svg?colour=red", "/colour"},
+                                                        {"layout.svg?size=100", "/size"},
+                                                        {"layout.png?colour=", "/colour"},
+                                                        {"layout.png?size=63", "/size"},
+                                                        {"layout.png?size=4097", "/size"},
+                                                        {"layout.png?size=1e3", "/size"},
+                                                        {"layout.png?size=99999999999", "/size"},
+                                                        {"layout.png?size=100&size=101", "/size"},
+                                                        {"preview.png?colour=area", "/colour"},
+                                                        {"preview.png?color=area", "/color"}}) {
+    const auto answer = get(id, what);
+    expect_problem(answer, 422, "invalid_option");
+    EXPECT_EQ(api::Json::parse(answer->body).at("pointer"), pointer) << what;
+  }
+  EXPECT_EQ(get(id, "layout.png?size=4096")->status, 200);
+}
+
+TEST_F(Pictures, AreNotThereBeforeTheEndNorForAStranger) {
+  start();
+  const std::string running = submit_endless();
+  for (const std::string what : {"layout.svg", "layout.png", "preview.png"}) {
+    expect_problem(get(running, what), 409, "job_unfinished");
+    expect_problem(get("j_00000000000000000000000000000000", what), 404, "not_found");
+  }
+}
+
+TEST_F(Pictures, ShareTheFateOfTheirJob) {
+  config_.keep_seconds = 1;
+  start();
+  const auto answer =
+      client().Post("/v1/jobs", {{"Prefer", "wait=60"}}, "v 0 0 0\nf 1 2 3\n", "model/obj");
+  const api::Json failed = api::Json::parse(answer->body);
+  EXPECT_EQ(failed.at("state"), "failed");
+  const std::string code = failed.at("problem").at("code");
+  expect_problem(get(failed.at("id"), "preview.png"), failed.at("problem").at("status"), code);
+  const std::string id = succeeded();
+  await([&] { return get(id, "preview.png?size=64")->status != 200; });
+  expect_problem(get(id, "layout.png"), 410, "result_expired");
+}
+
+}  // namespace
+}  // namespace unwrapd::server

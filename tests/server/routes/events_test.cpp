@@ -1,0 +1,148 @@
+// Event streams over HTTP.
+#include "tests/server/running_server.hpp"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <thread>
+
+#include "api/events.hpp"
+#include "server/access/key_store.hpp"
+
+namespace unwrapd::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class Events : public RunningServer {
+ protected:
+  std::string events(const std::string& id, const httplib::Headers& headers = {}) {
+    const auto answer = get(id, "events", headers);
+    EXPECT_EQ(answer->get_header_value("Content-Type"), "text/event-stream");
+    EXPECT_EQ(answer->get_header_value("X-Accel-Buffering"), "no");
+    return answer->body;
+  }
+
+  /// A reader that has received its first bytes and stays until the stream ends.
+  std::jthread stay(const std::string& id, std::atomic<int>& begun,
+                    const httplib::Headers& headers = {}) {
+    return std::jthread([this, id, headers, &begun] {
+      bool first = true;
+      client().Get("/v1/jobs/" + id + "/events", headers, [&](const char*, std::size_t) {
+        if (first) ++begun;
+        first = false;
+        return true;
+      });
+    });
+  }
+};
+
+TEST_F(Events, TellTheWholeStoryInOrder) {
+  start();
+  const std::string id = submit("?stop.iterations=3");
+  const std::string story = events(id);
+  std::size_t at = 0;
+  for (const char* event :
+       {"event: queued", "event: started", "\"name\":\"read\"", "\"name\":\"solve\"",
+        "event: iteration", "\"i\":3", "\"name\":\"write\"", "event: succeeded"}) {
+    at = story.find(event, at);
+    ASSERT_NE(at, std::string::npos) << event << " in\n" << story;
+  }
+  EXPECT_THAT(story, StartsWith("id: 1\n"));
+  EXPECT_EQ(state(id), "succeeded");
+}
+
+TEST_F(Events, AreResumedAfterTheLastOneSeen) {
+  start();
+  const std::string id = submit("?stop.iterations=3");
+  const std::string whole = events(id);
+  const std::size_t fourth = whole.find("id: 4\n");
+  EXPECT_EQ(events(id, {{"Last-Event-ID", "3"}}), whole.substr(fourth));
+  const std::string last = whole.substr(whole.rfind("id: "));
+  const std::string last_id = last.substr(4, last.find('\n') - 4);
+  EXPECT_EQ(events(id, {{"Last-Event-ID", last_id}}), last);
+  expect_problem(get(id, "events", {{"Last-Event-ID", "x"}}), 400, "malformed_request");
+}
+
+TEST_F(Events, OfALongJobHaveAGapForWhoeverComesLate) {
+  start();
+  const std::string id = submit("?stop.iterations=5000", 4);
+  await_state(id, "succeeded");
+  const std::string late = events(id, {{"Last-Event-ID", "2"}});
+  EXPECT_THAT(late, HasSubstr("event: gap\ndata: {\"first\":3,"));
+  EXPECT_THAT(late, HasSubstr("event: succeeded"));
+}
+
+TEST_F(Events, AReaderThatLeavesCancelsNothing) {
+  start();
+  const std::string id = submit("?stop.iterations=2000", 8);
+  client().Get("/v1/jobs/" + id + "/events", [](const char*, std::size_t) { return false; });
+  await_state(id, "succeeded");
+}
+
+TEST_F(Events, StreamsAreLimitedAndStarveNoOtherRequest) {
+  start();
+  const std::string id = submit_endless();
+  std::atomic<int> begun = 0;
+  std::vector<std::jthread> readers;
+  for (int r = 0; r < config_.limits.max_streams; ++r) readers.push_back(stay(id, begun));
+  await([&] { return begun == config_.limits.max_streams; });
+  const auto refused = get(id, "events");
+  expect_problem(refused, 503, "too_many_streams");
+  EXPECT_TRUE(refused->has_header("Retry-After"));
+  EXPECT_EQ(client().Get("/healthz")->status, 200);
+  client().Delete("/v1/jobs/" + id);
+  readers.clear();
+  await([&] { return get(id, "events")->status == 200; });
+}
+
+TEST_F(Events, OfOneKeyLeaveHalfOfTheStreamsToOthers) {
+  config_.access.require_keys = true;
+  start();
+  KeyStore keys(config_.data);
+  const auto holder = [&] {
+    ApiKey key;
+    key.scopes = {.submit = true, .read = true};
+    return httplib::Headers{{"Authorization", "Bearer " + keys.add(key)}};
+  };
+  const auto submit_as = [this](const httplib::Headers& key) {
+    const auto job =
+        client().Post("/v1/jobs?stop.iterations=10000", key, grid_obj(120), "model/obj");
+    return api::Json::parse(job->body).at("id").get<std::string>();
+  };
+  const httplib::Headers greedy = holder(), modest = holder();
+  const std::string id = submit_as(greedy), other = submit_as(modest);
+  std::atomic<int> begun = 0;
+  std::vector<std::jthread> readers;
+  const int half = config_.limits.max_streams / 2;
+  for (int r = 0; r < half; ++r) readers.push_back(stay(id, begun, greedy));
+  await([&] { return begun == half; });
+  expect_problem(get(id, "events", greedy), 503, "too_many_streams");
+  for (int r = 0; r < half; ++r) readers.push_back(stay(other, begun, modest));
+  await([&] { return begun == 2 * half; });
+  client().Delete("/v1/jobs/" + id, greedy);
+  client().Delete("/v1/jobs/" + other, modest);
+}
+
+TEST_F(Events, ThatAreNoLongerKeptAreTold) {
+  start();
+  const std::string id = submit("?stop.iterations=3");
+  await_state(id, "succeeded");
+  const std::string all = events(id);
+  EXPECT_THAT(all, Not(HasSubstr("event: gap")));
+  const std::string last = all.substr(all.rfind("id: "));
+  const std::int64_t end = std::stoll(last.substr(4));
+  restart();
+  const auto gap = [&](std::int64_t first) {
+    return api::sse_frame(api::gap_event(first, end - 1));
+  };
+  EXPECT_EQ(events(id), gap(1) + last);
+  EXPECT_EQ(events(id, {{"Last-Event-ID", "2"}}), gap(3) + last);
+  for (const std::int64_t seen : {end - 1, end})
+    EXPECT_EQ(events(id, {{"Last-Event-ID", std::to_string(seen)}}), last);
+}
+
+}  // namespace
+}  // namespace unwrapd::server
