@@ -142,7 +142,11 @@ export function timeLimit(run, binary) {
       query: kSlow, headers: {...kGlb, Prefer: 'wait=30'}, body: kSlowMesh, status: 200,
     });
     run.expectEqual('a job that takes too long', job.problem?.code, 'time_limit');
-    for (let i = 0; i < 3; ++i) await slowJob(run, base, 202);
+    const ended = await run.json(base, 'unwrap', {
+      query: kSlow, headers: kGlb, body: kSlowMesh, status: 422,
+    });
+    run.expectEqual('a mesh that takes too long', ended.code, 'time_limit');
+    for (let i = 0; i < 8; ++i) await slowJob(run, base, 202);
     await run.call(base, 'unwrap', {headers: kGlb, body: meshes.glb(), status: 409});
   });
 }
