@@ -71,93 +71,120 @@ using A = AssetOptions;
 constexpr std::array kRows = {
     choice<&O::method, kMethods>(
         "method", kEveryMethod,
-        "How the map is judged: asap keeps angles, arap keeps shapes, hybrid lies between them."),
+        "The energy that the map minimizes. arap keeps angles and areas together (textures, light "
+        "maps); asap keeps angles; hybrid balances the two by lambda; slim keeps shape and never "
+        "flips a triangle; abf, linabf, bff and cp keep angles with less area distortion than "
+        "asap; ic is for comparison."),
     OptionRow{.name = "lambda",
               .type = OptionType::numbers,
               .nullable = true,
-              .description = "Weight of area against angle: 0 is asap, large values approach arap; "
-                             "a list makes a map for each.",
+              .description = "Weight of area against angle. 0 equals asap, larger values approach "
+                             "arap. A list computes one map for each of its values.",
               .methods = kOnlyHybrid,
               .get = get_lambda,
               .set = set_lambda},
     choice<&O::lambda_units, kLambdaUnits>(
         "lambda_units", kOnlyHybrid,
-        "Whether lambda is dimensionless or as printed in the paper's Eq. (5)."),
-    figure<&Stop::iterations>("stop.iterations", {1, {}, &Limits::max_iterations}, kStoppable,
-                              "So many plain iterations of every chart, as in the paper; without "
-                              "it accelerated ones, until they converge. Those of slim are alike."),
+        "The scale of lambda. dimensionless: independent of the mesh's size and resolution; paper: "
+        "as in the paper's Eq. (5), in the mesh's own units, for comparison with published "
+        "figures."),
+    figure<&Stop::iterations>(
+        "stop.iterations", {1, {}, &Limits::max_iterations}, kStoppable,
+        "Unset: iterate until convergence, with acceleration. N: exactly N unaccelerated "
+        "iterations of every chart, as in the paper; slim iterates the same way in both cases."),
     figure<&Stop::tolerance>("stop.tolerance", {kMinTolerance, kMaxTolerance}, kStoppable,
-                             "Converged is when the energy falls by less than this share."),
+                             "Iterations have converged when the energy falls by less than this "
+                             "share. Lower values take longer and lower the energy further."),
     figure<&Stop::max_iterations>("stop.max_iterations", {1, {}, &Limits::max_iterations},
                                   kStoppable,
-                                  "Iterations of a chart that stop by tolerance, at most."),
+                                  "The most iterations of a chart that does not converge earlier. "
+                                  "Higher values take longer on charts that converge slowly."),
     choice<&O::initial, kInitialMaps>(
         "initial", kLocalGlobal,
-        "The map to start from; auto takes the one that promises the least energy."),
+        "The map to start from. auto: the start with the lowest expected energy; mean_value, "
+        "tutte: a map into a convex boundary; lscm: the conformal map. Other starts than auto are "
+        "for comparison."),
     choice<&O::pins, kPins>(
         "pins", kOnlyAsap,
-        "How the conformal map is pinned: two vertices at the diameter, or spectrally."),
+        "How asap fixes position and scale. diameter: pins the two boundary vertices farthest "
+        "apart; spectral: pins none, which distorts areas less."),
     choice<&O::guarantee, kGuarantees>(
         "guarantee", kEveryMethod,
-        "What holds of the result: nothing, no triangle flipped, or no two overlapping."),
+        "A property that the result must have, or the job fails. flip_free: no triangle is "
+        "flipped; bijective: in addition, no two triangles of a chart overlap; none: the raw map."),
     choice<&O::repair, kRepairs>(
         "repair", kEveryMethod,
-        "How flips are mended: in small patches, or by the convex virtual boundary."),
-    choice<&O::boundary, kBoundaries>("boundary", kHolding,
-                                      "The shape of every chart's longest boundary."),
+        "How flipped triangles are repaired. untangle: moves few vertices around each flip; "
+        "virtual_boundary: the paper's convex virtual boundary."),
+    choice<&O::boundary, kBoundaries>(
+        "boundary", kHolding,
+        "The shape of every chart's longest boundary. free: chosen by the map, with the least "
+        "distortion; circle or square: exactly that shape."),
     OptionRow{.name = "constraints",
               .type = OptionType::objects,
               .limit = &Limits::max_constraints,
-              .description = "Vertices and the texture coordinates that they shall have.",
+              .description = "Vertices and the texture coordinates that they must have: exactly "
+                             "or, with a weight, in least squares.",
               .methods = kHolding,
               .get = get_constraints,
               .set = set_constraints},
-    choice<&O::seams, kSeams>(
-        "seams", kEveryMethod,
-        "Where cuts lie that came in: between copies of a vertex (keep), nowhere (none), where "
-        "the UVs that came in have theirs (uv0), or auto."),
-    OptionRow{.name = "seam_edges",
-              .type = OptionType::objects,
-              .limit = &Limits::max_constraints,
-              .description = "Paths of vertices along which the mesh is cut open as well.",
-              .methods = kEveryMethod,
-              .get = get_seam_edges,
-              .set = set_seam_edges},
+    choice<&O::seams, kSeams>("seams", kEveryMethod,
+                              "Which cuts of the input remain cuts. keep: wherever vertices are "
+                              "duplicated; none: nowhere; uv0: at the seams of the existing UVs; "
+                              "auto: as keep if that gives a few disks, else as none."),
+    OptionRow{
+        .name = "seam_edges",
+        .type = OptionType::objects,
+        .limit = &Limits::max_constraints,
+        .description =
+            "Paths of vertices along which the mesh is cut, in addition to the cuts of seams.",
+        .methods = kEveryMethod,
+        .get = get_seam_edges,
+        .set = set_seam_edges},
     figure<&O::max_distortion>("max_distortion", {kMinDistortion, kMaxDistortion}, kEveryMethod,
-                               "Meshes are taken apart until the angles and areas of ARAP maps are "
-                               "distorted by no more; without it disks stay whole, and all else "
-                               "has 2.02."),
+                               "The most distortion of angles and of areas of ARAP maps; 2 is "
+                               "ideal. Surfaces are split into charts until it holds. Lower values "
+                               "result in more charts. Unset: unlimited for a disk, else 2.02."),
     figure<&O::max_charts>("max_charts", {1, kMaxCharts}, kEveryMethod,
-                           "Charts at most, whatever the distortion, where topology allows it."),
+                           "The most charts, at any distortion, where topology allows it. Lower "
+                           "values result in fewer charts with more distortion. Unset: unlimited."),
     figure<&O::resolution>("resolution", {kMinResolution, kMaxResolution}, kEveryMethod,
-                           "Side of the square texture, in texels."),
-    figure<&O::padding>("padding", {0, kMaxPadding}, kEveryMethod,
-                        "Texels between islands, at most a quarter of resolution."),
+                           "Side of the square texture, in texels. Set it to the size of the "
+                           "texture that will be painted or baked."),
+    figure<&O::padding>(
+        "padding", {0, kMaxPadding}, kEveryMethod,
+        "Least gap between islands, in texels; at most a quarter of resolution. Higher values "
+        "prevent bleeding between islands at lower mip levels, but fill less of the page."),
     figure<&Packing::texels_per_unit>(
         "texels_per_unit", {kMinTexelsPerUnit, kMaxTexelsPerUnit}, kEveryMethod,
-        "Texels that a unit of the mesh gets on every island; without it as "
-        "many as fit."),
-    figure<&Packing::max_pages>("max_pages", {1, kMaxPages}, kEveryMethod,
-                                "Pages (UDIM tiles 1001 and on, U counts them) at most."),
+        "Texels for each unit of length of the mesh, on every island. Unset: as many as fit. Set "
+        "it to give several assets the same texel density."),
+    figure<&Packing::max_pages>(
+        "max_pages", {1, kMaxPages}, kEveryMethod,
+        "The most pages. Page k is the UDIM tile 1001 + k and lies at U from k to k + 1."),
     plain<&Packing::stack_identical>("stack_identical", OptionType::flag, kEveryMethod,
-                                     "Whether islands of the same shape share one place."),
-    plain<&O::repack_only>("repack_only", OptionType::flag, kEveryMethod,
-                           "Whether the islands of the UVs that are there are packed anew, and "
-                           "nothing is unwrapped."),
+                                     "true: islands of the same shape share one place, and so "
+                                     "their texels; false: every island has its own place."),
+    plain<&O::repack_only>(
+        "repack_only", OptionType::flag, kEveryMethod,
+        "true: packs the islands of the existing UVs again, without unwrapping; false: unwraps."),
     figure<&A::texcoord>("texcoord", {0, kMaxTexcoord}, kEveryMethod,
-                         "The set of texture coordinates that is written: TEXCOORD_n."),
-    plain<&A::materials>("materials", OptionType::names, kEveryMethod,
-                         "Names of the materials that are unwrapped; the rest keeps its UVs."),
-    plain<&A::primitives>("primitives", OptionType::names, kEveryMethod,
-                          "JSON pointers of the primitives that are unwrapped; the rest keeps its "
-                          "UVs."),
+                         "The set of texture coordinates to write, TEXCOORD_n. All other sets are "
+                         "kept: choose 1 for a light map beside existing UVs."),
+    plain<&A::materials>(
+        "materials", OptionType::names, kEveryMethod,
+        "Names of the materials to unwrap; all other surfaces keep their UVs. Empty: all."),
+    plain<&A::primitives>(
+        "primitives", OptionType::names, kEveryMethod,
+        "JSON pointers of the primitives to unwrap; all others keep their UVs. Empty: all."),
     choice<&JobOptions::output, kOutputs>("output", kEveryMethod,
-                                          "Format of the result; auto answers as it came in."),
+                                          "Format of the result. auto: the format of the input."),
     choice<&A::compression, kCompressions>(
         "compression", kEveryMethod,
-        "Encoding of a glTF's geometry, always without loss; keep encodes as it came in."),
+        "Encoding of a glTF's geometry, always lossless. keep: as in the input; none: "
+        "uncompressed; draco, meshopt: smaller files, for readers that support the extension."),
     plain<&A::vertex_map>("vertex_map", OptionType::flag, kEveryMethod,
-                          "Whether the report tells which vertices were copied for seams."),
+                          "true: the report lists the vertices that were duplicated for seams."),
 };
 
 }  // namespace

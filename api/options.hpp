@@ -48,7 +48,7 @@ struct OptionRow {
   std::optional<double> maximum = {};              ///< of a number; empty: none, or the server's
   int Limits::*limit = nullptr;  ///< the server's own maximum, of a number or of a list's entries
   bool nullable = false;         ///< null counts as not given
-  std::string_view description;  ///< one sentence
+  std::string_view description;  ///< what each value does, and when to choose it
   std::span<const Method> methods;  ///< with which it has an effect
 
   /// The option as JSON, from and to the options; set() takes what check_value() lets pass.

@@ -15,22 +15,24 @@ struct MethodRow {
 
 constexpr std::array kMethods = {
     MethodRow{Method::asap, "As similar as possible",
-              "Keeps angles (the least squares conformal map); solved directly."},
+              "Keeps angles (the least squares conformal map); one direct solve."},
     MethodRow{Method::arap, "As rigid as possible",
-              "Keeps angles and areas together; iterates between local fits and one global solve."},
-    MethodRow{Method::hybrid, "Hybrid", "Between asap and arap: lambda weighs area against angle."},
+              "Keeps angles and areas together; alternates between local fits and a global solve."},
+    MethodRow{Method::hybrid, "Hybrid",
+              "A balance between asap and arap: lambda weighs area against angle."},
     MethodRow{Method::abf, "Angle-based flattening",
-              "Keeps angles: finds the nearest ones that close up in the plane (ABF++)."},
+              "Keeps angles: finds the nearest angles that close up in the plane (ABF++)."},
     MethodRow{Method::linabf, "Linear angle-based flattening",
-              "Keeps angles: abf's equations made linear, one solve."},
+              "Keeps angles: linearizes the equations of abf; one solve."},
     MethodRow{Method::cp, "Curvature prescription",
-              "Keeps angles: scales edges until all curvature is at the boundary."},
-    MethodRow{Method::bff, "Boundary first flattening",
-              "Keeps angles: the boundary of least area distortion first, then its inside."},
+              "Keeps angles: scales edges until all curvature lies at the boundary."},
+    MethodRow{
+        Method::bff, "Boundary first flattening",
+        "Keeps angles: computes the boundary of least area distortion first, then the interior."},
     MethodRow{Method::ic, "Inverse curvature",
-              "Flattens a metric of circles about the vertices by the inverse curvature map."},
+              "Flattens a circle-packing metric by the inverse curvature map."},
     MethodRow{Method::slim, "Scalable locally injective mapping",
-              "Keeps shapes and never flips a triangle (symmetric Dirichlet energy)."},
+              "Keeps shape and never flips a triangle (symmetric Dirichlet energy)."},
 };
 
 std::string_view type_name(OptionType type) {

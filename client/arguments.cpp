@@ -17,24 +17,24 @@ namespace fs = std::filesystem;
 constexpr double kMaxTimeoutSeconds = 1e6;
 
 constexpr const char* kAbout =
-    "Gives a triangle mesh its UVs: sends FILE (glTF, GLB or OBJ) to an unwrapd server, shows the "
-    "progress and writes the same asset back with texture coordinates.";
+    "unwrap computes UV coordinates for a triangle mesh: it sends FILE (glTF, GLB or OBJ) to an "
+    "unwrapd server, shows the progress, and writes the same asset with texture coordinates.";
 
 constexpr const char* kFooter = R"(Examples:
   unwrap chair.glb                                 writes chair.uv.glb
-  unwrap chair.gltf -o chair.glb --method asap     buffers beside chair.gltf are sent with it
+  unwrap chair.gltf -o chair.glb --method asap     sends the buffers beside chair.gltf with it
   unwrap bust.obj -o bust.uv.obj --method hybrid --lambda 0.1 --layout bust.svg
   unwrap bust.glb --method hybrid --lambda 1,0.1   writes bust.uv.1.glb and bust.uv.0.1.glb
   unwrap chair.glb --json --quiet | jq .distortion
-  unwrap --sample shell.glb                        a mesh to try all this with
+  unwrap --sample shell.glb                        writes a mesh to try these commands with
 
-UNWRAP_API_KEY in the environment is sent to servers that ask for an API key.
+For servers that require an API key, set the environment variable UNWRAP_API_KEY.
 
 Exit codes:
     0  done
-    1  the server refused or failed the job: its problem is printed on stderr
-    2  the command line makes no sense
-    3  no server at the address, no answer in time, or not unwrapd's
+    1  the server refused the job, or the job failed; the problem is printed on stderr
+    2  the command line is wrong
+    3  the server cannot be reached, does not answer in time, or is not unwrapd
     4  a file cannot be read or written
   130  interrupted (Ctrl-C): the job is cancelled)";
 
@@ -46,7 +46,8 @@ std::string flag_name(std::string_view option) {
 }
 
 std::string value_text(const api::Json& value) {
-  if (value.is_null() || value.is_array()) return "none";
+  if (value.is_null()) return "unset";
+  if (value.is_array()) return "empty";
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
@@ -80,7 +81,7 @@ void add_option_flags(CLI::App& app, OptionTexts& options) {
     if (row.type == api::OptionType::flag) {
       app.add_flag_callback(
              flag_name(row.name), [&options, name] { options[name] = "true"; }, text)
-          ->group("Options of the unwrapping");
+          ->group("Options of the job");
       continue;
     }
     app.add_option_function<std::string>(
@@ -90,7 +91,7 @@ void add_option_flags(CLI::App& app, OptionTexts& options) {
            },
            text)
         ->type_name(range_text(row))
-        ->group("Options of the unwrapping");
+        ->group("Options of the job");
   }
 }
 
@@ -103,14 +104,15 @@ struct Raw {
 
 void add_picture_flags(CLI::App& app, Arguments& arguments) {
   app.add_option("--layout", arguments.layout,
-                 "Write a picture of the UV layout here, an SVG or, by its extension, a PNG")
+                 "Write a picture of the UV layout to PATH: a PNG if it ends in .png, else an SVG")
       ->type_name("PATH");
   app.add_option("--layout-colour", arguments.layout_colour,
-                 "What the layout's colours say. Default: stretch")
+                 "Quantity that the layout's colours show: worst stretch of lengths, distortion of "
+                 "angles, ratio of areas, or flipped triangles. Default: stretch")
       ->check(CLI::IsMember({"stretch", "angle", "area", "flips"}).description(""))
       ->type_name("stretch|angle|area|flips");
   app.add_option("--preview", arguments.preview,
-                 "Write a picture of the mesh (PNG), textured with a checkerboard, here")
+                 "Write a picture of the mesh, textured with a checkerboard, to PATH (PNG)")
       ->type_name("PATH");
 }
 
@@ -118,24 +120,25 @@ void add_flags(CLI::App& app, Raw& raw) {
   Arguments& arguments = raw.arguments;
   app.add_option("FILE", arguments.file, "The mesh: .glb, .gltf or .obj")->type_name("");
   app.add_option("-o,--out", arguments.out,
-                 "Where the result goes; its extension is the format unless --output says "
-                 "otherwise. Without it FILE's name with \".uv\" before the extension. With a "
-                 "list of lambdas there is one for each, with the lambda before the extension")
+                 "File to write the result to. Its extension selects the format unless --output "
+                 "does. Default: the name of FILE with \".uv\" before the extension. A list of "
+                 "lambdas writes one file for each, with the lambda before the extension")
       ->type_name("OUT");
-  app.add_option("--report", arguments.report, "Write the report (JSON) here")->type_name("PATH");
+  app.add_option("--report", arguments.report, "Write the report (JSON) to PATH")
+      ->type_name("PATH");
   add_picture_flags(app, arguments);
-  app.add_flag("--json", arguments.json,
-               "Print the report (JSON) on stdout and nothing else there");
-  app.add_flag("-q,--quiet", arguments.quiet, "Show no progress and no summary");
+  app.add_flag("--json", arguments.json, "Print only the report (JSON) on stdout");
+  app.add_flag("-q,--quiet", arguments.quiet, "Print no progress and no summary");
   app.add_option("--server", raw.server, "Address of the server")
       ->type_name("URL")
       ->envname("UNWRAPD_SERVER")
       ->capture_default_str();
   app.add_option("--timeout", raw.timeout_seconds,
-                 "Give up after so many seconds and cancel the job; 0: never")
+                 "Cancel the job and give up after this many seconds; 0: never")
       ->type_name("SECONDS")
       ->capture_default_str();
-  app.add_option("--sample", arguments.sample, "Write a sample mesh (GLB, 20,164 faces) and stop")
+  app.add_option("--sample", arguments.sample,
+                 "Write a sample mesh (GLB, 20,164 faces) to OUT.glb and exit")
       ->type_name("OUT.glb");
   app.set_version_flag("--version", "unwrap " UNWRAPD_VERSION);
 }
@@ -180,7 +183,7 @@ Arguments complete(Raw raw) {
   if (!arguments.sample.empty()) return std::move(arguments);
   if (!(raw.timeout_seconds >= 0 && raw.timeout_seconds <= kMaxTimeoutSeconds))
     throw Failure(ExitCode::usage, "--timeout: it must be a number of seconds, at most a million.");
-  if (arguments.file.empty()) throw Failure(ExitCode::usage, "FILE is missing: name a mesh.");
+  if (arguments.file.empty()) throw Failure(ExitCode::usage, "FILE is missing; name a mesh.");
   arguments.server = parse_server_url(raw.server);
   arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));
   check_options(arguments.options);

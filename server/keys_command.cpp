@@ -28,7 +28,7 @@ void add_key(const Asked& asked) {
   ApiKey key = asked.key;
   key.scopes = parse_scopes(asked.scopes);
   std::printf("%s\n", KeyStore(asked.data).add(key).c_str());
-  std::fprintf(stderr, "This is the key; it is not stored and cannot be shown again.\n");
+  std::fprintf(stderr, "This is the key. It is not stored and cannot be shown again.\n");
 }
 
 /// Of a data directory that there is: a misspelt one is not made.
@@ -70,32 +70,37 @@ CLI::App* command(CLI::App& app, const std::string& name, const std::string& wha
 }
 
 void declare(CLI::App& app, Asked& asked) {
-  CLI::App* add = command(app, "add", "Make a key and print it", asked);
-  add->add_option("--name", asked.key.name, "What people call it")->required();
-  add->add_option("--scopes", asked.scopes, "Of submit, read and admin")->capture_default_str();
+  CLI::App* add = command(app, "add", "Create a key and print it", asked);
+  add->add_option("--name", asked.key.name, "Name of the key, for people")->required();
+  add->add_option("--scopes", asked.scopes, "Scopes, separated by commas: submit, read, admin")
+      ->capture_default_str();
   const auto limit = [&](const std::string& flag, std::int64_t& value, const std::string& what) {
     add->add_option(flag, value, what + "; 0: no limit")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
   };
-  limit("--requests-per-minute", asked.key.requests_per_minute, "How often it may be used");
-  limit("--max-jobs", asked.key.quota.max_jobs, "Jobs that wait or run");
-  limit("--max-bytes", asked.key.quota.max_bytes, "Bytes of all its jobs' files");
+  limit("--requests-per-minute", asked.key.requests_per_minute,
+        "Most requests of the key in a minute");
+  limit("--max-jobs", asked.key.quota.max_jobs, "Most jobs of the key that wait or run");
+  limit("--max-bytes", asked.key.quota.max_bytes, "Most bytes of the files of all its jobs");
   add->callback([&] { add_key(asked); });
   command(app, "list", "List the keys", asked)->callback([&] { list_keys(asked); });
-  CLI::App* remove = command(app, "remove", "Make a key useless; its jobs stay", asked);
-  remove->add_option("ID", asked.id, "Of unwrapd keys list")->required();
+  CLI::App* remove = command(app, "remove", "Revoke a key; its jobs remain", asked);
+  remove->add_option("ID", asked.id, "Id of the key, from unwrapd keys list")->required();
   remove->callback([&] { remove_key(asked); });
-  CLI::App* secret = command(app, "webhook-secret", "Print what webhooks are signed with", asked);
+  CLI::App* secret =
+      command(app, "webhook-secret", "Print the secret that signs the webhooks of a key", asked);
   secret->add_option("ID", asked.id,
-                     "The key's, k_file for that of --key-file; none where keys are not asked for");
+                     "Id of the key; k_file for the key of --key-file; leave it out if the server "
+                     "requires no keys");
   secret->callback([&] { tell_webhook_secret(asked); });
 }
 
 }  // namespace
 
 int run_keys_command(int argc, const char* const* argv) {
-  CLI::App app("The API keys of a data directory, also while a server runs on it.", "unwrapd keys");
+  CLI::App app("Manages the API keys of a data directory, also while a server runs on it.",
+               "unwrapd keys");
   app.require_subcommand(1);
   Asked asked;
   declare(app, asked);

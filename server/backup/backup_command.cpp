@@ -48,24 +48,26 @@ bool is_backup_command(std::string_view word) {
 }
 
 int run_backup_command(int argc, const char* const* argv) {
-  CLI::App app("Copies of a data directory. Run them as the server's user.", "unwrapd");
+  CLI::App app("Copies and checks data directories. Run these commands as the server's user.",
+               "unwrapd");
   app.require_subcommand(1);
   Asked asked;
   int code = 0;
-  CLI::App* backup =
-      command(app, "backup",
-              "Copy a data directory, also while a server runs on it; exit with 3 when "
-              "damaged files were left out",
-              asked);
-  backup->add_option("DEST", asked.backup, "A folder that is not there yet")->required();
+  CLI::App* backup = command(app, "backup",
+                             "Copy a data directory, also while a server runs on it; exits with 3 "
+                             "if damaged files were left out",
+                             asked);
+  backup->add_option("DEST", asked.backup, "Folder of the new backup; it must not exist")
+      ->required();
   backup->callback([&] { code = tell("backed up", back_up(asked.data, asked.backup)); });
-  CLI::App* restoring =
-      command(app, "restore", "Make an empty data directory of a backup that is whole", asked);
-  restoring->add_option("BACKUP", asked.backup, "That backup has made")->required();
+  CLI::App* restoring = command(
+      app, "restore",
+      "Create a data directory from a complete backup; --data must be empty or missing", asked);
+  restoring->add_option("BACKUP", asked.backup, "Folder made by unwrapd backup")->required();
   restoring->callback([&] { code = tell("restored", restore(asked.backup, asked.data)); });
   command(app, "check",
-          "Read all of a data directory, also while a server runs on it, or of a backup; exit "
-          "with 3 when something is damaged",
+          "Read every file of a data directory, also while a server runs on it, or of a backup; "
+          "exits with 3 if anything is damaged",
           asked)
       ->callback([&] { code = tell("checked", check_store(asked.data)); });
   try {

@@ -21,9 +21,9 @@ namespace {
 
 constexpr int kMistake = 2;
 constexpr const char* kAbout =
-    "Gives triangle meshes their UVs, over HTTP. Every option can be given as a flag, as an "
-    "environment variable and in a TOML file: --max-queue 9, UNWRAPD_MAX_QUEUE=9, max-queue = 9; "
-    "the flag wins over the variable, the variable over the file.";
+    "unwrapd computes UV coordinates for triangle meshes, over HTTP. Every option can be a flag, "
+    "an environment variable or a line of a TOML file: --max-queue 9, UNWRAPD_MAX_QUEUE=9, "
+    "max-queue = 9. The flag overrides the variable, and the variable overrides the file.";
 
 constexpr const char* kCommands =
     "Other commands, each with --help: unwrapd keys (API keys), unwrapd backup, restore and check "
@@ -81,10 +81,12 @@ class Reading {
 void Reading::declare(CLI::App& app) {
   app.footer(kCommands);
   app.set_version_flag("--version", "unwrapd " UNWRAPD_VERSION);
-  app.add_option("--config", file_, "A TOML file of options")->type_name("FILE");
-  app.add_flag("--print-config", print_, "Print all options as they are, as such a file, and exit");
-  app.add_flag("--healthcheck", healthcheck_,
-               "Ask the server that runs with these options whether it is well; exit with 0 or 1");
+  app.add_option("--config", file_, "TOML file with options")->type_name("FILE");
+  app.add_flag("--print-config", print_,
+               "Print the value and source of every option as a TOML file, and exit");
+  app.add_flag(
+      "--healthcheck", healthcheck_,
+      "Check that the server running with these options answers; exit with 0 if it does, else 1");
   each_row([&](const ConfigGroup& group, const ConfigRow& row) {
     const std::string flag = "--" + std::string(row.heading.name);
     const bool is_switch = row.kind == ConfigKind::on_off || row.kind == ConfigKind::switch_of_text;
@@ -121,10 +123,10 @@ std::string text_of(const toml::node& node, const std::string& where) {
   if (const auto* number = node.as_integer()) return std::to_string(number->get());
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
   const toml::array* items = node.as_array();
-  if (!items) wrong(where + " is neither text, a whole number, true, false nor an array of text.");
+  if (!items) wrong(where + " must be text, a whole number, true, false or an array of text.");
   std::vector<std::string> texts;
   for (const toml::node& item : *items) {
-    if (!item.is_string()) wrong(where + " has an item that is not text.");
+    if (!item.is_string()) wrong(where + " must be an array of text.");
     texts.push_back(item.as_string()->get());
   }
   return join_list(texts);
@@ -132,7 +134,7 @@ std::string text_of(const toml::node& node, const std::string& where) {
 
 void Reading::read_file(const std::string& path) {
   if (std::filesystem::is_directory(path))  // which the parser takes for an empty file
-    wrong(path + " is a directory; name the file in it.");
+    wrong(path + " is a directory; name a file in it.");
   toml::table table;
   try {
     table = toml::parse_file(path);
@@ -177,12 +179,12 @@ void Reading::read_flags(const CLI::App& app) {
 void Reading::finish() {
   if (!sources_.contains("admin-listen")) {
     const int port = config_.listen.port;
-    if (port == kMaxPort) wrong("--listen has the last port; give --admin-listen one of its own.");
+    if (port == kMaxPort) wrong("--listen uses the last port; set --admin-listen too.");
     config_.admin = Address{"127.0.0.1", port == 0 ? 0 : port + 1};
   }
   check_together(config_);
   if (healthcheck_ && (!config_.admin || config_.admin->port == 0))
-    wrong("--healthcheck needs an --admin-listen with a port; give the server one.");
+    wrong("--healthcheck needs an --admin-listen with a port; set one.");
 }
 
 /// text as TOML writes it.

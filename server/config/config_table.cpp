@@ -23,7 +23,7 @@ Address address_of(const std::string& text) {
 }
 
 ConfigRow listen_row() {
-  return {.heading = {"listen", "HOST:PORT", "Where to serve; port 0 takes a free one"},
+  return {.heading = {"listen", "HOST:PORT", "Address of the service; port 0 takes a free port"},
           .kind = ConfigKind::text,
           .set = [](Config& config, const std::string& text) { config.listen = address_of(text); },
           .get = [](const Config& config) { return to_text(config.listen); }};
@@ -31,8 +31,8 @@ ConfigRow listen_row() {
 
 ConfigRow admin_row() {
   return {.heading = {"admin-listen", "HOST:PORT",
-                      "Where to serve probes and metrics, or off; not given: 127.0.0.1 and the "
-                      "port after that of --listen"},
+                      "Address of probes and metrics, or off. Unset: 127.0.0.1 with the port after "
+                      "that of --listen"},
           .kind = ConfigKind::text,
           .set =
               [](Config& config, const std::string& text) {
@@ -53,39 +53,42 @@ ConfigGroup edge() {
   using E = EdgeConfig;
   const auto edge = &Config::edge;
   return {
-      .title = "Edge",
+      .title = "Connections",
       .rows = {
           number({"max-connections", "N",
-                  "Connections open at once, fewer where few files may be open; more are turned "
-                  "away"},
+                  "Most open connections (fewer if the system allows few open files); others are "
+                  "refused"},
                  {16, 1'000'000}, edge, &E::max_connections),
           number({"max-idle-connections", "N",
-                  "Of those, ones that send nothing; one more drives out the longest"},
+                  "Most open connections that are idle; beyond it, the one idle for longest is "
+                  "closed"},
                  {1, 1'000'000}, edge, &E::max_idle_connections),
           number({"max-connections-per-address", "N",
-                  "Of one client, an IPv6 one by its /64; loopback and trusted proxies are not "
-                  "counted; 0: no limit"},
+                  "Most open connections of one client address (IPv6: of its /64). Loopback and "
+                  "trusted proxies are not counted. 0: no limit"},
                  {0, 1'000'000}, edge, &E::max_connections_per_address),
-          number(
-              {"max-requests", "N",
-               "Requests answered at once; event streams, and half as many that wait for jobs or "
-               "pictures, come on top"},
-              {1, 4096}, edge, &E::max_requests),
-          list({"trusted-proxies", "RANGES",
-                "Addresses and ranges (10.0.0.0/8,::1) whose X-Forwarded-For is believed"},
-               check_range, edge, &E::trusted_proxies),
-          text({"tls-cert", "PATH", "PEM file of the certificate and its chain; HTTPS then"}, edge,
-               &E::tls_cert),
-          text({"tls-key", "PATH", "PEM file of its key"}, edge, &E::tls_key)}};
+          number({"max-requests", "N",
+                  "Requests answered at once. Event streams, and half as many requests that wait "
+                  "for jobs or pictures, are additional"},
+                 {1, 4096}, edge, &E::max_requests),
+          list(
+              {"trusted-proxies", "RANGES",
+               "Addresses and ranges (10.0.0.0/8,::1) of proxies whose X-Forwarded-For is trusted"},
+              check_range, edge, &E::trusted_proxies),
+          text({"tls-cert", "PATH", "PEM file of the certificate and its chain; turns HTTPS on"},
+               edge, &E::tls_cert),
+          text({"tls-key", "PATH", "PEM file of the certificate's private key"}, edge,
+               &E::tls_key)}};
 }
 
 /// true and false are on and off, which is what the option once was.
 ConfigRow isolate_row() {
   ConfigRow row = choice(
       {"isolate", "",
-       "Each job in a process of its own, without files or network: a crash "
-       "costs that job alone; --isolate=auto (where the kernel allows it), on "
-       "or off"},
+       "Run each job in its own process without files or network, so that a crash fails only that "
+       "job. --isolate=auto: where the kernel allows it; on: always, or the server does not start; "
+       "off: jobs run in the server, which can then cache work between jobs on the same mesh. "
+       "Default: auto"},
       Names<Isolate>{{"auto", Isolate::automatic}, {"on", Isolate::on}, {"off", Isolate::off}},
       &Config::isolate);
   row.kind = ConfigKind::switch_of_text;
@@ -96,45 +99,48 @@ ConfigRow isolate_row() {
 }
 
 ConfigGroup working() {
-  return {
-      .title = "Working",
-      .rows = {
-          text({"data", "PATH", "Directory of jobs and results; made when missing"}, &Config::data),
-          number({"workers", "N", "Jobs run at once"}, {1, kMaxThreads}, &Config::workers),
-          number({"threads", "N", "Threads of each job"}, {1, kMaxThreads}, &Config::threads),
-          number({"memory-limit", "N",
-                  "Bytes that one job may take: what would need more is refused; 0: its share of "
-                  "the machine"},
-                 {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::job_bytes),
-          number({"solver-cache-bytes", "N",
-                  "Factors and maps kept for further jobs on the same mesh"},
-                 {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::cache_bytes),
-          isolate_row(),
-          number({"grace-seconds", "N",
-                  "How long a job that was told to stop, by --max-job-seconds or its owner, may go "
-                  "on; then its process is killed, or its thread given up"},
-                 {0, 3600}, &Config::grace_seconds),
-          number({"drain-seconds", "N",
-                  "How long running jobs may go on after SIGTERM, or until a second one; jobs that "
-                  "do not stop and last answers may take 15 s and --grace-seconds more"},
-                 {0, kMaxCount}, &Config::drain_seconds)}};
+  return {.title = "Jobs",
+          .rows = {
+              text({"data", "PATH", "Directory of jobs and results; created if missing"},
+                   &Config::data),
+              number({"workers", "N", "Jobs that run at once"}, {1, kMaxThreads}, &Config::workers),
+              number({"threads", "N", "Threads of each job"}, {1, kMaxThreads}, &Config::threads),
+              number({"memory-limit", "N",
+                      "Bytes of memory for one job; a job that would need more is refused. 0: its "
+                      "share of the machine"},
+                     {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::job_bytes),
+              number({"solver-cache-bytes", "N",
+                      "Bytes of memory for factors and maps that are cached for further jobs on "
+                      "the same mesh (with --isolate=off)"},
+                     {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::cache_bytes),
+              isolate_row(),
+              number({"grace-seconds", "N",
+                      "Seconds that a job may take to stop after its owner or --max-job-seconds "
+                      "stops it; then its process is killed, or its thread abandoned"},
+                     {0, 3600}, &Config::grace_seconds),
+              number({"drain-seconds", "N",
+                      "Seconds that running jobs may continue after SIGTERM; a second signal ends "
+                      "the wait. Jobs that do not stop, and last answers, may take 15 s and "
+                      "--grace-seconds more"},
+                     {0, kMaxCount}, &Config::drain_seconds)}};
 }
 
 ConfigGroup storing() {
-  return {.title = "Storing",
-          .rows = {number({"keep-seconds", "N", "How long results are kept"}, {1, kMaxCount},
-                          &Config::keep_seconds),
-                   number({"max-stored-jobs", "N",
-                           "Ended jobs of which anything is known; beyond it expired ones go, then "
-                           "the oldest of the key that has the most; 0: no limit"},
-                          {0, kMaxCount}, &Config::max_stored_jobs),
-                   number({"max-disk-bytes", "N",
-                           "Files of all jobs; results that ended first go earlier to keep within "
-                           "it; 0: no limit"},
-                          {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::max_bytes),
-                   number({"min-free-bytes", "N",
-                           "Uploads leave so much of the disk free, results half"},
-                          {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::min_free_bytes)}};
+  return {
+      .title = "Storage",
+      .rows = {number({"keep-seconds", "N", "Seconds that results are kept"}, {1, kMaxCount},
+                      &Config::keep_seconds),
+               number({"max-stored-jobs", "N",
+                       "Most ended jobs that are stored; beyond it, expired jobs are deleted "
+                       "first, then the oldest of the key with the most jobs. 0: no limit"},
+                      {0, kMaxCount}, &Config::max_stored_jobs),
+               number({"max-disk-bytes", "N",
+                       "Bytes on disk for the files of all jobs; beyond it, the oldest results are "
+                       "deleted early. 0: no limit"},
+                      {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::max_bytes),
+               number({"min-free-bytes", "N",
+                       "Bytes of the disk that uploads leave free; results leave half of it free"},
+                      {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::min_free_bytes)}};
 }
 
 /// Browsers send origins, and webhooks' hosts are compared, in small letters.
@@ -160,30 +166,34 @@ void check_host(const std::string& item) {
 
 ConfigGroup admitting() {
   return {
-      .title = "Admitting",
-      .rows = {on_off({"require-keys", "", "Ask for API keys on loopback, too"}, &Config::access,
-                      &AccessConfig::require_keys),
-               text({"key-file", "PATH",
-                     "File of a key of the operator's own, 32 characters or more, of the scope "
-                     "admin: a mounted secret"},
-                    &Config::access, &AccessConfig::key_file),
-               on_off({"insecure", "", "Ask for no API keys although other machines can connect"},
-                      &Config::access, &AccessConfig::insecure),
-               list({"allowed-hosts", "LIST",
-                     "Names by which the server is reached where it asks for no keys: "
-                     "example.com, *.example.com or *; addresses and localhost always are"},
-                    check_host, &Config::allowed_hosts),
-               list({"cors-origins", "LIST", "Sites whose pages may call from a browser, or *"},
-                    check_origin, &Config::cors_origins),
-               list({"webhook-hosts", "LIST",
-                     "Hosts that webhooks may call: example.com, *.example.com or *"},
-                    check_host, &Config::webhooks, &WebhookConfig::allowed_hosts),
-               on_off({"webhook-private", "",
-                       "Let webhooks call addresses of this machine and of private networks"},
-                      &Config::webhooks, &WebhookConfig::allow_private),
-               number({"webhook-retry-seconds", "N",
-                       "Until the second try of a webhook, doubled for each further one"},
-                      {1, 3600}, &Config::webhooks, &WebhookConfig::retry_seconds)}};
+      .title = "Access",
+      .rows = {
+          on_off({"require-keys", "", "Require API keys on loopback, too"}, &Config::access,
+                 &AccessConfig::require_keys),
+          text({"key-file", "PATH",
+                "File with one more API key of the scope admin, 32 characters or more: for a "
+                "mounted secret"},
+               &Config::access, &AccessConfig::key_file),
+          on_off({"insecure", "", "Require no API keys although other machines can connect"},
+                 &Config::access, &AccessConfig::insecure),
+          list({"allowed-hosts", "LIST",
+                "Host names that the server answers to when it requires no API keys: example.com, "
+                "*.example.com or *. It always answers to addresses and localhost"},
+               check_host, &Config::allowed_hosts),
+          list({"cors-origins", "LIST",
+                "Origins whose pages may call the server from a browser, or *"},
+               check_origin, &Config::cors_origins),
+          list(
+              {"webhook-hosts", "LIST",
+               "Hosts that webhooks may call: example.com, *.example.com or *. Empty: no webhooks"},
+              check_host, &Config::webhooks, &WebhookConfig::allowed_hosts),
+          on_off({"webhook-private", "",
+                  "Allow webhooks to addresses of this machine and of private networks"},
+                 &Config::webhooks, &WebhookConfig::allow_private),
+          number(
+              {"webhook-retry-seconds", "N",
+               "Seconds until the second attempt of a webhook; doubled for each further attempt"},
+              {1, 3600}, &Config::webhooks, &WebhookConfig::retry_seconds)}};
 }
 
 ConfigGroup telling() {
@@ -193,10 +203,12 @@ ConfigGroup telling() {
                                   {"error", LogLevel::error},
                                   {"off", LogLevel::off}};
   const Names<LogFormat> formats = {{"json", LogFormat::json}, {"text", LogFormat::text}};
-  return {.title = "Telling",
-          .rows = {choice({"log-level", "LEVEL", "debug, info, warning, error or off"}, levels,
-                          &Config::log_level),
-                   choice({"log-format", "FORMAT", "json or text"}, formats, &Config::log_format)}};
+  return {.title = "Logging",
+          .rows = {choice({"log-level", "LEVEL",
+                           "Least severe messages to log: debug, info, warning, error or off"},
+                          levels, &Config::log_level),
+                   choice({"log-format", "FORMAT", "Format of log lines: json or text"}, formats,
+                          &Config::log_format)}};
 }
 
 template <class Number>
@@ -209,23 +221,26 @@ ConfigGroup limits() {
   return {
       .title = "Limits",
       .rows = {
-          limit({"max-body-bytes", "N", "Bytes of one request"}, {1024, kMaxBodyBytes},
+          limit({"max-body-bytes", "N", "Most bytes of one request body"}, {1024, kMaxBodyBytes},
                 &Limits::max_body_bytes),
-          limit({"max-vertices", "N", "Vertices of an asset"}, {3, kMaxCount},
+          limit({"max-vertices", "N", "Most vertices of an asset"}, {3, kMaxCount},
                 &Limits::max_vertices),
-          limit({"max-faces", "N", "Triangles of an asset"}, {1, kMaxCount}, &Limits::max_faces),
-          limit({"max-sync-faces", "N", "Triangles of an asset sent to /v1/unwrap"}, {1, kMaxCount},
-                &Limits::max_sync_faces),
-          limit({"max-iterations", "N", "The options stop.iterations and stop.max_iterations"},
+          limit({"max-faces", "N", "Most triangles of an asset"}, {1, kMaxCount},
+                &Limits::max_faces),
+          limit({"max-sync-faces", "N", "Most triangles of an asset sent to /v1/unwrap"},
+                {1, kMaxCount}, &Limits::max_sync_faces),
+          limit({"max-iterations", "N",
+                 "Largest value of the options stop.iterations and stop.max_iterations"},
                 {1, 1'000'000}, &Limits::max_iterations),
-          limit({"max-constraints", "N", "Entries of the option constraints"}, {0, 10'000'000},
-                &Limits::max_constraints),
-          limit({"max-job-seconds", "N", "Work on one job"}, {1, kMaxCount},
+          limit({"max-constraints", "N", "Most entries of the options constraints and seam_edges"},
+                {0, 10'000'000}, &Limits::max_constraints),
+          limit({"max-job-seconds", "N", "Most seconds of work on one job"}, {1, kMaxCount},
                 &Limits::max_job_seconds),
-          limit({"max-wait-seconds", "N", "Prefer: wait"}, {0, 3600}, &Limits::max_wait_seconds),
-          limit({"max-queue", "N", "Jobs that wait for a worker"}, {1, 1'000'000},
+          limit({"max-wait-seconds", "N", "Most seconds that a request may wait by Prefer: wait"},
+                {0, 3600}, &Limits::max_wait_seconds),
+          limit({"max-queue", "N", "Most jobs that wait for a worker"}, {1, 1'000'000},
                 &Limits::max_queue),
-          limit({"max-streams", "N", "Event streams open at once"}, {1, kMaxStreams},
+          limit({"max-streams", "N", "Most event streams open at once"}, {1, kMaxStreams},
                 &Limits::max_streams)}};
 }
 
@@ -237,12 +252,12 @@ std::vector<ConfigGroup> config_groups() {
 
 void check_together(const Config& config) {
   if (config.edge.tls_cert.empty() != config.edge.tls_key.empty())
-    throw Error(ErrorCode::invalid_option, "--tls-cert and --tls-key go together; give both.");
+    throw Error(ErrorCode::invalid_option, "--tls-cert and --tls-key belong together; give both.");
   if (config.access.insecure && !config.access.key_file.empty())
     throw Error(ErrorCode::invalid_option, "--insecure and --key-file exclude each other.");
   if (config.admin && config.admin->port != 0 && *config.admin == config.listen) {
     throw Error(ErrorCode::invalid_option,
-                "--admin-listen and --listen are the same address; give them two.");
+                "--admin-listen and --listen are the same address; give each its own.");
   }
 }
 

@@ -95,7 +95,8 @@ TEST(Config, ProbesAreOnLoopbackBesideTheServiceWhereNothingElseIsSaid) {
   EXPECT_EQ(parse({"--listen", "[::1]:0"}).config.admin, (Address{"127.0.0.1", 0}));
   EXPECT_EQ(parse({"--admin-listen", "[::]:7"}).config.admin, (Address{"::", 7}));
   EXPECT_FALSE(parse({"--admin-listen", "off"}).config.admin);
-  EXPECT_THAT(mistake({"--listen", "a:7", "--admin-listen", "a:7"}), HasSubstr("give them two"));
+  EXPECT_THAT(mistake({"--listen", "a:7", "--admin-listen", "a:7"}),
+              HasSubstr("give each its own"));
 }
 
 TEST_F(ConfigFile, TheFlagWinsOverTheVariableAndThatOverTheFile) {
@@ -119,9 +120,9 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithItsPlaceAndWhatWouldBeRight) {
                     HasSubstr("\"0\"")));
   EXPECT_THAT(wrong("\nmax-queue ="), HasSubstr("unwrapd.toml line 2"));
   EXPECT_THAT(wrong("max-que = 1"), HasSubstr("there is no option \"max-que\""));
-  EXPECT_THAT(wrong("[workers]\nn = 1"), HasSubstr("workers is neither text, a whole number"));
-  EXPECT_THAT(wrong("workers = 1.5"), HasSubstr("workers is neither text, a whole number"));
-  EXPECT_THAT(wrong("data = [1]"), HasSubstr("data has an item that is not text"));
+  EXPECT_THAT(wrong("[workers]\nn = 1"), HasSubstr("workers must be text, a whole number"));
+  EXPECT_THAT(wrong("workers = 1.5"), HasSubstr("workers must be text, a whole number"));
+  EXPECT_THAT(wrong("data = [1]"), HasSubstr("data must be an array of text"));
   EXPECT_THAT(mistake({"--config", "/no/such/file"}), HasSubstr("/no/such/file"));
   EXPECT_THAT(mistake({"--config", "/tmp"}), HasSubstr("/tmp is a directory"));
   const Environment queue("UNWRAPD_MAX_QUEUE", "many");
