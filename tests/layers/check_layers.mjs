@@ -1,7 +1,7 @@
 // The rules of the source tree that no compiler checks: who may include whom, which library is seen
 // by which files, how long a file may grow. Run on a checkout: node check_layers.mjs [ROOT]. Each
 // breach is one line "path:line: rule"; the exit status is 1 when there is one.
-import { readFileSync, readdirSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { dirname, join, relative, sep } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -28,6 +28,7 @@ const MAX_LINES = [
   { files: /\.(cpp|hpp|mjs|sh)$/, lines: 300 },
   { files: /^CMakeLists\.txt$/, lines: 60 },
   { files: /^README\.md$/, lines: 100 },
+  { files: /^CONTRIBUTING\.md$/, lines: 80 },
   { files: /^docs\/adr\/.*\.md$/, lines: 40 },
 ];
 
@@ -109,6 +110,20 @@ export function twins(headers) {
   return breaches;
 }
 
+/** Documents for readers of the tree as it is; decisions (docs/adr) tell of the tree as it was. */
+const GUIDE = /^([A-Z]+|docs\/[a-z]+)\.md$/;
+const PATH_IN_TREE = /^(core|api|web|server|client|tests|docker|docs|cmake)(\/[\w.-]+)+$/;
+
+/** Files and folders that a guide names or links to and that do not exist. exists: of a path. */
+export function deadPaths(path, text, exists) {
+  if (!GUIDE.test(path) || path === "CHANGELOG.md") return [];
+  const folder = dirname(path);
+  const named = [...text.matchAll(/`([^`\n]+)`/g)].map(([, name]) => name).filter((name) => PATH_IN_TREE.test(name));
+  const linked = [...text.matchAll(/\]\(([^)#:\s]+)(?:#[^)]*)?\)/g)].map(([, link]) => join(folder, link).split(sep).join("/"));
+  const isThere = (name) => ["", ".cpp", ".hpp"].some((extension) => exists(name + extension));
+  return [...named, ...linked].filter((name) => !isThere(name)).map((name) => `${path}: ${name} does not exist`);
+}
+
 /** All breaches of a checkout. */
 export function checkTree(root) {
   const breaches = [];
@@ -119,6 +134,7 @@ export function checkTree(root) {
     count += 1;
     const text = readFileSync(join(root, path), "utf8");
     breaches.push(...check(path, text));
+    breaches.push(...deadPaths(path, text, (name) => existsSync(join(root, name))));
     if (/^(core|api|server|client)\/.*\.hpp$/.test(path)) headers.push({ path, text });
   }
   if (!readFileSync(join(root, "docs/architecture.md"), "utf8").includes(table()))
