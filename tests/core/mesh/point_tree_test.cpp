@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -46,6 +48,25 @@ TEST(PointTree, FindsWhatASearchThroughAllFinds) {
           EXPECT_EQ(tree.at(place), there);
         }
       }
+}
+
+// Sums of distances are rounded there; nanoflann misses some of the nearest (ADR 0043).
+TEST(PointTree, FindsTheLowestAmongPointsAtHalvingDistances) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 2000; ++i)
+    points.emplace_back(std::ldexp(1, -(i % 1000)), std::ldexp(1, -(i / 7)),
+                        std::ldexp(1, -(i / 13)));
+  const PointTree tree(points, every(points, 1));
+  std::mt19937 rng(7);
+  std::uniform_real_distribution<double> x(-1, 1);
+  for (int k = 0; k < 500; ++k) {
+    const Vec3 place(x(rng), x(rng), x(rng));
+    const auto nearer = [&](const Vec3& a, const Vec3& b) {
+      return (a - place).squaredNorm() < (b - place).squaredNorm();
+    };
+    const auto nearest = std::min_element(points.begin(), points.end(), nearer);  // the first one
+    EXPECT_EQ(tree.nearest(place), nearest - points.begin());
+  }
 }
 
 TEST(PointTree, AnswersOneOfItsPointsHoweverFarThePlace) {
