@@ -3,9 +3,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <prometheus/text_serializer.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -14,57 +13,61 @@
 namespace unwrapd::server {
 namespace {
 
+using prometheus::MetricFamily;
+using Type = prometheus::MetricType;
+
 struct FamilyRow {
   Metric metric;
-  std::string_view name;
-  std::string_view type;
-  std::string_view help;
+  const char* name;
+  Type type;
+  const char* help;
 };
 
 constexpr std::array kFamilies = {
-    FamilyRow{Metric::build_info, "unwrapd_build_info", "gauge", "1, with the version as a label."},
-    FamilyRow{Metric::requests, "unwrapd_requests_total", "counter",
+    FamilyRow{Metric::build_info, "unwrapd_build_info", Type::Gauge,
+              "1, with the version as a label."},
+    FamilyRow{Metric::requests, "unwrapd_requests_total", Type::Counter,
               "Requests answered, by method, route and status."},
-    FamilyRow{Metric::request_seconds, "unwrapd_request_seconds", "histogram",
+    FamilyRow{Metric::request_seconds, "unwrapd_request_seconds", Type::Histogram,
               "From the end of a request's head to the last byte of its answer."},
-    FamilyRow{Metric::received_bytes, "unwrapd_received_bytes_total", "counter",
+    FamilyRow{Metric::received_bytes, "unwrapd_received_bytes_total", Type::Counter,
               "Bytes of request bodies, without their framing."},
-    FamilyRow{Metric::sent_bytes, "unwrapd_sent_bytes_total", "counter", "Bytes of answers."},
-    FamilyRow{Metric::errors, "unwrapd_errors_total", "counter",
+    FamilyRow{Metric::sent_bytes, "unwrapd_sent_bytes_total", Type::Counter, "Bytes of answers."},
+    FamilyRow{Metric::errors, "unwrapd_errors_total", Type::Counter,
               "Problems that requests were answered with, by code."},
-    FamilyRow{Metric::connections, "unwrapd_connections", "gauge",
+    FamilyRow{Metric::connections, "unwrapd_connections", Type::Gauge,
               "Open connections: parked (no complete request yet) or served."},
-    FamilyRow{Metric::jobs, "unwrapd_jobs", "gauge", "Jobs that are queued or running."},
-    FamilyRow{Metric::jobs_ended, "unwrapd_jobs_ended_total", "counter",
+    FamilyRow{Metric::jobs, "unwrapd_jobs", Type::Gauge, "Jobs that are queued or running."},
+    FamilyRow{Metric::jobs_ended, "unwrapd_jobs_ended_total", Type::Counter,
               "Jobs that came to an end, by state."},
-    FamilyRow{Metric::job_errors, "unwrapd_job_errors_total", "counter",
+    FamilyRow{Metric::job_errors, "unwrapd_job_errors_total", Type::Counter,
               "Problems that jobs failed of, by code."},
-    FamilyRow{Metric::jobs_forced, "unwrapd_jobs_forced_total", "counter",
+    FamilyRow{Metric::jobs_forced, "unwrapd_jobs_forced_total", Type::Counter,
               "Jobs beyond their limit that did not stop in their grace, by how they were ended: "
               "killed (their process) or given_up (their thread)."},
-    FamilyRow{Metric::lost_threads, "unwrapd_lost_threads", "gauge",
+    FamilyRow{Metric::lost_threads, "unwrapd_lost_threads", Type::Gauge,
               "Threads still at work on jobs that were given up."},
-    FamilyRow{Metric::isolation, "unwrapd_isolation", "gauge",
+    FamilyRow{Metric::isolation, "unwrapd_isolation", Type::Gauge,
               "1 when each job has a process of its own, else 0."},
-    FamilyRow{Metric::stage_seconds, "unwrapd_job_stage_seconds", "histogram",
+    FamilyRow{Metric::stage_seconds, "unwrapd_job_stage_seconds", Type::Histogram,
               "Time of each stage of jobs; the first is queue."},
-    FamilyRow{Metric::iterations, "unwrapd_iterations_total", "counter",
+    FamilyRow{Metric::iterations, "unwrapd_iterations_total", Type::Counter,
               "Iterations of the solvers."},
-    FamilyRow{Metric::event_streams, "unwrapd_event_streams", "gauge", "Event streams open."},
-    FamilyRow{Metric::cache_requests, "unwrapd_cache_requests_total", "counter",
+    FamilyRow{Metric::event_streams, "unwrapd_event_streams", Type::Gauge, "Event streams open."},
+    FamilyRow{Metric::cache_requests, "unwrapd_cache_requests_total", Type::Counter,
               "Questions to a cache, by cache and outcome (hit, miss)."},
-    FamilyRow{Metric::cache_bytes, "unwrapd_cache_bytes", "gauge",
+    FamilyRow{Metric::cache_bytes, "unwrapd_cache_bytes", Type::Gauge,
               "Memory that a cache holds, by cache."},
-    FamilyRow{Metric::made_bytes, "unwrapd_cache_made_bytes_total", "counter",
+    FamilyRow{Metric::made_bytes, "unwrapd_cache_made_bytes_total", Type::Counter,
               "Bytes of files that were made because a cache had none, by cache."},
-    FamilyRow{Metric::stored_bytes, "unwrapd_stored_bytes", "gauge",
+    FamilyRow{Metric::stored_bytes, "unwrapd_stored_bytes", Type::Gauge,
               "Bytes of all jobs' files on disk."},
-    FamilyRow{Metric::resident_bytes, "process_resident_memory_bytes", "gauge",
+    FamilyRow{Metric::resident_bytes, "process_resident_memory_bytes", Type::Gauge,
               "Resident memory size in bytes."},
-    FamilyRow{Metric::cpu_seconds, "process_cpu_seconds_total", "counter",
+    FamilyRow{Metric::cpu_seconds, "process_cpu_seconds_total", Type::Counter,
               "Total user and system CPU time spent in seconds."},
-    FamilyRow{Metric::open_files, "process_open_fds", "gauge", "Open file descriptors."},
-    FamilyRow{Metric::start_time, "process_start_time_seconds", "gauge",
+    FamilyRow{Metric::open_files, "process_open_fds", Type::Gauge, "Open file descriptors."},
+    FamilyRow{Metric::start_time, "process_start_time_seconds", Type::Gauge,
               "Start time of the process since the Unix epoch in seconds."},
 };
 
@@ -77,30 +80,20 @@ static_assert(in_order(), "a family for every Metric, in the order of the enum")
 
 std::size_t index(Metric metric) { return static_cast<std::size_t>(metric); }
 
-std::string number_text(double value) {
-  std::array<char, 64> text;
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), end.ptr};
+prometheus::Labels owned(const Labels& labels) { return {labels.begin(), labels.end()}; }
+
+template <typename T>
+prometheus::Family<T>& add(prometheus::detail::Builder<T> builder, const FamilyRow& row,
+                           prometheus::Registry& registry) {
+  return builder.Name(row.name).Help(row.help).Register(registry);
 }
 
-/// R"(code="x",route="y")"
-std::string labels_text(const Labels& labels) {
-  std::string text;
-  for (const auto& [name, value] : labels) {
-    if (!text.empty()) text += ',';
-    text += std::string(name) + "=\"";
-    for (const char c : value) {
-      if (c == '"' || c == '\\') text += '\\';
-      text += c == '\n' ? ' ' : c;
-    }
-    text += '"';
-  }
-  return text;
-}
-
-std::string line(std::string_view name, const std::string& labels, double value) {
-  const std::string braces = labels.empty() ? "" : "{" + labels + "}";
-  return std::string(name) + braces + " " + number_text(value) + "\n";
+/// A series of the value that was asked for.
+prometheus::ClientMetric series(Type type, const prometheus::Labels& labels, double value) {
+  prometheus::ClientMetric series;
+  for (const auto& [name, text] : labels) series.label.push_back({name, text});
+  (type == Type::Counter ? series.counter.value : series.gauge.value) = value;
+  return series;
 }
 
 double resident_bytes() {
@@ -129,6 +122,15 @@ double open_files() {
 }  // namespace
 
 Metrics::Metrics() {
+  for (const FamilyRow& row : kFamilies) {
+    Family& family = families_[index(row.metric)];
+    if (row.type == Type::Counter)
+      family = &add(prometheus::BuildCounter(), row, registry_);
+    else if (row.type == Type::Gauge)
+      family = &add(prometheus::BuildGauge(), row, registry_);
+    else
+      family = &add(prometheus::BuildHistogram(), row, registry_);
+  }
   // Told from the start, so that their rates are known from the start.
   for (const Metric metric : {Metric::iterations, Metric::received_bytes, Metric::sent_bytes})
     count(metric, {}, 0);
@@ -137,62 +139,42 @@ Metrics::Metrics() {
 }
 
 void Metrics::count(Metric metric, const Labels& labels, double by) {
-  const std::string key = labels_text(labels);
-  const std::lock_guard lock(mutex_);
-  families_[index(metric)][key].sum += by;
+  const Family& family = families_[index(metric)];
+  if (const auto* counters = std::get_if<prometheus::Family<prometheus::Counter>*>(&family))
+    (*counters)->Add(owned(labels)).Increment(by);
+  else
+    std::get<prometheus::Family<prometheus::Gauge>*>(family)->Add(owned(labels)).Increment(by);
 }
 
 void Metrics::observe(Metric metric, const Labels& labels, double value) {
-  const std::string key = labels_text(labels);
-  const auto bucket =
-      static_cast<std::size_t>(std::ranges::lower_bound(kBounds, value) - kBounds.begin());
-  const std::lock_guard lock(mutex_);
-  Series& series = families_[index(metric)][key];
-  series.sum += value;
-  ++series.buckets[bucket];
+  static const prometheus::Histogram::BucketBoundaries bounds = {0.005, 0.025, 0.1,  0.5,   1.0,
+                                                                 5.0,   15.0,  60.0, 300.0, 900.0};
+  std::get<prometheus::Family<prometheus::Histogram>*>(families_[index(metric)])
+      ->Add(owned(labels), bounds)
+      .Observe(value);
 }
 
 void Metrics::tell(Metric metric, const Labels& labels, Ask ask) {
   const std::lock_guard lock(mutex_);
-  families_[index(metric)][labels_text(labels)].ask = std::move(ask);
+  asked_[metric][owned(labels)] = std::move(ask);
 }
 
-std::string Metrics::histogram_text(std::string_view name, const std::string& labels,
-                                    const Series& series) {
-  const std::string bucket_name = std::string(name) + "_bucket";
-  const std::string before = labels.empty() ? "le=\"" : labels + ",le=\"";
-  std::string text;
-  std::uint64_t total = 0;
-  for (std::size_t i = 0; i < kBounds.size(); ++i) {
-    total += series.buckets[i];
-    text += line(bucket_name, before + number_text(kBounds[i]) + "\"", static_cast<double>(total));
+std::vector<MetricFamily> Metrics::collect() const {
+  std::vector<MetricFamily> families = registry_.Collect();
+  const auto asked = [this] {
+    const std::lock_guard lock(mutex_);
+    return asked_;
+  }();
+  for (const auto& [metric, asks] : asked) {
+    const FamilyRow& row = kFamilies[index(metric)];
+    MetricFamily& family = families.emplace_back();
+    family.name = row.name, family.help = row.help, family.type = row.type;
+    for (const auto& [labels, ask] : asks) family.metric.push_back(series(row.type, labels, ask()));
   }
-  total += series.buckets.back();
-  text += line(bucket_name, before + "+Inf\"", static_cast<double>(total));
-  text += line(std::string(name) + "_sum", labels, series.sum);
-  return text + line(std::string(name) + "_count", labels, static_cast<double>(total));
+  return families;
 }
 
-std::string Metrics::text() const {
-  std::string text;
-  for (const FamilyRow& row : kFamilies) {
-    Family family;
-    {
-      const std::lock_guard lock(mutex_);
-      family = families_[index(row.metric)];
-    }
-    if (family.empty()) continue;
-    text += "# HELP " + std::string(row.name) + " " + std::string(row.help) + "\n# TYPE " +
-            std::string(row.name) + " " + std::string(row.type) + "\n";
-    for (const auto& [labels, series] : family) {
-      if (row.type == "histogram")
-        text += histogram_text(row.name, labels, series);
-      else
-        text += line(row.name, labels, series.ask ? series.ask() : series.sum);
-    }
-  }
-  return text;
-}
+std::string Metrics::text() const { return prometheus::TextSerializer().Serialize(collect()); }
 
 void tell_process(Metrics& metrics) {
   const auto start = static_cast<double>(now_ms()) / 1000;

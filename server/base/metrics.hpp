@@ -1,9 +1,12 @@
 #pragma once
 // What the server counts of itself, told in the text format of Prometheus (exposition format
-// 0.0.4). The families are one table (metrics.cpp); a value has a place in it or does not exist.
-//
-// Rejected: prometheus-cpp, whose families are found by name at run time and whose counters cannot
-// be read back; two hundred lines of our own need no further library in the image.
+// 0.0.4) by prometheus-cpp. The families are one table (metrics.cpp); a value has a place in it or
+// does not exist.
+
+#include <prometheus/counter.h>
+#include <prometheus/gauge.h>
+#include <prometheus/histogram.h>
+#include <prometheus/registry.h>
 
 #include <array>
 #include <cstddef>
@@ -13,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace unwrapd::server {
@@ -54,33 +58,30 @@ class Metrics {
 
   Metrics();
 
-  /// Adds to a counter.
+  /// Adds to a counter, or to a gauge.
   void count(Metric metric, const Labels& labels = {}, double by = 1);
   /// Puts a value into a histogram.
   void observe(Metric metric, const Labels& labels, double value);
   /// A value that is asked for whenever the metrics are told; ask must be callable as long as that.
+  /// A metric is either counted or asked for.
   void tell(Metric metric, const Labels& labels, Ask ask);
 
-  /// Ends with a line feed. What it tells is of one moment for each family only.
+  /// Ends with a line feed. What it tells is of one moment for each series only.
   [[nodiscard]] std::string text() const;
 
   static constexpr std::string_view kContentType = "text/plain; version=0.0.4; charset=utf-8";
 
  private:
-  static constexpr std::array kBounds = {0.005, 0.025, 0.1,  0.5,   1.0,
-                                         5.0,   15.0,  60.0, 300.0, 900.0};
-  struct Series {
-    double sum = 0;                                           ///< of a counter: its value
-    std::array<std::uint64_t, kBounds.size() + 1> buckets{};  ///< not cumulative
-    Ask ask;
-  };
-  using Family = std::map<std::string, Series>;  // by its labels as they are written
+  using Family =
+      std::variant<prometheus::Family<prometheus::Counter>*, prometheus::Family<prometheus::Gauge>*,
+                   prometheus::Family<prometheus::Histogram>*>;
 
-  static std::string histogram_text(std::string_view name, const std::string& labels,
-                                    const Series& series);
+  [[nodiscard]] std::vector<prometheus::MetricFamily> collect() const;
 
+  prometheus::Registry registry_;
+  std::array<Family, kMetricCount> families_;  // the registry's
   mutable std::mutex mutex_;
-  std::array<Family, kMetricCount> families_;
+  std::map<Metric, std::map<prometheus::Labels, Ask>> asked_;
 };
 
 /// Adds what the kernel knows of this process.

@@ -72,7 +72,7 @@ TEST(Metrics, AHistogramIsCumulativeAndLabelsAreEscaped) {
   metrics.count(Metric::errors, {{"code", "x"}});
   metrics.count(Metric::errors, {{"code", "x"}}, 2);
   const std::string text = metrics.text();
-  const std::string bucket = R"(unwrapd_request_seconds_bucket{route="a\"\\ b",le=)";
+  const std::string bucket = R"(unwrapd_request_seconds_bucket{route="a\"\\\nb",le=)";
   for (const char* line : {R"("0.005"} 1)", R"("0.025"} 2)", R"("900"} 2)", R"("+Inf"} 3)"})
     EXPECT_THAT(text, HasSubstr(bucket + line + "\n"));
   EXPECT_THAT(text, AllOf(HasSubstr("unwrapd_errors_total{code=\"x\"} 3\n"),
