@@ -13,6 +13,7 @@
 #include "server/work/job_worker.hpp"
 #include "server/work/map_choice.hpp"
 #include "server/work/sandbox.hpp"
+#include "server/work/warm_heap.hpp"
 #include "server/work/worker_answer.hpp"
 #include "server/work/worker_process.hpp"
 
@@ -256,7 +257,9 @@ std::string why_not(const Isolation& isolation) {
 std::shared_ptr<SpareWorkers> spare_workers(int count, const api::Limits& limits,
                                             const Isolation& isolation) {
   const auto start = [program = isolation.program, bounds = sandbox_limits(limits, isolation)] {
-    return StartedWorker(program, bounds);
+    SandboxLimits warm = bounds;
+    warm.warm_bytes = heap_of_largest_child();
+    return StartedWorker(program, warm);
   };
   return std::make_shared<SpareWorkers>(count, start);
 }

@@ -17,6 +17,7 @@
 #include "server/work/sandbox.hpp"
 #include "server/work/solver_cache.hpp"
 #include "server/work/thread_executor.hpp"
+#include "server/work/warm_heap.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -227,6 +228,7 @@ int run_job_worker(const Duties& duties) {
     auto* crew = new Crew(limits.threads);  // NOLINT: its threads end with the process
     enter_sandbox(limits);
     send_frame(send_all, FrameKind::ready, {}, {});
+    warm_heap(limits.warm_bytes, kSocket);
     work(*crew, duties);
   } catch (const Error& error) {
     fail_with(error.code(), error.what(), error.where());

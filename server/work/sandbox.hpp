@@ -11,7 +11,8 @@ namespace unwrapd::server {
 struct SandboxLimits {
   std::int64_t memory_bytes = 0;  ///< of address space
   int processor_seconds = 0;
-  int threads = 1;  ///< that the process starts before it enters, the first one counted
+  int threads = 1;              ///< that the process starts before it enters, the first one counted
+  std::int64_t warm_bytes = 0;  ///< of heap that it takes while it waits (warm_heap.hpp)
 };
 
 /// The calling process keeps descriptors 0, 1 and 2 and dies with the thread that started it.

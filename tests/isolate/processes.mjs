@@ -26,6 +26,12 @@ export const hasEnded = (pid) => 'ZX'.includes(stat(pid)[0]);
 
 export const niceness = (pid) => Number(stat(pid)[16]);
 
+/** Bytes of memory that a process has to itself. */
+export function heldMemory(pid) {
+  const [, kilobytes] = /^RssAnon:\s+(\d+) kB$/m.exec(readFileSync(`/proc/${pid}/status`, 'utf8'));
+  return 1024 * Number(kilobytes);
+}
+
 /** Resolves to what look() finds, once it finds something. */
 async function seen(what, look) {
   for (const late = Date.now() + kPatience; Date.now() < late; await sleep(5)) {

@@ -9,7 +9,7 @@ import {setTimeout as sleep} from 'node:timers/promises';
 import {request} from '../contract/http.mjs';
 import * as meshes from '../contract/meshes.mjs';
 import {startServer, withServer} from '../contract/server.mjs';
-import {hasEnded, niceness, spares} from './processes.mjs';
+import {hasEnded, heldMemory, niceness, spares} from './processes.mjs';
 
 const kWorkers = 2;
 const kFlags = ['--isolate', '--workers', String(kWorkers), '--threads', '3', '--memory-limit', '200000000',
@@ -95,6 +95,20 @@ for (const [work, doIt] of Object.entries(kWork))
       for (let time = 1; time <= kWorkers; time++) await doIt();
       assert.doesNotMatch(server.log(), /a worker process ended/);
     });
+
+test('a process that waits holds the memory of a large job, once there was one, and no more', async (t) => {
+  const other = await startServer(process.env.UNWRAPD, kFlags);
+  t.after(() => other.stop());
+  const [fresh] = await spares(other.pid, kWorkers);
+  assert.ok(heldMemory(fresh) < 8 * kMegabyte);
+  const headers = {'Content-Type': 'model/obj', Prefer: 'wait=60'};
+  const sent = {method: 'POST', path: '/v1/jobs', headers, body: meshes.obj(100)};
+  assert.equal(JSON.parse((await request(other.base, sent)).body.toString()).state, 'succeeded');
+  await request(other.base, {...sent, body: meshes.obj()});  // the process after it knows of it
+  const later = (await spares(other.pid, kWorkers)).at(-1);
+  while (heldMemory(later) < 16 * kMegabyte) await sleep(5);
+  assert.ok(heldMemory(later) < 48 * kMegabyte);
+});
 
 test('no process outlives its server', async () => {
   let left;
