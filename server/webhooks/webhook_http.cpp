@@ -1,150 +1,197 @@
 #include "server/webhooks/webhook_http.hpp"
 
-#include <httplib.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
+#include <openssl/ssl.h>
 
-#include <array>
-#include <chrono>
-#include <string>
+#include <csignal>
+#include <memory>
 #include <string_view>
-#include <thread>
-#include <utility>
 
-#include "server/base/deadline.hpp"
+#include "core/base/error.hpp"
+#include "server/webhooks/curl_library.hpp"
 
 namespace unwrapd::server {
 namespace {
 
-constexpr std::chrono::seconds kConnectTime{5};
-constexpr std::chrono::seconds kWholeTime{15};
+constexpr long kConnectSeconds = 5;  // with the handshake of TLS
+constexpr long kWholeSeconds = 15;
+constexpr int kPollMs = 1000;
 constexpr std::size_t kMostStatusLine = 512;
-constexpr std::size_t kMostAnswer = std::size_t{16} * 1024;  // bytes, certificates included
+constexpr std::size_t kMostHead = std::size_t{16} * 1024;  // bytes of all heads of an answer
+constexpr int kFirstFinalStatus = 200;
+constexpr int kGone = 410;
 
-/// httplib matches status lines against a regular expression that recurses for every byte: 30 kB of
-/// one overflow the stack. Lines that it does not take for such are as long as they like. Within
-/// TLS they are not seen here; kMostAnswer keeps them short enough.
-class StatusLines {
- public:
-  /// False once one is too long.
-  bool are_short(std::string_view bytes) {
-    for (const char byte : bytes) {
-      if (byte == '\n') {
-        line_.clear();
-      } else if (line_.size() < kMostStatusLine) {
-        line_ += byte;
-      } else if (line_.starts_with("HTTP/")) {
-        return false;
-      }
-    }
-    return true;
+/// The heads of an answer as libcurl tells them, line by line. It goes on for false.
+struct Heads {
+  const CurlLibrary& curl;
+  CURL* handle;
+  std::size_t bytes = 0;
+  bool is_final = false;  ///< the last one has ended; before it come 100 and 103
+
+  bool wants_more_after(std::string_view line) {
+    bytes += line.size();
+    if (bytes > kMostHead || (line.starts_with("HTTP/") && line.size() > kMostStatusLine))
+      return false;
+    if (line != "\r\n" && line != "\n") return true;
+    is_final = status() >= kFirstFinalStatus;
+    return !is_final;
   }
-
- private:
-  std::string line_;  // its first bytes
+  [[nodiscard]] long status() const {
+    long status = 0;
+    curl.easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &status);
+    return status;
+  }
 };
 
-/// A Client or an SSLClient that gets no more than so many bytes of an answer: they come to it
-/// through a pipe that counts them. httplib itself reads lines without end.
-template <class Client>
-class Bounded : public Client {
+/// libcurl's callback: another count than it gave ends the call.
+std::size_t take_line(const char* bytes, std::size_t, std::size_t count, void* heads) {
+  return static_cast<Heads*>(heads)->wants_more_after({bytes, count}) ? count : 0;
+}
+
+std::size_t take_no_body(const char*, std::size_t, std::size_t, void*) { return 0; }
+
+/// OpenSSL's own places of certificates, which SSL_CERT_FILE and SSL_CERT_DIR change.
+CURLcode trust_the_system(CURL*, void* context, void*) {
+  const bool is_set = SSL_CTX_set_default_verify_paths(static_cast<SSL_CTX*>(context)) == 1;
+  return is_set ? CURLE_OK : CURLE_SSL_CACERT_BADFILE;
+}
+
+std::string in_brackets(const std::string& host) {
+  return host.find(':') == std::string::npos ? host : "[" + host + "]";
+}
+
+/// One call: its handles and lists live as long.
+class Transfer {
  public:
-  using Client::Client;
-  Bounded(const Bounded&) = delete;
-  Bounded& operator=(const Bounded&) = delete;
-  ~Bounded() override {
-    for (const int end : {far_, near_}) ::shutdown(end, SHUT_RDWR);
-    if (pump_.joinable()) pump_.join();
-    for (const int end : {far_, near_}) ::close(end);
+  explicit Transfer(const WebhookCall& call) : Transfer() {
+    set_place(call);
+    set_request(call);
+    set_limits();
   }
+  Transfer(const Transfer&) = delete;
+  Transfer& operator=(const Transfer&) = delete;
+  ~Transfer() {
+    curl_.multi_cleanup(multi_);
+    curl_.easy_cleanup(easy_);
+    for (curl_slist* list : {headers_, connect_to_}) curl_.slist_free_all(list);
+  }
+
+  WebhookAnswer run(const std::stop_token& stop);
 
  private:
-  bool create_and_connect_socket(typename Client::Socket& socket, httplib::Error& error) override {
-    std::array<int, 2> pipe{};
-    if (far_ >= 0 || !httplib::ClientImpl::create_and_connect_socket(socket, error)) return false;
-    far_ = std::exchange(socket.sock, INVALID_SOCKET);
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pipe.data()) != 0) return false;
-    near_ = pipe[0];
-    socket.sock = pipe[1];
-    pump_ = std::jthread([this] { pump(); });
-    return true;
+  Transfer() = default;
+  /// An option that is not taken might be one that protects.
+  template <class Value>
+  void set(CURLoption option, Value value) {
+    if (curl_.easy_setopt(easy_, option, value) != CURLE_OK)
+      throw Error(ErrorCode::internal, "libcurl does not know an option of webhooks.");
   }
+  void append(curl_slist*& list, const std::string& text);
+  void set_place(const WebhookCall& call);
+  void set_request(const WebhookCall& call);
+  void set_limits();
+  CURLcode perform(const std::stop_token& stop);
+  [[nodiscard]] WebhookAnswer answer(CURLcode result) const;
 
-  void pump() {
-    std::array<char, 4096> bytes{};
-    std::size_t answered = 0;
-    StatusLines status_lines;
-    std::array<pollfd, 2> ends{{{near_, POLLIN, 0}, {far_, POLLIN, 0}}};
-    while (answered <= kMostAnswer && ::poll(ends.data(), ends.size(), -1) >= 0) {
-      for (const std::size_t from : {0U, 1U}) {
-        if (ends.at(from).revents == 0) continue;
-        const ssize_t count = ::recv(ends.at(from).fd, bytes.data(), bytes.size(), 0);
-        if (count <= 0) return cut();
-        const std::string_view piece(bytes.data(), static_cast<std::size_t>(count));
-        if (from == 1) answered += piece.size();
-        if (from == 1 && !status_lines.are_short(piece)) return cut();
-        if (!pass_on(ends.at(1 - from).fd, piece)) return cut();
-      }
-    }
-    cut();
-  }
-
-  static bool pass_on(int to, std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t count = ::send(to, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-      if (count <= 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(count));
-    }
-    return true;
-  }
-
-  void cut() const {
-    for (const int end : {far_, near_}) ::shutdown(end, SHUT_RDWR);
-  }
-
-  int far_ = -1;
-  int near_ = -1;
-  std::jthread pump_;
+  const CurlLibrary& curl_ = CurlLibrary::loaded();
+  CURL* easy_ = curl_.easy_init();
+  CURLM* multi_ = curl_.multi_init();
+  curl_slist* headers_ = nullptr;
+  curl_slist* connect_to_ = nullptr;
+  Heads heads_{.curl = curl_, .handle = easy_};
 };
 
-template <class Client>
-std::string post(Client& client, const WebhookCall& call, const std::stop_token& stop) {
-  client.set_hostname_addr_map({{call.url.host, call.address}});
-  client.set_connection_timeout(kConnectTime);
-  client.set_read_timeout(kWholeTime);
-  client.set_write_timeout(kWholeTime);
-  client.set_follow_location(false);
-  int status = 0;
-  httplib::Request request;
-  request.method = "POST";
-  request.path = call.url.target;
-  for (const auto& [name, value] : call.headers) request.set_header(name.c_str(), value);
-  request.set_header("Content-Type", "application/json");
-  request.set_header("User-Agent", "unwrapd/" UNWRAPD_VERSION);
-  request.body = call.body;
-  request.response_handler = [&](const httplib::Response& answer) {
-    status = answer.status;
-    return false;  // the body is not read: it may have no end
-  };
-  const Deadline slow(kWholeTime, [&] { client.stop(); });
-  const std::stop_callback cut(stop, [&] { client.stop(); });
-  const httplib::Result result = client.send(request);
-  if (result) status = result->status;  // of an answer that can have no body, such as 204
+void Transfer::append(curl_slist*& list, const std::string& text) {
+  curl_slist* const longer = curl_.slist_append(list, text.c_str());
+  if (longer == nullptr) throw std::bad_alloc();
+  list = longer;
+}
+
+/// Whatever libcurl makes of the host's name, it connects to the address that was checked.
+void Transfer::set_place(const WebhookCall& call) {
+  const std::string port = std::to_string(call.url.port);
+  const std::string scheme = call.url.is_https ? "https" : "http";
+  set(CURLOPT_URL, (scheme + "://" + in_brackets(call.url.host) + ":" + port + "/").c_str());
+  set(CURLOPT_REQUEST_TARGET, call.url.target.c_str());
+  append(connect_to_, "::" + in_brackets(call.address) + ":" + port);
+  set(CURLOPT_CONNECT_TO, connect_to_);
+  set(CURLOPT_PROTOCOLS_STR, scheme.c_str());
+  set(CURLOPT_PROXY, "");  // none of the environment's
+  set(CURLOPT_FOLLOWLOCATION, 0L);
+  set(CURLOPT_CAINFO, nullptr);
+  set(CURLOPT_CAPATH, nullptr);
+  set(CURLOPT_SSL_CTX_FUNCTION, &trust_the_system);
+  set(CURLOPT_SSLVERSION, long{CURL_SSLVERSION_TLSv1_2});
+}
+
+void Transfer::set_request(const WebhookCall& call) {
+  for (const auto& [name, value] : call.headers) append(headers_, name + ": " + value);
+  append(headers_, "Content-Type: application/json");
+  append(headers_, "Connection: close");
+  append(headers_, "Expect:");
+  set(CURLOPT_HTTPHEADER, headers_);
+  set(CURLOPT_USERAGENT, "unwrapd/" UNWRAPD_VERSION);
+  set(CURLOPT_HTTP_VERSION, long{CURL_HTTP_VERSION_1_1});
+  set(CURLOPT_POSTFIELDSIZE_LARGE, static_cast<curl_off_t>(call.body.size()));
+  set(CURLOPT_POSTFIELDS, call.body.c_str());
+}
+
+void Transfer::set_limits() {
+  set(CURLOPT_NOSIGNAL, 1L);
+  set(CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
+  set(CURLOPT_TIMEOUT, kWholeSeconds);
+  set(CURLOPT_HEADERFUNCTION, &take_line);
+  set(CURLOPT_HEADERDATA, &heads_);
+  set(CURLOPT_WRITEFUNCTION, &take_no_body);
+}
+
+CURLcode Transfer::perform(const std::stop_token& stop) {
+  int running = 1;
+  while (running > 0 && !stop.stop_requested()) {
+    if (curl_.multi_perform(multi_, &running) != CURLM_OK) return CURLE_FAILED_INIT;
+    if (running > 0) curl_.multi_poll(multi_, nullptr, 0, kPollMs, nullptr);
+  }
+  int left = 0;
+  const CURLMsg* const ended = curl_.multi_info_read(multi_, &left);
+  return ended == nullptr ? CURLE_ABORTED_BY_CALLBACK : ended->data.result;
+}
+
+WebhookAnswer Transfer::run(const std::stop_token& stop) {
+  if (curl_.multi_add_handle(multi_, easy_) != CURLM_OK)
+    throw Error(ErrorCode::internal, "libcurl cannot begin a call.");
+  CURLcode result = CURLE_OK;
+  {
+    const std::stop_callback wake(stop, [this] { curl_.multi_wakeup(multi_); });
+    result = perform(stop);
+  }
+  curl_.multi_remove_handle(multi_, easy_);
+  return answer(result);
+}
+
+WebhookAnswer Transfer::answer(CURLcode result) const {
+  if (!heads_.is_final)
+    return {.failure = std::string("no answer: ") + curl_.easy_strerror(result)};
+  const long status = heads_.status();
   if (status >= 200 && status < 300) return {};
-  if (status != 0) return "status " + std::to_string(status);
-  return "no answer: " + httplib::to_string(result.error());
+  curl_off_t seconds = 0;
+  curl_.easy_getinfo(easy_, CURLINFO_RETRY_AFTER, &seconds);
+  return {.failure = "status " + std::to_string(status),
+          .is_gone = status == kGone,
+          .retry_after = std::chrono::seconds(seconds)};
+}
+
+/// OpenSSL writes to a connection that is closed, and libcurl leaves signals to us.
+void block_sigpipe() {
+  sigset_t pipes;
+  sigemptyset(&pipes);
+  sigaddset(&pipes, SIGPIPE);
+  pthread_sigmask(SIG_BLOCK, &pipes, nullptr);  // of this thread, which has no other use for it
 }
 
 }  // namespace
 
-std::string post_webhook(const WebhookCall& call, const std::stop_token& stop) {
-  if (call.url.is_https) {
-    Bounded<httplib::SSLClient> client(call.url.host, call.url.port);
-    return post(client, call, stop);
-  }
-  Bounded<httplib::ClientImpl> client(call.url.host, call.url.port);
-  return post(client, call, stop);
+WebhookAnswer post_webhook(const WebhookCall& call, const std::stop_token& stop) {
+  block_sigpipe();
+  return Transfer(call).run(stop);
 }
 
 }  // namespace unwrapd::server

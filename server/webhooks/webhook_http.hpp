@@ -1,7 +1,7 @@
 #pragma once
-// The call itself: one POST to an address that was checked, its status, and nothing else of what
-// the other side says.
+// The call itself: one POST to an address that was checked, its status, and when to call again.
 
+#include <chrono>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -18,8 +18,14 @@ struct WebhookCall {
   std::string body;  ///< JSON
 };
 
-/// What went wrong, empty when the answer was 2xx. Takes 15 s at most, less when it is to stop,
-/// follows no redirect, and does not read the answer's body.
-std::string post_webhook(const WebhookCall& call, const std::stop_token& stop);
+struct WebhookAnswer {
+  std::string failure;                    ///< what went wrong; empty when the status is 2xx
+  bool is_gone = false;                   ///< 410: the receiver wants no further call
+  std::chrono::seconds retry_after = {};  ///< asked for; 0: it did not ask
+};
+
+/// Takes 15 s at most, less when it is to stop. Follows no redirect, uses no proxy, and does not
+/// read the answer's body. Throws Error{internal} when libcurl cannot be used.
+WebhookAnswer post_webhook(const WebhookCall& call, const std::stop_token& stop);
 
 }  // namespace unwrapd::server

@@ -10,7 +10,7 @@
 #include "server/base/identity.hpp"
 #include "server/base/inside_error.hpp"
 #include "server/base/trace.hpp"
-#include "server/webhooks/webhook_http.hpp"
+#include "server/webhooks/curl_library.hpp"
 
 namespace unwrapd::server {
 namespace {
@@ -54,6 +54,12 @@ std::string webhook_signature(const std::string& secret, std::string_view signed
   return "v1," + base64(hmac_sha256(key, signed_text));
 }
 
+std::int64_t webhook_pause_ms(int first_seconds, int failed_before, const WebhookAnswer& answer) {
+  const std::int64_t own_ms = (first_seconds * kMsPerSecond) << failed_before;
+  const std::int64_t asked_s = std::min<std::int64_t>(answer.retry_after.count(), kLongestPauseMs);
+  return std::min(std::max(own_ms, asked_s * kMsPerSecond), kLongestPauseMs);
+}
+
 Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret,
                    WebhookConfig config, const Log& log, std::function<Moment()> now)
     : secret_(std::move(server_secret)),
@@ -62,6 +68,7 @@ Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret
       now_(std::move(now)),
       database_(store),
       pool_(kAtOnce, kPerReceiver, [this] { go_on(); }) {
+  if (!config_.allowed_hosts.empty()) CurlLibrary::loaded();  // tells at the start if it is missing
   try {
     put_forward();
   } catch (const Error& error) {
@@ -112,7 +119,7 @@ Delivery Webhooks::load(std::int64_t seq) {
           .tries = static_cast<int>(statement.number(5))};
 }
 
-std::string Webhooks::call(const Delivery& delivery, const std::stop_token& stop) const {
+WebhookAnswer Webhooks::call(const Delivery& delivery, const std::stop_token& stop) const {
   try {
     const WebhookUrl url = parse_webhook(delivery.url, config_);
     const std::string address = resolve_webhook(url, config_).front();
@@ -129,25 +136,26 @@ std::string Webhooks::call(const Delivery& delivery, const std::stop_token& stop
          .body = delivery.body},
         stop);
   } catch (const Error& error) {
-    return error.what();
+    return {.failure = error.what()};
   }
 }
 
-void Webhooks::settle(const Delivery& delivery, const std::string& failure, std::int64_t now_ms) {
+void Webhooks::settle(const Delivery& delivery, const WebhookAnswer& answer, std::int64_t now_ms) {
   const int tries = delivery.tries + 1;
-  if (failure.empty() || tries >= kMaxTries) {
+  const std::string& failure = answer.failure;
+  const bool is_last = tries >= kMaxTries || answer.is_gone;
+  if (failure.empty() || is_last) {
     Statement(database_, "DELETE FROM deliveries WHERE seq = ?").with(delivery.seq).run();
   } else {
-    const std::int64_t first_ms = config_.retry_seconds * kMsPerSecond;
-    const std::int64_t pause_ms = std::min(first_ms << delivery.tries, kLongestPauseMs);
     Statement(database_, "UPDATE deliveries SET tries = ?2, due_ms = ?3 WHERE seq = ?1")
-        .with(delivery.seq, std::int64_t{tries}, now_ms + pause_ms)
+        .with(delivery.seq, std::int64_t{tries},
+              now_ms + webhook_pause_ms(config_.retry_seconds, delivery.tries, answer))
         .run();
   }
   if (failure.empty()) {
     log_.info("webhook called", {{"job", delivery.job}, {"tries", tries}});
   } else {  // neither the address, which may hold a token, nor the signature
-    log_.warning(tries >= kMaxTries ? "webhook given up" : "webhook not reached",
+    log_.warning(is_last ? "webhook given up" : "webhook not reached",
                  {{"job", delivery.job}, {"tries", tries}, {"reason", failure}});
   }
 }
@@ -156,16 +164,16 @@ void Webhooks::settle(const Delivery& delivery, const std::string& failure, std:
 /// never.
 bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
   const TraceScope trace(delivery.trace);
-  const std::string failure = call(delivery, stop);
+  const WebhookAnswer answer = call(delivery, stop);
   const std::lock_guard lock(mutex_);
   being_made_.erase(delivery.seq);
-  if (stop.stop_requested() && !failure.empty()) return false;  // cut off by us
+  if (stop.stop_requested() && !answer.failure.empty()) return false;  // cut off by us
   try {
-    settle(delivery, failure, now_().kept_ms());
+    settle(delivery, answer, now_().kept_ms());
   } catch (const Error& error) {
     log_.error("a webhook's call was not noted", {{"reason", reason_of(error)}});
   }
-  return failure.empty();
+  return answer.failure.empty();
 }
 
 void Webhooks::begin(const Due& due) {

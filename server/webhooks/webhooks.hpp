@@ -1,10 +1,10 @@
 #pragma once
 // Calls to the webhooks of jobs that have ended. The call is a row, written in the transaction that
 // ends the job, and goes when it was answered with 2xx: neither a crash nor a receiver that is down
-// loses it. Tries go on with doubled pauses, ten in all. It is signed as Standard Webhooks has it:
-// webhook-id, webhook-timestamp, and webhook-signature, the HMAC-SHA256 of both and the body under
-// a secret of the job's owner; traceparent is of the job's trace. Sixteen calls at once, two to one
-// receiver (webhook_pool.hpp); owners take turns.
+// loses it. Tries go on with doubled pauses, ten in all, until the receiver says 410 (gone). It is
+// signed as Standard Webhooks has it: webhook-id, webhook-timestamp, and webhook-signature, the
+// HMAC-SHA256 of both and the body under a secret of the job's owner; traceparent is of the job's
+// trace. Sixteen calls at once, two to one receiver (webhook_pool.hpp); owners take turns.
 
 #include <cstdint>
 #include <filesystem>
@@ -19,6 +19,7 @@
 #include "server/base/kept_time.hpp"
 #include "server/base/log.hpp"
 #include "server/store/database.hpp"
+#include "server/webhooks/webhook_http.hpp"
 #include "server/webhooks/webhook_pool.hpp"
 #include "server/webhooks/webhook_url.hpp"
 
@@ -42,6 +43,10 @@ std::string webhook_secret(std::string_view server_secret, std::string_view owne
 /// "v1," and the Base64 of the HMAC-SHA256 of "id.timestamp.body". Throws Error{internal} when the
 /// secret is not of the form of webhook_secret().
 std::string webhook_signature(const std::string& secret, std::string_view signed_text);
+
+/// Milliseconds from a call that failed to the next, after so many that had failed before: the
+/// first pause, doubled each time; longer when the receiver asks for it; an hour at most.
+std::int64_t webhook_pause_ms(int first_seconds, int failed_before, const WebhookAnswer& answer);
 
 /// Thread-safe. The end cuts off the calls that are being made; they are made again at the next
 /// start.
@@ -68,8 +73,8 @@ class Webhooks {
   Delivery load(std::int64_t seq);
   void begin(const Due& due);
   bool make(const Delivery& delivery, const std::stop_token& stop);
-  [[nodiscard]] std::string call(const Delivery& delivery, const std::stop_token& stop) const;
-  void settle(const Delivery& delivery, const std::string& failure, std::int64_t now_ms);
+  [[nodiscard]] WebhookAnswer call(const Delivery& delivery, const std::stop_token& stop) const;
+  void settle(const Delivery& delivery, const WebhookAnswer& answer, std::int64_t now_ms);
   void go_on();
 
   const std::string secret_;

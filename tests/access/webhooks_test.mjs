@@ -23,6 +23,7 @@ async function receiver(t, address = "127.0.0.1") {
     const pieces = [];
     for await (const piece of request) pieces.push(piece);
     calls.push({ headers: request.headers, url: request.url, body: Buffer.concat(pieces).toString() });
+    if (hook.status === 200) answer.writeEarlyHints({ link: "</a>; rel=preload" });
     if (hook.status) answer.writeHead(hook.status, hook.status === 302 ? { Location: "/elsewhere" } : {}).end();
   });
   http.listen(0, address);
@@ -114,6 +115,16 @@ test("a receiver that hangs for one key keeps nobody else's calls waiting", asyn
   await submit(server, answers.url, QUICK, other);
   await answers.called(1);
   assert.equal(hangs.calls.length, 1);
+  await server.end("SIGTERM");
+});
+
+test("a receiver that is gone is not called again", async (t) => {
+  const hook = await receiver(t);
+  hook.status = 410;
+  const server = await Server.start(dataDirectory(t), ...ALLOWED, "--log-level", "info");
+  await submit(server, hook.url);
+  while (!server.log.includes("webhook given up")) await sleep(10);
+  assert.equal(hook.calls.length, 1);
   await server.end("SIGTERM");
 });
 

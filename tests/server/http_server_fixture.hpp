@@ -8,6 +8,7 @@
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/x509.h>
+#include <openssl/x509v3.h>
 
 #include <algorithm>
 #include <chrono>
@@ -77,13 +78,22 @@ class HttpServerTest : public testing::Test {
   std::vector<Exchanged> seen_;
 };
 
-/// PEM files of a certificate that signs itself, and its key.
+/// PEM files of a certificate of receiver.example that signs itself, and its key.
 inline void write_certificate(const std::string& certificate, const std::string& key) {
   EVP_PKEY* pair = EVP_EC_gen("P-256");
   X509* own = X509_new();
   X509_gmtime_adj(X509_getm_notBefore(own), 0);
   X509_gmtime_adj(X509_getm_notAfter(own), 3600);
   X509_set_pubkey(own, pair);
+  X509_set_version(own, X509_VERSION_3);
+  X509_NAME* const subject = X509_get_subject_name(own);
+  X509_NAME_add_entry_by_txt(subject, "CN", MBSTRING_ASC,
+                             reinterpret_cast<const unsigned char*>("receiver"), -1, -1, 0);
+  X509_set_issuer_name(own, subject);
+  X509_EXTENSION* name =
+      X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, "DNS:receiver.example");
+  X509_add_ext(own, name, -1);
+  X509_EXTENSION_free(name);
   X509_sign(own, pair, EVP_sha256());
   const auto close = [](std::FILE* file) { std::fclose(file); };
   const std::unique_ptr<std::FILE, decltype(close)> to(std::fopen(certificate.c_str(), "w"), close);
