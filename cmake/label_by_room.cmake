@@ -1,0 +1,35 @@
+# label_by_room(TARGET): gives each test of TARGET, after gtest_discover_tests, its folder in tests/ as
+# a label: `ctest -L pack` runs what tests/core/pack has, `ctest -L core` all of tests/core. ctest
+# includes this file, too: it reads which suites the sources name.
+if(NOT DEFINED ROOM_SOURCES)
+  set(LABEL_BY_ROOM ${CMAKE_CURRENT_LIST_FILE})
+  function(label_by_room target)
+    get_target_property(sources ${target} SOURCES)
+    list(TRANSFORM sources REPLACE "^\\.\\./" "${CMAKE_CURRENT_SOURCE_DIR}/../")
+    set(file ${CMAKE_CURRENT_BINARY_DIR}/${target}_rooms.cmake)
+    file(WRITE ${file} "set(ROOM_SOURCES \"${sources}\")\nset(ROOM_TESTS \${${target}_TESTS})\n"
+      "set(ROOM_TOP ${PROJECT_SOURCE_DIR}/tests)\ninclude(${LABEL_BY_ROOM})\nunset(ROOM_SOURCES)\n")
+    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file})
+  endfunction()
+  return()
+endif()
+
+foreach(source ${ROOM_SOURCES})
+  if(NOT EXISTS ${source})  # was removed since
+    continue()
+  endif()
+  get_filename_component(room ${source} DIRECTORY)
+  file(RELATIVE_PATH room ${ROOM_TOP} ${room})
+  file(STRINGS ${source} heads REGEX "^TEST(_F|_P)?\\(")
+  foreach(head ${heads})
+    if(head MATCHES "^TEST[_FP]*\\(([A-Za-z0-9_]+)")
+      list(APPEND room_of_${CMAKE_MATCH_1} ${room})
+    endif()
+  endforeach()
+endforeach()
+foreach(test ${ROOM_TESTS})
+  if(test MATCHES "^([^.]*/)?([A-Za-z0-9_]+)[.]")
+    list(REMOVE_DUPLICATES room_of_${CMAKE_MATCH_2})
+    set_tests_properties("${test}" PROPERTIES LABELS "${room_of_${CMAKE_MATCH_2}}")
+  endif()
+endforeach()
