@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -48,13 +49,19 @@ Config with_open_files(Config config, const Log& log) {
   return config;
 }
 
+bool has_terminal() { return ::isatty(STDIN_FILENO) != 0 || ::isatty(STDERR_FILENO) != 0; }
+
 /// The signals that end the server, blocked in this thread and all that it starts from now on.
 sigset_t block_end_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGHUP);  // the terminal is gone
+  if (has_terminal()) {
+    sigaddset(&signals, SIGHUP);  // the terminal is gone
+  } else {
+    std::signal(SIGHUP, SIG_IGN);  // what asks a daemon to read its configuration must not end it
+  }
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   return signals;
 }

@@ -69,9 +69,16 @@ File File::create(const std::filesystem::path& path) {
 }
 
 File File::open(const std::filesystem::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // of a pipe
   if (descriptor < 0) fail("open a file");
-  return File(descriptor);
+  File file(descriptor);
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) fail("read a file");
+  if (!S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode))
+    throw Error(ErrorCode::storage_failed,
+                "The server found a pipe or a device in the place of a file; its operator must "
+                "remove it.");
+  return file;
 }
 
 void File::append(std::string_view bytes) {

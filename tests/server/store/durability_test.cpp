@@ -1,6 +1,7 @@
 // What keeps jobs over versions, damaged disks and full disks; and whose job is next. Each rule by
 // itself; tests/fault kills the real server.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <memory>
 #include <string>
@@ -90,6 +91,16 @@ TEST_F(Durability, ADamagedFileIsNeverHandedOut) {
               ErrorCode::storage_corrupt)
         << file;
   }
+}
+
+TEST_F(Durability, APipeInThePlaceOfAFileHoldsNobody) {
+  BlobStore blobs(dir_.path(), {});
+  add_job(blobs, "j_1");
+  const std::filesystem::path file = blobs.path("j_1", kReportFile);
+  std::filesystem::remove(file);
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  EXPECT_EQ(error_of([&] { static_cast<void>(File::open(file)); }).code(),
+            ErrorCode::storage_failed);
 }
 
 TEST_F(Durability, AnUploadDamagedBeforeItIsAJobIsNotTakenForWhatCame) {
