@@ -1,48 +1,35 @@
 // Buffer views and accessors: every range is proved to lie within what it refers to, by divisions
 // that cannot overflow, before anything of its size exists.
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <string_view>
 
 #include "core/asset/gltf_steps.hpp"
+#include "core/asset/tinygltf.hpp"
 
 namespace unwrapd::asset {
 namespace {
 
 constexpr std::size_t kMaxStride = 252;
+constexpr std::size_t kMaxInt = std::numeric_limits<int>::max();  // tinygltf's of sparse accessors
 
-struct ElementType {
-  std::string_view name;
-  std::size_t rows;
-  std::size_t columns;
-};
+constexpr std::array<std::string_view, 7> kElementTypes = {"SCALAR", "VEC2", "VEC3", "VEC4",
+                                                           "MAT2",   "MAT3", "MAT4"};
 
-constexpr std::array<ElementType, 7> kElementTypes = {{{"SCALAR", 1, 1},
-                                                       {"VEC2", 2, 1},
-                                                       {"VEC3", 3, 1},
-                                                       {"VEC4", 4, 1},
-                                                       {"MAT2", 2, 2},
-                                                       {"MAT3", 3, 3},
-                                                       {"MAT4", 4, 4}}};
-
-ElementType element_type(const Node& type) {
-  for (const ElementType& known : kElementTypes)
-    if (known.name == type.text()) return known;
+std::string_view element_type(const Node& type) {
+  for (const std::string_view known : kElementTypes)
+    if (known == type.text()) return known;
   fail(ErrorCode::malformed_gltf, type.place(),
        "\"" + type.text() + "\" is no type of an accessor; export the asset again");
 }
 
-ComponentType component_type(const Node& type) {
+std::size_t component_type(const Node& type) {
   const std::size_t number = type.number();
   if (number < 5120 || number > 5126 || number == 5124)
     fail(ErrorCode::malformed_gltf, type.place(),
          std::to_string(number) + " is no component type; export the asset again");
-  return static_cast<ComponentType>(number);
-}
-
-/// A matrix's columns begin at multiples of 4 bytes.
-std::size_t element_bytes(const ElementType& element, ComponentType type) {
-  const std::size_t column = element.rows * component_bytes(type);
-  return element.columns == 1 ? column : (column + 3) / 4 * 4 * element.columns;
+  return number;
 }
 
 /// `count` elements of `bytes` each, `stride` apart, from `offset` on: do they lie in `length`?
@@ -58,18 +45,22 @@ bool fits(std::size_t length, std::size_t offset, std::size_t count, std::size_t
        "it reaches beyond the end of its " + std::string(container) + "; export the asset again");
 }
 
-View read_view(const Gltf& gltf, const Node& node) {
-  View view;
-  node.expect_object();
-  view.buffer = node.at("buffer").index(gltf.buffers.size(), "buffers");
-  view.offset = node.number("byteOffset", 0);
-  view.length = node.at("byteLength").number();
-  if (const auto stride = node.find("byteStride")) {
-    view.stride = stride->number();
-    if (view.stride > kMaxStride)
-      fail(ErrorCode::malformed_gltf, stride->place(),
-           "a stride is at most 252 bytes; export the asset again");
-  }
+/// Ours to read: tinygltf refuses what is no multiple of 4.
+std::size_t stride_of(const Node& view) {
+  const auto stride = view.find("byteStride");
+  if (!stride) return 0;
+  if (stride->number() > kMaxStride)
+    fail(ErrorCode::malformed_gltf, stride->place(),
+         "a stride is at most 252 bytes; export the asset again");
+  return stride->number();
+}
+
+Members checked_view(const Gltf& gltf, const Node& node) {
+  Members view;
+  view.add("buffer", node.at("buffer").index(gltf.buffers.size(), "buffers"));
+  view.add("byteOffset", node.number("byteOffset", 0));
+  view.add("byteLength", node.at("byteLength").number());
+  static_cast<void>(stride_of(node));
   return view;
 }
 
@@ -84,19 +75,64 @@ bool is_compressed(const Node& view) {
                         extensions->find("KHR_meshopt_compression"));
 }
 
-ComponentType unsigned_type(const Node& node) {
-  const ComponentType type = component_type(node);
-  if (type != ComponentType::u8 && type != ComponentType::u16 && type != ComponentType::u32)
-    fail(ErrorCode::malformed_gltf, node.place(),
-         "indices are unsigned whole numbers; export the asset again");
-  return type;
+std::size_t unsigned_type(const Node& node) {
+  const std::size_t type = component_type(node);
+  if (type == 5121 || type == 5123 || type == 5125) return type;
+  fail(ErrorCode::malformed_gltf, node.place(),
+       "indices are unsigned whole numbers; export the asset again");
 }
 
-/// A tight run of `count` elements of `bytes` each in the view that `part` names.
-void check_sparse_part(const Gltf& gltf, const Node& part, std::size_t count, std::size_t bytes) {
-  const View& view = gltf.views[part.at("bufferView").number()];
-  if (!fits(view.length, part.number("byteOffset", 0), count, bytes, bytes))
-    out_of_range(part.place(), "buffer view");
+/// The view and the offset of the indices or the values of a sparse accessor.
+Members checked_part(const Gltf& gltf, const Node& node) {
+  Members part;
+  part.add("bufferView", node.at("bufferView").index(gltf.views.size(), "buffer views"));
+  const std::size_t offset = node.number("byteOffset", 0);
+  if (offset > kMaxInt) out_of_range(node.place(), "buffer view");
+  part.add("byteOffset", offset);
+  return part;
+}
+
+Members checked_sparse(const Gltf& gltf, const Node& node, std::size_t element_count) {
+  const Node indices = node.at("indices");
+  const Node values = node.at("values");
+  const std::size_t count = node.at("count").number();
+  Members checked_indices = checked_part(gltf, indices);
+  checked_indices.add("componentType", unsigned_type(indices.at("componentType")));
+  const Members checked_values = checked_part(gltf, values);
+  if (count == 0 || count > std::min(element_count, kMaxInt))
+    fail(ErrorCode::malformed_gltf, node.at("count").place(),
+         "a sparse accessor replaces from one to all of its elements; export the asset again");
+  Members sparse;
+  sparse.add("count", count);
+  sparse.add("indices", checked_indices);
+  sparse.add("values", checked_values);
+  return sparse;
+}
+
+Members checked_accessor(const Gltf& gltf, const Node& node) {
+  Members accessor;
+  accessor.add("type", element_type(node.at("type")));
+  accessor.add("componentType", component_type(node.at("componentType")));
+  const std::size_t count = node.at("count").number();
+  accessor.add("count", count);
+  accessor.add("byteOffset", node.number("byteOffset", 0));
+  if (node.flag("normalized")) accessor.add_true("normalized");
+  if (const auto view = node.find("bufferView"))
+    accessor.add("bufferView", view->index(gltf.views.size(), "buffer views"));
+  if (const auto sparse = node.find("sparse"))
+    accessor.add("sparse", checked_sparse(gltf, *sparse, count));
+  return accessor;
+}
+
+void check_sparse_ranges(const Gltf& gltf, const Accessor& accessor, const Place& place) {
+  const auto check = [&](std::size_t view, std::size_t offset, std::size_t bytes,
+                         std::string_view part) {
+    if (!fits(gltf.views[view].length, offset, accessor.sparse->count, bytes, bytes))
+      out_of_range(place.at(part), "buffer view");
+  };
+  const Sparse& sparse = *accessor.sparse;
+  check(sparse.index_view, sparse.index_offset, component_bytes(sparse.index_type), "indices");
+  check(sparse.value_view, sparse.value_offset, accessor.element_bytes, "values");
 }
 
 void check_sparse_indices(const Gltf& gltf, const Accessor& accessor, const Place& place) {
@@ -110,24 +146,6 @@ void check_sparse_indices(const Gltf& gltf, const Accessor& accessor, const Plac
   }
 }
 
-Sparse read_sparse(const Gltf& gltf, const Accessor& accessor, const Node& node) {
-  const Node indices = node.at("indices");
-  const Node values = node.at("values");
-  Sparse sparse;
-  sparse.count = node.at("count").number();
-  sparse.index_view = indices.at("bufferView").index(gltf.views.size(), "buffer views");
-  sparse.index_offset = indices.number("byteOffset", 0);
-  sparse.index_type = unsigned_type(indices.at("componentType"));
-  sparse.value_view = values.at("bufferView").index(gltf.views.size(), "buffer views");
-  sparse.value_offset = values.number("byteOffset", 0);
-  if (sparse.count == 0 || sparse.count > accessor.count)
-    fail(ErrorCode::malformed_gltf, node.at("count").place(),
-         "a sparse accessor replaces from one to all of its elements; export the asset again");
-  check_sparse_part(gltf, indices, sparse.count, component_bytes(sparse.index_type));
-  check_sparse_part(gltf, values, sparse.count, accessor.element_bytes);
-  return sparse;
-}
-
 void check_accessor_range(const Gltf& gltf, const Accessor& accessor, const Place& place) {
   const View& view = gltf.views[*accessor.view];
   const std::size_t stride = view.stride != 0 ? view.stride : accessor.element_bytes;
@@ -136,24 +154,6 @@ void check_accessor_range(const Gltf& gltf, const Accessor& accessor, const Plac
          "its elements are longer than the stride of its buffer view; export the asset again");
   if (!fits(view.length, accessor.offset, accessor.count, accessor.element_bytes, stride))
     out_of_range(place, "buffer view");
-}
-
-Accessor read_accessor(const Gltf& gltf, const Node& node) {
-  Accessor accessor;
-  const ElementType element = element_type(node.at("type"));
-  accessor.type = component_type(node.at("componentType"));
-  accessor.components = element.rows * element.columns;
-  accessor.element_bytes = element_bytes(element, accessor.type);
-  accessor.count = node.at("count").number();
-  accessor.offset = node.number("byteOffset", 0);
-  accessor.normalized = node.flag("normalized");
-  if (const auto view = node.find("bufferView")) {
-    accessor.view = view->index(gltf.views.size(), "buffer views");
-    check_accessor_range(gltf, accessor, node.place());
-  }
-  if (const auto sparse = node.find("sparse"))
-    accessor.sparse = read_sparse(gltf, accessor, *sparse);
-  return accessor;
 }
 
 /// Entries lie in the file side by side, so that there are no more of them than bytes; many
@@ -182,10 +182,19 @@ void read_views(Gltf& gltf) {
   const std::size_t count = list ? list->array_size() : 0;
   gltf.views.clear();
   gltf.views.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    gltf.views.push_back(read_view(gltf, list->at(i)));
-    if (!is_compressed(list->at(i))) check_view_range(gltf, gltf.views.back(), list->at(i).place());
-  }
+  Slices slices(
+      [&](const std::string& slice) {
+        for (View& view : views_of(slice)) {
+          const Node node = list->at(gltf.views.size());
+          view.stride = stride_of(node);
+          if (!is_compressed(node)) check_view_range(gltf, view, node.place());
+          gltf.views.push_back(view);
+        }
+      },
+      gltf.stop);
+  for (std::size_t i = 0; i < count; ++i)
+    slices.add([&] { return checked_view(gltf, list->at(i)); });
+  slices.end();
 }
 
 void read_accessors(Gltf& gltf) {
@@ -194,10 +203,20 @@ void read_accessors(Gltf& gltf) {
   std::size_t budget = sparse_budget(gltf);
   gltf.accessors.clear();
   gltf.accessors.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    gltf.accessors.push_back(read_accessor(gltf, list->at(i)));
-    if (gltf.accessors.back().sparse) spend(budget, gltf, i);
-  }
+  Slices slices(
+      [&](const std::string& slice) {
+        for (const Accessor& accessor : accessors_of(slice)) {
+          const Place place = accessor_place(gltf.accessors.size());
+          if (accessor.view) check_accessor_range(gltf, accessor, place);
+          if (accessor.sparse) check_sparse_ranges(gltf, accessor, place.at("sparse"));
+          gltf.accessors.push_back(accessor);
+          if (accessor.sparse) spend(budget, gltf, gltf.accessors.size() - 1);
+        }
+      },
+      gltf.stop);
+  for (std::size_t i = 0; i < count; ++i)
+    slices.add([&] { return checked_accessor(gltf, list->at(i)); });
+  slices.end();
 }
 
 }  // namespace unwrapd::asset

@@ -2,8 +2,10 @@
 // unwrapped once, however many nodes show it), by counting, without walking the graph recursively.
 // A node with two parents is passed over: whoever reads the file shows it at both places.
 #include <algorithm>
+#include <tuple>
 
 #include "core/asset/gltf_steps.hpp"
+#include "core/asset/tinygltf.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -13,29 +15,65 @@ std::size_t list_size(const Gltf& gltf, std::string_view name) {
   return list ? list->array_size() : 0;
 }
 
-using NamedIndices = std::vector<std::pair<std::string, std::size_t>>;
+constexpr std::size_t kMaxNames = 65'536;  // of a primitive: each takes 400 bytes in tinygltf
 
-NamedIndices read_attributes(const Gltf& gltf, const Node& node) {
+Members checked_attributes(const Gltf& gltf, const Node& node, std::size_t& names) {
   node.expect_object();
-  NamedIndices attributes;
-  for (const auto& [name, value] : node.json().get_ref<const Json::object_t&>())
-    attributes.emplace_back(name, Node(value, node.place().at(std::string_view(name)))
-                                      .index(gltf.accessors.size(), "accessors"));
+  Members attributes;
+  for (const auto& [name, value] : node.json().get_ref<const Json::object_t&>()) {
+    const Node accessor(value, node.place().at(std::string_view(name)));
+    attributes.add_named(name, accessor.index(gltf.accessors.size(), "accessors"));
+  }
+  if ((names += node.json().size()) > kMaxNames)
+    fail(ErrorCode::malformed_gltf, node.place(),
+         "a primitive has at most 65,536 attributes, those of its morph targets too; split it");
   return attributes;
 }
 
-void read_targets(const Gltf& gltf, const Node& list, Primitive& primitive) {
+std::vector<Members> checked_targets(const Gltf& gltf, const Node& list, std::size_t& names) {
+  std::vector<Members> targets;
   for (std::size_t i = 0; i < list.array_size(); ++i)
-    for (const auto& [name, accessor] : read_attributes(gltf, list.at(i)))
-      primitive.targets.push_back(accessor);
+    targets.push_back(checked_attributes(gltf, list.at(i), names));
+  return targets;
 }
 
-Mode read_mode(const Node& node) {
+std::size_t checked_mode(const Node& node) {
   const std::size_t mode = node.number("mode", 4);
-  if (mode > 6)
-    fail(ErrorCode::malformed_gltf, node.place().at("mode"),
-         "a mode is from 0 to 6; export the asset again");
-  return static_cast<Mode>(mode);
+  if (mode <= 6) return mode;
+  fail(ErrorCode::malformed_gltf, node.place().at("mode"),
+       "a mode is from 0 to 6; export the asset again");
+}
+
+/// All of it but what Draco adds. tinygltf refuses indices without a buffer view: they stay ours.
+Members checked_primitive(const Gltf& gltf, const Node& node) {
+  Members primitive;
+  std::size_t names = 0;
+  primitive.add("mode", checked_mode(node));
+  primitive.add("attributes", checked_attributes(gltf, node.at("attributes"), names));
+  if (const auto indices = node.find("indices"))
+    static_cast<void>(indices->index(gltf.accessors.size(), "accessors"));
+  if (const auto material = node.find("material"))
+    primitive.add("material", material->index(list_size(gltf, "materials"), "materials"));
+  if (const auto targets = node.find("targets"))
+    primitive.add("targets", checked_targets(gltf, *targets, names));
+  return primitive;
+}
+
+/// Fills in what tinygltf did not get. Attributes come by name: they go back to their author's
+/// order, in which they are written.
+void complete(Primitive& primitive, const Node& node) {
+  const auto by_name = [](const auto& attribute, const std::string& name) {
+    return attribute.first < name;
+  };
+  const auto sorted = std::exchange(primitive.attributes, {});
+  for (const auto& [name, value] : node.at("attributes").json().get_ref<const Json::object_t&>())
+    primitive.attributes.push_back(*std::lower_bound(sorted.begin(), sorted.end(), name, by_name));
+  if (const auto indices = node.find("indices")) primitive.indices = indices->number();
+  for (const auto& [name, accessor] : primitive.attributes) {
+    if (name != "POSITION") continue;
+    primitive.position = accessor;
+    primitive.has_triangles = primitive.mode >= Mode::triangles;
+  }
 }
 
 DracoSource read_draco(const Gltf& gltf, const Node& node, std::size_t primitive) {
@@ -55,21 +93,16 @@ std::optional<Node> draco_extension(const Node& primitive) {
   return extensions ? extensions->find("KHR_draco_mesh_compression") : std::nullopt;
 }
 
-Primitive read_primitive(const Gltf& gltf, const Node& node) {
-  Primitive primitive;
-  primitive.mode = read_mode(node);
-  primitive.attributes = read_attributes(gltf, node.at("attributes"));
-  if (const auto indices = node.find("indices"))
-    primitive.indices = indices->index(gltf.accessors.size(), "accessors");
-  if (const auto material = node.find("material"))
-    primitive.material = material->index(list_size(gltf, "materials"), "materials");
-  if (const auto targets = node.find("targets")) read_targets(gltf, *targets, primitive);
-  for (const auto& [name, accessor] : primitive.attributes) {
-    if (name != "POSITION") continue;
-    primitive.position = accessor;
-    primitive.has_triangles = primitive.mode >= Mode::triangles;
-  }
-  return primitive;
+/// The Draco bitstream of a checked primitive, if it has one.
+std::optional<DracoSource> checked_draco(const Gltf& gltf, const Node& node,
+                                         std::size_t primitive) {
+  const auto draco = draco_extension(node);
+  if (!draco) return std::nullopt;
+  if (node.number("mode", 4) < std::size_t(Mode::triangles) ||
+      !node.at("attributes").find("POSITION"))
+    fail(ErrorCode::malformed_draco, node.place(),
+         "only triangles can be compressed with Draco; export the asset again");
+  return read_draco(gltf, *draco, primitive);
 }
 
 /// The children of all nodes, one after another: those of node i begin at first[i].
@@ -110,23 +143,34 @@ void check_scenes(const Gltf& gltf, std::size_t node_count) {
 
 std::vector<DracoSource> read_meshes(Gltf& gltf) {
   std::vector<DracoSource> sources;
+  std::vector<std::pair<std::size_t, std::size_t>> numbers;  // of a primitive: mesh, place in it
   gltf.primitives.clear();
+  Slices slices(
+      [&](const std::string& slice) {
+        for (Primitive& primitive : primitives_of(slice)) {
+          std::tie(primitive.mesh, primitive.number) = numbers[gltf.primitives.size()];
+          complete(primitive, Node(gltf.json)
+                                  .at("meshes")
+                                  .at(primitive.mesh)
+                                  .at("primitives")
+                                  .at(primitive.number));
+          gltf.primitives.push_back(std::move(primitive));
+        }
+      },
+      gltf.stop);
   const std::size_t mesh_count = list_size(gltf, "meshes");
   for (std::size_t i = 0; i < mesh_count; ++i) {
     const Node list = Node(gltf.json).at("meshes").at(i).at("primitives");
-    for (std::size_t k = 0; k < list.array_size(); ++k) {
-      Primitive primitive = read_primitive(gltf, list.at(k));
-      primitive.mesh = i;
-      primitive.number = k;
-      if (const auto draco = draco_extension(list.at(k))) {
-        if (!primitive.has_triangles)
-          fail(ErrorCode::malformed_draco, list.at(k).place(),
-               "only triangles can be compressed with Draco; export the asset again");
-        sources.push_back(read_draco(gltf, *draco, gltf.primitives.size()));
-      }
-      gltf.primitives.push_back(std::move(primitive));
-    }
+    for (std::size_t k = 0; k < list.array_size(); ++k)
+      slices.add([&] {
+        const Members primitive = checked_primitive(gltf, list.at(k));
+        if (auto draco = checked_draco(gltf, list.at(k), numbers.size()))
+          sources.push_back(std::move(*draco));
+        numbers.emplace_back(i, k);
+        return primitive;
+      });
   }
+  slices.end();
   return sources;
 }
 
