@@ -10,19 +10,18 @@
 #include <utility>
 
 #include "core/base/error.hpp"
-#include "core/charts/constraints.hpp"
 #include "core/charts/outline.hpp"
 #include "core/guarantee/promise.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/measure/seam_length.hpp"
 #include "core/pack/pack.hpp"
-#include "core/pipeline/analyse.hpp"
 #include "core/pipeline/assemble.hpp"
+#include "core/pipeline/chart_watch.hpp"
 #include "core/pipeline/map_chart.hpp"
+#include "core/pipeline/map_surfaces.hpp"
 #include "core/pipeline/place_islands.hpp"
 #include "core/pipeline/repack.hpp"
-#include "core/pipeline/take_apart.hpp"
 
 namespace unwrapd {
 namespace {
@@ -31,94 +30,8 @@ namespace {
 /// after.
 constexpr double kPackBegin = kSolveEnd, kMeasureBegin = 0.93;
 
-/// All charts under one map: what goes on one page.
-struct Layout {
-  std::vector<std::vector<std::shared_ptr<const Chart>>> charts;  ///< of each surface, as mapped
-  std::vector<std::vector<UvMap>> islands;           ///< islands[s][k]: the map of charts[s][k]
-  std::vector<std::vector<std::vector<char>>> held;  ///< held[s][k]: see MappedChart
-  DistortionSums sums;  ///< of all charts, from space to the page as it is written
-  Report report;
-};
-
 void announce(const Progress& progress, Stage stage, std::size_t charts, double fraction) {
   if (progress.on_stage) progress.on_stage({stage, 0, static_cast<Index>(charts), fraction});
-}
-
-/// A page for each map: what came in is in its report, charts are not in it yet.
-std::vector<Layout> empty_layouts(const std::vector<Charts>& parts, std::size_t map_count) {
-  Layout layout;
-  layout.charts.resize(parts.size());
-  layout.islands.resize(parts.size());
-  layout.held.resize(parts.size());
-  const InputAnalysis analysis = analysis_of(parts);
-  layout.report.input = analysis.input;
-  layout.report.repairs = analysis.repairs;
-  return {map_count, layout};
-}
-
-void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
-  mapped.report.surface = static_cast<Index>(surface);
-  layout.report.charts.push_back(std::move(mapped.report));
-  layout.charts[surface].push_back(std::move(mapped.chart));
-  layout.islands[surface].push_back(std::move(mapped.uv));
-  layout.held[surface].push_back(std::move(mapped.held));
-}
-
-ChartWatch chart_watch(const TakenApart& taken, const Progress& progress, Executor& executor) {
-  std::size_t chart_count = 0, face_count = 0;
-  for (const Charts& part : taken.all->surfaces) {
-    chart_count += part.charts.size();
-    for (const Chart& chart : part.charts) face_count += chart.mesh.faces.size();
-  }
-  require_area(taken.all->surfaces);
-  return {progress, static_cast<Index>(chart_count), face_count, taken.solve_begin, executor};
-}
-
-/// What a map without overlaps keeps of the method's own.
-std::string kept_of(Method method) {
-  switch (method) {
-    case Method::arap:
-      return "ARAP's energy";
-    case Method::hybrid:
-      return "the method's own energy (below a lambda of 0.01: to the angles of its own map)";
-    case Method::slim:
-      return "the symmetric Dirichlet energy";
-    default:
-      return "the angles of the method's own map";
-  }
-}
-
-/// Says which maps are not those of the method.
-void note_new_maps(Layout& layout, const UnwrapOptions& options) {
-  const auto is_new = [](const ChartReport& chart) {
-    return chart.mending.overlaps > 0 && chart.mending.parts == 1;
-  };
-  const auto& charts = layout.report.charts;
-  if (const auto count = std::count_if(charts.begin(), charts.end(), is_new); count > 0)
-    layout.report.notes.push_back(
-        "Charts that overlapped themselves and have a new map without overlaps: " +
-        std::to_string(count) + ". The new map keeps as near as it can to " +
-        kept_of(options.method) + "; energy_rise of the chart's mending is the cost.");
-}
-
-/// page: the position constraints of every chart of every surface.
-std::vector<Layout> map_charts(const TakenApart& taken, const std::vector<std::vector<Holds>>& page,
-                               const UnwrapOptions& options, const Progress& progress,
-                               Executor& executor) {
-  const Prepared& all = *taken.all;
-  ChartWatch watch = chart_watch(taken, progress, executor);
-  std::vector<Layout> layouts = empty_layouts(all.surfaces, lambdas_of(options).size());
-  if (!all.note.empty())
-    for (Layout& layout : layouts) layout.report.notes.push_back(all.note);
-  for (std::size_t s = 0; s < all.surfaces.size(); ++s)
-    for (std::size_t c = 0; c < all.surfaces[s].charts.size(); ++c) {
-      const std::shared_ptr<const Chart> chart(taken.all, &all.surfaces[s].charts[c]);
-      auto maps = map_chart({chart, all.disks[s][c], page[s][c]}, options, watch, executor);
-      for (std::size_t k = 0; k < maps.size(); ++k)
-        for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped));
-    }
-  for (Layout& layout : layouts) note_new_maps(layout, options);
-  return layouts;
 }
 
 /// Places every chart on the page; the maps become page UVs.
@@ -202,8 +115,9 @@ void add_totals(Report& report) {
 }
 
 /// The plan that is there already, unless charts came apart.
-UnwrappedSurface assembled(const Surface& surface, const Prepared& all, std::size_t s,
-                           const Layout& layout, const std::stop_token& stop) {
+UnwrappedSurface assembled(const Surface& surface, std::size_t s, const Layout& layout,
+                           const std::stop_token& stop) {
+  const Prepared& all = *layout.all;
   const Charts& whole = all.surfaces[s];
   std::vector<const Chart*> charts;
   for (const std::shared_ptr<const Chart>& chart : layout.charts[s]) charts.push_back(chart.get());
@@ -211,12 +125,12 @@ UnwrappedSurface assembled(const Surface& surface, const Prepared& all, std::siz
   return assemble(plan_vertices(surface, whole, charts, stop), layout.islands[s]);
 }
 
-Unwrapped put_back(std::span<const Surface> surfaces, const Prepared& all, Layout layout,
-                   const std::stop_token& stop) {
+Unwrapped put_back(std::span<const Surface> surfaces, Layout layout, const std::stop_token& stop) {
+  const Prepared& all = *layout.all;
   Unwrapped unwrapped;
   auto report = layout.report.charts.begin();
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    unwrapped.surfaces.push_back(assembled(surfaces[s], all, s, layout, stop));
+    unwrapped.surfaces.push_back(assembled(surfaces[s], s, layout, stop));
     const std::vector<double> seams = seam_lengths(surfaces[s].mesh, *all.surfaces[s].by_position,
                                                    unwrapped.surfaces.back(), stop);
     for (const std::shared_ptr<const Chart>& chart : layout.charts[s]) {
@@ -258,9 +172,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   if (options.repack_only)
     return {lambdas_of(options).size(), repack(surfaces, options, progress, job)};
   announce(progress, Stage::setup, 0, kChartsBegin);
-  const TakenApart taken = take_apart(surfaces, options, progress, job);
-  const auto page = page_holds(surfaces, taken.all->surfaces, options.constraints, progress.stop);
-  std::vector<Layout> layouts = map_charts(taken, page, options, progress, job);
+  std::vector<Layout> layouts = map_surfaces(surfaces, options, progress, job);
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
   for (Layout& layout : layouts) {
@@ -271,7 +183,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   for (Layout& layout : layouts) measure(layout, options, job);
   std::vector<Unwrapped> maps;
   for (Layout& layout : layouts)
-    maps.push_back(put_back(surfaces, *taken.all, std::move(layout), progress.stop));
+    maps.push_back(put_back(surfaces, std::move(layout), progress.stop));
   if (is_curve(options)) add_curve(maps, lambdas_of(options));
   return maps;
 }

@@ -5,25 +5,27 @@
 #include "core/segment/best_merge.hpp"
 
 #include <utility>
-#include <vector>
-
-#include "core/segment/merge_search.hpp"
 
 namespace unwrapd {
 
-Partition best_merge(const Sheet& sheet, const Partition& from, const MergeRules& rules,
-                     std::span<const double> looser, Executor& executor) {
-  MergeSearch search(sheet, from, rules, looser.size(), executor);
-  std::vector<Candidate> mended = search.greedy();
-  search.mend(mended);
-  Candidate best = search.taken_apart(search.finished(mended));
-  if (!looser.empty()) best = search.priced(std::move(best));
-  for (const double budget : looser) {
-    if (best.cost.seam <= 0) break;  // it needs no cut
-    search.widen(budget, mended);
-    best = search.with_shorter_seams(mended, std::move(best));
-  }
-  return std::move(best.partition);
+BestMerge::BestMerge(const Sheet& sheet, const Partition& from, const MergeRules& rules,
+                     std::size_t steps, Executor& executor)
+    : search_(sheet, from, rules, steps, executor) {}
+
+const Partition& BestMerge::first() {
+  mended_ = search_.greedy();
+  search_.mend(mended_);
+  best_ = search_.taken_apart(search_.finished(mended_));
+  return best_.partition;
+}
+
+bool BestMerge::loosen(double budget) {
+  if (!std::exchange(is_priced_, true)) best_ = search_.priced(std::move(best_));
+  const double seam = best_.cost.seam;
+  if (seam <= 0) return false;  // it needs no cut
+  search_.widen(budget, mended_);
+  best_ = search_.with_shorter_seams(mended_, std::move(best_));
+  return best_.cost.seam < seam;
 }
 
 }  // namespace unwrapd

@@ -4,14 +4,18 @@
 // to is measured, too; if that misses the bound, they are sought once more for a lower one.
 // Rejected: a fixed share of the bound for noise: too much for smooth surfaces, too little for
 // rough ones; measuring on the patches before they merge: that shows half of it.
+//
+// For a looser bound the noise is measured at the first of its steps and the search goes on from
+// step to step (ADR 0039); what is then compared are the seams on the large surface.
 #include "core/segment/large_charts.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/segment/chart_excess.hpp"
 #include "core/segment/coarsen.hpp"
+#include "core/segment/excess_steps.hpp"
 #include "core/segment/region_charts.hpp"
 
 namespace unwrapd {
@@ -22,6 +26,7 @@ constexpr double kCaution = 1.15;    // for each unit of excess that was measure
 constexpr double kMostHidden = 0.7;  // of the excess allowed; where noise takes more, it is let be
 constexpr double kRoughShare = 0.1, kFirstShare = 0.9;  // of the work, when they have ended
 
+/// What charts are found, step by step (excess_steps()).
 class Search {
  public:
   Search(const Chart& component, const SegmentRules& rules, Executor& executor)
@@ -29,47 +34,95 @@ class Search {
         rules_(rules),
         executor_(executor),
         coarse_(coarsen(component.mesh, component.halfedges, kFacesOfCoarse, rules.stop)),
-        sheet_(make_sheet(coarse_.mesh, coarse_.halfedges)) {}
+        sheet_(make_sheet(coarse_.mesh, coarse_.halfedges)),
+        steps_(excess_steps(rules.max_distortion)) {}
 
   LargeCharts run() {
-    const double most = rules_.max_distortion - 2;
-    const Found quick = find(0, true, {0, kRoughShare});
-    double hidden = kCaution * std::max(0.0, (quick.large - quick.small).worst());
-    const bool is_rough = hidden > kMostHidden * most;
-    if (is_rough) hidden = 0;
-    Found found = find(hidden, false, {kRoughShare, kFirstShare});
-    const double missed = found.large.worst() - most;
-    const bool is_limited = std::ssize(found.charts) >= rules_.most_regions;
-    if (missed > 0 && !is_rough && !is_limited) {
-      hidden = std::min(hidden + kCaution * missed, kMostHidden * most);
-      found = find(hidden, false, {kFirstShare, 1});
+    measure_hidden();
+    Found best = first();
+    for (std::size_t k = 1; k < steps_.size(); ++k) {
+      std::optional<Found> next = loosened(steps_[k]);
+      if (next && is_better(next->seams, best.seams, rules_.most_regions)) best = std::move(*next);
     }
-    return {std::move(found.charts), is_rough};
+    return {std::move(best.charts), is_rough_};
   }
 
  private:
   struct Found {
     std::vector<Chart> charts;
     Excess small, large;  ///< on either surface, over its area
-  };
-  struct Span {
-    double begin, end;
+    SeamsOfCharts seams;  ///< both sides of each, in units of the mesh, and the surface's boundary
   };
 
-  /// hidden: the excess that is kept from the small surface.
-  Found find(double hidden, bool is_quick, const Span& work) {
+  /// Steps for which the noise leaves no room are left out, unless that is so for all of them.
+  void measure_hidden() {
+    begin(0, true, kRoughShare);
+    const Found quick = on_large(segmentation_->first(steps_.front()));
+    hidden_ = kCaution * std::max(0.0, (quick.large - quick.small).worst());
+    const auto with_room = std::ranges::find_if(
+        steps_, [&](double excess) { return hidden_ <= kMostHidden * excess; });
+    is_rough_ = with_room == steps_.end();
+    if (is_rough_)
+      hidden_ = 0;
+    else
+      steps_.erase(steps_.begin(), with_room);
+  }
+
+  Found first() {
+    const double excess = steps_.front();
+    begin(steps_.size() - 1, false, kFirstShare);
+    last_ = on_small(excess);
+    Found found = on_large(segmentation_->first(last_));
+    if (!misses(found, excess)) return found;
+    hide_more(found, excess);
+    begin(steps_.size() - 1, false, 1);
+    last_ = on_small(excess);
+    return on_large(segmentation_->first(last_));
+  }
+
+  /// Nothing where there are no other charts, or they do not keep the bound; then more is kept from
+  /// the small surface in steps to come.
+  std::optional<Found> loosened(double excess) {
+    if (on_small(excess) <= last_) return std::nullopt;
+    const std::optional<Segments> segments = segmentation_->loosened(on_small(excess));
+    last_ = on_small(excess);
+    if (!segments) return std::nullopt;
+    Found found = on_large(*segments);
+    if (!misses(found, excess)) return found;
+    hide_more(found, excess);
+    return std::nullopt;
+  }
+
+  /// The work up to the share `end` begins: a segmentation of the small surface.
+  void begin(std::size_t steps, bool is_quick, double end) {
     SegmentRules rules = rules_;
-    rules.max_distortion -= hidden;
-    rules.first_distortion = std::numeric_limits<double>::infinity();
     rules.is_quick = is_quick;
-    rules.on_progress = [&](Stage stage, double share) {
-      if (rules_.on_progress)
-        rules_.on_progress(stage, work.begin + share * (work.end - work.begin));
+    rules.on_progress = [this, begin = done_, end](Stage stage, double share) {
+      done_ = begin + share * (end - begin);
+      if (rules_.on_progress) rules_.on_progress(stage, done_);
     };
-    const Segments segments = segment(sheet_, rules, executor_);
-    Found found{region_charts(component_, coarse_, segments, rules_.stop), segments.excess, {}};
+    segmentation_.emplace(sheet_, std::move(rules), steps, executor_);
+  }
+
+  Found on_large(const Segments& segments) {
+    Found found{region_charts(component_, coarse_, segments, rules_.stop), segments.excess, {}, {}};
     found.large = chart_excess(found.charts, executor_, rules_.stop);
+    found.seams.charts = found.charts.size();
+    for (const Chart& chart : found.charts) found.seams.length += boundary_length(chart);
     return found;
+  }
+
+  /// What the small surface may have where the large one may have so much.
+  [[nodiscard]] double on_small(double excess) const { return 2 + excess - hidden_ - 2; }
+
+  [[nodiscard]] bool misses(const Found& found, double excess) const {
+    const bool is_limited = std::ssize(found.charts) >= rules_.most_regions;
+    return !is_rough_ && !is_limited && found.large.worst() > excess;
+  }
+
+  void hide_more(const Found& found, double excess) {
+    const double missed = found.large.worst() - excess;
+    hidden_ = std::min(hidden_ + kCaution * missed, kMostHidden * excess);
   }
 
   const Chart& component_;
@@ -77,6 +130,12 @@ class Search {
   Executor& executor_;
   Coarse coarse_;
   Sheet sheet_;
+  std::vector<double> steps_;  ///< that are searched for
+  double hidden_ = 0;          ///< of the excess: kept from the small surface
+  bool is_rough_ = false;
+  double done_ = 0;  ///< share of the work
+  double last_ = 0;  ///< excess that was searched for last
+  std::optional<SheetSegmentation> segmentation_;
 };
 
 }  // namespace

@@ -43,6 +43,10 @@ double seam_of(const Sheet& sheet, const Partition& partition, const std::vector
 
 }  // namespace
 
+double seam_length(const Sheet& sheet, const Partition& partition) {
+  return seam_of(sheet, partition, owners(sheet, partition));
+}
+
 PartitionCost partition_cost(const Sheet& sheet, const Partition& partition,
                              const CostRules& rules) {
   const std::vector<Index> owner = owners(sheet, partition);

@@ -27,6 +27,9 @@ struct CostRules {
   std::stop_token stop = {};
 };
 
+/// The length of all seams; area of the sheet: 1.
+double seam_length(const Sheet& sheet, const Partition& partition);
+
 /// Seams by their lengths, so much for each chart, and more for each share of a rough packing
 /// that is wanted and left empty; nothing for what needs no cut. Where `all` is not below the limit
 /// it may be infinite instead. Rounded: equal costs tie. Throws Error{cancelled}.

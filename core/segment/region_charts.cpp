@@ -6,6 +6,7 @@
 
 #include "core/base/cancel.hpp"
 #include "core/charts/split_chart.hpp"
+#include "core/mesh/edges.hpp"
 #include "core/segment/carry.hpp"
 
 namespace unwrapd {
@@ -73,6 +74,16 @@ UvMap carried_map(const ChartPart& part, const Coarse& coarse, std::span<const C
 }
 
 }  // namespace
+
+double boundary_length(const Chart& chart) {
+  const TriMesh& mesh = chart.mesh;
+  double length = 0;
+  for (const BoundaryLoop& loop : chart.loops)
+    for (const Index h : loop)
+      length +=
+          (mesh.positions[end_of(mesh.faces, h)] - mesh.positions[start_of(mesh.faces, h)]).norm();
+  return length;
+}
 
 std::vector<Chart> region_charts(const Chart& component, const Segments& segments) {
   const auto [uv, seam] = seamed(component.halfedges, segments);

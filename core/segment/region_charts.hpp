@@ -10,6 +10,9 @@
 
 namespace unwrapd {
 
+/// In space.
+double boundary_length(const Chart& chart);
+
 /// The regions of a component, each with its map for a start.
 std::vector<Chart> region_charts(const Chart& component, const Segments& segments);
 

@@ -7,16 +7,16 @@
 #include "core/segment/segment.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/base/cancel.hpp"
-#include "core/segment/best_merge.hpp"
 #include "core/segment/cluster.hpp"
+#include "core/segment/excess_steps.hpp"
 #include "core/segment/labels.hpp"
+#include "core/segment/partition_cost.hpp"
 
 namespace unwrapd {
 namespace {
@@ -33,9 +33,6 @@ constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a n
 constexpr double kPatchesShare = 0.1, kFacesOfPatches = 6;  // of the work; for each face
 constexpr std::size_t kPatchesAtOnce = 16;                  // then progress is told
 constexpr double kFacesOfQuick = 20, kQuickPrice = 1;
-constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of excess, in each decade
-constexpr int kDecades = 4;
-constexpr double kSameBound = 1e-9;
 constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
 
 /// How the work is watched and done.
@@ -117,61 +114,88 @@ std::vector<MappedRegion> over_segment(const Sheet& sheet, double excess, const 
   }
 }
 
-/// The excess of the bound that is searched for.
-double first_excess(const SegmentRules& rules) {
-  return std::min(rules.max_distortion, rules.first_distortion) - 2;
-}
-
-/// The budgets of all steps above the first bound up to the one that is asked for: the same for
-/// every bound as far as they go.
-std::vector<double> looser_budgets(const SegmentRules& rules) {
-  std::vector<double> budgets;
-  double decade = rules.first_distortion - 2;
-  if (rules.is_quick || !std::isfinite(decade)) return budgets;
-  for (int k = 0; k < kDecades; ++k, decade *= 10)
-    for (const double step : kSteps)
-      if (2 + step * decade <= rules.max_distortion + kSameBound)
-        budgets.push_back(kMargin * step * decade);
-  return budgets;
-}
-
-Partition merged(const Sheet& sheet, const Partition& from, const SegmentRules& rules,
-                 const Work& work) {
-  const double budget = kMargin * first_excess(rules);
+MergeRules merge_rules(const SegmentRules& rules, double excess, Effort& effort) {
+  const double budget = kMargin * excess;
   MergeRules merging{.budget = budget, .cap = kCapOfOnePatch * budget, .stop = rules.stop};
   merging.page_area = rules.page_area;
-  merging.effort = &work.effort;
-  if (rules.is_quick) {
-    work.effort.begin(1, kFacesOfQuick * sheet.face_count());
-    merging.price = kQuickPrice;
-    return merge_patches(Joiner(sheet), sheet, from, merging, work.executor);
-  }
-  return best_merge(sheet, from, merging, looser_budgets(rules), work.executor);
+  merging.effort = &effort;
+  return merging;
+}
+
+/// Merged on however distorted, to so many patches where maps allow it.
+Partition limited(const Sheet& sheet, Partition partition, const SegmentRules& rules,
+                  Executor& executor) {
+  if (partition.patches.size() <= static_cast<std::size_t>(rules.most_regions)) return partition;
+  const MergeRules merging{.budget = kAnyExcess,
+                           .cap = kAnyExcess,
+                           .price = kFarPrice * kAnyExcess,
+                           .enough = rules.most_regions,
+                           .stop = rules.stop};
+  return merge_patches(Joiner(sheet), sheet, std::move(partition), merging, executor);
 }
 
 }  // namespace
 
-Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
-  Stage stage = Stage::segment;
-  Effort effort([&](double share) {
-    if (rules.on_progress) rules.on_progress(stage, share);
-  });
-  const Work work{rules.stop, effort, executor};
-  Partition best{over_segment(sheet, first_excess(rules), work),
-                 std::vector<char>(sheet.length.size(), 0)};
-  stage = Stage::merge;
-  best = merged(sheet, best, rules, work);
-  if (best.patches.size() > static_cast<std::size_t>(rules.most_regions)) {
-    const MergeRules merging{.budget = kAnyExcess,
-                             .cap = kAnyExcess,
-                             .price = kFarPrice * kAnyExcess,
-                             .enough = rules.most_regions,
-                             .stop = rules.stop};
-    best = merge_patches(Joiner(sheet), sheet, std::move(best), merging, executor);
+SheetSegmentation::SheetSegmentation(const Sheet& sheet, SegmentRules rules, std::size_t steps,
+                                     Executor& executor)
+    : sheet_(sheet),
+      rules_(std::move(rules)),
+      steps_(steps),
+      executor_(executor),
+      effort_([this](double share) {
+        if (rules_.on_progress) rules_.on_progress(stage_, share);
+      }) {}
+
+Segments SheetSegmentation::first(double excess) {
+  const Work work{rules_.stop, effort_, executor_};
+  patches_ = {over_segment(sheet_, excess, work), std::vector<char>(sheet_.length.size(), 0)};
+  stage_ = Stage::merge;
+  MergeRules merging = merge_rules(rules_, excess, effort_);
+  if (rules_.is_quick) {
+    effort_.begin(1, kFacesOfQuick * sheet_.face_count());
+    merging.price = kQuickPrice;
+    return segments_of(
+        merge_patches(Joiner(sheet_), sheet_, std::move(patches_), merging, executor_));
   }
-  Segments segments{{}, std::move(best.open), total_of(best.patches)};
+  return segments_of(merge_.emplace(sheet_, patches_, merging, steps_, executor_).first());
+}
+
+std::optional<Segments> SheetSegmentation::loosened(double excess) {
+  if (!merge_->loosen(kMargin * excess)) return std::nullopt;
+  return segments_of(merge_->best());
+}
+
+Segments SheetSegmentation::segments_of(Partition best) const {
+  best = limited(sheet_, std::move(best), rules_, executor_);
+  Segments segments{.regions = {},
+                    .open = {},
+                    .excess = total_of(best.patches),
+                    .seam_length = seam_length(sheet_, best)};
+  segments.open = std::move(best.open);
   for (MappedRegion& patch : best.patches) segments.regions.push_back(std::move(patch.region));
   return segments;
+}
+
+bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most) {
+  const auto beyond = [&](const SeamsOfCharts& own) {
+    return std::max(own.charts, static_cast<std::size_t>(most));
+  };
+  if (beyond(one) != beyond(other)) return beyond(one) < beyond(other);
+  return one.length < other.length;
+}
+
+Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor) {
+  const std::vector<double> steps = excess_steps(rules.max_distortion);
+  SheetSegmentation segmentation(sheet, rules, steps.size() - 1, executor);
+  const auto seams = [](const Segments& own) {
+    return SeamsOfCharts{own.regions.size(), own.seam_length};
+  };
+  Segments best = segmentation.first(steps.front());
+  for (const double excess : std::span(steps).subspan(1)) {
+    std::optional<Segments> next = segmentation.loosened(excess);
+    if (next && is_better(seams(*next), seams(best), rules.most_regions)) best = std::move(*next);
+  }
+  return best;
 }
 
 }  // namespace unwrapd

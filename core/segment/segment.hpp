@@ -3,11 +3,12 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
 #include "core/base/executor.hpp"
-#include "core/segment/merge.hpp"
+#include "core/segment/best_merge.hpp"
 #include "core/segment/sheet.hpp"
 #include "core/types/options.hpp"
 #include "core/types/progress.hpp"
@@ -15,10 +16,7 @@
 namespace unwrapd {
 
 struct SegmentRules {
-  double max_distortion = 2.02;  ///< of all regions together, D_angle and D_area each; > 2
-  /// A looser bound is approached in steps from this one, so that it never has longer seams than a
-  /// tighter one above this. At the bound itself it is searched for anew.
-  double first_distortion = kDefaultDistortion;
+  double max_distortion = kDefaultDistortion;  ///< of all regions together, D_angle and D_area; > 2
   Index most_regions = std::numeric_limits<Index>::max();  ///< however distorted, if maps allow it
   double page_area = 1;   ///< of all that lies on one page with this sheet, in units of its area
   bool is_quick = false;  ///< one merge, no search for the best
@@ -30,11 +28,52 @@ struct Segments {
   std::vector<Region> regions;
   std::vector<char> open;  ///< one a half-edge of the sheet, 1: a seam inside a region
   Excess excess = {};      ///< of all maps, over the sheet's area
+  double seam_length = 0;  ///< area of the sheet: 1
 };
 
-/// Every face of the sheet is in exactly one region; each region is a disk (holes allowed) whose
-/// map has no flip and no overlap. Ends with single triangles in the worst case. The same for any
-/// executor, and for the sheet of a mesh that was moved or scaled. Throws Error{cancelled}.
+/// What is compared where several steps lead to a bound.
+struct SeamsOfCharts {
+  std::size_t charts = 0;
+  double length = 0;
+};
+
+/// Shorter seams are better; first of all, fewer of the charts beyond `most` are.
+bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most);
+
+/// A sheet taken apart for one bound, and from there for looser ones. Every face of the sheet is in
+/// exactly one region; each region is a disk (holes allowed) whose map has no flip and no overlap.
+/// Ends with single triangles in the worst case. The same for any executor, and for the sheet of a
+/// mesh that was moved or scaled. All throw Error{cancelled}.
+class SheetSegmentation {
+ public:
+  /// steps: how often loosened() is going to be called. sheet and executor must outlive this.
+  SheetSegmentation(const Sheet& sheet, SegmentRules rules, std::size_t steps, Executor& executor);
+  SheetSegmentation(const SheetSegmentation&) = delete;
+  SheetSegmentation& operator=(const SheetSegmentation&) = delete;
+
+  /// The regions for this excess over 2, whatever the rules' bound. It comes first, once.
+  Segments first(double excess);
+
+  /// Those for a larger excess than the last one; nothing where the same partition is the best.
+  /// Another one has shorter seams, unless there are more regions than the rules allow: either is
+  /// then merged further.
+  std::optional<Segments> loosened(double excess);
+
+ private:
+  [[nodiscard]] Segments segments_of(Partition best) const;
+
+  const Sheet& sheet_;
+  SegmentRules rules_;
+  std::size_t steps_;
+  Executor& executor_;
+  Stage stage_ = Stage::segment;
+  Effort effort_;
+  Partition patches_;
+  std::optional<BestMerge> merge_;
+};
+
+/// The regions for the rules' bound: of those of all steps up to it (excess_steps()), the ones with
+/// the shortest seams. Throws Error{cancelled}.
 Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor);
 
 }  // namespace unwrapd

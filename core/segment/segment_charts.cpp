@@ -14,7 +14,6 @@
 
 #include "core/base/cancel.hpp"
 #include "core/measure/rest_triangle.hpp"
-#include "core/mesh/edges.hpp"
 #include "core/segment/large_charts.hpp"
 #include "core/segment/region_charts.hpp"
 
@@ -23,16 +22,12 @@ namespace {
 
 constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
 constexpr Index kMostFacesSegmented = 18'000;
+constexpr double kShareOfFirst = 0.25;  // of the work, to share charts out
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const Chart& component) {
-  const TriMesh& mesh = component.mesh;
-  double length = 0;
-  for (const BoundaryLoop& loop : component.loops)
-    for (const Index h : loop)
-      length +=
-          (mesh.positions[end_of(mesh.faces, h)] - mesh.positions[start_of(mesh.faces, h)]).norm();
-  return length * length / (4 * std::numbers::pi * surface_area(mesh));
+  const double length = boundary_length(component);
+  return length * length / (4 * std::numbers::pi * surface_area(component.mesh));
 }
 
 /// Where the segmentation of all components stands: they weigh by their faces.
@@ -76,13 +71,15 @@ void note(Charts& surface, RepairKind kind, Index count) {
 /// What is done with components, one after another.
 class Cutter {
  public:
-  Cutter(const SegmentOptions& options, const Account& account, Executor& executor)
-      : options_(options), account_(account), executor_(executor) {}
+  Cutter(const SegmentOptions& options, bool merges_to_one, const Account& account,
+         Executor& executor)
+      : options_(options), merges_to_one_(merges_to_one), account_(account), executor_(executor) {}
 
   /// most: charts that it shall become at most.
   void add(Chart component, Index most) {
     throw_if_cancelled(account_.stop());
-    const bool whole = is_disk(component), one_chart = options_.one_chart_each || most == 1;
+    const bool whole = is_disk(component), is_cut = most == 1 && !merges_to_one_;
+    const bool one_chart = options_.one_chart_each || is_cut;
     const bool is_left = !options_.max_distortion && openness(component) >= kLeastOpenness;
     if (!one_chart && !(whole && is_left)) return take_apart(component, whole, most);
     if (!whole) {
@@ -119,28 +116,36 @@ class Cutter {
   }
 
   const SegmentOptions& options_;
+  bool merges_to_one_;
   const Account& account_;
   Executor& executor_;
 };
 
 /// How many charts each component may become, in the order of surfaces and components.
-using Quotas = std::vector<Index>;
+struct Quotas {
+  std::vector<Index> most;
+  bool merges_to_one = false;  ///< 1: by merging, not by a cut to a disk
+};
 
 /// What cutting came to.
 struct Cuts {
-  Quotas became;    ///< how many charts each component
-  Index rough = 0;  ///< components where noise leaves no room for the bound
+  std::vector<Index> became;  ///< how many charts each component
+  Index rough = 0;            ///< components where noise leaves no room for the bound
+
+  [[nodiscard]] Index charts() const {
+    return std::accumulate(became.begin(), became.end(), Index(0));
+  }
 };
 
-Cuts cut_all(std::vector<Charts>& surfaces, const Quotas& most, const SegmentOptions& options,
+Cuts cut_all(std::vector<Charts>& surfaces, const Quotas& quotas, const SegmentOptions& options,
              const SegmentWatch& watch, Executor& executor) {
   Account account(surfaces, watch);
   Cuts cuts;
   for (Charts& surface : surfaces) {
-    Cutter cutter(options, account, executor);
+    Cutter cutter(options, quotas.merges_to_one, account, executor);
     for (Chart& component : std::exchange(surface.charts, {})) {
       const std::size_t faces = component.mesh.faces.size(), before = cutter.charts.size();
-      cutter.add(std::move(component), most[cuts.became.size()]);
+      cutter.add(std::move(component), quotas.most[cuts.became.size()]);
       cuts.became.push_back(static_cast<Index>(cutter.charts.size() - before));
       account.finish(faces);
     }
@@ -152,13 +157,49 @@ Cuts cut_all(std::vector<Charts>& surfaces, const Quotas& most, const SegmentOpt
   return cuts;
 }
 
+std::size_t count_of(const std::vector<Charts>& surfaces) {
+  std::size_t components = 0;
+  for (const Charts& surface : surfaces) components += surface.charts.size();
+  return components;
+}
+
 /// One chart for each component; what is left of `most` goes by how many they would like.
-Quotas shared_out(Quotas wanted, Index total, Index most) {
-  const auto count = static_cast<Index>(wanted.size());
-  const std::int64_t spare = std::max(most - count, 0);
-  for (Index& own : wanted)
-    own = 1 + static_cast<Index>(spare * (own - 1) / std::max(total - count, 1));
-  return wanted;
+Quotas shared_out(const Cuts& wanted, Index most) {
+  Quotas quotas{wanted.became, wanted.charts() <= most};
+  const auto count = static_cast<Index>(quotas.most.size());
+  const std::int64_t spare = std::max(most - count, 0), all = std::max(wanted.charts() - count, 1);
+  for (Index& own : quotas.most) own = 1 + static_cast<Index>(spare * (own - 1) / all);
+  return quotas;
+}
+
+/// The part of the work from one share of it to another.
+SegmentWatch part_of(const SegmentWatch& watch, double begin, double end) {
+  if (!watch.on_progress) return watch;
+  return {
+      [=](Stage stage, double share) { watch.on_progress(stage, begin + share * (end - begin)); },
+      watch.stop};
+}
+
+/// All surfaces, of which no more than `most` charts shall be made. How these are shared out is
+/// decided at the first step of the bound and holds for all: what each component comes to then
+/// follows the steps (ADR 0039).
+Cuts cut_to_most(std::vector<Charts>& surfaces, const SegmentOptions& options,
+                 const SegmentWatch& watch, Executor& executor) {
+  const Index most = *options.max_charts;
+  const std::size_t components = count_of(surfaces);
+  const Index each = std::max<Index>(most - static_cast<Index>(components) + 1, 1);
+  const bool has_steps =
+      components > 1 && each > 1 && options.max_distortion.value_or(0) > kDefaultDistortion;
+  SegmentOptions first = options;
+  if (has_steps) first.max_distortion = kDefaultDistortion;
+  const std::vector<Charts> whole = surfaces;
+  const SegmentWatch begin = has_steps ? part_of(watch, 0, kShareOfFirst) : watch;
+  Cuts cuts = cut_all(surfaces, {std::vector<Index>(components, each)}, first, begin, executor);
+  if (components == 1 || (cuts.charts() <= most && !has_steps)) return cuts;
+  surfaces = whole;
+  const SegmentWatch rest =
+      has_steps ? part_of(watch, kShareOfFirst, 1) : SegmentWatch{{}, watch.stop};
+  return cut_all(surfaces, shared_out(cuts, most), options, rest, executor);
 }
 
 std::string more_than_asked(Index charts, Index components) {
@@ -176,25 +217,12 @@ std::string rough_surfaces(Index count) {
 
 std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& options,
                            const SegmentWatch& watch, Executor& executor) {
-  Index components = 0;
-  for (const Charts& surface : surfaces) components += static_cast<Index>(surface.charts.size());
-  const bool is_limited = options.max_charts.has_value();
+  const std::size_t components = count_of(surfaces);
   const Index most = options.max_charts.value_or(std::numeric_limits<Index>::max());
-  const Quotas first(static_cast<std::size_t>(components),
-                     is_limited ? std::max<Index>(most - components + 1, 1) : most);
-  const std::vector<Charts> whole = is_limited ? surfaces : std::vector<Charts>();
-  Cuts cuts = cut_all(surfaces, first, options, watch, executor);
-  const auto charts = [&] {
-    return std::accumulate(cuts.became.begin(), cuts.became.end(), Index(0));
-  };
-  Index total = charts();
-  if (total > most && components > 1) {
-    surfaces = whole;
-    cuts = cut_all(surfaces, shared_out(std::move(cuts.became), total, most), options,
-                   {{}, watch.stop}, executor);
-    total = charts();
-  }
-  if (total > most) return more_than_asked(total, components);
+  const Cuts cuts = options.max_charts ? cut_to_most(surfaces, options, watch, executor)
+                                       : cut_all(surfaces, {std::vector<Index>(components, most)},
+                                                 options, watch, executor);
+  if (cuts.charts() > most) return more_than_asked(cuts.charts(), static_cast<Index>(components));
   return cuts.rough > 0 ? rough_surfaces(cuts.rough) : std::string();
 }
 

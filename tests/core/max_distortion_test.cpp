@@ -5,7 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
+#include <vector>
 
+#include "core/segment/large_charts.hpp"
+#include "core/segment/segment_charts.hpp"
 #include "core/unwrap.hpp"
 #include "tests/core/shapes.hpp"
 
@@ -46,6 +50,53 @@ TEST(MaxDistortion, HasNoLongerSeamsWhereItIsLooser) {
     EXPECT_LE(report.distortion.area, bound);
     EXPECT_LE(report.seam_length, last * (1 + 1e-9)) << bound;
     last = report.seam_length;
+  }
+}
+
+/// The borders of all charts.
+double border_of(std::span<const Chart> charts) {
+  double length = 0;
+  for (const Chart& chart : charts) {
+    const auto at = [&](Index h, Index i) {
+      return chart.mesh.positions[std::size_t(chart.mesh.faces[std::size_t(h / 3)][(h + i) % 3])];
+    };
+    for (const BoundaryLoop& loop : chart.loops)
+      for (const Index h : loop) length += (at(h, 1) - at(h, 0)).norm();
+  }
+  return length;
+}
+
+/// A small one, found by the way of large ones.
+TEST(MaxDistortion, HasNoLongerSeamsOnLargeSurfacesEither) {
+  SerialExecutor serial;
+  const Charts whole = components_of(shapes::surface_of(bent(shapes::cube(2), 3)), {});
+  double last = std::numeric_limits<double>::infinity();
+  for (const double bound : {2.02, 2.03, 2.07}) {
+    SegmentRules rules;
+    rules.max_distortion = bound;
+    const double border = border_of(large_charts(whole.charts.front(), rules, serial).charts);
+    EXPECT_LE(border, last * (1 + 1e-9)) << bound;
+    last = border;
+  }
+}
+
+/// Several pieces share out what charts are allowed: one each, too few.
+TEST(MaxDistortion, HasNoLongerSeamsWithFewChartsEither) {
+  SerialExecutor serial;
+  std::vector<TriMesh> pieces;
+  for (unsigned k = 0; k < 2; ++k)
+    pieces.push_back(shapes::moved(bent(shapes::cube(1), k), {5.0 * k, 0, 0}));
+  const Surface surface = shapes::surface_of(shapes::merged(pieces));
+  for (const int most : {2, 3}) {
+    double last = std::numeric_limits<double>::infinity();
+    for (const double bound : {2.02, 2.2}) {
+      std::vector<Charts> surfaces{components_of(surface, {})};
+      segment_charts(surfaces, {.max_distortion = bound, .max_charts = most}, {}, serial);
+      EXPECT_LE(int(surfaces[0].charts.size()), most);
+      const double border = border_of(surfaces[0].charts);
+      EXPECT_LE(border, last * (1 + 1e-9)) << most << ' ' << bound;
+      last = border;
+    }
   }
 }
 
