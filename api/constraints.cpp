@@ -69,8 +69,9 @@ Vector vector_of(const Source& source, const char* name, const Json& value) {
 double weight_of(const Source& source, const Json& value) {
   const double weight = value.is_number() ? value.get<double>() : 0;
   if (!(weight >= kMinConstraintWeight && weight <= kMaxConstraintWeight))
-    source.refuse("weight",
-                  "weight must be a number from 1e-9 to 1e9; leave it out to hold exactly.");
+    source.refuse(
+        "weight",
+        "weight must be a number from 1e-9 to 1e9; leave it out to fix the vertex exactly.");
   return weight;
 }
 
@@ -82,7 +83,7 @@ PositionConstraint constraint_of(const Source& source) {
   if (vertex != nullptr && at != nullptr)
     refuse(source.pointer, "A constraint has vertex or at, not both: leave one out.");
   if (vertex == nullptr && at == nullptr)
-    refuse(source.pointer, "A constraint must say which vertex, by vertex or at.");
+    refuse(source.pointer, "A constraint must name its vertex by vertex or at.");
   if (vertex != nullptr) constraint.vertex = index_of(source, "vertex", *vertex);
   if (at != nullptr) constraint.position = vector_of<Vec3>(source, "at", *at);
   const Json* uv = source.find("uv");

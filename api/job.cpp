@@ -43,7 +43,7 @@ Json to_json(const JobProgress& progress) {
 template <class T>
 T known(const std::optional<T>& value) {
   if (!value)
-    throw Error(ErrorCode::malformed_request, "The job is in a state of another version.");
+    throw Error(ErrorCode::malformed_request, "The state of the job is unknown to this version.");
   return *value;
 }
 
@@ -100,8 +100,9 @@ Job job_from_json(const Json& json) {
   try {
     return read_job(json);
   } catch (const Json::exception&) {
-    throw Error(ErrorCode::malformed_request,
-                "The answer is not a job: is there an unwrapd of this version at this address?");
+    throw Error(
+        ErrorCode::malformed_request,
+        "The answer is not a job; check that an unwrapd of this version runs at this address.");
   }
 }
 

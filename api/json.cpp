@@ -33,7 +33,7 @@ class Path {
                   pointer());
     level.current = name;
     if (level.seen.insert(name).second) return;
-    throw Error(ErrorCode::invalid_option, "\"" + name + "\" is given twice: give it once.",
+    throw Error(ErrorCode::invalid_option, "\"" + name + "\" is given twice; give it once.",
                 pointer());
   }
 

@@ -88,7 +88,8 @@ struct Gathering {
   }
 
   void add_group(const std::string& name, const Json& group) {
-    if (!group.is_object()) refuse(name, name + " must be an object, each option of it a member.");
+    if (!group.is_object())
+      refuse(name, name + " must be an object with one member for each of its options.");
     for (const auto& [inner, value] : group.items())
       add(std::string(name).append(".") += inner, value);
   }
@@ -98,7 +99,8 @@ struct Gathering {
       if (is_group(name)) {
         add_group(name, value);
       } else if (find_option(name) != nullptr && name.find('.') != std::string::npos) {
-        refuse(name, "In JSON a dot means an object within: write {\"stop\": {...}}.");
+        refuse(name,
+               "In JSON, options with a dot are members of an object: write {\"stop\": {...}}.");
       } else {
         add(name, value);
       }
@@ -141,7 +143,7 @@ Json options_object(const Query& query) {
   for (const auto& [name, text] : query) {
     const OptionRow* row = find_option(name);
     if (row == nullptr) refuse_unknown(name);
-    if (query.count(name) > 1) refuse(name, name + " is given twice: give it once.");
+    if (query.count(name) > 1) refuse(name, name + " is given twice; give it once.");
     member(object, name) = value_of_text(*row, text);
   }
   return object;

@@ -22,7 +22,8 @@ std::string read_file(const fs::path& path) {
   file_bytes(path);
   std::ifstream stream(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw Failure(ExitCode::file, path.string() + " cannot be read; check its rights.");
+  if (!stream)
+    throw Failure(ExitCode::file, path.string() + " cannot be read; check its permissions.");
   return bytes;
 }
 
@@ -51,8 +52,9 @@ void NewFile::commit() {
 }
 
 void NewFile::fail() const {
-  throw Failure(ExitCode::file,
-                path_.string() + " cannot be written; check its folder, rights and free space.");
+  throw Failure(
+      ExitCode::file,
+      path_.string() + " cannot be written; check its folder, permissions and free space.");
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {

@@ -36,7 +36,7 @@ ExternalBuffer locate(const std::string& uri, const fs::path& folder) {
   if (leads_outside(name))
     throw Failure(ExitCode::file, "The buffer \"" + uri +
                                       "\" lies outside the document's folder; copy it beside the "
-                                      "document and write its name alone.");
+                                      "document and refer to it by its name alone.");
   ExternalBuffer buffer{uri, folder / name};
   file_bytes(buffer.file);
   return buffer;

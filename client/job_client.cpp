@@ -57,7 +57,7 @@ api::Json json_of(const std::string& body) {
   if (!problem.is_object() || !problem.contains("code"))
     throw Failure(ExitCode::unreachable, "The server answered with status " +
                                              std::to_string(reply.status) +
-                                             ", but not as unwrapd does; check the address.");
+                                             ", but not like unwrapd; check the address.");
   throw Failure(ExitCode::job_failed, problem_text(problem));
 }
 

@@ -85,7 +85,7 @@ void tell_maps(const std::vector<WrittenMap>& maps, const Console& console) {
     console.out << std::flush;
   } catch (const api::Json::exception&) {
     throw Failure(ExitCode::unreachable,
-                  "The report is not of this version: is the server's version that of unwrap?");
+                  "The report is not of this version; use a server of the same version as unwrap.");
   }
 }
 

@@ -34,7 +34,8 @@ std::string_view after_host(std::string_view authority, std::string_view text) {
   }
   const std::string_view host = authority.substr(0, authority.find(':'));
   if (host.empty()) refuse(text, "names no host");
-  if (!std::ranges::all_of(host, is_host_character)) refuse(text, "has a host that is no name");
+  if (!std::ranges::all_of(host, is_host_character))
+    refuse(text, "has a host that is not a valid name");
   return authority.substr(host.size());
 }
 

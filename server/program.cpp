@@ -87,7 +87,7 @@ void serve(const Config& config, const Log& log, const Duties& duties) {
   std::printf("unwrapd listening on %s://%s\n", scheme, address.c_str());
   if (service.admin_port()) {
     const std::string admin = to_text({config.admin->host, *service.admin_port()});
-    std::printf("unwrapd tells of itself on http://%s\n", admin.c_str());
+    std::printf("unwrapd admin port on http://%s\n", admin.c_str());
   }
   std::fflush(stdout);
   int signal = 0;
@@ -95,7 +95,7 @@ void serve(const Config& config, const Log& log, const Duties& duties) {
   log.info("draining", {{"signal", signal}});
   const std::jthread watching = hurry_at_next(signals, service, log);
   if (!service.drain()) {
-    log.warning("ended while jobs do not stop");
+    log.warning("ended although jobs did not stop");
     std::_Exit(EXIT_SUCCESS);  // without their threads; what they do is no longer wanted
   }
   log.info("drained");

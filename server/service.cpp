@@ -114,7 +114,7 @@ struct Service::Parts {
   /// A server that nobody can use must not look like one that runs.
   void warn_without_keys(const Log& log) {
     if (!asks_for_keys(config.access, config.listen.host) || keys.has_any()) return;
-    log.warning("API keys are asked for and there is none yet; add one",
+    log.warning("API keys are required and none exists yet; add one",
                 {{"command", "unwrapd keys add --data " + config.data.string() +
                                  " --name NAME --scopes submit,read"}});
   }
@@ -171,7 +171,7 @@ struct Service::Parts {
     calling.emplace(
         "calling webhooks", kWebhookPause, [this] { webhooks.call_due(); }, log);
     trimming.emplace(  // what large jobs leave free in the heaps of their threads
-        "giving memory back", kTrimPause, [] { ::malloc_trim(0); }, log);
+        "returning memory", kTrimPause, [] { ::malloc_trim(0); }, log);
   }
 
   void tell_state() {

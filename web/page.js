@@ -137,7 +137,7 @@ async function* eventsOf(answer) {
 }
 
 const SAYS = {
-  queued: ({ position }) => tell(position > 0 ? `Waiting; ${position} before it.` : "Waiting…", 0),
+  queued: ({ position }) => tell(position > 0 ? `Waiting; jobs ahead: ${position}.` : "Waiting…", 0),
   started: () => tell("Started.", 0),
   stage({ name, chart, of, fraction }) {
     tell(of > 1 ? `${name}, chart ${chart + 1} of ${of}` : name, fraction);
@@ -168,7 +168,7 @@ async function follow(job) {
     failures += 1;
     await wait(Math.min(failures, 5));
   }
-  throw new Error(`The connection was lost. The job goes on: ${job.links.self}`);
+  throw new Error(`The connection was lost. The job continues at ${job.links.self}`);
 }
 
 /* ---- the result ---- */
@@ -210,7 +210,7 @@ function showProblem(error) {
   const { title, code, pointer, status } = error.document ?? {};
   if (status === 401) shown("key-row", true);
   const where = pointer ? ` At ${pointer}.` : "";
-  const lines = [title ?? "That did not work", `${error.message}${where}`, code ? `Code: ${code}` : ""];
+  const lines = [title ?? "An error occurred", `${error.message}${where}`, code ? `Code: ${code}` : ""];
   $("problem").replaceChildren(...lines.filter(Boolean).map((text, line) =>
     Object.assign(document.createElement(line ? "p" : "h2"), { textContent: text })));
   shown("problem", true);

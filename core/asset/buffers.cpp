@@ -78,7 +78,7 @@ std::string external_bytes(const Node& uri, const Input& input) {
   const std::string decoded = percent_decoded(uri.text());
   if (!is_plain_relative(decoded))
     fail(ErrorCode::external_uri, uri.place(),
-         "no file or address is ever opened; embed the buffer, or send it as a part of the "
+         "the server opens no files or addresses; embed the buffer, or send it as a part of the "
          "request under a plain relative name");
   const auto part = part_of(uri.text(), input);
   if (part == input.buffers.end())

@@ -231,22 +231,22 @@ std::vector<std::string> side_effects_of_patch(const Gltf& gltf, Format output) 
   if (with_tangents > 0)
     notes.push_back(
         "The tangents of " + counted(with_tangents, "primitive") +
-        " belonged to the replaced texture coordinates and are made anew, as MikkTSpace "
-        "makes them.");
+        " belonged to the replaced texture coordinates; they are computed again by MikkTSpace.");
   if (with_morphs > 0)
-    notes.push_back("The morph targets of " + counted(with_morphs, "primitive") +
-                    " had tangents for the replaced texture coordinates; these are left out.");
+    notes.push_back(
+        "The morph targets of " + counted(with_morphs, "primitive") +
+        " had tangents for the replaced texture coordinates; the result leaves these out.");
   if (reset > 0)
     notes.push_back("The KHR_texture_transform of " + counted(reset, "material") +
-                    " is reset for " + gltf.texcoord +
-                    ", whose new coordinates lie on the page as they are.");
+                    " is reset for " + gltf.texcoord + "; its new coordinates need no transform.");
   if (with_lower_sets > 0)
     notes.push_back(counted(with_lower_sets, "primitive") + " lacked texture coordinates below " +
                     gltf.texcoord + "; glTF allows no gap, so these sets are the same.");
   const FilesBeside files = images_beside(gltf);
   if (gltf.came_as_text && output == Format::glb && files.count > 0)
-    notes.push_back(counted(files.count, "image") + " of the asset" + named(files.first) +
-                    " stay in files of their own; keep them beside the GLB, or send them along.");
+    notes.push_back(
+        counted(files.count, "image") + " of the asset" + named(files.first) +
+        " remain in separate files; keep them beside the GLB, or send them with the request.");
   return notes;
 }
 

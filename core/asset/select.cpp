@@ -48,7 +48,7 @@ void mark(std::string_view option, const std::vector<std::string>& wanted, Primi
     if (found == names.end())
       refuse(option, k,
              option == "materials"
-                 ? "no primitive has a material of this name; give names of the asset's"
+                 ? "no primitive has a material of this name; give names of materials of the asset"
                  : "the asset has no such primitive; point to one, as in /meshes/0/primitives/1");
     for (const std::size_t i : found->second) marked[i] = 1;
     found->second.clear();

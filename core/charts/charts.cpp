@@ -29,9 +29,9 @@ void require_two_sides(const SurfaceNumbers& surface, const Pieces& pieces) {
   const auto& of = pieces.topology.component_of;
   const auto face = std::find(of.begin(), of.end(), *component) - of.begin();
   throw Error(ErrorCode::not_orientable,
-              "The piece that face " + std::to_string(pieces.source[face]) +
-                  " belongs to is one-sided like a Moebius strip and has no consistent "
-                  "orientation; cut it open, or send it with seams=keep and its cut in place.",
+              "The component of face " + std::to_string(pieces.source[face]) +
+                  " is one-sided like a Moebius strip and has no consistent orientation; cut it "
+                  "open, or send it with a cut and seams=keep.",
               std::string(surface.name));
 }
 

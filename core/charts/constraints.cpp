@@ -57,9 +57,9 @@ void check_range(const PositionConstraint& c, std::span<const Surface> surfaces,
            i);
   if (!std::isinf(c.weight) &&
       !(c.weight >= kMinConstraintWeight && c.weight <= kMaxConstraintWeight))
-    refuse("weight must lie between 1e-9 and 1e9; leave it out to hold the vertex exactly", i);
+    refuse("weight must lie between 1e-9 and 1e9; leave it out to fix the vertex exactly", i);
   if (!written(c.uv).allFinite())
-    refuse("uv is too large for a 32-bit float; give a place on or near the page, [0,1]", i);
+    refuse("uv is too large for a 32-bit float; give a position on or near the page, [0,1]", i);
 }
 
 std::vector<ChartVertex> find(const VertexFinder& finder, const PositionConstraint& c,
@@ -72,7 +72,7 @@ std::vector<ChartVertex> find(const VertexFinder& finder, const PositionConstrai
   std::vector<ChartVertex> found = finder.of_vertex(*c.vertex);
   if (found.empty())
     refuse("vertex " + std::to_string(*c.vertex) +
-               " is in no triangle that has an area; name another, or a point in space",
+               " belongs to no triangle with an area; name another vertex, or a point in space",
            i);
   return found;
 }
@@ -105,7 +105,7 @@ const Pin* hard_pin(std::span<const Pin> pins) {
     if (!pin.is_hard()) continue;
     if (hard == nullptr) hard = &pin;
     if (written(pin.at) != written(hard->at))
-      refuse(number(hard->constraint) + " puts the same vertex at " + text(hard->at) +
+      refuse(number(hard->constraint) + " places the same vertex at " + text(hard->at) +
                  "; remove one of the two, or give both a finite weight",
              static_cast<std::size_t>(pin.constraint));
   }
@@ -130,8 +130,8 @@ void check_apart(ChartPins pins) {
   for (std::size_t k = 1; k < pins.size(); ++k) {
     if (before(pins[k - 1], pins[k])) continue;
     const auto [first, second] = std::minmax(pins[k - 1].constraint, pins[k].constraint);
-    refuse(number(first) + " puts another vertex at the same uv " + text(pins[k].at) +
-               "; give them different places, or one of them a finite weight",
+    refuse(number(first) + " places another vertex at the same uv " + text(pins[k].at) +
+               "; give them different positions, or give one of them a finite weight",
            static_cast<std::size_t>(second));
   }
 }
@@ -142,8 +142,9 @@ void check_spread(const Holds& holds, const ChartPins& pins) {
   for (const FixedPoint& p : holds.fixed) apart = apart || written(p.at) != written(first);
   for (const Spring& s : holds.springs) apart = apart || written(s.at) != written(first);
   if (!apart)
-    refuse("all constraints of this chart draw to " + text(first) +
-               ", which leaves its size open; give one of them another place, or keep only one",
+    refuse("all constraints of this chart have the position " + text(first) +
+               ", so they do not determine its size; give one of them another position, or keep "
+               "only one",
            static_cast<std::size_t>(pins.back().constraint));
 }
 
@@ -170,8 +171,8 @@ Holds merge(const ChartPins& pins, Index vertex_count) {
   throw Error(ErrorCode::invalid_constraint,
               "the chart with face " + std::to_string(chart.face_source.front()) + " of mesh " +
                   std::to_string(surface) +
-                  " has no constraint and would be laid over the others; hold a vertex of every "
-                  "chart, or of none",
+                  " has no constraint, so its place on the page is unknown; constrain a vertex of "
+                  "every chart, or of none",
               "/constraints");
 }
 

@@ -88,7 +88,7 @@ void cut_paths(const Inspected& in, const SeamRules& seams, Halfedges& halfedges
     const std::vector<EdgeEnds> edges = edges_of(in, seams.paths[k], k);
     if (const auto missing = cut_edges(in.welded, edges, halfedges))
       refuse_path(k, "no edge joins vertices " + text(*missing) +
-                         "; give vertices that follow each other along edges");
+                         "; give vertices that are joined by edges");
   }
 }
 

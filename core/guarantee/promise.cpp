@@ -133,7 +133,7 @@ std::vector<std::array<Index, 2>> overlaps_of(const Chart& chart, const UvMap& u
 
 [[noreturn]] void fail(const std::string& why) {
   throw Error(ErrorCode::guarantee_failed,
-              why + "; loosen the constraints, or ask for guarantee=none to have the map as it is",
+              why + "; relax the constraints, or use guarantee=none to get the raw map",
               "/guarantee");
 }
 
@@ -253,11 +253,13 @@ Written keep_on_page(const Chart& chart, const Promise& promise, UvMap& page_uv)
     return {static_cast<Index>(flipped_faces(chart.mesh.faces, page_uv).size()), {}};
   }
   if (snap(chart, promise.intent.held, promise.intent.stop, page_uv) > 0)
-    fail("a triangle is too small beside the page for the precision in which UVs are written");
+    fail(
+        "a triangle is too small, compared with the page, for the precision in which UVs are "
+        "written");
   const auto overlaps = static_cast<Index>(overlaps_of(chart, page_uv, promise.intent.stop).size());
   if (overlaps == 0 || promise.guarantee != Guarantee::bijective) return {0, overlaps};
   if (!part_on_page(chart, promise.intent.held, page_uv))
-    fail("two triangles are too near to each other for the precision in which UVs are written");
+    fail("two triangles are too close to each other for the precision in which UVs are written");
   return {0, 0};
 }
 

@@ -69,9 +69,9 @@ void note_new_maps(Layout& layout, const UnwrapOptions& options) {
   const auto& charts = layout.report.charts;
   if (const auto count = std::count_if(charts.begin(), charts.end(), is_new); count > 0)
     layout.report.notes.push_back(
-        "Charts that overlapped themselves and have a new map without overlaps: " +
-        std::to_string(count) + ". The new map keeps as near as it can to " +
-        kept_of(options.method) + "; energy_rise of the chart's mending is the cost.");
+        "Charts that overlapped themselves and got a new map without overlaps: " +
+        std::to_string(count) + ". The new map stays as close as possible to " +
+        kept_of(options.method) + "; energy_rise of the chart's mending tells the cost.");
 }
 
 std::vector<Layout> map_charts(const TakenApart& taken, std::span<const Surface> surfaces,

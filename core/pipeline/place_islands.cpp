@@ -18,9 +18,10 @@ double area_of(const Outline& outline) {
 
 void note_padding(const Packed& packed, int asked, Report& report) {
   if (packed.padding >= asked) return;
-  report.notes.push_back("With so many islands padding would take most of the page: " +
-                         std::to_string(packed.padding) + " texels of it are kept, not " +
-                         std::to_string(asked) + "; raise resolution to have them all.");
+  report.notes.push_back(
+      "Padding for so many islands would fill most of the page. The padding is " +
+      std::to_string(packed.padding) + " texels instead of " + std::to_string(asked) +
+      "; raise resolution for the full padding.");
 }
 
 void note_stacks(const Packed& packed, Report& report) {
@@ -29,7 +30,7 @@ void note_stacks(const Packed& packed, Report& report) {
   if (stacked > 0)
     report.notes.push_back(std::to_string(stacked) + " of " +
                            std::to_string(packed.is_stacked.size()) +
-                           " islands lie on another of the same shape.");
+                           " islands are stacked on another of the same shape.");
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ std::vector<UvIslands> find_islands(std::span<const Surface> surfaces,
   }
   if (!are_any)
     throw Error(ErrorCode::no_texture_coordinates,
-                "The asset has none of the texture coordinates that shall be packed anew; leave "
-                "out repack_only, or name another set with texcoord.",
+                "The asset lacks the texture coordinates that repack_only packs again; leave out "
+                "repack_only, or select another set with texcoord.",
                 "/repack_only");
   return all;
 }
@@ -89,10 +89,9 @@ void note_faces_without(const std::vector<UvIslands>& all, Report& report) {
     if (islands.maps.empty()) count += static_cast<std::size_t>(islands.charts.input.faces);
   }
   if (count > 0)
-    report.notes.push_back(
-        std::to_string(count) +
-        " faces came without texture coordinates; they have no area on the page: "
-        "they lie on an edge or a point of a neighbour, or at (0, 0).");
+    report.notes.push_back(std::to_string(count) +
+                           " faces of the input have no texture coordinates, and so no area on the "
+                           "page: they lie on an edge or a point of a neighbour, or at (0, 0).");
 }
 
 void measure(std::span<const Surface> surfaces, const std::vector<UvIslands>& all,

@@ -203,14 +203,16 @@ Cuts cut_to_most(std::vector<Charts>& surfaces, const SegmentOptions& options,
 }
 
 std::string more_than_asked(Index charts, Index components) {
-  return "More charts than max_charts are needed: " + std::to_string(charts) +
-         ", for the mesh has " + std::to_string(components) +
-         " pieces, and no two charts that are left have a common map without overlaps.";
+  return "The surface needs more charts than max_charts: " + std::to_string(charts) +
+         ", because the mesh has " + std::to_string(components) +
+         " components, and no two remaining charts have a common map without overlaps.";
 }
 
 std::string rough_surfaces(Index count) {
   return "The noise of " + std::to_string(count) +
-         " of the surfaces leaves no room for max_distortion, which was kept on a smoothed one.";
+         " of the surfaces leaves no room for max_distortion; the bound holds on a smoothed "
+         "surface "
+         "instead.";
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ void require(bool holds, const std::string& what, const std::string& pointer) {
 void require_packing(const UnwrapOptions& options) {
   const Packing& packing = options.packing;
   const bool is_packed = options.constraints.empty();
-  const std::string placed = "constraints say where charts lie; leave out ";
+  const std::string placed = "constraints determine where charts lie; leave out ";
   require(is_packed || !options.repack_only, placed + "repack_only", "/repack_only");
   require(is_packed || !packing.texels_per_unit, placed + "texels_per_unit", "/texels_per_unit");
   require(is_packed || packing.max_pages == 1, placed + "max_pages", "/max_pages");
@@ -33,11 +33,11 @@ void require_charts(const UnwrapOptions& options) {
   const bool whole = !options.constraints.empty() || options.boundary != BoundaryShape::free;
   require(!options.max_distortion ||
               (*options.max_distortion >= kMinDistortion && std::isfinite(*options.max_distortion)),
-          "max_distortion must be a number of at least 2.0001; 2 is no distortion at all",
+          "max_distortion must be a number of at least 2.0001; 2 means no distortion",
           "/max_distortion");
   require(!options.max_distortion || !whole,
-          "max_distortion may take a mesh apart, which constraints and a boundary shape exclude; "
-          "leave one of them out",
+          "max_distortion can split a mesh into charts, which constraints and a boundary shape "
+          "exclude; leave one of them out",
           "/max_distortion");
   require(!options.max_charts || *options.max_charts >= 1, "max_charts must be at least 1",
           "/max_charts");
@@ -75,7 +75,7 @@ void validate(const UnwrapOptions& options, int max_iterations) {
   require(!options.repack_only || options.boundary == BoundaryShape::free,
           "repack_only keeps the islands as they are; leave out boundary", "/boundary");
   require(!options.repack_only || options.guarantee != Guarantee::bijective,
-          "repack_only keeps overlaps that are there; leave out guarantee=bijective", "/guarantee");
+          "repack_only keeps existing overlaps; leave out guarantee=bijective", "/guarantee");
   require_packing(options);
   require_charts(options);
   require(options.padding >= 0 && 4 * options.padding <= options.resolution,

@@ -78,7 +78,7 @@ ApiKey Access::key_of(const Request& request) {
   if (is_bearer(field)) key = keys_.find(std::string_view(field).substr(kScheme.size()));
   if (key) return std::move(*key);
   throw Error(ErrorCode::unauthorized,
-              "This server asks for an API key; send it as Authorization: Bearer KEY.");
+              "This server requires an API key; send it as Authorization: Bearer KEY.");
 }
 
 void Access::admit(Request& request, std::string_view route) {
@@ -93,9 +93,9 @@ void Access::open_link(Request& request, double cost) {
   const std::string id = LinkSigner::key_of(request);
   const std::optional<ApiKey> key = id.empty() ? std::nullopt : keys_.with_id(id);
   if (!key && (ask_ || !id.empty()))
-    throw Error(ErrorCode::invalid_link,
-                "The link was made with no API key, or with one that was removed; ask for a new "
-                "one.");
+    throw Error(
+        ErrorCode::invalid_link,
+        "The link was made without an API key, or with one that was removed; ask for a new link.");
   links_.check(request, key ? LinkKey{.id = id, .sha256 = key->sha256} : LinkKey());
   if (key) spend(*key, cost);
   request.query = unsigned_query(request);
@@ -105,11 +105,11 @@ void Access::spend(const ApiKey& key, double cost) {
   const auto now = std::chrono::steady_clock::now();
   const int wait = rates_.wait_seconds(key.id, key.requests_per_minute, now, cost);
   if (wait == 0) return;
-  throw RetryLater(ErrorCode::rate_limited,
-                   "This API key may be used " + std::to_string(key.requests_per_minute) +
-                       " times a minute, a large picture counting for several; go on after "
-                       "Retry-After.",
-                   wait);
+  throw RetryLater(
+      ErrorCode::rate_limited,
+      "This API key may be used " + std::to_string(key.requests_per_minute) +
+          " times a minute (a large picture counts several times); continue after Retry-After.",
+      wait);
 }
 
 Caller Access::caller_of(const Request& request, double cost) {

@@ -80,10 +80,9 @@ std::string key_in(const std::filesystem::path& file) {
            kSigns.find(c) != std::string_view::npos;
   });
   if (of_form && text.size() >= kMinGiven && text.size() <= kMaxGiven) return text;
-  throw Error(
-      ErrorCode::invalid_option,
-      "The file of --key-file holds no key: 32 to 512 letters, digits and -._~+/=; make one "
-      "with openssl rand -hex 32.");
+  throw Error(ErrorCode::invalid_option,
+              "The file of --key-file contains no key of 32 to 512 letters, digits and -._~+/=; "
+              "make one with openssl rand -hex 32.");
 }
 
 ApiKey given_key(const std::string& digest) {
@@ -99,7 +98,7 @@ void check_name(const std::string& name) {
   const auto is_control = [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; };
   if (std::ranges::none_of(name, is_control)) return;
   throw Error(ErrorCode::invalid_option,
-              "A key's name has control characters; give one of letters, digits and signs.");
+              "The name of a key has control characters; use letters, digits and signs.");
 }
 
 void set_scope(Scopes& scopes, std::string_view name) {

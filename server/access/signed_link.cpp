@@ -40,9 +40,10 @@ std::string secret_in(const std::filesystem::path& file) {
   }
   std::string secret = read_file(file);
   if (secret.size() == 2 * kSecretBytes) return secret;
-  throw Error(ErrorCode::storage_failed, "The file " + file.string() +
-                                             " is damaged; remove it to have a new one made: "
-                                             "links and webhooks' secrets change with it.");
+  throw Error(ErrorCode::storage_failed,
+              "The file " + file.string() +
+                  " is damaged; remove it and the server makes a new one. Links and the secrets of "
+                  "webhooks change with it.");
 }
 
 std::string LinkSigner::signature(const std::string& path, const std::string& expires,
@@ -67,16 +68,14 @@ bool LinkSigner::is_signed(const Request& request) const {
 
 void LinkSigner::check(const Request& request, const LinkKey& key) const {
   const bool reads = request.method == "GET" || request.method == "HEAD";
-  if (!reads) refuse("A signed link only reads; use an API key.");
+  if (!reads) refuse("A signed link can only read; use an API key.");
   const std::string expires = parameter(request, kExpiresParameter);
   const std::string expected = signature(request.path, expires, key);
   const std::string given = parameter(request, kSignatureParameter);
   const bool same = given.size() == expected.size() &&
                     CRYPTO_memcmp(given.data(), expected.data(), given.size()) == 0;
   if (!same)
-    refuse(
-        "The link's signature is not of this server and for this address; ask for a "
-        "new link.");
+    refuse("The signature of the link does not match this server and address; ask for a new link.");
   if (is_past(expires)) refuse("The link has expired; ask for a new one.");
 }
 

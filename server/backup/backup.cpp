@@ -35,7 +35,7 @@ void require_store(const fs::path& data) {
 
 [[noreturn]] void not_whole(const fs::path& backup, const std::string& why) {
   throw Error(ErrorCode::storage_corrupt,
-              backup.string() + " is no whole backup: " + why + ". Nothing was restored.");
+              backup.string() + " is not a complete backup: " + why + ". Nothing was restored.");
 }
 
 void add_counts(const FolderCopy& copy, StoreReport& report) {
@@ -64,7 +64,7 @@ void copy_folders(const Database& live, Database& copied, const fs::path& data, 
   add_counts(copy, report);
   if (gone > 0)
     report.notices.push_back(std::to_string(gone) +
-                             " jobs and meshes went meanwhile, and are not in it");
+                             " jobs and meshes were deleted during the backup, and are not in it");
 }
 
 /// Returns the digests of what lies beside blobs.
@@ -168,7 +168,7 @@ void note_unknown(const fs::path& data, const Database& store, StoreReport& repo
   }
   if (unknown > 0)
     report.notices.push_back(std::to_string(unknown) +
-                             " folders in blobs have no row yet, or none any more");
+                             " folders in blobs have no row in the database");
   const auto lost =
       std::distance(fs::directory_iterator(data / "lost", none), fs::directory_iterator());
   if (lost > 0) report.notices.push_back(std::to_string(lost) + " folders are set aside in lost");
@@ -195,15 +195,14 @@ StoreReport back_up(const fs::path& data, const fs::path& to) {
   if (lies_in(to, data))
     throw Error(ErrorCode::invalid_option,
                 to.string() +
-                    " lies in the data directory, whose unknown files the server "
-                    "removes; name a place outside of it.");
+                    " lies in the data directory, and the server removes unknown files there; name "
+                    "a folder outside of it.");
   require_current(Database(data / kStoreFile));
   const fs::path part = fs::path(to) += ".part";
   for (const fs::path& there : {to, part}) {
     if (!fs::exists(fs::symlink_status(there))) continue;
-    throw Error(ErrorCode::invalid_option, there.string() +
-                                               " is there already; remove it, or name a backup "
-                                               "that is not.");
+    throw Error(ErrorCode::invalid_option,
+                there.string() + " exists already; remove it, or name another folder.");
   }
   StoreReport report;
   try {

@@ -82,7 +82,7 @@ std::string FolderCopy::take_file(const std::string& folder, const std::string& 
   }
   if (copy_bytes(from, to) != digest) {
     if (!to_.empty()) remove_tree(to);
-    return " is damaged: its SHA-256 is not the one that was noted";
+    return " is damaged: its SHA-256 is not the recorded one";
   }
   if (status.st_nlink > 1) several_[status.st_ino] = {.digest = digest, .path = to};
   return {};
@@ -97,7 +97,7 @@ std::vector<std::string> FolderCopy::take_once(const KnownFolder& folder, Folder
   Digests taken;
   for (const auto& [file, digest] : digests) {
     const std::string wrong =
-        is_file_name(file) ? take_file(folder.name, file, digest) : " is no name of a file";
+        is_file_name(file) ? take_file(folder.name, file, digest) : " is not a file name";
     if (!wrong.empty()) {
       damaged.push_back(folder.name + "/" + file + wrong);
       continue;

@@ -9,7 +9,8 @@ namespace unwrapd::server {
 
 Doorbell::Doorbell() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (descriptor_ < 0)
-    throw Error(ErrorCode::internal, "There is no file descriptor left; allow more (ulimit -n).");
+    throw Error(ErrorCode::internal,
+                "No file descriptor is left; allow more open files (ulimit -n).");
 }
 
 Doorbell::~Doorbell() { ::close(descriptor_); }

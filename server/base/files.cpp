@@ -28,7 +28,7 @@ constexpr std::int64_t kNsPerSecond = 1'000'000'000;
   if (full) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
   if (errno == EMFILE || errno == ENFILE) {
     throw RetryLater(ErrorCode::rate_limited,
-                     "The server has too many files open; come back after Retry-After.",
+                     "The server has too many files open; try again after Retry-After.",
                      kBusyRetrySeconds);
   }
   const std::string reason = std::generic_category().message(errno);

@@ -45,23 +45,22 @@ Error unknown_job() {
 
 Error another_question() {
   return {ErrorCode::idempotency_conflict,
-          "This name was given to another mesh or other options; take a new name."};
+          "This name belongs to a request with another mesh or other options; use a new name."};
 }
 
 Error cancelled_by_owner() {
-  return {ErrorCode::cancelled, "The job was cancelled; send it again to have it done."};
+  return {ErrorCode::cancelled, "The job was cancelled; send it again to run it."};
 }
 
 Error unreadable_job() {
   return {ErrorCode::storage_corrupt,
-          "What the server has stored of this job cannot be read; send the job again."};
+          "The stored data of this job cannot be read; send the job again."};
 }
 
 Error poison() {
-  return {
-      ErrorCode::poison,
-      "The server ended several times while it worked on this job; it is not tried again. Check "
-      "the mesh, or send a smaller part of it."};
+  return {ErrorCode::poison,
+          "The server ended several times while this job ran, so the job is not tried again. Check "
+          "the mesh, or send a smaller part of it."};
 }
 
 }  // namespace unwrapd::server

@@ -47,7 +47,8 @@ Isolation isolation_of(const Config& config, const SolverCache& cache, const Dut
   if (config.isolate == Isolate::on)
     check_isolation(isolation);
   else
-    isolation.why_not = isolation.program.empty() ? "There is no program." : why_not(isolation);
+    isolation.why_not = isolation.program.empty() ? "The program of the worker process is missing."
+                                                  : why_not(isolation);
   isolation.possible = isolation.why_not.empty();
   isolation.on = isolation.possible && config.isolate != Isolate::off;
   if (isolation.on) isolation.spares = spare_workers(config.workers, config.limits, isolation);
@@ -63,9 +64,9 @@ std::chrono::seconds most_stopping(const Config& config) {
 void tell_isolation(const Isolation& isolation, const Config& config, const Log& log,
                     Metrics& metrics) {
   metrics.tell(Metric::isolation, {}, [on = isolation.on] { return on ? 1 : 0; });
-  if (isolation.on) return log.info("each job has a process of its own");
+  if (isolation.on) return log.info("each job runs in its own process");
   const bool wanted = config.isolate == Isolate::automatic && !isolation.program.empty();
-  if (wanted) log.warning("no job has a process of its own", {{"reason", isolation.why_not}});
+  if (wanted) log.warning("jobs run in the server's process", {{"reason", isolation.why_not}});
 }
 
 MakingLimits making_limits(const Config& config, std::size_t memory_bytes) {

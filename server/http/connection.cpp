@@ -149,7 +149,7 @@ std::int64_t Connection::read_body(char* data, std::size_t size) {
   if (left_ > limits_.max_body_bytes - body_bytes_) {
     return fail(ErrorCode::body_too_large, "The body is larger than the " +
                                                std::to_string(limits_.max_body_bytes) +
-                                               " bytes that this server takes; send less.");
+                                               " bytes that this server accepts; send less.");
   }
   if (used_ == buffer_.size() && !fill_body()) return -1;
   const std::size_t here = std::min(size, buffer_.size() - used_);
@@ -170,7 +170,7 @@ void Connection::count_body(std::int64_t bytes) {
 /// or on failure.
 bool Connection::begin_chunk() {
   if (chunk_open_ && read_line() != "") {
-    fail(ErrorCode::malformed_request, "A chunk is longer than it says; check the client.");
+    fail(ErrorCode::malformed_request, "A chunk is longer than its stated size; check the client.");
     return false;
   }
   const std::optional<std::string> line = read_line();

@@ -92,7 +92,7 @@ std::string_view disposition_in(std::string_view head) {
     if (found) no_form("A part has two Content-Dispositions; send one.");
     found = line.substr(colon + 1);
   }
-  if (!found) no_form("A part has no Content-Disposition; name it as what it is.");
+  if (!found) no_form("A part has no Content-Disposition; give it one with a name.");
   return *found;
 }
 
@@ -114,7 +114,7 @@ Part part_of_disposition(std::string_view value) {
   if (!names.name) wrong_disposition();
   Part part{.name = *names.name, .filename = names.filename.value_or("")};
   if (!is_utf8_text(part.name) || !is_utf8_text(part.filename))
-    no_form("A part's name is not UTF-8; send it so.");
+    no_form("The name of a part is not UTF-8; encode it as UTF-8.");
   return part;
 }
 

@@ -88,7 +88,7 @@ Request to_request(const httplib::Request& from, const Framing& framing) {
   request.refusal = framing.refusal;
   if (!request.refusal && !is_text(request.query))
     request.refusal.emplace(ErrorCode::malformed_request,
-                            "The query is not UTF-8; percent-encode that.");
+                            "The query is not UTF-8; percent-encode UTF-8.");
   return request;
 }
 
@@ -162,7 +162,7 @@ class Exchange::Http final : public httplib::Server {
         HandlerWithResponse([this](const auto&, auto& response) { return fill_error(response); }));
     set_exception_handler([this](const auto&, httplib::Response& response, const auto&) {
       log_.error("exception at the HTTP edge");
-      send(error_response(Error(ErrorCode::internal, "The server made a mistake.")), response);
+      send(error_response(Error(ErrorCode::internal, "An internal error occurred.")), response);
     });
     set_post_routing_handler(
         [this](const auto&, httplib::Response& response) { finish(response); });

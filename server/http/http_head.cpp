@@ -102,7 +102,7 @@ std::size_t authority_of(std::string_view target) {
     const std::size_t end = std::min(target.find_first_of("/?#", scheme.size()), target.size());
     const std::string_view host = target.substr(scheme.size(), end - scheme.size());
     if (host.empty() || !is_made_of(host, kHostSymbols))
-      malformed("The address names no host; check the client.");
+      malformed("The address has no host; check the client.");
     return end;
   }
   return 0;
@@ -143,17 +143,18 @@ void vet_single(std::string_view name, std::string_view value, Framing& framing,
   std::optional<std::string_view>& before = counts.single.at(static_cast<std::size_t>(at));
   if (before.value_or(value) != value)
     refuse(framing, ErrorCode::malformed_request,
-           "There are two of the header " + std::string(name) + "; send one.");
+           "The request has two of the header " + std::string(name) + "; send one.");
   before = value;
   if (std::ranges::any_of(value, [](char c) { return c < 0; }))
     refuse(framing, ErrorCode::malformed_request,
-           "The header " + std::string(name) + " is not ASCII; send it so.");
+           "The header " + std::string(name) + " is not ASCII; send ASCII.");
 }
 
 void vet_host(std::string_view value, Framing& framing, Counts& counts) {
   ++counts.hosts;
   if (framing.authority == 0) framing.host = value;  // RFC 9112, 3.2.2
-  if (!is_made_of(value, kHostSymbols)) malformed("The Host header is no host; check the client.");
+  if (!is_made_of(value, kHostSymbols))
+    malformed("The Host header is not a valid host; check the client.");
 }
 
 void vet_field(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
@@ -183,16 +184,16 @@ void vet_field(std::string_view name, std::string_view value, Framing& framing, 
 void vet_counts(const Counts& counts, std::string_view method, Framing& framing) {
   if (counts.hosts > 1) malformed("There is more than one Host header; send one.");
   if (counts.hosts == 0 && !framing.version_1_0)
-    malformed("There is no Host header, which HTTP/1.1 asks for; send one.");
+    malformed("HTTP/1.1 requires a Host header; send one.");
   if (counts.lengths + counts.codings > 1)
-    malformed("The length of the body is told more than once; tell it once.");
+    malformed("The length of the body is stated more than once; state it once.");
   if (framing.version_1_0 && counts.codings > 0)
     malformed(
         "HTTP/1.0 has no Transfer-Encoding; use HTTP/1.1, or send "
         "Content-Length.");
   if (needs_length(method) && counts.lengths + counts.codings == 0) {
     refuse(framing, ErrorCode::length_required,
-           "The length of the body is not told; send Content-Length, or send it chunked.");
+           "The length of the body is not stated; send Content-Length, or send the body chunked.");
   }
 }
 

@@ -40,7 +40,7 @@ std::int64_t write_all(Connection& connection, std::string_view bytes) {
 RetryLater no_place(Places::Refusal why) {
   const std::string whose = why == Places::Refusal::full ? "" : " from this address";
   return {ErrorCode::rate_limited,
-          "Too many connections are open" + whose + "; use fewer, or come back after Retry-After.",
+          "Too many connections are open" + whose + "; use fewer, or try again after Retry-After.",
           kRetrySeconds};
 }
 
@@ -129,7 +129,8 @@ void HttpServer::begin_thread() {
   try {
     threads_.emplace_back([this] { work(); });
   } catch (const std::system_error& error) {  // those that there are go on
-    log_.error("no further thread", {{"threads", threads_.size()}, {"reason", error.what()}});
+    log_.error("a thread could not be started",
+               {{"threads", threads_.size()}, {"reason", error.what()}});
   }
 }
 

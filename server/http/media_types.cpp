@@ -119,9 +119,9 @@ BodyKind body_kind(std::string_view content_type) {
                         type == media_type("obj");
   if (is_asset) return BodyKind::asset;
   throw Error(ErrorCode::unsupported_media_type,
-              "The Content-Type is none of model/gltf-binary, model/gltf+json, model/obj, "
+              "The Content-Type must be model/gltf-binary, model/gltf+json, model/obj, "
               "application/octet-stream, multipart/form-data or, for a stored mesh, "
-              "application/json; say which of them the body is.");
+              "application/json; send one of these.");
 }
 
 std::string multipart_boundary(std::string_view content_type) {
@@ -153,8 +153,8 @@ std::string choose_format(std::string_view accept, std::string_view usual) {
   }
   if (best_quality > 0) return std::string(best);
   throw Error(ErrorCode::not_acceptable,
-              "The result can be had as model/gltf-binary, model/gltf+json, model/obj or "
-              "application/json; name one of them in Accept.");
+              "The result is available as model/gltf-binary, model/gltf+json, model/obj or "
+              "application/json; name one of these in Accept.");
 }
 
 bool prefers_events(std::string_view accept) {

@@ -22,7 +22,7 @@ std::int64_t positive_number(const std::string& name, const std::string& text, s
   const char* end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, number);
   if (parsed.ec != std::errc() || parsed.ptr != end || number < 1 || number > most) {
-    refuse_parameter(name, "The parameter " + name + " is a number from 1 to " +
+    refuse_parameter(name, "The parameter " + name + " must be a number from 1 to " +
                                std::to_string(most) + "; correct it.");
   }
   return number;

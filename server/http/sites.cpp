@@ -58,16 +58,16 @@ std::optional<Error> Sites::refusal(const Request& request) const {
                      is_named(name, hosts_);  // HTTP/1.0, which no browser speaks, needs none
   if (!known) {
     return Error(ErrorCode::forbidden,
-                 "Without API keys this server answers to addresses, localhost and the names of "
-                 "--allowed-hosts; ask its operator to add yours.");
+                 "This server runs without API keys, so it answers only to addresses, localhost "
+                 "and the names of --allowed-hosts; ask its operator to add this name.");
   }
   const std::string origin = in_small_letters(request.header("Origin"));
   const bool safe = std::ranges::count(kSafe, request.method) > 0;
   if (safe || origin.empty() || host_of_origin(origin) == host || cors_.allows(origin))
     return std::nullopt;
   return Error(ErrorCode::forbidden,
-               "Without API keys this server takes nothing from the pages of other sites; its "
-               "operator can allow one by --cors-origins.");
+               "This server runs without API keys, so pages of other sites may not change "
+               "anything; its operator can allow a site by --cors-origins.");
 }
 
 }  // namespace unwrapd::server

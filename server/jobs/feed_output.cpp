@@ -54,7 +54,7 @@ void FeedOutput::file(std::string_view name, std::string_view bytes) { keep(name
 
 void FeedOutput::keep(std::string_view name, std::string_view bytes) {
   const std::lock_guard lock(job_.output);
-  if (job_.has_ended) throw Error(ErrorCode::cancelled, "The job was given up meanwhile.");
+  if (job_.has_ended) throw Error(ErrorCode::cancelled, "The job was given up in the meantime.");
   room_.claim.add(static_cast<std::int64_t>(bytes.size()), room_.most_bytes(job_.record.owner));
   blobs_.write_unsealed(job_.record.id, name, bytes);
 }

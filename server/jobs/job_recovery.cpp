@@ -64,8 +64,9 @@ void JobQueue::take_up(const JobRecord& job, Found found) {
   } else {
     store_.requeue(job.id, found != Found::lapsed);
     wait_again(job);
-    log_.warning(found == Found::not_stopping ? "job that does not stop queued again, suspected"
-                                              : "job found at nobody's hands, queued again",
+    log_.warning(found == Found::not_stopping
+                     ? "job that does not stop queued again, under suspicion"
+                     : "job without a worker found, queued again",
                  {{"job", job.id}, {"attempt", job.attempt}});
   }
 }
@@ -108,7 +109,7 @@ void JobQueue::give_up_excess() {
     const std::optional<std::string> first = store_.first_to_go();
     if (!first) return;
     remove_ended(*first);
-    log_.info("job given up, more are stored than --max-stored-jobs", {{"job", *first}});
+    log_.info("job dropped, more are stored than --max-stored-jobs", {{"job", *first}});
   }
 }
 

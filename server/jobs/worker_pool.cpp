@@ -37,7 +37,7 @@ JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds
 
 Error too_many_crashes() {
   return {ErrorCode::poison,
-          "The process of this job ended three times while it worked on it; it is not tried "
+          "The process of this job ended three times while the job ran, so the job is not tried "
           "again. Check the mesh, or send a smaller part of it."};
 }
 
@@ -118,7 +118,7 @@ void WorkerPool::give_up(RunningJob& job, Claim& claim) {
   const TraceScope trace(job.feed->trace());
   lose_thread(job);
   config_.on_force("given_up");
-  const Error stopped(ErrorCode::cancelled, "The job was stopped; send it again to have it done.");
+  const Error stopped(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
   try {
     queue_.finish(job, outcome_of(stopped, job, limits_.max_job_seconds), [&] { claim.give_up(); });
   } catch (const std::exception& error) {  // the store: the job is run again at the next start
@@ -174,7 +174,7 @@ std::string WorkerPool::run(const RunningJob& job, const Means& means) {
     return run_job_isolated(task, loaded.input(), output, limits_, isolation);
   } catch (const Error& error) {
     const bool asked = error.code() != ErrorCode::cancelled || job.stop.stop_requested();
-    if (!asked) throw WorkerCrashed("somebody else told it to stop");
+    if (!asked) throw WorkerCrashed("another party stopped it");
     throw;
   }
 }
@@ -204,11 +204,11 @@ JobOutcome WorkerPool::attempt(const RunningJob& job, const Means& means) {
     return outcome_of(error, job, limits_.max_job_seconds);
   } catch (const std::bad_alloc&) {
     const Error error(ErrorCode::memory_limit,
-                      "The memory of the server did not suffice; send a smaller mesh.");
+                      "The server has too little memory for this job; send a smaller mesh.");
     return ended(JobState::failed, error, job.record.id);
   } catch (const std::exception& error) {  // the owner learns nothing of our insides
     log_.error("unhandled exception", {{"job", job.record.id}, {"reason", reason_of(error)}});
-    return ended(JobState::failed, Error(ErrorCode::internal, "The server made a mistake."),
+    return ended(JobState::failed, Error(ErrorCode::internal, "An internal error occurred."),
                  job.record.id);
   }
 }

@@ -14,7 +14,8 @@ int half_of(int count) { return std::max(1, count / 2); }
 }  // namespace
 
 Error client_left() {
-  return {ErrorCode::cancelled, "The client has closed its connection; ask again and stay."};
+  return {ErrorCode::cancelled,
+          "The client closed its connection; send the request again and wait."};
 }
 
 std::shared_ptr<void> MakingRoom::enter(const Making& making, const HasLeft& has_left) {
@@ -52,7 +53,7 @@ void MakingRoom::check_waiting(const std::string& holder) const {
       std::ranges::count_if(guests_, waits_for_holder) < half_of(limits_.waiting))
     return;
   throw RetryLater(ErrorCode::rate_limited,
-                   "Too many pictures and formats wait to be made; come back after Retry-After.",
+                   "Too many requests wait for pictures and formats; try again after Retry-After.",
                    kMakingRetrySeconds);
 }
 

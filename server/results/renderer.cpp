@@ -39,8 +39,8 @@ std::string Renderer::render(const JobRecord& job, const Rendering& rendering,
   if (blobs_.holds(job.id) && !blobs_.has(job.id, uv_file) &&
       !std::filesystem::exists(blobs_.path(job.id, uv_file))) {
     throw Error(ErrorCode::result_expired,
-                "An earlier version did this job, and kept no map that could be drawn or written "
-                "anew; send it again for that.");
+                "An earlier version ran this job and stored no map, so it cannot be drawn or "
+                "converted; send the job again.");
   }
   const LoadedInput loaded(blobs_, job);
   const std::string uvs = blobs_.read(job.id, uv_file);
@@ -92,13 +92,12 @@ std::string Renderer::make_here(const Rendering& rendering, const RenderingInput
   } catch (const WorkerCrashed& crash) {
     log_.warning("a worker process ended", {{"job", input.record.id}, {"how", crash.what()}});
     throw Error(ErrorCode::internal,
-                "The process that made this file ended before it was done; what it was made from "
-                "is as it was.");
+                "The process that made this file ended early; the stored result is unchanged.");
   } catch (const Error& error) {
     if (error.code() != ErrorCode::cancelled) throw;
-    throw Error(ErrorCode::time_limit, "To make this file took longer than the " +
+    throw Error(ErrorCode::time_limit, "Making this file took longer than the " +
                                            std::to_string(limits_.max_job_seconds) +
-                                           " s allowed; ask for the result as it was stored.");
+                                           " s allowed; request the result in its stored format.");
   }
 }
 

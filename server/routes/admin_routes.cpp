@@ -11,14 +11,14 @@ constexpr std::string_view kOk = R"({"status":"ok"})";
 /// on. A full queue or disk passes by itself.
 Response answer(const Readiness& readiness) {
   if (readiness.queue.draining())
-    throw RetryLater(ErrorCode::draining, "The server is shutting down; use another.", 1);
+    throw RetryLater(ErrorCode::draining, "The server is shutting down; use another server.", 1);
   readiness.store.check_writable();
   if (!readiness.has_workers())
     throw Error(ErrorCode::internal, "Jobs that do not stop hold every worker.");
   if (!std::filesystem::exists(readiness.data / kStoreFile) ||
       !std::filesystem::is_directory(readiness.data / "blobs"))
     throw Error(ErrorCode::storage_failed,
-                "Files of the store were removed; its operator must put them back.");
+                "Files of the store are missing; the operator must restore them.");
   return json_response(200, kOk);
 }
 

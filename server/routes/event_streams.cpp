@@ -56,12 +56,11 @@ std::string last_frames(const JobRecord& job, std::int64_t seen) {
 std::shared_ptr<void> EventStreams::take_place(const std::string& owner) {
   std::shared_ptr<void> place = places_.let_in(owner);
   if (place) return place;
-  throw RetryLater(
-      ErrorCode::too_many_streams,
-      "All " + std::to_string(max_streams_) +
-          " event streams are taken, or this API key has its share of them; come back after "
-          "Retry-After.",
-      kRetrySeconds);
+  throw RetryLater(ErrorCode::too_many_streams,
+                   "All " + std::to_string(max_streams_) +
+                       " event streams are taken, or this API key has its share of them; try again "
+                       "after Retry-After.",
+                   kRetrySeconds);
 }
 
 Response EventStreams::stream(const JobRecord& job, Watcher watcher, std::string greeting) {

@@ -31,7 +31,7 @@ Response get_link(const JobRecord& job, const LinkSigner& links, const Request& 
     }
   }
   if (std::ranges::count(kFiles, file) == 0)
-    refuse_parameter("file", "A job has no such file to link to; see /openapi.yaml.");
+    refuse_parameter("file", "A job has no such file; see /openapi.yaml.");
   const std::int64_t expires_ms = now_ms() + seconds * kMsPerSecond;
   const std::string path = api::job_path(job.id) + "/" + file;
   const LinkKey key{.id = request.caller.owner, .sha256 = request.caller.key_sha256};

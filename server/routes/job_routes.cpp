@@ -34,7 +34,8 @@ void wait_for(const EventFeed& events, const std::string& id, std::chrono::secon
 /// The job that a call of the same request has made.
 JobRecord stored_job(JobStore& store, const std::string& id) {
   std::optional<JobRecord> job = store.find(id);
-  if (!job) throw Error(ErrorCode::not_found, "The job was removed meanwhile; send it again.");
+  if (!job)
+    throw Error(ErrorCode::not_found, "The job was removed in the meantime; send it again.");
   return std::move(*job);
 }
 
@@ -87,8 +88,8 @@ constexpr std::chrono::seconds kTimeToEnd{5};
 /// For who wants to wait and finds no place. It is told before the body is read.
 RetryLater too_many_wait() {
   return {ErrorCode::rate_limited,
-          "Too many requests wait for the ends of their jobs; come back after Retry-After, or send "
-          "the mesh to /v1/jobs, which does not wait.",
+          "Too many requests wait for their jobs; try again after Retry-After, or send the mesh to "
+          "/v1/jobs, which does not wait.",
           kRetryAfterSeconds};
 }
 

@@ -15,8 +15,7 @@ namespace {
 
 Colouring parse_colour(const std::string& text) {
   const std::optional<Colouring> colouring = colouring_named(text);
-  if (!colouring)
-    refuse("colour", "The colour is none that is known; use stretch, angle, area or flips.");
+  if (!colouring) refuse("colour", "The colour is unknown; use stretch, angle, area or flips.");
   return *colouring;
 }
 

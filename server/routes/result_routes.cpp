@@ -36,14 +36,12 @@ bool has_copy(const Request& request, const std::string& etag) {
 void require_result(const JobRecord& job) {
   if (!api::is_final(job.state)) {
     throw Error(ErrorCode::job_unfinished,
-                "The job is not finished; ask again when its state is succeeded.");
+                "The job has not ended; ask again when its state is succeeded.");
   }
   if (job.state != api::JobState::succeeded) throw Error(api::error_from_problem(job.problem));
   if (job.expired) {
-    throw Error(
-        ErrorCode::result_expired,
-        "The result has been kept for its time and is gone; send the job again, under a new name "
-        "if it had one.");
+    throw Error(ErrorCode::result_expired,
+                "The result has expired; send the job again, under a new name if it had one.");
   }
 }
 

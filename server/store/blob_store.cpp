@@ -36,7 +36,7 @@ void check_there(const fs::path& path) {
 [[noreturn]] void corrupt(std::string_view file) {
   throw Error(ErrorCode::storage_corrupt,
               "The stored file " + std::string(file) +
-                  " is damaged: its SHA-256 is not one that was noted; send the job again.");
+                  " is damaged: its SHA-256 is not the recorded one; send the job again.");
 }
 
 }  // namespace
@@ -131,9 +131,9 @@ bool BlobStore::share_document(std::string_view mesh, std::string_view upload) {
     return true;
   }
   if (failed == std::errc::no_such_file_or_directory) return false;
-  throw Error(ErrorCode::storage_failed,
-              "The store cannot give one more job a share of this mesh (" + failed.message() +
-                  "); send the mesh itself with the job.");
+  throw Error(ErrorCode::storage_failed, "The store cannot share this mesh with one more job (" +
+                                             failed.message() +
+                                             "); send the mesh itself with the job.");
 }
 
 bool BlobStore::is_shared(std::string_view mesh) const {

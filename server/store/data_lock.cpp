@@ -16,7 +16,7 @@ constexpr mode_t kFileMode = 0640;
 [[noreturn]] void cannot_open(const std::filesystem::path& path, const std::error_code& reason) {
   throw Error(ErrorCode::storage_failed,
               path.string() + " cannot be opened (" + reason.message() +
-                  "): the data directory must be one in which the server's user may write.");
+                  "); the server's user must be able to write in the data directory.");
 }
 
 int open_lock(const std::filesystem::path& data) {
@@ -33,8 +33,9 @@ int open_lock(const std::filesystem::path& data) {
 
 DataLock::DataLock(const std::filesystem::path& data) : file_(open_lock(data)) {
   if (::flock(file_.descriptor(), LOCK_EX | LOCK_NB) == 0) return;
-  throw Error(ErrorCode::storage_failed, "The data directory " + data.string() +
-                                             " cannot be locked: is another unwrapd using it?");
+  throw Error(ErrorCode::storage_failed,
+              "The data directory " + data.string() +
+                  " cannot be locked; stop any other unwrapd that uses it.");
 }
 
 }  // namespace unwrapd::server

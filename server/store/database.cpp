@@ -24,7 +24,7 @@ bool is_damage(int code) { return code == SQLITE_NOTADB || code == SQLITE_CORRUP
 
 /// What an operator can do.
 std::string_view advice(int code) {
-  if (is_damage(code)) return "put a whole copy of it back";
+  if (is_damage(code)) return "restore a complete copy of it";
   if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY || code == SQLITE_PERM)
     return "the server's user must be able to write it and its folder";
   return "try again later";
@@ -32,7 +32,7 @@ std::string_view advice(int code) {
 
 [[noreturn]] void fail_with(int code, const std::string& file, const std::string& reason) {
   const std::string_view told = is_damage(code)
-                                    ? "The server's store is damaged; its operator must repair it."
+                                    ? "The server's store is damaged; the operator must repair it."
                                     : "The server's store failed; try again later.";
   throw InsideError(
       ErrorCode::storage_failed, std::string(told),

@@ -76,7 +76,7 @@ std::int64_t JobStore::note_time() {
 void JobStore::check_writable() {
   if (database_.is_damaged()) {
     throw Error(ErrorCode::storage_failed,
-                "The server's store is damaged; its operator must repair it.");
+                "The server's store is damaged; the operator must repair it.");
   }
   if (!write_failed_) return;
   try {

@@ -14,12 +14,11 @@ std::filesystem::path store_in(const std::filesystem::path& data, const BlobStor
   std::error_code none;  // what is opened to be written may lose a -wal file that is damaged
   const bool is_empty = std::filesystem::file_size(file, none) == 0 || none;
   if (!is_empty && has_tables(Database(file, Database::Access::read))) return file;
-  throw Error(
-      ErrorCode::storage_failed,
-      "The file " + file.string() + " is missing or empty, and " + (data / "blobs").string() +
-          " has the files of " + std::to_string(folders) +
-          " jobs and meshes, which only it knows: put it back (with its -wal file, if there "
-          "is one), or remove the folder blobs to begin anew.");
+  throw Error(ErrorCode::storage_failed,
+              "The file " + file.string() + " is missing or empty, and " +
+                  (data / "blobs").string() + " has the files of " + std::to_string(folders) +
+                  " jobs and meshes that only it lists; restore it (with its -wal file, if there "
+                  "is one), or remove the folder blobs to start empty.");
 }
 
 }  // namespace unwrapd::server

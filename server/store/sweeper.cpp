@@ -27,7 +27,7 @@ void expire(const std::string& job, JobStore& store, BlobStore& blobs) {
 void tell_swept(const Swept& swept, const Log& log) {
   if (swept.removed > 0) log.info("folders of ended jobs removed", {{"folders", swept.removed}});
   if (swept.returned > 0)
-    log.warning("folders returned from lost, their jobs are known again",
+    log.warning("folders returned from lost, their jobs are in the database again",
                 {{"folders", swept.returned}});
   const auto tell = [&](std::string_view what, const std::vector<std::string>& names) {
     if (names.empty()) return;
@@ -89,7 +89,7 @@ std::chrono::milliseconds Sweeper::pause() const {
 void Sweeper::note_time() {
   try {
     if (const std::int64_t by_ms = store_.note_time(); by_ms != 0)
-      log_.warning("the time of day was set", {{"by_ms", by_ms}});
+      log_.warning("the system clock was changed", {{"by_ms", by_ms}});
   } catch (const Error& error) {
     if (error.code() != ErrorCode::storage_full) throw;
   }
@@ -102,7 +102,7 @@ void Sweeper::sweep_once() {
   sweep(meshes_, blobs_, now_ms, keep_);
   const std::int64_t kept_since_ms = now_ms - std::chrono::milliseconds(keep_).count();
   if (const int lost = blobs_.lost().sweep(kept_since_ms); lost > 0)
-    log_.warning("folders in lost were kept for their time and are removed", {{"folders", lost}});
+    log_.warning("folders in lost expired and are removed", {{"folders", lost}});
   blobs_.room().make_reserve();
 }
 

@@ -64,7 +64,7 @@ class PartWriter {
     } else if (part.name == "buffer") {
       start_buffer(part);
     } else {
-      malformed("A part is none of \"options\", \"mesh\" and \"buffer\"; name it as what it is.");
+      malformed("A part is not named \"options\", \"mesh\" or \"buffer\"; use one of these names.");
     }
   }
 
@@ -77,13 +77,13 @@ class PartWriter {
 
   Upload finish() {
     finish_file();
-    if (!has_document_) malformed("There is no part named \"mesh\"; send the asset in it.");
+    if (!has_document_) malformed("The form has no part named \"mesh\"; send the asset in it.");
     return std::move(upload_);
   }
 
  private:
   void start_options() {
-    if (upload_.options) malformed("There are two parts named \"options\"; send one.");
+    if (upload_.options) malformed("The form has two parts named \"options\"; send one.");
     upload_.options = std::make_unique<SpooledText>(folder_.path / kSentOptionsFile, folder_.room);
   }
 
@@ -94,7 +94,7 @@ class PartWriter {
   }
 
   void start_document() {
-    if (has_document_) malformed("There are two parts named \"mesh\"; send one.");
+    if (has_document_) malformed("The form has two parts named \"mesh\"; send one.");
     has_document_ = true;
     open(kDocumentFile, upload_.input.sha256);
   }
@@ -102,10 +102,12 @@ class PartWriter {
   void start_buffer(const Part& part) {
     std::vector<StoredBuffer>& buffers = upload_.input.buffers;
     if (part.filename.empty())
-      malformed("A part has no filename; a buffer's is the URI by which the asset names it.");
+      malformed(
+          "A part with a buffer has no filename; send the URI by which the asset names the "
+          "buffer.");
     if (std::ranges::find(buffers, part.filename, &StoredBuffer::uri) != buffers.end())
       malformed("Two parts have the same filename; send every buffer once.");
-    if (buffers.size() == kMaxBuffers) malformed("There are over 1000 buffers; send fewer.");
+    if (buffers.size() == kMaxBuffers) malformed("The form has over 1000 buffers; send fewer.");
     buffers.push_back({.uri = part.filename, .file = buffer_file(buffers.size()), .sha256 = {}});
     open(buffers.back().file, buffers.back().sha256);
   }

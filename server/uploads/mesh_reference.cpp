@@ -15,7 +15,7 @@ constexpr std::size_t kMaxBytes = api::kMaxOptionsBytes + 1024;
 
 std::string mesh_of(const api::Json& value) {
   if (!value.is_string() || !is_sha256(value.get_ref<const std::string&>()))
-    refuse_member("mesh", "The mesh is named by its SHA-256; send its 64 lowercase hex digits.");
+    refuse_member("mesh", "mesh must be a SHA-256; send its 64 lowercase hex digits.");
   return value;
 }
 
@@ -30,7 +30,7 @@ MeshReference parse_mesh_reference(std::string_view text) {
   const api::Json json = api::parse_json(text, {.max_bytes = kMaxBytes});
   if (!json.is_object()) {
     throw Error(ErrorCode::malformed_request,
-                "The body is no JSON object; send {\"mesh\": SHA-256, \"options\": {...}}.");
+                "The body is not a JSON object; send {\"mesh\": SHA-256, \"options\": {...}}.");
   }
   MeshReference reference;
   for (const auto& [member, value] : json.items()) {
@@ -39,10 +39,11 @@ MeshReference parse_mesh_reference(std::string_view text) {
     } else if (member == "options") {
       reference.options = options_of(value);
     } else {
-      refuse_member(member, "There is no member of this name; there are mesh and options.");
+      refuse_member(member, "The JSON has an unknown member; its members are mesh and options.");
     }
   }
-  if (reference.sha256.empty()) refuse_member("mesh", "No mesh is named; send its SHA-256.");
+  if (reference.sha256.empty())
+    refuse_member("mesh", "The member mesh is missing; send the SHA-256 of a mesh.");
   return reference;
 }
 

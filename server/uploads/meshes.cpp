@@ -28,7 +28,7 @@ void check_digest(const std::string& is, const std::string& expected) {
   if (is == expected) return;
   throw Error(ErrorCode::digest_mismatch,
               "The SHA-256 of the body is " + is +
-                  ", not the one in the address; send the whole file, to the address of its own.");
+                  ", not the one in the address; send the complete file to its own address.");
 }
 
 /// Too much time or memory is a problem of the mesh like any other.
@@ -43,8 +43,7 @@ std::string analyse(const Renderer& renderer, const JobRecord& job, const HasLef
 
 Error no_mesh(const std::string& where) {
   return {ErrorCode::mesh_not_found,
-          "There is no mesh of this SHA-256, or no longer; send it by PUT /v1/meshes/{sha256}.",
-          where};
+          "No mesh with this SHA-256 is stored; send it by PUT /v1/meshes/{sha256}.", where};
 }
 
 /// What a renderer needs to know of a mesh, as if it were a job with the usual options.

@@ -18,7 +18,7 @@ std::string idempotency_key(const Request& request) {
     key = key.substr(1, key.size() - 2);
   if (!key.empty() && key.size() <= kLongestKey && std::ranges::all_of(key, is_visible)) return key;
   throw Error(ErrorCode::malformed_request,
-              "Idempotency-Key must have 1 to 255 visible ASCII characters; take a UUID.");
+              "Idempotency-Key must have 1 to 255 visible ASCII characters; use a UUID.");
 }
 
 int urgency(const Request& request) {

@@ -16,7 +16,7 @@ api::Json options_of(const std::optional<std::string>& text, const Request& requ
   if (!text) return api::options_object(request.query);
   if (request.query.empty()) return api::parse_json(*text, {.max_bytes = api::kMaxOptionsBytes});
   throw Error(ErrorCode::invalid_option,
-              "Options are given in the query and in the body; give them once.",
+              "Options are in the query and in the body; give them in one place.",
               "/" + request.query.begin()->first);
 }
 

@@ -18,7 +18,7 @@ constexpr std::size_t kShortBytes = 4096;
 constexpr std::uint64_t kPieceBytes = std::uint64_t{1} << 20;
 
 [[noreturn]] void no_frame() {
-  throw Error(ErrorCode::internal, "The worker process sent what is no message.");
+  throw Error(ErrorCode::internal, "The worker process sent an invalid message.");
 }
 
 void add_lambda(BytePacker& pack, const std::optional<double>& lambda) {

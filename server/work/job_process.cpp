@@ -37,7 +37,7 @@ SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolati
       .threads = isolation.threads};
 }
 
-[[noreturn]] void misbehaved() { throw WorkerCrashed("it sent what no worker sends"); }
+[[noreturn]] void misbehaved() { throw WorkerCrashed("its answer is invalid"); }
 
 /// The text of an error, which may quote a mesh: what is no UTF-8 in it is replaced, and what
 /// nobody would read is cut off.

@@ -233,10 +233,11 @@ int run_job_worker(const Duties& duties) {
   } catch (const Error& error) {
     fail_with(error.code(), error.what(), error.where());
   } catch (const std::bad_alloc&) {
-    fail_with(ErrorCode::memory_limit,
-              "The job needed more memory than this server gives to one; send a smaller mesh.", {});
+    fail_with(
+        ErrorCode::memory_limit,
+        "The job needed more memory than this server allows for one job; send a smaller mesh.", {});
   } catch (const std::exception&) {  // the owner learns nothing of our insides
-    fail_with(ErrorCode::internal, "The server made a mistake.", {});
+    fail_with(ErrorCode::internal, "An internal error occurred.", {});
   }
   std::_Exit(EXIT_SUCCESS);  // nothing is left to be done, and a thread still waits for a signal
 }

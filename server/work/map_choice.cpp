@@ -45,11 +45,10 @@ std::size_t chosen_map(const JobRecord& job, const std::multimap<std::string, st
   if (first == last) return 0;
   if (std::next(first) != last) refuse("lambda", "lambda is given twice; give it once.");
   const std::vector<double> lambdas = lambdas_of(job);
-  if (lambdas.empty())
-    refuse("lambda", "The job's method has no lambda, and one map: leave lambda out.");
+  if (lambdas.empty()) refuse("lambda", "The method of the job has no lambda; leave lambda out.");
   const auto found = std::ranges::find(lambdas, number_of(first->second));
   if (found == lambdas.end())
-    refuse("lambda", "The job has no map of this lambda; it has those of " +
+    refuse("lambda", "The job has no map for this lambda; it has maps for " +
                          job.options.at("lambda").dump() + ".");
   return static_cast<std::size_t>(found - lambdas.begin());
 }
@@ -57,7 +56,7 @@ std::size_t chosen_map(const JobRecord& job, const std::multimap<std::string, st
 std::size_t only_chosen_map(const JobRecord& job,
                             const std::multimap<std::string, std::string>& query) {
   for (const auto& [name, text] : query)
-    if (name != "lambda") refuse(name, "There is no parameter of this name here, only lambda.");
+    if (name != "lambda") refuse(name, "This call has no such parameter, only lambda.");
   return chosen_map(job, query);
 }
 

@@ -20,7 +20,7 @@ constexpr double kWriteFraction = 0.95;  // of the job is done when writing begi
 
 void check_stop(const JobTask& task) {
   if (task.stop.stop_requested())
-    throw Error(ErrorCode::cancelled, "The job was stopped; send it again to have it done.");
+    throw Error(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
 }
 
 Progress progress_of(const JobTask& task, JobOutput& output, StageClock& clock) {

@@ -75,38 +75,39 @@ constexpr std::array kRefused = {SCMP_SYS(openat), SCMP_SYS(open),     SCMP_SYS(
 
 void limit(__rlimit_resource resource, std::int64_t value) {
   const rlimit bound{static_cast<rlim_t>(value), static_cast<rlim_t>(value)};
-  if (::setrlimit(resource, &bound) != 0) cannot("bound its resources");
+  if (::setrlimit(resource, &bound) != 0) cannot("limit its resources");
 }
 
 using Filter = std::unique_ptr<void, decltype(&seccomp_release)>;
 
 void allow(const Filter& filter, int call) {
-  if (seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0) != 0) cannot("filter its calls");
+  if (seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0) != 0)
+    cannot("filter its system calls");
 }
 
 /// Only with none of these flags in an argument.
 void allow_without(const Filter& filter, int call, unsigned argument, std::uint64_t flags) {
   const scmp_arg_cmp none{argument, SCMP_CMP_MASKED_EQ, flags, 0};
   if (seccomp_rule_add_array(filter.get(), SCMP_ACT_ALLOW, call, 1, &none) != 0)
-    cannot("filter its calls");
+    cannot("filter its system calls");
 }
 
 /// Only of this process, which the first argument names.
 void allow_of_process(const Filter& filter, int call, pid_t process) {
   const scmp_arg_cmp same{0, SCMP_CMP_EQ, static_cast<scmp_datum_t>(process), 0};
   if (seccomp_rule_add_array(filter.get(), SCMP_ACT_ALLOW, call, 1, &same) != 0)
-    cannot("filter its calls");
+    cannot("filter its system calls");
 }
 
 void refuse(const Filter& filter, int call, std::uint16_t error) {
   if (seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(error), call, 0) != 0)
-    cannot("filter its calls");
+    cannot("filter its system calls");
 }
 
 void filter_calls() {
   const Filter filter(seccomp_init(SCMP_ACT_KILL_PROCESS), &seccomp_release);
   if (!filter || seccomp_attr_set(filter.get(), SCMP_FLTATR_CTL_TSYNC, 1) != 0)
-    cannot("filter its calls");
+    cannot("filter its system calls");
   for (const int call : kAllowed) allow(filter, call);
   for (const int call : kRefused) refuse(filter, call, EACCES);
   allow_of_process(filter, SCMP_SYS(tgkill), ::getpid());  // abort() sends itself a signal
@@ -114,14 +115,14 @@ void filter_calls() {
   allow_of_process(filter, SCMP_SYS(sched_getaffinity), 0);  // the caller
   allow_without(filter, SCMP_SYS(mmap), 2, PROT_EXEC);
   allow_without(filter, SCMP_SYS(mprotect), 2, PROT_EXEC);
-  if (seccomp_load(filter.get()) != 0) cannot("filter its calls");
+  if (seccomp_load(filter.get()) != 0) cannot("filter its system calls");
 }
 
 }  // namespace
 
 void enter_sandbox(const SandboxLimits& limits) {
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) cannot("die with its server");
-  if (::close_range(kKeptDescriptors, ~0U, 0) != 0) cannot("close what it has inherited");
+  if (::close_range(kKeptDescriptors, ~0U, 0) != 0) cannot("close inherited files");
   limit(RLIMIT_AS, limits.memory_bytes);
   limit(RLIMIT_CPU, limits.processor_seconds);
   limit(RLIMIT_NOFILE, kKeptDescriptors);

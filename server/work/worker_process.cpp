@@ -101,8 +101,7 @@ bool WorkerProcess::receive(char* data, std::size_t size) {
 
 void WorkerProcess::reap() {
   const int status = worker_.end();
-  if (kill_at_)
-    throw Error(ErrorCode::cancelled, "The job was stopped; send it again to have it done.");
+  if (kill_at_) throw Error(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     throw Error(ErrorCode::time_limit, "The job took more processor time than is allowed.");
   throw WorkerCrashed(end_of(status));

@@ -115,7 +115,7 @@ TEST(Unwrap, SaysWhichMapsAreNotTheMethodsOwn) {
       }));
   const auto says_so = [](const Report& report) {
     return std::any_of(report.notes.begin(), report.notes.end(), [](const std::string& note) {
-      return note.find("have a new map without overlaps") != std::string::npos;
+      return note.find("got a new map without overlaps") != std::string::npos;
     });
   };
   for (const Method method : {Method::arap, Method::slim, Method::abf, Method::hybrid}) {

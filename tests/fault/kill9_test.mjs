@@ -72,7 +72,7 @@ test("kill -9: what ran runs again, what waited waits, nothing partial remains",
   assert.deepEqual(await second.end("SIGTERM"), [0, null]);
   const [before, after] = [first, second].map(({ log }) => linesOf(log, running));
   assert.equal(before.traces.size, 1);
-  assert.ok(after.events.includes("job found at nobody's hands, queued again"), `${after.events}`);
+  assert.ok(after.events.includes("job without a worker found, queued again"), `${after.events}`);
   assert.deepEqual(after.traces, before.traces, "one trace over the crash");
 });
 

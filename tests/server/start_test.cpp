@@ -27,7 +27,7 @@ class Start : public RunningServer {
 TEST_F(Start, ADataDirectoryThatCannotBeUsedIsNamedWithTheReason) {
   make_directories(dir_.path() / "lock");
   EXPECT_THAT(refusal(), AllOf(HasSubstr((dir_.path() / "lock").string()),
-                               HasSubstr("Is a directory"), Not(HasSubstr("another unwrapd"))));
+                               HasSubstr("Is a directory"), Not(HasSubstr("other unwrapd"))));
   write_file(dir_.path() / "file", "");
   config_.data = dir_.path() / "file" / "data";
   EXPECT_THAT(refusal(), AllOf(HasSubstr(config_.data.string()), HasSubstr("Not a directory")));

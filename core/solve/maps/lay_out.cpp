@@ -46,7 +46,7 @@ void scale_to_area(const Disk& disk, UvMap& uv) {
   const double area = uv_area(disk.rest, disk.faces, uv);
   if (!(area > 0) || !std::isfinite(area))
     throw Error(ErrorCode::solver_failed,
-                "the map that fits the flattened triangles collapsed; choose another method");
+                "the map fitted to the flattened triangles collapsed; choose another method");
   for (Vec2& u : uv) u *= std::sqrt(rest_area / area);
 }
 

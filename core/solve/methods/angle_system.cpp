@@ -163,7 +163,7 @@ void AngleSystem::factor(std::span<const FaceBlock> blocks) {
   for (std::size_t t = 0; t < blocks.size(); ++t) system_->add(t, blocks[t].element());
   if (!system_->factor())
     throw Error(ErrorCode::solver_failed,
-                "the angles of this mesh cannot be made to lie flat; choose method asap or arap");
+                "no flat angles were found for this mesh; choose method asap or arap");
 }
 
 std::vector<FaceAngles> AngleSystem::step(std::span<const FaceAngles> angles,

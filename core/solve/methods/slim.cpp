@@ -62,8 +62,8 @@ Start best_start(const Disk& disk, Executor& executor) {
     if (start.energy < best->energy) best = &start;  // false for NaN
   if (!std::isfinite(best->energy))
     throw Error(ErrorCode::solver_failed,
-                "no map without flipped triangles was found to start from; choose another method "
-                "or cut the chart further");
+                "no start map without flipped triangles was found; choose another method or cut "
+                "the chart further");
   return std::move(*best);
 }
 

@@ -193,7 +193,7 @@ TEST(Constraints, RefuseVerticesThatNoTriangleUses) {
   mesh.faces.push_back({9, 9, 10});  // degenerate: in no chart
   const Asset asset = asset_of({mesh, TriMesh{}});
   for (Index vertex : {9, 10})
-    expect_refused(asset, {pin(vertex, 0, 0)}, "/constraints/0", "in no triangle");
+    expect_refused(asset, {pin(vertex, 0, 0)}, "/constraints/0", "to no triangle");
   PositionConstraint nowhere = at({0, 0, 0}, 0, 0);
   nowhere.surface = 1;
   expect_refused(asset, {nowhere}, "/constraints/0", "no triangles");
@@ -204,7 +204,7 @@ TEST(Constraints, RefuseVerticesThatNoTriangleUses) {
 TEST(Constraints, RefuseContradictions) {
   const Asset asset = asset_of({shapes::grid(2, 2)});
   expect_refused(asset, {pin(0, 0, 0), pin(4, 1, 1), pin(8, 0, 1), pin(4, 1, 0.5)},
-                 "/constraints/3", "constraint 1 puts the same vertex at (1, 1)");
+                 "/constraints/3", "constraint 1 places the same vertex at (1, 1)");
   EXPECT_NO_THROW(held(asset, {pin(4, 1, 1), pin(4, 1, 1 + 1e-12)}));  // one 32-bit float
 }
 

@@ -115,7 +115,7 @@ TEST_F(Damage, WhatAnOlderDatabaseDoesNotKnowIsSetAsideAndComesBackWithTheNewerO
   EXPECT_TRUE(fs::exists(lost(second) / "result.obj") && !fs::exists(blob(second)));
   stop();
   fs::rename(dir_.path() / "newer", store());
-  EXPECT_THAT(start_and_hear(), HasSubstr("known again"));
+  EXPECT_THAT(start_and_hear(), HasSubstr("in the database again"));
   for (const std::string& id : {first, second}) EXPECT_EQ(get(id, "result")->status, 200);
   EXPECT_TRUE(fs::is_empty(config_.data / "lost"));
 }

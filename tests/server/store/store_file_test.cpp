@@ -19,7 +19,7 @@ class StoreFile : public RunningServer {
   void expect_refused(const std::string& job) {
     const Error error = error_of([this] { start(); });
     EXPECT_EQ(error.code(), ErrorCode::storage_failed);
-    EXPECT_THAT(error.what(), AllOf(HasSubstr(store().string()), HasSubstr("put it back")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr(store().string()), HasSubstr("restore it")));
     EXPECT_TRUE(std::filesystem::exists(config_.data / "blobs" / job / "report.json"));
   }
 };
