@@ -11,15 +11,15 @@
 
 #include "core/base/error.hpp"
 #include "core/charts/outline.hpp"
-#include "core/guarantee/promise.hpp"
+#include "core/guarantee/keep_guarantee.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/measure/seam_length.hpp"
 #include "core/pack/pack.hpp"
 #include "core/pipeline/assemble.hpp"
-#include "core/pipeline/chart_watch.hpp"
-#include "core/pipeline/map_chart.hpp"
+#include "core/pipeline/chart_progress.hpp"
 #include "core/pipeline/map_surfaces.hpp"
+#include "core/pipeline/parameterize_chart.hpp"
 #include "core/pipeline/place_islands.hpp"
 #include "core/pipeline/repack.hpp"
 
@@ -28,26 +28,26 @@ namespace {
 
 /// Shares of the job that are behind us when a step of core begins; reading comes before, writing
 /// after.
-constexpr double kPackBegin = kSolveEnd, kMeasureBegin = 0.93;
+constexpr double kPackBegin = pipeline::kSolveEnd, kMeasureBegin = 0.93;
 
 void announce(const Progress& progress, Stage stage, std::size_t charts, double fraction) {
   if (progress.on_stage) progress.on_stage({stage, 0, static_cast<Index>(charts), fraction});
 }
 
 /// Places every chart on the page; the maps become page UVs.
-void place(Layout& layout, const UnwrapOptions& options, Executor& executor) {
-  std::vector<Outline> outlines;
+void place(pipeline::Layout& layout, const UnwrapOptions& options, Executor& executor) {
+  std::vector<charts::Outline> outlines;
   std::vector<UvMap*> maps;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
-      outlines.push_back(outline_of(*layout.charts[s][k], layout.islands[s][k]));
+      outlines.push_back(charts::outline_of(*layout.charts[s][k], layout.islands[s][k]));
       maps.push_back(&layout.islands[s][k]);
     }
-  place_islands(outlines, options, executor, maps, layout.report);
+  pipeline::place_islands(outlines, options, executor, maps, layout.report);
 }
 
 /// Says where constraints reach beyond the page.
-void note_charts_beyond(Layout& layout) {
+void note_charts_beyond(pipeline::Layout& layout) {
   const auto is_beyond = [](const Vec2& u) { return u.minCoeff() < 0 || u.maxCoeff() > 1; };
   std::ptrdiff_t count = 0;
   for (const std::vector<UvMap>& own : layout.islands)
@@ -60,7 +60,7 @@ void note_charts_beyond(Layout& layout) {
 }
 
 /// Charts under position constraints are on the page already.
-void lay_out_page(Layout& layout, const UnwrapOptions& options, Executor& executor) {
+void lay_out_page(pipeline::Layout& layout, const UnwrapOptions& options, Executor& executor) {
   if (options.constraints.empty())
     place(layout, options, executor);
   else
@@ -68,34 +68,37 @@ void lay_out_page(Layout& layout, const UnwrapOptions& options, Executor& execut
 }
 
 /// The promise kept in what is written.
-void keep_on_page(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop) {
+void keep_on_page(pipeline::Layout& layout, const UnwrapOptions& options,
+                  const std::stop_token& stop) {
   auto report = layout.report.charts.begin();
   layout.report.guarantee = options.guarantee;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
-      Promise promise{.guarantee = options.guarantee};
-      promise.intent = {.rigidity = {}, .held = layout.held[s][k], .stop = stop};
-      const Written written = keep_on_page(*layout.charts[s][k], promise, layout.islands[s][k]);
+      guarantee::GuaranteeRules promise{.guarantee = options.guarantee};
+      promise.intent = {.rigidity = {}, .constrained = layout.constrained[s][k], .stop = stop};
+      const guarantee::Written written =
+          guarantee::keep_on_page(*layout.charts[s][k], promise, layout.islands[s][k]);
       report->distortion.flipped = written.flipped;
       report->overlaps = written.overlaps;
     }
 }
 
 /// Distortion and density of the triangles as they are written: rounding counts, too.
-void measure(Layout& layout, const UnwrapOptions& options, Executor& executor) {
+void measure_layout(pipeline::Layout& layout, const UnwrapOptions& options, Executor& executor) {
   auto report = layout.report.charts.begin();
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
       const TriMesh& mesh = layout.charts[s][k]->mesh;
-      DistortionSums own = distortion_sums(flatten(mesh.positions, mesh.faces, executor),
-                                           mesh.faces, layout.islands[s][k], executor);
+      measure::DistortionSums own =
+          measure::distortion_sums(measure::flatten(mesh.positions, mesh.faces, executor),
+                                   mesh.faces, layout.islands[s][k], executor);
       own.flipped = report->distortion.flipped;  // by exact signs
       report->area = own.area;
-      report->distortion = distortion(own);
+      report->distortion = measure::distortion(own);
       layout.sums += own;
     }
-  const DistortionSums& sums = layout.sums;
-  layout.report.distortion = distortion(sums);
+  const measure::DistortionSums& sums = layout.sums;
+  layout.report.distortion = measure::distortion(sums);
   layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * options.resolution;
   if (!options.constraints.empty()) layout.report.fill = sums.uv_area;
 }
@@ -115,25 +118,29 @@ void add_totals(Report& report) {
 }
 
 /// The plan that is there already, unless charts came apart.
-UnwrappedSurface assembled(const Surface& surface, std::size_t s, const Layout& layout,
+UnwrappedSurface assembled(const Surface& surface, std::size_t s, const pipeline::Layout& layout,
                            const std::stop_token& stop) {
-  const Prepared& all = *layout.all;
-  const Charts& whole = all.surfaces[s];
-  std::vector<const Chart*> charts;
-  for (const std::shared_ptr<const Chart>& chart : layout.charts[s]) charts.push_back(chart.get());
-  if (charts == pointers_to(whole.charts)) return assemble(*all.plans[s], layout.islands[s]);
-  return assemble(plan_vertices(surface, whole, charts, stop), layout.islands[s]);
+  const pipeline::Prepared& all = *layout.all;
+  const charts::Charts& whole = all.surfaces[s];
+  std::vector<const charts::Chart*> charts;
+  for (const std::shared_ptr<const charts::Chart>& chart : layout.charts[s])
+    charts.push_back(chart.get());
+  if (charts == pipeline::pointers_to(whole.charts))
+    return pipeline::assemble(*all.plans[s], layout.islands[s]);
+  return pipeline::assemble(pipeline::plan_vertices(surface, whole, charts, stop),
+                            layout.islands[s]);
 }
 
-Unwrapped put_back(std::span<const Surface> surfaces, Layout layout, const std::stop_token& stop) {
-  const Prepared& all = *layout.all;
+Unwrapped put_back(std::span<const Surface> surfaces, pipeline::Layout layout,
+                   const std::stop_token& stop) {
+  const pipeline::Prepared& all = *layout.all;
   Unwrapped unwrapped;
   auto report = layout.report.charts.begin();
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     unwrapped.surfaces.push_back(assembled(surfaces[s], s, layout, stop));
-    const std::vector<double> seams = seam_lengths(surfaces[s].mesh, *all.surfaces[s].by_position,
-                                                   unwrapped.surfaces.back(), stop);
-    for (const std::shared_ptr<const Chart>& chart : layout.charts[s]) {
+    const std::vector<double> seams = measure::seam_lengths(
+        surfaces[s].mesh, *all.surfaces[s].by_position, unwrapped.surfaces.back(), stop);
+    for (const std::shared_ptr<const charts::Chart>& chart : layout.charts[s]) {
       for (const Index t : chart->face_source) report->seam_length += seams[t];
       ++report;
     }
@@ -170,21 +177,22 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   validate(options, std::numeric_limits<int>::max());
   JobExecutor job(executor, progress.stop);
   if (options.repack_only)
-    return {lambdas_of(options).size(), repack(surfaces, options, progress, job)};
-  announce(progress, Stage::setup, 0, kChartsBegin);
-  std::vector<Layout> layouts = map_surfaces(surfaces, options, progress, job);
+    return {pipeline::lambdas_of(options).size(),
+            pipeline::repack(surfaces, options, progress, job)};
+  announce(progress, Stage::setup, 0, pipeline::kChartsBegin);
+  std::vector<pipeline::Layout> layouts = pipeline::map_surfaces(surfaces, options, progress, job);
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
-  for (Layout& layout : layouts) {
+  for (pipeline::Layout& layout : layouts) {
     lay_out_page(layout, options, job);
     keep_on_page(layout, options, progress.stop);
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
-  for (Layout& layout : layouts) measure(layout, options, job);
+  for (pipeline::Layout& layout : layouts) measure_layout(layout, options, job);
   std::vector<Unwrapped> maps;
-  for (Layout& layout : layouts)
+  for (pipeline::Layout& layout : layouts)
     maps.push_back(put_back(surfaces, std::move(layout), progress.stop));
-  if (is_curve(options)) add_curve(maps, lambdas_of(options));
+  if (pipeline::is_curve(options)) add_curve(maps, pipeline::lambdas_of(options));
   return maps;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 struct Asked {
   std::string data = "data";
-  ApiKey key;
+  access::ApiKey key;
   std::string scopes = "submit,read";
   std::string id;
 };
@@ -25,27 +25,27 @@ struct Asked {
 }
 
 void add_key(const Asked& asked) {
-  ApiKey key = asked.key;
-  key.scopes = parse_scopes(asked.scopes);
-  std::printf("%s\n", KeyStore(asked.data).add(key).c_str());
+  access::ApiKey key = asked.key;
+  key.scopes = access::parse_scopes(asked.scopes);
+  std::printf("%s\n", access::KeyStore(asked.data).add(key).c_str());
   std::fprintf(stderr, "This is the key. It is not stored and cannot be shown again.\n");
 }
 
 /// Of a data directory that there is: a misspelt one is not made.
-KeyStore opened(const Asked& asked) {
-  const std::filesystem::path file = std::filesystem::path(asked.data) / kKeysFile;
-  if (std::filesystem::exists(file)) return KeyStore(asked.data);
+access::KeyStore opened(const Asked& asked) {
+  const std::filesystem::path file = std::filesystem::path(asked.data) / access::kKeysFile;
+  if (std::filesystem::exists(file)) return access::KeyStore(asked.data);
   throw Error(ErrorCode::not_found,
               "There is no " + file.string() + "; give the --data directory of a server.");
 }
 
 void list_keys(const Asked& asked) {
-  for (const ApiKey& key : opened(asked).all()) {
-    std::printf("%s  %s  scopes=%s  requests-per-minute=%lld  max-jobs=%lld  max-bytes=%lld  %s\n",
-                key.id.c_str(), rfc3339(key.created_ms).c_str(), to_text(key.scopes).c_str(),
-                static_cast<long long>(key.requests_per_minute),
-                static_cast<long long>(key.quota.max_jobs),
-                static_cast<long long>(key.quota.max_bytes), key.name.c_str());
+  for (const access::ApiKey& key : opened(asked).all()) {
+    std::printf(
+        "%s  %s  scopes=%s  requests-per-minute=%lld  max-jobs=%lld  max-bytes=%lld  %s\n",
+        key.id.c_str(), rfc3339(key.created_ms).c_str(), access::to_text(key.scopes).c_str(),
+        static_cast<long long>(key.requests_per_minute), static_cast<long long>(key.quota.max_jobs),
+        static_cast<long long>(key.quota.max_bytes), key.name.c_str());
   }
 }
 
@@ -54,11 +54,12 @@ void remove_key(const Asked& asked) {
 }
 
 void tell_webhook_secret(const Asked& asked) {
-  KeyStore keys = opened(asked);
-  const bool is_stored = !asked.id.empty() && asked.id != kGivenKeyId;
+  access::KeyStore keys = opened(asked);
+  const bool is_stored = !asked.id.empty() && asked.id != access::kGivenKeyId;
   if (is_stored && !keys.with_id(asked.id)) unknown_key(asked.id);
-  const std::string secret = secret_in(std::filesystem::path(asked.data) / kSecretFile);
-  std::printf("%s\n", webhook_secret(secret, asked.id).c_str());
+  const std::string secret =
+      access::secret_in(std::filesystem::path(asked.data) / access::kSecretFile);
+  std::printf("%s\n", webhooks::webhook_secret(secret, asked.id).c_str());
 }
 
 CLI::App* command(CLI::App& app, const std::string& name, const std::string& what, Asked& asked) {

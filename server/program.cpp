@@ -34,13 +34,13 @@ constexpr timespec kLook{.tv_sec = 0, .tv_nsec = 200'000'000};  // for a second 
 
 /// As many files as the kernel lets us have: the default is less than --max-connections. Returns
 /// the configuration with as many connections as those leave room for.
-Config with_open_files(Config config, const Log& log) {
+config::Config with_open_files(config::Config config, const Log& log) {
   rlimit files{};
   ::getrlimit(RLIMIT_NOFILE, &files);
   files.rlim_cur = files.rlim_max;
   ::setrlimit(RLIMIT_NOFILE, &files);
   const auto most = static_cast<std::int64_t>(std::min<rlim_t>(files.rlim_max, kManyFiles));
-  const int connections = connections_within(most, config);
+  const int connections = config::connections_within(most, config);
   if (connections < config.edge.max_connections)
     log.warning("fewer connections than --max-connections: few files may be open",
                 {{"connections", connections}, {"files", most}});
@@ -72,16 +72,16 @@ std::jthread hurry_at_next(const sigset_t& signals, Service& service, const Log&
     while (!stop.stop_requested()) {
       if (::sigtimedwait(&signals, nullptr, &kLook) < 0) continue;
       log.info("hurrying");
-      service.hurry();
+      service.stop_waiting();
       return;
     }
   });
 }
 
-void serve(const Config& config, const Log& log, const Duties& duties) {
+void serve(const config::Config& config, const Log& log, const work::WorkerFunctions& functions) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is then EFBIG, as no room is ENOSPC
   const sigset_t signals = block_end_signals();
-  Service service(config, log, duties);
+  Service service(config, log, functions);
   const std::string address = to_text({config.listen.host, service.port()});
   const char* scheme = config.edge.tls_cert.empty() ? "http" : "https";
   std::printf("unwrapd listening on %s://%s\n", scheme, address.c_str());
@@ -103,18 +103,18 @@ void serve(const Config& config, const Log& log, const Duties& duties) {
 
 }  // namespace
 
-int run_program(int argc, char** argv, Duties duties) {
+int run_program(int argc, char** argv, work::WorkerFunctions functions) {
   ::umask(kNotOfOthers);
-  if (is_job_worker(argc, argv)) return run_job_worker(duties);
+  if (work::is_job_worker(argc, argv)) return work::run_job_worker(functions);
   if (argc > 1 && std::string_view(argv[1]) == "keys") return run_keys_command(argc, argv);
-  if (argc > 1 && is_backup_command(argv[1])) return run_backup_command(argc, argv);
-  const CommandLine line = parse_command_line(argc, argv);
-  if (line.task == Task::leave) return line.exit_code;
-  if (line.task == Task::healthcheck) return probe(*line.config.admin);
+  if (argc > 1 && backup::is_backup_command(argv[1])) return backup::run_backup_command(argc, argv);
+  const config::CommandLine line = config::parse_command_line(argc, argv);
+  if (line.task == config::Task::leave) return line.exit_code;
+  if (line.task == config::Task::healthcheck) return http::probe(*line.config.admin);
   const Log log(line.config.log_level, line.config.log_format);
   try {
-    if (duties.program.empty()) duties.program = "/proc/self/exe";
-    serve(with_open_files(line.config, log), log, duties);
+    if (functions.program.empty()) functions.program = "/proc/self/exe";
+    serve(with_open_files(line.config, log), log, functions);
     return 0;
   } catch (const std::exception& error) {
     log.error("unwrapd cannot run",

@@ -1,13 +1,13 @@
 #pragma once
 // The program unwrapd, as a function: tests build programs of their own around it.
 
-#include "server/work/duties.hpp"
+#include "server/work/worker_functions.hpp"
 
 namespace unwrapd::server {
 
 /// Reads the command line, serves until SIGTERM or SIGINT, drains. With --job-worker alone it is
 /// the worker process of a server instead, which does these duties; the program that is
 /// started for it is this one when they name none. Returns the exit code.
-int run_program(int argc, char** argv, Duties duties = {});
+int run_program(int argc, char** argv, work::WorkerFunctions functions = {});
 
 }  // namespace unwrapd::server

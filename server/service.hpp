@@ -7,7 +7,7 @@
 
 #include "server/base/log.hpp"
 #include "server/config/config.hpp"
-#include "server/work/duties.hpp"
+#include "server/work/worker_functions.hpp"
 
 namespace unwrapd::server {
 
@@ -16,7 +16,8 @@ class Service {
   /// Opens the data directory, takes up what the last process left, and serves. Throws Error when
   /// the directory is in use, the store cannot be read or the address cannot be had. Without a
   /// program among the duties there is no worker process.
-  Service(const Config& config, const Log& log, const Duties& duties = {});
+  Service(const config::Config& config, const Log& log,
+          const work::WorkerFunctions& functions = {});
   /// Like drain(), without patience.
   ~Service();
 
@@ -28,7 +29,7 @@ class Service {
   /// next start runs it again, but this would not be destroyed before it ends.
   bool drain();
   /// Leaves the jobs that drain() waits for no more time.
-  void hurry();
+  void stop_waiting();
 
  private:
   struct Parts;

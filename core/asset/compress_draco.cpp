@@ -65,7 +65,7 @@ void add_attribute(const Gltf& gltf, const std::string& semantic, std::size_t nu
   const Elements elements(gltf, number);
   const std::string zeros(accessor.element_bytes, '\0');
   for (std::size_t i = 0; i < accessor.count; ++i) {
-    look_now_and_then(i, gltf.stop);
+    check_cancelled_every(i, gltf.stop);
     const char* bytes = elements.at(i);
     mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(static_cast<std::uint32_t>(i)),
                                           bytes == nullptr ? zeros.data() : bytes);
@@ -81,7 +81,7 @@ std::vector<Index> corners_of(const Gltf& gltf, const Primitive& primitive) {
   }
   const Elements indices(gltf, *primitive.indices);
   for (std::size_t i = 0; i < count; ++i) {
-    look_now_and_then(i, gltf.stop);
+    check_cancelled_every(i, gltf.stop);
     corners[i] = static_cast<Index>(indices.unsigned_at(i));
   }
   return corners;

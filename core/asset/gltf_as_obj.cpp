@@ -82,7 +82,7 @@ class ObjFromGltf {
     if (has_normals) write_normals(piece, *normal_accessors_[number]);
     const UnwrappedSurface& unwrapped = unwrapped_[piece.surface];
     for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
-      look_now_and_then(t, gltf_.stop);
+      check_cancelled_every(t, gltf_.stop);
       out_ += 'f';
       for (std::size_t k = 0; k < 3; ++k)
         append_corner(unwrapped, unwrapped.faces[t][k], has_normals ? normal_base_++ : -1);
@@ -99,7 +99,7 @@ class ObjFromGltf {
     const Elements normals(gltf_, accessor);
     const Surface& surface = surfaces_[piece.surface];
     for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
-      look_now_and_then(t, gltf_.stop);
+      check_cancelled_every(t, gltf_.stop);
       for (const Index corner : surface.mesh.faces[t]) {
         const Index vertex = gltf_.vertices[piece.surface][as_size(corner)];
         const Vec3 normal = normals.vec3_at(as_size(vertex));

@@ -50,7 +50,7 @@ class Builder : public nlohmann::json_sax<Json> {
   bool start_array(std::size_t /*size*/) override { return open(); }
 
   bool key(string_t& name) override {
-    look_now_and_then(++steps_, stop_);
+    check_cancelled_every(++steps_, stop_);
     names_.push_back(std::move(name));
     return true;
   }
@@ -95,7 +95,7 @@ class Builder : public nlohmann::json_sax<Json> {
   };
 
   bool push(Json value) {
-    look_now_and_then(++steps_, stop_);
+    check_cancelled_every(++steps_, stop_);
     values_.push_back(std::move(value));
     return true;
   }

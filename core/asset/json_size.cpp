@@ -17,7 +17,7 @@ struct Marks {
 Marks count_marks(std::string_view text, const std::stop_token& stop) {
   Marks marks;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    look_now_and_then(i, stop);
+    check_cancelled_every(i, stop);
     switch (text[i]) {
       case ',':
         ++marks.commas;
@@ -32,7 +32,7 @@ Marks count_marks(std::string_view text, const std::stop_token& stop) {
       case '"': {
         const std::size_t begin = i + 1;
         for (++i; i < text.size() && text[i] != '"'; ++i) {
-          look_now_and_then(i, stop);
+          check_cancelled_every(i, stop);
           if (text[i] == '\\') ++i;
         }
         ++marks.strings;

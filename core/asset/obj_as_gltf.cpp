@@ -42,7 +42,7 @@ class Combiner {
   Vertices run() {
     for (const ObjElement& element : obj_.elements)
       for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
-        look_now_and_then(t, obj_.stop);
+        check_cancelled_every(t, obj_.stop);
         for (std::size_t k = 0; k < 3; ++k)
           vertices_.corners[surface_.part[t]].push_back(
               number_of(unwrapped_.faces[t][k], normal_of(element, t, k)));

@@ -32,7 +32,7 @@ void read_piece(const Gltf& gltf, const Primitive& primitive, const Vec2& scale,
   const Elements uv(gltf, accessor);
   surface.corner_uv.resize(surface.mesh.faces.size(), kNoUv);
   for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
-    look_now_and_then(t, gltf.stop);
+    check_cancelled_every(t, gltf.stop);
     for (std::size_t i = 0; i < 3; ++i)
       surface.corner_uv[t][i] = upwards(
           scale.cwiseProduct(uv.vec2_at(as_size(number[as_size(surface.mesh.faces[t][i])]))));
@@ -58,14 +58,14 @@ void read_obj_uvs(const Obj& obj, Surface& surface) {
   std::vector<Vec2> vt;
   vt.reserve(obj.texcoord_lines.size());
   for (const auto& [begin, end] : obj.texcoord_lines) {
-    look_now_and_then(vt.size(), obj.stop);
+    check_cancelled_every(vt.size(), obj.stop);
     vt.push_back(read_vt(std::string_view(obj.text).substr(begin, end - begin)));
   }
   if (vt.empty()) return;
   surface.corner_uv.assign(surface.mesh.faces.size(), kNoUv);
   for (const ObjElement& element : obj.elements)
     for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
-      look_now_and_then(t, obj.stop);
+      check_cancelled_every(t, obj.stop);
       for (std::size_t i = 0; i < 3; ++i) {
         const ObjCorner& corner =
             obj.corners[element.first_corner + as_size(obj.face_corners[t][i])];

@@ -57,7 +57,7 @@ Split Splitter::split(const std::vector<std::size_t>& pieces, std::size_t vertex
     std::vector<Index> corners;
     corners.reserve(3 * piece.face_count);
     for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
-      look_now_and_then(t, gltf_.stop);
+      check_cancelled_every(t, gltf_.stop);
       for (const Index corner : surface.faces[t])
         corners.push_back(place_corner(piece, corner, split));
     }

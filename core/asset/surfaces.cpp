@@ -26,7 +26,7 @@ std::vector<Index> read_corners(const Gltf& gltf, const Primitive& primitive) {
   if (!primitive.indices) return corners;
   const Elements indices(gltf, *primitive.indices);
   for (std::size_t i = 0; i < count; ++i) {
-    look_now_and_then(i, gltf.stop);
+    check_cancelled_every(i, gltf.stop);
     const std::size_t index = indices.unsigned_at(i);
     if (index >= vertex_count)
       fail(ErrorCode::malformed_gltf, accessor_place(*primitive.indices),
@@ -109,7 +109,7 @@ class SurfaceBuilder {
     std::sort(touched_.begin() + std::ptrdiff_t(first), touched_.end());
     const Elements& positions = elements_.try_emplace(accessor, gltf_, accessor).first->second;
     for (std::size_t i = first; i < touched_.size(); ++i) {
-      look_now_and_then(i, gltf_.stop);
+      check_cancelled_every(i, gltf_.stop);
       number[as_size(touched_[i].second)] = add_vertex(accessor, positions, touched_[i].second);
     }
   }

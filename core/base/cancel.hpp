@@ -1,6 +1,6 @@
 #pragma once
 // How a job ends that was told to stop: long work looks now and then, at most a few tens of
-// milliseconds apart (`./dev bench looks` finds what goes longer without).
+// milliseconds apart (`./dev bench cancel-latency` finds what goes longer without).
 
 #include <stop_token>
 
@@ -14,7 +14,7 @@ void throw_if_cancelled(const std::stop_token& stop);
 
 /// For loops: looks at every 4096th step.
 template <class Number>
-void look_now_and_then(Number step, const std::stop_token& stop) {
+void check_cancelled_every(Number step, const std::stop_token& stop) {
   if (step % 4096 == 0) throw_if_cancelled(stop);
 }
 

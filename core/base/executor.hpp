@@ -12,7 +12,7 @@
 
 namespace unwrapd {
 
-class SolverCore;
+class SharedCache;
 
 class Executor {
  public:
@@ -27,7 +27,7 @@ class Executor {
   virtual void for_each_block(int block_count, const std::function<void(int)>& body) = 0;
 
   /// What jobs share (solver_core.hpp); null where this one is alone. Outlives the job.
-  [[nodiscard]] virtual SolverCore* shared_core() const { return nullptr; }
+  [[nodiscard]] virtual SharedCache* shared_cache() const { return nullptr; }
 
   /// Of the job whose blocks these are: long work looks at it (cancel.hpp).
   [[nodiscard]] virtual std::stop_token stop() const { return {}; }
@@ -62,7 +62,7 @@ class JobExecutor final : public Executor {
     });
     throw_if_cancelled(stop_);
   }
-  [[nodiscard]] SolverCore* shared_core() const override { return inner_.shared_core(); }
+  [[nodiscard]] SharedCache* shared_cache() const override { return inner_.shared_cache(); }
   [[nodiscard]] std::stop_token stop() const override { return stop_; }
 
  private:

@@ -16,9 +16,9 @@
 #include "core/mesh/repair.hpp"
 #include "core/mesh/seams.hpp"
 #include "core/mesh/weld.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 constexpr Index kUnnumbered = -1;
@@ -61,11 +61,11 @@ struct Connected {
 };
 
 std::size_t bytes_of(const Connected& connected) {
-  using unwrapd::bytes_of;
+  using unwrapd::solve::bytes_of;
   const Charts& charts = connected.charts;
-  std::size_t bytes = bytes_of(charts.set_aside) + bytes_of(charts.repeats);
-  bytes += bytes_of(*charts.by_position);
-  for (const std::vector<Index>& source : connected.vertex_source) bytes += bytes_of(source);
+  std::size_t bytes = solve::bytes_of(charts.set_aside) + solve::bytes_of(charts.repeats);
+  bytes += solve::bytes_of(*charts.by_position);
+  for (const std::vector<Index>& source : connected.vertex_source) bytes += solve::bytes_of(source);
   for (const Chart& chart : charts.charts) bytes += bytes_of(chart);
   return bytes;
 }
@@ -80,7 +80,7 @@ void mark_creases(const SurfaceNumbers& surface, const Pieces& pieces, const Mem
                   const std::stop_token& stop, Chart& chart) {
   const auto given = [&](Index g) { return 3 * pieces.source[g / 3] + g % 3; };
   for (const Index t : members.source) {
-    look_now_and_then(members.rank[t], stop);
+    check_cancelled_every(members.rank[t], stop);
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
       const Index twin = pieces.halfedges.twin[h];
       if (twin != kNoTwin && is_crease(surface, given(h), given(twin)))
@@ -114,7 +114,7 @@ Chart chart_of(const SurfaceNumbers& surface, const Pieces& pieces, const Member
   chart.halfedges.twin.resize(3 * count);
   chart.crease.assign(3 * count, 0);
   for (std::size_t k = 0; k < count; ++k) {
-    look_now_and_then(k, stop);
+    check_cancelled_every(k, stop);
     const Index t = members.source[k];
     chart.face_source[k] = pieces.source[t];
     for (std::size_t i = 0; i < 3; ++i) {
@@ -201,8 +201,9 @@ Connected connect(const Inspected& in, const SeamRules& seams) {
 
 /// Of a surface whose vertices and faces that lie at one place, or have no area, are known.
 /// areas: what inspect_areas() says of each face; duplicates are found here.
-Connected connected(const Making&, const SurfaceNumbers& surface, std::span<const Index> first_at,
-                    const std::vector<FaceState>& areas, const SeamRules& seams) {
+Connected connected(const solve::Making&, const SurfaceNumbers& surface,
+                    std::span<const Index> first_at, const std::vector<FaceState>& areas,
+                    const SeamRules& seams) {
   const std::vector<Triangle> welded = renumbered(surface.faces, first_at);
   FaceStates states{areas, std::vector<Index>(areas.size(), kNoFace)};
   find_duplicates(welded, surface.vertex_count, seams.stop, states);
@@ -255,7 +256,7 @@ Charts make_charts(const Surface& surface, SeamMode seams) {
 }
 
 /// Of paths those that are of the surface count, wherever it stands among others.
-void describe(Fingerprint& key, const SeamRules& seams) {
+void describe(CacheKey& key, const SeamRules& seams) {
   const auto& [mode, paths, surface, stop, core] = seams;
   static_cast<void>(stop), static_cast<void>(core);
   key.add(mode);
@@ -270,17 +271,19 @@ Charts components_of(const Surface& surface, const SeamRules& seams) {
   const std::vector<Triangle> welded = renumbered(surface.mesh.faces, first_at);
   const FaceStates states = inspect_areas(surface.mesh, welded, seams.stop);
   throw_if_cancelled(seams.stop);
-  const auto pieces = kept<connected>(Making{seams.core, seams.stop}, SurfaceNumbers(surface),
-                                      first_at, states.of, seams);
+  const auto pieces = solve::cached<connected>(solve::Making{seams.core, seams.stop},
+                                               SurfaceNumbers(surface), first_at, states.of, seams);
   return placed(*pieces, surface.mesh, seams.stop);
 }
 
 std::size_t bytes_of(const Chart& chart) {
-  std::size_t bytes = sizeof(Chart) + bytes_of(chart.mesh.positions) + bytes_of(chart.mesh.faces) +
-                      bytes_of(chart.halfedges) + bytes_of(chart.face_source) +
-                      bytes_of(chart.start) + bytes_of(chart.crease);
-  for (const BoundaryLoop& loop : chart.loops) bytes += sizeof(BoundaryLoop) + bytes_of(loop);
+  std::size_t bytes = sizeof(Chart) + solve::bytes_of(chart.mesh.positions) +
+                      solve::bytes_of(chart.mesh.faces) + solve::bytes_of(chart.halfedges) +
+                      solve::bytes_of(chart.face_source) + solve::bytes_of(chart.start) +
+                      solve::bytes_of(chart.crease);
+  for (const BoundaryLoop& loop : chart.loops)
+    bytes += sizeof(BoundaryLoop) + solve::bytes_of(loop);
   return bytes;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

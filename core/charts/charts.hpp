@@ -7,14 +7,14 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/base/solver_core.hpp"
+#include "core/base/shared_cache.hpp"
 #include "core/mesh/halfedges.hpp"
 #include "core/mesh/topology.hpp"
-#include "core/types/fingerprint.hpp"
+#include "core/types/cache_key.hpp"
 #include "core/types/options.hpp"
 #include "core/types/report.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 
 /// A disk (holes allowed) cut from a surface: connected, manifold, orientable, no degenerate face.
 struct Chart {
@@ -44,10 +44,10 @@ struct SeamRules {
   std::span<const SeamPath> paths = {};  ///< of all surfaces
   Index surface = 0;                     ///< which of them this is
   std::stop_token stop = {};
-  SolverCore* core = nullptr;  ///< shares what does not depend on places; null: none
+  SharedCache* core = nullptr;  ///< shares what does not depend on places; null: none
 };
 
-void describe(Fingerprint& key, const SeamRules& seams);
+void describe(CacheKey& key, const SeamRules& seams);
 
 /// The components of a surface, which need not be disks: those that are none have yet to be cut or
 /// taken apart, and may be without a loop; by_position is there. Throws Error{not_orientable}, and
@@ -67,4 +67,4 @@ void cut(Chart& component);
 /// The components, each that is no disk cut to one. Throws Error{not_orientable}.
 Charts make_charts(const Surface& surface, SeamMode seams);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -15,7 +15,7 @@
 #include "core/charts/vertex_finder.hpp"
 #include "core/mesh/counting_sort.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 /// A constraint where it was found.
@@ -113,11 +113,11 @@ const Pin* hard_pin(std::span<const Pin> pins) {
 }
 
 /// Springs of one vertex, as one: sum w |u - p|^2 is W |u - sum w p / W|^2 and a constant.
-Spring merged(std::span<const Pin> pins) {
-  Spring spring{pins.front().vertex, Vec2::Zero(), 0};
-  for (const Pin& pin : pins) spring.weight += pin.weight;
-  for (const Pin& pin : pins) spring.at += pin.weight / spring.weight * pin.at;
-  return spring;
+solve::SoftConstraint merged(std::span<const Pin> pins) {
+  solve::SoftConstraint soft_constraint{pins.front().vertex, Vec2::Zero(), 0};
+  for (const Pin& pin : pins) soft_constraint.weight += pin.weight;
+  for (const Pin& pin : pins) soft_constraint.at += pin.weight / soft_constraint.weight * pin.at;
+  return soft_constraint;
 }
 
 /// pins: the hard ones of a chart, one a vertex.
@@ -136,11 +136,13 @@ void check_apart(ChartPins pins) {
   }
 }
 
-void check_spread(const Holds& holds, const ChartPins& pins) {
-  Vec2 first = holds.fixed.empty() ? holds.springs.front().at : holds.fixed.front().at;
+void check_spread(const solve::VertexConstraints& holds, const ChartPins& pins) {
+  Vec2 first = holds.hard.empty() ? holds.soft.front().at : holds.hard.front().at;
   bool apart = holds.count() == 1;
-  for (const FixedPoint& p : holds.fixed) apart = apart || written(p.at) != written(first);
-  for (const Spring& s : holds.springs) apart = apart || written(s.at) != written(first);
+  for (const solve::HardConstraint& p : holds.hard)
+    apart = apart || written(p.at) != written(first);
+  for (const solve::SoftConstraint& s : holds.soft)
+    apart = apart || written(s.at) != written(first);
   if (!apart)
     refuse("all constraints of this chart have the position " + text(first) +
                ", so they do not determine its size; give one of them another position, or keep "
@@ -149,8 +151,8 @@ void check_spread(const Holds& holds, const ChartPins& pins) {
 }
 
 /// pins: of one chart, not empty, in the order of the constraints.
-Holds merge(const ChartPins& pins, Index vertex_count) {
-  Holds holds;
+solve::VertexConstraints merge(const ChartPins& pins, Index vertex_count) {
+  solve::VertexConstraints holds;
   ChartPins hard_pins, sorted = pins;
   counting_sort(sorted, vertex_count, [](const Pin& pin) { return std::size_t(pin.vertex); });
   for_each_run(
@@ -159,9 +161,9 @@ Holds merge(const ChartPins& pins, Index vertex_count) {
         if (const Pin* hard = hard_pin({first, last}))
           hard_pins.push_back(*hard);
         else
-          holds.springs.push_back(merged({first, last}));
+          holds.soft.push_back(merged({first, last}));
       });
-  for (const Pin& pin : hard_pins) holds.fixed.push_back({pin.vertex, pin.at});
+  for (const Pin& pin : hard_pins) holds.hard.push_back({pin.vertex, pin.at});
   check_apart(std::move(hard_pins));
   check_spread(holds, pins);
   return holds;
@@ -178,11 +180,10 @@ Holds merge(const ChartPins& pins, Index vertex_count) {
 
 }  // namespace
 
-std::vector<std::vector<Holds>> page_holds(std::span<const Surface> surfaces,
-                                           std::span<const Charts> charts,
-                                           std::span<const PositionConstraint> constraints,
-                                           const std::stop_token& stop) {
-  std::vector<std::vector<Holds>> holds;
+std::vector<std::vector<solve::VertexConstraints>> page_constraints(
+    std::span<const Surface> surfaces, std::span<const Charts> charts,
+    std::span<const PositionConstraint> constraints, const std::stop_token& stop) {
+  std::vector<std::vector<solve::VertexConstraints>> holds;
   for (const Charts& part : charts) holds.emplace_back(part.charts.size());
   if (constraints.empty()) return holds;
   const std::vector<std::vector<ChartPins>> pins = find_all(surfaces, charts, constraints, stop);
@@ -195,4 +196,4 @@ std::vector<std::vector<Holds>> page_holds(std::span<const Surface> surfaces,
   return holds;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

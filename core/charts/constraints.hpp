@@ -7,10 +7,10 @@
 
 #include "core/charts/charts.hpp"
 #include "core/mesh/tri_mesh.hpp"
-#include "core/solve/base/holds.hpp"
+#include "core/solve/base/vertex_constraints.hpp"
 #include "core/types/options.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 
 /// The holds of every chart, in the page's coordinates: result[s][k] for chart k of surface s. All
 /// are empty when there are no constraints; else each has at least one vertex.
@@ -25,9 +25,8 @@ namespace unwrapd {
 /// vertex in no face; one vertex at two places; two vertices at one; a chart all of whose targets
 /// are one; a weight out of bounds; a uv beyond 32-bit floats. where = "/constraints": a chart that
 /// has none. Throws Error{cancelled}.
-std::vector<std::vector<Holds>> page_holds(std::span<const Surface> surfaces,
-                                           std::span<const Charts> charts,
-                                           std::span<const PositionConstraint> constraints,
-                                           const std::stop_token& stop);
+std::vector<std::vector<solve::VertexConstraints>> page_constraints(
+    std::span<const Surface> surfaces, std::span<const Charts> charts,
+    std::span<const PositionConstraint> constraints, const std::stop_token& stop);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -19,7 +19,7 @@
 #include "core/mesh/edges.hpp"
 #include "core/mesh/topology.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -187,4 +187,4 @@ void cut_to_disk(const TriMesh& mesh, Halfedges& halfedges) {
   }
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -2,7 +2,7 @@
 
 #include "core/measure/orientation.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 
 Outline outline_of(const Chart& chart, std::span<const Vec2> uv) {
   Outline outline;
@@ -15,9 +15,9 @@ Outline outline_of(const Chart& chart, std::span<const Vec2> uv) {
   };
   for (const BoundaryLoop& loop : chart.loops)
     for (Index h : loop) add(h);
-  for (Index t : flipped_faces(chart.mesh.faces, uv))
+  for (Index t : measure::flipped_faces(chart.mesh.faces, uv))
     for (Index h = 3 * t; h < 3 * t + 3; ++h) add(h);
   return outline;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -7,7 +7,7 @@
 
 #include "core/charts/charts.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 
 /// Closed loops of directed segments. Points that they wind around are inside.
 using Outline = std::vector<std::array<Vec2, 2>>;
@@ -15,4 +15,4 @@ using Outline = std::vector<std::array<Vec2, 2>>;
 /// The chart's boundary loops, and the sides of flipped triangles, which may stick out of them.
 Outline outline_of(const Chart& chart, std::span<const Vec2> uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

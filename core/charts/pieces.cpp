@@ -11,7 +11,7 @@
 #include "core/base/error.hpp"
 #include "core/mesh/seams.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 constexpr std::size_t kMostKeptDisks = 64;           // in all
@@ -24,7 +24,7 @@ Pieces pieces_of(const Pairing& pairing, const FaceStates& states, const std::st
   Pieces pieces;
   std::vector<Index> rank(states.of.size(), kNoFace);
   for (std::size_t t = 0; t < states.of.size(); ++t) {
-    look_now_and_then(t, stop);
+    check_cancelled_every(t, stop);
     if (states.of[t] != FaceState::sound) continue;
     rank[t] = static_cast<Index>(pieces.source.size());
     pieces.source.push_back(static_cast<Index>(t));
@@ -32,7 +32,7 @@ Pieces pieces_of(const Pairing& pairing, const FaceStates& states, const std::st
   const auto moved = [&](Index h) { return h == kNoTwin ? kNoTwin : 3 * rank[h / 3] + h % 3; };
   pieces.halfedges.twin.resize(3 * pieces.source.size());
   for (std::size_t h = 0; h < pieces.halfedges.twin.size(); ++h) {
-    look_now_and_then(h, stop);
+    check_cancelled_every(h, stop);
     pieces.halfedges.twin[h] = moved(pairing.halfedges.twin[3 * pieces.source[h / 3] + h % 3]);
   }
   close_slits(pieces.halfedges, stop);
@@ -129,4 +129,4 @@ std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_pla
   return {std::move(without), true};
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

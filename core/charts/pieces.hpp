@@ -11,7 +11,7 @@
 #include "core/mesh/seams.hpp"
 #include "core/mesh/topology.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 
 /// The sound faces of a surface and how they hang together.
 struct Pieces {
@@ -37,4 +37,4 @@ struct Inspected {
 std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_place,
                                       const SeamRules& seams);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -11,7 +11,7 @@
 #include "core/base/cancel.hpp"
 #include "core/mesh/edges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 Vec3 middle(const TriMesh& mesh, Index t) {
@@ -33,7 +33,7 @@ std::vector<int> nearer_seeds(const Chart& chart, const std::array<std::vector<I
       open.emplace(0, t);
     }
   for (std::size_t step = 0; !open.empty(); ++step) {
-    look_now_and_then(step, stop);
+    check_cancelled_every(step, stop);
     const auto [d, t] = open.top();
     open.pop();
     if (d > distance[t]) continue;
@@ -57,7 +57,7 @@ ChartPart part_of(const Chart& chart, const Halfedges& cut, const std::vector<In
   part.face = faces;
   part.chart.least = chart.least;
   for (const Index t : faces) {
-    look_now_and_then(rank[t], stop);
+    check_cancelled_every(rank[t], stop);
     part.chart.face_source.push_back(chart.face_source[t]);
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
       const Index twin = cut.twin[h];
@@ -107,4 +107,4 @@ std::vector<ChartPart> split_chart(const Chart& chart,
   return parts_of(chart, cut, stop);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -7,7 +7,7 @@
 
 #include "core/charts/charts.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 
 /// A part of a chart: again a disk (holes allowed).
 struct ChartPart {
@@ -30,4 +30,4 @@ std::vector<ChartPart> split_chart(const Chart& chart,
                                    const std::array<std::vector<Index>, 2>& seeds,
                                    const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

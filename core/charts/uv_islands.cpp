@@ -11,7 +11,7 @@
 #include "core/mesh/repair.hpp"
 #include "core/mesh/weld.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 constexpr Index kNone = -1;
@@ -168,4 +168,4 @@ UvIslands uv_islands(const Surface& surface) {
   return islands;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -6,7 +6,7 @@
 #include "core/charts/charts.hpp"
 #include "core/charts/outline.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 
 struct UvIslands {
   /// One an island, in the order of their lowest faces: mesh (a vertex for each place of the plane)
@@ -20,4 +20,4 @@ struct UvIslands {
 /// a surface without corner_uv.
 UvIslands uv_islands(const Surface& surface);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

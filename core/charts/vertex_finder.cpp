@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 /// Keeps the lowest corner of each chart.
@@ -75,4 +75,4 @@ std::vector<ChartVertex> VertexFinder::at_place_of(Index vertex) const {
   return one_a_chart(std::move(found));
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -9,7 +9,7 @@
 #include "core/mesh/point_tree.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 
 /// A vertex of a chart, and the lowest corner 3t + i of the surface that shows it for the vertex
 /// that was looked for.
@@ -44,4 +44,4 @@ class VertexFinder {
   std::optional<PointTree> places_;   // of the vertices that charts show
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr unsigned kSampleCount = kSamples * kSamples;  // of a pixel
@@ -42,4 +42,4 @@ void Band::resolve(Image& image) const {
   }
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -12,7 +12,7 @@
 #include "core/figure/scan.hpp"
 #include "core/mesh/counting_sort.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 /// The samples of some rows of pixels.
 class Band {
@@ -81,7 +81,7 @@ void draw_in_bands(const Canvas& canvas, Index count, TriangleOf triangle, Draw 
   const Index bands = (image.height + Band::kPixels - 1) / Band::kPixels;
   std::vector<Touch> touches;
   for (Index k = 0; k < count; ++k) {
-    look_now_and_then(k, canvas.stop);
+    check_cancelled_every(k, canvas.stop);
     const SampleRange rows = rows_of(triangle(k));
     const Index first = std::max(0, rows.first) / Band::kRows;
     for (Index b = first; b < bands && b * Band::kRows < rows.end; ++b) touches.push_back({b, k});
@@ -93,11 +93,11 @@ void draw_in_bands(const Canvas& canvas, Index count, TriangleOf triangle, Draw 
     throw_if_cancelled(canvas.stop);
     band.start(b * Band::kRows);
     for (; next < touches.size() && touches[next].band == b; ++next) {
-      look_now_and_then(next, canvas.stop);
+      check_cancelled_every(next, canvas.stop);
       draw(touches[next].thing, band);
     }
     band.resolve(image);
   }
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr std::array<Rgb, 12> kWorse = {{{0xd1, 0xfd, 0xc7},
@@ -70,7 +70,7 @@ const ColourScale& colour_scale(Colouring colouring) {
   return kScales[static_cast<std::size_t>(colouring)];
 }
 
-double shown_value(Colouring colouring, const Jacobian& j, double scale) {
+double shown_value(Colouring colouring, const measure::Jacobian& j, double scale) {
   switch (colouring) {
     case Colouring::stretch:
       return std::max(scale * j.sigma_max(), 1 / (scale * std::abs(j.sigma_min())));
@@ -84,4 +84,4 @@ double shown_value(Colouring colouring, const Jacobian& j, double scale) {
   return 1;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

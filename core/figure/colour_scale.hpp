@@ -9,7 +9,7 @@
 #include "core/figure/image.hpp"
 #include "core/measure/jacobian.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 enum class Colouring { stretch, angle, area, flips };
 
@@ -52,6 +52,6 @@ inline constexpr Rgb kPage = {0xe9, 0xe8, 0xed};
 /// The figure of a triangle that is not flipped, `scale` being the factor for UVs that makes UV
 /// area = 3D area: sigma_max / sigma_min (angle), the determinant (area), max(sigma_max,
 /// 1 / sigma_min) (stretch), 1 (flips). Infinite or NaN where the image has no area.
-double shown_value(Colouring colouring, const Jacobian& j, double scale);
+double shown_value(Colouring colouring, const measure::Jacobian& j, double scale);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

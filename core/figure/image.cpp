@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr std::string_view kDigits = "0123456789abcdef";
@@ -18,4 +18,4 @@ std::string hex(const Rgb& colour) {
   return text;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 using Rgb = std::array<std::uint8_t, 3>;  ///< sRGB
 
@@ -31,4 +31,4 @@ inline constexpr int kDefaultImageSize = 1024;
 /// "#rrggbb".
 std::string hex(const Rgb& colour);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -11,7 +11,7 @@
 #include "core/figure/painting.hpp"
 #include "core/figure/raster.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr double kOutlineWidth = 3, kFlipWidth = 12;  // in 1/4096 of the page's side
@@ -100,4 +100,4 @@ Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedS
   return rasterised(drawing, size, height, kPage, stop);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -13,7 +13,7 @@
 #include "core/figure/legend.hpp"
 #include "core/figure/painting.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr double kUnits = 40960;    // coordinates a page's side
@@ -79,7 +79,7 @@ void draw(const UnwrappedSurface& surface, std::span<const std::uint8_t> painted
           const Frame& frame, const std::stop_token& stop, Paths& paths) {
   const Places places(surface.uv, frame);
   for (std::size_t t = 0; t < painted.size(); ++t) {
-    look_now_and_then(t, stop);
+    check_cancelled_every(t, stop);
     if (painted[t] == kHiddenFace) continue;
     std::string& path = painted[t] == kFlippedFace ? paths.flipped : paths.colour[painted[t]];
     append_triangle(path, surface.faces[t], places);
@@ -170,4 +170,4 @@ std::string layout_svg(std::span<const Surface> surfaces,
   return svg;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

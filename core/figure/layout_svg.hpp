@@ -8,7 +8,7 @@
 #include "core/figure/colour_scale.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 /// An SVG document of the page [0,1]^2 as a square of 4096 units, V pointing up, with a legend
 /// below. A triangle's colour tells its figure (see shown_value()) after one global scale that
@@ -19,4 +19,4 @@ std::string layout_svg(std::span<const Surface> surfaces,
                        std::span<const UnwrappedSurface> unwrapped,
                        Colouring colouring = Colouring::stretch, const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

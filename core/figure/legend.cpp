@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr double kTitleX = 96, kTitleSize = 116, kTextSize = 84;
@@ -30,4 +30,4 @@ Legend legend_of(const ColourScale& scale) {
   return legend;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

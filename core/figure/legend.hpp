@@ -8,7 +8,7 @@
 
 #include "core/figure/colour_scale.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 inline constexpr int kPageUnits = 4096;
 inline constexpr int kLegendUnits = 320;  ///< height of what lies below the page
@@ -32,4 +32,4 @@ struct Legend {
 
 Legend legend_of(const ColourScale& scale);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

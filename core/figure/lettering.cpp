@@ -10,7 +10,7 @@
 
 #include "core/figure/colour_scale.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 /// An arc about (x, y) with radii (rx, ry) between two angles, degrees, anticlockwise from the
@@ -143,4 +143,4 @@ void append_text(std::vector<FlatTriangle>& drawing, std::string_view text, cons
   }
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

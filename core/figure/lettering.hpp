@@ -6,7 +6,7 @@
 
 #include "core/figure/raster.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 /// Writes lower-case letters, digits, '/', '.' and spaces; anything else is left blank. `start` is
 /// where the baseline begins and `size` the height of the font, of which digits take 0.72, pixels.
@@ -16,4 +16,4 @@ void append_text(std::vector<FlatTriangle>& drawing, std::string_view text, cons
 /// The width of the text at this size, pixels.
 double text_width(std::string_view text, double size);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -10,14 +10,14 @@
 #include "core/mesh/edges.hpp"
 #include "core/mesh/weld.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr double kSlack = 1e-6;  // of the page: rounding does not change the frame
 
 /// The face laid flat; area 0 when it has none.
-RestTriangle laid_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
-  RestTriangle rest;
+measure::RestTriangle laid_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
+  measure::RestTriangle rest;
   const double base = (b - a).norm(), twice_area = (b - a).cross(c - a).norm();
   if (!(twice_area > 0)) return rest;
   const double foot = (b - a).dot(c - a) / base, height = twice_area / base;
@@ -31,9 +31,11 @@ template <class Visit>
 void for_each_face(const TriMesh& mesh, const UnwrappedSurface& unwrapped, Visit visit) {
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
     const auto& [a, b, c] = mesh.faces[t];
-    const RestTriangle rest = laid_flat(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+    const measure::RestTriangle rest =
+        laid_flat(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
     if (rest.area > 0)
-      visit(t, rest.area, jacobian(rest, uv_edges(unwrapped.faces[t], unwrapped.uv)));
+      visit(t, rest.area,
+            measure::jacobian(rest, measure::uv_edges(unwrapped.faces[t], unwrapped.uv)));
   }
 }
 
@@ -42,10 +44,11 @@ double common_scale(std::span<const Surface> surfaces,
                     std::span<const UnwrappedSurface> unwrapped) {
   double area = 0, uv_area = 0;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    for_each_face(surfaces[s].mesh, unwrapped[s], [&](std::size_t, double a, const Jacobian& j) {
-      area += a;
-      uv_area += a * std::abs(j.determinant());
-    });
+    for_each_face(surfaces[s].mesh, unwrapped[s],
+                  [&](std::size_t, double a, const measure::Jacobian& j) {
+                    area += a;
+                    uv_area += a * std::abs(j.determinant());
+                  });
   }
   return uv_area > 0 ? std::sqrt(area / uv_area) : 1;
 }
@@ -61,10 +64,11 @@ std::vector<std::vector<std::uint8_t>> painted_faces(std::span<const Surface> su
   std::vector<std::vector<std::uint8_t>> painted(surfaces.size());
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     painted[s].assign(surfaces[s].mesh.faces.size(), kHiddenFace);
-    for_each_face(surfaces[s].mesh, unwrapped[s], [&](std::size_t t, double, const Jacobian& j) {
-      painted[s][t] =
-          j.sigma_min() > 0 ? colours.colour_of(shown_value(colouring, j, scale)) : kFlippedFace;
-    });
+    for_each_face(
+        surfaces[s].mesh, unwrapped[s], [&](std::size_t t, double, const measure::Jacobian& j) {
+          painted[s][t] = j.sigma_min() > 0 ? colours.colour_of(shown_value(colouring, j, scale))
+                                            : kFlippedFace;
+        });
   }
   return painted;
 }
@@ -97,4 +101,4 @@ Frame frame_of(std::span<const UnwrappedSurface> unwrapped) {
   return {.corner = (low + high) / 2 - Vec2::Constant(side / 2), .side = side};
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

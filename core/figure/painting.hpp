@@ -10,7 +10,7 @@
 #include "core/figure/colour_scale.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 /// Instead of a colour's number.
 inline constexpr std::uint8_t kFlippedFace = 254;
@@ -40,4 +40,4 @@ struct Frame {
 
 Frame frame_of(std::span<const UnwrappedSurface> unwrapped);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -20,11 +20,11 @@
 #include "core/figure/view.hpp"
 #include "core/mesh/weld.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr double kSeamWidth = 2.4 / 1024, kBoundaryWidth = 1.5 / 1024;  // of the picture's side
-constexpr double kMinLine = 0.8;                                        // pixels
+constexpr double kMinLinePixels = 0.8;                                  // pixels
 constexpr double kLift = 0.004;  // of the extent: lines lie so much in front of their faces
 constexpr double kMinChecks = 2, kMaxChecks = 4096;
 
@@ -96,7 +96,7 @@ Projected projected(const TriMesh& mesh, const View& view) {
 void append_line(std::vector<LinePart>& parts, const std::array<Vec3, 2>& ends, const View& view,
                  double width, const Rgb& colour) {
   const std::array<Vec2, 8> outline =
-      line_outline(view.pixel(ends[0]), view.pixel(ends[1]), std::max(kMinLine, width));
+      line_outline(view.pixel(ends[0]), view.pixel(ends[1]), std::max(kMinLinePixels, width));
   std::array<float, 2> depth{};
   for (std::size_t k = 0; k < 2; ++k)
     depth[k] = static_cast<float>(view.depth(ends[k]) + kLift * view.extent);
@@ -231,4 +231,4 @@ Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurfac
   return image;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

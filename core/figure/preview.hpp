@@ -8,7 +8,7 @@
 #include "core/figure/image.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 /// A square picture of `size` pixels, in [kMinImageSize, kMaxImageSize], on white. Squares of the
 /// checkerboard have one size on the page, chosen so that about kChecksAcross of them cross the
@@ -24,4 +24,4 @@ inline constexpr Rgb kLightCheck = {0xfb, 0xf8, 0xf1};
 inline constexpr Rgb kDarkCheck = {0x2f, 0x77, 0xa8};
 inline constexpr Rgb kSeamColour = {0xff, 0x2d, 0x8e};
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

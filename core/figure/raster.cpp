@@ -6,7 +6,7 @@
 
 #include "core/figure/bands.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 std::array<Vec2, 8> line_outline(const Vec2& from, const Vec2& to, double width) {
   const double length = (to - from).norm();
@@ -53,4 +53,4 @@ Image rasterised(std::span<const FlatTriangle> drawing, int width, int height,
   return image;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -8,7 +8,7 @@
 #include "core/figure/image.hpp"
 #include "core/figure/scan.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 struct FlatTriangle {
   ScreenTriangle corners;
@@ -35,4 +35,4 @@ Image rasterised(std::span<const FlatTriangle> drawing, int width, int height,
 /// A picture of one colour, to draw into.
 Image blank_image(int width, int height);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

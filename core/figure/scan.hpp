@@ -12,7 +12,7 @@
 
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 using ScreenPoint = std::array<std::int32_t, 2>;  ///< x to the right, y down, in steps
 using ScreenTriangle = std::array<ScreenPoint, 3>;
@@ -116,4 +116,4 @@ class CornerWeights {
   std::array<std::int64_t, 2> start_;
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -6,7 +6,7 @@
 #include "core/mesh/edges.hpp"
 #include "core/mesh/weld.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 std::vector<SeamLine> seam_lines(const Surface& surface, const UnwrappedSurface& unwrapped) {
   const std::vector<Index> place = weld(surface.mesh.positions);
@@ -25,4 +25,4 @@ std::vector<SeamLine> seam_lines(const Surface& surface, const UnwrappedSurface&
   return lines;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

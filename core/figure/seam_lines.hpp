@@ -5,7 +5,7 @@
 
 #include "core/figure/painting.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 struct SeamLine {
   Edge edge;             ///< vertices of the UnwrappedSurface; source[] tells those of the mesh
@@ -15,4 +15,4 @@ struct SeamLine {
 /// In the order of outline(). A seam has a line for each side of it.
 std::vector<SeamLine> seam_lines(const Surface& surface, const UnwrappedSurface& unwrapped);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

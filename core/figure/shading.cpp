@@ -5,7 +5,7 @@
 
 #include "core/figure/preview.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr double kSharp = 0.5;  // cosine between a face's normal and its vertex's
@@ -59,4 +59,4 @@ bool is_dark(const FaceLook& look, const std::array<double, 3>& weight, double c
   return ((square_of(uv.x(), checks) + square_of(uv.y(), checks)) & 1) != 0;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -6,7 +6,7 @@
 #include "core/figure/image.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 /// What the colours of a face depend on, at its corners.
 struct FaceLook {
@@ -28,4 +28,4 @@ Lit lit(const FaceLook& look, const std::array<double, 3>& weight);
 /// Whether there is a dark square of the board; `checks` squares lie along the page's side.
 bool is_dark(const FaceLook& look, const std::array<double, 3>& weight, double checks);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

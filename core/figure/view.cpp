@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 struct Aspect {
@@ -32,8 +32,8 @@ constexpr std::array<Aspect, 14> kAspects = {{{30, 20},
                                               {150, -30},
                                               {-30, -50},
                                               {-150, -50}}};
-constexpr double kNearlyBest = 0.9;  // of the best view's area
-constexpr double kFill = 0.92;       // of the picture's side
+constexpr double kNearlyBest = 0.9;   // of the best view's area
+constexpr double kFillOfView = 0.92;  // of the picture's side
 
 void look_from(const Aspect& aspect, View& view) {
   const double a = aspect.azimuth * std::numbers::pi / 180;
@@ -105,9 +105,9 @@ View view_of(std::span<const Surface> surfaces, int size) {
   const double side = (high - low).maxCoeff();
   if (!(side >= 0)) return view;
   view.middle = (low + high) / 2;
-  view.extent = side > 0 ? kFill * size : 0;
+  view.extent = side > 0 ? kFillOfView * size : 0;
   view.pixels = side > 0 ? view.extent / side : 1;
   return view;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

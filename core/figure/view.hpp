@@ -5,7 +5,7 @@
 
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 
 /// A parallel projection. Screen coordinates are pixels, x to the right, y down.
 struct View {
@@ -28,4 +28,4 @@ struct View {
 /// middle.
 View view_of(std::span<const Surface> surfaces, int size);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -8,18 +8,17 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// The matrix's entries by new columns.
 void list_entries(const SparsePattern& lower, const std::stop_token& stop, Analysis& analysis) {
   const std::vector<Index>& position = analysis.nodes.position;
   const auto for_each_entry = [&](auto visit) {
     for (Index j = 0; j < lower.columns(); ++j) {
-      look_now_and_then(j, stop);
+      check_cancelled_every(j, stop);
       for (Index p = lower.begin[at(j)]; p < lower.begin[at(j) + 1]; ++p)
         visit(std::minmax(position[at(j)], position[at(lower.row[at(p)])]), p);
     }
@@ -97,7 +96,7 @@ SparsePattern::SparsePattern(const SparseMatrix& matrix)
   assert(matrix.isCompressed());
 }
 
-void describe(Fingerprint& key, const SparsePattern& pattern) {
+void describe(CacheKey& key, const SparsePattern& pattern) {
   const auto& [begin, row] = pattern;
   key.add(begin).add(row);
 }
@@ -148,4 +147,4 @@ std::shared_ptr<const Analysis> analyse_pairs(const SparsePattern& lower,
   return complete(doubled(analyse(graph_of_pairs(lower, stop), stop)), lower, stop);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -10,9 +10,9 @@
 #include "core/linear/front_panel.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/linear/supernodal.hpp"
-#include "core/types/fingerprint.hpp"
+#include "core/types/cache_key.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// One analysis serves any number of factors, of any number of matrices with its pattern.
 /// Immutable: threads may share it.
@@ -54,7 +54,7 @@ struct SparsePattern {
 
   [[nodiscard]] Index columns() const { return static_cast<Index>(begin.size()) - 1; }
 };
-void describe(Fingerprint& key, const SparsePattern& pattern);
+void describe(CacheKey& key, const SparsePattern& pattern);
 
 /// lower: the lower triangle. Throws Error{cancelled}.
 std::shared_ptr<const Analysis> analyse(const SparsePattern& lower,
@@ -71,4 +71,4 @@ std::shared_ptr<const Analysis> analyse_in_order(const SparsePattern& lower,
 std::shared_ptr<const Analysis> analyse_pairs(const SparsePattern& lower,
                                               const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -6,14 +6,14 @@
 
 #include <numeric>
 
-namespace unwrapd {
+#include "core/linear/sparse.hpp"
+
+namespace unwrapd::linear {
 namespace {
 
 constexpr std::size_t kMostOfWork = 12;    // a branch is at most one in so many parts
 constexpr std::size_t kLeastOfWork = 512;  // and at least
 constexpr std::size_t kWorthTasks = std::size_t{1} << 18;  // weight below which all is trunk
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr std::size_t kNone = ~std::size_t{0};
 
@@ -59,4 +59,4 @@ Branches branches_of(const Supernodes& nodes, const std::vector<std::size_t>& we
   return branches;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

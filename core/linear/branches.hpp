@@ -5,7 +5,7 @@
 
 #include "core/linear/supernodal.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// The supernodes first .. end-1: a whole subtree, whose root is the last.
 struct Branch {
@@ -41,4 +41,4 @@ inline constexpr Index kOwnColumn = -1;
 /// weight: of each supernode, what work it is.
 Branches branches_of(const Supernodes& nodes, const std::vector<std::size_t>& weight);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -12,15 +12,14 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
+#include "core/linear/sparse.hpp"
 #include "core/linear/supernodal.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 constexpr std::size_t kRhs = 2;      // columns of a right-hand side
 constexpr std::size_t kAbreast = 4;  // pivots that are taken off the other rows at once
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 Graph graph_of(const SparseMatrix& matrix) {
   std::vector<Index> begin{0}, row;
@@ -118,7 +117,7 @@ class DominantLu {
       upper.push_back(eliminate(s, x));
     }
     for (std::size_t s = nodes_.count(); s-- > 0;) {
-      look_now_and_then(s, stop);
+      check_cancelled_every(s, stop);
       substitute(s, upper[s], x);
     }
   }
@@ -222,4 +221,4 @@ void solve_dominant_on_baseline(const SparseMatrix& matrix, std::span<Vec2> b) {
   solve_by(reduce_on_baseline, matrix, {}, b);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -8,7 +8,7 @@
 
 #include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// Solves A x = b for both coordinates of b at once; b becomes x.
 /// matrix: square, row i diagonally dominant, pattern symmetric (values need not be).
@@ -20,4 +20,4 @@ void solve_dominant(const SparseMatrix& matrix, std::span<Vec2> b,
 /// The same with the registers of the x86-64 baseline, whatever the processor has.
 void solve_dominant_on_baseline(const SparseMatrix& matrix, std::span<Vec2> b);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

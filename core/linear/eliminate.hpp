@@ -11,7 +11,7 @@
 #include "core/base/cancel.hpp"
 #include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 inline constexpr Index kFixed = -1;
 
@@ -50,7 +50,7 @@ Reduced<Matrix, Value> eliminate(const Matrix& lower, const FreeVertices& free,
     r.rhs[static_cast<std::size_t>(row)] -= entry * value[static_cast<std::size_t>(fixed)];
   };
   for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j) {
-    look_now_and_then(j, stop);
+    check_cancelled_every(j, stop);
     const Index column = free.slot[static_cast<std::size_t>(j)];
     if (column != kFixed) r.lower.startVec(column);
     for (typename Matrix::InnerIterator it(lower, j); it; ++it) {
@@ -68,4 +68,4 @@ Reduced<Matrix, Value> eliminate(const Matrix& lower, const FreeVertices& free,
   return r;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

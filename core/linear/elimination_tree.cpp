@@ -9,13 +9,12 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
-constexpr Index kNone = -1;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+constexpr Index kNoParent = -1;
 
 std::vector<Index> inverse(std::span<const Index> order) {
   std::vector<Index> position(order.size());
@@ -26,13 +25,13 @@ std::vector<Index> inverse(std::span<const Index> order) {
 std::vector<Index> parents(const Graph& graph, std::span<const Index> order,
                            const std::stop_token& stop) {
   const std::vector<Index> position = inverse(order);
-  std::vector<Index> parent(order.size(), kNoParent), ancestor(order.size(), kNone);
+  std::vector<Index> parent(order.size(), kNoParent), ancestor(order.size(), kNoParent);
   for (Index k = 0; k < static_cast<Index>(order.size()); ++k) {
-    look_now_and_then(k, stop);
+    check_cancelled_every(k, stop);
     for (Index v : graph.of(order[at(k)]))
-      for (Index j = position[at(v)]; j != kNone && j < k;) {
+      for (Index j = position[at(v)]; j != kNoParent && j < k;) {
         const Index next = std::exchange(ancestor[at(j)], k);
-        if (next == kNone) parent[at(j)] = k;
+        if (next == kNoParent) parent[at(j)] = k;
         j = next;
       }
   }
@@ -45,8 +44,8 @@ struct Children {
 };
 
 Children children_of(std::span<const Index> parent) {
-  Children children{std::vector<Index>(parent.size(), kNone),
-                    std::vector<Index>(parent.size(), kNone)};
+  Children children{std::vector<Index>(parent.size(), kNoParent),
+                    std::vector<Index>(parent.size(), kNoParent)};
   for (auto k = static_cast<Index>(parent.size()); k-- > 0;)
     if (parent[at(k)] != kNoParent)
       children.next[at(k)] = std::exchange(children.first[at(parent[at(k)])], k);
@@ -57,15 +56,15 @@ Children children_of(std::span<const Index> parent) {
 void append_subtree(Index root, Children& children, std::vector<Index>& order) {
   std::vector<Index> path{root};
   while (!path.empty()) {
-    const Index child = std::exchange(children.first[at(path.back())], kNone);
-    if (child != kNone) {
+    const Index child = std::exchange(children.first[at(path.back())], kNoParent);
+    if (child != kNoParent) {
       path.push_back(child);
       continue;
     }
     order.push_back(path.back());
     const Index sibling = children.next[at(path.back())];
     path.pop_back();
-    if (sibling != kNone) path.push_back(sibling);
+    if (sibling != kNoParent) path.push_back(sibling);
   }
 }
 
@@ -97,14 +96,14 @@ class RowSubtrees {
  public:
   explicit RowSubtrees(std::span<const Index> parent)
       : parent_(parent),
-        first_(parent.size(), kNone),
-        last_first_(parent.size(), kNone),
-        last_leaf_(parent.size(), kNone),
+        first_(parent.size(), kNoParent),
+        last_first_(parent.size(), kNoParent),
+        last_leaf_(parent.size(), kNoParent),
         ancestor_(parent.size()) {
     for (std::size_t k = 0; k < parent.size(); ++k) {
       ancestor_[k] = static_cast<Index>(k);
-      if (first_[k] == kNone) first_[k] = static_cast<Index>(k);
-      if (parent[k] != kNoParent && first_[at(parent[k])] == kNone)
+      if (first_[k] == kNoParent) first_[k] = static_cast<Index>(k);
+      if (parent[k] != kNoParent && first_[at(parent[k])] == kNoParent)
         first_[at(parent[k])] = first_[k];
     }
   }
@@ -124,9 +123,10 @@ class RowSubtrees {
     return true;
   }
 
-  /// Where the path of the leaf just found meets that of the leaf before it; kNone: no such leaf.
+  /// Where the path of the leaf just found meets that of the leaf before it; kNoParent: no such
+  /// leaf.
   Index meeting() {
-    if (previous_ == kNone) return kNone;
+    if (previous_ == kNoParent) return kNoParent;
     Index top = previous_;
     while (top != ancestor_[at(top)]) top = ancestor_[at(top)];
     for (Index k = previous_; k != top;) k = std::exchange(ancestor_[at(k)], top);
@@ -139,7 +139,7 @@ class RowSubtrees {
   std::vector<Index> last_first_;  ///< of each row: that of the last leaf
   std::vector<Index> last_leaf_;   ///< of each row
   std::vector<Index> ancestor_;    ///< a forest of the finished columns, paths compressed
-  Index previous_ = kNone;
+  Index previous_ = kNoParent;
 };
 
 /// Each leaf of a row subtree adds one to the counts on its path to the root; the node where two
@@ -150,7 +150,7 @@ void count_leaves(const Graph& graph, const EliminationTree& tree, Index j, RowS
     const Index i = tree.position[at(v)];
     if (i < j || !subtrees.is_leaf(i, j)) continue;
     ++count[at(j)];
-    if (const Index m = subtrees.meeting(); m != kNone) --count[at(m)];
+    if (const Index m = subtrees.meeting(); m != kNoParent) --count[at(m)];
   }
 }
 
@@ -160,7 +160,7 @@ std::vector<Index> column_counts(const Graph& graph, const EliminationTree& tree
   RowSubtrees subtrees(tree.parent);
   std::vector<Index> count(tree.parent.size());
   for (Index j = 0; j < static_cast<Index>(count.size()); ++j) {
-    look_now_and_then(j, stop);
+    check_cancelled_every(j, stop);
     count[at(j)] += subtrees.is_tree_leaf(j) ? 1 : 0;
     if (tree.parent[at(j)] != kNoParent) --count[at(tree.parent[at(j)])];
     count_leaves(graph, tree, j, subtrees, count);
@@ -183,4 +183,4 @@ EliminationTree elimination_tree(const Graph& graph, std::vector<Index> order,
   return tree;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

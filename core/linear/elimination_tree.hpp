@@ -6,7 +6,7 @@
 
 #include "core/linear/ordering.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 inline constexpr Index kNoParent = -1;
 
@@ -24,4 +24,4 @@ struct EliminationTree {
 EliminationTree elimination_tree(const Graph& graph, std::vector<Index> order,
                                  const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

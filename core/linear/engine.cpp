@@ -5,13 +5,10 @@
 
 #include "core/linear/multifrontal.hpp"
 #include "core/linear/solve_panels.hpp"
+#include "core/linear/sparse.hpp"
 
-namespace unwrapd {
-namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
+namespace unwrapd::linear {
+namespace {}  // namespace
 
 Factor::Factor(std::shared_ptr<const Analysis> analysis)
     : analysis_(std::move(analysis)), panels_(large_array(analysis_->panel_begin.back())) {}
@@ -76,4 +73,4 @@ std::unique_ptr<Factor> try_factor(std::shared_ptr<const Analysis> analysis,
   return try_factor(std::move(analysis), lower, serial);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -10,7 +10,7 @@
 #include "core/linear/factor.hpp"
 #include "core/linear/large_array.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 class Factor final : public RealSystem {
  public:
@@ -57,4 +57,4 @@ std::unique_ptr<Factor> try_factor(std::shared_ptr<const Analysis> analysis,
 std::unique_ptr<Factor> try_factor(std::shared_ptr<const Analysis> analysis,
                                    const SparseMatrix& lower);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -10,7 +10,7 @@
 #include "core/base/error.hpp"
 #include "core/linear/engine.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 class PairsSystem final : public HermitianSystem {
@@ -42,7 +42,7 @@ SparseMatrix as_pairs(const ComplexMatrix& lower, const std::stop_token& stop) {
   SparseMatrix pairs(2 * n, 2 * n);
   pairs.reserve(4 * lower.nonZeros());
   for (Index j = 0; j < 2 * n; ++j) {
-    look_now_and_then(j, stop);
+    check_cancelled_every(j, stop);
     pairs.startVec(j);
     for (ComplexMatrix::InnerIterator it(lower, j / 2); it; ++it) {
       const Complex entry = j % 2 == 0 ? it.value() : it.value() * Complex(0, 1);
@@ -83,4 +83,4 @@ std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower, const Me
   return std::make_unique<PairsSystem>(std::move(system));
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -9,7 +9,7 @@
 
 #include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 using Complex = std::complex<double>;
 using ComplexMatrix = Eigen::SparseMatrix<Complex, Eigen::ColMajor, Index>;
@@ -60,4 +60,4 @@ System definite(System system) {
 /// Error{cancelled}.
 SparseMatrix as_pairs(const ComplexMatrix& lower, const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -7,7 +7,7 @@
 #include "core/base/cancel.hpp"
 #include "core/linear/front_kernels.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 using Duo = double __attribute__((vector_size(16), aligned(8), may_alias));
@@ -119,4 +119,4 @@ bool Front::factor_on_baseline(double* panel) const {
   return factor_front(view_, kBaselinePhases, panel, serial);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

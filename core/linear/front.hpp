@@ -8,7 +8,7 @@
 #include "core/linear/front_panel.hpp"
 #include "core/linear/large_array.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// Memory that grows and is never cleared.
 class Scratch {
@@ -63,4 +63,4 @@ class Front {
   Scratch columns_, strips_, inverse_;
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -12,7 +12,7 @@
 
 #include "core/linear/front.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 inline constexpr std::size_t kStrip = 8;   ///< rows
 inline constexpr std::size_t kBlock = 64;  ///< columns factored before the rest is updated
@@ -207,4 +207,4 @@ class FrontKernels {
   FrontView f_;
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

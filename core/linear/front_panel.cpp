@@ -6,7 +6,7 @@
 // for them ahead by instructions did not help).
 #include "core/linear/front_panel.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 /// Two numbers in one register of the x86-64 baseline; four in one of AVX2.
@@ -164,4 +164,4 @@ PanelKernels panel_kernels() {
   return has_avx2 ? PanelKernels{multiply_avx2, transposed_avx2} : baseline_panel_kernels();
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -6,7 +6,7 @@
 
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 inline constexpr std::size_t kPack = 4;  ///< columns that are worked on at once
 inline constexpr std::size_t kDuo = 2;   ///< rows that are worked on at once
@@ -60,4 +60,4 @@ struct PanelKernels {
 PanelKernels panel_kernels();
 PanelKernels baseline_panel_kernels();
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

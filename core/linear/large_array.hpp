@@ -10,7 +10,7 @@
 #include <memory>
 #include <new>
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 struct FreeNumbers {
   void operator()(double* numbers) const { std::free(numbers); }
@@ -31,4 +31,4 @@ inline LargeArray large_array(std::size_t count) {
   return LargeArray(numbers);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -12,10 +12,10 @@
 
 #include "core/base/cancel.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
-constexpr Index kNone = -1;
+constexpr Index kNoNode = -1;
 constexpr double kLeastDense = 16;
 
 }  // namespace
@@ -24,18 +24,18 @@ MinimumDegree::MinimumDegree(const Graph& graph)
     : store_(graph.neighbour), left_(graph.vertex_count()) {
   const Index n = graph.vertex_count();
   nodes_.reserve(static_cast<std::size_t>(n));
-  head_.assign(static_cast<std::size_t>(n), kNone);
-  alike_.assign(static_cast<std::size_t>(n), kNone);
+  head_.assign(static_cast<std::size_t>(n), kNoNode);
+  alike_.assign(static_cast<std::size_t>(n), kNoNode);
   const double dense = std::max(kLeastDense, 10 * std::sqrt(static_cast<double>(n)));
   for (Index v = 0; v < n; ++v) {
     const auto length = static_cast<Index>(graph.of(v).size());
     nodes_.push_back({.begin = graph.begin[static_cast<std::size_t>(v)],
                       .length = length,
                       .degree = length,
-                      .next = kNone,
-                      .previous = kNone,
+                      .next = kNoNode,
+                      .previous = kNoNode,
                       .last = v,
-                      .following = kNone});
+                      .following = kNoNode});
     if (length > dense)
       at(v).weight = 0;
     else
@@ -47,26 +47,26 @@ void MinimumDegree::link(Index i, Index degree) {
   Index& head = head_[static_cast<std::size_t>(degree)];
   at(i).degree = degree;
   at(i).next = head;
-  at(i).previous = kNone;
-  if (head != kNone) at(head).previous = i;
+  at(i).previous = kNoNode;
+  if (head != kNoNode) at(head).previous = i;
   head = i;
   least_ = std::min(least_, degree);
 }
 
 void MinimumDegree::unlink(Index i) {
   const Node& node = at(i);
-  if (node.next != kNone) at(node.next).previous = node.previous;
-  if (node.previous != kNone)
+  if (node.next != kNoNode) at(node.next).previous = node.previous;
+  if (node.previous != kNoNode)
     at(node.previous).next = node.next;
   else
     head_[static_cast<std::size_t>(node.degree)] = node.next;
 }
 
-/// Of least degree; kNone when all are eliminated.
+/// Of least degree; kNoNode when all are eliminated.
 Index MinimumDegree::pick() {
   const auto count = static_cast<Index>(head_.size());
-  while (least_ < count && head_[static_cast<std::size_t>(least_)] == kNone) ++least_;
-  return least_ < count ? head_[static_cast<std::size_t>(least_)] : kNone;
+  while (least_ < count && head_[static_cast<std::size_t>(least_)] == kNoNode) ++least_;
+  return least_ < count ? head_[static_cast<std::size_t>(least_)] : kNoNode;
 }
 
 /// j goes with i from now on.
@@ -83,10 +83,10 @@ std::vector<Index> MinimumDegree::run(const std::stop_token& stop) {
     if (at(v).weight == 0) last.push_back(v);
   left_ -= static_cast<Index>(last.size());
   std::size_t step = 0;
-  for (Index k = pick(); k != kNone; k = pick()) {
-    look_now_and_then(step++, stop);
+  for (Index k = pick(); k != kNoNode; k = pick()) {
+    check_cancelled_every(step++, stop);
     eliminate(k);
-    for (Index v = k; v != kNone; v = at(v).following) order.push_back(v);
+    for (Index v = k; v != kNoNode; v = at(v).following) order.push_back(v);
   }
   order.insert(order.end(), last.begin(), last.end());
   return order;
@@ -154,7 +154,7 @@ void MinimumDegree::update_lists(Index k) {
     const Index i = entry(q);
     Node& node = at(i);
     const Index sum = update_list(k, i);
-    if (sum == kNone) {
+    if (sum == kNoNode) {
       left_ += node.weight;
       at(k).degree += node.weight;
       join(k, i);
@@ -166,7 +166,7 @@ void MinimumDegree::update_lists(Index k) {
   }
 }
 
-/// Returns the list's sum, less than the number of nodes; kNone where it is k alone.
+/// Returns the list's sum, less than the number of nodes; kNoNode where it is k alone.
 Index MinimumDegree::update_list(Index k, Index i) {
   Node& node = at(i);
   Index write = node.begin, degree = 0;
@@ -191,7 +191,7 @@ Index MinimumDegree::update_list(Index k, Index i) {
     degree += at(j).weight;
     keep(j);
   }
-  if (degree == 0) return kNone;
+  if (degree == 0) return kNoNode;
   node.degree = std::min(node.degree, degree);
   entry(write) = entry(vertices);  // at least one entry went, k or what it covers
   entry(vertices) = entry(node.begin);
@@ -205,11 +205,11 @@ void MinimumDegree::take_alike_as_one(const Node& element) {
   for (Index q = element.begin; q < element.begin + element.length; ++q) {
     if (at(entry(q)).weight == 0) continue;
     Index& bucket = alike_[static_cast<std::size_t>(at(entry(q)).previous)];
-    for (Index i = std::exchange(bucket, kNone); i != kNone; i = at(i).next, ++mark_) {
+    for (Index i = std::exchange(bucket, kNoNode); i != kNoNode; i = at(i).next, ++mark_) {
       const Node& node = at(i);
-      if (node.next == kNone) break;
+      if (node.next == kNoNode) break;
       for (Index p = node.begin + 1; p < node.begin + node.length; ++p) at(entry(p)).stamp = mark_;
-      for (Index before = i, j = node.next; j != kNone; j = at(before).next) {
+      for (Index before = i, j = node.next; j != kNoNode; j = at(before).next) {
         if (is_alike(node, at(j))) {
           join(i, j);
           at(before).next = at(j).next;
@@ -247,4 +247,4 @@ void MinimumDegree::close_element(Index k) {
   if (element.length == 0) element.stamp = 0;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

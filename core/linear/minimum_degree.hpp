@@ -7,7 +7,7 @@
 
 #include "core/linear/ordering.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// One ordering of one graph.
 class MinimumDegree {
@@ -60,4 +60,4 @@ class MinimumDegree {
   std::int64_t mark_ = 2;     ///< stamps below it are old
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

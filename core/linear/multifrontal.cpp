@@ -10,11 +10,10 @@
 
 #include "core/base/cancel.hpp"
 #include "core/linear/front.hpp"
+#include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// What a supernode leaves to its parent.
 struct Update {
@@ -175,4 +174,4 @@ bool factor_multifrontal(const Analysis& analysis, const double* values, double*
   return Tree(analysis, values, panels).factor(executor);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

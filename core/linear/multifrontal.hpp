@@ -4,7 +4,7 @@
 #include "core/base/executor.hpp"
 #include "core/linear/analysis.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// Factors the matrix, of the pattern analysed, whose lower triangle's values are given. panels:
 /// room for analysis.panel_begin.back() numbers, the same bits for any executor. False when the
@@ -12,4 +12,4 @@ namespace unwrapd {
 [[nodiscard]] bool factor_multifrontal(const Analysis& analysis, const double* values,
                                        double* panels, Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -7,13 +7,10 @@
 
 #include "core/base/cancel.hpp"
 #include "core/linear/minimum_degree.hpp"
+#include "core/linear/sparse.hpp"
 
-namespace unwrapd {
-namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
+namespace unwrapd::linear {
+namespace {}  // namespace
 
 Graph graph_of_lower(std::span<const Index> begin, std::span<const Index> row,
                      const std::stop_token& stop) {
@@ -21,7 +18,7 @@ Graph graph_of_lower(std::span<const Index> begin, std::span<const Index> row,
   Graph graph{std::vector<Index>(n + 1, 0), {}};
   const auto for_each_entry = [&](auto visit) {
     for (std::size_t j = 0; j < n; ++j) {
-      look_now_and_then(j, stop);
+      check_cancelled_every(j, stop);
       for (std::size_t p = at(begin[j]); p < at(begin[j + 1]); ++p)
         if (at(row[p]) != j) visit(at(row[p]), j);
     }
@@ -41,4 +38,4 @@ std::vector<Index> fill_reducing_order(const Graph& graph, const std::stop_token
   return MinimumDegree(graph).run(stop);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

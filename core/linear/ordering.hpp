@@ -7,7 +7,7 @@
 
 #include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// Who is coupled with whom: the neighbours of vertex v are neighbour[begin[v]] ..
 /// neighbour[begin[v+1]-1], v itself not among them; every pair is listed from both sides.
@@ -31,4 +31,4 @@ Graph graph_of_lower(std::span<const Index> begin, std::span<const Index> row,
 /// order[k]: the vertex to eliminate k-th. Deterministic. Throws Error{cancelled}.
 std::vector<Index> fill_reducing_order(const Graph& graph, const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -6,7 +6,7 @@
 
 #include "core/base/cancel.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 constexpr Index kNowhere = -1;
@@ -22,7 +22,7 @@ template <class Visit>
 void for_each_side(std::span<const Triangle> faces, const FreeVertices& slots,
                    const std::stop_token& stop, Visit visit) {
   for (std::size_t h = 0; h < 3 * faces.size(); ++h) {
-    look_now_and_then(h, stop);
+    check_cancelled_every(h, stop);
     const Triangle& face = faces[h / 3];
     const Index a = slots.slot[static_cast<std::size_t>(face[h % 3])];
     const Index b = slots.slot[static_cast<std::size_t>(face[(h + 1) % 3])];
@@ -43,7 +43,7 @@ SlotGraph slot_graph(std::span<const Triangle> faces, const FreeVertices& slots,
     graph.row[static_cast<std::size_t>(graph.end[column]++)] = row;
   });
   for (std::size_t s = 0; s < count; ++s) {
-    look_now_and_then(s, stop);
+    check_cancelled_every(s, stop);
     const auto first = graph.row.begin() + graph.begin[s], last = graph.row.begin() + graph.end[s];
     std::sort(first, last);
     graph.end[s] = static_cast<Index>(std::unique(first, last) - graph.row.begin());
@@ -60,7 +60,7 @@ SparseMatrix pair_pattern(std::span<const Triangle> faces, const FreeVertices& s
   SparseMatrix lower(n, n);
   lower.reserve(4 * static_cast<Index>(graph.row.size()) + 3 * slots.count);
   for (Index j = 0; j < n; ++j) {
-    look_now_and_then(j, stop);
+    check_cancelled_every(j, stop);
     const auto s = static_cast<std::size_t>(j / 2);
     lower.startVec(j);
     for (Index i = j; i < 2 * (j / 2) + 2; ++i) lower.insertBack(i, j) = 0;
@@ -87,7 +87,7 @@ PairSystem::PairSystem(std::span<const Triangle> faces, const FreeVertices& slot
   assert(slots.count > 0);
   target_.reserve(faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t) {
-    look_now_and_then(t, stop_);
+    check_cancelled_every(t, stop_);
     target_.push_back(targets(faces[t]));
   }
   factor_.emplace(analyse_pairs(lower_, stop_));
@@ -119,7 +119,7 @@ std::size_t PairSystem::bytes() const {
 void PairSystem::clear() { std::fill_n(lower_.valuePtr(), lower_.nonZeros(), 0.0); }
 
 void PairSystem::add(std::size_t t, const PairElement& element) {
-  look_now_and_then(t, stop_);
+  check_cancelled_every(t, stop_);
   std::size_t next = 0;
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
@@ -146,4 +146,4 @@ bool PairSystem::factor() {
 
 void PairSystem::solve(std::vector<Vec2>& b) const { factor_->solve_pairs(b, stop_); }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -14,7 +14,7 @@
 #include "core/linear/engine.hpp"
 #include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// Row and column 2i + c belong to unknown c of corner i. Only the lower triangle is read.
 using PairElement = std::array<std::array<double, 6>, 6>;
@@ -69,4 +69,4 @@ class PairSystem {
   std::optional<Factor> factor_;
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -6,11 +6,10 @@
 #include <algorithm>
 
 #include "core/base/cancel.hpp"
+#include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Both right-hand sides over one panel's rows, reused from panel to panel.
 class Workspace {
@@ -179,4 +178,4 @@ void solve_panels(const Analysis& analysis, const double* panels, std::span<Vec2
   ascend_panels(analysis, panels, x, {}, executor);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -8,7 +8,7 @@
 #include "core/base/executor.hpp"
 #include "core/linear/analysis.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// x, in the order of elimination: b becomes the solution of L L^T x = b. The same bits for any
 /// executor.
@@ -26,4 +26,4 @@ void descend_panels(const Analysis& analysis, const double* panels, std::span<Ve
 void ascend_panels(const Analysis& analysis, const double* panels, std::span<Vec2> x,
                    std::span<const char> over, Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

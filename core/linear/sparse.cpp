@@ -10,7 +10,7 @@
 
 #include "core/base/cancel.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 constexpr std::size_t kFew = 16;  // entries that are sorted by insertion: no buffer to ask for
@@ -37,13 +37,13 @@ Columns scatter(std::span<const Triangle> faces, Index vertex_count, std::span<c
     return std::minmax(f[h % 3], f[(h + 1) % 3]);
   };
   for (std::size_t h = 0; h < 3 * faces.size(); ++h) {
-    look_now_and_then(h, stop);
+    check_cancelled_every(h, stop);
     ++c.begin[static_cast<std::size_t>(ends(h).first) + 1];
   }
   for (std::size_t j = 0; j < n; ++j) c.begin[j + 1] += c.begin[j];
   std::vector<Index> next(c.begin.begin(), c.begin.end() - 1);
   for (std::size_t h = 0; h < 3 * faces.size(); ++h) {
-    look_now_and_then(h, stop);
+    check_cancelled_every(h, stop);
     const auto [low, high] = ends(h);
     const auto column = static_cast<std::size_t>(low);
     c.entries[static_cast<std::size_t>(next[column]++)] = {high, -weight[h]};
@@ -123,17 +123,17 @@ VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count
   std::vector<Index> begin(static_cast<std::size_t>(vertex_count) + 1, 0);
   std::vector<Index> corner(3 * faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t) {
-    look_now_and_then(t, stop);
+    check_cancelled_every(t, stop);
     for (Index v : faces[t]) ++begin[static_cast<std::size_t>(v) + 1];
   }
   for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
   std::vector<Index> next(begin.begin(), begin.end() - 1);
   for (std::size_t c = 0; c < 3 * faces.size(); ++c) {
-    look_now_and_then(c, stop);
+    check_cancelled_every(c, stop);
     const auto v = static_cast<std::size_t>(faces[c / 3][c % 3]);
     corner[static_cast<std::size_t>(next[v]++)] = static_cast<Index>(c);
   }
   return {std::move(begin), std::move(corner)};
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

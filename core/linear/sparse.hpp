@@ -11,7 +11,10 @@
 #include "core/mesh/shared_list.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
+
+/// An index as one of the standard library.
+inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
@@ -33,4 +36,4 @@ struct VertexCorners {
 VertexCorners vertex_corners(std::span<const Triangle> faces, Index vertex_count,
                              const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -8,13 +8,12 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/linear/sparse.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 constexpr Index kNone = -1;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// A dense trapezoid: columns with their rows, the columns' own rows included.
 struct Block {
@@ -107,7 +106,7 @@ std::vector<Index> rows_of(const Graph& graph, const Supernodes& nodes,
                            const std::stop_token& stop) {
   RowLists lists(nodes.row_begin, parent);
   for (Index i = 0; i < static_cast<Index>(supernode.size()); ++i) {
-    look_now_and_then(i, stop);
+    check_cancelled_every(i, stop);
     lists.start(i, supernode[at(i)]);
     for (Index v : graph.of(nodes.order[at(i)]))
       if (const Index j = nodes.position[at(v)]; j < i) lists.climb(i, supernode[at(j)]);
@@ -144,4 +143,4 @@ Supernodes analyse(const Graph& graph, const std::stop_token& stop) {
   return analyse(graph, fill_reducing_order(graph, stop), stop);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

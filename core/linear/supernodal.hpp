@@ -7,7 +7,7 @@
 
 #include "core/linear/elimination_tree.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// Supernode s owns the columns first[s] .. first[s+1]-1 and, below them, the rows below(s). They
 /// come in postorder: the children of s are the last ones before it that no other supernode took.
@@ -35,4 +35,4 @@ Supernodes analyse(const Graph& graph, const std::stop_token& stop = {});
 /// The same of vertices to be eliminated in this order.
 Supernodes analyse(const Graph& graph, std::vector<Index> order, const std::stop_token& stop);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 /// The height over the longest side is that side's length over the sum of the cotangents at its
@@ -157,4 +157,4 @@ Distortion distortion(const DistortionSums& sums) {
           .degenerate = sums.degenerate};
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

@@ -8,7 +8,7 @@
 #include "core/measure/jacobian.hpp"
 #include "core/types/report.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 
 /// Sums over triangles that Distortion is made from; those of several charts add up.
 struct DistortionSums {
@@ -53,4 +53,4 @@ double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> fac
 double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                std::span<const Vec2> uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

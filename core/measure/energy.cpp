@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 template <typename Density>
@@ -32,4 +32,4 @@ double asap_energy(std::span<const RestTriangle> rest, std::span<const Triangle>
   return integrate(rest, faces, uv, [](double s1, double s2) { return (s1 - s2) * (s1 - s2) / 2; });
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

@@ -5,7 +5,7 @@
 
 #include "core/measure/jacobian.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 
 /// Eq. (A2): sum of A_t [(sigma_max - 1)^2 + (sigma_min - 1)^2].
 double arap_energy(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
@@ -16,4 +16,4 @@ double arap_energy(std::span<const RestTriangle> rest, std::span<const Triangle>
 double asap_energy(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                    std::span<const Vec2> uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

@@ -11,7 +11,7 @@
 
 #include "core/measure/rest_triangle.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 
 using UvEdges = std::array<Vec2, 3>;  ///< u^i - u^{i+1} of one face
 
@@ -50,4 +50,4 @@ inline Vec2 apply(const Jacobian& j, const Vec2& x) {
   return {(j.e + j.f) * x.x() + (j.g - j.h) * x.y(), (j.g + j.h) * x.x() + (j.e - j.f) * x.y()};
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

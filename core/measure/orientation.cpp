@@ -13,7 +13,7 @@
 
 #include "core/base/cancel.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 constexpr double kHalfUlp = 0x1p-53;
@@ -95,10 +95,10 @@ std::vector<Index> flipped_faces(std::span<const Triangle> faces, std::span<cons
                                  const std::stop_token& stop) {
   std::vector<Index> flipped;
   for (std::size_t t = 0; t < faces.size(); ++t) {
-    look_now_and_then(t, stop);
+    check_cancelled_every(t, stop);
     if (orientation(faces[t], uv) <= 0) flipped.push_back(static_cast<Index>(t));
   }
   return flipped;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

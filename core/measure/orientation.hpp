@@ -6,7 +6,7 @@
 
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 
 /// The sign of the orientation of a, b, c: 1 counter-clockwise, -1 clockwise, 0 on one line. Exact
 /// for all finite coordinates whose products neither overflow nor underflow (magnitudes between
@@ -23,4 +23,4 @@ inline int orientation(const Triangle& face, std::span<const Vec2> uv) {
 std::vector<Index> flipped_faces(std::span<const Triangle> faces, std::span<const Vec2> uv,
                                  const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

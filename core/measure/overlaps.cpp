@@ -17,7 +17,7 @@
 #include "core/measure/winding.hpp"
 #include "core/mesh/edges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 constexpr std::size_t kStepsBetweenLooks = 4096;
@@ -238,4 +238,4 @@ std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> fa
   return pairs_among(faces_perhaps_overlapped(faces, loops, uv, stop), faces, uv, most, stop);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

@@ -8,7 +8,7 @@
 
 #include "core/mesh/halfedges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 
 /// Whether the interiors of two triangles of the plane meet. Exact (see orientation()). A triangle
 /// of no area has no interior; one that is clockwise counts as its mirror image.
@@ -34,4 +34,4 @@ std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> fa
                                                     std::span<const Vec2> uv, std::size_t most,
                                                     const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

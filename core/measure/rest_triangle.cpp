@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 struct Corners {
@@ -94,4 +94,4 @@ double surface_area(const TriMesh& mesh) {
   return surface_area(mesh, serial);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

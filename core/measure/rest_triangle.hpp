@@ -9,7 +9,7 @@
 #include "core/base/executor.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 
 /// x_t, laid flat counter-clockwise. Corners are numbered as in the face.
 struct RestTriangle {
@@ -35,4 +35,4 @@ double face_area(const TriMesh& mesh, const Triangle& face);
 double surface_area(const TriMesh& mesh, Executor& executor);
 double surface_area(const TriMesh& mesh);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

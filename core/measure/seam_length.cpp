@@ -6,7 +6,7 @@
 #include "core/mesh/edges.hpp"
 #include "core/mesh/weld.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 /// Whether two corners, given by the half-edges that start there, lie apart on the page.
@@ -52,7 +52,7 @@ std::vector<double> seam_lengths(const TriMesh& mesh, const Halfedges& by_positi
   };
   std::vector<double> length(mesh.faces.size(), 0);
   for (Index h = 0; h < static_cast<Index>(by_position.twin.size()); ++h) {
-    look_now_and_then(h, stop);
+    check_cancelled_every(h, stop);
     const Index twin = by_position.twin[static_cast<std::size_t>(h)];
     if (twin != kNoTwin && is_seam(unwrapped, h, twin))
       length[static_cast<std::size_t>(face_of(h))] += (start(h) - start(twin)).norm();
@@ -65,4 +65,4 @@ double seam_length(const Surface& surface, const UnwrappedSurface& unwrapped) {
   return std::accumulate(by_face.begin(), by_face.end(), 0.0) / 2;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

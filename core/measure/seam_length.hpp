@@ -6,7 +6,7 @@
 
 #include "core/mesh/halfedges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 
 /// The twins of a mesh whose vertices at one position are one.
 Halfedges halfedges_by_position(const TriMesh& mesh, const std::stop_token& stop = {});
@@ -26,4 +26,4 @@ std::vector<double> seam_lengths(const TriMesh& mesh, const Halfedges& by_positi
                                  const UnwrappedSurface& unwrapped,
                                  const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

@@ -14,7 +14,7 @@
 #include "core/base/cancel.hpp"
 #include "core/mesh/edges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 constexpr double kMostCells = 2048;  // a side
@@ -140,11 +140,11 @@ std::vector<Index> faces_perhaps_overlapped(std::span<const Triangle> faces,
   grid.sum_up();
   std::vector<Index> perhaps;
   for (std::size_t t = 0; t < faces.size(); ++t) {
-    look_now_and_then(t, stop);
+    check_cancelled_every(t, stop);
     const auto& [a, b, c] = faces[t];
     if (!grid.winds_once({uv[a], uv[b], uv[c]})) perhaps.push_back(static_cast<Index>(t));
   }
   return perhaps;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

@@ -7,7 +7,7 @@
 
 #include "core/mesh/halfedges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 
 /// Of a map without flipped faces: all faces whose images may overlap another's, ascending. A point
 /// that no edge passes has as many preimages as the loops together wind around it, so a face around
@@ -19,4 +19,4 @@ std::vector<Index> faces_perhaps_overlapped(std::span<const Triangle> faces,
                                             std::span<const Vec2> uv,
                                             const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

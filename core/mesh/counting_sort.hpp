@@ -17,13 +17,13 @@ void counting_sort(std::vector<Item>& items, Index key_count, Key key,
                    const std::stop_token& stop = {}) {
   std::vector<Index> place(static_cast<std::size_t>(key_count) + 1, 0);
   for (std::size_t k = 0; k < items.size(); ++k) {
-    look_now_and_then(k, stop);
+    check_cancelled_every(k, stop);
     ++place[key(items[k]) + 1];
   }
   for (std::size_t k = 1; k < place.size(); ++k) place[k] += place[k - 1];
   std::vector<Item> sorted(items.size());
   for (std::size_t k = 0; k < items.size(); ++k) {
-    look_now_and_then(k, stop);
+    check_cancelled_every(k, stop);
     sorted[place[key(items[k])]++] = items[k];
   }
   items.swap(sorted);
@@ -36,7 +36,7 @@ void for_each_run(const std::vector<Item>& items, Same same, Visit visit,
                   const std::stop_token& stop = {}) {
   std::size_t first = 0;
   for (std::size_t k = 1; k <= items.size(); ++k) {
-    look_now_and_then(k, stop);
+    check_cancelled_every(k, stop);
     if (k < items.size() && same(items[first], items[k])) continue;
     visit(items.data() + first, items.data() + k);
     first = k;

@@ -39,7 +39,7 @@ std::vector<EdgeSide> edge_sides(std::span<const Triangle> faces, Wanted wanted,
   std::vector<EdgeSide> sides;
   sides.reserve(3 * faces.size());
   for (Index h = 0; h < static_cast<Index>(3 * faces.size()); ++h) {
-    look_now_and_then(h, stop);
+    check_cancelled_every(h, stop);
     if (!wanted(h)) continue;
     const Index a = start_of(faces, h), b = end_of(faces, h);
     sides.push_back({std::min(a, b), std::max(a, b), h});

@@ -75,7 +75,7 @@ void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count, const std::s
       sides, vertex_count, [](const EdgeSide& side) { return side.low; }, stop);
   std::size_t step = 0;
   for (auto first = sides.begin(); first != sides.end(); ++step) {
-    look_now_and_then(step, stop);
+    check_cancelled_every(step, stop);
     const auto last = std::find_if(first, sides.end(),
                                    [&](const EdgeSide& side) { return side.low != first->low; });
     sort_by_high(std::span(first, last));
@@ -116,7 +116,7 @@ std::vector<BoundaryLoop> boundary_loops(const Halfedges& halfedges, const std::
   std::vector<BoundaryLoop> loops;
   std::vector<bool> seen(halfedges.twin.size(), false);
   for (Index start = 0; start < static_cast<Index>(seen.size()); ++start) {
-    look_now_and_then(start, stop);
+    check_cancelled_every(start, stop);
     if (seen[start] || halfedges.twin[start] != kNoTwin) continue;
     BoundaryLoop& loop = loops.emplace_back();
     for (Index h = start; !seen[h]; h = next_on_boundary(halfedges, h)) {

@@ -42,7 +42,7 @@ std::vector<Corners> sorted_corners(std::span<const Triangle> faces, const FaceS
   std::vector<Corners> list;
   list.reserve(faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t) {
-    look_now_and_then(t, stop);
+    check_cancelled_every(t, stop);
     if (states.of[t] != FaceState::sound) continue;
     Triangle face = faces[t];
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
@@ -63,7 +63,7 @@ FaceStates inspect_areas(const TriMesh& mesh, std::span<const Triangle> welded,
   double most = 0;
   for (const Vec3& position : mesh.positions) most = std::max(most, greatest(position));
   for (std::size_t t = 0; t < welded.size(); ++t) {
-    look_now_and_then(t, stop);
+    check_cancelled_every(t, stop);
     const auto& [a, b, c] = welded[t];
     if (repeats_vertex(welded[t]))
       states.of[t] = FaceState::collapsed;

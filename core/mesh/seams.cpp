@@ -180,7 +180,7 @@ void close_slits(Halfedges& halfedges, const std::stop_token& stop) {
     return g;
   };
   for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
-    look_now_and_then(h, stop);
+    check_cancelled_every(h, stop);
     if (!is_open(halfedges, h)) continue;
     const Index g = next_open(h);
     if (g != h && next_open(g) == h) set_twins(halfedges, g, h);

@@ -18,7 +18,7 @@ void flood(const Halfedges& halfedges, Index start, Index id, const std::stop_to
   std::vector<Index> open{start};
   component_of[start] = id;
   for (std::size_t step = 0; !open.empty(); ++step) {
-    look_now_and_then(step, stop);
+    check_cancelled_every(step, stop);
     const Index t = open.back();
     open.pop_back();
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
@@ -38,7 +38,7 @@ void count_vertices(std::span<const Triangle> faces, const std::stop_token& stop
     vertex_count = std::max({vertex_count, face[0], face[1], face[2]});
   std::vector<bool> seen(faces.empty() ? 0 : static_cast<std::size_t>(vertex_count) + 1, false);
   for (std::size_t t = 0; t < faces.size(); ++t) {
-    look_now_and_then(t, stop);
+    check_cancelled_every(t, stop);
     for (Index v : faces[t]) {
       if (seen[v]) continue;
       seen[v] = true;
@@ -62,7 +62,7 @@ std::vector<Index> count_boundaries(const Halfedges& halfedges, const std::stop_
   std::vector<Index> sides(topology.components.size(), 0);
   std::vector<bool> seen(halfedges.twin.size(), false);
   for (std::size_t h = 0; h < halfedges.twin.size(); ++h) {
-    look_now_and_then(h, stop);
+    check_cancelled_every(h, stop);
     if (halfedges.twin[h] != kNoTwin) continue;
     const Index component = topology.component_of[h / 3];
     ++sides[component];
@@ -103,7 +103,7 @@ CornerVertices corner_vertices(const Halfedges& halfedges, const std::stop_token
   result.faces.assign(twin.size() / 3, {kNone, kNone, kNone});
   const auto vertex_at = [&](Index h) -> Index& { return result.faces[h / 3][h % 3]; };
   for (Index start = 0; start < static_cast<Index>(twin.size()); ++start) {
-    look_now_and_then(start, stop);
+    check_cancelled_every(start, stop);
     if (vertex_at(start) != kNone) continue;
     const Index id = result.count++;
     Index h = start;

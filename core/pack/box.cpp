@@ -9,7 +9,7 @@
 #include <functional>
 #include <numbers>
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 constexpr int kSquareAngles = 180;        // in a quarter turn
@@ -133,4 +133,4 @@ std::optional<Box> straight_box(std::span<const std::array<Vec2, 2>> sides) {
   return box_along(points, best.normalized());
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

@@ -7,7 +7,7 @@
 
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 
 /// Turned by the angle whose cosine and sine these are, the points fill [low, low + size].
 struct Box {
@@ -36,4 +36,4 @@ Box squarest_box(std::span<const Vec2> points);
 /// or more lies so: shapes with right angles fit into each other that way. Nothing otherwise.
 std::optional<Box> straight_box(std::span<const std::array<Vec2, 2>> sides);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

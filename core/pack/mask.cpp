@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 struct Crossing {
@@ -99,7 +99,7 @@ Rows grow(const Rows& touched, double padding) {
 
 int margin_of(double padding) { return static_cast<int>(std::ceil(padding)); }
 
-Mask make_mask(const Outline& outline, const Turn& turn, double padding) {
+Mask make_mask(const charts::Outline& outline, const Turn& turn, double padding) {
   Mask mask;
   mask.margin = margin_of(padding);
   Vec2 low = Vec2::Constant(1e300), high = -low;
@@ -121,4 +121,4 @@ Mask make_mask(const Outline& outline, const Turn& turn, double padding) {
   return mask;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

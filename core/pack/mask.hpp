@@ -6,7 +6,7 @@
 
 #include "core/charts/outline.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 
 /// A row's cells [begin, end).
 struct Run {
@@ -54,6 +54,6 @@ int margin_of(double padding);
 
 /// padding: cells, >= 0: two islands whose grown and touched cells share none are at least so far
 /// apart. Points whose winding number is not zero are inside.
-Mask make_mask(const Outline& outline, const Turn& turn, double padding);
+Mask make_mask(const charts::Outline& outline, const Turn& turn, double padding);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

@@ -8,7 +8,7 @@
 #include <bit>
 #include <cassert>
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 constexpr int kWordBits = 64;
@@ -150,4 +150,4 @@ void Occupancy::stamp(const Mask& mask, int x, int y) {
   }
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

@@ -9,7 +9,7 @@
 
 #include "core/pack/mask.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 
 class Occupancy {
  public:
@@ -55,4 +55,4 @@ class Occupancy {
   std::vector<Word> bits_;  // bit x of row(k, y): a cell of [x, x + 2^k) is taken
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

@@ -10,15 +10,15 @@
 #include <string>
 
 #include "core/base/error.hpp"
+#include "core/pack/anneal_packing.hpp"
+#include "core/pack/compact.hpp"
 #include "core/pack/pack_few.hpp"
-#include "core/pack/pack_search.hpp"
-#include "core/pack/pack_snugly.hpp"
+#include "core/pack/pack_many.hpp"
 #include "core/pack/pack_stacked.hpp"
 #include "core/pack/page_grid.hpp"
 #include "core/pack/page_layout.hpp"
-#include "core/pack/squeeze.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 /// Grids on which several pages are searched, the coarse first.
@@ -41,9 +41,9 @@ int turns_for(std::size_t islands) {
 
 class Packer {
  public:
-  Packer(std::span<const Outline> outlines, const PageOptions& page, Executor& executor)
+  Packer(std::span<const charts::Outline> outlines, const PageOptions& page, Executor& executor)
       : outlines_(outlines),
-        arranger_(outlines, turns_for(outlines.size())),
+        placer_(outlines, turns_for(outlines.size())),
         shares_(shares_of(outlines)),
         page_(page),
         padding_(kept_padding(page, outlines.size())),
@@ -54,33 +54,33 @@ class Packer {
   /// As large as fits on the pages that are allowed.
   Packed largest() {
     if (page_.packing.max_pages > 1) return on_several();
-    if (arranger_.size() <= kFewOnAPage) {
-      auto few = packed_few(outlines_, grid_, executor_);
+    if (placer_.size() <= kFewOnAPage) {
+      auto few = pack_few(outlines_, grid_, executor_);
       if (few) return {std::move(*few), 1, padding_, {}};
     }
-    return {packed_snugly(arranger_, grid_, executor_), 1, padding_, {}};
+    return {pack_many(placer_, grid_, executor_), 1, padding_, {}};
   }
 
   /// The share of the page that is filled after a short search on coarse grids, which ends where it
   /// is `enough`. area: of all islands.
   double rough_fill(double area, double enough) {
-    const std::size_t n = arranger_.size();
+    const std::size_t n = placer_.size();
     const int side = cells_for(n, kRough.per_island, kRough.cells);
-    double scale = side * std::sqrt(kUsualFill / box_area(arranger_));
-    std::vector<Arrangement> starts = usual_arrangements(arranger_);
+    double scale = side * std::sqrt(kUsualFill / box_area(placer_));
+    std::vector<Arrangement> starts = usual_arrangements(placer_);
     if (n > kSearched) starts.resize(1);
     const double tightest = std::sqrt(area / enough);  // page, in the islands' units
-    const StripRules strip{side, kRoughHeat, static_cast<int>(scale * tightest)};
-    arranger_.set_scale(scale, 0);
+    const AnnealRules strip{side, kRoughHeat, static_cast<int>(scale * tightest)};
+    placer_.set_scale(scale, 0);
     Budget budget{work(kRough.work), stop_};
-    Found found = smallest_page(arranger_, starts, strip, budget).front();
+    Found found = smallest_page(placer_, starts, strip, budget).front();
     if (n <= kFewOnAPage && found.side > strip.enough) {
-      SqueezeRules rules = kFirstSqueeze;
+      CompactRules rules = kFirstCompaction;
       const double ratio = double(rules.side) / found.side;
       rules.enough = static_cast<int>(scale * ratio * tightest);
-      arranger_.set_scale(scale * ratio, 0);
+      placer_.set_scale(scale * ratio, 0);
       budget = {work(kRoughSqueezeWork), stop_};
-      const Found tight = squeezed(arranger_, found, rules, budget);
+      const Found tight = compact(placer_, found, rules, budget);
       if (tight.side > 0) scale *= ratio, found = tight;
     }
     return area * scale * scale / (double(found.side) * found.side);
@@ -88,15 +88,15 @@ class Packer {
 
   /// At the density that is asked for, on as few pages as can be had.
   Packed at_density(double texels_per_unit) {
-    const int side = grid_.tight_side(fine_cells(arranger_.size()));
+    const int side = grid_.tight_side(fine_cells(placer_.size()));
     const double page_per_unit = texels_per_unit / page_.resolution;
     if (is_too_large(page_per_unit))
       refuse(
           "An island at this density is larger than a page; lower texels_per_unit, or raise "
           "resolution.");
-    arranger_.set_scale(page_per_unit / grid_.cell(side), grid_.padding(side));
+    placer_.set_scale(page_per_unit / grid_.cell(side), grid_.padding(side));
     Budget budget{work(kFineWork), stop_};
-    const Found found = fewest_pages(arranger_, usual_arrangements(arranger_),
+    const Found found = fewest_pages(placer_, usual_arrangements(placer_),
                                      {side, side, page_.packing.max_pages}, budget);
     if (found.side == 0)
       refuse(
@@ -113,8 +113,8 @@ class Packer {
   /// Looked at before any island is turned into cells, which would be too many. A square of the
   /// smallest box's shorter side lies in it; an island never fits where not even that does.
   [[nodiscard]] bool is_too_large(double page_per_unit) const {
-    for (std::size_t k = 0; k < arranger_.size(); ++k) {
-      const Vec2 size = page_per_unit * arranger_.box(k).size;
+    for (std::size_t k = 0; k < placer_.size(); ++k) {
+      const Vec2 size = page_per_unit * placer_.box(k).size;
       if (size.minCoeff() > 1 || size.maxCoeff() > std::sqrt(2.0)) return true;
     }
     return false;
@@ -125,10 +125,10 @@ class Packer {
   }
 
   Packed on_several() {
-    std::vector<Arrangement> starts = usual_arrangements(arranger_);
-    const std::size_t n = arranger_.size();
+    std::vector<Arrangement> starts = usual_arrangements(placer_);
+    const std::size_t n = placer_.size();
     double side = fine_cells(n);
-    double scale = usual_scale(arranger_, grid_, page_.packing.max_pages, side);
+    double scale = usual_scale(placer_, grid_, page_.packing.max_pages, side);
     if (n > kSearched) starts.resize(1);
     for (const Level& level : kLevels) {
       if (n > kSearched) break;
@@ -146,9 +146,9 @@ class Packer {
   /// A search at this scale, with the padding of pages of `side` cells.
   Found on_grid(const std::vector<Arrangement>& starts, int side, double cells_per_unit,
                 std::int64_t work) {
-    arranger_.set_scale(cells_per_unit, grid_.padding(side));
+    placer_.set_scale(cells_per_unit, grid_.padding(side));
     Budget budget{work, stop_};
-    return smallest_pages(arranger_, starts, page_.packing.max_pages, budget);
+    return smallest_pages(placer_, starts, page_.packing.max_pages, budget);
   }
 
   /// The same where the padding must be kept: should pages come out larger than `side`, the islands
@@ -162,11 +162,11 @@ class Packer {
   }
 
   Packed placed(const Found& found) {
-    return {placements_of(found, arranger_, grid_), static_cast<Index>(found.pages), padding_, {}};
+    return {placements_of(found, placer_, grid_), static_cast<Index>(found.pages), padding_, {}};
   }
 
-  std::span<const Outline> outlines_;
-  Arranger arranger_;
+  std::span<const charts::Outline> outlines_;
+  BottomLeftPlacer placer_;
   double shares_;
   PageOptions page_;
   double padding_;
@@ -175,7 +175,7 @@ class Packer {
   std::stop_token stop_;
 };
 
-std::vector<UvMap> points_of(std::span<const Outline> islands) {
+std::vector<UvMap> points_of(std::span<const charts::Outline> islands) {
   std::vector<UvMap> points(islands.size());
   for (std::size_t k = 0; k < islands.size(); ++k)
     for (const auto& [a, b] : islands[k]) points[k].push_back(a);
@@ -187,7 +187,8 @@ bool has_extent(std::span<const UvMap> points) {
                      [](const UvMap& own) { return smallest_box(own).size.prod() > 0; });
 }
 
-Packed pack_apart(std::span<const Outline> islands, const PageOptions& page, Executor& executor) {
+Packed pack_apart(std::span<const charts::Outline> islands, const PageOptions& page,
+                  Executor& executor) {
   if (page.packing.texels_per_unit)
     return Packer(islands, page, executor).at_density(*page.packing.texels_per_unit);
   const std::vector<UvMap> points = points_of(islands);
@@ -198,7 +199,7 @@ Packed pack_apart(std::span<const Outline> islands, const PageOptions& page, Exe
   return tight.placements.front().scale > rows.placements.front().scale ? tight : rows;
 }
 
-double area_of(const Outline& outline) {
+double area_of(const charts::Outline& outline) {
   double area = 0;
   for (const auto& [a, b] : outline) area += (a.x() * b.y() - a.y() * b.x()) / 2;
   return area;
@@ -206,22 +207,23 @@ double area_of(const Outline& outline) {
 
 }  // namespace
 
-double rough_fill(std::span<const Outline> islands, double enough, const std::stop_token& stop) {
+double rough_fill(std::span<const charts::Outline> islands, double enough,
+                  const std::stop_token& stop) {
   if (islands.empty() || !has_extent(points_of(islands))) return 1;
   double area = 0;
-  for (const Outline& island : islands) area += area_of(island);
+  for (const charts::Outline& island : islands) area += area_of(island);
   SerialExecutor serial;
   JobExecutor executor(serial, stop);
   return Packer(islands, {.padding = 0}, executor).rough_fill(area, enough);
 }
 
-Packed pack(std::span<const Outline> islands, const PageOptions& page, Executor& executor) {
+Packed pack(std::span<const charts::Outline> islands, const PageOptions& page, Executor& executor) {
   if (islands.empty()) return {};
-  const auto apart = [&](std::span<const Outline> each) {
+  const auto apart = [&](std::span<const charts::Outline> each) {
     return pack_apart(each, page, executor);
   };
   return page.packing.stack_identical ? pack_stacked(islands, apart, executor.stop())
                                       : apart(islands);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

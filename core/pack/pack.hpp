@@ -10,7 +10,7 @@
 #include "core/mesh/tri_mesh.hpp"
 #include "core/types/options.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 
 /// Where an island goes: uv_page = scale * (rotation * uv) + offset. No mirroring: rotation is
 /// proper. scale is common to all islands. Page k is the square [k, k+1] x [0, 1].
@@ -52,11 +52,11 @@ double kept_padding(const PageOptions& page, std::size_t island_count);
 /// bytes on every machine and for any number of threads: the search has a budget of work, not of
 /// time. Throws Error{does_not_fit} when a given density needs more pages than allowed;
 /// Error{cancelled}.
-Packed pack(std::span<const Outline> islands, const PageOptions& page, Executor& executor);
+Packed pack(std::span<const charts::Outline> islands, const PageOptions& page, Executor& executor);
 
 /// The share of a page that the islands would fill, at a glance and without padding; 1 where they
 /// have no extent. The search ends where it has come to `enough`. Throws Error{cancelled}.
-double rough_fill(std::span<const Outline> islands, double enough = 1,
+double rough_fill(std::span<const charts::Outline> islands, double enough = 1,
                   const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

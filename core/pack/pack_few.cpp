@@ -9,25 +9,25 @@
 #include <functional>
 
 #include "core/pack/page_layout.hpp"
-#include "core/pack/snug.hpp"
-#include "core/solve/base/side_by_side.hpp"
+#include "core/pack/touching_perimeter.hpp"
+#include "core/solve/base/parallel_map.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 struct Try {
   int turns = 0;  ///< that a full circle is divided into
-  SnugRules rules;
+  TouchingRules rules;
 };
 constexpr std::array kTries = {Try{72, {.2, .45}}, Try{48, {.1, .9}}, Try{96, {.2, .45}},
                                Try{60, {.2, .45}}, Try{72, {.4, .7}}, Try{48, {.4, .7}}};
 constexpr std::size_t kFinished = 2;  // of the tries
 
 struct Squeeze {
-  SqueezeRules rules;     ///< for 1024 cells a side; the first grid's side as it is
+  CompactRules rules;     ///< for 1024 cells a side; the first grid's side as it is
   std::int64_t work = 0;  ///< words a share
 };
-constexpr Squeeze kFirst{kFirstSqueeze, 20'000'000};
+constexpr Squeeze kFirst{kFirstCompaction, 20'000'000};
 constexpr std::array kGrids = {Squeeze{{512, 8, 2, 3}, 8'000'000},
                                Squeeze{{1024, 8, 1, 3}, 8'000'000}};
 constexpr double kMostShares = 12;
@@ -36,54 +36,54 @@ constexpr double kSmaller = 0.9;     // where islands did not fit in
 
 /// Islands on a page, and the arranger whose masks these are.
 struct Tried {
-  std::optional<Arranger> arranger = {};
+  std::optional<BottomLeftPlacer> placer = {};
   Found found = {};
   [[nodiscard]] double density() const {  ///< pages a unit
-    return found.side > 0 ? arranger->scale() / found.side : 0;
+    return found.side > 0 ? placer->scale() / found.side : 0;
   }
 };
 
 class FewPacker {
  public:
-  FewPacker(std::span<const Outline> islands, const PageGrid& grid, Executor& executor)
+  FewPacker(std::span<const charts::Outline> islands, const PageGrid& grid, Executor& executor)
       : islands_(islands), grid_(grid), executor_(executor), shares_(shares_of(islands)) {}
 
   std::optional<std::vector<Placement>> packed() {
-    auto tried = side_by_side<Tried>(kTries.size(), executor_,
-                                     [&](std::size_t k) { return squeezed_from(kTries[k]); });
+    auto tried = solve::parallel_map<Tried>(kTries.size(), executor_,
+                                            [&](std::size_t k) { return compact_from(kTries[k]); });
     std::ranges::stable_sort(tried, std::greater(), &Tried::density);
     tried.resize(kFinished);
-    tried = side_by_side<Tried>(kFinished, executor_,
-                                [&](std::size_t k) { return finished(std::move(tried[k])); });
+    tried = solve::parallel_map<Tried>(
+        kFinished, executor_, [&](std::size_t k) { return finished(std::move(tried[k])); });
     Tried& best = *std::ranges::max_element(tried, {}, &Tried::density);
     if (best.found.side == 0) return std::nullopt;
-    return placements_of(best.found, *best.arranger, grid_);
+    return placements_of(best.found, *best.placer, grid_);
   }
 
  private:
-  Tried squeezed_from(const Try& own) const {
-    Tried tried{Arranger(islands_, own.turns)};
-    tried.found = start(*tried.arranger, own.rules);
-    const double scale = tried.arranger->scale() * kFirst.rules.side / tried.found.side;
-    tried.found = squeezed_on(kFirst, tried, scale);
+  Tried compact_from(const Try& own) const {
+    Tried tried{BottomLeftPlacer(islands_, own.turns)};
+    tried.found = start(*tried.placer, own.rules);
+    const double scale = tried.placer->scale() * kFirst.rules.side / tried.found.side;
+    tried.found = compact_on(kFirst, tried, scale);
     return tried;
   }
 
   /// Twice: the second time at the scale at which the first suggests that the islands just fit.
-  Found start(Arranger& arranger, const SnugRules& rules) const {
+  Found start(BottomLeftPlacer& placer, const TouchingRules& rules) const {
     const int side = kFirst.rules.side;
-    SnugPage page;
-    double scale = side * std::sqrt(kUsualFill / box_area(arranger));
+    TouchingPage page;
+    double scale = side * std::sqrt(kUsualFill / box_area(placer));
     for (; page.found.side == 0; scale *= kSmaller) {
-      arranger.set_scale(scale, 0);
-      page = laid_snugly(arranger, side, rules, executor_.stop());
+      placer.set_scale(scale, 0);
+      page = place_by_touching_perimeter(placer, side, rules, executor_.stop());
     }
-    const double first = arranger.scale();
-    arranger.set_scale(first * std::sqrt(double(side) / page.height), 0);
-    const SnugPage again = laid_snugly(arranger, side, rules, executor_.stop());
-    if (again.found.side > 0 && arranger.scale() / again.found.side > first / page.found.side)
+    const double first = placer.scale();
+    placer.set_scale(first * std::sqrt(double(side) / page.height), 0);
+    const TouchingPage again = place_by_touching_perimeter(placer, side, rules, executor_.stop());
+    if (again.found.side > 0 && placer.scale() / again.found.side > first / page.found.side)
       return again.found;
-    arranger.set_scale(first, 0);
+    placer.set_scale(first, 0);
     return page.found;
   }
 
@@ -92,27 +92,27 @@ class FewPacker {
       if (tried.found.side == 0) return tried;
       Squeeze own = grid;
       own.rules.side = grid_.tight_side(grid.rules.side);
-      const double scale = tried.arranger->scale() * own.rules.side / tried.found.side;
-      tried.found = squeezed_on(own, tried, scale);
+      const double scale = tried.placer->scale() * own.rules.side / tried.found.side;
+      tried.found = compact_on(own, tried, scale);
     }
     return tried;
   }
 
   /// Pages must be no larger than those for which the padding was made: the islands shrink until
   /// they are.
-  Found squeezed_on(const Squeeze& grid, Tried& tried, double scale) const {
+  Found compact_on(const Squeeze& grid, Tried& tried, double scale) const {
     const bool has_gaps = grid.rules.reach > 0;
     for (;;) {
-      tried.arranger->set_scale(scale, has_gaps ? grid_.padding(grid.rules.side) : 0);
+      tried.placer->set_scale(scale, has_gaps ? grid_.padding(grid.rules.side) : 0);
       Budget budget{static_cast<std::int64_t>(shares_ * static_cast<double>(grid.work)),
                     executor_.stop()};
-      Found found = squeezed(*tried.arranger, tried.found, grid.rules, budget);
+      Found found = compact(*tried.placer, tried.found, grid.rules, budget);
       if (!has_gaps || found.side <= grid.rules.side) return found;
       scale *= double(grid.rules.side) / found.side / kSpareSide;
     }
   }
 
-  std::span<const Outline> islands_;
+  std::span<const charts::Outline> islands_;
   const PageGrid& grid_;
   Executor& executor_;
   double shares_;
@@ -120,15 +120,15 @@ class FewPacker {
 
 }  // namespace
 
-double shares_of(std::span<const Outline> islands) {
+double shares_of(std::span<const charts::Outline> islands) {
   double sides = 0;
-  for (const Outline& island : islands) sides += static_cast<double>(island.size());
+  for (const charts::Outline& island : islands) sides += static_cast<double>(island.size());
   return std::min({static_cast<double>(islands.size()), sides / kSidesAShare, kMostShares});
 }
 
-std::optional<std::vector<Placement>> packed_few(std::span<const Outline> islands,
-                                                 const PageGrid& grid, Executor& executor) {
+std::optional<std::vector<Placement>> pack_few(std::span<const charts::Outline> islands,
+                                               const PageGrid& grid, Executor& executor) {
   return FewPacker(islands, grid, executor).packed();
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

@@ -12,7 +12,7 @@
 
 #include "core/pack/box.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 constexpr double kLeastPadding = 1.0 / 256;  // texels: what rounding UVs to float may take away
@@ -131,4 +131,4 @@ std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOp
   return placements;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

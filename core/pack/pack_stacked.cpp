@@ -2,23 +2,23 @@
 
 #include <utility>
 
-#include "core/pack/stacks.hpp"
+#include "core/pack/congruent_islands.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
-Placement on_top(const Placement& first, const SameShape& same) {
+Placement on_top(const Placement& first, const CongruentIsland& same) {
   return {first.cosine * same.cosine - first.sine * same.sine,
           first.sine * same.cosine + first.cosine * same.sine, first.scale, first(same.offset)};
 }
 
 }  // namespace
 
-Packed pack_stacked(std::span<const Outline> islands,
-                    const std::function<Packed(std::span<const Outline>)>& pack_shapes,
+Packed pack_stacked(std::span<const charts::Outline> islands,
+                    const std::function<Packed(std::span<const charts::Outline>)>& pack_shapes,
                     const std::stop_token& stop) {
-  const std::vector<SameShape> same = same_shapes(islands, stop);
-  std::vector<Outline> shapes;
+  const std::vector<CongruentIsland> same = congruent_islands(islands, stop);
+  std::vector<charts::Outline> shapes;
   std::vector<std::size_t> shape_of(islands.size());
   for (std::size_t k = 0; k < islands.size(); ++k)
     if (same[k].as == static_cast<Index>(k)) {
@@ -42,4 +42,4 @@ Packed pack_stacked(std::span<const Outline> islands,
   return packed;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

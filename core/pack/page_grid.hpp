@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace unwrapd {
+namespace unwrapd::pack {
 
 /// Of the padding: masks are made in time of its cells squared, and islands between such gaps are
 /// placed to a 128th of them.
@@ -27,4 +27,4 @@ struct PageGrid {
   }
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

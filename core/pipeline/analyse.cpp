@@ -4,22 +4,22 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 
-std::vector<Charts> components(std::span<const Surface> surfaces, SeamRules rules) {
+std::vector<charts::Charts> components(std::span<const Surface> surfaces, charts::SeamRules rules) {
   const auto is_empty = [](const Surface& surface) { return surface.mesh.faces.empty(); };
   if (std::all_of(surfaces.begin(), surfaces.end(), is_empty))
     throw Error(ErrorCode::no_triangles, "the asset has no triangles; there is nothing to unwrap");
-  std::vector<Charts> parts;
+  std::vector<charts::Charts> parts;
   parts.reserve(surfaces.size());
   for (const Surface& surface : surfaces) {
-    parts.push_back(components_of(surface, rules));
+    parts.push_back(charts::components_of(surface, rules));
     ++rules.surface;
   }
   return parts;
 }
 
-InputAnalysis analysis_of(std::span<const Charts> parts) {
+InputAnalysis analysis_of(std::span<const charts::Charts> parts) {
   InputAnalysis analysis;
   InputReport& input = analysis.input;
   for (std::size_t s = 0; s < parts.size(); ++s) {
@@ -43,16 +43,16 @@ std::size_t job_bytes(std::span<const Surface> surfaces) {
   return kJobBytesPerFace * faces;
 }
 
-void require_area(std::span<const Charts> parts) {
-  const auto is_empty = [](const Charts& part) { return part.charts.empty(); };
+void require_area(std::span<const charts::Charts> parts) {
+  const auto is_empty = [](const charts::Charts& part) { return part.charts.empty(); };
   if (std::all_of(parts.begin(), parts.end(), is_empty))
     throw Error(ErrorCode::zero_area, "every triangle has zero area; there is nothing to unwrap");
 }
 
 InputAnalysis analyse(std::span<const Surface> surfaces, const std::stop_token& stop) {
-  const std::vector<Charts> parts = components(surfaces, {.stop = stop});
+  const std::vector<charts::Charts> parts = components(surfaces, {.stop = stop});
   require_area(parts);
   return analysis_of(parts);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

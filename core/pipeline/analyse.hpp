@@ -7,13 +7,13 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/base/solver_core.hpp"
+#include "core/base/shared_cache.hpp"
 #include "core/charts/charts.hpp"
 #include "core/mesh/tri_mesh.hpp"
 #include "core/types/options.hpp"
 #include "core/types/report.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 
 struct InputAnalysis {
   InputReport input;            ///< over all surfaces
@@ -22,11 +22,11 @@ struct InputAnalysis {
 
 /// The components of every surface; rules: of the first of them, whose paths are those of all.
 /// Throws Error: no_triangles, not_orientable, invalid_option, cancelled.
-std::vector<Charts> components(std::span<const Surface> surfaces, SeamRules rules);
+std::vector<charts::Charts> components(std::span<const Surface> surfaces, charts::SeamRules rules);
 
 /// What is known of surfaces by their components. Repairs that taking these apart into charts would
 /// need are among them once that is done.
-InputAnalysis analysis_of(std::span<const Charts> parts);
+InputAnalysis analysis_of(std::span<const charts::Charts> parts);
 
 /// Memory that a job on these surfaces takes, beside its factors.
 std::size_t job_bytes(std::span<const Surface> surfaces);
@@ -35,6 +35,6 @@ std::size_t job_bytes(std::span<const Surface> surfaces);
 InputAnalysis analyse(std::span<const Surface> surfaces, const std::stop_token& stop = {});
 
 /// Throws Error{zero_area} when there is no chart, so that nothing can be unwrapped.
-void require_area(std::span<const Charts> parts);
+void require_area(std::span<const charts::Charts> parts);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

@@ -10,9 +10,9 @@
 #include "core/base/cancel.hpp"
 #include "core/mesh/counting_sort.hpp"
 #include "core/pipeline/set_aside.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 namespace {
 
 constexpr Index kNone = -1, kSeveral = -2;  // corners
@@ -24,21 +24,22 @@ struct Numbering {
   [[nodiscard]] Index total() const { return first.back(); }
 };
 
-Numbering number_vertices(std::span<const Chart* const> charts) {
+Numbering number_vertices(std::span<const charts::Chart* const> charts) {
   Numbering numbering{{0}};
-  for (const Chart* chart : charts)
+  for (const charts::Chart* chart : charts)
     numbering.first.push_back(numbering.first.back() + chart->mesh.vertex_count());
   return numbering;
 }
 
 /// at[corner]: the chart vertex that it shows; kUncharted for faces that are set aside.
-std::vector<Triangle> charted_corners(const Surface& surface, std::span<const Chart* const> charts,
+std::vector<Triangle> charted_corners(const Surface& surface,
+                                      std::span<const charts::Chart* const> charts,
                                       const Numbering& numbering, const std::stop_token& stop) {
   std::vector<Triangle> at(surface.mesh.faces.size(), {kUncharted, kUncharted, kUncharted});
   for (std::size_t k = 0; k < charts.size(); ++k) {
-    const Chart& chart = *charts[k];
+    const charts::Chart& chart = *charts[k];
     for (std::size_t t = 0; t < chart.face_source.size(); ++t) {
-      look_now_and_then(t, stop);
+      check_cancelled_every(t, stop);
       for (std::size_t i = 0; i < 3; ++i)
         at[chart.face_source[t]][i] = numbering.first[k] + chart.mesh.faces[t][i];
     }
@@ -51,7 +52,7 @@ std::vector<Index> first_corners(const std::vector<Triangle>& faces, Index verte
                                  const std::vector<Triangle>& at, const std::stop_token& stop) {
   std::vector<Index> first(vertex_count, kNone);
   for (Index c = 0; c < static_cast<Index>(3 * faces.size()); ++c) {
-    look_now_and_then(c, stop);
+    check_cancelled_every(c, stop);
     Index& own = first[faces[c / 3][c % 3]];
     if (own == kNone) own = c;
     if (own != kSeveral && at[own / 3][own % 3] != at[c / 3][c % 3]) own = kSeveral;
@@ -70,7 +71,7 @@ std::vector<Index> first_equal_corners(const std::vector<Triangle>& faces, Index
   const std::vector<Index> first_of = first_corners(faces, vertex_count, at, stop);
   std::vector<Corner> corners;  // at vertices that show several
   for (Index c = 0; c < static_cast<Index>(3 * faces.size()); ++c) {
-    look_now_and_then(c, stop);
+    check_cancelled_every(c, stop);
     const Index v = faces[c / 3][c % 3];
     first_equal[c] = first_of[v];
     if (first_of[v] == kSeveral) corners.push_back({v, at[c / 3][c % 3] + 1, c});
@@ -98,8 +99,9 @@ UvMap joined(std::span<const UvMap> chart_uv) {
 
 }  // namespace
 
-VertexPlan plan_vertices(const Surface& surface, const Charts& whole,
-                         std::span<const Chart* const> charts, const std::stop_token& stop) {
+VertexPlan plan_vertices(const Surface& surface, const charts::Charts& whole,
+                         std::span<const charts::Chart* const> charts,
+                         const std::stop_token& stop) {
   const Numbering numbering = number_vertices(charts);
   std::vector<Triangle> at = charted_corners(surface, charts, numbering, stop);
   place_set_aside(surface, whole, stop, at);
@@ -114,7 +116,7 @@ VertexPlan plan_vertices(const Surface& surface, const Charts& whole,
   for (Index v = 0; v < vertex_count; ++v) plan.source[v] = v;
   std::vector<bool> taken(vertex_count, false);
   for (Index c = 0; c < static_cast<Index>(first_equal.size()); ++c) {
-    look_now_and_then(c, stop);
+    check_cancelled_every(c, stop);
     const Index first = first_equal[c], v = faces[c / 3][c % 3];
     Index& number = plan.faces[c / 3][c % 3];
     if (first != c) {
@@ -133,7 +135,7 @@ VertexPlan plan_vertices(const Surface& surface, const Charts& whole,
 }
 
 std::size_t bytes_of(const VertexPlan& plan) {
-  return bytes_of(plan.faces) + bytes_of(plan.source) + bytes_of(plan.shown);
+  return solve::bytes_of(plan.faces) + solve::bytes_of(plan.source) + solve::bytes_of(plan.shown);
 }
 
 UnwrappedSurface assemble(const VertexPlan& plan, std::span<const UvMap> chart_uv) {
@@ -144,16 +146,16 @@ UnwrappedSurface assemble(const VertexPlan& plan, std::span<const UvMap> chart_u
   return out;
 }
 
-UnwrappedSurface assemble(const Surface& surface, const Charts& charts,
+UnwrappedSurface assemble(const Surface& surface, const charts::Charts& charts,
                           std::span<const UvMap> chart_uv, const std::stop_token& stop) {
   assert(chart_uv.size() == charts.charts.size());
   return assemble(plan_vertices(surface, charts, pointers_to(charts.charts), stop), chart_uv);
 }
 
-std::vector<const Chart*> pointers_to(std::span<const Chart> charts) {
-  std::vector<const Chart*> pointers;
-  for (const Chart& chart : charts) pointers.push_back(&chart);
+std::vector<const charts::Chart*> pointers_to(std::span<const charts::Chart> charts) {
+  std::vector<const charts::Chart*> pointers;
+  for (const charts::Chart& chart : charts) pointers.push_back(&chart);
   return pointers;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

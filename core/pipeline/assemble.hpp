@@ -8,7 +8,7 @@
 #include "core/charts/charts.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 
 /// How charts' vertices become vertices of the surface: see assemble().
 struct VertexPlan {
@@ -21,19 +21,20 @@ std::size_t bytes_of(const VertexPlan& plan);
 
 /// charts: those of the surface, or what became of them; whole tells what is set aside. Throws
 /// Error{cancelled}.
-VertexPlan plan_vertices(const Surface& surface, const Charts& whole,
-                         std::span<const Chart* const> charts, const std::stop_token& stop = {});
+VertexPlan plan_vertices(const Surface& surface, const charts::Charts& whole,
+                         std::span<const charts::Chart* const> charts,
+                         const std::stop_token& stop = {});
 
-std::vector<const Chart*> pointers_to(std::span<const Chart> charts);
+std::vector<const charts::Chart*> pointers_to(std::span<const charts::Chart> charts);
 
 /// Charts' page UVs back onto the surface's vertices: splits those that lie on a seam. A vertex's
 /// first corner keeps its number, copies are appended in the order of faces and corners. Faces that
 /// were set aside get their UVs by place_set_aside(), (0,0) where they touch no chart. Throws
 /// Error{cancelled}.
-UnwrappedSurface assemble(const Surface& surface, const Charts& charts,
+UnwrappedSurface assemble(const Surface& surface, const charts::Charts& charts,
                           std::span<const UvMap> chart_uv, const std::stop_token& stop = {});
 
 /// The same by a plan that is made already.
 UnwrappedSurface assemble(const VertexPlan& plan, std::span<const UvMap> chart_uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

@@ -7,22 +7,22 @@
 
 #include "core/charts/constraints.hpp"
 #include "core/pipeline/analyse.hpp"
-#include "core/pipeline/map_chart.hpp"
+#include "core/pipeline/parameterize_chart.hpp"
 #include "core/segment/excess_steps.hpp"
 #include "core/segment/region_charts.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 namespace {
 
 /// A page for each map: what came in is in its report, charts are not in it yet.
 std::vector<Layout> empty_layouts(const std::shared_ptr<const Prepared>& all,
                                   std::size_t map_count) {
-  const std::vector<Charts>& parts = all->surfaces;
+  const std::vector<charts::Charts>& parts = all->surfaces;
   Layout layout;
   layout.all = all;
   layout.charts.resize(parts.size());
   layout.islands.resize(parts.size());
-  layout.held.resize(parts.size());
+  layout.constrained.resize(parts.size());
   const InputAnalysis analysis = analysis_of(parts);
   layout.report.input = analysis.input;
   layout.report.repairs = analysis.repairs;
@@ -34,14 +34,15 @@ void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
   layout.report.charts.push_back(std::move(mapped.report));
   layout.charts[surface].push_back(std::move(mapped.chart));
   layout.islands[surface].push_back(std::move(mapped.uv));
-  layout.held[surface].push_back(std::move(mapped.held));
+  layout.constrained[surface].push_back(std::move(mapped.constrained));
 }
 
-ChartWatch chart_watch(const TakenApart& taken, const Progress& progress, Executor& executor) {
+ChartProgress chart_watch(const PreparedCharts& taken, const Progress& progress,
+                          Executor& executor) {
   std::size_t chart_count = 0, face_count = 0;
-  for (const Charts& part : taken.all->surfaces) {
+  for (const charts::Charts& part : taken.all->surfaces) {
     chart_count += part.charts.size();
-    for (const Chart& chart : part.charts) face_count += chart.mesh.faces.size();
+    for (const charts::Chart& chart : part.charts) face_count += chart.mesh.faces.size();
   }
   require_area(taken.all->surfaces);
   return {progress, static_cast<Index>(chart_count), face_count, taken.solve_begin, executor};
@@ -74,19 +75,22 @@ void note_new_maps(Layout& layout, const UnwrapOptions& options) {
         kept_of(options.method) + "; energy_rise of the chart's mending tells the cost.");
 }
 
-std::vector<Layout> map_charts(const TakenApart& taken, std::span<const Surface> surfaces,
-                               const UnwrapOptions& options, const Progress& progress,
-                               Executor& executor) {
+std::vector<Layout> parameterize_charts(const PreparedCharts& taken,
+                                        std::span<const Surface> surfaces,
+                                        const UnwrapOptions& options, const Progress& progress,
+                                        Executor& executor) {
   const Prepared& all = *taken.all;
-  const auto page = page_holds(surfaces, all.surfaces, options.constraints, progress.stop);
-  ChartWatch watch = chart_watch(taken, progress, executor);
+  const auto page =
+      charts::page_constraints(surfaces, all.surfaces, options.constraints, progress.stop);
+  ChartProgress watch = chart_watch(taken, progress, executor);
   std::vector<Layout> layouts = empty_layouts(taken.all, lambdas_of(options).size());
   if (!all.note.empty())
     for (Layout& layout : layouts) layout.report.notes.push_back(all.note);
   for (std::size_t s = 0; s < all.surfaces.size(); ++s)
     for (std::size_t c = 0; c < all.surfaces[s].charts.size(); ++c) {
-      const std::shared_ptr<const Chart> chart(taken.all, &all.surfaces[s].charts[c]);
-      auto maps = map_chart({chart, all.disks[s][c], page[s][c]}, options, watch, executor);
+      const std::shared_ptr<const charts::Chart> chart(taken.all, &all.surfaces[s].charts[c]);
+      auto maps =
+          parameterize_chart({chart, all.disks[s][c], page[s][c]}, options, watch, executor);
       for (std::size_t k = 0; k < maps.size(); ++k)
         for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped));
     }
@@ -102,8 +106,8 @@ bool has_split_charts(const Layout& layout) {
 /// The borders of all charts before they are mapped.
 double border_of(const Prepared& all) {
   double length = 0;
-  for (const Charts& surface : all.surfaces)
-    for (const Chart& chart : surface.charts) length += boundary_length(chart);
+  for (const charts::Charts& surface : all.surfaces)
+    for (const charts::Chart& chart : surface.charts) length += segment::boundary_length(chart);
   return length;
 }
 
@@ -111,7 +115,8 @@ double border_of(const Prepared& all) {
 double border_of(const Layout& layout) {
   double length = 0;
   for (const auto& charts : layout.charts)
-    for (const std::shared_ptr<const Chart>& chart : charts) length += boundary_length(*chart);
+    for (const std::shared_ptr<const charts::Chart>& chart : charts)
+      length += segment::boundary_length(*chart);
   return length;
 }
 
@@ -130,12 +135,12 @@ void take_shorter_seams(std::span<const Surface> surfaces, UnwrapOptions options
   double last = border_of(*layouts.front().all);
   const auto is_shorter = [&](const Layout& own) { return last < border_of(own); };
   bool is_split = std::ranges::any_of(layouts, has_split_charts);
-  while (is_split && (options.max_distortion = tighter_bound(*options.max_distortion))) {
-    const TakenApart taken = take_apart(surfaces, options, quiet, executor);
+  while (is_split && (options.max_distortion = segment::tighter_bound(*options.max_distortion))) {
+    const PreparedCharts taken = prepare_charts(surfaces, options, quiet, executor);
     const double border = border_of(*taken.all);
     if (std::exchange(last, border) == border) continue;  // the same charts
     if (!taken.all->note.empty() || std::ranges::none_of(layouts, is_shorter)) return;
-    std::vector<Layout> others = map_charts(taken, surfaces, options, quiet, executor);
+    std::vector<Layout> others = parameterize_charts(taken, surfaces, options, quiet, executor);
     is_split = std::ranges::any_of(others, has_split_charts);
     for (std::size_t k = 0; k < layouts.size(); ++k)
       if (border_of(others[k]) < border_of(layouts[k])) layouts[k] = std::move(others[k]);
@@ -146,10 +151,10 @@ void take_shorter_seams(std::span<const Surface> surfaces, UnwrapOptions options
 
 std::vector<Layout> map_surfaces(std::span<const Surface> surfaces, const UnwrapOptions& options,
                                  const Progress& progress, Executor& executor) {
-  const TakenApart taken = take_apart(surfaces, options, progress, executor);
-  std::vector<Layout> layouts = map_charts(taken, surfaces, options, progress, executor);
+  const PreparedCharts taken = prepare_charts(surfaces, options, progress, executor);
+  std::vector<Layout> layouts = parameterize_charts(taken, surfaces, options, progress, executor);
   if (has_bound(options)) take_shorter_seams(surfaces, options, progress.stop, executor, layouts);
   return layouts;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

@@ -6,17 +6,17 @@
 
 #include "core/pack/pack.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 namespace {
 
 /// By the shoelace formula over all loops.
-double area_of(const Outline& outline) {
+double area_of(const charts::Outline& outline) {
   double twice = 0;
   for (const auto& [a, b] : outline) twice += a.x() * b.y() - a.y() * b.x();
   return std::abs(twice) / 2;
 }
 
-void note_padding(const Packed& packed, int asked, Report& report) {
+void note_padding(const pack::Packed& packed, int asked, Report& report) {
   if (packed.padding >= asked) return;
   report.notes.push_back(
       "Padding for so many islands would fill most of the page. The padding is " +
@@ -24,7 +24,7 @@ void note_padding(const Packed& packed, int asked, Report& report) {
       "; raise resolution for the full padding.");
 }
 
-void note_stacks(const Packed& packed, Report& report) {
+void note_stacks(const pack::Packed& packed, Report& report) {
   std::size_t stacked = 0;
   for (const char is_stacked : packed.is_stacked) stacked += is_stacked != 0 ? 1 : 0;
   if (stacked > 0)
@@ -35,13 +35,13 @@ void note_stacks(const Packed& packed, Report& report) {
 
 }  // namespace
 
-void place_islands(std::span<const Outline> outlines, const UnwrapOptions& options,
+void place_islands(std::span<const charts::Outline> outlines, const UnwrapOptions& options,
                    Executor& executor, std::span<UvMap* const> maps, Report& report) {
-  const Packed packed =
-      pack(outlines, {options.resolution, options.padding, options.packing}, executor);
+  const pack::Packed packed =
+      pack::pack(outlines, {options.resolution, options.padding, options.packing}, executor);
   double covered = 0;
   for (std::size_t k = 0; k < maps.size(); ++k) {
-    const Placement& placement = packed.placements[k];
+    const pack::Placement& placement = packed.placements[k];
     for (Vec2& uv : *maps[k]) uv = placement(uv);
     if (packed.is_stacked.empty() || packed.is_stacked[k] == 0)
       covered += area_of(outlines[k]) * placement.scale * placement.scale;
@@ -52,4 +52,4 @@ void place_islands(std::span<const Outline> outlines, const UnwrapOptions& optio
   note_stacks(packed, report);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

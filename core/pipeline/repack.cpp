@@ -8,7 +8,7 @@
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
 #include "core/charts/uv_islands.hpp"
-#include "core/guarantee/snap.hpp"
+#include "core/guarantee/quantize_uvs.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/measure/seam_length.hpp"
@@ -16,16 +16,16 @@
 #include "core/pipeline/assemble.hpp"
 #include "core/pipeline/place_islands.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 namespace {
 
-std::vector<UvIslands> find_islands(std::span<const Surface> surfaces,
-                                    const std::stop_token& stop) {
-  std::vector<UvIslands> all;
+std::vector<charts::UvIslands> find_islands(std::span<const Surface> surfaces,
+                                            const std::stop_token& stop) {
+  std::vector<charts::UvIslands> all;
   bool are_any = false;
   for (const Surface& surface : surfaces) {
     throw_if_cancelled(stop);
-    all.push_back(uv_islands(surface));
+    all.push_back(charts::uv_islands(surface));
     are_any |= !all.back().maps.empty();
   }
   if (!are_any)
@@ -37,18 +37,18 @@ std::vector<UvIslands> find_islands(std::span<const Surface> surfaces,
 }
 
 /// Of faces whose corners are not all at one point: others have no metric.
-DistortionSums sums_of(const Chart& chart, const UvMap& uv) {
+measure::DistortionSums sums_of(const charts::Chart& chart, const UvMap& uv) {
   TriMesh mesh{chart.mesh.positions, {}};
   for (const Triangle& face : chart.mesh.faces)
-    if (face_area(chart.mesh, face) > 0) mesh.faces.push_back(face);
+    if (measure::face_area(chart.mesh, face) > 0) mesh.faces.push_back(face);
   if (mesh.faces.empty()) return {};
-  return distortion_sums(flatten(mesh), mesh.faces, uv);
+  return measure::distortion_sums(measure::flatten(mesh), mesh.faces, uv);
 }
 
 /// Each island at the size at which its UV area is its area in space.
-void even_out(UvIslands& islands) {
+void even_out(charts::UvIslands& islands) {
   for (std::size_t k = 0; k < islands.maps.size(); ++k) {
-    const DistortionSums sums = sums_of(islands.charts.charts[k], islands.maps[k]);
+    const measure::DistortionSums sums = sums_of(islands.charts.charts[k], islands.maps[k]);
     if (!(sums.area > 0 && sums.uv_area > 0)) continue;
     const double scale = std::sqrt(sums.area / sums.uv_area);
     for (Vec2& uv : islands.maps[k]) uv *= scale;
@@ -56,11 +56,11 @@ void even_out(UvIslands& islands) {
   }
 }
 
-void place(std::vector<UvIslands>& all, const UnwrapOptions& options, Executor& executor,
+void place(std::vector<charts::UvIslands>& all, const UnwrapOptions& options, Executor& executor,
            Report& report) {
-  std::vector<Outline> outlines;
+  std::vector<charts::Outline> outlines;
   std::vector<UvMap*> maps;
-  for (UvIslands& islands : all) {
+  for (charts::UvIslands& islands : all) {
     if (options.packing.texels_per_unit) even_out(islands);
     for (std::size_t k = 0; k < islands.maps.size(); ++k) {
       outlines.push_back(islands.outlines[k]);
@@ -69,22 +69,23 @@ void place(std::vector<UvIslands>& all, const UnwrapOptions& options, Executor& 
   }
   place_islands(outlines, options, executor, maps, report);
   report.fill = std::min(report.fill, 1.0);  // faces on top of each other count each
-  for (UvMap* map : maps) round_to_step(*map);
+  for (UvMap* map : maps) guarantee::round_to_step(*map);
 }
 
-ChartReport report_of(const Chart& chart, const DistortionSums& sums, std::size_t surface) {
+ChartReport report_of(const charts::Chart& chart, const measure::DistortionSums& sums,
+                      std::size_t surface) {
   ChartReport report{.surface = static_cast<Index>(surface),
                      .faces = chart.mesh.face_count(),
                      .vertices = chart.mesh.vertex_count()};
   report.area = sums.area;
-  if (sums.area > 0) report.distortion = distortion(sums);
+  if (sums.area > 0) report.distortion = measure::distortion(sums);
   report.stop_reason = StopReason::direct;
   return report;
 }
 
-void note_faces_without(const std::vector<UvIslands>& all, Report& report) {
+void note_faces_without(const std::vector<charts::UvIslands>& all, Report& report) {
   std::size_t count = 0;
-  for (const UvIslands& islands : all) {
+  for (const charts::UvIslands& islands : all) {
     count += islands.charts.set_aside.size();
     if (islands.maps.empty()) count += static_cast<std::size_t>(islands.charts.input.faces);
   }
@@ -94,18 +95,18 @@ void note_faces_without(const std::vector<UvIslands>& all, Report& report) {
                            "page: they lie on an edge or a point of a neighbour, or at (0, 0).");
 }
 
-void measure(std::span<const Surface> surfaces, const std::vector<UvIslands>& all,
+void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIslands>& all,
              const UnwrapOptions& options, Unwrapped& out) {
-  DistortionSums total;
+  measure::DistortionSums total;
   Report& report = out.report;
   for (std::size_t s = 0; s < all.size(); ++s) {
-    const Charts& charts = all[s].charts;
+    const charts::Charts& charts = all[s].charts;
     out.surfaces.push_back(assemble(surfaces[s], charts, all[s].maps));
-    const std::vector<double> seams = seam_lengths(surfaces[s], out.surfaces.back());
+    const std::vector<double> seams = measure::seam_lengths(surfaces[s], out.surfaces.back());
     report.input.faces += charts.input.faces;
     report.input.vertices += charts.input.vertices;
     for (std::size_t k = 0; k < charts.charts.size(); ++k) {
-      const DistortionSums sums = sums_of(charts.charts[k], all[s].maps[k]);
+      const measure::DistortionSums sums = sums_of(charts.charts[k], all[s].maps[k]);
       total += sums;
       report.charts.push_back(report_of(charts.charts[k], sums, s));
       for (const Index t : charts.charts[k].face_source)
@@ -115,7 +116,7 @@ void measure(std::span<const Surface> surfaces, const std::vector<UvIslands>& al
   }
   report.area = total.area;
   if (!(total.area > 0)) return;
-  report.distortion = distortion(total);
+  report.distortion = measure::distortion(total);
   report.seam_ratio = report.seam_length / std::sqrt(total.area);
   report.texel_density = std::sqrt(total.uv_area / total.area) * options.resolution;
 }
@@ -128,7 +129,7 @@ Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options
     if (progress.on_stage) progress.on_stage({stage, 0, 0, fraction});
   };
   announce(Stage::setup, 0.05);
-  std::vector<UvIslands> all = find_islands(surfaces, progress.stop);
+  std::vector<charts::UvIslands> all = find_islands(surfaces, progress.stop);
   Unwrapped out;
   announce(Stage::pack, 0.2);
   place(all, options, executor, out.report);
@@ -138,4 +139,4 @@ Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options
   return out;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

@@ -7,7 +7,7 @@
 #include "core/types/progress.hpp"
 #include "core/types/report.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 
 /// Packs the islands of the surfaces' corner_uv; none is deformed or mirrored. At a given density
 /// each has it; else they keep their sizes beside each other.
@@ -15,4 +15,4 @@ namespace unwrapd {
 Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options,
                  const Progress& progress, Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

@@ -12,7 +12,7 @@
 #include "core/mesh/repair.hpp"
 #include "core/mesh/weld.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 namespace {
 
 bool is_charted(const Triangle& corners) { return corners[0] != kUncharted; }
@@ -32,7 +32,8 @@ class EdgeBorrower {
  public:
   EdgeBorrower(const TriMesh& mesh, const std::vector<Index>& open, std::vector<Triangle>& at)
       : mesh_(mesh), at_(at), is_open_(at.size(), 0), is_charted_(at.size(), 0) {
-    for (std::size_t t = 0; t < at.size(); ++t) is_charted_[t] = unwrapd::is_charted(at[t]) ? 1 : 0;
+    for (std::size_t t = 0; t < at.size(); ++t)
+      is_charted_[t] = pipeline::is_charted(at[t]) ? 1 : 0;
     for (const Index t : open) is_open_[t] = 1;
   }
 
@@ -120,8 +121,8 @@ void lay_on_points(const TriMesh& mesh, const std::vector<Index>& open,
 
 }  // namespace
 
-void place_set_aside(const Surface& surface, const Charts& whole, const std::stop_token& stop,
-                     std::vector<Triangle>& at) {
+void place_set_aside(const Surface& surface, const charts::Charts& whole,
+                     const std::stop_token& stop, std::vector<Triangle>& at) {
   if (whole.set_aside.empty()) return;
   const TriMesh& mesh = surface.mesh;
   std::vector<Index> degenerate;
@@ -139,4 +140,4 @@ void place_set_aside(const Surface& surface, const Charts& whole, const std::sto
       at[whole.set_aside[k]] = corners_like(surface, whole.set_aside[k], original, at[original]);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

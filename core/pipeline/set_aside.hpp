@@ -6,7 +6,7 @@
 
 #include "core/charts/charts.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 
 inline constexpr Index kUncharted = -1;  ///< of a corner that shows no chart vertex
 
@@ -15,7 +15,7 @@ inline constexpr Index kUncharted = -1;  ///< of a corner that shows no chart ve
 /// face gets no area: its corners go to the two ends of one edge that it shares with a charted
 /// face, else to one point that a vertex of it shows. It keeps kUncharted where it touches no
 /// chart. Throws Error{cancelled}.
-void place_set_aside(const Surface& surface, const Charts& whole, const std::stop_token& stop,
-                     std::vector<Triangle>& at);
+void place_set_aside(const Surface& surface, const charts::Charts& whole,
+                     const std::stop_token& stop, std::vector<Triangle>& at);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

@@ -11,51 +11,52 @@
 #include "core/measure/distortion.hpp"
 #include "core/solve/solve.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr double kTolerance = 1e-2;         // of energy, from iteration to iteration
 constexpr double kLeastDeterminant = 0.01;  // of a face that counts; of the whole chart it is 1
 
-UvMap moved_on(const Disk& disk, Executor& executor, const UvMap& start) {
+UvMap moved_on(const solve::Disk& disk, Executor& executor, const UvMap& start) {
   UnwrapOptions options;
   options.stop.tolerance = kTolerance;
-  Held begun{{}, start};
-  const double area = uv_area(disk.rest, disk.faces, start, executor);
+  solve::ConstrainedStart begun{{}, start};
+  const double area = measure::uv_area(disk.rest, disk.faces, start, executor);
   for (Vec2& u : begun.start) u /= std::sqrt(area);
-  Solver solver(disk, options, std::move(begun), executor);
-  SolveWatch watch;
+  solve::Solver solver(disk, options, std::move(begun), executor);
+  solve::SolveWatch watch;
   watch.loop.stop = disk.stop;
   return solver.run(0, watch).uv;
 }
 
 /// In mesh units.
-Excess excess_in(const Disk& disk, const UvMap& uv, Executor& executor) {
-  std::vector<RestTriangle> rest;
+ExcessDistortion excess_in(const solve::Disk& disk, const UvMap& uv, Executor& executor) {
+  std::vector<measure::RestTriangle> rest;
   std::vector<Triangle> faces;
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    look_now_and_then(t, disk.stop);
-    if (!(jacobian(disk.rest[t], uv_edges(disk.faces[t], uv)).determinant() > kLeastDeterminant))
+    check_cancelled_every(t, disk.stop);
+    if (!(measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], uv)).determinant() >
+          kLeastDeterminant))
       continue;
     rest.push_back(disk.rest[t]);
     faces.push_back(disk.faces[t]);
   }
   if (faces.empty()) return {};
-  const Excess own = excess_of(distortion_sums(rest, faces, uv, executor));
+  const ExcessDistortion own = excess_of(measure::distortion_sums(rest, faces, uv, executor));
   const double scale = disk.unit * disk.unit;
   return {scale * own.angle, scale * own.area};
 }
 
 }  // namespace
 
-Excess chart_excess(std::span<const Chart> charts, Executor& executor,
-                    const std::stop_token& stop) {
-  Excess total;
+ExcessDistortion chart_excess(std::span<const charts::Chart> charts, Executor& executor,
+                              const std::stop_token& stop) {
+  ExcessDistortion total;
   double area = 0;
-  for (const Chart& chart : charts) try {
+  for (const charts::Chart& chart : charts) try {
       throw_if_cancelled(stop);
-      area += surface_area(chart.mesh);
-      const Disk disk = make_disk(chart.mesh, chart.loops, stop);
+      area += measure::surface_area(chart.mesh);
+      const solve::Disk disk = solve::make_disk(chart.mesh, chart.loops, stop);
       total += excess_in(disk, moved_on(disk, executor, chart.start), executor);
     } catch (const Error&) {
       throw_if_cancelled(stop);
@@ -63,4 +64,4 @@ Excess chart_excess(std::span<const Chart> charts, Executor& executor,
   return {total.angle / area, total.area / area};
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -6,14 +6,15 @@
 
 #include "core/base/executor.hpp"
 #include "core/charts/charts.hpp"
-#include "core/segment/trial.hpp"
+#include "core/segment/test_parameterization.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 /// The excess of charts after some iterations of ARAP from their starts, over the area of all;
 /// faces that are flipped or collapsed then are left out. A chart that cannot be factored counts as
 /// flat. The same for any executor.
 /// Throws Error{cancelled}.
-Excess chart_excess(std::span<const Chart> charts, Executor& executor, const std::stop_token& stop);
+ExcessDistortion chart_excess(std::span<const charts::Chart> charts, Executor& executor,
+                              const std::stop_token& stop);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

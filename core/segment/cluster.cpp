@@ -17,7 +17,7 @@
 #include "core/base/cancel.hpp"
 #include "core/segment/labels.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr double kBaseCost = 2e-3;  // of an area, so that flat neighbours merge small ones first
@@ -33,10 +33,10 @@ struct Cluster {
 
 class Clustering {
  public:
-  Clustering(const Sheet& sheet, std::span<const Vec3> normals, double flatness)
-      : flatness_(flatness), clusters_(sheet.mesh.faces.size()), into_(clusters_.size()) {
-    for (Index t = 0; t < sheet.face_count(); ++t) add_face(sheet, t, normals[t]);
-    for (Index t = 0; t < sheet.face_count(); ++t)
+  Clustering(const SegmentationMesh& surface, std::span<const Vec3> normals, double flatness)
+      : flatness_(flatness), clusters_(surface.mesh.faces.size()), into_(clusters_.size()) {
+    for (Index t = 0; t < surface.face_count(); ++t) add_face(surface, t, normals[t]);
+    for (Index t = 0; t < surface.face_count(); ++t)
       for (const auto& [other, length] : clusters_[t].borders)
         if (t < other) push(t, other);
   }
@@ -63,15 +63,15 @@ class Clustering {
  private:
   using Candidate = std::tuple<double, Index, Index, int, int>;
 
-  void add_face(const Sheet& sheet, Index t, const Vec3& normal) {
+  void add_face(const SegmentationMesh& surface, Index t, const Vec3& normal) {
     Cluster& own = clusters_[t];
     into_[t] = t;
-    own.area = sheet.area(t);
+    own.area = surface.area(t);
     own.normal_sum = own.area * normal;
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
-      own.perimeter += sheet.seam_cost[h];
-      const Index twin = sheet.halfedges.twin[h];
-      if (twin != kNoTwin && face_of(twin) != t) own.borders[face_of(twin)] += sheet.seam_cost[h];
+      own.perimeter += surface.seam_cost[h];
+      const Index twin = surface.halfedges.twin[h];
+      if (twin != kNoTwin && face_of(twin) != t) own.borders[face_of(twin)] += surface.seam_cost[h];
     }
   }
 
@@ -117,13 +117,13 @@ class Clustering {
 
 }  // namespace
 
-std::vector<Index> cluster_faces(const Sheet& sheet, std::span<const Vec3> normals, double flatness,
-                                 const std::stop_token& stop) {
-  Clustering clustering(sheet, normals, flatness);
+std::vector<Index> cluster_faces(const SegmentationMesh& surface, std::span<const Vec3> normals,
+                                 double flatness, const std::stop_token& stop) {
+  Clustering clustering(surface, normals, flatness);
   clustering.run(stop);
   std::vector<Index> label = clustering.labels();
   renumber(label);
   return label;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

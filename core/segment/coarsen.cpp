@@ -15,12 +15,12 @@
 #include "core/mesh/edges.hpp"
 #include "core/segment/labels.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr int kMostSweeps = 80;
 constexpr double kRise = 1.5;  // of the threshold, from sweep to sweep
-constexpr Index kStepsBetweenLooks = 4096;
+constexpr Index kContractionsBetweenLooks = 4096;
 constexpr Index kDead = -1;
 
 class Contraction {
@@ -37,7 +37,7 @@ class Contraction {
     for (Index v = 0; v < mesh.vertex_count(); ++v) into_[v] = v;
     for (Index h = 0; h < 3 * face_count_; ++h) out_[start(h)] = h;
     for (std::size_t t = 0; t < faces_.size(); ++t) {
-      look_now_and_then(t, stop);
+      check_cancelled_every(t, stop);
       const Triangle& face = faces_[t];
       const double share = face_normal(face).norm() / 6;
       for (const Index v : face) area_[v] += share;
@@ -50,7 +50,7 @@ class Contraction {
     double most = mean * mean / 2;  // what joining two vertices of mean area costs
     for (int sweep = 0; sweep < kMostSweeps && face_count_ > enough; ++sweep, most *= kRise)
       for (Index v = 0; v < static_cast<Index>(out_.size()) && face_count_ > enough; ++v) {
-        if (v % kStepsBetweenLooks == 0) throw_if_cancelled(stop);
+        if (v % kContractionsBetweenLooks == 0) throw_if_cancelled(stop);
         if (out_[v] != kDead) contract_at(v, most);
       }
   }
@@ -226,4 +226,4 @@ Coarse coarsen(const TriMesh& mesh, const Halfedges& halfedges, Index faces,
   return contraction.result();
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

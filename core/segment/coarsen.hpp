@@ -6,7 +6,7 @@
 
 #include "core/mesh/halfedges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 /// Every vertex of the small surface stands for a cluster of vertices that hang together and lies
 /// at their mean; each of its faces is the one face whose corners lie in the same three clusters.
@@ -23,4 +23,4 @@ struct Coarse {
 Coarse coarsen(const TriMesh& mesh, const Halfedges& halfedges, Index faces,
                const std::stop_token& stop);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -5,7 +5,7 @@
 
 #include "core/types/options.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of excess, in each decade
@@ -29,4 +29,4 @@ std::optional<double> tighter_bound(double max_distortion) {
   return 2 + steps[steps.size() - 2];
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 /// The excess over 2 of each bound on the way to max_distortion, ascending. The first is searched
 /// for by itself, the others go on from the one before. From kDefaultDistortion on, the steps are
@@ -15,4 +15,4 @@ std::vector<double> excess_steps(double max_distortion);
 /// The bound of the step before the last one; nothing where there is but one.
 std::optional<double> tighter_bound(double max_distortion);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

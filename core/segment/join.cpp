@@ -21,7 +21,7 @@
 #include "core/segment/labels.hpp"
 #include "core/segment/ranks.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr double kFlatDefect = 0.3;  // radians that the angles at a vertex may lack, or exceed
@@ -58,19 +58,19 @@ Motion motion_between(std::span<const std::array<Vec2, 2>> pairs) {
 /// Two regions, and where in them each face is.
 class Pair {
  public:
-  Pair(const Sheet& sheet, const Region& a, const Region& b)
-      : sheet_(sheet),
+  Pair(const SegmentationMesh& surface, const Region& a, const Region& b)
+      : surface_(surface),
         a_(a),
         b_(b),
-        in_a_(sheet.mesh.faces.size(), a.faces),
-        in_b_(sheet.mesh.faces.size(), b.faces) {}
+        in_a_(surface.mesh.faces.size(), a.faces),
+        in_b_(surface.mesh.faces.size(), b.faces) {}
 
   /// The half-edges of b across which a lies.
   [[nodiscard]] std::vector<Index> border(std::span<const char> open) const {
     std::vector<Index> border;
     for (const Index t : b_.faces)
       for (Index h = 3 * t; h < 3 * t + 3; ++h) {
-        const Index twin = sheet_.halfedges.twin[h];
+        const Index twin = surface_.halfedges.twin[h];
         if (twin != kNoTwin && open[h] == 0 && in_a_[face_of(twin)] >= 0) border.push_back(h);
       }
     return border;
@@ -80,7 +80,7 @@ class Pair {
   [[nodiscard]] std::vector<std::array<Vec2, 2>> ends(std::span<const Index> border) const {
     std::vector<std::array<Vec2, 2>> ends;
     for (const Index h : border) {
-      const Index twin = sheet_.halfedges.twin[h];
+      const Index twin = surface_.halfedges.twin[h];
       const CornerUv &own = b_.uv[in_b_[face_of(h)]], &across = a_.uv[in_a_[face_of(twin)]];
       ends.push_back({own[h % 3], across[next_halfedge(twin) % 3]});
       ends.push_back({own[next_halfedge(h) % 3], across[twin % 3]});
@@ -96,23 +96,24 @@ class Pair {
   }
 
  private:
-  const Sheet& sheet_;
+  const SegmentationMesh& surface_;
   const Region &a_, &b_;
   Ranks in_a_, in_b_;
 };
 
 }  // namespace
 
-Region beside(const Sheet& sheet, const Region& a, const Region& b, std::span<const Index> border) {
-  const Pair pair(sheet, a, b);
+Region beside(const SegmentationMesh& surface, const Region& a, const Region& b,
+              std::span<const Index> border) {
+  const Pair pair(surface, a, b);
   return pair.beside(motion_between(pair.ends(border)));
 }
 
-Joiner::Joiner(const Sheet& sheet) : sheet_(sheet) {
-  std::vector<double> defect(sheet.mesh.positions.size(), 2 * std::numbers::pi);
-  for (std::size_t t = 0; t < sheet.mesh.faces.size(); ++t)
+Joiner::Joiner(const SegmentationMesh& surface) : surface_(surface) {
+  std::vector<double> defect(surface.mesh.positions.size(), 2 * std::numbers::pi);
+  for (std::size_t t = 0; t < surface.mesh.faces.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i)
-      defect[sheet.mesh.faces[t][(i + 2) % 3]] -= std::atan2(1.0, sheet.rest[t].cot[i]);
+      defect[surface.mesh.faces[t][(i + 2) % 3]] -= std::atan2(1.0, surface.rest[t].cot[i]);
   for (const double d : defect) is_flat_.push_back(std::abs(d) <= kFlatDefect ? 1 : 0);
 }
 
@@ -122,37 +123,37 @@ std::vector<Index> Joiner::slit_of(std::span<const Index> border) const {
   std::map<Index, Index> at;  // vertex -> a side of the border there
   for (std::size_t k = 0; k < border.size(); ++k)
     for (const Index v :
-         {start_of(sheet_.mesh.faces, border[k]), end_of(sheet_.mesh.faces, border[k])}) {
+         {start_of(surface_.mesh.faces, border[k]), end_of(surface_.mesh.faces, border[k])}) {
       if (is_flat_[v] == 0) continue;
       const auto [other, is_new] = at.try_emplace(v, static_cast<Index>(k));
       if (!is_new) stretches.join(static_cast<Index>(k), other->second);
     }
   std::map<Index, double> length;
   for (std::size_t k = 0; k < border.size(); ++k)
-    length[stretches.root(static_cast<Index>(k))] += sheet_.length[border[k]];
+    length[stretches.root(static_cast<Index>(k))] += surface_.length[border[k]];
   const auto longest = std::ranges::max_element(
       length, {}, [](const auto& stretch) { return rounded(stretch.second); });
   std::vector<Index> slit;
   for (std::size_t k = 0; k < border.size(); ++k) {
     if (stretches.root(static_cast<Index>(k)) == longest->first) continue;
     slit.push_back(border[k]);
-    slit.push_back(sheet_.halfedges.twin[border[k]]);
+    slit.push_back(surface_.halfedges.twin[border[k]]);
   }
   return slit;
 }
 
 Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<const char> open,
-                    double cap, const TrialRules& trial) const {
-  const Pair pair(sheet_, a.region, b.region);
+                    double cap, const TestRules& trial) const {
+  const Pair pair(surface_, a.region, b.region);
   const std::vector<Index> common = pair.border(open);
   const double area = a.area + b.area;
-  TrialRules rules = trial;
+  TestRules rules = trial;
   rules.most_excess = std::max(cap * area, (a.excess + b.excess).worst());
   Joined joined;
   const auto attempt = [&](std::span<const Index> glued, std::span<const char> cut) {
     const Motion motion = motion_between(pair.ends(glued));
     joined.patch = {pair.beside(motion), {}, area, false};
-    const TrialResult result = try_map(sheet_, cut, rules, joined.patch.region);
+    const TestResult result = test_parameterization(surface_, cut, rules, joined.patch.region);
     joined.verdict = result.verdict;
     joined.patch.excess = result.excess;
     joined.patch.is_sound = result.verdict == Verdict::sound;
@@ -171,4 +172,4 @@ Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<cons
   return joined.patch.is_sound ? joined : whole;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -3,16 +3,16 @@
 
 #include <vector>
 
-#include "core/segment/trial.hpp"
+#include "core/segment/test_parameterization.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 /// A region with the map that it has so far.
 struct MappedRegion {
   Region region;
-  Excess excess;          ///< of that map
-  double area = 0;        ///< of the sheet's 1
-  bool is_sound = false;  ///< its map is; what is not sound merges with nothing
+  ExcessDistortion excess;  ///< of that map
+  double area = 0;          ///< of the sheet's 1
+  bool is_sound = false;    ///< its map is; what is not sound merges with nothing
 };
 
 struct Joined {
@@ -22,13 +22,14 @@ struct Joined {
 };
 
 /// The faces and maps of both, b turned and moved to where its half-edges `border` lie in a.
-Region beside(const Sheet& sheet, const Region& a, const Region& b, std::span<const Index> border);
+Region beside(const SegmentationMesh& surface, const Region& a, const Region& b,
+              std::span<const Index> border);
 
 /// What joining regions needs of the sheet, worked out once.
 class Joiner {
  public:
   /// sheet must outlive the joiner.
-  explicit Joiner(const Sheet& sheet);
+  explicit Joiner(const SegmentationMesh& surface);
 
   /// b laid beside a, turned and moved as their common border asks, then mapped together. Where
   /// that has no sound map, only the longest stretch of the border is glued: stretches end at
@@ -36,13 +37,13 @@ class Joiner {
   /// open: one a half-edge of the sheet, 1: not glued. trial: but for the excess. A
   /// stop request ends it early.
   [[nodiscard]] Joined join(const MappedRegion& a, const MappedRegion& b,
-                            std::span<const char> open, double cap, const TrialRules& trial) const;
+                            std::span<const char> open, double cap, const TestRules& trial) const;
 
  private:
   [[nodiscard]] std::vector<Index> slit_of(std::span<const Index> border) const;
 
-  const Sheet& sheet_;
+  const SegmentationMesh& surface_;
   std::vector<char> is_flat_;  ///< one a vertex
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

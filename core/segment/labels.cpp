@@ -6,7 +6,7 @@
 #include "core/linear/sparse.hpp"
 #include "core/mesh/topology.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr double kClearMajority = 1.0001;  // ties, and what rounding makes of them, move nothing
@@ -14,32 +14,33 @@ constexpr double kClearMajority = 1.0001;  // ties, and what rounding makes of t
 /// The faces around a face: those that share a vertex with it.
 class Surroundings {
  public:
-  explicit Surroundings(const Sheet& sheet)
-      : sheet_(sheet), corners_(vertex_corners(sheet.mesh.faces, sheet.mesh.vertex_count())) {}
+  explicit Surroundings(const SegmentationMesh& surface)
+      : surface_(surface),
+        corners_(linear::vertex_corners(surface.mesh.faces, surface.mesh.vertex_count())) {}
 
   template <class Visit>
   void for_each(Index t, Visit visit) const {
-    for (const Index v : sheet_.mesh.faces[t])
+    for (const Index v : surface_.mesh.faces[t])
       for (Index k = corners_.begin[v]; k < corners_.begin[v + 1]; ++k)
         visit(face_of(corners_.corner[k]));
   }
 
  private:
-  const Sheet& sheet_;
-  VertexCorners corners_;
+  const SegmentationMesh& surface_;
+  linear::VertexCorners corners_;
 };
 
 /// The label with most area around face t among faces turned alike; its own where none has clearly
 /// more.
-Index prevailing_label(const Sheet& sheet, const Surroundings& around, double least_cosine,
-                       const std::vector<Index>& label, Index t) {
+Index prevailing_label(const SegmentationMesh& surface, const Surroundings& around,
+                       double least_cosine, const std::vector<Index>& label, Index t) {
   std::vector<std::pair<Index, double>> votes{{label[t], 0.0}};
   around.for_each(t, [&](Index other) {
-    if (sheet.normal[other].dot(sheet.normal[t]) < least_cosine) return;
+    if (surface.normal[other].dot(surface.normal[t]) < least_cosine) return;
     auto vote = std::find_if(votes.begin(), votes.end(),
                              [&](const auto& v) { return v.first == label[other]; });
     if (vote == votes.end()) vote = votes.insert(votes.end(), {label[other], 0.0});
-    vote->second += sheet.area(other);
+    vote->second += surface.area(other);
   });
   auto best = votes.front();
   for (const auto& vote : votes)
@@ -47,12 +48,12 @@ Index prevailing_label(const Sheet& sheet, const Surroundings& around, double le
   return best.first;
 }
 
-bool is_beside(const Sheet& sheet, const std::vector<Index>& label, Index t, Index wanted,
-               double least_cosine) {
+bool is_beside(const SegmentationMesh& surface, const std::vector<Index>& label, Index t,
+               Index wanted, double least_cosine) {
   for (Index h = 3 * t; h < 3 * t + 3; ++h) {
-    const Index twin = sheet.halfedges.twin[h];
+    const Index twin = surface.halfedges.twin[h];
     if (twin != kNoTwin && label[face_of(twin)] == wanted &&
-        sheet.normal[face_of(twin)].dot(sheet.normal[t]) >= least_cosine)
+        surface.normal[face_of(twin)].dot(surface.normal[t]) >= least_cosine)
       return true;
   }
   return false;
@@ -101,17 +102,18 @@ void separate_labels(const Halfedges& halfedges, std::vector<Index>& label) {
   label = std::move(piece);
 }
 
-void smooth_labels(const Sheet& sheet, int passes, double least_cosine, std::vector<Index>& label) {
-  const Surroundings around(sheet);
+void smooth_labels(const SegmentationMesh& surface, int passes, double least_cosine,
+                   std::vector<Index>& label) {
+  const Surroundings around(surface);
   for (int pass = 0; pass < passes; ++pass) {
     const std::vector<Index> before = label;
-    for (Index t = 0; t < sheet.face_count(); ++t) {
-      const Index wanted = prevailing_label(sheet, around, least_cosine, before, t);
-      if (wanted != before[t] && is_beside(sheet, label, t, wanted, least_cosine))
+    for (Index t = 0; t < surface.face_count(); ++t) {
+      const Index wanted = prevailing_label(surface, around, least_cosine, before, t);
+      if (wanted != before[t] && is_beside(surface, label, t, wanted, least_cosine))
         label[t] = wanted;
     }
   }
-  separate_labels(sheet.halfedges, label);
+  separate_labels(surface.halfedges, label);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/segment/sheet.hpp"
+#include "core/segment/segmentation_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 /// A cost with the last digits taken off: costs that differ by rounding alone tie, and ties are
 /// broken by number, so that a mesh moved or scaled is taken apart in the same way.
@@ -29,6 +29,7 @@ void separate_labels(const Halfedges& halfedges, std::vector<Index>& label);
 /// Borders between labels made smoother: a face goes to the label that has most of the area around
 /// it, `passes` times, where the faces that it joins are turned away from it by an angle of less
 /// than that whose cosine is given. Labels then are separated and renumbered.
-void smooth_labels(const Sheet& sheet, int passes, double least_cosine, std::vector<Index>& label);
+void smooth_labels(const SegmentationMesh& surface, int passes, double least_cosine,
+                   std::vector<Index>& label);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

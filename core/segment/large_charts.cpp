@@ -18,7 +18,7 @@
 #include "core/segment/excess_steps.hpp"
 #include "core/segment/region_charts.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr Index kFacesOfCoarse = 12'000;
@@ -29,19 +29,19 @@ constexpr double kRoughShare = 0.1, kFirstShare = 0.9;  // of the work, when the
 /// What charts are found, step by step (excess_steps()).
 class Search {
  public:
-  Search(const Chart& component, const SegmentRules& rules, Executor& executor)
+  Search(const charts::Chart& component, const SegmentRules& rules, Executor& executor)
       : component_(component),
         rules_(rules),
         executor_(executor),
         coarse_(coarsen(component.mesh, component.halfedges, kFacesOfCoarse, rules.stop)),
-        sheet_(make_sheet(coarse_.mesh, coarse_.halfedges)),
+        surface_(make_segmentation_mesh(coarse_.mesh, coarse_.halfedges)),
         steps_(excess_steps(rules.max_distortion)) {}
 
   LargeCharts run() {
     measure_hidden();
     Found best = first();
     for (std::size_t k = 1; k < steps_.size(); ++k) {
-      std::optional<Found> next = loosened(steps_[k]);
+      std::optional<Found> next = destroy(steps_[k]);
       if (next && is_better(next->seams, best.seams, rules_.most_regions)) best = std::move(*next);
     }
     return {std::move(best.charts), is_rough_};
@@ -49,8 +49,8 @@ class Search {
 
  private:
   struct Found {
-    std::vector<Chart> charts;
-    Excess small, large;  ///< on either surface, over its area
+    std::vector<charts::Chart> charts;
+    ExcessDistortion small, large;  ///< on either surface, over its area
     SeamsOfCharts seams;  ///< both sides of each, in units of the mesh, and the surface's boundary
   };
 
@@ -82,9 +82,9 @@ class Search {
 
   /// Nothing where there are no other charts, or they do not keep the bound; then more is kept from
   /// the small surface in steps to come.
-  std::optional<Found> loosened(double excess) {
+  std::optional<Found> destroy(double excess) {
     if (on_small(excess) <= last_) return std::nullopt;
-    const std::optional<Segments> segments = segmentation_->loosened(on_small(excess));
+    const std::optional<Segments> segments = segmentation_->destroy(on_small(excess));
     last_ = on_small(excess);
     if (!segments) return std::nullopt;
     Found found = on_large(*segments);
@@ -101,14 +101,14 @@ class Search {
       done_ = begin + share * (end - begin);
       if (rules_.on_progress) rules_.on_progress(stage, done_);
     };
-    segmentation_.emplace(sheet_, std::move(rules), steps, executor_);
+    segmentation_.emplace(surface_, std::move(rules), steps, executor_);
   }
 
   Found on_large(const Segments& segments) {
     Found found{region_charts(component_, coarse_, segments, rules_.stop), segments.excess, {}, {}};
     found.large = chart_excess(found.charts, executor_, rules_.stop);
     found.seams.charts = found.charts.size();
-    for (const Chart& chart : found.charts) found.seams.length += boundary_length(chart);
+    for (const charts::Chart& chart : found.charts) found.seams.length += boundary_length(chart);
     return found;
   }
 
@@ -125,11 +125,11 @@ class Search {
     hidden_ = std::min(hidden_ + kCaution * missed, kMostHidden * excess);
   }
 
-  const Chart& component_;
+  const charts::Chart& component_;
   const SegmentRules& rules_;
   Executor& executor_;
   Coarse coarse_;
-  Sheet sheet_;
+  SegmentationMesh surface_;
   std::vector<double> steps_;  ///< that are searched for
   double hidden_ = 0;          ///< of the excess: kept from the small surface
   bool is_rough_ = false;
@@ -140,8 +140,9 @@ class Search {
 
 }  // namespace
 
-LargeCharts large_charts(const Chart& component, const SegmentRules& rules, Executor& executor) {
+LargeCharts large_charts(const charts::Chart& component, const SegmentRules& rules,
+                         Executor& executor) {
   return Search(component, rules, executor).run();
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -7,14 +7,15 @@
 #include "core/charts/charts.hpp"
 #include "core/segment/segment.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 struct LargeCharts {
-  std::vector<Chart> charts;
+  std::vector<charts::Chart> charts;
   bool is_rough = false;  ///< noise leaves no room for the bound, which is then the small surface's
 };
 
 /// The component taken apart by segment(). The same for any executor. Throws Error{cancelled}.
-LargeCharts large_charts(const Chart& component, const SegmentRules& rules, Executor& executor);
+LargeCharts large_charts(const charts::Chart& component, const SegmentRules& rules,
+                         Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

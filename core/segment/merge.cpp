@@ -15,11 +15,11 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
-#include "core/base/scrambled.hpp"
+#include "core/base/splitmix64.hpp"
 #include "core/pack/box.hpp"
 #include "core/segment/labels.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr std::size_t kBatch = 4;   // unions tried at once
@@ -37,7 +37,7 @@ double area_within(const UvMap& hull) {
 }
 
 /// What is known of a pair of neighbours.
-struct Promise {
+struct GuaranteeRules {
   double rise = 0;  ///< excess that their union is thought to add
   bool was_flawed = false;
   bool is_impossible = false;
@@ -55,9 +55,10 @@ struct Union {
 
 class Merging {
  public:
-  Merging(const Joiner& joiner, const Sheet& sheet, Partition from, const MergeRules& rules)
+  Merging(const Joiner& joiner, const SegmentationMesh& surface, Partition from,
+          const MergeRules& rules)
       : joiner_(joiner),
-        sheet_(sheet),
+        surface_(surface),
         rules_(rules),
         open_(std::move(from.open)),
         patches_(std::move(from.patches)) {
@@ -92,17 +93,17 @@ class Merging {
 
  private:
   void measure_borders() {
-    std::vector<Index> owner(sheet_.mesh.faces.size(), -1);
+    std::vector<Index> owner(surface_.mesh.faces.size(), -1);
     for (std::size_t k = 0; k < patches_.size(); ++k)
       for (const Index t : patches_[k].region.faces) owner[t] = static_cast<Index>(k);
     borders_.resize(patches_.size());
     perimeter_.assign(patches_.size(), 0);
-    for (Index h = 0; h < static_cast<Index>(sheet_.halfedges.twin.size()); ++h) {
-      const Index twin = sheet_.halfedges.twin[h], own = owner[face_of(h)];
+    for (Index h = 0; h < static_cast<Index>(surface_.halfedges.twin.size()); ++h) {
+      const Index twin = surface_.halfedges.twin[h], own = owner[face_of(h)];
       const Index other = twin == kNoTwin ? -1 : owner[face_of(twin)];
       if (own < 0 || own == other) continue;
-      perimeter_[own] += sheet_.seam_cost[h];
-      if (other >= 0 && open_[h] == 0) borders_[own][other] += sheet_.seam_cost[h];
+      perimeter_[own] += surface_.seam_cost[h];
+      if (other >= 0 && open_[h] == 0) borders_[own][other] += surface_.seam_cost[h];
     }
   }
 
@@ -113,9 +114,10 @@ class Merging {
     const double border = borders_[a].at(b);
     const double narrow = std::min(perimeter_[a], perimeter_[b]);
     const double wide = std::max(perimeter_[a], perimeter_[b]);
-    const double price = rules_.budget > 0 ? rules_.price * rise / rules_.budget : 0;
+    const double distortion_weight =
+        rules_.budget > 0 ? rules_.distortion_weight * rise / rules_.budget : 0;
     const double worth = border / narrow + kWideShare * border / wide;
-    return rounded(price - worth * (1 + rules_.whim * drawn(a, b)));
+    return rounded(distortion_weight - worth * (1 + rules_.noise * drawn(a, b)));
   }
 
   /// A number in [0, 1) for this pair in this lot.
@@ -123,11 +125,11 @@ class Merging {
     const auto pair = std::minmax(a, b);
     const std::uint64_t both =
         static_cast<std::uint64_t>(pair.first) << 32 | static_cast<std::uint64_t>(pair.second);
-    const std::uint64_t lot = static_cast<std::uint64_t>(rules_.lot + 1) * kGoldenStep;
-    return static_cast<double>(scrambled(both + lot) >> 11) * 0x1p-53;
+    const std::uint64_t seed = static_cast<std::uint64_t>(rules_.seed + 1) * kGoldenStep;
+    return static_cast<double>(splitmix64(both + seed) >> 11) * 0x1p-53;
   }
 
-  void propose(Index a, Index b, const Promise& promise) {
+  void propose(Index a, Index b, const GuaranteeRules& promise) {
     if (std::max(a, b) < rules_.whole) return;
     if (promise.is_impossible || !patches_[a].is_sound || !patches_[b].is_sound) return;
     const double promised = promise.was_flawed ? kLast : key(a, b, promise.rise);
@@ -149,7 +151,7 @@ class Merging {
     });
     throw_if_cancelled(rules_.stop);
     for (Union& both : batch) {
-      if (rules_.effort != nullptr) rules_.effort->add(both.tried->patch.region.faces.size());
+      if (rules_.progress != nullptr) rules_.progress->add(both.tried->patch.region.faces.size());
       judge(std::move(both));
     }
   }
@@ -160,17 +162,18 @@ class Merging {
     UvMap points;
     points.reserve(3 * patch.region.uv.size());
     for (const CornerUv& uv : patch.region.uv) points.insert(points.end(), uv.begin(), uv.end());
-    points = convex_hull(std::move(points));
-    const double side = squarest_box(points).size.maxCoeff();
+    points = pack::convex_hull(std::move(points));
+    const double side = pack::squarest_box(points).size.maxCoeff();
     return side * side * rules_.least_fill > rules_.page_area ||
            rules_.least_solid * area_within(points) > patch.area;
   }
 
   void judge(Union both) {
-    Promise& known = known_[{both.a, both.b}];
+    GuaranteeRules& known = known_[{both.a, both.b}];
     Joined& joined = *both.tried;
     if (joined.patch.is_sound && is_awkward(joined.patch)) joined.patch.is_sound = false;
-    const Excess rise = joined.patch.excess - patches_[both.a].excess - patches_[both.b].excess;
+    const ExcessDistortion rise =
+        joined.patch.excess - patches_[both.a].excess - patches_[both.b].excess;
     known = {std::max(rise.worst(), 0.0), !joined.patch.is_sound,
              joined.verdict == Verdict::impossible};
     if (!joined.patch.is_sound) return;
@@ -179,7 +182,7 @@ class Merging {
   }
 
   void accept(const Union& best) {
-    const Excess after =
+    const ExcessDistortion after =
         total_ + best.tried->patch.excess - patches_[best.a].excess - patches_[best.b].excess;
     if (after.worst() > std::max(rules_.budget, total_.worst())) return;
     total_ = after;
@@ -187,7 +190,7 @@ class Merging {
     double slit = 0;
     for (const Index h : best.tried->slit) {
       open_[h] = 1;
-      slit += sheet_.seam_cost[h];
+      slit += surface_.seam_cost[h];
     }
     perimeter_.push_back(perimeter_[best.a] + perimeter_[best.b] - 2 * borders_[best.a].at(best.b) +
                          slit);
@@ -212,7 +215,7 @@ class Merging {
 
   /// other has a new neighbour, of which it knows what it knew of the parts.
   void meet(Index joined, Index other, double length, const Union& parts) {
-    Promise promise;
+    GuaranteeRules promise;
     for (const Index part : {parts.a, parts.b}) {
       borders_[other].erase(part);
       const auto known = known_.find(std::minmax(part, other));
@@ -227,26 +230,26 @@ class Merging {
   }
 
   const Joiner& joiner_;
-  const Sheet& sheet_;
+  const SegmentationMesh& surface_;
   const MergeRules& rules_;
   std::vector<char> open_;
   std::vector<MappedRegion> patches_;  ///< those that were merged are dead and empty
   std::vector<char> alive_;
   std::vector<std::map<Index, double>> borders_;  ///< lengths to each neighbour
   std::vector<double> perimeter_;
-  std::map<std::pair<Index, Index>, Promise> known_;
+  std::map<std::pair<Index, Index>, GuaranteeRules> known_;
   std::priority_queue<Union, std::vector<Union>, std::greater<>> queue_;
-  Excess total_;
+  ExcessDistortion total_;
   std::size_t count_ = 0;
 };
 
 }  // namespace
 
-Partition merge_patches(const Joiner& joiner, const Sheet& sheet, Partition from,
+Partition merge_patches(const Joiner& joiner, const SegmentationMesh& surface, Partition from,
                         const MergeRules& rules, Executor& executor) {
-  Merging merging(joiner, sheet, std::move(from), rules);
+  Merging merging(joiner, surface, std::move(from), rules);
   merging.run(executor);
   return merging.take();
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

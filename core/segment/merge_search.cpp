@@ -12,19 +12,19 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
-#include "core/segment/glue_slits.hpp"
-#include "core/segment/halve.hpp"
-#include "core/segment/hang.hpp"
-#include "core/segment/loosen.hpp"
-#include "core/segment/straighten.hpp"
-#include "core/solve/base/side_by_side.hpp"
+#include "core/segment/attach_small_charts.hpp"
+#include "core/segment/bisect.hpp"
+#include "core/segment/close_slits.hpp"
+#include "core/segment/destroy.hpp"
+#include "core/segment/shorten_seams.hpp"
+#include "core/solve/base/parallel_map.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 /// What of MergeRules differs between the tries.
 struct Try {
-  double price = 0, least_fill = 0, least_solid = 0, whim = 0;
+  double distortion_weight = 0, least_fill = 0, least_solid = 0, noise = 0;
 };
 constexpr std::array kTries = {Try{1, 0, 0, 0},       Try{1, .72, 0, .3},   Try{2, .72, .65, 0},
                                Try{2, 0, 0, .5},      Try{5, .72, 0, 0},    Try{2, .72, .7, .3},
@@ -49,10 +49,10 @@ double all_of(const Candidate& own) { return own.cost.all; }
 
 }  // namespace
 
-MergeSearch::MergeSearch(const Sheet& sheet, const Partition& from, const MergeRules& rules,
-                         std::size_t steps, Executor& executor)
-    : sheet_(sheet), from_(from), rules_(rules), executor_(executor), joiner_(sheet) {
-  const double rounds = kFacesOfSearch / (sheet_.face_count() * std::max(1.0, rules_.page_area));
+MergeSearch::MergeSearch(const SegmentationMesh& surface, const Partition& from,
+                         const MergeRules& rules, std::size_t steps, Executor& executor)
+    : surface_(surface), from_(from), rules_(rules), executor_(executor), joiner_(surface) {
+  const double rounds = kFacesOfSearch / (surface_.face_count() * std::max(1.0, rules_.page_area));
   const double wanted = std::max(std::min(rounds / 2, kFewTries), rounds / 4);
   tries_ = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(kTries.size())));
   mends_ = static_cast<std::size_t>(std::clamp(kShareOfMends * rounds, 0.0, kMostMends));
@@ -64,7 +64,7 @@ MergeSearch::MergeSearch(const Sheet& sheet, const Partition& from, const MergeR
   weight_left_ = static_cast<double>(tries_) + of_mends(mends_) +
                  static_cast<double>(steps) * (of_mends(std::min(mends_, kMendsOfAStep)) +
                                                static_cast<double>(std::min(kAbreast, tries_)));
-  try_faces_ = kFacesOfATry * sheet_.face_count();
+  try_faces_ = kFacesOfATry * surface_.face_count();
 }
 
 std::vector<Candidate> MergeSearch::greedy() {
@@ -79,11 +79,11 @@ std::vector<Candidate> MergeSearch::greedy() {
 void MergeSearch::try_some(std::size_t first, std::size_t count, std::vector<Candidate>& best) {
   const double limit = best.size() < kept_ ? kInfinity : best.back().cost.all;
   begin(static_cast<double>(count));
-  std::vector<Candidate> found = side_by_side<Candidate>(count, executor_, [&](std::size_t k) {
-    return weighed(merged(from_, rules_of(first + k)), limit, kUsual);
-  });
+  std::vector<Candidate> found = solve::parallel_map<Candidate>(
+      count, executor_,
+      [&](std::size_t k) { return weighed(merged(from_, rules_of(first + k)), limit, kUsual); });
   learn(found);
-  try_faces_ = rules_.effort->done() / static_cast<double>(count);
+  try_faces_ = rules_.progress->done() / static_cast<double>(count);
   for (Candidate& own : found) best.push_back(std::move(own));
   std::ranges::stable_sort(best, std::less(), all_of);
   const auto cost_alike = [](const Candidate& x, const Candidate& y) {
@@ -97,7 +97,7 @@ void MergeSearch::mend(std::vector<Candidate>& best) {
   const auto count = static_cast<double>(best.size());
   for (const std::size_t end = mended_ + mends_; mended_ < end; ++mended_) {
     begin(kTriesOfAMend * count);
-    std::vector<Candidate> found = side_by_side<Candidate>(
+    std::vector<Candidate> found = solve::parallel_map<Candidate>(
         best.size(), executor_, [&](std::size_t k) { return mended(best[k], mended_); });
     learn(found);
     for (std::size_t k = 0; k < found.size(); ++k)
@@ -107,28 +107,28 @@ void MergeSearch::mend(std::vector<Candidate>& best) {
 
 Candidate MergeSearch::finished(std::vector<Candidate> all) {
   begin(kTriesOfFinishing * static_cast<double>(all.size()));
-  all = side_by_side<Candidate>(all.size(), executor_, [&](std::size_t k) {
-    return straightened(std::move(all[k].partition));
+  all = solve::parallel_map<Candidate>(all.size(), executor_, [&](std::size_t k) {
+    return with_shortened_seams(std::move(all[k].partition));
   });
   learn(all);
   constexpr std::array kLeastFills = {0.0, kFittingFill};
-  std::vector<Candidate> found =
-      side_by_side<Candidate>(all.size() * kLeastFills.size(), executor_, [&](std::size_t k) {
+  std::vector<Candidate> found = solve::parallel_map<Candidate>(
+      all.size() * kLeastFills.size(), executor_, [&](std::size_t k) {
         const Candidate& own = all[k / kLeastFills.size()];
         if (own.partition.patches.size() == 1) return Candidate{};
         MergeRules rules = rules_;
         rules.least_fill = kLeastFills[k % kLeastFills.size()];
         return noted(rules, [&](const MergeRules& by) {
           SerialExecutor serial;
-          Partition next = merge_patches(joiner_, sheet_, own.partition, by, serial);
-          straighten(sheet_, by, next);
+          Partition next = merge_patches(joiner_, surface_, own.partition, by, serial);
+          shorten_seams(surface_, by, next);
           return next;
         });
       });
   learn(found);
   for (Candidate& own : found) all.push_back(std::move(own));
   all = distinct(std::move(all));
-  all = side_by_side<Candidate>(
+  all = solve::parallel_map<Candidate>(
       all.size(), executor_, [&](std::size_t k) { return completed(std::move(all[k].partition)); });
   learn(all);
   return cheapest(std::move(all));
@@ -138,14 +138,14 @@ Candidate MergeSearch::taken_apart(Candidate whole) {
   Candidate best = weighed(std::move(whole), kInfinity, kAcross);
   while (best.cost.all > best.cost.seams) {
     std::vector<Candidate> found =
-        side_by_side<Candidate>(best.partition.patches.size(), executor_,
-                                [&](std::size_t k) { return cut_across(best, k); });
+        solve::parallel_map<Candidate>(best.partition.patches.size(), executor_,
+                                       [&](std::size_t k) { return cut_across(best, k); });
     learn(found);
     auto next = std::ranges::min_element(found, std::less(), all_of);
     if (!(next->cost.all < best.cost.all)) break;
     best = std::move(*next);
   }
-  glue_slits(sheet_, rules_, best.partition);
+  close_slits(surface_, rules_, best.partition);
   return best;
 }
 
@@ -177,18 +177,18 @@ Candidate MergeSearch::with_shorter_seams(std::vector<Candidate> all, Candidate 
 
 /// A part of the work begins that takes as long as so many tries, of which the last ones tell.
 void MergeSearch::begin(double tries) {
-  rules_.effort->begin(tries / weight_left_, tries * try_faces_);
+  rules_.progress->begin(tries / weight_left_, tries * try_faces_);
   weight_left_ = std::max(weight_left_ - tries, tries);
 }
 
 MergeRules MergeSearch::rules_of(std::size_t number) const {
   MergeRules rules = rules_;
   const Try& by = kTries[number % kTries.size()];
-  rules.price = by.price;
+  rules.distortion_weight = by.distortion_weight;
   rules.least_fill = by.least_fill;
   rules.least_solid = by.least_solid;
-  rules.whim = by.whim;
-  rules.lot = static_cast<int>(number);
+  rules.noise = by.noise;
+  rules.seed = static_cast<int>(number);
   return rules;
 }
 
@@ -201,7 +201,7 @@ void MergeSearch::learn(std::vector<Candidate>& found) {
     failures_.take(std::move(own.failures));
     own.failures = {};
   }
-  rules_.effort->add(static_cast<std::size_t>(faces));
+  rules_.progress->add(static_cast<std::size_t>(faces));
   throw_if_cancelled(rules_.stop);
 }
 
@@ -209,9 +209,9 @@ void MergeSearch::learn(std::vector<Candidate>& found) {
 template <class Work>
 Candidate MergeSearch::noted(MergeRules rules, Work search) const {
   Candidate found;
-  Effort own({});
-  found.failures = TrialMemory(&failures_);
-  rules.effort = &own;
+  ProgressEstimate own({});
+  found.failures = FailedTrials(&failures_);
+  rules.progress = &own;
   rules.memory = &found.failures;
   found.partition = search(rules);
   found.tried_faces = own.done();
@@ -221,14 +221,14 @@ Candidate MergeSearch::noted(MergeRules rules, Work search) const {
 Candidate MergeSearch::merged(Partition partition, const MergeRules& by) const {
   return noted(by, [&](const MergeRules& rules) {
     SerialExecutor serial;
-    return merge_patches(joiner_, sheet_, std::move(partition), rules, serial);
+    return merge_patches(joiner_, surface_, std::move(partition), rules, serial);
   });
 }
 
 /// Without a look at the page.
-Candidate MergeSearch::straightened(Partition partition) const {
+Candidate MergeSearch::with_shortened_seams(Partition partition) const {
   return noted(rules_, [&](const MergeRules& rules) {
-    straighten(sheet_, rules, partition);
+    shorten_seams(surface_, rules, partition);
     return std::move(partition);
   });
 }
@@ -236,8 +236,8 @@ Candidate MergeSearch::straightened(Partition partition) const {
 /// With slits glued, and small regions hung on others.
 Candidate MergeSearch::completed(Partition partition) const {
   return noted(rules_, [&](const MergeRules& rules) {
-    glue_slits(sheet_, rules, partition);
-    hang_small(sheet_, rules, partition);
+    close_slits(surface_, rules, partition);
+    attach_small_charts(surface_, rules, partition);
     return std::move(partition);
   });
 }
@@ -246,9 +246,9 @@ Candidate MergeSearch::completed(Partition partition) const {
 Candidate MergeSearch::mended(const Candidate& best, std::size_t number) const {
   if (best.partition.patches.size() <= 1) return {};
   MergeRules rules = rules_of(number);
-  rules.lot = kFirstLotOfMends + static_cast<int>(number);
-  rules.whim = kWhimOfMends;
-  Loosened loose = loosened(sheet_, from_, best.partition, number);
+  rules.seed = kFirstLotOfMends + static_cast<int>(number);
+  rules.noise = kWhimOfMends;
+  Destroyed loose = destroy(surface_, from_, best.partition, number);
   rules.whole = loose.whole;
   Candidate again = merged(std::move(loose.partition), rules);
   return weighed(std::move(again), best.cost.all, kUsual);
@@ -257,9 +257,9 @@ Candidate MergeSearch::mended(const Candidate& best, std::size_t number) const {
 Candidate MergeSearch::cut_across(const Candidate& whole, std::size_t k) const {
   if (whole.partition.patches[k].area < kLargeRegion) return {};
   Candidate apart = noted(rules_, [&](const MergeRules& rules) {
-    std::optional<Partition> cut = halved(sheet_, whole.partition, k, rules);
+    std::optional<Partition> cut = bisect(surface_, whole.partition, k, rules);
     if (!cut) return Partition{};
-    straighten(sheet_, rules, *cut);
+    shorten_seams(surface_, rules, *cut);
     return std::move(*cut);
   });
   if (apart.partition.patches.empty()) return apart;
@@ -293,8 +293,8 @@ Candidate MergeSearch::weighed(Candidate own, double limit, CostRules rules) con
   rules.limit = limit;
   rules.longest = longest_;
   rules.stop = rules_.stop;
-  own.cost = partition_cost(sheet_, own.partition, rules);
+  own.cost = partition_cost(surface_, own.partition, rules);
   return own;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

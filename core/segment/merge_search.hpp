@@ -7,15 +7,15 @@
 
 #include "core/segment/candidate.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 /// Partitions of one sheet that compete. Every step is the same for any executor and throws
 /// Error{cancelled}.
 class MergeSearch {
  public:
   /// steps: how often widen() is going to be called. sheet, from and executor must outlive this.
-  MergeSearch(const Sheet& sheet, const Partition& from, const MergeRules& rules, std::size_t steps,
-              Executor& executor);
+  MergeSearch(const SegmentationMesh& surface, const Partition& from, const MergeRules& rules,
+              std::size_t steps, Executor& executor);
 
   /// The cheapest of the tries, the best first.
   std::vector<Candidate> greedy();
@@ -52,7 +52,7 @@ class MergeSearch {
   template <class Work>
   [[nodiscard]] Candidate noted(MergeRules rules, Work search) const;
   [[nodiscard]] Candidate merged(Partition partition, const MergeRules& by) const;
-  [[nodiscard]] Candidate straightened(Partition partition) const;
+  [[nodiscard]] Candidate with_shortened_seams(Partition partition) const;
   [[nodiscard]] Candidate completed(Partition partition) const;
   [[nodiscard]] Candidate mended(const Candidate& best, std::size_t number) const;
   [[nodiscard]] Candidate cut_across(const Candidate& whole, std::size_t k) const;
@@ -60,12 +60,12 @@ class MergeSearch {
   [[nodiscard]] Candidate cheapest(std::vector<Candidate> all) const;
   [[nodiscard]] Candidate weighed(Candidate own, double limit, CostRules rules) const;
 
-  const Sheet& sheet_;
+  const SegmentationMesh& surface_;
   const Partition& from_;
   MergeRules rules_;
   Executor& executor_;
   Joiner joiner_;
-  TrialMemory failures_;  ///< of all searches that have ended
+  FailedTrials failures_;  ///< of all searches that have ended
   std::size_t tries_ = 1, kept_ = 1;
   std::size_t mends_ = 0;     ///< of each that is kept
   std::size_t mended_ = 0;    ///< how often each was
@@ -76,4 +76,4 @@ class MergeSearch {
   double try_faces_ = 0;  ///< that a try took, or the first ones are thought to take
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

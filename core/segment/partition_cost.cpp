@@ -6,22 +6,22 @@
 #include <algorithm>
 
 #include "core/pack/pack.hpp"
+#include "core/segment/destroy.hpp"
 #include "core/segment/labels.hpp"
-#include "core/segment/loosen.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr double kMostPage = 1.5;  // of the sheet
 
-std::vector<Outline> outlines(const Sheet& sheet, const Partition& partition,
-                              const std::vector<Index>& owner) {
-  std::vector<Outline> all(partition.patches.size());
+std::vector<charts::Outline> outlines(const SegmentationMesh& surface, const Partition& partition,
+                                      const std::vector<Index>& owner) {
+  std::vector<charts::Outline> all(partition.patches.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Region& region = partition.patches[k].region;
     for (std::size_t f = 0; f < region.faces.size(); ++f)
       for (Index i = 0; i < 3; ++i) {
-        const Index h = 3 * region.faces[f] + i, twin = sheet.halfedges.twin[h];
+        const Index h = 3 * region.faces[f] + i, twin = surface.halfedges.twin[h];
         const CornerUv& uv = region.uv[f];
         if (twin == kNoTwin || partition.open[h] != 0 ||
             owner[face_of(twin)] != static_cast<Index>(k))
@@ -31,26 +31,28 @@ std::vector<Outline> outlines(const Sheet& sheet, const Partition& partition,
   return all;
 }
 
-double seam_of(const Sheet& sheet, const Partition& partition, const std::vector<Index>& owner) {
+double seam_of(const SegmentationMesh& surface, const Partition& partition,
+               const std::vector<Index>& owner) {
   double seam = 0;
   for (std::size_t h = 0; h < partition.open.size(); ++h) {
-    const Index twin = sheet.halfedges.twin[h];
+    const Index twin = surface.halfedges.twin[h];
     if (twin == kNoTwin) continue;
-    if (partition.open[h] != 0 || owner[face_of(twin)] != owner[h / 3]) seam += sheet.length[h] / 2;
+    if (partition.open[h] != 0 || owner[face_of(twin)] != owner[h / 3])
+      seam += surface.length[h] / 2;
   }
   return seam;
 }
 
 }  // namespace
 
-double seam_length(const Sheet& sheet, const Partition& partition) {
-  return seam_of(sheet, partition, owners(sheet, partition));
+double seam_length(const SegmentationMesh& surface, const Partition& partition) {
+  return seam_of(surface, partition, owners(surface, partition));
 }
 
-PartitionCost partition_cost(const Sheet& sheet, const Partition& partition,
+PartitionCost partition_cost(const SegmentationMesh& surface, const Partition& partition,
                              const CostRules& rules) {
-  const std::vector<Index> owner = owners(sheet, partition);
-  const double seam = seam_of(sheet, partition, owner);
+  const std::vector<Index> owner = owners(surface, partition);
+  const double seam = seam_of(surface, partition, owner);
   if (seam <= 0) return {0, 0, 0};
   double charts = 0;
   for (const MappedRegion& patch : partition.patches)
@@ -59,10 +61,11 @@ PartitionCost partition_cost(const Sheet& sheet, const Partition& partition,
   if (cost.seam >= rules.longest || cost.seams >= rules.limit) return cost;
   cost.all = cost.seams;
   if (rules.page_area > kMostPage) return cost;
-  const double fill = rough_fill(outlines(sheet, partition, owner), rules.wanted_fill, rules.stop);
+  const double fill =
+      pack::rough_fill(outlines(surface, partition, owner), rules.wanted_fill, rules.stop);
   const double emptiness = std::max(0.0, rules.wanted_fill - fill);
   cost.all = rounded(seam + charts + kCostOfEmptiness * emptiness);
   return cost;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

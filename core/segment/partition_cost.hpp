@@ -4,10 +4,10 @@
 #include <limits>
 #include <stop_token>
 
-#include "core/segment/hang.hpp"
+#include "core/segment/attach_small_charts.hpp"
 #include "core/segment/merge.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 inline constexpr double kCostOfEmptiness = 40;  ///< of a whole page, in length of seams
 
@@ -28,12 +28,12 @@ struct CostRules {
 };
 
 /// The length of all seams; area of the sheet: 1.
-double seam_length(const Sheet& sheet, const Partition& partition);
+double seam_length(const SegmentationMesh& surface, const Partition& partition);
 
 /// Seams by their lengths, so much for each chart, and more for each share of a rough packing
 /// that is wanted and left empty; nothing for what needs no cut. Where `all` is not below the limit
 /// it may be infinite instead. Rounded: equal costs tie. Throws Error{cancelled}.
-PartitionCost partition_cost(const Sheet& sheet, const Partition& partition,
+PartitionCost partition_cost(const SegmentationMesh& surface, const Partition& partition,
                              const CostRules& rules);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

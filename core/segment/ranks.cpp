@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 /// Lists that no Ranks of this thread uses, all kNoTwin.
@@ -29,4 +29,4 @@ Ranks::~Ranks() {
   idle().push_back(std::move(rank_));
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -6,7 +6,7 @@
 
 #include "core/mesh/halfedges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 /// Kept per thread and wiped after use: what it costs is the list, not the sheet.
 class Ranks {
@@ -25,4 +25,4 @@ class Ranks {
   std::vector<Index> rank_;
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

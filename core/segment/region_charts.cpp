@@ -7,9 +7,9 @@
 #include "core/base/cancel.hpp"
 #include "core/charts/split_chart.hpp"
 #include "core/mesh/edges.hpp"
-#include "core/segment/carry.hpp"
+#include "core/segment/transfer_seams.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 /// What segmentation says of each face and half-edge.
@@ -55,13 +55,13 @@ class Extended {
 };
 
 /// The map of the small surface, smoothed by the way: each corner follows the triangle nearby.
-UvMap carried_map(const ChartPart& part, const Coarse& coarse, std::span<const CornerUv> uv,
+UvMap carried_map(const charts::ChartPart& part, const Coarse& coarse, std::span<const CornerUv> uv,
                   std::span<const Index> near, const std::stop_token& stop) {
   UvMap map(part.vertex.size(), Vec2::Zero());
   std::vector<double> count(map.size(), 0);
   const TriMesh& mesh = part.chart.mesh;
   for (std::size_t t = 0; t < part.face.size(); ++t) {
-    look_now_and_then(t, stop);
+    check_cancelled_every(t, stop);
     const Index n = near[part.face[t]];
     const Extended extended(coarse.mesh, coarse.mesh.faces[n], uv[n]);
     for (const Index v : mesh.faces[t]) {
@@ -75,7 +75,7 @@ UvMap carried_map(const ChartPart& part, const Coarse& coarse, std::span<const C
 
 }  // namespace
 
-double boundary_length(const Chart& chart) {
+double boundary_length(const charts::Chart& chart) {
   const TriMesh& mesh = chart.mesh;
   double length = 0;
   for (const BoundaryLoop& loop : chart.loops)
@@ -85,13 +85,13 @@ double boundary_length(const Chart& chart) {
   return length;
 }
 
-std::vector<Chart> region_charts(const Chart& component, const Segments& segments) {
+std::vector<charts::Chart> region_charts(const charts::Chart& component, const Segments& segments) {
   const auto [uv, seam] = seamed(component.halfedges, segments);
   Halfedges cut = component.halfedges;
   for (std::size_t h = 0; h < cut.twin.size(); ++h)
     if (seam[h] != 0) cut.twin[h] = kNoTwin;
-  std::vector<Chart> charts;
-  for (ChartPart& part : parts_of(component, cut)) {
+  std::vector<charts::Chart> charts;
+  for (charts::ChartPart& part : charts::parts_of(component, cut)) {
     part.chart.start.resize(part.vertex.size());
     for (std::size_t t = 0; t < part.face.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i)
@@ -102,12 +102,12 @@ std::vector<Chart> region_charts(const Chart& component, const Segments& segment
   return charts;
 }
 
-std::vector<Chart> region_charts(const Chart& component, const Coarse& coarse,
-                                 const Segments& segments, const std::stop_token& stop) {
+std::vector<charts::Chart> region_charts(const charts::Chart& component, const Coarse& coarse,
+                                         const Segments& segments, const std::stop_token& stop) {
   const auto [uv, seam] = seamed(coarse.halfedges, segments);
-  const Carried carried = carry(component.mesh, component.halfedges, coarse, seam, stop);
-  std::vector<Chart> charts;
-  for (ChartPart& part : parts_of(component, carried.cut, stop)) {
+  const TransferredSeams carried = carry(component.mesh, component.halfedges, coarse, seam, stop);
+  std::vector<charts::Chart> charts;
+  for (charts::ChartPart& part : charts::parts_of(component, carried.cut, stop)) {
     part.chart.start = carried_map(part, coarse, uv, carried.near, stop);
     part.chart.least = Guarantee::bijective;
     charts.push_back(std::move(part.chart));
@@ -115,4 +115,4 @@ std::vector<Chart> region_charts(const Chart& component, const Coarse& coarse,
   return charts;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

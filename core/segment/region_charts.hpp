@@ -8,18 +8,18 @@
 #include "core/segment/coarsen.hpp"
 #include "core/segment/segment.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 /// In space.
-double boundary_length(const Chart& chart);
+double boundary_length(const charts::Chart& chart);
 
 /// The regions of a component, each with its map for a start.
-std::vector<Chart> region_charts(const Chart& component, const Segments& segments);
+std::vector<charts::Chart> region_charts(const charts::Chart& component, const Segments& segments);
 
 /// The regions of the small surface that stands for a component, carried to the component. The
 /// starts follow the maps of the small surface: they may have flips where triangles are rough.
 /// Throws Error{cancelled}.
-std::vector<Chart> region_charts(const Chart& component, const Coarse& coarse,
-                                 const Segments& segments, const std::stop_token& stop);
+std::vector<charts::Chart> region_charts(const charts::Chart& component, const Coarse& coarse,
+                                         const Segments& segments, const std::stop_token& stop);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -3,19 +3,19 @@
 #include <algorithm>
 
 #include "core/base/cancel.hpp"
-#include "core/segment/trial.hpp"
+#include "core/segment/test_parameterization.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
-bool remap(const Sheet& sheet, std::span<const char> open, const MergeRules& rules,
-           const Excess& before, MappedRegion& region, Excess& total) {
+bool remap(const SegmentationMesh& surface, std::span<const char> open, const MergeRules& rules,
+           const ExcessDistortion& before, MappedRegion& region, ExcessDistortion& total) {
   throw_if_cancelled(rules.stop);
-  const TrialRules trial{.most_excess = std::max(rules.cap * region.area, before.worst()),
-                         .stop = rules.stop,
-                         .memory = rules.memory};
-  const TrialResult result = try_map(sheet, open, trial, region.region);
-  if (rules.effort != nullptr) rules.effort->add(region.region.faces.size());
-  const Excess after = total + result.excess - before;
+  const TestRules trial{.most_excess = std::max(rules.cap * region.area, before.worst()),
+                        .stop = rules.stop,
+                        .memory = rules.memory};
+  const TestResult result = test_parameterization(surface, open, trial, region.region);
+  if (rules.progress != nullptr) rules.progress->add(region.region.faces.size());
+  const ExcessDistortion after = total + result.excess - before;
   if (result.verdict != Verdict::sound || after.worst() > std::max(rules.budget, total.worst()))
     return false;
   region.excess = result.excess;
@@ -23,4 +23,4 @@ bool remap(const Sheet& sheet, std::span<const char> open, const MergeRules& rul
   return true;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

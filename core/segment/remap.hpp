@@ -5,13 +5,13 @@
 
 #include "core/segment/merge.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 /// Tries a map of the region, glued but for `open`, in the place of those whose excess was
 /// `before`. Where it is sound and excess stays within the rules' bounds, or where it was, it is
 /// the region's, total (of all patches) says so, and the answer is true; else the region is of no
 /// use. Throws Error{cancelled}.
-bool remap(const Sheet& sheet, std::span<const char> open, const MergeRules& rules,
-           const Excess& before, MappedRegion& region, Excess& total);
+bool remap(const SegmentationMesh& surface, std::span<const char> open, const MergeRules& rules,
+           const ExcessDistortion& before, MappedRegion& region, ExcessDistortion& total);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

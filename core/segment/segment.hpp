@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/base/executor.hpp"
-#include "core/segment/best_merge.hpp"
-#include "core/segment/sheet.hpp"
+#include "core/segment/best_partition.hpp"
+#include "core/segment/segmentation_mesh.hpp"
 #include "core/types/options.hpp"
 #include "core/types/progress.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 struct SegmentRules {
   double max_distortion = kDefaultDistortion;  ///< of all regions together, D_angle and D_area; > 2
@@ -26,9 +26,9 @@ struct SegmentRules {
 
 struct Segments {
   std::vector<Region> regions;
-  std::vector<char> open;  ///< one a half-edge of the sheet, 1: a seam inside a region
-  Excess excess = {};      ///< of all maps, over the sheet's area
-  double seam_length = 0;  ///< area of the sheet: 1
+  std::vector<char> open;        ///< one a half-edge of the sheet, 1: a seam inside a region
+  ExcessDistortion excess = {};  ///< of all maps, over the sheet's area
+  double seam_length = 0;        ///< area of the sheet: 1
 };
 
 /// What is compared where several steps lead to a bound.
@@ -46,8 +46,9 @@ bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most)
 /// mesh that was moved or scaled. All throw Error{cancelled}.
 class SheetSegmentation {
  public:
-  /// steps: how often loosened() is going to be called. sheet and executor must outlive this.
-  SheetSegmentation(const Sheet& sheet, SegmentRules rules, std::size_t steps, Executor& executor);
+  /// steps: how often destroy() is going to be called. sheet and executor must outlive this.
+  SheetSegmentation(const SegmentationMesh& surface, SegmentRules rules, std::size_t steps,
+                    Executor& executor);
   SheetSegmentation(const SheetSegmentation&) = delete;
   SheetSegmentation& operator=(const SheetSegmentation&) = delete;
 
@@ -57,23 +58,23 @@ class SheetSegmentation {
   /// Those for a larger excess than the last one; nothing where the same partition is the best.
   /// Another one has shorter seams, unless there are more regions than the rules allow: either is
   /// then merged further.
-  std::optional<Segments> loosened(double excess);
+  std::optional<Segments> destroy(double excess);
 
  private:
   [[nodiscard]] Segments segments_of(Partition best) const;
 
-  const Sheet& sheet_;
+  const SegmentationMesh& surface_;
   SegmentRules rules_;
   std::size_t steps_;
   Executor& executor_;
   Stage stage_ = Stage::segment;
-  Effort effort_;
+  ProgressEstimate effort_;
   Partition patches_;
   std::optional<BestMerge> merge_;
 };
 
 /// The regions for the rules' bound: of those of all steps up to it (excess_steps()), the ones with
 /// the shortest seams. Throws Error{cancelled}.
-Segments segment(const Sheet& sheet, const SegmentRules& rules, Executor& executor);
+Segments segment(const SegmentationMesh& surface, const SegmentRules& rules, Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -17,7 +17,7 @@
 #include "core/segment/large_charts.hpp"
 #include "core/segment/region_charts.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
@@ -25,25 +25,25 @@ constexpr Index kMostFacesSegmented = 18'000;
 constexpr double kShareOfFirst = 0.25;  // of the work, to share charts out
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
-double openness(const Chart& component) {
+double openness(const charts::Chart& component) {
   const double length = boundary_length(component);
-  return length * length / (4 * std::numbers::pi * surface_area(component.mesh));
+  return length * length / (4 * std::numbers::pi * measure::surface_area(component.mesh));
 }
 
 /// Where the segmentation of all components stands: they weigh by their faces.
 class Account {
  public:
-  Account(const std::vector<Charts>& surfaces, const SegmentWatch& watch) : watch_(watch) {
-    for (const Charts& surface : surfaces)
-      for (const Chart& component : surface.charts) {
+  Account(const std::vector<charts::Charts>& surfaces, const SegmentWatch& watch) : watch_(watch) {
+    for (const charts::Charts& surface : surfaces)
+      for (const charts::Chart& component : surface.charts) {
         total_ += faces_of(component);
-        area_ += surface_area(component.mesh);
+        area_ += measure::surface_area(component.mesh);
       }
   }
 
-  [[nodiscard]] SegmentRules rules(double max_distortion, const Chart& component) const {
+  [[nodiscard]] SegmentRules rules(double max_distortion, const charts::Chart& component) const {
     return {.max_distortion = max_distortion,
-            .page_area = area_ / surface_area(component.mesh),
+            .page_area = area_ / measure::surface_area(component.mesh),
             .on_progress =
                 [this, &component](Stage stage, double share) {
                   if (watch_.on_progress)
@@ -55,7 +55,7 @@ class Account {
   void finish(std::size_t faces) { done_ += static_cast<double>(faces); }
 
  private:
-  static double faces_of(const Chart& component) {
+  static double faces_of(const charts::Chart& component) {
     return static_cast<double>(component.mesh.faces.size());
   }
 
@@ -64,7 +64,7 @@ class Account {
   double area_ = 0;  ///< in space, of all components
 };
 
-void note(Charts& surface, RepairKind kind, Index count) {
+void note(charts::Charts& surface, RepairKind kind, Index count) {
   if (count > 0) surface.repairs.push_back({kind, 0, count});
 }
 
@@ -76,40 +76,43 @@ class Cutter {
       : options_(options), merges_to_one_(merges_to_one), account_(account), executor_(executor) {}
 
   /// most: charts that it shall become at most.
-  void add(Chart component, Index most) {
+  void add(charts::Chart component, Index most) {
     throw_if_cancelled(account_.stop());
-    const bool whole = is_disk(component), is_cut = most == 1 && !merges_to_one_;
+    const bool whole = charts::is_disk(component), is_cut = most == 1 && !merges_to_one_;
     const bool one_chart = options_.one_chart_each || is_cut;
     const bool is_left = !options_.max_distortion && openness(component) >= kLeastOpenness;
-    if (!one_chart && !(whole && is_left)) return take_apart(component, whole, most);
+    if (!one_chart && !(whole && is_left)) return prepare_charts(component, whole, most);
     if (!whole) {
-      cut(component);
+      charts::cut(component);
       ++cuts;
     }
     charts.push_back(std::move(component));
   }
 
-  std::vector<Chart> charts;
+  std::vector<charts::Chart> charts;
   Index cuts = 0, segmented = 0, rough = 0;
 
  private:
-  void take_apart(const Chart& component, bool whole, Index most) {
+  void prepare_charts(const charts::Chart& component, bool whole, Index most) {
     SegmentRules rules =
         account_.rules(options_.max_distortion.value_or(kDefaultDistortion), component);
     rules.most_regions = most;
-    std::vector<Chart> parts = component.mesh.face_count() > kMostFacesSegmented
-                                   ? parts_of_large(component, rules)
-                                   : parts_of_small(component, rules);
+    std::vector<charts::Chart> parts = component.mesh.face_count() > kMostFacesSegmented
+                                           ? parts_of_large(component, rules)
+                                           : parts_of_small(component, rules);
     segmented += !whole || parts.size() > 1 ? 1 : 0;
-    for (Chart& part : parts) charts.push_back(std::move(part));
+    for (charts::Chart& part : parts) charts.push_back(std::move(part));
   }
 
-  std::vector<Chart> parts_of_small(const Chart& component, const SegmentRules& rules) {
-    const Sheet sheet = make_sheet(component.mesh, component.halfedges, component.crease);
-    return region_charts(component, segment(sheet, rules, executor_));
+  std::vector<charts::Chart> parts_of_small(const charts::Chart& component,
+                                            const SegmentRules& rules) {
+    const SegmentationMesh surface =
+        make_segmentation_mesh(component.mesh, component.halfedges, component.crease);
+    return region_charts(component, segment(surface, rules, executor_));
   }
 
-  std::vector<Chart> parts_of_large(const Chart& component, const SegmentRules& rules) {
+  std::vector<charts::Chart> parts_of_large(const charts::Chart& component,
+                                            const SegmentRules& rules) {
     LargeCharts large = large_charts(component, rules, executor_);
     rough += large.is_rough ? 1 : 0;
     return std::move(large.charts);
@@ -137,13 +140,13 @@ struct Cuts {
   }
 };
 
-Cuts cut_all(std::vector<Charts>& surfaces, const Quotas& quotas, const SegmentOptions& options,
-             const SegmentWatch& watch, Executor& executor) {
+Cuts cut_all(std::vector<charts::Charts>& surfaces, const Quotas& quotas,
+             const SegmentOptions& options, const SegmentWatch& watch, Executor& executor) {
   Account account(surfaces, watch);
   Cuts cuts;
-  for (Charts& surface : surfaces) {
+  for (charts::Charts& surface : surfaces) {
     Cutter cutter(options, quotas.merges_to_one, account, executor);
-    for (Chart& component : std::exchange(surface.charts, {})) {
+    for (charts::Chart& component : std::exchange(surface.charts, {})) {
       const std::size_t faces = component.mesh.faces.size(), before = cutter.charts.size();
       cutter.add(std::move(component), quotas.most[cuts.became.size()]);
       cuts.became.push_back(static_cast<Index>(cutter.charts.size() - before));
@@ -157,9 +160,9 @@ Cuts cut_all(std::vector<Charts>& surfaces, const Quotas& quotas, const SegmentO
   return cuts;
 }
 
-std::size_t count_of(const std::vector<Charts>& surfaces) {
+std::size_t count_of(const std::vector<charts::Charts>& surfaces) {
   std::size_t components = 0;
-  for (const Charts& surface : surfaces) components += surface.charts.size();
+  for (const charts::Charts& surface : surfaces) components += surface.charts.size();
   return components;
 }
 
@@ -183,7 +186,7 @@ SegmentWatch part_of(const SegmentWatch& watch, double begin, double end) {
 /// All surfaces, of which no more than `most` charts shall be made. How these are shared out is
 /// decided at the first step of the bound and holds for all: what each component comes to then
 /// follows the steps (ADR 0039).
-Cuts cut_to_most(std::vector<Charts>& surfaces, const SegmentOptions& options,
+Cuts cut_to_most(std::vector<charts::Charts>& surfaces, const SegmentOptions& options,
                  const SegmentWatch& watch, Executor& executor) {
   const Index most = *options.max_charts;
   const std::size_t components = count_of(surfaces);
@@ -192,7 +195,7 @@ Cuts cut_to_most(std::vector<Charts>& surfaces, const SegmentOptions& options,
       components > 1 && each > 1 && options.max_distortion.value_or(0) > kDefaultDistortion;
   SegmentOptions first = options;
   if (has_steps) first.max_distortion = kDefaultDistortion;
-  const std::vector<Charts> whole = surfaces;
+  const std::vector<charts::Charts> whole = surfaces;
   const SegmentWatch begin = has_steps ? part_of(watch, 0, kShareOfFirst) : watch;
   Cuts cuts = cut_all(surfaces, {std::vector<Index>(components, each)}, first, begin, executor);
   if (components == 1 || (cuts.charts() <= most && !has_steps)) return cuts;
@@ -217,7 +220,7 @@ std::string rough_surfaces(Index count) {
 
 }  // namespace
 
-std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& options,
+std::string segment_charts(std::vector<charts::Charts>& surfaces, const SegmentOptions& options,
                            const SegmentWatch& watch, Executor& executor) {
   const std::size_t components = count_of(surfaces);
   const Index most = options.max_charts.value_or(std::numeric_limits<Index>::max());
@@ -228,4 +231,4 @@ std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& 
   return cuts.rough > 0 ? rough_surfaces(cuts.rough) : std::string();
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

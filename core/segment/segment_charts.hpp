@@ -8,10 +8,10 @@
 
 #include "core/base/executor.hpp"
 #include "core/charts/charts.hpp"
-#include "core/types/fingerprint.hpp"
+#include "core/types/cache_key.hpp"
 #include "core/types/progress.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 
 struct SegmentOptions {
   std::optional<double> max_distortion = {};  ///< empty: none for disks, kDefaultDistortion else
@@ -19,7 +19,7 @@ struct SegmentOptions {
   bool one_chart_each = false;  ///< components stay whole: what is no disk is cut to one
 };
 
-inline void describe(Fingerprint& key, const SegmentOptions& options) {
+inline void describe(CacheKey& key, const SegmentOptions& options) {
   const auto& [max_distortion, max_charts, one_chart_each] = options;
   key.add(max_distortion).add(max_charts).add(one_chart_each);
 }
@@ -36,7 +36,7 @@ struct SegmentWatch {
 /// Returns a sentence where more charts than asked for are needed, or noise leaves no room for the
 /// distortion, else nothing.
 /// The same for any executor. Throws Error{cancelled}.
-std::string segment_charts(std::vector<Charts>& surfaces, const SegmentOptions& options,
+std::string segment_charts(std::vector<charts::Charts>& surfaces, const SegmentOptions& options,
                            const SegmentWatch& watch, Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

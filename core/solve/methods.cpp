@@ -8,26 +8,26 @@
 #include "core/solve/methods/linabf.hpp"
 #include "core/solve/methods/slim.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 
 Solution other_method(const Disk& disk, const SolveOptions& options, const SolveWatch& watch,
                       Executor& executor) {
   switch (options.method) {
     case Method::abf:
-      return abf(disk, watch, executor);
+      return methods::abf(disk, watch, executor);
     case Method::linabf:
-      return linabf(disk, watch, executor);
+      return methods::linabf(disk, watch, executor);
     case Method::slim:
-      return slim(disk, options.stop, watch, executor);
+      return methods::slim(disk, options.stop, watch, executor);
     case Method::bff:
-      return bff(disk, watch);
+      return methods::bff(disk, watch);
     case Method::ic:
-      return ic(disk, watch);
+      return methods::ic(disk, watch);
     case Method::cp:
-      return cp(disk, watch);
+      return methods::cp(disk, watch);
     default:
       throw Error(ErrorCode::invalid_option, "there is no such method", "/method");
   }
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

@@ -4,7 +4,7 @@
 #include "core/solve/solve.hpp"
 #include "core/types/options.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 
 /// Solves one disk by options.method, which is none of ASAP, ARAP and Hybrid. Of the options only
 /// stop counts, and that for SLIM.
@@ -12,4 +12,4 @@ namespace unwrapd {
 Solution other_method(const Disk& disk, const SolveOptions& options, const SolveWatch& watch,
                       Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

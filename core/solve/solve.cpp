@@ -17,14 +17,14 @@
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
 #include "core/solve/arap/accelerate_race.hpp"
-#include "core/solve/arap/frames.hpp"
-#include "core/solve/base/hold_align.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/arap/initial_rotations.hpp"
+#include "core/solve/base/align_constrained.hpp"
+#include "core/solve/base/cached.hpp"
 #include "core/solve/maps/conformal.hpp"
 #include "core/solve/maps/convex_map.hpp"
 #include "core/solve/methods.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 namespace {
 
 /// Above this lambda no conformal map of use has energy enough to collapse the hybrid.
@@ -43,49 +43,49 @@ UvMap scaled_to_unit_area(UvMap uv, double area) {
 }
 
 UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
-  const double area = uv_area(disk.rest, disk.faces, uv);
+  const double area = measure::uv_area(disk.rest, disk.faces, uv);
   return scaled_to_unit_area(std::move(uv), area);
 }
 
-Rigidity rigidity_of(const Disk& disk, double lambda, LambdaUnits units) {
+arap::Rigidity rigidity_of(const Disk& disk, double lambda, LambdaUnits units) {
   if (units == LambdaUnits::dimensionless) return {lambda, false};
   return {lambda / (disk.unit * disk.unit), true};  // Eq. (5) in units of area 1
 }
 
 /// The area-weighted mean of lambda_t.
-double mean_lambda(const Disk& disk, const Rigidity& rigidity) {
+double mean_lambda(const Disk& disk, const arap::Rigidity& rigidity) {
   double sum = 0;
-  for (const RestTriangle& rest : disk.rest) sum += rest.area * rigidity.at(rest.area);
+  for (const measure::RestTriangle& rest : disk.rest) sum += rest.area * rigidity.at(rest.area);
   return sum;
 }
 
 /// Of a map shrunk to a point: |L|^2 is 0 there, or 1 - 1 / lambda where that is more.
-double collapsed_energy(const Disk& disk, const Rigidity& rigidity) {
+double collapsed_energy(const Disk& disk, const arap::Rigidity& rigidity) {
   double sum = 0;
-  for (const RestTriangle& rest : disk.rest) {
+  for (const measure::RestTriangle& rest : disk.rest) {
     const double lambda = rigidity.at(rest.area);
     sum += rest.area * (lambda > 1 ? 2 - 1 / lambda : lambda);
   }
   return sum;
 }
 
-Solution direct(const Disk& disk, const Holds& holds, UvMap uv) {
+Solution direct(const Disk& disk, const VertexConstraints& constraints, UvMap uv) {
   Solution solution{.uv = std::move(uv), .energy = {}, .stop_reason = StopReason::direct};
-  solution.energy.push_back(asap_energy(disk.rest, disk.faces, solution.uv) +
-                            spring_energy(holds, solution.uv));
+  solution.energy.push_back(measure::asap_energy(disk.rest, disk.faces, solution.uv) +
+                            soft_constraint_energy(constraints, solution.uv));
   return solution;
 }
 
 /// Nothing where the frames contradict each other so much that the map collapses, as around a
 /// cylinder. global: that of the disk without holds.
-std::optional<UvMap> usable_frame_map(const Disk& disk, const GlobalStep& global) {
-  constexpr auto kMake = [](const Disk& d, const GlobalStep& of_d) {
-    UvMap uv = frame_map(d, of_d);
-    const double area = uv_area(d.rest, d.faces, uv, of_d.executor());
-    if (!(area > kMinAreaShare)) return UvMap();
+std::optional<UvMap> usable_frame_map(const Disk& disk, const arap::GlobalStep& global) {
+  constexpr auto kMake = [](const Disk& d, const arap::GlobalStep& of_d) {
+    UvMap uv = arap::map_from_rotations(d, of_d);
+    const double area = measure::uv_area(d.rest, d.faces, uv, of_d.executor());
+    if (!(area > arap::kMinAreaShare)) return UvMap();
     return scaled_to_unit_area(std::move(uv), area);
   };
-  UvMap start = kept_of_disk<kMake>(disk, global);
+  UvMap start = cached_of_disk<kMake>(disk, global);
   if (start.empty()) return std::nullopt;
   return start;
 }
@@ -96,38 +96,39 @@ void tell(const SolveWatch& watch, Stage stage) {
 
 }  // namespace
 
-UvMap initial_map(const Disk& disk, InitialMap kind, const GlobalStep& global) {
-  if (kind == InitialMap::mean_value) return scaled_to_unit_area(disk, mean_value_map(disk));
-  if (kind == InitialMap::tutte) return scaled_to_unit_area(disk, tutte_map(disk));
+UvMap initial_map(const Disk& disk, InitialMap kind, const arap::GlobalStep& global) {
+  if (kind == InitialMap::mean_value) return scaled_to_unit_area(disk, maps::mean_value_map(disk));
+  if (kind == InitialMap::tutte) return scaled_to_unit_area(disk, maps::tutte_map(disk));
   if (kind == InitialMap::automatic)
     if (std::optional<UvMap> frames = usable_frame_map(disk, global)) return std::move(*frames);
-  return conformal_map(disk, Pins::diameter);
+  return maps::conformal_map(disk, Pins::diameter);
 }
 
-Solver::Solver(const Disk& disk, const SolveOptions& options, Held held, Executor& executor)
+Solver::Solver(const Disk& disk, const SolveOptions& options, ConstrainedStart constrained,
+               Executor& executor)
     : disk_(disk),
       options_(options),
-      holds_(std::move(held.holds)),
-      held_start_(std::move(held.start)),
+      holds_(std::move(constrained.constraints)),
+      held_start_(std::move(constrained.start)),
       executor_(executor) {
   assert(held_start_.size() == disk.positions.size() || (held_start_.empty() && holds_.empty()));
 }
 
-void describe(Fingerprint& key, const SolveOptions& options) {
+void describe(CacheKey& key, const SolveOptions& options) {
   const auto& [method, lambda_units, initial, pins, stop] = options;
   const auto& [iterations, tolerance, max_iterations] = stop;
   key.add(method).add(lambda_units).add(initial).add(pins);
   key.add(iterations).add(tolerance).add(max_iterations);
 }
 
-void describe(Fingerprint& key, const Solver& solver) {
+void describe(CacheKey& key, const Solver& solver) {
   key.add(solver.disk_).add(solver.options_).add(solver.holds_).add(solver.held_start_);
 }
 
-void Solver::move(Held held) {
-  assert(is_moved(holds_, held.holds));
-  holds_ = std::move(held.holds);
-  held_start_ = std::move(held.start);
+void Solver::move(ConstrainedStart constrained) {
+  assert(is_moved(holds_, constrained.constraints));
+  holds_ = std::move(constrained.constraints);
+  held_start_ = std::move(constrained.start);
   start_.reset();
   conformal_.reset();
 }
@@ -153,7 +154,7 @@ const UvMap* Solver::second_start() {
   if (!starts_from_frames_) return nullptr;
   if (second_start_) return &*second_start_;
   try {
-    second_start_ = exact_conformal_map(disk_);
+    second_start_ = maps::exact_conformal_map(disk_);
   } catch (const Error& e) {  // the job goes on from the first start
     if (e.code() != ErrorCode::solver_failed) throw;
   }
@@ -161,8 +162,9 @@ const UvMap* Solver::second_start() {
 }
 
 UvMap Solver::conformal_under_holds() {
-  if (holds_.empty()) return conformal_map(disk_, options_.pins);
-  if (holds_.count() == 1) return held_start(conformal_map(disk_, options_.pins), holds_);
+  if (holds_.empty()) return maps::conformal_map(disk_, options_.pins);
+  if (holds_.count() == 1)
+    return constrained_start(maps::conformal_map(disk_, options_.pins), holds_);
   if (!conformal_system_) conformal_system_.emplace(disk_, holds_);
   return conformal_system_->solve(holds_);
 }
@@ -173,9 +175,9 @@ const UvMap& Solver::conformal() {
 }
 
 /// As many plain iterations as were asked for, from the better start where there are two.
-Solution Solver::iterate_plainly(const Race& race) {
+Solution Solver::iterate_plainly(const arap::Race& race) {
   const auto solution = [&](const UvMap& from, int iterations, const LoopWatch& watch) {
-    return local_global(race.assembly, from, {race.rigidity, iterations}, watch, executor_);
+    return arap::local_global(race.assembly, from, {race.rigidity, iterations}, watch, executor_);
   };
   const UvMap* from = &start();
   const UvMap* other = disk_.loops.size() > 1 ? second_start() : nullptr;
@@ -192,32 +194,33 @@ void Solver::factor(const SolveWatch& watch) {
   global_.emplace(disk_, holds_, &executor_);
 }
 
-Solution Solver::iterate(const Rigidity& rigidity, const SolveWatch& watch) {
+Solution Solver::iterate(const arap::Rigidity& rigidity, const SolveWatch& watch) {
   factor(watch);
   const UvMap& first = start();
   tell(watch, Stage::solve);
   const Stop& stop = options_.stop;
-  const Assembly assembly{disk_, holds_, *global_};
-  const Race race{assembly, rigidity, {stop.tolerance, stop.max_iterations}, watch.loop, executor_};
+  const arap::Assembly assembly{disk_, holds_, *global_};
+  const arap::Race race{
+      assembly, rigidity, {stop.tolerance, stop.max_iterations}, watch.loop, executor_};
   if (stop.iterations) return iterate_plainly(race);
-  return run_race(race, first, [&] { return second_start(); });
+  return arap::run_race(race, first, [&] { return second_start(); });
 }
 
 /// Whether the start has so little energy that no iteration can shrink the map away. Its energy as
 /// a hybrid is at most that of ARAP, whose fits cost nothing for their scale.
-bool Solver::stays_open(const Rigidity& rigidity, const SolveWatch& watch) {
+bool Solver::stays_open(const arap::Rigidity& rigidity, const SolveWatch& watch) {
   factor(watch);
-  return arap_energy(disk_.rest, disk_.faces, start()) <
+  return measure::arap_energy(disk_.rest, disk_.faces, start()) <
          kOpenShare * collapsed_energy(disk_, rigidity);
 }
 
-Solution Solver::hybrid(const Rigidity& rigidity, const SolveWatch& watch) {
+Solution Solver::hybrid(const arap::Rigidity& rigidity, const SolveWatch& watch) {
   const double lambda = mean_lambda(disk_, rigidity);
   if (lambda > kSafeLambda) return iterate(rigidity, watch);
   const bool is_held_open = holds_.count() > 1;
   if (holds_.empty() && lambda > kTrustedLambda && stays_open(rigidity, watch))
     return iterate(rigidity, watch);
-  if (lambda <= (is_held_open ? 0 : asap_energy(disk_.rest, disk_.faces, conformal()) / 2))
+  if (lambda <= (is_held_open ? 0 : measure::asap_energy(disk_.rest, disk_.faces, conformal()) / 2))
     return direct(disk_, holds_, conformal());
   return iterate(rigidity, watch);
 }
@@ -237,4 +240,4 @@ Solution Solver::run(double lambda, const SolveWatch& watch) {
   }
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

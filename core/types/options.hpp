@@ -33,7 +33,7 @@ struct PositionConstraint {
   Vec3 position = Vec3::Zero();      ///< the vertex nearest to this point of space
   Vec2 uv = Vec2::Zero();  ///< in the page's coordinates, V pointing up; need not lie on the page
   double weight =
-      std::numeric_limits<double>::infinity();  ///< finite: in least squares, page_holds()
+      std::numeric_limits<double>::infinity();  ///< finite: in least squares, page_constraints()
 };
 
 /// Edges at which the surface shall be cut open: those between consecutive vertices of a path.

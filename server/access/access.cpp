@@ -9,7 +9,7 @@
 #include "server/http/addresses.hpp"
 #include "server/jobs/job_queue.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::access {
 namespace {
 
 constexpr std::string_view kScheme = "Bearer ";
@@ -23,16 +23,16 @@ constexpr auto kPublic = std::to_array<std::string_view>(
 /// Schemes have no case (RFC 9110, 11.1).
 bool is_bearer(std::string_view field) {
   const std::string_view scheme = field.substr(0, kScheme.size());
-  return !IgnoreCase()(scheme, kScheme) && !IgnoreCase()(kScheme, scheme);
+  return !http::IgnoreCase()(scheme, kScheme) && !http::IgnoreCase()(kScheme, scheme);
 }
 
 bool is_public(std::string_view route) { return std::ranges::count(kPublic, route) > 0; }
 
-bool only_reads(const Request& request) {
+bool only_reads(const http::Request& request) {
   return request.method == "GET" || request.method == "HEAD";
 }
 
-bool allows(const Scopes& scopes, const Request& request) {
+bool allows(const Scopes& scopes, const http::Request& request) {
   return scopes.admin || (only_reads(request) ? scopes.read : scopes.submit);
 }
 
@@ -40,17 +40,17 @@ bool allows(const Scopes& scopes, const Request& request) {
 
 bool asks_for_keys(const AccessConfig& config, std::string_view host) {
   const bool wanted = config.require_keys || !config.key_file.empty();
-  const bool is_here = host == "localhost" || is_loopback(host);  // no name that begins so
+  const bool is_here = host == "localhost" || http::is_loopback(host);  // no name that begins so
   return wanted || (!is_here && !config.insecure);
 }
 
-double cost_of(const Request& request, std::string_view route) {
+double cost_of(const http::Request& request, std::string_view route) {
   const auto size = request.query.find("size");
   if (!route.ends_with(".png") || size == request.query.end()) return 1;
   const std::string& text = size->second;
   int pixels = 0;  // what is no size costs nothing to refuse
   std::from_chars(text.data(), text.data() + text.size(), pixels);
-  pixels = std::clamp(pixels, 0, kMaxImageSize);
+  pixels = std::clamp(pixels, 0, figure::kMaxImageSize);
   return std::max(1.0, pixels * static_cast<double>(pixels) / kMegapixel);
 }
 
@@ -72,7 +72,7 @@ int RateLimit::wait_seconds(const std::string& key, std::int64_t per_minute, Clo
   return static_cast<int>(std::ceil((cost - bucket.tokens) * kSecondsPerMinute / most));
 }
 
-ApiKey Access::key_of(const Request& request) {
+ApiKey Access::key_of(const http::Request& request) {
   const std::string field = request.header("Authorization");
   std::optional<ApiKey> key;
   if (is_bearer(field)) key = keys_.find(std::string_view(field).substr(kScheme.size()));
@@ -81,7 +81,7 @@ ApiKey Access::key_of(const Request& request) {
               "This server requires an API key; send it as Authorization: Bearer KEY.");
 }
 
-void Access::admit(Request& request, std::string_view route) {
+void Access::admit(http::Request& request, std::string_view route) {
   if (is_public(route)) return;
   const double cost = cost_of(request, route);
   if (links_.is_signed(request)) return open_link(request, cost);
@@ -89,7 +89,7 @@ void Access::admit(Request& request, std::string_view route) {
 }
 
 /// What is opened by a link is asked for by its key.
-void Access::open_link(Request& request, double cost) {
+void Access::open_link(http::Request& request, double cost) {
   const std::string id = LinkSigner::key_of(request);
   const std::optional<ApiKey> key = id.empty() ? std::nullopt : keys_.with_id(id);
   if (!key && (ask_ || !id.empty()))
@@ -112,7 +112,7 @@ void Access::spend(const ApiKey& key, double cost) {
       wait);
 }
 
-Caller Access::caller_of(const Request& request, double cost) {
+http::Caller Access::caller_of(const http::Request& request, double cost) {
   if (!ask_) return {};
   const ApiKey key = key_of(request);
   spend(key, cost);
@@ -125,4 +125,4 @@ Caller Access::caller_of(const Request& request, double cost) {
       .owner = key.id, .sees_all = key.scopes.admin, .quota = key.quota, .key_sha256 = key.sha256};
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::access

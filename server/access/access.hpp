@@ -14,7 +14,7 @@
 #include "server/access/signed_link.hpp"
 #include "server/http/http.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::access {
 
 struct AccessConfig {
   bool require_keys = false;            ///< asked for on loopback, too
@@ -27,7 +27,7 @@ struct AccessConfig {
 bool asks_for_keys(const AccessConfig& config, std::string_view host);
 
 /// For how many requests one counts: a large picture for one each megapixel.
-double cost_of(const Request& request, std::string_view route);
+double cost_of(const http::Request& request, std::string_view route);
 
 /// At most so many requests a minute, a minute's worth of them at once (token bucket).
 class RateLimit {
@@ -56,13 +56,13 @@ class Access {
 
   /// Sets the caller of a request for what this route does, and takes off what signs its link.
   /// Throws Error: unauthorized, forbidden, rate_limited, invalid_link.
-  void admit(Request& request, std::string_view route);
+  void admit(http::Request& request, std::string_view route);
 
  private:
-  [[nodiscard]] Caller caller_of(const Request& request, double cost);
-  void open_link(Request& request, double cost);
+  [[nodiscard]] http::Caller caller_of(const http::Request& request, double cost);
+  void open_link(http::Request& request, double cost);
   void spend(const ApiKey& key, double cost);
-  [[nodiscard]] ApiKey key_of(const Request& request);
+  [[nodiscard]] ApiKey key_of(const http::Request& request);
 
   KeyStore& keys_;
   const LinkSigner& links_;
@@ -70,4 +70,4 @@ class Access {
   RateLimit rates_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::access

@@ -10,7 +10,7 @@
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::access {
 namespace {
 
 constexpr std::string_view kPrefix = "unw_";
@@ -43,7 +43,7 @@ std::filesystem::path file_in(const std::filesystem::path& data) {
   return data / kKeysFile;
 }
 
-ApiKey key_of(const Statement& row) {
+ApiKey key_of(const store::Statement& row) {
   return {.id = row.text(0),
           .name = row.text(1),
           .scopes = parse_scopes(row.text(2)),
@@ -148,9 +148,10 @@ std::string KeyStore::add(ApiKey key) {
   const std::string digits = random_hex(kIdDigits / 2);
   const std::string text = std::string(kPrefix) + digits + "_" + random_hex(kSecretDigits / 2);
   const std::lock_guard lock(mutex_);
-  Statement(database_,
-            "INSERT INTO keys (id, name, sha256, scopes, requests_per_minute, max_jobs, max_bytes,"
-            " created_ms) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+  store::Statement(
+      database_,
+      "INSERT INTO keys (id, name, sha256, scopes, requests_per_minute, max_jobs, max_bytes,"
+      " created_ms) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
       .with("k_" + digits, key.name, sha256(text), to_text(key.scopes), key.requests_per_minute,
             key.quota.max_jobs, key.quota.max_bytes, now_ms())
       .run();
@@ -164,7 +165,7 @@ std::optional<ApiKey> KeyStore::find(std::string_view text) {
   if (!of_form) return std::nullopt;
   const std::string id = "k_" + std::string(text.substr(kPrefix.size(), kIdDigits));
   const std::lock_guard lock(mutex_);
-  Statement statement(database_, std::string(kSelect) + "WHERE id = ?");
+  store::Statement statement(database_, std::string(kSelect) + "WHERE id = ?");
   if (!statement.with(id).step()) return std::nullopt;
   if (!same(statement.text(kDigestColumn), sha256(text))) return std::nullopt;
   return key_of(statement);
@@ -175,14 +176,14 @@ bool KeyStore::has_any() { return !given_.empty() || !all().empty(); }
 std::optional<ApiKey> KeyStore::with_id(std::string_view id) {
   if (!given_.empty() && id == kGivenKeyId) return given_key(given_);
   const std::lock_guard lock(mutex_);
-  Statement statement(database_, std::string(kSelect) + "WHERE id = ?");
+  store::Statement statement(database_, std::string(kSelect) + "WHERE id = ?");
   if (!statement.with(id).step()) return std::nullopt;
   return key_of(statement);
 }
 
 std::vector<ApiKey> KeyStore::all() {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_, std::string(kSelect) + "ORDER BY seq");
+  store::Statement statement(database_, std::string(kSelect) + "ORDER BY seq");
   std::vector<ApiKey> keys;
   while (statement.step()) keys.push_back(key_of(statement));
   return keys;
@@ -190,8 +191,8 @@ std::vector<ApiKey> KeyStore::all() {
 
 bool KeyStore::remove(std::string_view id) {
   const std::lock_guard lock(mutex_);
-  Statement(database_, "DELETE FROM keys WHERE id = ?").with(id).run();
+  store::Statement(database_, "DELETE FROM keys WHERE id = ?").with(id).run();
   return database_.changes() == 1;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::access

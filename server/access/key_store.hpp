@@ -16,7 +16,7 @@
 #include "server/http/caller.hpp"
 #include "server/store/database.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::access {
 
 inline constexpr const char* kKeysFile = "keys.sqlite";
 inline constexpr const char* kGivenKeyId = "k_file";
@@ -35,7 +35,7 @@ struct ApiKey {
   std::string name;  ///< for people
   Scopes scopes;
   std::int64_t requests_per_minute = 0;  ///< 0: no limit
-  Quota quota;
+  http::Quota quota;
   std::int64_t created_ms = 0;
   std::string sha256 = {};  ///< of its text
 };
@@ -68,8 +68,8 @@ class KeyStore {
 
  private:
   std::mutex mutex_;
-  Database database_;
+  store::Database database_;
   const std::string given_;  // SHA-256; empty: none
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::access

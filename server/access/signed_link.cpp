@@ -9,7 +9,7 @@
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::access {
 namespace {
 
 constexpr std::size_t kSecretBytes = 32;
@@ -18,7 +18,7 @@ constexpr std::int64_t kMsPerSecond = 1000;
 
 [[noreturn]] void refuse(const char* what) { throw Error(ErrorCode::invalid_link, what); }
 
-std::string parameter(const Request& request, std::string_view name) {
+std::string parameter(const http::Request& request, std::string_view name) {
   const auto found = request.query.find(std::string(name));
   return found == request.query.end() ? std::string() : found->second;
 }
@@ -60,13 +60,15 @@ std::string LinkSigner::sign(const std::string& path, std::int64_t expires,
   return link + "&" + std::string(kSignatureParameter) + "=" + signature(path, until, key);
 }
 
-std::string LinkSigner::key_of(const Request& request) { return parameter(request, kKeyParameter); }
+std::string LinkSigner::key_of(const http::Request& request) {
+  return parameter(request, kKeyParameter);
+}
 
-bool LinkSigner::is_signed(const Request& request) const {
+bool LinkSigner::is_signed(const http::Request& request) const {
   return request.query.contains(std::string(kSignatureParameter));
 }
 
-void LinkSigner::check(const Request& request, const LinkKey& key) const {
+void LinkSigner::check(const http::Request& request, const LinkKey& key) const {
   const bool reads = request.method == "GET" || request.method == "HEAD";
   if (!reads) refuse("A signed link can only read; use an API key.");
   const std::string expires = parameter(request, kExpiresParameter);
@@ -79,7 +81,7 @@ void LinkSigner::check(const Request& request, const LinkKey& key) const {
   if (is_past(expires)) refuse("The link has expired; ask for a new one.");
 }
 
-std::multimap<std::string, std::string> unsigned_query(const Request& request) {
+std::multimap<std::string, std::string> unsigned_query(const http::Request& request) {
   std::multimap<std::string, std::string> query = request.query;
   query.erase(std::string(kExpiresParameter));
   query.erase(std::string(kKeyParameter));
@@ -87,4 +89,4 @@ std::multimap<std::string, std::string> unsigned_query(const Request& request) {
   return query;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::access

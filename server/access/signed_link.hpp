@@ -12,7 +12,7 @@
 
 #include "server/http/http.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::access {
 
 inline constexpr const char* kSecretFile = "secret";  // in the data directory
 inline constexpr std::string_view kExpiresParameter = "expires";
@@ -35,12 +35,12 @@ class LinkSigner {
   /// The path with the parameters that open it until then (seconds since 1970).
   [[nodiscard]] std::string sign(const std::string& path, std::int64_t expires,
                                  const LinkKey& key = {}) const;
-  [[nodiscard]] bool is_signed(const Request& request) const;
+  [[nodiscard]] bool is_signed(const http::Request& request) const;
   /// The id of the key that a link says it was made with; empty when it names none.
-  [[nodiscard]] static std::string key_of(const Request& request);
+  [[nodiscard]] static std::string key_of(const http::Request& request);
   /// Throws Error{invalid_link} unless the link is for this, of this server, made with this key and
   /// not expired.
-  void check(const Request& request, const LinkKey& key) const;
+  void check(const http::Request& request, const LinkKey& key) const;
 
  private:
   [[nodiscard]] std::string signature(const std::string& path, const std::string& expires,
@@ -50,6 +50,6 @@ class LinkSigner {
 };
 
 /// The query of a request without what signs it.
-std::multimap<std::string, std::string> unsigned_query(const Request& request);
+std::multimap<std::string, std::string> unsigned_query(const http::Request& request);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::access

@@ -18,7 +18,7 @@
 #include "server/store/schema.hpp"
 #include "server/store/store_file.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::backup {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,8 +28,8 @@ constexpr const char* kNotedFile = "digests-noted";
 constexpr std::int64_t kRowsAtOnce = 1000;
 
 void require_store(const fs::path& data) {
-  if (fs::is_regular_file(data / kStoreFile)) return;
-  throw Error(ErrorCode::not_found, "There is no " + (data / kStoreFile).string() +
+  if (fs::is_regular_file(data / store::kStoreFile)) return;
+  throw Error(ErrorCode::not_found, "There is no " + (data / store::kStoreFile).string() +
                                         "; give the --data directory of a server.");
 }
 
@@ -45,8 +45,8 @@ void add_counts(const FolderCopy& copy, StoreReport& report) {
 }
 
 /// The folders of the copied rows; the rows of those that ended or went meanwhile are left out.
-void copy_folders(const Database& live, Database& copied, const fs::path& data, const fs::path& to,
-                  StoreReport& report) {
+void copy_folders(const store::Database& live, store::Database& copied, const fs::path& data,
+                  const fs::path& to, StoreReport& report) {
   FolderCopy copy(data / kBlobs, to / kBlobs);
   std::int64_t gone = 0;
   for (const KnownFolder& folder : known_folders(copied)) {
@@ -57,8 +57,8 @@ void copy_folders(const Database& live, Database& copied, const fs::path& data, 
       continue;
     }
     remove_tree(to / kBlobs / folder.name);
-    Statement(copied, "DELETE FROM jobs WHERE id = ?").with(folder.name).run();
-    Statement(copied, "DELETE FROM meshes WHERE id = ?").with(folder.name).run();
+    store::Statement(copied, "DELETE FROM jobs WHERE id = ?").with(folder.name).run();
+    store::Statement(copied, "DELETE FROM meshes WHERE id = ?").with(folder.name).run();
     ++gone;
   }
   add_counts(copy, report);
@@ -70,22 +70,23 @@ void copy_folders(const Database& live, Database& copied, const fs::path& data, 
 /// Returns the digests of what lies beside blobs.
 api::Json copy_beside(const fs::path& data, const fs::path& to) {
   api::Json digests = api::Json::object();
-  for (const char* file : {kSecretFile, kNotedFile})
+  for (const char* file : {access::kSecretFile, kNotedFile})
     if (fs::exists(data / file)) digests[file] = copy_private(data / file, to / file);
-  if (fs::exists(data / kKeysFile)) Database(data / kKeysFile).copy_to(to / kKeysFile);
-  for (const char* file : {kStoreFile, kKeysFile}) {
+  if (fs::exists(data / access::kKeysFile))
+    store::Database(data / access::kKeysFile).copy_to(to / access::kKeysFile);
+  for (const char* file : {store::kStoreFile, access::kKeysFile}) {
     if (!fs::exists(to / file)) continue;
     fs::permissions(to / file, fs::perms::owner_read | fs::perms::owner_write);
-    digests[file] = sha256_of(File::open(to / file));
+    digests[file] = store::sha256_of(File::open(to / file));
   }
   return digests;
 }
 
 void make_backup(const fs::path& data, const fs::path& to, StoreReport& report) {
-  const Database live(data / kStoreFile);
-  live.copy_to(to / kStoreFile);
+  const store::Database live(data / store::kStoreFile);
+  live.copy_to(to / store::kStoreFile);
   {
-    Database copied(to / kStoreFile);
+    store::Database copied(to / store::kStoreFile);
     copied.check(true);
     copy_folders(live, copied, data, to, report);
     copied.run("UPDATE jobs SET state = 'queued', lease_ms = 0 WHERE state = 'running'");
@@ -112,11 +113,11 @@ api::Json read_manifest(const fs::path& backup) {
 
 /// Whether the files beside blobs are those of the manifest.
 void check_beside(const fs::path& backup, const api::Json& manifest) {
-  if (!manifest["sha256"].contains(kStoreFile))
-    not_whole(backup, std::string(kManifestFile) + " does not name " + kStoreFile);
+  if (!manifest["sha256"].contains(store::kStoreFile))
+    not_whole(backup, std::string(kManifestFile) + " does not name " + store::kStoreFile);
   for (const auto& [file, digest] : manifest["sha256"].items()) {
     const bool is_whole = is_file_name(file) && fs::is_regular_file(backup / file) &&
-                          digest == sha256_of(File::open(backup / file));
+                          digest == store::sha256_of(File::open(backup / file));
     if (!is_whole) not_whole(backup, file + " is missing or damaged");
   }
 }
@@ -133,8 +134,8 @@ bool was_told(const api::Json& manifest, const std::string& damage) {
 void check_backup(const fs::path& backup) {
   const api::Json manifest = read_manifest(backup);
   check_beside(backup, manifest);
-  const Database store(backup / kStoreFile, Database::Access::read);
-  refuse_newer(store);
+  const store::Database store(backup / store::kStoreFile, store::Database::Access::read);
+  store::refuse_newer(store);
   store.check(true);
   FolderCopy look(backup / kBlobs);
   for (const KnownFolder& folder : known_folders(store))
@@ -144,26 +145,26 @@ void check_backup(const fs::path& backup) {
 }
 
 /// The rows that cannot be read.
-void check_rows(const Database& store, StoreReport& report) {
+void check_rows(const store::Database& store, StoreReport& report) {
   for (std::int64_t last = 0;;) {
-    Statement rows(store, select_jobs("WHERE seq > ? ORDER BY seq LIMIT ?"));
-    const std::vector<JobRecord> jobs = job_rows(rows.with(last, kRowsAtOnce));
+    store::Statement rows(store, store::select_jobs("WHERE seq > ? ORDER BY seq LIMIT ?"));
+    const std::vector<store::JobRecord> jobs = store::job_rows(rows.with(last, kRowsAtOnce));
     if (jobs.empty()) return;
-    for (const JobRecord& job : jobs)
+    for (const store::JobRecord& job : jobs)
       if (!job.unreadable.empty()) report.damaged.push_back(job.id + ": " + job.unreadable);
     last = jobs.back().seq;
   }
 }
 
 /// Folders that the next start will set aside. One whose row is about to come is no such.
-void note_unknown(const fs::path& data, const Database& store, StoreReport& report) {
+void note_unknown(const fs::path& data, const store::Database& store, StoreReport& report) {
   std::error_code none;
   std::int64_t unknown = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(data / kBlobs, none)) {
     const std::string name = entry.path().filename();
-    Statement row(store,
-                  "SELECT 1 FROM (SELECT id FROM jobs UNION ALL SELECT id FROM meshes)"
-                  " WHERE id = ?");
+    store::Statement row(store,
+                         "SELECT 1 FROM (SELECT id FROM jobs UNION ALL SELECT id FROM meshes)"
+                         " WHERE id = ?");
     if (!row.with(name).step() && fs::exists(entry.path(), none)) ++unknown;
   }
   if (unknown > 0)
@@ -174,7 +175,7 @@ void note_unknown(const fs::path& data, const Database& store, StoreReport& repo
   if (lost > 0) report.notices.push_back(std::to_string(lost) + " folders are set aside in lost");
 }
 
-void check_database(const Database& database, StoreReport& report) {
+void check_database(const store::Database& database, StoreReport& report) {
   try {
     database.check(true);
   } catch (const Error& error) {
@@ -197,7 +198,7 @@ StoreReport back_up(const fs::path& data, const fs::path& to) {
                 to.string() +
                     " lies in the data directory, and the server removes unknown files there; name "
                     "a folder outside of it.");
-  require_current(Database(data / kStoreFile));
+  store::require_current(store::Database(data / store::kStoreFile));
   const fs::path part = fs::path(to) += ".part";
   for (const fs::path& there : {to, part}) {
     if (!fs::exists(fs::symlink_status(there))) continue;
@@ -220,7 +221,7 @@ StoreReport back_up(const fs::path& data, const fs::path& to) {
 
 StoreReport restore(const fs::path& backup, const fs::path& data) {
   check_backup(backup);
-  const DataLock lock(data);
+  const store::DataLock lock(data);
   for (const fs::directory_entry& entry : fs::directory_iterator(data)) {
     if (entry.path().filename() == "lock") continue;
     throw Error(ErrorCode::invalid_option,
@@ -230,11 +231,12 @@ StoreReport restore(const fs::path& backup, const fs::path& data) {
   StoreReport report;
   make_directories(data / kBlobs);
   FolderCopy copy(backup / kBlobs, data / kBlobs);
-  const Database store(backup / kStoreFile, Database::Access::read);
+  const store::Database store(backup / store::kStoreFile, store::Database::Access::read);
   for (const KnownFolder& folder : known_folders(store))
     for (std::string& what : copy.take(folder)) report.damaged.push_back(std::move(what));
   add_counts(copy, report);
-  for (const char* file : {kNotedFile, kSecretFile, kKeysFile, kStoreFile})  // what starts it: last
+  for (const char* file : {kNotedFile, access::kSecretFile, access::kKeysFile,
+                           store::kStoreFile})  // what starts it: last
     if (fs::exists(backup / file)) copy_private(backup / file, data / file);
   sync_all(data);
   return report;
@@ -244,13 +246,14 @@ StoreReport check_store(const fs::path& data) {
   require_store(data);
   StoreReport report;
   const bool is_backup = fs::exists(data / kManifestFile);
-  const auto access = is_backup ? Database::Access::read : Database::Access::write;
+  const auto access = is_backup ? store::Database::Access::read : store::Database::Access::write;
   if (is_backup) check_beside(data, read_manifest(data));
-  const Database store(data / kStoreFile, access);
+  const store::Database store(data / store::kStoreFile, access);
   check_database(store, report);
-  if (fs::exists(data / kKeysFile)) check_database(Database(data / kKeysFile, access), report);
+  if (fs::exists(data / access::kKeysFile))
+    check_database(store::Database(data / access::kKeysFile, access), report);
   if (!report.damaged.empty()) return report;  // what it says of the files means nothing
-  require_current(store);
+  store::require_current(store);
   check_rows(store, report);
   FolderCopy look(data / kBlobs);
   for (const KnownFolder& folder : known_folders(store)) {
@@ -263,4 +266,4 @@ StoreReport check_store(const fs::path& data) {
   return report;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::backup

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace unwrapd::server {
+namespace unwrapd::server::backup {
 
 inline constexpr const char* kManifestFile = "backup.json";
 
@@ -38,4 +38,4 @@ StoreReport restore(const std::filesystem::path& backup, const std::filesystem::
 /// not_found, storage_failed.
 StoreReport check_store(const std::filesystem::path& data);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::backup

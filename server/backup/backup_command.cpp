@@ -11,7 +11,7 @@
 #include "server/backup/backup.hpp"
 #include "server/base/inside_error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::backup {
 namespace {
 
 constexpr std::array<std::string_view, 3> kCommands = {"backup", "restore", "check"};
@@ -81,4 +81,4 @@ int run_backup_command(int argc, const char* const* argv) {
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::backup

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace unwrapd::server {
+namespace unwrapd::server::backup {
 
 [[nodiscard]] bool is_backup_command(std::string_view word);
 
@@ -11,4 +11,4 @@ namespace unwrapd::server {
 /// tells why; 3 when damage was found, which stderr tells of.
 int run_backup_command(int argc, const char* const* argv);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::backup

@@ -11,7 +11,7 @@
 #include "server/store/database.hpp"
 #include "server/store/digests.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::backup {
 
 /// A folder of blobs/ that a row tells of.
 struct KnownFolder {
@@ -20,9 +20,9 @@ struct KnownFolder {
 };
 
 /// In the order of their names, meshes last.
-std::vector<KnownFolder> known_folders(const Database& store);
+std::vector<KnownFolder> known_folders(const store::Database& store);
 /// Whether it still is one.
-bool is_known(const Database& store, const std::string& name);
+bool is_known(const store::Database& store, const std::string& name);
 
 /// What a pass over folders has seen.
 struct FolderCounts {
@@ -66,4 +66,4 @@ std::string copy_private(const std::filesystem::path& from, const std::filesyste
 /// On return everything that was written below survives a loss of power.
 void sync_all(const std::filesystem::path& folder);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::backup

@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "server/config/config_row.hpp"
-#include "server/config/variables.hpp"
+#include "server/config/env_typos.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::config {
 namespace {
 
 constexpr int kMistake = 2;
@@ -257,4 +257,4 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::config

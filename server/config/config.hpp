@@ -12,11 +12,11 @@
 #include "server/access/access.hpp"
 #include "server/base/address.hpp"
 #include "server/base/log.hpp"
-#include "server/store/disk_room.hpp"
+#include "server/store/disk_budget.hpp"
 #include "server/webhooks/webhook_url.hpp"
 #include "server/work/solver_cache.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::config {
 
 /// Each job in a process of its own (job_process.hpp); automatic: where the kernel allows it.
 enum class Isolate { off, automatic, on };
@@ -48,12 +48,12 @@ struct Config {
   Isolate isolate = Isolate::automatic;
   LogLevel log_level = LogLevel::info;
   LogFormat log_format = LogFormat::json;
-  DiskLimits disk;
-  AccessConfig access;
+  store::DiskLimits disk;
+  access::AccessConfig access;
   std::vector<std::string> allowed_hosts;  ///< without keys, beside addresses and localhost
   std::vector<std::string> cors_origins;
-  WebhookConfig webhooks;
-  MemoryLimits memory;
+  webhooks::WebhookConfig webhooks;
+  work::MemoryLimits memory;
   api::Limits limits;
 };
 
@@ -72,4 +72,4 @@ struct CommandLine {
 
 CommandLine parse_command_line(int argc, const char* const* argv);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::config

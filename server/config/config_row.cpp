@@ -1,6 +1,6 @@
 #include "server/config/config_row.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::config {
 
 void expected(const std::string& what) { throw Error(ErrorCode::invalid_option, what); }
 
@@ -41,4 +41,4 @@ std::string join_list(const std::vector<std::string>& items) {
   return text;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::config

@@ -18,7 +18,7 @@
 #include "core/base/error.hpp"
 #include "server/config/config.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::config {
 
 /// A switch is a flag that may go without a value, which is then "true".
 enum class ConfigKind { number, text, on_off, switch_of_text, list };
@@ -143,4 +143,4 @@ ConfigRow choice(const ConfigHeading& heading, const Names<Value>& names, Path..
               }};
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::config

@@ -5,7 +5,7 @@
 #include "server/config/config_row.hpp"
 #include "server/http/addresses.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::config {
 namespace {
 
 constexpr std::int64_t kMaxBodyBytes = std::int64_t{4} * 1024 * 1024 * 1024;
@@ -47,7 +47,7 @@ ConfigRow admin_row() {
 
 ConfigGroup serving() { return {.title = "Serving", .rows = {listen_row(), admin_row()}}; }
 
-void check_range(const std::string& item) { const AddressSet set({item}); }
+void check_range(const std::string& item) { const http::AddressSet set({item}); }
 
 ConfigGroup edge() {
   using E = EdgeConfig;
@@ -108,11 +108,11 @@ ConfigGroup working() {
               number({"memory-limit", "N",
                       "Bytes of memory for one job; a job that would need more is refused. 0: its "
                       "share of the machine"},
-                     {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::job_bytes),
+                     {0, kMaxMemoryBytes}, &Config::memory, &work::MemoryLimits::job_bytes),
               number({"solver-cache-bytes", "N",
                       "Bytes of memory for factors and maps that are cached for further jobs on "
                       "the same mesh (with --isolate=off)"},
-                     {0, kMaxMemoryBytes}, &Config::memory, &MemoryLimits::cache_bytes),
+                     {0, kMaxMemoryBytes}, &Config::memory, &work::MemoryLimits::cache_bytes),
               isolate_row(),
               number({"grace-seconds", "N",
                       "Seconds that a job may take to stop after its owner or --max-job-seconds "
@@ -137,10 +137,10 @@ ConfigGroup storing() {
                number({"max-disk-bytes", "N",
                        "Bytes on disk for the files of all jobs; beyond it, the oldest results are "
                        "deleted early. 0: no limit"},
-                      {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::max_bytes),
+                      {0, kMaxDiskBytes}, &Config::disk, &store::DiskLimits::max_bytes),
                number({"min-free-bytes", "N",
                        "Bytes of the disk that uploads leave free; results leave half of it free"},
-                      {0, kMaxDiskBytes}, &Config::disk, &DiskLimits::min_free_bytes)}};
+                      {0, kMaxDiskBytes}, &Config::disk, &store::DiskLimits::min_free_bytes)}};
 }
 
 /// Browsers send origins, and webhooks' hosts are compared, in small letters.
@@ -169,13 +169,13 @@ ConfigGroup admitting() {
       .title = "Access",
       .rows = {
           on_off({"require-keys", "", "Require API keys on loopback, too"}, &Config::access,
-                 &AccessConfig::require_keys),
+                 &access::AccessConfig::require_keys),
           text({"key-file", "PATH",
                 "File with one more API key of the scope admin, 32 characters or more: for a "
                 "mounted secret"},
-               &Config::access, &AccessConfig::key_file),
+               &Config::access, &access::AccessConfig::key_file),
           on_off({"insecure", "", "Require no API keys although other machines can connect"},
-                 &Config::access, &AccessConfig::insecure),
+                 &Config::access, &access::AccessConfig::insecure),
           list({"allowed-hosts", "LIST",
                 "Host names that the server answers to when it requires no API keys: example.com, "
                 "*.example.com or *. It always answers to addresses and localhost"},
@@ -186,14 +186,14 @@ ConfigGroup admitting() {
           list(
               {"webhook-hosts", "LIST",
                "Hosts that webhooks may call: example.com, *.example.com or *. Empty: no webhooks"},
-              check_host, &Config::webhooks, &WebhookConfig::allowed_hosts),
+              check_host, &Config::webhooks, &webhooks::WebhookConfig::allowed_hosts),
           on_off({"webhook-private", "",
                   "Allow webhooks to addresses of this machine and of private networks"},
-                 &Config::webhooks, &WebhookConfig::allow_private),
+                 &Config::webhooks, &webhooks::WebhookConfig::allow_private),
           number(
               {"webhook-retry-seconds", "N",
                "Seconds until the second attempt of a webhook; doubled for each further attempt"},
-              {1, 3600}, &Config::webhooks, &WebhookConfig::retry_seconds)}};
+              {1, 3600}, &Config::webhooks, &webhooks::WebhookConfig::retry_seconds)}};
 }
 
 ConfigGroup telling() {
@@ -261,4 +261,4 @@ void check_together(const Config& config) {
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::config

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "core/base/error.hpp"
-#include "server/config/parts_config.hpp"
+#include "server/config/component_config.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::config {
 namespace {
 
 constexpr std::int64_t kOfTheServer = 32;  // stores, listeners, bells, folders
@@ -29,4 +29,4 @@ int connections_within(std::int64_t files, const Config& config) {
   return static_cast<int>(std::min<std::int64_t>(left, config.edge.max_connections));
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::config

@@ -7,7 +7,7 @@
 
 #include "server/config/config.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::config {
 
 inline constexpr std::int64_t kFewestDescriptors = 64;
 
@@ -15,4 +15,4 @@ inline constexpr std::int64_t kFewestDescriptors = 64;
 /// where those are too few to work with.
 int connections_within(std::int64_t files, const Config& config);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::config

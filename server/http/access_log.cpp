@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 void count(const Exchanged& done, Metrics& metrics) {
@@ -18,7 +18,7 @@ void count(const Exchanged& done, Metrics& metrics) {
 
 }  // namespace
 
-void tell_exchange(const Exchanged& done, const Log& log, LogLevel level, Metrics& metrics) {
+void log_request(const Exchanged& done, const Log& log, LogLevel level, Metrics& metrics) {
   count(done, metrics);
   api::Json line = {{"method", done.method},
                     {"path", done.path},
@@ -31,4 +31,4 @@ void tell_exchange(const Exchanged& done, const Log& log, LogLevel level, Metric
   log.write(level, "request", line);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -6,9 +6,9 @@
 #include "server/base/metrics.hpp"
 #include "server/http/http.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// level: of the line.
-void tell_exchange(const Exchanged& done, const Log& log, LogLevel level, Metrics& metrics);
+void log_request(const Exchanged& done, const Log& log, LogLevel level, Metrics& metrics);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

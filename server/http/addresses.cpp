@@ -7,7 +7,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 using Bytes = std::array<unsigned char, 16>;
@@ -142,4 +142,4 @@ int Places::taken() const {
   return taken_->all;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

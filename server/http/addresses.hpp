@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// Addresses as ranges: "10.0.0.0/8", "::1", "192.168.1.7". Thread-safe.
 class AddressSet {
@@ -65,4 +65,4 @@ class Places {
   std::shared_ptr<Taken> taken_ = std::make_shared<Taken>();
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

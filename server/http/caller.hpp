@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// What one caller may have at a time; 0: no limit.
 struct Quota {
@@ -19,4 +19,4 @@ struct Caller {
   std::string key_sha256 = {};  ///< of the API key: what is signed with it goes when the key goes
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -11,7 +11,7 @@
 #include <charconv>
 #include <utility>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 using std::chrono::milliseconds;
@@ -73,7 +73,7 @@ bool Connection::has_next() const { return buffer_.find("\r\n\r\n", used_) != st
 /// Raw bytes, be they TLS or not: nobody reads them.
 void Connection::linger() const {
   client_.transport->end();
-  const Waiting among(limits_.crowd.get());
+  const Waiting among(limits_.pressure.get());
   const Clock::time_point until = Clock::now() + kLingerTime;
   std::array<char, kReadBytes> waste;
   while (!body_done_ && !among.many() && Clock::now() < until) {
@@ -229,7 +229,7 @@ bool Connection::fill_body() {
   buffer_.erase(0, used_);
   used_ = 0;
   head_end_ = 0;
-  const Waiting among(limits_.crowd.get());
+  const Waiting among(limits_.pressure.get());
   const bool many = among.many();
   const std::chrono::duration<double> elapsed = Clock::now() - body_began_;
   const double expected =
@@ -253,7 +253,7 @@ std::int64_t Connection::fail(ErrorCode code, const std::string& message) {
 short Connection::wait_to_send(short events) {
   const double expected = kept_waiting_.count() * static_cast<double>(limits_.min_bytes_per_second);
   if (kept_waiting_ > limits_.rate_grace && static_cast<double>(sent_bytes_) < expected) return 0;
-  const Waiting among(limits_.crowd.get());
+  const Waiting among(limits_.pressure.get());
   const Clock::time_point began = Clock::now();
   int unsent = unsent_bytes(socket());
   short ready = 0;
@@ -290,4 +290,4 @@ std::int64_t Connection::write(std::string_view bytes) {
   return sent;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

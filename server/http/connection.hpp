@@ -12,11 +12,11 @@
 #include <string_view>
 
 #include "core/base/error.hpp"
-#include "server/http/crowd.hpp"
 #include "server/http/http_head.hpp"
+#include "server/http/slow_client_pressure.hpp"
 #include "server/http/transport.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 struct ConnectionLimits {
   std::int64_t max_body_bytes = 0;
@@ -25,8 +25,8 @@ struct ConnectionLimits {
   std::chrono::milliseconds read{20'000};    ///< for the next bytes of a body
   std::chrono::milliseconds write{20'000};   ///< for the client to take more bytes
   std::int64_t min_bytes_per_second = 1024;  ///< of a body, and of an answer while we wait for it
-  std::chrono::milliseconds rate_grace{20'000};  ///< until that counts
-  std::shared_ptr<Crowd> crowd = {};             ///< of one server; none: never many
+  std::chrono::milliseconds rate_grace{20'000};       ///< until that counts
+  std::shared_ptr<SlowClientPressure> pressure = {};  ///< of one server; none: never many
   std::chrono::milliseconds crowded{2'000};  ///< instead of read, write and rate_grace in a crowd
   std::int64_t crowded_bytes_per_second = 16'384;  ///< of a body in a crowd
 };
@@ -105,4 +105,4 @@ class Connection {
   std::optional<Error> failure_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr const char* kMethods = "GET, HEAD, POST, PUT, DELETE";
@@ -43,4 +43,4 @@ void Cors::allow(const Request& request, Response& response) const {
   response.headers.emplace_back("Access-Control-Expose-Headers", kAnswerHeaders);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

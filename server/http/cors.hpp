@@ -9,7 +9,7 @@
 
 #include "server/http/http.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 class Cors {
  public:
@@ -26,4 +26,4 @@ class Cors {
   const std::vector<std::string> origins_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 Epoll::Epoll() : epoll_(::epoll_create1(EPOLL_CLOEXEC)) {}
 
@@ -23,4 +23,4 @@ void Epoll::control(int operation, int descriptor, short events) const {
   ::epoll_ctl(epoll_, operation, descriptor, &event);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -6,7 +6,7 @@
 #include <array>
 #include <span>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// Not for use by two threads at once.
 class Epoll {
@@ -30,4 +30,4 @@ class Epoll {
   std::array<epoll_event, 256> ready_{};
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

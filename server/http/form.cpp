@@ -7,7 +7,7 @@
 #include "core/base/error.hpp"
 #include "server/base/utf8.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr std::string_view kCrLf = "\r\n";
@@ -206,4 +206,4 @@ bool FormParser::read_head() {
   return true;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -12,7 +12,7 @@
 
 #include "server/http/http.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 inline constexpr std::size_t kMaxBoundary = 70;  // RFC 2046, 5.1.1
 inline constexpr std::size_t kMaxPartHead = std::size_t{8} * 1024;
@@ -49,4 +49,4 @@ class FormParser {
   std::size_t searched_ = 0;   // of held_, for what is awaited
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

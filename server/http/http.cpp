@@ -8,7 +8,7 @@
 #include "server/base/retry_later.hpp"
 #include "server/base/utf8.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr std::size_t kMaxProblemText = 500;  // bytes of a detail, or of a pointer
@@ -62,4 +62,4 @@ Response error_response(const Error& error, std::string_view job) {
   return response;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

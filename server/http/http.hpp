@@ -17,7 +17,7 @@
 #include "server/base/files.hpp"
 #include "server/http/caller.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// A part of a multipart/form-data body.
 struct Part {
@@ -120,4 +120,4 @@ Response json_response(int status, std::string_view json);
 /// The problem document of an error, with Retry-After where it is one that passes.
 Response error_response(const Error& error, std::string_view job = {});
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

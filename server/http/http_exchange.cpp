@@ -14,7 +14,7 @@
 #include "server/http/form.hpp"
 #include "server/http/media_types.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr std::int64_t kFilePiece = std::int64_t{256} * 1024;
@@ -280,4 +280,4 @@ bool Exchange::answer_request(Connection& connection, bool last) {
 
 std::optional<OpenStream> Exchange::take_stream() { return http_->take_stream(); }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -10,14 +10,14 @@
 #include <memory>
 #include <optional>
 
-#include "server/base/doorbell.hpp"
 #include "server/base/log.hpp"
+#include "server/base/wakeup.hpp"
 #include "server/http/addresses.hpp"
 #include "server/http/connection.hpp"
 #include "server/http/http.hpp"
 #include "server/http/stream_writer.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// What an exchange needs of the server.
 struct HttpUses {
@@ -25,7 +25,7 @@ struct HttpUses {
   Observer observe;                 ///< told of every answer, after it; the same
   AddressSet trusted_proxies = {};  ///< whose X-Forwarded-For is believed
   /// Rung when the body of a stream may have more; for one server alone.
-  std::shared_ptr<Doorbell> news = std::make_shared<Doorbell>();
+  std::shared_ptr<Wakeup> news = std::make_shared<Wakeup>();
 };
 
 /// Not for use by two threads at once.
@@ -48,4 +48,4 @@ class Exchange {
   std::unique_ptr<Http> http_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

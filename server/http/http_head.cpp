@@ -7,7 +7,7 @@
 
 #include "server/http/http.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr std::string_view kLineEnd = "\r\n";
@@ -260,4 +260,4 @@ std::ptrdiff_t simplify(std::string& head, const Framing& framing) {
   return before - std::ssize(head);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -12,7 +12,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 inline constexpr std::size_t kMaxHeadBytes = std::size_t{32} * 1024;
 inline constexpr std::size_t kMaxLineBytes = std::size_t{8} * 1024 - 2;  // httplib's, without CRLF
@@ -52,4 +52,4 @@ bool is_trailer(std::string_view line);
 /// bytes the head, which more may follow, is shorter.
 std::ptrdiff_t simplify(std::string& head, const Framing& framing);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

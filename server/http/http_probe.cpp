@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr std::chrono::seconds kPatience{2};
@@ -30,4 +30,4 @@ int probe(const Address& admin) {
   return 1;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

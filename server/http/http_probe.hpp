@@ -3,10 +3,10 @@
 
 #include "server/base/address.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// The exit code of --healthcheck: 0 when GET /healthz at this address is answered with 200 within
 /// two seconds, else 1, and stderr tells why.
 int probe(const Address& admin);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -9,7 +9,7 @@
 #include "api/error_table.hpp"
 #include "server/base/retry_later.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr int kRetrySeconds = 5;
@@ -50,33 +50,35 @@ std::optional<TlsContext> tls_of(const HttpConfig& config) {
 }
 
 /// Half of the threads may wait for clients that are slow.
-HttpConfig with_crowd(HttpConfig config) {
-  config.limits.crowd = std::make_shared<Crowd>();
-  config.limits.crowd->many = config.max_requests / 2;
+HttpConfig with_pressure(HttpConfig config) {
+  config.limits.pressure = std::make_shared<SlowClientPressure>();
+  config.limits.pressure->many = config.max_requests / 2;
   return config;
 }
 
 }  // namespace
 
 HttpServer::HttpServer(const HttpConfig& config, HttpUses uses, const Log& log)
-    : config_(with_crowd(config)),
+    : config_(with_pressure(config)),
       uses_(std::move(uses)),
       log_(log),
       tls_(tls_of(config)),
       listener_(config.address.host, config.address.port, config.option),
       places_(config.max_connections, config.max_connections_per_address),
-      parking_(listener_,
-               {.accept = [this] { return let_in(); },
-                .greet = [this](Client client) { greeters_->greet(std::move(client)); },
-                .ready = [this](Client client) { make_ready(std::move(client)); },
-                .refuse = [this](Client& client, const Error& why) { turn_away(client, why); }},
-               config.parking),
+      idle_connections_(
+          listener_,
+          {.accept = [this] { return let_in(); },
+           .handshake = [this](Client client) { handshakes_->handshake(std::move(client)); },
+           .ready = [this](Client client) { make_ready(std::move(client)); },
+           .refuse = [this](Client& client, const Error& why) { turn_away(client, why); }},
+          config.idle_connections),
       streams_({.news = uses_.news,
                 .observe = uses_.observe,
                 .back = [this](Client client, bool again) { let_go(std::move(client), again); }},
                config.limits, config.ping) {
   if (tls_)
-    greeters_.emplace(kGreeters, [this](Client client) { parking_.park(std::move(client)); });
+    handshakes_.emplace(kGreeters,
+                        [this](Client client) { idle_connections_.park(std::move(client)); });
 }
 
 std::optional<Client> HttpServer::let_in() {
@@ -135,7 +137,7 @@ void HttpServer::begin_thread() {
 }
 
 void HttpServer::serve() {
-  parking_.run();
+  idle_connections_.run();
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -174,7 +176,7 @@ std::optional<Client> HttpServer::next_client() {
 }
 
 void HttpServer::work() {
-  Exchange exchange(uses_, log_, config_.parking.idle);
+  Exchange exchange(uses_, log_, config_.idle_connections.idle);
   while (std::optional<Client> client = next_client()) serve_client(std::move(*client), exchange);
 }
 
@@ -195,7 +197,7 @@ void HttpServer::serve_client(Client client, Exchange& exchange) {
 /// Of one that may send another request, or whose stream has ended.
 void HttpServer::let_go(Client client, bool again) {
   forget(client.transport->socket());
-  if (again && !stopping_) return parking_.park(std::move(client));
+  if (again && !stopping_) return idle_connections_.park(std::move(client));
   client.transport->end();
 }
 
@@ -238,4 +240,4 @@ void HttpServer::observe_refusal(const std::string& client, const Error& error,
 
 void HttpServer::stop() { listener_.stop(); }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

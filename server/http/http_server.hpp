@@ -23,15 +23,15 @@
 #include "server/base/log.hpp"
 #include "server/http/addresses.hpp"
 #include "server/http/connection.hpp"
-#include "server/http/greeters.hpp"
 #include "server/http/http.hpp"
 #include "server/http/http_exchange.hpp"
+#include "server/http/idle_connections.hpp"
 #include "server/http/listener.hpp"
-#include "server/http/parking.hpp"
 #include "server/http/stream_writer.hpp"
 #include "server/http/tls.hpp"
+#include "server/http/tls_handshake_pool.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 struct HttpConfig {
   Address address{"127.0.0.1", 8080};     ///< port 0: a free one
@@ -44,7 +44,7 @@ struct HttpConfig {
   std::filesystem::path tls_key;
   std::chrono::milliseconds last_answers{10'000};  ///< for what is being answered at the end
   std::chrono::milliseconds ping{15'000};          ///< of silence in a stream, until one is sent
-  ParkingRules parking;
+  IdleRules idle_connections;
   ConnectionLimits limits;
 };
 
@@ -60,7 +60,7 @@ class HttpServer {
   void serve();
   void stop();
 
-  [[nodiscard]] int parked() const { return parking_.count(); }
+  [[nodiscard]] int parked() const { return idle_connections_.count(); }
   [[nodiscard]] int open() const { return places_.taken(); }
 
  private:
@@ -91,8 +91,8 @@ class HttpServer {
   const std::optional<TlsContext> tls_;
   const Listener listener_;
   Places places_;
-  Parking parking_;
-  std::optional<Greeters> greeters_;  // with TLS only
+  IdleConnections idle_connections_;
+  std::optional<TlsHandshakePool> handshakes_;  // with TLS only
   std::mutex mutex_;
   std::condition_variable left_;
   std::deque<Client> ready_;
@@ -103,4 +103,4 @@ class HttpServer {
   std::vector<std::jthread> threads_;  // last: they use the others
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -19,7 +19,7 @@
 #include "core/base/error.hpp"
 #include "server/base/address.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr int kBacklog = 1024;
@@ -142,4 +142,4 @@ void Listener::stop() const {
   [[maybe_unused]] const ssize_t written = ::write(stop_, &one, sizeof one);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

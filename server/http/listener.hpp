@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// A client at the door.
 struct Accepted {
@@ -43,4 +43,4 @@ class Listener {
   mutable int spare_ = -1;  // open while others may be had
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -9,7 +9,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 struct Representation {
@@ -194,4 +194,4 @@ std::optional<ByteRange> single_range(std::string_view range, std::int64_t size)
   return ByteRange{*first, end - *first + 1};
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

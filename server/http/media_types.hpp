@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 enum class BodyKind { asset, multipart, reference };
 
@@ -40,4 +40,4 @@ struct ByteRange {
 /// several, or none that there is, in which case all bytes are sent.
 std::optional<ByteRange> single_range(std::string_view range, std::int64_t size);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

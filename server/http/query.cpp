@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 void refuse_parameter(const std::string& name, const std::string& what) {
   throw Error(ErrorCode::invalid_option, what, "/" + name);
@@ -28,4 +28,4 @@ std::int64_t positive_number(const std::string& name, const std::string& text, s
   return number;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -7,7 +7,7 @@
 
 #include "server/http/http.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 [[noreturn]] void refuse_parameter(const std::string& name, const std::string& what);
 [[noreturn]] void refuse_unknown(const std::string& name);
@@ -16,4 +16,4 @@ void check_once(const Request& request, const std::string& name);
 /// A number from 1 to most.
 std::int64_t positive_number(const std::string& name, const std::string& text, std::int64_t most);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

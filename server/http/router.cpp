@@ -7,7 +7,7 @@
 #include "server/base/identity.hpp"
 #include "server/base/inside_error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr std::string_view kIdSegment = "{id}";
@@ -106,4 +106,4 @@ Response Router::dispatch(Request& request, std::string_view& matched) const {
   throw Error(ErrorCode::not_found, "There is nothing at this address; see /openapi.yaml.");
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -10,7 +10,7 @@
 #include "server/base/log.hpp"
 #include "server/http/http.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// A segment "{id}" of the path matches a job id, "{sha256}" a digest.
 struct Route {
@@ -39,4 +39,4 @@ class Router {
   const Admit admit_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr auto kSafe = std::to_array<std::string_view>({"GET", "HEAD", "OPTIONS"});
@@ -70,4 +70,4 @@ std::optional<Error> Sites::refusal(const Request& request) const {
                "anything; its operator can allow a site by --cors-origins.");
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -17,7 +17,7 @@
 #include "server/http/cors.hpp"
 #include "server/http/http.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// Whether a rule of a list of hosts names this host: "example.com" itself, "*.example.com" each
 /// below it, "*" any.
@@ -36,4 +36,4 @@ class Sites {
   const Cors& cors_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -9,7 +9,7 @@
 
 #include "server/base/trace.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 constexpr int kLookMs = 250;       // how late a ping may be, or a slow client be noticed
@@ -193,4 +193,4 @@ void StreamWriter::finish(Streams::iterator at, bool again) {
   uses_.back(std::move(stream.client), again);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -15,13 +15,13 @@
 #include <thread>
 #include <vector>
 
-#include "server/base/doorbell.hpp"
+#include "server/base/wakeup.hpp"
 #include "server/http/connection.hpp"
 #include "server/http/epoll.hpp"
 #include "server/http/http.hpp"
 #include "server/http/transport.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 /// An answer whose head is out.
 struct OpenStream {
@@ -36,7 +36,7 @@ struct OpenStream {
 class StreamWriter {
  public:
   struct Uses {
-    std::shared_ptr<Doorbell> news;  ///< rung when some body may have more; this object's alone
+    std::shared_ptr<Wakeup> news;  ///< rung when some body may have more; this object's alone
     Observer observe;
     /// Gets each client whose stream is over; again: it may send another request.
     std::function<void(Client, bool again)> back;
@@ -94,4 +94,4 @@ class StreamWriter {
   std::thread thread_;  // last: it uses the others
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

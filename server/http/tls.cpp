@@ -11,7 +11,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 struct FreeSsl {
@@ -57,7 +57,7 @@ class TlsTransport final : public Transport {
   }
 
   [[nodiscard]] bool is_open() const override { return SSL_is_init_finished(session_.get()) == 1; }
-  bool greet() override {
+  bool handshake() override {
     begin_step();
     const std::int64_t done = result_of(SSL_do_handshake(session_.get()));
     return done > 0 || done == kAgain;
@@ -209,4 +209,4 @@ std::unique_ptr<Transport> TlsContext::accept(int socket) const {
   return std::make_unique<TlsTransport>(socket, Session(SSL_new(context_.get())));
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -10,7 +10,7 @@
 
 struct ssl_ctx_st;  // OpenSSL's SSL_CTX
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 class TlsContext {
  public:
@@ -28,4 +28,4 @@ class TlsContext {
   std::unique_ptr<ssl_ctx_st, Free> context_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

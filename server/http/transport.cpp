@@ -5,7 +5,7 @@
 
 #include <cerrno>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 std::int64_t result_of(ssize_t count) {
@@ -28,4 +28,4 @@ std::int64_t Transport::send(std::string_view bytes) {
 
 void Transport::end() { ::shutdown(socket_, SHUT_WR); }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 
 class Transport {
  public:
@@ -25,10 +25,11 @@ class Transport {
   /// The number of bytes, 0 at the end, kAgain or kBroken.
   virtual std::int64_t receive(char* data, std::size_t size);
   virtual std::int64_t send(std::string_view bytes);
-  /// Whether bytes of requests can come; else greet() is to be called when awaits(POLLIN) is ready.
+  /// Whether bytes of requests can come; else handshake() is to be called when awaits(POLLIN) is
+  /// ready.
   [[nodiscard]] virtual bool is_open() const { return true; }
   /// A step of the handshake, as far as it goes without waiting; false when it has failed.
-  virtual bool greet() { return true; }
+  virtual bool handshake() { return true; }
   /// What poll() shall wait for after kAgain: POLLIN or POLLOUT.
   [[nodiscard]] virtual short awaits(short wanted) const { return wanted; }
   /// Tells the client that nothing more will come.
@@ -50,4 +51,4 @@ struct Client {
   std::optional<std::chrono::steady_clock::time_point> until = {};
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

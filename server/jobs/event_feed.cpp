@@ -6,7 +6,7 @@
 
 #include "server/base/trace.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 constexpr std::int64_t kSeqsPerAttempt = 1'000'000'000;
@@ -15,7 +15,7 @@ constexpr std::size_t kMaxReadingBytes = std::size_t{4} * 1024;  // at once, kep
 }  // namespace
 
 JobFeed::JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics,
-                 std::shared_ptr<const Doorbell> news)
+                 std::shared_ptr<const Wakeup> news)
     : base_(base),
       trace_(current_trace().empty() ? new_trace_id() : current_trace()),
       news_(std::move(news)),
@@ -132,4 +132,4 @@ void EventFeed::end_all() {
   for (const auto& feed : feeds) feed->end();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

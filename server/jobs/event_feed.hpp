@@ -18,10 +18,10 @@
 #include <string_view>
 
 #include "api/events.hpp"
-#include "server/base/doorbell.hpp"
-#include "server/jobs/job_watch.hpp"
+#include "server/base/wakeup.hpp"
+#include "server/jobs/job_metrics.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 
 /// What a reader gets from one call.
 struct Reading {
@@ -35,7 +35,7 @@ class JobFeed {
  public:
   /// Works for the trace of the thread that makes it, or for one of its own.
   JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics = nullptr,
-          std::shared_ptr<const Doorbell> news = nullptr);
+          std::shared_ptr<const Wakeup> news = nullptr);
 
   /// The trace id that the job's log lines tell.
   [[nodiscard]] const std::string& trace() const { return trace_; }
@@ -68,12 +68,12 @@ class JobFeed {
   const std::string trace_;
   mutable std::mutex mutex_;
   mutable std::condition_variable over_;
-  const std::shared_ptr<const Doorbell> news_;
+  const std::shared_ptr<const Wakeup> news_;
   std::int64_t newest_;
   const std::size_t capacity_;
   std::deque<Frame> ring_;
   std::optional<api::JobProgress> progress_;
-  std::optional<JobWatch> watch_;
+  std::optional<JobMetrics> watch_;
   bool finished_ = false;
   bool ended_ = false;
 };
@@ -84,7 +84,7 @@ class EventFeed {
   /// ring: events kept of a job; kept_finished: finished feeds kept; metrics: told of all events,
   /// must outlive all feeds; news: rung at all events.
   explicit EventFeed(std::size_t ring = 1024, std::size_t kept_finished = 64,
-                     Metrics* metrics = nullptr, std::shared_ptr<const Doorbell> news = nullptr)
+                     Metrics* metrics = nullptr, std::shared_ptr<const Wakeup> news = nullptr)
       : ring_(ring), kept_finished_(kept_finished), metrics_(metrics), news_(std::move(news)) {}
 
   /// The feed of a job that waits for its next attempt; attempt: those begun before.
@@ -99,10 +99,10 @@ class EventFeed {
   const std::size_t ring_;
   const std::size_t kept_finished_;
   Metrics* const metrics_;
-  const std::shared_ptr<const Doorbell> news_;
+  const std::shared_ptr<const Wakeup> news_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<JobFeed>, std::less<>> feeds_;
   std::list<std::string> finished_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

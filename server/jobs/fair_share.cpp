@@ -4,7 +4,7 @@
 #include <cassert>
 #include <limits>
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 
 double FairShare::service(const Account& account) const {
   return account.served_seconds + static_cast<double>(account.running) * lengths_.mean;
@@ -63,4 +63,4 @@ void FairShare::end(const std::string& owner, double seconds) {
   if (nobody_else) accounts_.clear();  // all start level again
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

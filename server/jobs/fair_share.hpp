@@ -9,9 +9,9 @@
 #include <map>
 #include <string>
 
-#include "server/jobs/promised_places.hpp"
+#include "server/jobs/slot_reservations.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 
 /// Not for use by two threads at once.
 class FairShare {
@@ -48,4 +48,4 @@ class FairShare {
   Lengths lengths_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -2,7 +2,7 @@
 
 #include "api/events.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 constexpr double kStep = 0.005;  // of the fraction
@@ -15,10 +15,10 @@ bool is_news(const StageEvent& event, const StageEvent& told) {
 
 }  // namespace
 
-FeedOutput::FeedOutput(const RunningJob& job, BlobStore& blobs, ResultClaim room)
+FeedOutput::FeedOutput(const RunningJob& job, store::BlobStore& blobs, ResultClaim room)
     : job_(job), blobs_(blobs), room_(room) {
   const std::lock_guard lock(job_.output);
-  if (!job_.has_ended) room_.claim.give_up();
+  if (!job_.has_ended) room_.reservation.give_up();
 }
 
 void FeedOutput::stage(const StageEvent& event) {
@@ -47,7 +47,7 @@ void FeedOutput::iteration(const IterationEvent& event, double elapsed_ms) {
 }
 
 void FeedOutput::result(std::string_view format, std::string_view bytes) {
-  keep(result_file(format), bytes);
+  keep(store::result_file(format), bytes);
 }
 
 void FeedOutput::file(std::string_view name, std::string_view bytes) { keep(name, bytes); }
@@ -55,8 +55,9 @@ void FeedOutput::file(std::string_view name, std::string_view bytes) { keep(name
 void FeedOutput::keep(std::string_view name, std::string_view bytes) {
   const std::lock_guard lock(job_.output);
   if (job_.has_ended) throw Error(ErrorCode::cancelled, "The job was given up in the meantime.");
-  room_.claim.add(static_cast<std::int64_t>(bytes.size()), room_.most_bytes(job_.record.owner));
+  room_.reservation.add(static_cast<std::int64_t>(bytes.size()),
+                        room_.most_bytes(job_.record.owner));
   blobs_.write_unsealed(job_.record.id, name, bytes);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -4,10 +4,10 @@
 #include "server/base/clock.hpp"
 #include "server/base/queue_errors.hpp"
 #include "server/base/trace.hpp"
-#include "server/jobs/question.hpp"
+#include "server/jobs/request_fingerprint.hpp"
 #include "server/store/job_rows.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 using api::JobState;
@@ -16,8 +16,8 @@ constexpr int kMaxAttemptsWhenFull = 20;
 
 }  // namespace
 
-JobQueue::JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const Log& log,
-                   const QueueConfig& config)
+JobQueue::JobQueue(store::JobStore& store, store::BlobStore& blobs, EventFeed& events,
+                   const Log& log, const QueueConfig& config)
     : store_(store),
       blobs_(blobs),
       events_(events),
@@ -25,7 +25,7 @@ JobQueue::JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const L
       config_(config),
       door_(config.max_queue, config.workers) {}
 
-void JobQueue::wait_again(const JobRecord& job) {
+void JobQueue::wait_again(const store::JobRecord& job) {
   const TraceScope trace(job.trace);
   std::shared_ptr<JobFeed> feed = events_.find(job.id);  // with its readers, if it ran already
   if (!feed) feed = events_.open(job.id, job.attempt);
@@ -45,7 +45,7 @@ std::vector<AtWork> JobQueue::at_work() const {
   return all;
 }
 
-void JobQueue::check_room(const Asker& sender) {
+void JobQueue::check_room(const Applicant& sender) {
   const std::lock_guard lock(mutex_);
   check_open();
   door_.check_place(sender, share_, at_work());
@@ -56,28 +56,28 @@ void JobQueue::give_back(std::string_view sender) {
   door_.leave(sender);
 }
 
-std::optional<JobRecord> JobQueue::same_name(const JobRecord& job) {
+std::optional<store::JobRecord> JobQueue::same_name(const store::JobRecord& job) {
   if (job.request_key.empty()) return std::nullopt;
-  std::optional<JobRecord> known = store_.find_request(job.owner, job.request_key);
+  std::optional<store::JobRecord> known = store_.find_request(job.owner, job.request_key);
   if (!known) known = store_.find(job.id);
   if (!known) return std::nullopt;
   if (known->owner != job.owner) throw unknown_job();
-  if (!is_same_question(*known, job)) throw another_question();
+  if (!is_same_request(*known, job)) throw another_question();
   return known;
 }
 
-JobRecord JobQueue::submit(Submission submission) {
-  JobRecord& job = submission.job;
+store::JobRecord JobQueue::submit(Submission submission) {
+  store::JobRecord& job = submission.job;
   std::unique_lock named(naming_, std::defer_lock);
   if (!job.request_key.empty()) named.lock();
-  if (std::optional<JobRecord> known = same_name(job)) {
+  if (std::optional<store::JobRecord> known = same_name(job)) {
     give_back(submission.sender);
     blobs_.drop_upload(submission.upload);
     return std::move(*known);
   }
-  blobs_.keep_upload(submission.upload, job.id, digests_of(job.input));
+  blobs_.keep_upload(submission.upload, job.id, store::digests_of(job.input));
   try {
-    enqueue(job, submission, submission.anew ? std::nullopt : find_answer(job));
+    enqueue(job, submission, submission.bypass_cache ? std::nullopt : find_answer(job));
   } catch (...) {
     blobs_.remove(job.id);
     throw;
@@ -86,11 +86,11 @@ JobRecord JobQueue::submit(Submission submission) {
   return std::move(job);
 }
 
-void JobQueue::enqueue(JobRecord& job, const Submission& submission, const Answer& answer) {
+void JobQueue::enqueue(store::JobRecord& job, const Submission& submission, const Answer& answer) {
   const std::lock_guard lock(mutex_);
   check_open();
   door_.check_place({.who = submission.sender, .owner = job.owner}, share_, at_work());
-  if (const Quota& quota = submission.quota; quota.max_jobs > 0 || quota.max_bytes > 0)
+  if (const http::Quota& quota = submission.quota; quota.max_jobs > 0 || quota.max_bytes > 0)
     door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
   door_.leave(submission.sender);
   give_up_excess();
@@ -99,14 +99,14 @@ void JobQueue::enqueue(JobRecord& job, const Submission& submission, const Answe
 }
 
 /// If its files are whole: they become this job's, too, and count as such. Reads all of them.
-JobQueue::Answer JobQueue::find_answer(JobRecord& job) {
+JobQueue::Answer JobQueue::find_answer(store::JobRecord& job) {
   Answer same = store_.find_same(job.owner, job.content_key);
   if (same && (!same->unreadable.empty() || !blobs_.adopt(job.id, same->id))) same.reset();
   if (same) job.stored_bytes = blobs_.bytes(job.id);
   return same;
 }
 
-bool JobQueue::answer_from_store(const JobRecord& job, const JobRecord& answer) {
+bool JobQueue::answer_from_store(const store::JobRecord& job, const store::JobRecord& answer) {
   events_.open(job.id, job.attempt);
   try {
     end_job(
@@ -137,7 +137,8 @@ std::shared_ptr<RunningJob> JobQueue::take() {
   std::unique_lock lock(mutex_);
   while (await_turn(lock)) {
     const std::string owner = share_.next();
-    std::optional<JobRecord> record = store_.take(owner, elapsed_ms() + config_.lease.count());
+    std::optional<store::JobRecord> record =
+        store_.take(owner, elapsed_ms() + config_.lease.count());
     if (record && record->unreadable.empty()) return begin(std::move(*record));
     share_.remove(owner);
     if (record) {
@@ -149,7 +150,7 @@ std::shared_ptr<RunningJob> JobQueue::take() {
   return nullptr;
 }
 
-std::shared_ptr<RunningJob> JobQueue::begin(JobRecord record) {
+std::shared_ptr<RunningJob> JobQueue::begin(store::JobRecord record) {
   share_.start(record.owner);
   auto job = std::make_shared<RunningJob>();
   job->record = std::move(record);
@@ -162,7 +163,7 @@ std::shared_ptr<RunningJob> JobQueue::begin(JobRecord record) {
 }
 
 /// Whether the job, whose results found no room, waits until there is some.
-bool JobQueue::wait_for_room(const RunningJob& job, const JobOutcome& outcome) {
+bool JobQueue::wait_for_room(const RunningJob& job, const store::JobOutcome& outcome) {
   const bool full = outcome.state == JobState::failed &&
                     api::error_from_problem(outcome.problem).code() == ErrorCode::storage_full;
   const bool again = full && !closed_ && job.record.attempt < kMaxAttemptsWhenFull;
@@ -174,16 +175,16 @@ bool JobQueue::wait_for_room(const RunningJob& job, const JobOutcome& outcome) {
 }
 
 /// The success that it is, if its files can be noted.
-JobOutcome JobQueue::sealed(const std::string& id, JobOutcome outcome) {
+store::JobOutcome JobQueue::sealed(const std::string& id, store::JobOutcome outcome) {
   try {
     outcome.stored_bytes = blobs_.seal(id);
     return outcome;
   } catch (const Error& error) {
-    return ended(JobState::failed, error, id);
+    return store::ended(JobState::failed, error, id);
   }
 }
 
-void JobQueue::finish(const RunningJob& job, JobOutcome outcome,
+void JobQueue::finish(const RunningJob& job, store::JobOutcome outcome,
                       const std::function<void()>& stored) {
   if (outcome.state == JobState::succeeded) outcome = sealed(job.record.id, std::move(outcome));
   const std::lock_guard lock(mutex_);
@@ -198,20 +199,20 @@ void JobQueue::finish(const RunningJob& job, JobOutcome outcome,
   end_job(job.record, std::move(outcome), stored);
 }
 
-void JobQueue::end_job(const JobRecord& job, JobOutcome outcome,
+void JobQueue::end_job(const store::JobRecord& job, store::JobOutcome outcome,
                        const std::function<void()>& stored) {
   const std::shared_ptr<JobFeed> feed = events_.find(job.id);
   outcome.last_event = feed->next_seq();
   const Moment now = store_.now();
   outcome.finished_ms = now.of_day_ms;
   outcome.set_by_ms = now.set_by_ms;
-  JobRecord record = job;
+  store::JobRecord record = job;
   record.state = outcome.state;
   record.problem = outcome.problem;
-  if (!job.webhook.empty()) outcome.delivery = text_of(api::to_json(to_job(record)));
+  if (!job.webhook.empty()) outcome.delivery = store::text_of(api::to_json(store::to_job(record)));
   if (!store_.finish(job, outcome)) return;
   if (stored) stored();
-  feed->publish([&](std::int64_t seq) { return api::final_event(seq, to_job(record)); });
+  feed->publish([&](std::int64_t seq) { return api::final_event(seq, store::to_job(record)); });
   events_.retire(job.id);
   if (outcome.state != JobState::succeeded) blobs_.remove(job.id);
   log_.info("job ended", {{"job", job.id},
@@ -222,7 +223,7 @@ void JobQueue::end_job(const JobRecord& job, JobOutcome outcome,
 
 bool JobQueue::cancel_or_remove(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  const std::optional<JobRecord> job = store_.find(id);
+  const std::optional<store::JobRecord> job = store_.find(id);
   if (!job) throw unknown_job();
   if (!api::is_final(job->state)) {
     cancel_live(*job);
@@ -239,10 +240,10 @@ void JobQueue::remove_ended(const std::string& id) {
   blobs_.remove(id);
 }
 
-void JobQueue::cancel_live(const JobRecord& job) {
+void JobQueue::cancel_live(const store::JobRecord& job) {
   if (job.state == JobState::queued) {
     blobs_.room().free_by(
-        [&] { end_job(job, ended(JobState::cancelled, cancelled_by_owner(), job.id)); });
+        [&] { end_job(job, store::ended(JobState::cancelled, cancelled_by_owner(), job.id)); });
     if (std::erase(left_, job.id) == 0) share_.remove(job.owner);
     return;
   }
@@ -265,7 +266,7 @@ void JobQueue::close() {
   changed_.notify_all();
 }
 
-void JobQueue::hurry() {
+void JobQueue::stop_waiting() {
   const std::lock_guard lock(mutex_);
   hurried_ = true;
   changed_.notify_all();
@@ -283,10 +284,10 @@ bool JobQueue::drain(std::chrono::seconds patience) {
   }
   if (changed_.wait_for(lock, config_.stop, idle)) return true;
   for (const auto& [id, job] : running_) {
-    const std::optional<JobRecord> stored = store_.find(id);
+    const std::optional<store::JobRecord> stored = store_.find(id);
     if (stored && stored->state == JobState::running) take_up(*stored, Found::not_stopping);
   }
   return false;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

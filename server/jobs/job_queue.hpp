@@ -26,21 +26,21 @@
 #include "server/base/log.hpp"
 #include "server/base/retry_later.hpp"
 #include "server/http/caller.hpp"
-#include "server/jobs/disk_pause.hpp"
+#include "server/jobs/admission.hpp"
+#include "server/jobs/disk_full_backoff.hpp"
 #include "server/jobs/event_feed.hpp"
 #include "server/jobs/fair_share.hpp"
-#include "server/jobs/queue_door.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/store/job_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 
 enum class StopCause { none, cancelled, time_limit, draining };
 
 /// A job in the hands of a worker. Its end is stored by one alone: the worker, or whoever gives the
 /// worker up.
 struct RunningJob {
-  JobRecord record;
+  store::JobRecord record;
   std::shared_ptr<JobFeed> feed;
   std::int64_t started_ms = 0;
   std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
@@ -76,17 +76,17 @@ struct QueueConfig {
 
 /// A job whose upload is complete, and how it is to be taken.
 struct Submission {
-  JobRecord job;
-  std::string sender = {};  ///< as check_room() was told
-  std::string upload;       ///< the folder of its files, of BlobStore::begin_upload()
-  Quota quota;              ///< of its owner
-  bool anew = false;        ///< run it even when the same question has been answered
+  store::JobRecord job;
+  std::string sender = {};    ///< as check_room() was told
+  std::string upload;         ///< the folder of its files, of BlobStore::begin_upload()
+  http::Quota quota;          ///< of its owner
+  bool bypass_cache = false;  ///< run it even when the same question has been answered
 };
 
 /// Thread-safe.
 class JobQueue {
  public:
-  JobQueue(JobStore& store, BlobStore& blobs, EventFeed& events, const Log& log,
+  JobQueue(store::JobStore& store, store::BlobStore& blobs, EventFeed& events, const Log& log,
            const QueueConfig& config);
 
   /// Once, before any worker: what the last process left running waits again; a job whose row
@@ -98,24 +98,25 @@ class JobQueue {
   /// Throws RetryLater{queue_full, draining} when a submission would be refused now, else keeps a
   /// place for it until submit() or give_back(). sender: the same for a request that is sent again
   /// when told so, if possible another for each other request.
-  void check_room(const Asker& sender);
+  void check_room(const Applicant& sender);
   void give_back(std::string_view sender);
   /// Stores a job; one of the same name that is there already is returned instead. A question that
   /// this owner has had answered is answered from the store. Throws like check_room(), and
   /// idempotency_conflict, too_many_jobs, quota_exceeded, storage_full.
-  JobRecord submit(Submission submission);
+  store::JobRecord submit(Submission submission);
   /// Waits for the job whose turn it is; nullptr when the queue is closed.
   std::shared_ptr<RunningJob> take();
   /// Ends what take() returned. Its files are complete when it has succeeded. stored: called when
   /// the store has its end, and before anybody is told of it.
-  void finish(const RunningJob& job, JobOutcome outcome, const std::function<void()>& stored = {});
+  void finish(const RunningJob& job, store::JobOutcome outcome,
+              const std::function<void()>& stored = {});
 
   /// Remembers, over the end of this server, too, that a job has ended a process of its own.
   void note_process_end(const RunningJob& job);
 
   /// Prolongs the leases of the jobs at work, queues those whose lease has ended, and gives up
   /// ended jobs beyond max_stored.
-  void beat();
+  void renew_leases();
 
   /// Cancels a live job (true), or removes a finished one and its files (false). Throws not_found.
   bool cancel_or_remove(const std::string& id);
@@ -127,36 +128,37 @@ class JobQueue {
   /// too, or have ended as cancelled, but their threads do not end.
   bool drain(std::chrono::seconds patience);
   /// Takes all patience from drain().
-  void hurry();
+  void stop_waiting();
   [[nodiscard]] bool draining() const { return closed_; }
 
  private:
   void check_open() const;
   [[nodiscard]] std::vector<AtWork> at_work() const;
-  [[nodiscard]] std::optional<JobRecord> same_name(const JobRecord& job);
-  using Answer = std::optional<JobRecord>;  // the job that has had the same question
-  [[nodiscard]] Answer find_answer(JobRecord& job);
-  void enqueue(JobRecord& job, const Submission& submission, const Answer& answer);
-  [[nodiscard]] bool answer_from_store(const JobRecord& job, const JobRecord& answer);
+  [[nodiscard]] std::optional<store::JobRecord> same_name(const store::JobRecord& job);
+  using Answer = std::optional<store::JobRecord>;  // the job that has had the same question
+  [[nodiscard]] Answer find_answer(store::JobRecord& job);
+  void enqueue(store::JobRecord& job, const Submission& submission, const Answer& answer);
+  [[nodiscard]] bool answer_from_store(const store::JobRecord& job, const store::JobRecord& answer);
   enum class Found { lapsed, by_death, not_stopping };
-  [[nodiscard]] bool is_poison(const JobRecord& job, Found found) const;
-  void wait_or_end(const JobRecord& job);
+  [[nodiscard]] bool is_poison(const store::JobRecord& job, Found found) const;
+  void wait_or_end(const store::JobRecord& job);
   void give_up_excess();
   void remove_ended(const std::string& id);
   void take_up_left();
-  void take_up(const JobRecord& job, Found found);
-  void give_up(const JobRecord& job, const Error& why);
-  void set_aside(const JobRecord& unreadable);
-  void wait_again(const JobRecord& job);
-  [[nodiscard]] std::shared_ptr<RunningJob> begin(JobRecord record);
+  void take_up(const store::JobRecord& job, Found found);
+  void give_up(const store::JobRecord& job, const Error& why);
+  void set_aside(const store::JobRecord& unreadable);
+  void wait_again(const store::JobRecord& job);
+  [[nodiscard]] std::shared_ptr<RunningJob> begin(store::JobRecord record);
   [[nodiscard]] bool await_turn(std::unique_lock<std::mutex>& lock);
-  [[nodiscard]] JobOutcome sealed(const std::string& id, JobOutcome outcome);
-  [[nodiscard]] bool wait_for_room(const RunningJob& job, const JobOutcome& outcome);
-  void cancel_live(const JobRecord& job);
-  void end_job(const JobRecord& job, JobOutcome outcome, const std::function<void()>& stored = {});
+  [[nodiscard]] store::JobOutcome sealed(const std::string& id, store::JobOutcome outcome);
+  [[nodiscard]] bool wait_for_room(const RunningJob& job, const store::JobOutcome& outcome);
+  void cancel_live(const store::JobRecord& job);
+  void end_job(const store::JobRecord& job, store::JobOutcome outcome,
+               const std::function<void()>& stored = {});
 
-  JobStore& store_;
-  BlobStore& blobs_;
+  store::JobStore& store_;
+  store::BlobStore& blobs_;
   EventFeed& events_;
   const Log& log_;
   const QueueConfig config_;
@@ -167,11 +169,11 @@ class JobQueue {
   bool hurried_ = false;
   std::mutex naming_;  // one request with a name of its own at a time
   FairShare share_;
-  QueueDoor door_;
-  DiskPause pause_;
+  Admission door_;
+  DiskFullBackoff pause_;
   std::deque<std::string> left_;  // by the last process, and not taken up yet
   bool tried_apart_ = false;
   std::map<std::string, std::shared_ptr<RunningJob>, std::less<>> running_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -7,7 +7,7 @@
 #include "server/jobs/job_queue.hpp"
 #include "server/store/job_rows.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 using api::JobState;
@@ -21,7 +21,7 @@ constexpr int kMaxCrashesApart = 10;  // where one that is to blame should end i
 void JobQueue::recover(bool tried_apart) {
   const std::lock_guard lock(mutex_);
   tried_apart_ = tried_apart;
-  for (const JobRecord& job : store_.unfinished()) {
+  for (const store::JobRecord& job : store_.unfinished()) {
     const bool is_whole = job.unreadable.empty();
     if (is_whole && job.state == JobState::queued && !job.cancel_requested) {
       wait_again(job);
@@ -41,19 +41,19 @@ void JobQueue::recover(bool tried_apart) {
 
 void JobQueue::take_up_left() {
   for (; !left_.empty(); left_.pop_front()) {
-    const std::optional<JobRecord> job = store_.find(left_.front());
+    const std::optional<store::JobRecord> job = store_.find(left_.front());
     if (!job || (job->unreadable.empty() && api::is_final(job->state))) continue;
     take_up(*job, Found::by_death);
   }
 }
 
 /// A job that does not stop is held against it as a death of the server would be.
-bool JobQueue::is_poison(const JobRecord& job, Found found) const {
+bool JobQueue::is_poison(const store::JobRecord& job, Found found) const {
   if (found == Found::lapsed) return false;
   return job.crashes + 1 >= (tried_apart_ ? kMaxCrashesApart : kMaxCrashes);
 }
 
-void JobQueue::take_up(const JobRecord& job, Found found) {
+void JobQueue::take_up(const store::JobRecord& job, Found found) {
   const TraceScope trace(job.trace);
   if (!job.unreadable.empty()) {
     set_aside(job);
@@ -72,26 +72,27 @@ void JobQueue::take_up(const JobRecord& job, Found found) {
 }
 
 /// A running job that goes back to the queue, unless its owner has cancelled it meanwhile.
-void JobQueue::wait_or_end(const JobRecord& job) {
-  const std::optional<JobRecord> stored = store_.find(job.id);
+void JobQueue::wait_or_end(const store::JobRecord& job) {
+  const std::optional<store::JobRecord> stored = store_.find(job.id);
   if (stored && stored->cancel_requested) return give_up(job, cancelled_by_owner());
   store_.requeue(job.id, false);
   wait_again(job);
 }
 
-void JobQueue::give_up(const JobRecord& job, const Error& why) {
+void JobQueue::give_up(const store::JobRecord& job, const Error& why) {
   if (!events_.find(job.id)) events_.open(job.id, job.attempt);
   const bool cancelled = why.code() == ErrorCode::cancelled;
-  end_job(job, ended(cancelled ? JobState::cancelled : JobState::failed, why, job.id));
+  end_job(job, store::ended(cancelled ? JobState::cancelled : JobState::failed, why, job.id));
 }
 
 /// Its folder goes to lost, and it counts as failed: nobody waits for it, and nobody works on it.
-void JobQueue::set_aside(const JobRecord& unreadable) {
+void JobQueue::set_aside(const store::JobRecord& unreadable) {
   const Moment now = store_.now();
-  JobOutcome outcome = ended(JobState::failed, unreadable_job(), unreadable.id);
+  store::JobOutcome outcome = store::ended(JobState::failed, unreadable_job(), unreadable.id);
   outcome.finished_ms = now.of_day_ms;
   outcome.set_by_ms = now.set_by_ms;
-  if (!unreadable.webhook.empty()) outcome.delivery = text_of(api::to_json(to_job(unreadable)));
+  if (!unreadable.webhook.empty())
+    outcome.delivery = store::text_of(api::to_json(store::to_job(unreadable)));
   store_.set_aside(unreadable, outcome);
   const bool has_files = blobs_.set_aside(unreadable.id, now.kept_ms());
   log_.error("job set aside: its row cannot be read", {{"job", unreadable.id},
@@ -113,13 +114,13 @@ void JobQueue::give_up_excess() {
   }
 }
 
-void JobQueue::beat() {
+void JobQueue::renew_leases() {
   const std::lock_guard lock(mutex_);
   const std::int64_t now = elapsed_ms();
   for (const auto& [id, job] : running_) store_.renew(id, now + config_.lease.count());
   take_up_left();
-  for (const JobRecord& job : store_.lapsed(now)) take_up(job, Found::lapsed);
+  for (const store::JobRecord& job : store_.lapsed(now)) take_up(job, Found::lapsed);
   give_up_excess();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <thread>
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 
 struct WatchTimes {
   std::chrono::seconds limit;
@@ -26,10 +26,10 @@ struct WatchDuties {
 class Watchdog {
  public:
   /// stop: of the job, whoever asks for it.
-  Watchdog(const std::stop_token& stop, const WatchTimes& times, WatchDuties duties);
+  Watchdog(const std::stop_token& stop, const WatchTimes& times, WatchDuties functions);
 
  private:
-  void watch(const std::stop_token& end, const WatchTimes& times, const WatchDuties& duties);
+  void watch(const std::stop_token& end, const WatchTimes& times, const WatchDuties& functions);
 
   const std::stop_token stop_;
   std::mutex mutex_;
@@ -38,4 +38,4 @@ class Watchdog {
   std::stop_callback<std::function<void()>> wake_at_stop_;  // last: it wakes the thread
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -15,7 +15,7 @@
 #include "server/store/loaded_input.hpp"
 #include "server/work/thread_executor.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 using api::JobState;
@@ -25,14 +25,16 @@ constexpr int kMaxCrashes = 3;
 constexpr std::chrono::seconds kTimeToKill{10};  // a process, and to reap it
 
 /// A stop is a failure when time ran out; else the owner, or the server's end, has stopped the job.
-JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds) {
-  if (error.code() != ErrorCode::cancelled) return ended(JobState::failed, error, job.record.id);
-  if (job.cause != StopCause::time_limit) return ended(JobState::cancelled, error, job.record.id);
+store::JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds) {
+  if (error.code() != ErrorCode::cancelled)
+    return store::ended(JobState::failed, error, job.record.id);
+  if (job.cause != StopCause::time_limit)
+    return store::ended(JobState::cancelled, error, job.record.id);
   const Error late(ErrorCode::time_limit, "The job took longer than the " +
                                               std::to_string(max_seconds) +
                                               " s allowed; ask for fewer iterations, or send a "
                                               "smaller mesh.");
-  return ended(JobState::failed, late, job.record.id);
+  return store::ended(JobState::failed, late, job.record.id);
 }
 
 Error too_many_crashes() {
@@ -43,8 +45,8 @@ Error too_many_crashes() {
 
 }  // namespace
 
-WorkerPool::WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
-                       const WorkerConfig& config)
+WorkerPool::WorkerPool(JobQueue& queue, store::BlobStore& blobs, const api::Limits& limits,
+                       const Log& log, const WorkerConfig& config)
     : queue_(queue), blobs_(blobs), limits_(limits), log_(log), config_(config) {
   const std::lock_guard lock(mutex_);
   for (int worker = 0; worker < config.workers; ++worker) begin_thread();
@@ -74,7 +76,7 @@ void WorkerPool::begin_thread() {
 
 void WorkerPool::work() {
   give_way();
-  ThreadExecutor executor(config_.threads, config_.core);
+  work::ThreadExecutor executor(config_.threads, config_.core);
   while (true) {
     try {
       const std::shared_ptr<RunningJob> job = queue_.take();
@@ -89,38 +91,40 @@ void WorkerPool::work() {
 WorkerPool::Then WorkerPool::work_on(RunningJob& job, Executor& executor) {
   const TraceScope trace(job.feed->trace());
   log_.info("job started", {{"job", job.record.id}, {"attempt", job.record.attempt}});
-  Claim claim(*config_.claims, job.record.owner);  // until the store counts the results
+  store::QuotaReservation reservation(*config_.reservations,
+                                      job.record.owner);  // until the store counts the results
   const auto to_kill = is_apart(job.record) ? kTimeToKill : std::chrono::seconds(0);
-  JobOutcome outcome;
+  store::JobOutcome outcome;
   {
     const Watchdog watchdog(
         job.stop.get_token(),
         {std::chrono::seconds(limits_.max_job_seconds), config_.isolation.grace + to_kill},
         {.late = [&] { job.request_stop(StopCause::time_limit); },
-         .overdue = [&] { give_up(job, claim); }});
-    outcome = attempt(job, {executor, claim});
+         .overdue = [&] { give_up(job, reservation); }});
+    outcome = attempt(job, {executor, reservation});
   }
   if (!job.take_end()) return come_back(job);
-  queue_.finish(job, std::move(outcome), [&] { claim.give_up(); });
+  queue_.finish(job, std::move(outcome), [&] { reservation.give_up(); });
   return Then::next_job;
 }
 
 /// In a process of its own.
-bool WorkerPool::is_apart(const JobRecord& job) const {
+bool WorkerPool::is_apart(const store::JobRecord& job) const {
   const bool has_crashed = job.crashes > 0 || job.process_ends > 0;
   return config_.isolation.on || (has_crashed && config_.isolation.possible);
 }
 
 /// From the watchdog's thread, of a job whose own goes on without hearing its stop. At the end of
 /// the server the queue has other means.
-void WorkerPool::give_up(RunningJob& job, Claim& claim) {
+void WorkerPool::give_up(RunningJob& job, store::QuotaReservation& reservation) {
   if (job.cause == StopCause::draining || !job.take_end()) return;
   const TraceScope trace(job.feed->trace());
   lose_thread(job);
   config_.on_force("given_up");
   const Error stopped(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
   try {
-    queue_.finish(job, outcome_of(stopped, job, limits_.max_job_seconds), [&] { claim.give_up(); });
+    queue_.finish(job, outcome_of(stopped, job, limits_.max_job_seconds),
+                  [&] { reservation.give_up(); });
   } catch (const std::exception& error) {  // the store: the job is run again at the next start
     log_.error("a worker failed", {{"reason", error.what()}});
   }
@@ -155,26 +159,26 @@ WorkerPool::Then WorkerPool::come_back(const RunningJob& job) {
 }
 
 std::string WorkerPool::run(const RunningJob& job, const Means& means) {
-  const LoadedInput loaded(blobs_, job.record);
-  FeedOutput output(job, blobs_, {means.claim, config_.most_bytes});
+  const store::LoadedInput loaded(blobs_, job.record);
+  FeedOutput output(job, blobs_, {means.reservation, config_.most_bytes});
   const auto queue_ms = static_cast<double>(job.started_ms - job.record.created_ms);
-  const JobTask task{.record = loaded.record(),
-                     .queue_ms = std::max(0.0, queue_ms),
-                     .began = job.began,
-                     .stop = job.stop.get_token()};
+  const work::JobTask task{.record = loaded.record(),
+                           .queue_ms = std::max(0.0, queue_ms),
+                           .began = job.began,
+                           .stop = job.stop.get_token()};
   if (!is_apart(job.record))
-    return config_.duties.run(task, loaded.input(), output, limits_, means.executor);
-  Isolation isolation = config_.isolation;
+    return config_.functions.run(task, loaded.input(), output, limits_, means.executor);
+  work::Isolation isolation = config_.isolation;
   isolation.on_kill = [&] {
     log_.error("a job does not stop, and its process is killed",
                {{"job", job.record.id}, {"seconds", job.seconds()}});
     config_.on_force("killed");
   };
   try {
-    return run_job_isolated(task, loaded.input(), output, limits_, isolation);
+    return work::run_job_isolated(task, loaded.input(), output, limits_, isolation);
   } catch (const Error& error) {
     const bool asked = error.code() != ErrorCode::cancelled || job.stop.stop_requested();
-    if (!asked) throw WorkerCrashed("another party stopped it");
+    if (!asked) throw work::WorkerCrashed("another party stopped it");
     throw;
   }
 }
@@ -185,7 +189,7 @@ std::string WorkerPool::run_patiently(const RunningJob& job, const Means& means)
   for (int crashes = job.record.process_ends; crashes < kMaxCrashes;) {
     try {
       return run(job, means);
-    } catch (const WorkerCrashed& crash) {
+    } catch (const work::WorkerCrashed& crash) {
       ++crashes;
       queue_.note_process_end(job);
       log_.warning("a worker process ended",
@@ -195,9 +199,9 @@ std::string WorkerPool::run_patiently(const RunningJob& job, const Means& means)
   throw too_many_crashes();
 }
 
-JobOutcome WorkerPool::attempt(const RunningJob& job, const Means& means) {
+store::JobOutcome WorkerPool::attempt(const RunningJob& job, const Means& means) {
   try {
-    JobOutcome outcome;
+    store::JobOutcome outcome;
     outcome.result_format = run_patiently(job, means);
     return outcome;
   } catch (const Error& error) {
@@ -205,12 +209,12 @@ JobOutcome WorkerPool::attempt(const RunningJob& job, const Means& means) {
   } catch (const std::bad_alloc&) {
     const Error error(ErrorCode::memory_limit,
                       "The server has too little memory for this job; send a smaller mesh.");
-    return ended(JobState::failed, error, job.record.id);
+    return store::ended(JobState::failed, error, job.record.id);
   } catch (const std::exception& error) {  // the owner learns nothing of our insides
     log_.error("unhandled exception", {{"job", job.record.id}, {"reason", reason_of(error)}});
-    return ended(JobState::failed, Error(ErrorCode::internal, "An internal error occurred."),
-                 job.record.id);
+    return store::ended(JobState::failed, Error(ErrorCode::internal, "An internal error occurred."),
+                        job.record.id);
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -19,25 +19,25 @@
 
 #include "api/limits.hpp"
 #include "core/base/executor.hpp"
-#include "core/base/solver_core.hpp"
+#include "core/base/shared_cache.hpp"
 #include "server/base/log.hpp"
 #include "server/jobs/job_queue.hpp"
 #include "server/store/blob_store.hpp"
-#include "server/store/claims.hpp"
-#include "server/work/duties.hpp"
+#include "server/store/quota_reservations.hpp"
 #include "server/work/job_process.hpp"
+#include "server/work/worker_functions.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 
 struct WorkerConfig {
   int workers = 1;
-  int threads = 1;             ///< for each worker's job
-  SolverCore* core = nullptr;  ///< that their jobs share; outlives the pool
-  Claims* claims = nullptr;    ///< of their results; outlives the pool
+  int threads = 1;                                   ///< for each worker's job
+  SharedCache* core = nullptr;                       ///< that their jobs share; outlives the pool
+  store::QuotaReservations* reservations = nullptr;  ///< of their results; outlives the pool
   /// Bytes that an owner may have; 0: any.
   std::function<std::int64_t(const std::string& owner)> most_bytes;
-  Isolation isolation = {};  ///< its grace holds for threads, too
-  Duties duties = {};
+  work::Isolation isolation = {};  ///< its grace holds for threads, too
+  work::WorkerFunctions functions = {};
   /// Told of each job that was ended by force: "killed" or "given_up".
   std::function<void(std::string_view how)> on_force = [](std::string_view) {};
 };
@@ -45,7 +45,7 @@ struct WorkerConfig {
 class WorkerPool {
  public:
   /// Starts at once; ends when the queue is closed and the jobs at hand are done.
-  WorkerPool(JobQueue& queue, BlobStore& blobs, const api::Limits& limits, const Log& log,
+  WorkerPool(JobQueue& queue, store::BlobStore& blobs, const api::Limits& limits, const Log& log,
              const WorkerConfig& config);
   ~WorkerPool();
 
@@ -58,7 +58,7 @@ class WorkerPool {
   /// What a job is run with.
   struct Means {
     Executor& executor;
-    Claim& claim;
+    store::QuotaReservation& reservation;
   };
   /// What becomes of a thread when it is done with a job.
   enum class Then { next_job, leave };
@@ -67,16 +67,16 @@ class WorkerPool {
   void begin_thread();
   void work();
   Then work_on(RunningJob& job, Executor& executor);
-  [[nodiscard]] bool is_apart(const JobRecord& job) const;
-  void give_up(RunningJob& job, Claim& claim);
+  [[nodiscard]] bool is_apart(const store::JobRecord& job) const;
+  void give_up(RunningJob& job, store::QuotaReservation& reservation);
   void lose_thread(const RunningJob& job);
   Then come_back(const RunningJob& job);
-  JobOutcome attempt(const RunningJob& job, const Means& means);
+  store::JobOutcome attempt(const RunningJob& job, const Means& means);
   std::string run_patiently(const RunningJob& job, const Means& means);
   std::string run(const RunningJob& job, const Means& means);
 
   JobQueue& queue_;
-  BlobStore& blobs_;
+  store::BlobStore& blobs_;
   const api::Limits& limits_;
   const Log& log_;
   const WorkerConfig config_;
@@ -87,4 +87,4 @@ class WorkerPool {
   Threads ended_;  // about to, and to be joined
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -2,22 +2,22 @@
 
 #include <bit>
 
-#include "server/work/map_choice.hpp"
+#include "server/work/lambda_selection.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::results {
 namespace {
 
 /// "uv.bin.layout.area.1024.png".
-std::string file_name(std::size_t map, const Picture& picture) {
-  const std::string uv_file = map_file(kUvFile, map);
-  const std::string colour(kColouringNames[static_cast<std::size_t>(picture.colouring)]);
+std::string file_name(std::size_t map, const work::Picture& picture) {
+  const std::string uv_file = work::map_file(store::kUvFile, map);
+  const std::string colour(figure::kColouringNames[static_cast<std::size_t>(picture.colouring)]);
   const std::string size = std::to_string(picture.size);
   switch (picture.kind) {
-    case PictureKind::layout_svg:
+    case work::PictureKind::layout_svg:
       return uv_file + ".layout." + colour + ".svg";
-    case PictureKind::layout_png:
+    case work::PictureKind::layout_png:
       return uv_file + ".layout." + colour + "." + size + ".png";
-    case PictureKind::preview_png:
+    case work::PictureKind::preview_png:
       return uv_file + ".preview." + size + ".png";
   }
   return {};
@@ -26,21 +26,21 @@ std::string file_name(std::size_t map, const Picture& picture) {
 constexpr int kLargeSize = 1024;  // pixels; larger ones take up to seconds
 
 /// The pixels and, while they are written, the file; a legend makes the picture an eighth higher.
-std::size_t bytes_of(const Picture& picture) {
-  if (picture.kind == PictureKind::layout_svg) return 0;
+std::size_t bytes_of(const work::Picture& picture) {
+  if (picture.kind == work::PictureKind::layout_svg) return 0;
   const auto side = static_cast<std::size_t>(picture.size);
   return 7 * side * side;
 }
 
-bool is_kept(const Picture& picture) {
-  return picture.kind == PictureKind::layout_svg ||
+bool is_kept(const work::Picture& picture) {
+  return picture.kind == work::PictureKind::layout_svg ||
          std::has_single_bit(static_cast<unsigned>(picture.size));
 }
 
 }  // namespace
 
-StoredResult PictureStore::open(const JobRecord& job, std::size_t map, const Picture& picture,
-                                const HasLeft& has_left) {
+StoredResult PictureStore::open(const store::JobRecord& job, std::size_t map,
+                                const work::Picture& picture, const http::HasLeft& has_left) {
   const std::string name = file_name(map, picture);
   std::optional<StoredResult> kept;
   if (is_kept(picture)) kept = find_whole(blobs_, job.id, name);
@@ -63,4 +63,4 @@ StoredResult PictureStore::open(const JobRecord& job, std::size_t map, const Pic
   return is_kept(picture) ? keep(blobs_, job.id, name, bytes) : lend(blobs_, bytes);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::results

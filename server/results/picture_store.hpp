@@ -8,24 +8,24 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::results {
 
 /// Thread-safe.
 class PictureStore {
  public:
-  PictureStore(BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
+  PictureStore(store::BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
   /// The picture of one of a succeeded job's maps (see map_choice.hpp). Those whose size is a power
   /// of two are kept with the job, so that whoever asks for every size fills no disk; a damaged one
   /// is drawn again. Throws what Renderer::render() throws.
-  StoredResult open(const JobRecord& job, std::size_t map, const Picture& picture,
-                    const HasLeft& has_left = {});
+  StoredResult open(const store::JobRecord& job, std::size_t map, const work::Picture& picture,
+                    const http::HasLeft& has_left = {});
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
-  BlobStore& blobs_;
+  store::BlobStore& blobs_;
   Renderer& renderer_;
   FileCounts counts_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::results

@@ -10,9 +10,9 @@
 #include "server/base/priority.hpp"
 #include "server/base/trace.hpp"
 #include "server/store/loaded_input.hpp"
-#include "server/work/map_choice.hpp"
+#include "server/work/lambda_selection.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::results {
 namespace {
 
 /// Memory that a file takes while it is made, to what the job keeps on disk of its mesh and map:
@@ -21,10 +21,10 @@ constexpr std::uintmax_t kBytesAByte = 8;
 
 }  // namespace
 
-std::shared_ptr<void> Renderer::enter(const JobRecord& job, const WantedFile& wanted) {
+std::shared_ptr<void> Renderer::enter(const store::JobRecord& job, const WantedFile& wanted) {
   std::error_code gone;  // then there is nothing to make, and whoever tries will say so
-  const std::uintmax_t uvs =
-      std::filesystem::file_size(blobs_.path(job.id, map_file(kUvFile, wanted.map)), gone);
+  const std::uintmax_t uvs = std::filesystem::file_size(
+      blobs_.path(job.id, work::map_file(store::kUvFile, wanted.map)), gone);
   const auto kept = static_cast<std::uintmax_t>(job.input.bytes) + (gone ? 0 : uvs);
   return room_.enter({.file = job.id + "/" + wanted.file,
                       .holder = job.owner.empty() ? job.id : job.owner,
@@ -33,35 +33,35 @@ std::shared_ptr<void> Renderer::enter(const JobRecord& job, const WantedFile& wa
                      wanted.has_left);
 }
 
-std::string Renderer::render(const JobRecord& job, const Rendering& rendering,
-                             const HasLeft& has_left) const {
-  const std::string uv_file = map_file(kUvFile, rendering.map);
+std::string Renderer::render(const store::JobRecord& job, const work::Rendering& rendering,
+                             const http::HasLeft& has_left) const {
+  const std::string uv_file = work::map_file(store::kUvFile, rendering.map);
   if (blobs_.holds(job.id) && !blobs_.has(job.id, uv_file) &&
       !std::filesystem::exists(blobs_.path(job.id, uv_file))) {
     throw Error(ErrorCode::result_expired,
                 "An earlier version ran this job and stored no map, so it cannot be drawn or "
                 "converted; send the job again.");
   }
-  const LoadedInput loaded(blobs_, job);
+  const store::LoadedInput loaded(blobs_, job);
   const std::string uvs = blobs_.read(job.id, uv_file);
   std::string report;
   if (!rendering.picture && !rendering.format)
-    report = blobs_.read(job.id, map_file(kReportFile, rendering.map));
+    report = blobs_.read(job.id, work::map_file(store::kReportFile, rendering.map));
   return make(rendering,
               {.record = loaded.record(), .asset = loaded.input(), .uvs = uvs, .report = report},
               has_left);
 }
 
-std::string Renderer::analyse(const JobRecord& mesh, const HasLeft& has_left) const {
-  const LoadedInput loaded(blobs_, mesh);
+std::string Renderer::analyse(const store::JobRecord& mesh, const http::HasLeft& has_left) const {
+  const store::LoadedInput loaded(blobs_, mesh);
   return make({.map = 0, .picture = {}, .format = {}, .analysis = job_bytes_},
               {.record = loaded.record(), .asset = loaded.input(), .uvs = {}, .report = {}},
               has_left);
 }
 
 /// The thread that asks waits, and looks whether there is anybody to wait for.
-std::string Renderer::make(const Rendering& rendering, RenderingInput input,
-                           const HasLeft& has_left) const {
+std::string Renderer::make(const work::Rendering& rendering, work::RenderingInput input,
+                           const http::HasLeft& has_left) const {
   std::stop_source stop;
   input.asset.stop = stop.get_token();
   std::packaged_task<std::string()> task([&, trace = current_trace()] {
@@ -85,11 +85,12 @@ std::string Renderer::make(const Rendering& rendering, RenderingInput input,
   }
 }
 
-std::string Renderer::make_here(const Rendering& rendering, const RenderingInput& input) const {
+std::string Renderer::make_here(const work::Rendering& rendering,
+                                const work::RenderingInput& input) const {
   try {
-    if (!isolation_.on) return duties_.draw(rendering, input, limits_);
-    return render_isolated(rendering, input, input.asset.stop, limits_, isolation_);
-  } catch (const WorkerCrashed& crash) {
+    if (!isolation_.on) return functions_.draw(rendering, input, limits_);
+    return work::render_isolated(rendering, input, input.asset.stop, limits_, isolation_);
+  } catch (const work::WorkerCrashed& crash) {
     log_.warning("a worker process ended", {{"job", input.record.id}, {"how", crash.what()}});
     throw Error(ErrorCode::internal,
                 "The process that made this file ended early; the stored result is unchanged.");
@@ -101,4 +102,4 @@ std::string Renderer::make_here(const Rendering& rendering, const RenderingInput
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::results

@@ -2,9 +2,9 @@
 
 #include "core/base/error.hpp"
 #include "server/base/identity.hpp"
-#include "server/work/map_choice.hpp"
+#include "server/work/lambda_selection.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::results {
 namespace {
 
 /// Nothing for JSON.
@@ -16,7 +16,7 @@ std::optional<asset::Format> format_named(std::string_view name) {
 
 }  // namespace
 
-std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string& job,
+std::optional<StoredResult> find_whole(const store::BlobStore& blobs, const std::string& job,
                                        const std::string& file) {
   if (!std::filesystem::exists(blobs.path(job, file))) return std::nullopt;
   try {
@@ -27,19 +27,19 @@ std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string
   }
 }
 
-StoredResult keep(BlobStore& blobs, const std::string& job, const std::string& file,
+StoredResult keep(store::BlobStore& blobs, const std::string& job, const std::string& file,
                   std::string_view bytes) {
   if (!blobs.try_keep(job, file, bytes)) return lend(blobs, bytes);
   return {.file = blobs.open(job, file), .sha256 = blobs.digest(job, file)};
 }
 
-StoredResult lend(const BlobStore& blobs, std::string_view bytes) {
+StoredResult lend(const store::BlobStore& blobs, std::string_view bytes) {
   return {.file = blobs.lend(bytes), .sha256 = sha256(bytes)};
 }
 
-StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::string_view format,
-                               const HasLeft& has_left) {
-  const std::string file = map_file(result_file(format), map);
+StoredResult ResultStore::open(const store::JobRecord& job, std::size_t map,
+                               std::string_view format, const http::HasLeft& has_left) {
+  const std::string file = work::map_file(store::result_file(format), map);
   std::optional<StoredResult> kept = find_whole(blobs_, job.id, file);
   std::shared_ptr<void> place;
   if (!kept) {
@@ -50,10 +50,10 @@ StoredResult ResultStore::open(const JobRecord& job, std::size_t map, std::strin
     ++counts_.hits;
     return std::move(*kept);
   }
-  const Rendering rendering{.map = map, .picture = {}, .format = format_named(format)};
+  const work::Rendering rendering{.map = map, .picture = {}, .format = format_named(format)};
   const std::string bytes = renderer_.render(job, rendering, has_left);
   counts_.made(bytes);
   return keep(blobs_, job.id, file, bytes);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::results

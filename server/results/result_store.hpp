@@ -14,7 +14,7 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::results {
 
 struct StoredResult {
   std::shared_ptr<const File> file;  ///< stays readable when the job is removed meanwhile
@@ -22,30 +22,30 @@ struct StoredResult {
 };
 
 /// A file of a job that is there and whole.
-std::optional<StoredResult> find_whole(const BlobStore& blobs, const std::string& job,
+std::optional<StoredResult> find_whole(const store::BlobStore& blobs, const std::string& job,
                                        const std::string& file);
 /// A file that was made after the end of its job, kept where that takes nothing from others.
-StoredResult keep(BlobStore& blobs, const std::string& job, const std::string& file,
+StoredResult keep(store::BlobStore& blobs, const std::string& job, const std::string& file,
                   std::string_view bytes);
 /// One that is handed out once.
-StoredResult lend(const BlobStore& blobs, std::string_view bytes);
+StoredResult lend(const store::BlobStore& blobs, std::string_view bytes);
 
 /// Thread-safe.
 class ResultStore {
  public:
-  ResultStore(BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
+  ResultStore(store::BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
   /// The result of a succeeded job by one of its maps (see map_choice.hpp), in a format (glb, gltf,
   /// obj, json); one that is missing or damaged is made from the job's input and map. Throws what
   /// Renderer::render() throws.
-  StoredResult open(const JobRecord& job, std::size_t map, std::string_view format,
-                    const HasLeft& has_left = {});
+  StoredResult open(const store::JobRecord& job, std::size_t map, std::string_view format,
+                    const http::HasLeft& has_left = {});
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
-  BlobStore& blobs_;
+  store::BlobStore& blobs_;
   Renderer& renderer_;
   FileCounts counts_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::results

@@ -2,50 +2,54 @@
 
 #include "server/store/store_file.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 constexpr std::string_view kOk = R"({"status":"ok"})";
 
 /// Whether the server takes jobs: not while it drains, nor while they cannot be stored or worked
 /// on. A full queue or disk passes by itself.
-Response answer(const Readiness& readiness) {
+http::Response answer(const Readiness& readiness) {
   if (readiness.queue.draining())
     throw RetryLater(ErrorCode::draining, "The server is shutting down; use another server.", 1);
   readiness.store.check_writable();
   if (!readiness.has_workers())
     throw Error(ErrorCode::internal, "Jobs that do not stop hold every worker.");
-  if (!std::filesystem::exists(readiness.data / kStoreFile) ||
+  if (!std::filesystem::exists(readiness.data / store::kStoreFile) ||
       !std::filesystem::is_directory(readiness.data / "blobs"))
     throw Error(ErrorCode::storage_failed,
                 "Files of the store are missing; the operator must restore them.");
-  return json_response(200, kOk);
+  return http::json_response(200, kOk);
 }
 
-Response metrics_text(const Metrics& metrics) {
-  Response response;
+http::Response metrics_text(const Metrics& metrics) {
+  http::Response response;
   response.content_type = Metrics::kContentType;
   response.body = metrics.text();
   return response;
 }
 
-Response version() {
-  return json_response(200, api::Json{{"name", "unwrapd"}, {"version", UNWRAPD_VERSION}}.dump());
+http::Response version() {
+  return http::json_response(200,
+                             api::Json{{"name", "unwrapd"}, {"version", UNWRAPD_VERSION}}.dump());
 }
 
 }  // namespace
 
-void add_probe_routes(std::vector<Route>& routes, const Readiness& readiness) {
-  routes.push_back({"GET", "/healthz", [](const Request&) { return json_response(200, kOk); }});
-  routes.push_back({"GET", "/readyz", [readiness](const Request&) { return answer(readiness); }});
+void add_probe_routes(std::vector<http::Route>& routes, const Readiness& readiness) {
+  routes.push_back(
+      {"GET", "/healthz", [](const http::Request&) { return http::json_response(200, kOk); }});
+  routes.push_back(
+      {"GET", "/readyz", [readiness](const http::Request&) { return answer(readiness); }});
 }
 
-std::vector<Route> admin_routes(const Readiness& readiness, const Metrics& metrics) {
-  std::vector<Route> routes;
+std::vector<http::Route> admin_routes(const Readiness& readiness, const Metrics& metrics) {
+  std::vector<http::Route> routes;
   add_probe_routes(routes, readiness);
-  routes.push_back({"GET", "/metrics", [&](const Request&) { return metrics_text(metrics); }});
-  routes.push_back({"GET", "/version", [](const Request&) { return version(); }});
+  routes.push_back(
+      {"GET", "/metrics", [&](const http::Request&) { return metrics_text(metrics); }});
+  routes.push_back({"GET", "/version", [](const http::Request&) { return version(); }});
   return routes;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

@@ -12,20 +12,20 @@
 #include "server/jobs/job_queue.hpp"
 #include "server/store/job_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 
 /// Who says whether jobs are taken.
 struct Readiness {
-  const JobQueue& queue;
-  JobStore& store;
+  const jobs::JobQueue& queue;
+  store::JobStore& store;
   std::filesystem::path data;
   std::function<bool()> has_workers;
 };
 
 /// GET /healthz, /readyz, /metrics, /version.
-std::vector<Route> admin_routes(const Readiness& readiness, const Metrics& metrics);
+std::vector<http::Route> admin_routes(const Readiness& readiness, const Metrics& metrics);
 
 /// The first two alone, which the service's own port has as well.
-void add_probe_routes(std::vector<Route>& routes, const Readiness& readiness);
+void add_probe_routes(std::vector<http::Route>& routes, const Readiness& readiness);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

@@ -5,7 +5,7 @@
 
 #include "server/jobs/job_queue.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 constexpr int kRetrySeconds = 5;
@@ -24,31 +24,31 @@ std::optional<std::int64_t> parse_event_id(const std::string& text) {
 
 /// Where a reader is, and its place among the streams.
 struct Reader {
-  std::shared_ptr<const JobFeed> feed;
+  std::shared_ptr<const jobs::JobFeed> feed;
   std::int64_t after = 0;
   std::shared_ptr<void> place;
   std::string greeting;  // comes first
 };
 
-StreamPiece next_piece(Reader& reader) {
+http::StreamPiece next_piece(Reader& reader) {
   if (!reader.greeting.empty()) return {.bytes = std::exchange(reader.greeting, {}), .end = false};
-  Reading reading = reader.feed->read(reader.after);
+  jobs::Reading reading = reader.feed->read(reader.after);
   reader.after = reading.last_seq;
   return {.bytes = std::move(reading.frames), .end = reading.end};
 }
 
-Watcher watcher_of(const Request& request) {
+Watcher watcher_of(const http::Request& request) {
   return {.owner = request.caller.owner,
           .seen = parse_event_id(request.header("Last-Event-ID")),
           .place = {}};
 }
 
 /// What is left to tell of a job whose events are no longer kept.
-std::string last_frames(const JobRecord& job, std::int64_t seen) {
+std::string last_frames(const store::JobRecord& job, std::int64_t seen) {
   std::string frames;
   if (seen + 1 < job.last_event)
     frames = api::sse_frame(api::gap_event(seen + 1, job.last_event - 1));
-  return frames + api::sse_frame(api::final_event(job.last_event, to_job(job)));
+  return frames + api::sse_frame(api::final_event(job.last_event, store::to_job(job)));
 }
 
 }  // namespace
@@ -63,11 +63,12 @@ std::shared_ptr<void> EventStreams::take_place(const std::string& owner) {
                    kRetrySeconds);
 }
 
-Response EventStreams::stream(const JobRecord& job, Watcher watcher, std::string greeting) {
-  Response response;
+http::Response EventStreams::stream(const store::JobRecord& job, Watcher watcher,
+                                    std::string greeting) {
+  http::Response response;
   response.content_type = "text/event-stream";
   response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-  const std::shared_ptr<JobFeed> feed = events_.find(job.id);
+  const std::shared_ptr<jobs::JobFeed> feed = events_.find(job.id);
   if (!feed) {
     response.body = greeting + last_frames(job, watcher.seen.value_or(0));
     return response;
@@ -77,23 +78,24 @@ Response EventStreams::stream(const JobRecord& job, Watcher watcher, std::string
                                                 .after = feed->resume_after(watcher.seen),
                                                 .place = std::move(watcher.place),
                                                 .greeting = std::move(greeting)});
-  response.body = StreamBody{.next = [reader] { return next_piece(*reader); }, .ping = api::kPing};
+  response.body =
+      http::StreamBody{.next = [reader] { return next_piece(*reader); }, .ping = api::kPing};
   return response;
 }
 
-Response EventStreams::open(const JobRecord& job, const Request& request) {
+http::Response EventStreams::open(const store::JobRecord& job, const http::Request& request) {
   return stream(job, watcher_of(request), {});
 }
 
-Watcher EventStreams::let_in(const Request& request) {
+Watcher EventStreams::let_in(const http::Request& request) {
   Watcher watcher = watcher_of(request);
   watcher.place = take_place(watcher.owner);
   return watcher;
 }
 
-Response EventStreams::open_accepted(const JobRecord& job, Watcher watcher) {
+http::Response EventStreams::open_accepted(const store::JobRecord& job, Watcher watcher) {
   if (job.request_key.empty()) watcher.seen.reset();
-  return stream(job, std::move(watcher), api::sse_frame(api::accepted_event(to_job(job))));
+  return stream(job, std::move(watcher), api::sse_frame(api::accepted_event(store::to_job(job))));
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

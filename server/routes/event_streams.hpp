@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
-#include "server/base/waiters.hpp"
+#include "server/base/concurrency_limit.hpp"
 #include "server/http/http.hpp"
 #include "server/jobs/event_feed.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 
 /// A reader, who may be let in before there is a job to watch.
 struct Watcher {
@@ -23,29 +23,29 @@ struct Watcher {
 /// Thread-safe. Outlives the answers.
 class EventStreams {
  public:
-  EventStreams(EventFeed& events, int max_streams)
+  EventStreams(jobs::EventFeed& events, int max_streams)
       : events_(events), max_streams_(max_streams), places_(max_streams) {}
 
   /// The events of a job after Last-Event-ID. A job whose feed is gone is final: its last event is
   /// made from the record, after a gap for all that were before it. Throws
   /// RetryLater{too_many_streams}, Error{malformed_request}.
-  Response open(const JobRecord& job, const Request& request);
+  http::Response open(const store::JobRecord& job, const http::Request& request);
 
   /// Lets somebody in who is about to submit a job and will watch it. Throws like open().
-  Watcher let_in(const Request& request);
+  Watcher let_in(const http::Request& request);
   /// The answer to that submission: the job, then its events. A job without a name of the sender's
   /// is a new one, of which nothing was seen.
-  Response open_accepted(const JobRecord& job, Watcher watcher);
+  http::Response open_accepted(const store::JobRecord& job, Watcher watcher);
 
   [[nodiscard]] int open_count() const { return places_.count(); }
 
  private:
   std::shared_ptr<void> take_place(const std::string& owner);
-  Response stream(const JobRecord& job, Watcher watcher, std::string greeting);
+  http::Response stream(const store::JobRecord& job, Watcher watcher, std::string greeting);
 
-  EventFeed& events_;
+  jobs::EventFeed& events_;
   const int max_streams_;
-  Waiters places_;
+  ConcurrencyLimit places_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

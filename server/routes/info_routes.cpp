@@ -6,7 +6,7 @@
 #include "server/routes/result_routes.hpp"
 #include "web/page.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 /// Nothing comes from elsewhere, whatever should get into a page; the contract's runs nothing.
@@ -21,9 +21,9 @@ constexpr std::string_view kCss = "text/css; charset=utf-8";
 constexpr std::string_view kScript = "text/javascript; charset=utf-8";
 
 /// A text that is part of the program, with its ETag.
-Handler text_handler(std::string_view text, std::string_view type) {
-  return [text, type, etag = "\"" + sha256(text) + "\""](const Request& request) {
-    Response response;
+http::Handler text_handler(std::string_view text, std::string_view type) {
+  return [text, type, etag = "\"" + sha256(text) + "\""](const http::Request& request) {
+    http::Response response;
     response.headers = {{"ETag", etag}, {"Cache-Control", "no-cache"}};
     if (has_copy(request, etag)) {
       response.status = 304;
@@ -36,9 +36,9 @@ Handler text_handler(std::string_view text, std::string_view type) {
 }
 
 /// A text that a browser shows or runs.
-Handler page_handler(std::string_view text, std::string_view type, std::string_view policy) {
-  return [answer = text_handler(text, type), policy](const Request& request) {
-    Response response = answer(request);
+http::Handler page_handler(std::string_view text, std::string_view type, std::string_view policy) {
+  return [answer = text_handler(text, type), policy](const http::Request& request) {
+    http::Response response = answer(request);
     response.headers.emplace_back("Content-Security-Policy", policy);
     response.headers.emplace_back("X-Content-Type-Options", "nosniff");
     response.headers.emplace_back("Referrer-Policy", "no-referrer");
@@ -48,12 +48,12 @@ Handler page_handler(std::string_view text, std::string_view type, std::string_v
 
 }  // namespace
 
-void add_info_routes(std::vector<Route>& routes, const api::Limits& limits) {
-  routes.push_back({"GET", "/v1/methods", [&limits](const Request&) {
-                      return json_response(200, api::methods_json(limits).dump());
+void add_info_routes(std::vector<http::Route>& routes, const api::Limits& limits) {
+  routes.push_back({"GET", "/v1/methods", [&limits](const http::Request&) {
+                      return http::json_response(200, api::methods_json(limits).dump());
                     }});
-  routes.push_back({"GET", "/v1/limits", [&limits](const Request&) {
-                      return json_response(200, api::to_json(limits).dump());
+  routes.push_back({"GET", "/v1/limits", [&limits](const http::Request&) {
+                      return http::json_response(200, api::to_json(limits).dump());
                     }});
   routes.push_back({"GET", "/openapi.yaml", text_handler(api::openapi_yaml(), "application/yaml")});
   routes.push_back({"GET", "/openapi.json", text_handler(api::openapi_json(), "application/json")});
@@ -64,4 +64,4 @@ void add_info_routes(std::vector<Route>& routes, const api::Limits& limits) {
   routes.push_back({"GET", "/page.js", page_handler(web::page_js(), kScript, kPagePolicy)});
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

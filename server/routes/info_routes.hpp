@@ -6,8 +6,8 @@
 #include "api/limits.hpp"
 #include "server/http/router.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 
-void add_info_routes(std::vector<Route>& routes, const api::Limits& limits);
+void add_info_routes(std::vector<http::Route>& routes, const api::Limits& limits);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

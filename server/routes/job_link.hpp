@@ -5,10 +5,11 @@
 #include "server/http/http.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 
 /// Parameters file (result, report, layout.svg, layout.png or preview.png; default result) and
 /// seconds (1 to 604800; default 3600). Throws Error{invalid_option}.
-Response get_link(const JobRecord& job, const LinkSigner& links, const Request& request);
+http::Response get_link(const store::JobRecord& job, const access::LinkSigner& links,
+                        const http::Request& request);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

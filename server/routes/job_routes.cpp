@@ -8,77 +8,79 @@
 #include "server/routes/job_link.hpp"
 #include "server/routes/job_list.hpp"
 #include "server/routes/result_routes.hpp"
-#include "server/work/map_choice.hpp"
+#include "server/work/lambda_selection.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 constexpr int kRetryAfterSeconds = 5;
 
 /// The job with its live progress.
-Response job_response(int status, const JobRecord& record, const EventFeed& events) {
-  api::Job job = to_job(record);
-  const std::shared_ptr<JobFeed> feed = events.find(record.id);
+http::Response job_response(int status, const store::JobRecord& record,
+                            const jobs::EventFeed& events) {
+  api::Job job = store::to_job(record);
+  const std::shared_ptr<jobs::JobFeed> feed = events.find(record.id);
   if (feed && record.state == api::JobState::running) job.progress = feed->progress();
-  Response response = json_response(status, api::to_json(job).dump());
+  http::Response response = http::json_response(status, api::to_json(job).dump());
   response.headers.emplace_back("Cache-Control", "no-store");
   return response;
 }
 
 /// Waits for the end of a job, at most so long.
-void wait_for(const EventFeed& events, const std::string& id, std::chrono::seconds time) {
-  const std::shared_ptr<JobFeed> feed = events.find(id);
+void wait_for(const jobs::EventFeed& events, const std::string& id, std::chrono::seconds time) {
+  const std::shared_ptr<jobs::JobFeed> feed = events.find(id);
   if (feed) static_cast<void>(feed->wait_finished(std::chrono::steady_clock::now() + time));
 }
 
 /// The job that a call of the same request has made.
-JobRecord stored_job(JobStore& store, const std::string& id) {
-  std::optional<JobRecord> job = store.find(id);
+store::JobRecord stored_job(store::JobStore& store, const std::string& id) {
+  std::optional<store::JobRecord> job = store.find(id);
   if (!job)
     throw Error(ErrorCode::not_found, "The job was removed in the meantime; send it again.");
   return std::move(*job);
 }
 
 /// Who has no place among the streams is told so before anything is accepted.
-Response post_watched(const JobServices& services, const Request& request) {
+http::Response post_watched(const JobServices& services, const http::Request& request) {
   Watcher watcher = services.streams.let_in(request);
   const std::string id = services.submissions.accept(request, false);
-  const JobRecord job = stored_job(services.store, id);
-  Response response = services.streams.open_accepted(job, std::move(watcher));
+  const store::JobRecord job = stored_job(services.store, id);
+  http::Response response = services.streams.open_accepted(job, std::move(watcher));
   response.headers.emplace_back("Location", api::job_path(id));
   return response;
 }
 
-Response post_job(const JobServices& services, const Request& request) {
-  if (prefers_events(request.header("Accept"))) return post_watched(services, request);
+http::Response post_job(const JobServices& services, const http::Request& request) {
+  if (http::prefers_events(request.header("Accept"))) return post_watched(services, request);
   const std::string id = services.submissions.accept(request, false);
-  std::optional<int> wait = preferred_wait(request.header("Prefer"));
+  std::optional<int> wait = http::preferred_wait(request.header("Prefer"));
   const int seconds = std::min(wait.value_or(0), services.limits.max_wait_seconds);
   const auto place = seconds > 0 ? services.waiters.let_in(request.caller.owner) : nullptr;
   if (!place && seconds > 0) wait.reset();  // a preference (RFC 7240), not a promise
   if (place) wait_for(services.events, id, std::chrono::seconds(seconds));
-  const JobRecord job = stored_job(services.store, id);
+  const store::JobRecord job = stored_job(services.store, id);
   const bool finished = wait && api::is_final(job.state);
-  Response response = job_response(finished ? 200 : 202, job, services.events);
+  http::Response response = job_response(finished ? 200 : 202, job, services.events);
   response.headers.emplace_back("Location", api::job_path(id));
   if (wait) response.headers.emplace_back("Preference-Applied", "wait=" + std::to_string(seconds));
   return response;
 }
 
-Response delete_job(const JobServices& services, const Request& request) {
+http::Response delete_job(const JobServices& services, const http::Request& request) {
   static_cast<void>(find_job(services.store, request));
   const bool was_live = services.queue.cancel_or_remove(request.id);
   if (was_live) return job_response(202, stored_job(services.store, request.id), services.events);
-  Response response;
+  http::Response response;
   response.status = 204;
   return response;
 }
 
 /// The answer to a synchronous call, once its job is final.
-Response sync_response(const JobServices& services, const JobRecord& job, const Request& request) {
+http::Response sync_response(const JobServices& services, const store::JobRecord& job,
+                             const http::Request& request) {
   require_result(job);
-  Response response = get_result(services.results, job, 0, request);
-  response.headers.emplace_back("Unwrapd-Report", services.blobs.read(job.id, kTotalsFile));
+  http::Response response = get_result(services.results, job, 0, request);
+  response.headers.emplace_back("Unwrapd-Report", services.blobs.read(job.id, store::kTotalsFile));
   return response;
 }
 
@@ -93,52 +95,55 @@ RetryLater too_many_wait() {
           kRetryAfterSeconds};
 }
 
-Response post_unwrap(const JobServices& services, const Request& request) {
+http::Response post_unwrap(const JobServices& services, const http::Request& request) {
   const auto place = services.waiters.let_in(request.caller.owner);
   if (!place) throw too_many_wait();
   const std::string id = services.submissions.accept(request, true);
   wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds) + kTimeToEnd);
-  const JobRecord job = stored_job(services.store, id);
-  Response response;
+  const store::JobRecord job = stored_job(services.store, id);
+  http::Response response;
   try {
     response = sync_response(services, job, request);
   } catch (const Error& error) {
-    response = error_response(error, id);
+    response = http::error_response(error, id);
   }
   response.headers.emplace_back("Location", api::job_path(id));
   return response;
 }
 
-void add_files(std::vector<Route>& routes, const JobServices& services) {
+void add_files(std::vector<http::Route>& routes, const JobServices& services) {
   const auto add = [&](std::string_view path, auto answer) {
-    routes.push_back({"GET", path, [services, answer](const Request& request) {
-                        return answer_with_files(
-                            services.store, request, [&](const JobRecord& job) {
-                              return answer(job, only_chosen_map(job, request.query), request);
-                            });
-                      }});
+    routes.push_back(
+        {"GET", path, [services, answer](const http::Request& request) {
+           return answer_with_files(services.store, request, [&](const store::JobRecord& job) {
+             return answer(job, work::only_chosen_map(job, request.query), request);
+           });
+         }});
   };
   add("/v1/jobs/{id}/result",
-      [services](const JobRecord& job, std::size_t map, const Request& request) {
+      [services](const store::JobRecord& job, std::size_t map, const http::Request& request) {
         return get_result(services.results, job, map, request);
       });
-  add("/v1/jobs/{id}/report", [services](const JobRecord& job, std::size_t map, const Request&) {
-    return get_file(services.blobs, job, map_file(kReportFile, map), "application/json");
-  });
+  add("/v1/jobs/{id}/report",
+      [services](const store::JobRecord& job, std::size_t map, const http::Request&) {
+        return get_file(services.blobs, job, work::map_file(store::kReportFile, map),
+                        "application/json");
+      });
 }
 
 }  // namespace
 
-JobRecord find_job(JobStore& store, const Request& request) {
-  std::optional<JobRecord> job = store.find(request.id);
+store::JobRecord find_job(store::JobStore& store, const http::Request& request) {
+  std::optional<store::JobRecord> job = store.find(request.id);
   const bool seen = job && (request.caller.sees_all || job->owner == request.caller.owner);
   if (!seen) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
   return std::move(*job);
 }
 
-Response answer_with_files(JobStore& store, const Request& request,
-                           const std::function<Response(const JobRecord& job)>& answer) {
-  const JobRecord job = find_job(store, request);
+http::Response answer_with_files(
+    store::JobStore& store, const http::Request& request,
+    const std::function<http::Response(const store::JobRecord& job)>& answer) {
+  const store::JobRecord job = find_job(store, request);
   try {
     return answer(job);
   } catch (const Error& error) {
@@ -149,34 +154,38 @@ Response answer_with_files(JobStore& store, const Request& request,
   }
 }
 
-void add_job_routes(std::vector<Route>& routes, const JobServices& services) {
-  const auto find = [services](const Request& request) {
+void add_job_routes(std::vector<http::Route>& routes, const JobServices& services) {
+  const auto find = [services](const http::Request& request) {
     return find_job(services.store, request);
   };
-  routes.push_back({"POST", "/v1/jobs",
-                    [services](const Request& request) { return post_job(services, request); }});
-  routes.push_back({"GET", "/v1/jobs", [services](const Request& request) {
+  routes.push_back({"POST", "/v1/jobs", [services](const http::Request& request) {
+                      return post_job(services, request);
+                    }});
+  routes.push_back({"GET", "/v1/jobs", [services](const http::Request& request) {
                       return list_jobs(services.store, request);
                     }});
-  routes.push_back({"GET", "/v1/jobs/{id}/link", [services, find](const Request& request) {
+  routes.push_back({"GET", "/v1/jobs/{id}/link", [services, find](const http::Request& request) {
                       return get_link(find(request), services.links, request);
                     }});
-  routes.push_back({"PUT", "/v1/jobs/{id}",
-                    [services](const Request& request) { return post_job(services, request); }});
-  routes.push_back({"GET", "/v1/jobs/{id}", [services, find](const Request& request) {
+  routes.push_back({"PUT", "/v1/jobs/{id}", [services](const http::Request& request) {
+                      return post_job(services, request);
+                    }});
+  routes.push_back({"GET", "/v1/jobs/{id}", [services, find](const http::Request& request) {
                       return job_response(200, find(request), services.events);
                     }});
-  routes.push_back({"DELETE", "/v1/jobs/{id}",
-                    [services](const Request& request) { return delete_job(services, request); }});
-  routes.push_back({"GET", "/v1/jobs/{id}/events", [services, find](const Request& request) {
+  routes.push_back({"DELETE", "/v1/jobs/{id}", [services](const http::Request& request) {
+                      return delete_job(services, request);
+                    }});
+  routes.push_back({"GET", "/v1/jobs/{id}/events", [services, find](const http::Request& request) {
                       return services.streams.open(find(request), request);
                     }});
   add_files(routes, services);
 }
 
-void add_unwrap_route(std::vector<Route>& routes, const JobServices& services) {
-  routes.push_back({"POST", "/v1/unwrap",
-                    [services](const Request& request) { return post_unwrap(services, request); }});
+void add_unwrap_route(std::vector<http::Route>& routes, const JobServices& services) {
+  routes.push_back({"POST", "/v1/unwrap", [services](const http::Request& request) {
+                      return post_unwrap(services, request);
+                    }});
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

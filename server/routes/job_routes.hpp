@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/access/signed_link.hpp"
-#include "server/base/waiters.hpp"
+#include "server/base/concurrency_limit.hpp"
 #include "server/http/router.hpp"
 #include "server/jobs/job_queue.hpp"
 #include "server/results/result_store.hpp"
@@ -13,34 +13,35 @@
 #include "server/store/job_store.hpp"
 #include "server/uploads/submissions.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 
 /// What the handlers work on; all of it outlives the routes.
 struct JobServices {
-  JobStore& store;
-  JobQueue& queue;
-  BlobStore& blobs;
-  EventFeed& events;
+  store::JobStore& store;
+  jobs::JobQueue& queue;
+  store::BlobStore& blobs;
+  jobs::EventFeed& events;
   EventStreams& streams;
-  Submissions& submissions;
-  ResultStore& results;
-  const LinkSigner& links;
+  uploads::Submissions& submissions;
+  results::ResultStore& results;
+  const access::LinkSigner& links;
   const api::Limits& limits;
-  Waiters& waiters;
+  ConcurrencyLimit& waiters;
 };
 
 /// The job of the path. Throws Error{not_found} when there is none, or none of the caller's.
-JobRecord find_job(JobStore& store, const Request& request);
+store::JobRecord find_job(store::JobStore& store, const http::Request& request);
 
 /// What is answered with files of the job of the path. Throws not_found, or what require_result()
 /// throws, when they went meanwhile.
-Response answer_with_files(JobStore& store, const Request& request,
-                           const std::function<Response(const JobRecord& job)>& answer);
+http::Response answer_with_files(
+    store::JobStore& store, const http::Request& request,
+    const std::function<http::Response(const store::JobRecord& job)>& answer);
 
 /// POST /v1/jobs and everything below /v1/jobs/{id} but the pictures.
-void add_job_routes(std::vector<Route>& routes, const JobServices& services);
+void add_job_routes(std::vector<http::Route>& routes, const JobServices& services);
 
 /// POST /v1/unwrap.
-void add_unwrap_route(std::vector<Route>& routes, const JobServices& services);
+void add_unwrap_route(std::vector<http::Route>& routes, const JobServices& services);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

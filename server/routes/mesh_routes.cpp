@@ -2,12 +2,13 @@
 
 #include "server/base/clock.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 constexpr std::string_view kPath = "/v1/meshes/{sha256}";
 
-api::Json mesh_json(const Meshes& meshes, const MeshRecord& mesh, std::chrono::seconds kept) {
+api::Json mesh_json(const uploads::Meshes& meshes, const store::MeshRecord& mesh,
+                    std::chrono::seconds kept) {
   const std::int64_t kept_ms = std::chrono::milliseconds(kept).count() + meshes.now().set_by_ms;
   return api::to_json(api::Mesh{.sha256 = mesh.sha256,
                                 .bytes = mesh.bytes,
@@ -16,21 +17,24 @@ api::Json mesh_json(const Meshes& meshes, const MeshRecord& mesh, std::chrono::s
                                 .expires = rfc3339(mesh.kept_since_ms + kept_ms)});
 }
 
-Response mesh_response(int status, const api::Json& mesh) {
-  Response response = json_response(status, mesh.dump());
+http::Response mesh_response(int status, const api::Json& mesh) {
+  http::Response response = http::json_response(status, mesh.dump());
   response.headers.emplace_back("Cache-Control", "no-store");
   return response;
 }
 
-Response put_mesh(Meshes& meshes, const Request& request, std::chrono::seconds kept) {
-  const SentMesh sent = meshes.receive(request, request.sha256);
-  Response response = mesh_response(sent.is_new ? 201 : 200, mesh_json(meshes, sent.mesh, kept));
+http::Response put_mesh(uploads::Meshes& meshes, const http::Request& request,
+                        std::chrono::seconds kept) {
+  const uploads::SentMesh sent = meshes.receive(request, request.sha256);
+  http::Response response =
+      mesh_response(sent.is_new ? 201 : 200, mesh_json(meshes, sent.mesh, kept));
   response.headers.emplace_back("Location", api::mesh_path(request.sha256));
   return response;
 }
 
-Response get_mesh(Meshes& meshes, const Request& request, std::chrono::seconds kept) {
-  const MeshRecord mesh = meshes.find(request.caller.owner, request.sha256);
+http::Response get_mesh(uploads::Meshes& meshes, const http::Request& request,
+                        std::chrono::seconds kept) {
+  const store::MeshRecord mesh = meshes.find(request.caller.owner, request.sha256);
   api::Json json = mesh_json(meshes, mesh, kept);
   json.update(meshes.analysis(mesh, request.has_left));
   return mesh_response(200, json);
@@ -38,13 +42,14 @@ Response get_mesh(Meshes& meshes, const Request& request, std::chrono::seconds k
 
 }  // namespace
 
-void add_mesh_routes(std::vector<Route>& routes, Meshes& meshes, std::chrono::seconds kept) {
-  routes.push_back({"PUT", kPath, [&meshes, kept](const Request& request) {
+void add_mesh_routes(std::vector<http::Route>& routes, uploads::Meshes& meshes,
+                     std::chrono::seconds kept) {
+  routes.push_back({"PUT", kPath, [&meshes, kept](const http::Request& request) {
                       return put_mesh(meshes, request, kept);
                     }});
-  routes.push_back({"GET", kPath, [&meshes, kept](const Request& request) {
+  routes.push_back({"GET", kPath, [&meshes, kept](const http::Request& request) {
                       return get_mesh(meshes, request, kept);
                     }});
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

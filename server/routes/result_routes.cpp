@@ -3,18 +3,18 @@
 #include "api/error_table.hpp"
 #include "server/http/media_types.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 /// Range counts when there is no If-Range, or when that is the tag of what would be sent.
-bool range_counts(const Request& request, const std::string& etag) {
+bool range_counts(const http::Request& request, const std::string& etag) {
   const std::string condition = request.header("If-Range");
   return request.method == "GET" && (condition.empty() || condition == etag);
 }
 
-void send_range(const Request& request, FileBody& body, Response& response) {
+void send_range(const http::Request& request, http::FileBody& body, http::Response& response) {
   const std::int64_t size = body.length;
-  const std::optional<ByteRange> range = single_range(request.header("Range"), size);
+  const std::optional<http::ByteRange> range = http::single_range(request.header("Range"), size);
   if (!range) return;
   body.offset = range->offset;
   body.length = range->length;
@@ -27,13 +27,13 @@ void send_range(const Request& request, FileBody& body, Response& response) {
 
 }  // namespace
 
-bool has_copy(const Request& request, const std::string& etag) {
+bool has_copy(const http::Request& request, const std::string& etag) {
   if (request.method == "POST") return false;  // an answer to a call, not a copy of a resource
   const std::string if_none_match = request.header("If-None-Match");
   return if_none_match == "*" || if_none_match.find(etag) != std::string::npos;
 }
 
-void require_result(const JobRecord& job) {
+void require_result(const store::JobRecord& job) {
   if (!api::is_final(job.state)) {
     throw Error(ErrorCode::job_unfinished,
                 "The job has not ended; ask again when its state is succeeded.");
@@ -45,40 +45,40 @@ void require_result(const JobRecord& job) {
   }
 }
 
-Response stored_response(const StoredResult& stored, std::string_view type,
-                         const Request& request) {
+http::Response stored_response(const results::StoredResult& stored, std::string_view type,
+                               const http::Request& request) {
   const std::string etag = "\"" + stored.sha256 + "\"";
-  Response response;
+  http::Response response;
   response.headers = {{"ETag", etag}, {"Accept-Ranges", "bytes"}};
   if (has_copy(request, etag)) {
     response.status = 304;
     return response;
   }
   response.content_type = type;
-  FileBody body{.file = stored.file, .offset = 0, .length = stored.file->size()};
+  http::FileBody body{.file = stored.file, .offset = 0, .length = stored.file->size()};
   if (range_counts(request, etag)) send_range(request, body, response);
   response.body = std::move(body);
   return response;
 }
 
-Response get_result(ResultStore& results, const JobRecord& job, std::size_t map,
-                    const Request& request) {
+http::Response get_result(results::ResultStore& results, const store::JobRecord& job,
+                          std::size_t map, const http::Request& request) {
   require_result(job);
-  const std::string format = choose_format(request.header("Accept"), job.result_format);
-  Response response = stored_response(results.open(job, map, format, request.has_left),
-                                      media_type(format), request);
+  const std::string format = http::choose_format(request.header("Accept"), job.result_format);
+  http::Response response = stored_response(results.open(job, map, format, request.has_left),
+                                            http::media_type(format), request);
   response.headers.emplace_back("Vary", "Accept");
   return response;
 }
 
-Response get_file(const BlobStore& blobs, const JobRecord& job, std::string_view file,
-                  std::string_view type) {
+http::Response get_file(const store::BlobStore& blobs, const store::JobRecord& job,
+                        std::string_view file, std::string_view type) {
   require_result(job);
   const std::shared_ptr<const File> opened = blobs.open(job.id, file);
-  Response response;
+  http::Response response;
   response.content_type = type;
-  response.body = FileBody{.file = opened, .offset = 0, .length = opened->size()};
+  response.body = http::FileBody{.file = opened, .offset = 0, .length = opened->size()};
   return response;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

@@ -6,25 +6,26 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 
 /// Whether the sender of a GET has what this ETag names, and asks only for something else.
-bool has_copy(const Request& request, const std::string& etag);
+bool has_copy(const http::Request& request, const std::string& etag);
 
 /// Throws unless the job has succeeded and its files are still kept: job_unfinished,
 /// result_expired, or the job's own problem.
-void require_result(const JobRecord& job);
+void require_result(const store::JobRecord& job);
 
 /// A stored file, with ETag, If-None-Match and Range.
-Response stored_response(const StoredResult& stored, std::string_view type, const Request& request);
+http::Response stored_response(const results::StoredResult& stored, std::string_view type,
+                               const http::Request& request);
 
 /// The asset by one of the job's maps, in the format that Accept chooses, with ETag, If-None-Match
 /// and Range.
-Response get_result(ResultStore& results, const JobRecord& job, std::size_t map,
-                    const Request& request);
+http::Response get_result(results::ResultStore& results, const store::JobRecord& job,
+                          std::size_t map, const http::Request& request);
 
 /// A file of the job as it is.
-Response get_file(const BlobStore& blobs, const JobRecord& job, std::string_view file,
-                  std::string_view type);
+http::Response get_file(const store::BlobStore& blobs, const store::JobRecord& job,
+                        std::string_view file, std::string_view type);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

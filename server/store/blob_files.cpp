@@ -4,7 +4,7 @@
 
 #include "server/base/files.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,4 +57,4 @@ void note_first_version(const fs::path& blobs, const fs::path& done) {
   write_file(done, "Every folder of blobs/ has its file `digests`.\n");
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -9,7 +9,7 @@
 
 #include "server/store/digests.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 inline constexpr std::string_view kDocumentFile = "document";
 inline constexpr std::string_view kOptionsFile = "options.json";  ///< of long options alone
@@ -36,4 +36,4 @@ void seal_files(const std::filesystem::path& folder,
 /// which has lost them is told from one that never had any.
 void note_first_version(const std::filesystem::path& blobs, const std::filesystem::path& done);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -8,7 +8,7 @@
 #include "core/base/error.hpp"
 #include "server/base/identity.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,8 +172,9 @@ void BlobStore::note(std::string_view job, const std::string& file) {
 
 bool BlobStore::try_keep(std::string_view job, const std::string& file, std::string_view bytes) {
   const auto count = static_cast<std::int64_t>(bytes.size());
-  std::shared_ptr<void> claim;  // until the bytes count
-  if (keeping_.claim && !(claim = keeping_.claim(std::string(job), count))) return false;
+  std::shared_ptr<void> reservation;  // until the bytes count
+  if (keeping_.reservation && !(reservation = keeping_.reservation(std::string(job), count)))
+    return false;
   if (!room_.try_take(job, count)) return false;
   try {
     write_file(path(job, file), bytes);
@@ -256,4 +257,4 @@ int BlobStore::folder_count() const {
   return static_cast<int>(std::distance(fs::directory_iterator(blobs_), fs::directory_iterator()));
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -20,18 +20,18 @@
 #include "server/store/blob_files.hpp"
 #include "server/store/checked_files.hpp"
 #include "server/store/digests.hpp"
-#include "server/store/disk_room.hpp"
+#include "server/store/disk_budget.hpp"
 #include "server/store/left_folders.hpp"
 #include "server/store/lost_folders.hpp"
 #include "server/store/shared_files.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// What try_keep() asks and tells of.
 struct Keeping {
   /// So many bytes more, claimed for the job's owner while the caller keeps what is returned;
   /// nothing where he may not have them.
-  std::function<std::shared_ptr<void>(const std::string& job, std::int64_t bytes)> claim = {};
+  std::function<std::shared_ptr<void>(const std::string& job, std::int64_t bytes)> reservation = {};
   /// The bytes of all the job's files now.
   std::function<void(std::string_view job, std::int64_t bytes)> kept = {};
 };
@@ -118,7 +118,7 @@ class BlobStore {
   bool set_aside(const std::string& job, std::int64_t now_ms);
 
   LostFolders& lost() { return lost_; }
-  DiskRoom& room() { return room_; }
+  DiskBudget& room() { return room_; }
   [[nodiscard]] bool holds(std::string_view job) const;
 
   /// Removes what could not be removed before; returns how much that was.
@@ -127,7 +127,7 @@ class BlobStore {
  private:
   std::filesystem::path incoming_;
   std::filesystem::path blobs_;
-  DiskRoom room_;
+  DiskBudget room_;
   LostFolders lost_;
   std::int64_t count(const std::string& name);
   void count_again(const std::vector<std::string>& holders);
@@ -143,4 +143,4 @@ class BlobStore {
   mutable std::mutex noting_;  // one writer of `digests` at a time
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

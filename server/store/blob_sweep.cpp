@@ -5,7 +5,7 @@
 #include "server/base/identity.hpp"
 #include "server/store/blob_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ bool BlobStore::set_aside(const std::string& job, std::int64_t now_ms) {
   return true;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -3,7 +3,7 @@
 #include "server/base/clock.hpp"
 #include "server/store/digests.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 constexpr std::int64_t kSettledMs = 2000;
@@ -34,4 +34,4 @@ void CheckedFiles::remember(const FileStamp& stamp, const std::string& digest) {
   order_.pop_front();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -13,7 +13,7 @@
 
 #include "server/base/files.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// Thread-safe.
 class CheckedFiles {
@@ -33,4 +33,4 @@ class CheckedFiles {
   std::deque<FileStamp> order_;  // of digests_, the first at the front
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -8,7 +8,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 constexpr mode_t kFileMode = 0640;
@@ -38,4 +38,4 @@ DataLock::DataLock(const std::filesystem::path& data) : file_(open_lock(data)) {
                   " cannot be locked; stop any other unwrapd that uses it.");
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

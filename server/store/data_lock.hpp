@@ -5,7 +5,7 @@
 
 #include "server/base/files.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 class DataLock {
  public:
@@ -17,4 +17,4 @@ class DataLock {
   File file_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

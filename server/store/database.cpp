@@ -8,7 +8,7 @@
 #include "server/base/files.hpp"
 #include "server/base/inside_error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 constexpr int kBusyTimeoutMs = 10'000;
@@ -141,4 +141,4 @@ std::string Statement::text(int column) const {
   return {bytes, bytes + size};
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -13,7 +13,7 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// One connection, in WAL mode with synchronous FULL: a commit survives a loss of power.
 /// Not for use by two threads at once.
@@ -98,4 +98,4 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

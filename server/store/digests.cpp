@@ -4,7 +4,7 @@
 
 #include "server/base/identity.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
@@ -48,4 +48,4 @@ std::string sha256_of(const File& file) {
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -10,7 +10,7 @@
 
 #include "server/base/files.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 inline constexpr std::string_view kDigestsFile = "digests";
 
@@ -30,4 +30,4 @@ void write_digests(
 /// SHA-256 of a file, read in pieces.
 std::string sha256_of(const File& file);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

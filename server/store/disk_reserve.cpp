@@ -7,7 +7,7 @@
 #include "core/base/error.hpp"
 #include "server/base/files.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 void DiskReserve::make() noexcept {
   const std::lock_guard lock(mutex_);
@@ -27,4 +27,4 @@ bool DiskReserve::give_up() noexcept {
   return std::filesystem::remove(file_, ignored);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <mutex>
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 inline constexpr std::int64_t kReserveBytes = std::int64_t{1} << 20;
 
@@ -27,4 +27,4 @@ class DiskReserve {
   std::mutex mutex_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -3,7 +3,7 @@
 #include "server/base/clock.hpp"
 #include "server/store/blob_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 api::Job to_job(const JobRecord& record) {
   return {.id = record.id,
@@ -25,4 +25,4 @@ Digests digests_of(const JobInput& input) {
   return digests;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

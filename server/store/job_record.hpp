@@ -8,7 +8,7 @@
 #include "api/job.hpp"
 #include "server/store/digests.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 inline constexpr int kUsualUrgency = 3;  // RFC 9218
 inline constexpr int kMaxUrgency = 7;
@@ -63,4 +63,4 @@ struct JobRecord {
 /// The job as its owner sees it, without live progress.
 api::Job to_job(const JobRecord& record);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -8,7 +8,7 @@
 #include "server/base/files.hpp"
 #include "server/base/queue_errors.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 using api::JobState;
@@ -145,4 +145,4 @@ api::Json buffers_json(const std::vector<StoredBuffer>& buffers) {
   return json;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -8,7 +8,7 @@
 #include "server/store/database.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// "SELECT <all columns> FROM jobs <rest>".
 std::string select_jobs(std::string_view rest);
@@ -24,4 +24,4 @@ std::string text_of(const api::Json& json);
 
 api::Json buffers_json(const std::vector<StoredBuffer>& buffers);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -8,7 +8,7 @@
 #include "server/store/job_rows.hpp"
 #include "server/store/schema.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 using api::JobState;
@@ -44,7 +44,7 @@ JobOutcome ended(JobState state, const Error& why, std::string_view job) {
   return outcome;
 }
 
-JobStore::JobStore(const std::filesystem::path& path, KeptTime::Read read) : database_(path) {
+JobStore::JobStore(const std::filesystem::path& path, RetentionClock::Read read) : database_(path) {
   database_.check();
   migrate(database_);
   Statement noted(database_, "SELECT set_by_ms, noted_ms, noted_elapsed_ms, boot FROM written");
@@ -239,4 +239,4 @@ void JobStore::requeue(std::string_view id, bool crashed) {
       .run();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -17,12 +17,12 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "server/base/kept_time.hpp"
+#include "server/base/retention_clock.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/store/database.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// How a job ends.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
@@ -58,7 +58,7 @@ struct OwnerUsage {
 class JobStore {
  public:
   /// Throws when it cannot be written. read: the clocks.
-  explicit JobStore(const std::filesystem::path& path, KeptTime::Read read = read_clocks);
+  explicit JobStore(const std::filesystem::path& path, RetentionClock::Read read = read_clocks);
 
   [[nodiscard]] Moment now() const { return time_->now(); }
   /// By how much the time of day was set since the last call, or the last one of the server before;
@@ -132,7 +132,7 @@ class JobStore {
   std::mutex mutex_;
   Database database_;
   NotedTime noted_;
-  std::optional<const KeptTime> time_;
+  std::optional<const RetentionClock> time_;
   std::atomic<bool> write_failed_ = true;  // or was not tried
 
   /// The store while it is written: it remembers whether that came about.
@@ -151,4 +151,4 @@ class JobStore {
   };
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -3,7 +3,7 @@
 
 #include "server/store/job_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 OwnerUsage JobStore::usage(std::string_view owner) {
   const std::lock_guard lock(mutex_);
@@ -128,4 +128,4 @@ void JobStore::remove(std::string_view id) {
   Statement(database_, "DELETE FROM jobs WHERE id = ?").with(id).run();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 void LeftFolders::remove(const std::filesystem::path& folder) noexcept {
   std::error_code failed;
@@ -22,4 +22,4 @@ int LeftFolders::retry() noexcept {
   return static_cast<int>(left.size());
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

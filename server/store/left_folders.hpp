@@ -6,7 +6,7 @@
 #include <mutex>
 #include <set>
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// Thread-safe.
 class LeftFolders {
@@ -20,4 +20,4 @@ class LeftFolders {
   std::set<std::filesystem::path> folders_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -1,8 +1,8 @@
 #include "server/store/loaded_input.hpp"
 
-#include "server/store/long_options.hpp"
+#include "server/store/spilled_options.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 LoadedInput::LoadedInput(const BlobStore& blobs, const JobRecord& job)
     : record_(job), document_(blobs.read(job.id, kDocumentFile)) {
@@ -18,4 +18,4 @@ asset::Input LoadedInput::input() const {
   return input;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -9,7 +9,7 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// A job's input in memory, and its record with all its options, checked against their digests; the
 /// views of input() live as long as this. Throws Error{storage_corrupt}.
@@ -25,4 +25,4 @@ class LoadedInput {
   std::vector<std::pair<std::string, std::string>> buffers_;  // URI, bytes
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -9,7 +9,7 @@
 
 #include "server/base/files.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ bool LostFolders::give_up_first() {
   return true;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

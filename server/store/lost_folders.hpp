@@ -14,14 +14,14 @@
 #include <string>
 #include <vector>
 
-#include "server/store/disk_room.hpp"
+#include "server/store/disk_budget.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// Thread-safe. Times are of Moment::kept_ms(); a folder's time is its own modification time.
 class LostFolders {
  public:
-  LostFolders(const std::filesystem::path& data, DiskRoom& room)
+  LostFolders(const std::filesystem::path& data, DiskBudget& room)
       : blobs_(data / "blobs"), lost_(data / "lost"), room_(room) {}
 
   /// Counts what is there, and moves those that are wanted back to blobs; returns how many.
@@ -47,10 +47,10 @@ class LostFolders {
 
   const std::filesystem::path blobs_;
   const std::filesystem::path lost_;
-  DiskRoom& room_;
+  DiskBudget& room_;
   std::mutex mutex_;
   std::atomic<std::int64_t> bytes_ = 0;
   std::map<std::string, std::int64_t> counted_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

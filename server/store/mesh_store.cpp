@@ -1,6 +1,6 @@
 #include "server/store/mesh_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 constexpr const char* kSelect =
@@ -76,4 +76,4 @@ void MeshStore::remove(std::string_view id) {
   Statement(database_, "DELETE FROM meshes WHERE id = ?").with(id).run();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

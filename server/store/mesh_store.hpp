@@ -12,7 +12,7 @@
 
 #include "server/store/database.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 struct MeshRecord {
   std::string id;          ///< of its folder
@@ -48,4 +48,4 @@ class MeshStore {
   Database database_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -4,7 +4,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 /// Step k makes version k + 1 out of version k. Steps that were released are never edited.
@@ -173,4 +173,4 @@ void migrate(Database& database, std::optional<std::int64_t> last) {
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -8,7 +8,7 @@
 
 #include "server/store/database.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// Whether any version has made its tables in this file.
 bool has_tables(const Database& database);
@@ -24,4 +24,4 @@ void require_current(const Database& database);
 /// later version.
 void migrate(Database& database, std::optional<std::int64_t> last = {});
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -8,7 +8,7 @@
 #include "server/base/identity.hpp"
 #include "server/store/digests.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 void SharedFiles::leave(const std::string& holder, Inode file, std::set<std::string>& changed) {
   const auto found = holders_.find(file);
@@ -71,4 +71,4 @@ FolderBytes bytes_in(const std::filesystem::path& folder) {
   return bytes;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

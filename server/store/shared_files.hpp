@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// Not for use by two threads at once.
 class SharedFiles {
@@ -41,4 +41,4 @@ struct FolderBytes {
 /// Of all files but `digests`, which are ours, not the owner's.
 FolderBytes bytes_in(const std::filesystem::path& folder);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -5,7 +5,7 @@
 #include "core/base/error.hpp"
 #include "server/store/schema.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 std::filesystem::path store_in(const std::filesystem::path& data, const BlobStore& blobs) {
   std::filesystem::path file = data / kStoreFile;
@@ -21,4 +21,4 @@ std::filesystem::path store_in(const std::filesystem::path& data, const BlobStor
                   "is one), or remove the folder blobs to start empty.");
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -5,7 +5,7 @@
 
 #include "server/store/blob_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 inline constexpr const char* kStoreFile = "jobs.sqlite";
 
@@ -14,4 +14,4 @@ inline constexpr const char* kStoreFile = "jobs.sqlite";
 /// all.
 std::filesystem::path store_in(const std::filesystem::path& data, const BlobStore& blobs);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -5,7 +5,7 @@
 
 #include "server/base/identity.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 constexpr std::chrono::seconds kLongestPause{60};
@@ -106,4 +106,4 @@ void Sweeper::sweep_once() {
   blobs_.room().make_reserve();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

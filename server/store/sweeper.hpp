@@ -11,7 +11,7 @@
 #include "server/store/job_store.hpp"
 #include "server/store/mesh_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 
 /// One sweep at this time, of Moment::kept_ms().
 void sweep(JobStore& store, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep);
@@ -48,4 +48,4 @@ class Sweeper {
   const std::chrono::seconds keep_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -9,7 +9,7 @@
 #include "server/base/identity.hpp"
 #include "server/store/blob_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
@@ -19,7 +19,7 @@ constexpr std::string_view kSentOptionsFile = "options.sent";  // until they are
 /// A file that grows in pieces worth a system call each.
 class GrowingFile {
  public:
-  GrowingFile(const std::filesystem::path& path, const TakeRoom& room)
+  GrowingFile(const std::filesystem::path& path, const store::UploadMeter& room)
       : file_(File::create(path)), room_(room) {}
 
   void append(std::string_view bytes) {
@@ -40,7 +40,7 @@ class GrowingFile {
   }
 
   File file_;
-  const TakeRoom& room_;
+  const store::UploadMeter& room_;
   std::string pending_;
 };
 
@@ -51,9 +51,9 @@ class GrowingFile {
 /// The parts of a form, each to its place.
 class PartWriter {
  public:
-  explicit PartWriter(const UploadFolder& folder) : folder_(folder) {}
+  explicit PartWriter(const store::UploadFolder& folder) : folder_(folder) {}
 
-  void start(const Part& part) {
+  void start(const http::Part& part) {
     finish_file();
     in_options_ = part.name == "options";
     in_document_ = part.name == "mesh";
@@ -96,19 +96,20 @@ class PartWriter {
   void start_document() {
     if (has_document_) malformed("The form has two parts named \"mesh\"; send one.");
     has_document_ = true;
-    open(kDocumentFile, upload_.input.sha256);
+    open(store::kDocumentFile, upload_.input.sha256);
   }
 
-  void start_buffer(const Part& part) {
-    std::vector<StoredBuffer>& buffers = upload_.input.buffers;
+  void start_buffer(const http::Part& part) {
+    std::vector<store::StoredBuffer>& buffers = upload_.input.buffers;
     if (part.filename.empty())
       malformed(
           "A part with a buffer has no filename; send the URI by which the asset names the "
           "buffer.");
-    if (std::ranges::find(buffers, part.filename, &StoredBuffer::uri) != buffers.end())
+    if (std::ranges::find(buffers, part.filename, &store::StoredBuffer::uri) != buffers.end())
       malformed("Two parts have the same filename; send every buffer once.");
     if (buffers.size() == kMaxBuffers) malformed("The form has over 1000 buffers; send fewer.");
-    buffers.push_back({.uri = part.filename, .file = buffer_file(buffers.size()), .sha256 = {}});
+    buffers.push_back(
+        {.uri = part.filename, .file = store::buffer_file(buffers.size()), .sha256 = {}});
     open(buffers.back().file, buffers.back().sha256);
   }
 
@@ -126,7 +127,7 @@ class PartWriter {
     *digest_ = hash_->finish();
   }
 
-  const UploadFolder& folder_;
+  const store::UploadFolder& folder_;
   Upload upload_;
   std::optional<Sha256> hash_;
   std::string* digest_ = nullptr;  // of the open file
@@ -138,10 +139,10 @@ class PartWriter {
 
 }  // namespace
 
-Upload receive_asset(BodyReader& body, const UploadFolder& folder) {
+Upload receive_asset(http::BodyReader& body, const store::UploadFolder& folder) {
   Upload upload;
   Sha256 hash;
-  GrowingFile file(folder.path / kDocumentFile, folder.room);
+  GrowingFile file(folder.path / store::kDocumentFile, folder.room);
   body.read([&](std::string_view bytes) {
     hash.add(bytes);
     upload.input.bytes += static_cast<std::int64_t>(bytes.size());
@@ -154,11 +155,11 @@ Upload receive_asset(BodyReader& body, const UploadFolder& folder) {
   return upload;
 }
 
-Upload receive_parts(BodyReader& body, const UploadFolder& folder) {
+Upload receive_parts(http::BodyReader& body, const store::UploadFolder& folder) {
   PartWriter writer(folder);
-  body.read_parts([&](const Part& part) { writer.start(part); },
+  body.read_parts([&](const http::Part& part) { writer.start(part); },
                   [&](std::string_view bytes) { writer.append(bytes); });
   return writer.finish();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

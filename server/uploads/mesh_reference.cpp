@@ -4,7 +4,7 @@
 #include "core/base/error.hpp"
 #include "server/base/identity.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 namespace {
 
 constexpr std::size_t kMaxBytes = api::kMaxOptionsBytes + 1024;
@@ -47,7 +47,7 @@ MeshReference parse_mesh_reference(std::string_view text) {
   return reference;
 }
 
-void receive_reference_text(BodyReader& body, SpooledText& text) {
+void receive_reference_text(http::BodyReader& body, SpooledText& text) {
   body.read([&](std::string_view bytes) {
     if (text.size() + bytes.size() > kMaxBytes)
       throw Error(ErrorCode::body_too_large, "The JSON exceeds 16 MiB; shorten the options.");
@@ -55,4 +55,4 @@ void receive_reference_text(BodyReader& body, SpooledText& text) {
   });
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

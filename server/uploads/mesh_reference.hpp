@@ -8,7 +8,7 @@
 #include "server/http/http.hpp"
 #include "server/uploads/spooled_text.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 
 struct MeshReference {
   std::string sha256;
@@ -20,6 +20,6 @@ struct MeshReference {
 MeshReference parse_mesh_reference(std::string_view text);
 
 /// Such a text, unread. Throws what BodyReader and SpooledText throw.
-void receive_reference_text(BodyReader& body, SpooledText& text);
+void receive_reference_text(http::BodyReader& body, SpooledText& text);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

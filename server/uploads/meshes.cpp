@@ -7,16 +7,16 @@
 #include "server/results/result_store.hpp"
 #include "server/uploads/job_input.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 namespace {
 
 constexpr std::string_view kAnalysisFile = "analysis.json";
 constexpr std::string_view kMeshMember = "/mesh";  // of the request that makes a job of one
 
 /// Throws Error{unsupported_media_type} for what is no asset.
-std::string media_type_of(const Request& request) {
+std::string media_type_of(const http::Request& request) {
   const std::string type = request.header("Content-Type");
-  if (body_kind(type) != BodyKind::asset) {
+  if (http::body_kind(type) != http::BodyKind::asset) {
     throw Error(ErrorCode::unsupported_media_type,
                 "A mesh is stored as one file; send it as model/gltf-binary, model/gltf+json, "
                 "model/obj or application/octet-stream.");
@@ -32,7 +32,8 @@ void check_digest(const std::string& is, const std::string& expected) {
 }
 
 /// Too much time or memory is a problem of the mesh like any other.
-std::string analyse(const Renderer& renderer, const JobRecord& job, const HasLeft& has_left) {
+std::string analyse(const results::Renderer& renderer, const store::JobRecord& job,
+                    const http::HasLeft& has_left) {
   try {
     return renderer.analyse(job, has_left);
   } catch (const Error& error) {
@@ -47,8 +48,8 @@ Error no_mesh(const std::string& where) {
 }
 
 /// What a renderer needs to know of a mesh, as if it were a job with the usual options.
-JobRecord as_job(const MeshRecord& mesh) {
-  JobRecord job;
+store::JobRecord as_job(const store::MeshRecord& mesh) {
+  store::JobRecord job;
   job.id = mesh.id;
   job.owner = mesh.owner;
   job.options = api::Json::object();
@@ -58,20 +59,20 @@ JobRecord as_job(const MeshRecord& mesh) {
 
 }  // namespace
 
-SentMesh Meshes::receive(const Request& request, const std::string& sha256) {
-  MeshRecord mesh;
+SentMesh Meshes::receive(const http::Request& request, const std::string& sha256) {
+  store::MeshRecord mesh;
   mesh.id = random_mesh_id();
   mesh.owner = request.caller.owner;
   mesh.media_type = media_type_of(request);
   const std::string upload = mesh.id;
-  const std::optional<MeshRecord> known = store_.find(mesh.owner, sha256);
-  UploadRoom room(
+  const std::optional<store::MeshRecord> known = store_.find(mesh.owner, sha256);
+  UploadBudget room(
       rooms_, request.caller, upload,
       {.known_bytes = known ? known->bytes : 0, .declared_bytes = request.declared_bytes});
   room.check_declared();
   try {
-    const UploadFolder folder{.path = blobs_.begin_upload(upload), .room = room.counter()};
-    const JobInput came = receive_asset(*request.body, folder).input;
+    const store::UploadFolder folder{.path = blobs_.begin_upload(upload), .room = room.counter()};
+    const store::JobInput came = receive_asset(*request.body, folder).input;
     check_digest(came.sha256, sha256);
     mesh.sha256 = came.sha256;
     mesh.bytes = mesh.stored_bytes = came.bytes;
@@ -86,10 +87,11 @@ SentMesh Meshes::receive(const Request& request, const std::string& sha256) {
 }
 
 /// What is there whole stays, for jobs may share it; a damaged one is replaced.
-SentMesh Meshes::settle(const Request& request, MeshRecord mesh, const std::string& upload) {
+SentMesh Meshes::settle(const http::Request& request, store::MeshRecord mesh,
+                        const std::string& upload) {
   const std::lock_guard lock(settling_);
-  const std::optional<MeshRecord> known = store_.find(mesh.owner, mesh.sha256);
-  if (known && find_whole(blobs_, known->id, std::string(kDocumentFile))) {
+  const std::optional<store::MeshRecord> known = store_.find(mesh.owner, mesh.sha256);
+  if (known && results::find_whole(blobs_, known->id, std::string(store::kDocumentFile))) {
     store_.use(known->id, mesh.kept_since_ms, mesh.media_type);
     blobs_.drop_upload(upload);
     return {.mesh = find(mesh.owner, mesh.sha256), .is_new = false};
@@ -97,7 +99,7 @@ SentMesh Meshes::settle(const Request& request, MeshRecord mesh, const std::stri
   const std::int64_t most = request.caller.quota.max_bytes;
   if (most > 0 && jobs_.usage(mesh.owner).stored_bytes + mesh.bytes > most)
     throw quota_exceeded(most);
-  blobs_.keep_upload(upload, mesh.id, {{std::string(kDocumentFile), mesh.sha256}});
+  blobs_.keep_upload(upload, mesh.id, {{std::string(store::kDocumentFile), mesh.sha256}});
   try {
     store_.put(mesh);
   } catch (...) {
@@ -108,18 +110,18 @@ SentMesh Meshes::settle(const Request& request, MeshRecord mesh, const std::stri
   return {.mesh = std::move(mesh), .is_new = true};
 }
 
-MeshRecord Meshes::find(const std::string& owner, const std::string& sha256,
-                        const std::string& where) {
-  std::optional<MeshRecord> mesh = store_.find(owner, sha256);
+store::MeshRecord Meshes::find(const std::string& owner, const std::string& sha256,
+                               const std::string& where) {
+  std::optional<store::MeshRecord> mesh = store_.find(owner, sha256);
   if (!mesh) throw no_mesh(where);
   return std::move(*mesh);
 }
 
-JobInput Meshes::share(const std::string& owner, const std::string& sha256,
-                       const std::string& upload) {
-  const MeshRecord mesh = find(owner, sha256, std::string(kMeshMember));
+store::JobInput Meshes::share(const std::string& owner, const std::string& sha256,
+                              const std::string& upload) {
+  const store::MeshRecord mesh = find(owner, sha256, std::string(kMeshMember));
   if (!blobs_.share_document(mesh.id, upload)) throw no_mesh(std::string(kMeshMember));
-  if (!find_whole(blobs_, mesh.id, std::string(kDocumentFile))) {
+  if (!results::find_whole(blobs_, mesh.id, std::string(store::kDocumentFile))) {
     throw Error(ErrorCode::storage_corrupt,
                 "The stored mesh is damaged; send it again by PUT /v1/meshes/{sha256}.",
                 std::string(kMeshMember));
@@ -128,23 +130,23 @@ JobInput Meshes::share(const std::string& owner, const std::string& sha256,
   return {.sha256 = mesh.sha256, .bytes = mesh.bytes, .buffers = {}};
 }
 
-api::Json Meshes::analysis(const MeshRecord& mesh, const HasLeft& has_left) {
-  const JobRecord job = as_job(mesh);
+api::Json Meshes::analysis(const store::MeshRecord& mesh, const http::HasLeft& has_left) {
+  const store::JobRecord job = as_job(mesh);
   const std::string file(kAnalysisFile);
-  std::optional<StoredResult> kept = find_whole(blobs_, mesh.id, file);
+  std::optional<results::StoredResult> kept = results::find_whole(blobs_, mesh.id, file);
   std::shared_ptr<void> place;
   if (!kept) {
     place = renderer_.enter(job, {.file = file, .map = 0, .has_left = has_left});
-    kept = find_whole(blobs_, mesh.id, file);  // made meanwhile
+    kept = results::find_whole(blobs_, mesh.id, file);  // made meanwhile
   }
   if (kept) {
     ++counts_.hits;
   } else {
     const std::string bytes = analyse(renderer_, job, has_left);
     counts_.made(bytes);
-    kept = keep(blobs_, mesh.id, file, bytes);
+    kept = results::keep(blobs_, mesh.id, file, bytes);
   }
   return api::Json::parse(kept->file->read(0, static_cast<std::size_t>(kept->file->size())));
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

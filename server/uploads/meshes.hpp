@@ -14,51 +14,53 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/job_store.hpp"
 #include "server/store/mesh_store.hpp"
-#include "server/uploads/upload_room.hpp"
+#include "server/uploads/upload_budget.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 
 struct SentMesh {
-  MeshRecord mesh;
+  store::MeshRecord mesh;
   bool is_new = false;
 };
 
 /// Thread-safe.
 class Meshes {
  public:
-  Meshes(MeshStore& store, JobStore& jobs, BlobStore& blobs, const UploadRooms& rooms,
-         Renderer& renderer)
+  Meshes(store::MeshStore& store, store::JobStore& jobs, store::BlobStore& blobs,
+         const UploadRooms& rooms, results::Renderer& renderer)
       : store_(store), jobs_(jobs), blobs_(blobs), rooms_(rooms), renderer_(renderer) {}
 
   /// Stores the body of a request as the mesh of this digest. Throws Error: digest_mismatch and
   /// what BodyReader throws, unsupported_media_type, unknown_format (of an empty body),
   /// quota_exceeded, storage_full, storage_failed; nothing is left then.
-  SentMesh receive(const Request& request, const std::string& sha256);
+  SentMesh receive(const http::Request& request, const std::string& sha256);
 
   /// Throws Error{mesh_not_found} when the owner has none of this digest; where: for that error.
-  MeshRecord find(const std::string& owner, const std::string& sha256,
-                  const std::string& where = {});
+  store::MeshRecord find(const std::string& owner, const std::string& sha256,
+                         const std::string& where = {});
 
   /// The document of a mesh becomes that of an upload, too. Throws like find(), storage_corrupt.
-  JobInput share(const std::string& owner, const std::string& sha256, const std::string& upload);
+  store::JobInput share(const std::string& owner, const std::string& sha256,
+                        const std::string& upload);
 
   /// {"analysis": ...}, or {"problem": ...} for a mesh of which no job can be made; worked out
   /// once. Throws what Renderer throws.
-  api::Json analysis(const MeshRecord& mesh, const HasLeft& has_left = {});
+  api::Json analysis(const store::MeshRecord& mesh, const http::HasLeft& has_left = {});
 
   [[nodiscard]] Moment now() const { return jobs_.now(); }
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
-  [[nodiscard]] SentMesh settle(const Request& request, MeshRecord mesh, const std::string& upload);
+  [[nodiscard]] SentMesh settle(const http::Request& request, store::MeshRecord mesh,
+                                const std::string& upload);
 
-  MeshStore& store_;
-  JobStore& jobs_;
-  BlobStore& blobs_;
+  store::MeshStore& store_;
+  store::JobStore& jobs_;
+  store::BlobStore& blobs_;
   const UploadRooms& rooms_;
-  Renderer& renderer_;
+  results::Renderer& renderer_;
   std::mutex settling_;  // one upload at a time takes its name
   FileCounts counts_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

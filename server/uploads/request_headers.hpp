@@ -6,17 +6,17 @@
 #include "server/http/http.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 
 /// The value of Idempotency-Key, empty without it. Throws Error{malformed_request} unless it is 1
 /// to 255 visible ASCII characters; the quotes of a structured field are taken off.
-std::string idempotency_key(const Request& request);
+std::string idempotency_key(const http::Request& request);
 
 /// The u of Priority (RFC 9218): 0 is the most urgent, 7 the least; 3 without one, or where the
 /// field cannot be read, as that standard wants it.
-int urgency(const Request& request);
+int urgency(const http::Request& request);
 
 /// Whether Cache-Control asks for work rather than a stored answer.
-bool wants_new_answer(const Request& request);
+bool wants_new_answer(const http::Request& request);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

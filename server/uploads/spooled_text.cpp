@@ -1,6 +1,6 @@
 #include "server/uploads/spooled_text.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 namespace {
 
 constexpr std::size_t kMostInMemory = std::size_t{64} * 1024;
@@ -33,4 +33,4 @@ std::string SpooledText::read() {
   return read_file(path_);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

@@ -10,20 +10,20 @@
 #include <string_view>
 
 #include "server/base/files.hpp"
-#include "server/store/take_room.hpp"
+#include "server/store/upload_meter.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 
 class SpooledText {
  public:
   /// file: created when it is needed, removed with this.
-  explicit SpooledText(std::filesystem::path file, TakeRoom room = {})
+  explicit SpooledText(std::filesystem::path file, store::UploadMeter room = {})
       : path_(std::move(file)), room_(std::move(room)) {}
   SpooledText(const SpooledText&) = delete;
   SpooledText& operator=(const SpooledText&) = delete;
   ~SpooledText();
 
-  /// Throws what TakeRoom throws, and storage_failed.
+  /// Throws what UploadMeter throws, and storage_failed.
   void append(std::string_view bytes);
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool is_long() const { return file_.has_value(); }
@@ -34,11 +34,11 @@ class SpooledText {
   void spill();
 
   const std::filesystem::path path_;
-  const TakeRoom room_;
+  const store::UploadMeter room_;
   std::string unwritten_;
   std::size_t size_ = 0;
   std::int64_t taken_ = 0;  // of room
   std::optional<File> file_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

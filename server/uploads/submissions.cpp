@@ -3,16 +3,16 @@
 #include "server/base/clock.hpp"
 #include "server/base/identity.hpp"
 #include "server/base/trace.hpp"
-#include "server/jobs/question.hpp"
-#include "server/store/long_options.hpp"
+#include "server/jobs/request_fingerprint.hpp"
+#include "server/store/spilled_options.hpp"
 #include "server/uploads/mesh_reference.hpp"
 #include "server/uploads/request_headers.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 namespace {
 
 /// The options that are asked for, in the body or in the query.
-api::Json options_of(const std::optional<std::string>& text, const Request& request) {
+api::Json options_of(const std::optional<std::string>& text, const http::Request& request) {
   if (!text) return api::options_object(request.query);
   if (request.query.empty()) return api::parse_json(*text, {.max_bytes = api::kMaxOptionsBytes});
   throw Error(ErrorCode::invalid_option,
@@ -21,12 +21,12 @@ api::Json options_of(const std::optional<std::string>& text, const Request& requ
 }
 
 /// By which the sender can send it again; empty when it has none.
-std::string request_name(const Request& request) {
+std::string request_name(const http::Request& request) {
   return request.id.empty() ? idempotency_key(request) : request.id;
 }
 
 /// What tells a request from others before its body is read: the same when it is sent again.
-std::string sender_of(const Request& request) {
+std::string sender_of(const http::Request& request) {
   Sha256 hash;
   const auto add = [&](const std::string& text) { hash.add(text + '\0'); };
   add(request.caller.owner);
@@ -43,9 +43,9 @@ std::string sender_of(const Request& request) {
 
 /// What the request brings; the same may come again when its sender has no bytes left, and its
 /// options in many more. A form is more than its files: what it declares tells nothing then.
-UploadSize size_of(const Request& request, const std::optional<JobRecord>& known) {
+UploadSize size_of(const http::Request& request, const std::optional<store::JobRecord>& known) {
   if (!known) return {.known_bytes = 0, .declared_bytes = request.declared_bytes};
-  if (body_kind(request.header("Content-Type")) == BodyKind::asset)
+  if (http::body_kind(request.header("Content-Type")) == http::BodyKind::asset)
     return {.known_bytes = known->input.bytes, .declared_bytes = request.declared_bytes};
   constexpr auto kOptionBytes = static_cast<std::int64_t>(api::kMaxOptionsBytes);
   return {.known_bytes = known->input.bytes + kOptionBytes, .declared_bytes = 0};
@@ -53,18 +53,18 @@ UploadSize size_of(const Request& request, const std::optional<JobRecord>& known
 
 }  // namespace
 
-std::string Submissions::accept(const Request& request, bool synchronous) {
+std::string Submissions::accept(const http::Request& request, bool synchronous) {
   const std::string sender = sender_of(request);
-  const std::optional<JobRecord> known = known_job(request);
+  const std::optional<store::JobRecord> known = known_job(request);
   if (!known) queue_.check_room({.who = sender, .owner = request.caller.owner});
   const std::string upload = random_job_id();
   try {
-    UploadRoom room(rooms_, request.caller, upload, size_of(request, known));
-    Submission submission{.job = begin_job(request, upload, synchronous),
-                          .sender = sender,
-                          .upload = upload,
-                          .quota = request.caller.quota,
-                          .anew = wants_new_answer(request)};
+    UploadBudget room(rooms_, request.caller, upload, size_of(request, known));
+    jobs::Submission submission{.job = begin_job(request, upload, synchronous),
+                                .sender = sender,
+                                .upload = upload,
+                                .quota = request.caller.quota,
+                                .bypass_cache = wants_new_answer(request)};
     receive(request, submission.job, room, upload);
     return queue_.submit(std::move(submission)).id;
   } catch (...) {
@@ -75,15 +75,15 @@ std::string Submissions::accept(const Request& request, bool synchronous) {
 }
 
 /// The job that this request has made, should it be sent again: it needs no place, then.
-std::optional<JobRecord> Submissions::known_job(const Request& request) {
+std::optional<store::JobRecord> Submissions::known_job(const http::Request& request) {
   const std::string name = request_name(request);
   return name.empty() ? std::nullopt : store_.find_request(request.caller.owner, name);
 }
 
 /// What the head of the request says of it.
-JobRecord Submissions::begin_job(const Request& request, const std::string& upload,
-                                 bool synchronous) const {
-  JobRecord job;
+store::JobRecord Submissions::begin_job(const http::Request& request, const std::string& upload,
+                                        bool synchronous) const {
+  store::JobRecord job;
   job.id = request.id.empty() ? upload : request.id;
   job.request_key = request_name(request);
   job.owner = request.caller.owner;
@@ -92,7 +92,7 @@ JobRecord Submissions::begin_job(const Request& request, const std::string& uplo
   job.synchronous = synchronous;
   job.webhook = request.header("Unwrapd-Webhook");
   if (request.headers.contains("Unwrapd-Webhook"))
-    static_cast<void>(parse_webhook(job.webhook, webhooks_));
+    static_cast<void>(webhooks::parse_webhook(job.webhook, webhooks_));
   return job;
 }
 
@@ -104,19 +104,20 @@ Submissions::Sent Submissions::read_whole(SpooledText& text) {
   return sent;
 }
 
-Submissions::Sent Submissions::bring(const Request& request, const UploadFolder& folder,
-                                     JobRecord& job) {
-  const BodyKind kind = body_kind(request.header("Content-Type"));
-  if (kind == BodyKind::reference) return bring_reference(request, folder, job);
-  Upload came = kind == BodyKind::asset ? receive_asset(*request.body, folder)
-                                        : receive_parts(*request.body, folder);
+Submissions::Sent Submissions::bring(const http::Request& request,
+                                     const store::UploadFolder& folder, store::JobRecord& job) {
+  const http::BodyKind kind = http::body_kind(request.header("Content-Type"));
+  if (kind == http::BodyKind::reference) return bring_reference(request, folder, job);
+  Upload came = kind == http::BodyKind::asset ? receive_asset(*request.body, folder)
+                                              : receive_parts(*request.body, folder);
   job.input = std::move(came.input);
   job.stored_bytes = job.input.bytes;
   return came.options ? read_whole(*came.options) : Sent();
 }
 
-Submissions::Sent Submissions::bring_reference(const Request& request, const UploadFolder& folder,
-                                               JobRecord& job) {
+Submissions::Sent Submissions::bring_reference(const http::Request& request,
+                                               const store::UploadFolder& folder,
+                                               store::JobRecord& job) {
   SpooledText text(folder.path / "reference.sent", folder.room);
   receive_reference_text(*request.body, text);
   Sent sent = read_whole(text);
@@ -126,21 +127,21 @@ Submissions::Sent Submissions::bring_reference(const Request& request, const Upl
   return sent;
 }
 
-void Submissions::receive(const Request& request, JobRecord& job, UploadRoom& room,
+void Submissions::receive(const http::Request& request, store::JobRecord& job, UploadBudget& room,
                           const std::string& upload) {
-  const BodyKind kind = body_kind(request.header("Content-Type"));
+  const http::BodyKind kind = http::body_kind(request.header("Content-Type"));
   api::JobOptions options = api::parse_options(request.query, limits_);  // before the body is read
-  if (kind == BodyKind::asset) room.check_declared();
-  const UploadFolder folder{.path = blobs_.begin_upload(upload), .room = room.counter()};
+  if (kind == http::BodyKind::asset) room.check_declared();
+  const store::UploadFolder folder{.path = blobs_.begin_upload(upload), .room = room.counter()};
   const Sent sent = bring(request, folder, job);
   const api::Json asked = options_of(sent.options, request);
   if (sent.options) options = api::parse_options(asked, limits_);
   job.created_ms = now_ms();
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);
-  job.asked = question_key(asked, job);
-  job.content_key = UNWRAPD_VERSION " " + question_key(job.options, job);
-  shorten_options(job, folder);
+  job.asked = jobs::request_fingerprint(asked, job);
+  job.content_key = UNWRAPD_VERSION " " + jobs::request_fingerprint(job.options, job);
+  store::shorten_options(job, folder);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

@@ -14,15 +14,16 @@
 #include "server/store/blob_store.hpp"
 #include "server/uploads/job_input.hpp"
 #include "server/uploads/meshes.hpp"
-#include "server/uploads/upload_room.hpp"
+#include "server/uploads/upload_budget.hpp"
 #include "server/webhooks/webhook_url.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 
 class Submissions {
  public:
-  Submissions(JobQueue& queue, JobStore& store, BlobStore& blobs, const api::Limits& limits,
-              const WebhookConfig& webhooks, Meshes& meshes, const UploadRooms& rooms)
+  Submissions(jobs::JobQueue& queue, store::JobStore& store, store::BlobStore& blobs,
+              const api::Limits& limits, const webhooks::WebhookConfig& webhooks, Meshes& meshes,
+              const UploadRooms& rooms)
       : queue_(queue),
         store_(store),
         blobs_(blobs),
@@ -36,7 +37,7 @@ class Submissions {
   /// and gets the same job. Throws Error: queue_full, draining, unsupported_media_type,
   /// invalid_option, malformed_request, body_too_large, idempotency_conflict, too_many_jobs,
   /// quota_exceeded, storage_full, storage_failed, webhook_refused, mesh_not_found.
-  std::string accept(const Request& request, bool synchronous);
+  std::string accept(const http::Request& request, bool synchronous);
 
  private:
   /// What a body says beside the mesh, and the turn to do something about it where that is much.
@@ -45,23 +46,25 @@ class Submissions {
     std::optional<std::string> options;  // JSON text
   };
 
-  [[nodiscard]] std::optional<JobRecord> known_job(const Request& request);
-  [[nodiscard]] JobRecord begin_job(const Request& request, const std::string& upload,
-                                    bool synchronous) const;
+  [[nodiscard]] std::optional<store::JobRecord> known_job(const http::Request& request);
+  [[nodiscard]] store::JobRecord begin_job(const http::Request& request, const std::string& upload,
+                                           bool synchronous) const;
   [[nodiscard]] Sent read_whole(SpooledText& text);
-  [[nodiscard]] Sent bring(const Request& request, const UploadFolder& folder, JobRecord& job);
-  [[nodiscard]] Sent bring_reference(const Request& request, const UploadFolder& folder,
-                                     JobRecord& job);
-  void receive(const Request& request, JobRecord& job, UploadRoom& room, const std::string& upload);
+  [[nodiscard]] Sent bring(const http::Request& request, const store::UploadFolder& folder,
+                           store::JobRecord& job);
+  [[nodiscard]] Sent bring_reference(const http::Request& request,
+                                     const store::UploadFolder& folder, store::JobRecord& job);
+  void receive(const http::Request& request, store::JobRecord& job, UploadBudget& room,
+               const std::string& upload);
 
-  JobQueue& queue_;
-  JobStore& store_;
-  BlobStore& blobs_;
+  jobs::JobQueue& queue_;
+  store::JobStore& store_;
+  store::BlobStore& blobs_;
   const UploadRooms& rooms_;
   const api::Limits& limits_;
-  const WebhookConfig& webhooks_;
+  const webhooks::WebhookConfig& webhooks_;
   Meshes& meshes_;
   std::mutex reading_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

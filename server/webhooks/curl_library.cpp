@@ -4,7 +4,7 @@
 
 #include "server/base/inside_error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 namespace {
 
 constexpr const char* kFile = "libcurl.so.4";  // the one that uses OpenSSL
@@ -48,4 +48,4 @@ const CurlLibrary& CurlLibrary::loaded() {
   return library;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

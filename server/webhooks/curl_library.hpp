@@ -4,7 +4,7 @@
 
 #include <curl/curl.h>
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 
 /// The functions of libcurl that are used here, by their names without "curl_".
 class CurlLibrary {
@@ -32,4 +32,4 @@ class CurlLibrary {
   CurlLibrary();
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

@@ -9,7 +9,7 @@
 #include "core/base/error.hpp"
 #include "server/webhooks/curl_library.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 namespace {
 
 constexpr long kConnectSeconds = 5;  // with the handshake of TLS
@@ -194,4 +194,4 @@ WebhookAnswer post_webhook(const WebhookCall& call, const std::stop_token& stop)
   return Transfer(call).run(stop);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

@@ -9,7 +9,7 @@
 
 #include "server/webhooks/webhook_url.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 
 struct WebhookCall {
   WebhookUrl url;
@@ -28,4 +28,4 @@ struct WebhookAnswer {
 /// read the answer's body. Throws Error{internal} when libcurl cannot be used.
 WebhookAnswer post_webhook(const WebhookCall& call, const std::stop_token& stop);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

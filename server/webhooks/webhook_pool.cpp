@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 namespace {
 
 constexpr std::size_t kRemembered = 1024;
@@ -95,4 +95,4 @@ void WebhookPool::end(const WebhookReceiver& receiver, bool answered) {
   if (proven_.size() > kRemembered) proven_.pop_back();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

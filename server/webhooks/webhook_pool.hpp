@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 
 /// Ordered, for maps.
 struct WebhookReceiver {
@@ -72,4 +72,4 @@ class WebhookPool {
   std::vector<std::jthread> threads_;     // last: they use the others
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

@@ -13,7 +13,7 @@
 #include "core/base/error.hpp"
 #include "server/http/sites.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 namespace {
 
 constexpr std::size_t kLongestUrl = 2000;
@@ -141,7 +141,7 @@ struct FreeAddresses {
 
 WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config) {
   WebhookUrl url = read_webhook(text);
-  if (!is_named(url.host, config.allowed_hosts)) {
+  if (!http::is_named(url.host, config.allowed_hosts)) {
     refuse("This server calls no webhooks at " + url.host +
            "; its operator can allow the host by --webhook-hosts.");
   }
@@ -184,4 +184,4 @@ std::vector<std::string> resolve_webhook(const WebhookUrl& url, const WebhookCon
   return addresses;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 
 struct WebhookConfig {
   std::vector<std::string>
@@ -41,4 +41,4 @@ bool is_public_address(const std::string& address);
 /// that may not be called.
 std::vector<std::string> resolve_webhook(const WebhookUrl& url, const WebhookConfig& config);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

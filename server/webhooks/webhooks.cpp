@@ -12,7 +12,7 @@
 #include "server/base/trace.hpp"
 #include "server/webhooks/curl_library.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 namespace {
 
 constexpr std::string_view kSecretPrefix = "whsec_";
@@ -80,15 +80,16 @@ Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret
 /// Whoever set the clock back while no server ran did not mean to put calls off.
 void Webhooks::put_forward() {
   const std::string latest = "?1 + MIN(?2 << MAX(tries - 1, 0), ?3)";
-  Statement(database_, "UPDATE deliveries SET due_ms = " + latest + " WHERE due_ms > " + latest)
+  store::Statement(database_,
+                   "UPDATE deliveries SET due_ms = " + latest + " WHERE due_ms > " + latest)
       .with(now_().kept_ms(), config_.retry_seconds * kMsPerSecond, kLongestPauseMs)
       .run();
 }
 
 /// Without those that are being made; in the order of their turns.
 std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
-  Statement statement(database_,
-                      "SELECT seq, owner, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
+  store::Statement statement(
+      database_, "SELECT seq, owner, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
   statement.with(now_ms);
   std::vector<Due> found;
   std::map<std::string, int> turns;
@@ -107,8 +108,8 @@ std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
 }
 
 Delivery Webhooks::load(std::int64_t seq) {
-  Statement statement(database_,
-                      "SELECT job, owner, trace, url, body, tries FROM deliveries WHERE seq = ?");
+  store::Statement statement(
+      database_, "SELECT job, owner, trace, url, body, tries FROM deliveries WHERE seq = ?");
   statement.with(seq).step();
   return {.seq = seq,
           .job = statement.text(0),
@@ -145,9 +146,9 @@ void Webhooks::settle(const Delivery& delivery, const WebhookAnswer& answer, std
   const std::string& failure = answer.failure;
   const bool is_last = tries >= kMaxTries || answer.is_gone;
   if (failure.empty() || is_last) {
-    Statement(database_, "DELETE FROM deliveries WHERE seq = ?").with(delivery.seq).run();
+    store::Statement(database_, "DELETE FROM deliveries WHERE seq = ?").with(delivery.seq).run();
   } else {
-    Statement(database_, "UPDATE deliveries SET tries = ?2, due_ms = ?3 WHERE seq = ?1")
+    store::Statement(database_, "UPDATE deliveries SET tries = ?2, due_ms = ?3 WHERE seq = ?1")
         .with(delivery.seq, std::int64_t{tries},
               now_ms + webhook_pause_ms(config_.retry_seconds, delivery.tries, answer))
         .run();
@@ -203,4 +204,4 @@ void Webhooks::go_on() {
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

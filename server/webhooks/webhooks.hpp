@@ -16,14 +16,14 @@
 #include <string_view>
 #include <vector>
 
-#include "server/base/kept_time.hpp"
 #include "server/base/log.hpp"
+#include "server/base/retention_clock.hpp"
 #include "server/store/database.hpp"
 #include "server/webhooks/webhook_http.hpp"
 #include "server/webhooks/webhook_pool.hpp"
 #include "server/webhooks/webhook_url.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 
 /// A call that is still to be answered.
 struct Delivery {
@@ -82,9 +82,9 @@ class Webhooks {
   const Log& log_;
   const std::function<Moment()> now_;
   std::mutex mutex_;  // of the next two
-  Database database_;
+  store::Database database_;
   std::set<std::int64_t> being_made_;  // seq
   WebhookPool pool_;                   // last: its threads use the others
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

@@ -5,7 +5,7 @@
 
 #include "server/base/byte_pack.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 struct FrameHead {
@@ -126,4 +126,4 @@ void unpack_iteration(std::string_view bytes, JobOutput& output) {
   output.iteration(event, from.next<double>());
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -11,7 +11,7 @@
 #include "server/store/job_record.hpp"
 #include "server/work/job_output.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 enum class FrameKind : std::uint8_t {
   task,       ///< to the worker: what to do; bytes of pack_task()
@@ -56,4 +56,4 @@ std::string pack(const IterationEvent& event, double elapsed_ms);
 void unpack_stage(std::string_view bytes, JobOutput& output);
 void unpack_iteration(std::string_view bytes, JobOutput& output);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

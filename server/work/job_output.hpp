@@ -6,7 +6,7 @@
 
 #include "core/types/progress.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 class JobOutput {
  public:
@@ -24,4 +24,4 @@ class JobOutput {
   virtual void file(std::string_view name, std::string_view bytes) = 0;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

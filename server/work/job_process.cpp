@@ -11,13 +11,13 @@
 #include "server/store/blob_store.hpp"
 #include "server/work/job_frames.hpp"
 #include "server/work/job_worker.hpp"
-#include "server/work/map_choice.hpp"
+#include "server/work/lambda_selection.hpp"
 #include "server/work/sandbox.hpp"
 #include "server/work/warm_heap.hpp"
 #include "server/work/worker_answer.hpp"
 #include "server/work/worker_process.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 constexpr std::int64_t kProgramReserve = std::int64_t{256} << 20;
@@ -146,7 +146,7 @@ class Conversation {
     if (frame.kind == FrameKind::result && files_.take_result(frame.name))
       return output_.result(frame.name, frame.bytes);
     const bool is_file = frame.kind == FrameKind::file && files_.take(frame.name);
-    if (!is_file || (frame.name == kTotalsFile && !is_totals(frame.bytes))) misbehaved();
+    if (!is_file || (frame.name == store::kTotalsFile && !is_totals(frame.bytes))) misbehaved();
     output_.file(frame.name, frame.bytes);
   }
 
@@ -239,7 +239,7 @@ std::string why_not(const Isolation& isolation) {
   return "A sanitizer needs more memory and files than a worker process may have.";
 #else
   const asset::Input triangle{.document = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", .buffers = {}};
-  JobRecord record;
+  store::JobRecord record;
   record.options = api::Json::object();
   NoOutput none;
   try {
@@ -297,4 +297,4 @@ std::string render_isolated(const Rendering& rendering, const RenderingInput& in
   return Conversation(*worker, none, isolation.memory_bytes).listen_for_file();
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -20,7 +20,7 @@
 #include "server/work/run_job.hpp"
 #include "server/work/spare_workers.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 /// The worker process ended without an answer.
 class WorkerCrashed : public std::runtime_error {
@@ -60,4 +60,4 @@ std::string render_isolated(const Rendering& rendering, const RenderingInput& in
                             const std::stop_token& stop, const api::Limits& limits,
                             const Isolation& isolation);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -19,7 +19,7 @@
 #include "server/work/thread_executor.hpp"
 #include "server/work/warm_heap.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 constexpr int kSocket = STDIN_FILENO;
@@ -70,7 +70,7 @@ class SocketOutput final : public JobOutput {
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct ReceivedJob {
   WorkerTask task;
-  JobRecord record;
+  store::JobRecord record;
   std::string document;
   std::vector<std::pair<std::string, std::string>> buffers;
   std::string uvs;
@@ -157,28 +157,28 @@ struct Crew {
 /// The threads of a crew, with what the charts of one job share.
 class SharingExecutor final : public Executor {
  public:
-  SharingExecutor(ThreadExecutor& threads, SolverCore& core) : threads_(threads), core_(core) {}
+  SharingExecutor(ThreadExecutor& threads, SharedCache& core) : threads_(threads), core_(core) {}
 
   void for_each_block(int block_count, const std::function<void(int)>& body) override {
     threads_.for_each_block(block_count, body);
   }
-  [[nodiscard]] SolverCore* shared_core() const override { return &core_; }
+  [[nodiscard]] SharedCache* shared_cache() const override { return &core_; }
 
  private:
   ThreadExecutor& threads_;
-  SolverCore& core_;
+  SharedCache& core_;
 };
 
-void draw(const ReceivedJob& job, const Crew& crew, const Duties& duties) {
+void draw(const ReceivedJob& job, const Crew& crew, const WorkerFunctions& functions) {
   const std::stop_callback end_at_stop(  // a file half made is of no use to anybody
       crew.stop.get_token(), [] { std::_Exit(EXIT_FAILURE); });
   const RenderingInput input{
       .record = job.record, .asset = job.input(), .uvs = job.uvs, .report = job.report};
-  const std::string bytes = duties.draw(*job.task.rendering, input, job.task.limits);
+  const std::string bytes = functions.draw(*job.task.rendering, input, job.task.limits);
   send_frame(send_all, FrameKind::rendered, {}, bytes);
 }
 
-void run(const ReceivedJob& job, Crew& crew, const Duties& duties) {
+void run(const ReceivedJob& job, Crew& crew, const WorkerFunctions& functions) {
   const std::int64_t memory = job.task.memory_bytes;
   SolverCache core({.cache_bytes = memory / kCacheShare, .job_bytes = memory}, 1);
   SharingExecutor executor(crew.threads, core);
@@ -190,14 +190,14 @@ void run(const ReceivedJob& job, Crew& crew, const Duties& duties) {
       .began = std::chrono::steady_clock::now() -
                std::chrono::duration_cast<std::chrono::steady_clock::duration>(elapsed),
       .stop = crew.stop.get_token()};
-  const std::string format = duties.run(task, job.input(), output, job.task.limits, executor);
+  const std::string format = functions.run(task, job.input(), output, job.task.limits, executor);
   send_frame(send_all, FrameKind::done, format, {});
 }
 
-void work(Crew& crew, const Duties& duties) {
+void work(Crew& crew, const WorkerFunctions& functions) {
   const ReceivedJob job = receive_job(crew.stop.get_token());
-  if (job.task.rendering) return draw(job, crew, duties);
-  run(job, crew, duties);
+  if (job.task.rendering) return draw(job, crew, functions);
+  run(job, crew, functions);
 }
 
 /// They come before anything else: nothing may be read without them.
@@ -213,7 +213,7 @@ bool is_job_worker(int argc, const char* const* argv) {
   return argc == 2 && std::string_view(argv[1]) == kWorkerFlag;
 }
 
-std::string pack_task(const WorkerTask& task, const JobRecord& job) {
+std::string pack_task(const WorkerTask& task, const store::JobRecord& job) {
   BytePacker pack;
   pack.add(task).add(std::uint8_t{job.synchronous}).add(job.input.bytes);
   pack.add_text(job.input.sha256).add_text(job.options.dump());
@@ -221,7 +221,7 @@ std::string pack_task(const WorkerTask& task, const JobRecord& job) {
   return pack.take();
 }
 
-int run_job_worker(const Duties& duties) {
+int run_job_worker(const WorkerFunctions& functions) {
   try {
     be_first_to_go();
     const SandboxLimits limits = sandbox_limits();
@@ -229,7 +229,7 @@ int run_job_worker(const Duties& duties) {
     enter_sandbox(limits);
     send_frame(send_all, FrameKind::ready, {}, {});
     warm_heap(limits.warm_bytes, kSocket);
-    work(*crew, duties);
+    work(*crew, functions);
   } catch (const Error& error) {
     fail_with(error.code(), error.what(), error.where());
   } catch (const std::bad_alloc&) {
@@ -242,4 +242,4 @@ int run_job_worker(const Duties& duties) {
   std::_Exit(EXIT_SUCCESS);  // nothing is left to be done, and a thread still waits for a signal
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

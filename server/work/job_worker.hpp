@@ -5,16 +5,16 @@
 #include <optional>
 #include <string>
 
-#include "server/work/duties.hpp"
+#include "server/work/worker_functions.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 inline constexpr const char* kWorkerFlag = "--job-worker";
 
 [[nodiscard]] bool is_job_worker(int argc, const char* const* argv);
 
 /// Locks the process in, takes the job, does it. Returns the exit code.
-int run_job_worker(const Duties& duties);
+int run_job_worker(const WorkerFunctions& functions);
 
 /// What the server tells its worker of a job.
 struct WorkerTask {
@@ -25,6 +25,6 @@ struct WorkerTask {
   std::optional<Rendering> rendering = {};  ///< what to make of it; none: to run it
 };
 
-std::string pack_task(const WorkerTask& task, const JobRecord& job);
+std::string pack_task(const WorkerTask& task, const store::JobRecord& job);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

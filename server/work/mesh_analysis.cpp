@@ -2,19 +2,19 @@
 
 #include "api/error_table.hpp"
 #include "api/report.hpp"
-#include "core/base/solver_core.hpp"
+#include "core/base/shared_cache.hpp"
 #include "core/pipeline/analyse.hpp"
 #include "server/work/run_job.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 api::Json analysis_json(const RenderingInput& mesh, std::size_t memory_bytes,
                         const api::Limits& limits) {
   const asset::Asset asset =
       asset::read(mesh.asset, read_limits(mesh.record, limits, memory_bytes));
-  check_memory(job_bytes(asset.surfaces()), memory_bytes);
-  const InputAnalysis analysis = analyse(asset.surfaces(), mesh.asset.stop);
+  check_memory(pipeline::job_bytes(asset.surfaces()), memory_bytes);
+  const pipeline::InputAnalysis analysis = pipeline::analyse(asset.surfaces(), mesh.asset.stop);
   api::Json json = {{"format", asset::format_name(asset.format())}};
   json.update(api::to_json(analysis.input, analysis.repairs, asset.repairs()));
   return json;
@@ -34,4 +34,4 @@ std::string mesh_analysis(const RenderingInput& mesh, std::size_t memory_bytes,
   return json.dump(-1, ' ', false, api::Json::error_handler_t::replace);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

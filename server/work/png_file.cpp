@@ -4,9 +4,9 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
-std::string encode_png(const Image& image) {
+std::string encode_png(const figure::Image& image) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   header.width = static_cast<png_uint_32>(image.width);
@@ -21,4 +21,4 @@ std::string encode_png(const Image& image) {
   return bytes;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -12,7 +12,7 @@
 #include "server/work/run_job.hpp"
 #include "server/work/uv_file.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 using Surfaces = std::vector<UnwrappedSurface>;
@@ -21,12 +21,12 @@ std::string draw(const Picture& picture, const asset::Asset& asset, const Surfac
                  const std::stop_token& stop) {
   switch (picture.kind) {
     case PictureKind::layout_svg:
-      return layout_svg(asset.surfaces(), unwrapped, picture.colouring, stop);
+      return figure::layout_svg(asset.surfaces(), unwrapped, picture.colouring, stop);
     case PictureKind::layout_png:
       return encode_png(
-          layout_image(asset.surfaces(), unwrapped, picture.colouring, picture.size, stop));
+          figure::layout_image(asset.surfaces(), unwrapped, picture.colouring, picture.size, stop));
     case PictureKind::preview_png:
-      return encode_png(preview(asset.surfaces(), unwrapped, picture.size, stop));
+      return encode_png(figure::preview(asset.surfaces(), unwrapped, picture.size, stop));
   }
   return {};
 }
@@ -44,4 +44,4 @@ std::string render(const Rendering& rendering, const RenderingInput& input,
   return api::result_json(api::Json::parse(input.report), asset.surfaces(), unwrapped);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

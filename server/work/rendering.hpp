@@ -13,14 +13,14 @@
 #include "core/figure/colour_scale.hpp"
 #include "server/store/job_record.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 enum class PictureKind { layout_svg, layout_png, preview_png };
 
 struct Picture {
   PictureKind kind = PictureKind::layout_svg;
-  Colouring colouring = Colouring::stretch;  ///< of layouts
-  int size = kDefaultImageSize;              ///< of PNGs, pixels
+  figure::Colouring colouring = figure::Colouring::stretch;  ///< of layouts
+  int size = figure::kDefaultImageSize;                      ///< of PNGs, pixels
 };
 
 struct Rendering {
@@ -33,7 +33,7 @@ struct Rendering {
 
 /// What a job keeps. Of its record only the options and whether somebody waited for it count.
 struct RenderingInput {
-  const JobRecord& record;
+  const store::JobRecord& record;
   asset::Input asset;
   std::string_view uvs;     ///< of the map: what encode_uvs() wrote
   std::string_view report;  ///< of the map, JSON
@@ -44,4 +44,4 @@ struct RenderingInput {
 std::string render(const Rendering& rendering, const RenderingInput& input,
                    const api::Limits& limits);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

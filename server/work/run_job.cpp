@@ -6,14 +6,14 @@
 #include "api/options.hpp"
 #include "api/report.hpp"
 #include "core/base/error.hpp"
-#include "core/base/solver_core.hpp"
+#include "core/base/shared_cache.hpp"
 #include "core/unwrap.hpp"
 #include "server/store/blob_store.hpp"
-#include "server/work/map_choice.hpp"
-#include "server/work/stage_clock.hpp"
+#include "server/work/lambda_selection.hpp"
+#include "server/work/stage_timer.hpp"
 #include "server/work/uv_file.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 constexpr double kWriteFraction = 0.95;  // of the job is done when writing begins
@@ -23,7 +23,7 @@ void check_stop(const JobTask& task) {
     throw Error(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
 }
 
-Progress progress_of(const JobTask& task, JobOutput& output, StageClock& clock) {
+Progress progress_of(const JobTask& task, JobOutput& output, StageTimer& clock) {
   return {.on_stage =
               [&](const StageEvent& event) {
                 clock.enter(event.stage);
@@ -48,7 +48,7 @@ asset::Format output_format(api::OutputFormat wanted, asset::Format came_as) {
   return came_as;
 }
 
-api::ReportContext context_of(const JobTask& task, StageClock& clock) {
+api::ReportContext context_of(const JobTask& task, StageTimer& clock) {
   return {.sha256 = task.record.input.sha256,
           .bytes = task.record.input.bytes,
           .version = UNWRAPD_VERSION,
@@ -75,22 +75,22 @@ api::Json report_json(const Made& made, const Unwrapped& map, api::ReportContext
 }
 
 /// What every map of a job needs to be answered with: the rest is made when somebody asks.
-void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageClock& clock,
+void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageTimer& clock,
                 bool with_vertex_maps) {
   const std::vector<Unwrapped>& maps = made.maps;
   for (std::size_t map = 0; map < maps.size(); ++map)
-    output.file(map_file(kUvFile, map), encode_uvs(maps[map].surfaces));
+    output.file(map_file(store::kUvFile, map), encode_uvs(maps[map].surfaces));
   check_stop(task);
-  output.file(kTotalsFile, api::totals_json(maps.front().report).dump());
+  output.file(store::kTotalsFile, api::totals_json(maps.front().report).dump());
   const api::ReportContext context = context_of(task, clock);
   for (std::size_t map = 0; map < maps.size(); ++map)
-    output.file(map_file(kReportFile, map),
+    output.file(map_file(store::kReportFile, map),
                 report_json(made, maps[map], context, with_vertex_maps).dump());
 }
 
 }  // namespace
 
-asset::ReadLimits read_limits(const JobRecord& job, const api::Limits& limits,
+asset::ReadLimits read_limits(const store::JobRecord& job, const api::Limits& limits,
                               std::size_t memory_bytes) {
   const std::int64_t faces = job.synchronous ? limits.max_sync_faces : limits.max_faces;
   return {.max_vertices = limits.max_vertices,
@@ -100,14 +100,14 @@ asset::ReadLimits read_limits(const JobRecord& job, const api::Limits& limits,
 
 std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& output,
                     const api::Limits& limits, Executor& executor) {
-  const JobRecord& record = task.record;
-  StageClock clock(task.began);
+  const store::JobRecord& record = task.record;
+  StageTimer clock(task.began);
   const Progress progress = progress_of(task, output, clock);
   progress.on_stage({.stage = Stage::read, .chart = 0, .chart_count = 0, .fraction = 0});
   const api::JobOptions options = api::parse_stored_options(record.options);
   asset::Input watched = input;
   watched.stop = task.stop;
-  const SolverCore* core = executor.shared_core();
+  const SharedCache* core = executor.shared_cache();
   const std::size_t memory = core != nullptr ? core->memory_limit() : asset::kNoByteLimit;
   asset::Asset asset = asset::read(watched, read_limits(record, limits, memory), options.asset);
   if (options.unwrap.repack_only || options.unwrap.seams == SeamMode::uv0) asset::read_uvs(asset);
@@ -126,4 +126,4 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   return name;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -9,16 +9,16 @@
 #include "core/base/executor.hpp"
 #include "server/store/job_record.hpp"
 #include "server/work/job_output.hpp"
-#include "server/work/stage_clock.hpp"
+#include "server/work/stage_timer.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 /// A job at work. Of its record only the options, the notes, the input's digest and size, and
 /// whether somebody waits for it count.
 struct JobTask {
-  const JobRecord& record;
+  const store::JobRecord& record;
   double queue_ms = 0;  ///< for which it has waited
-  StageClock::TimePoint began;
+  StageTimer::TimePoint began;
   std::stop_token stop;
 };
 
@@ -28,7 +28,7 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
                     const api::Limits& limits, Executor& executor);
 
 /// The most that may be read for a job: less for one that somebody waits for.
-asset::ReadLimits read_limits(const JobRecord& job, const api::Limits& limits,
+asset::ReadLimits read_limits(const store::JobRecord& job, const api::Limits& limits,
                               std::size_t memory_bytes = asset::kNoByteLimit);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

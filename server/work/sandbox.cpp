@@ -16,7 +16,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 constexpr int kKeptDescriptors = 3;
@@ -139,4 +139,4 @@ void be_first_to_go() {
   ::close(file);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

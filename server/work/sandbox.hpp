@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 struct SandboxLimits {
   std::int64_t memory_bytes = 0;  ///< of address space
@@ -24,4 +24,4 @@ void enter_sandbox(const SandboxLimits& limits);
 /// before enter_sandbox(). Without effect where /proc is missing.
 void be_first_to_go();
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -8,9 +8,9 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
-#include "server/work/memory_room.hpp"
+#include "server/work/available_memory.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 namespace {
 
@@ -104,4 +104,4 @@ CacheCounters SolverCache::counters() const {
   return now;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -8,9 +8,9 @@
 #include <map>
 #include <mutex>
 
-#include "core/base/solver_core.hpp"
+#include "core/base/shared_cache.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 /// bytes: of what is kept now; the others count since the start.
 struct CacheCounters {
@@ -26,7 +26,7 @@ struct MemoryLimits {
   std::int64_t job_bytes = 0;  ///< that one job may take; 0: its share of the machine
 };
 
-class SolverCache final : public SolverCore {
+class SolverCache final : public SharedCache {
  public:
   /// What is larger alone than all that may be kept is handed out, not kept. workers: jobs that
   /// share the machine's memory.
@@ -60,4 +60,4 @@ class SolverCache final : public SolverCore {
   CacheCounters counters_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

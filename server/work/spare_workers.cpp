@@ -5,7 +5,7 @@
 
 #include "server/base/priority.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 SpareWorkers::SpareWorkers(int count, std::function<StartedWorker()> start)
     : count_(static_cast<std::size_t>(count)),
@@ -44,4 +44,4 @@ std::optional<StartedWorker> SpareWorkers::started() const {
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

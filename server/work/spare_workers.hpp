@@ -12,7 +12,7 @@
 
 #include "server/work/started_worker.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 /// Thread-safe. All processes are started by one thread of its own: they die with that thread, and
 /// those that ask for them come and go.
@@ -41,4 +41,4 @@ class SpareWorkers {
   std::jthread keeping_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -13,7 +13,7 @@
 #include "core/base/error.hpp"
 #include "server/work/job_worker.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 /// A server's heap has its pages, those of a new process come one fault after another: they were
@@ -102,4 +102,4 @@ int StartedWorker::end() {
   return status;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -7,7 +7,7 @@
 
 #include "server/work/sandbox.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 /// A worker process (job_worker.hpp) and our end of the socket to it. It never outlives this
 /// object, nor the thread that has started it (sandbox.hpp).
@@ -31,4 +31,4 @@ class StartedWorker {
   pid_t process_ = -1;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -1,8 +1,8 @@
 #include "server/work/thread_executor.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
-ThreadExecutor::ThreadExecutor(int threads, SolverCore* core) : core_(core) {
+ThreadExecutor::ThreadExecutor(int threads, SharedCache* core) : core_(core) {
   helpers_.reserve(static_cast<std::size_t>(threads));
   for (int helper = 1; helper < threads; ++helper)
     helpers_.emplace_back([this](const std::stop_token& stop) { serve(stop); });
@@ -56,4 +56,4 @@ void ThreadExecutor::take_blocks(const std::function<void(int)>& body, int block
   }
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -11,25 +11,25 @@
 
 #include "core/base/executor.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 /// Runs blocks on `threads` threads, the caller's included. For one caller at a time.
 class ThreadExecutor final : public Executor {
  public:
   /// core: what the jobs run here share with others; null: nothing.
-  explicit ThreadExecutor(int threads, SolverCore* core = nullptr);
+  explicit ThreadExecutor(int threads, SharedCache* core = nullptr);
   ThreadExecutor(const ThreadExecutor&) = delete;
   ThreadExecutor& operator=(const ThreadExecutor&) = delete;
   ~ThreadExecutor() override;
 
   void for_each_block(int block_count, const std::function<void(int)>& body) override;
-  [[nodiscard]] SolverCore* shared_core() const override { return core_; }
+  [[nodiscard]] SharedCache* shared_cache() const override { return core_; }
 
  private:
   void serve(const std::stop_token& stop);
   void take_blocks(const std::function<void(int)>& body, int block_count);
 
-  SolverCore* const core_;
+  SharedCache* const core_;
   std::mutex mutex_;
   std::condition_variable_any work_;                // a new round, or the end
   std::condition_variable done_;                    // no helper is in the round any more
@@ -41,4 +41,4 @@ class ThreadExecutor final : public Executor {
   std::vector<std::jthread> helpers_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -6,7 +6,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 constexpr std::size_t kSurfaceBytes = 3 * sizeof(std::uint64_t);  // of an empty one: its counts
@@ -72,4 +72,4 @@ std::vector<UnwrappedSurface> decode_uvs(std::string_view bytes) {
   return surfaces;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

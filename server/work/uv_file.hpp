@@ -8,11 +8,11 @@
 
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 std::string encode_uvs(const std::vector<UnwrappedSurface>& surfaces);
 
 /// What encode_uvs() was given. Throws Error{storage_failed} for bytes that it did not write.
 std::vector<UnwrappedSurface> decode_uvs(std::string_view bytes);
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -9,7 +9,7 @@
 #include <new>
 #include <vector>
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 constexpr std::size_t kPiece = std::size_t{2} << 20;  // a huge page
@@ -41,4 +41,4 @@ std::int64_t heap_of_largest_child() {
   return std::clamp<std::int64_t>(used.ru_maxrss * 1024 - kProgram, 0, kMostWarm);
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 /// Has the heap of the calling process grow by so many bytes, for allocations to come; gives up
 /// early when something can be read from the descriptor, or when there is no memory.
@@ -14,4 +14,4 @@ void warm_heap(std::int64_t bytes, int until_readable);
 /// started and waited for took, no more than one of 20,000 faces does.
 [[nodiscard]] std::int64_t heap_of_largest_child();
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

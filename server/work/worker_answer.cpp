@@ -1,9 +1,9 @@
 #include "server/work/worker_answer.hpp"
 
 #include "server/store/blob_store.hpp"
-#include "server/work/map_choice.hpp"
+#include "server/work/lambda_selection.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 bool is_of_work(ErrorCode code) {
   using enum ErrorCode;
@@ -73,10 +73,10 @@ bool is_result_format(std::string_view name) {
   return name == "glb" || name == "gltf" || name == "obj";
 }
 
-AnswerFiles::AnswerFiles(std::size_t maps) : left_{std::string(kTotalsFile)} {
+AnswerFiles::AnswerFiles(std::size_t maps) : left_{std::string(store::kTotalsFile)} {
   for (std::size_t map = 0; map < maps; ++map) {
-    left_.insert(map_file(kUvFile, map));
-    left_.insert(map_file(kReportFile, map));
+    left_.insert(map_file(store::kUvFile, map));
+    left_.insert(map_file(store::kReportFile, map));
   }
 }
 
@@ -92,4 +92,4 @@ bool AnswerFiles::take_result(std::string_view format) {
   return has_result_ = true;
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

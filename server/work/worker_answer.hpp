@@ -9,7 +9,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 /// Whether work on a mesh can end with this error. Others are the server's own to tell: of its
 /// store, its queue, its keys.
@@ -35,4 +35,4 @@ class AnswerFiles {
   bool has_result_ = false;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -15,7 +15,7 @@
 #include "core/base/error.hpp"
 #include "server/work/job_process.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -107,4 +107,4 @@ void WorkerProcess::reap() {
   throw WorkerCrashed(end_of(status));
 }
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -10,7 +10,7 @@
 
 #include "server/work/started_worker.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 
 /// How a worker process is stopped.
 struct Stopping {
@@ -50,4 +50,4 @@ class WorkerProcess {
   std::optional<std::stop_callback<std::function<void()>>> on_stop_;
 };
 
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

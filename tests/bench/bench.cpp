@@ -84,11 +84,11 @@ void compare_with_cgal(Goals& goals, const std::string& name, const char* file) 
 }
 
 void compare_engines(Goals& goals, double faces, const std::string& title) {
-  const shapes::OwnedDisk owned = shapes::disk_of(sheet(faces));
-  const SparseMatrix matrix = arap_matrix(owned.disk);
+  const shapes::OwnedDisk owned = shapes::disk_of(surface(faces));
+  const linear::SparseMatrix matrix = linear::arap_matrix(owned.disk);
   std::vector<Vec2> b(owned.disk.positions.size(), Vec2(1, -1));
   const double ours = seconds_of_two([&](Executor& two) {
-    const auto factor = try_factor(analyse(matrix), matrix, two);
+    const auto factor = linear::try_factor(linear::analyse(matrix), matrix, two);
     for (int k = 0; k < 10; ++k) factor->solve(b, two);
   });
   goals.at_least(title + ", engine, 2 threads, times as fast as Eigen's", 6,
@@ -100,7 +100,8 @@ void compare_engines(Goals& goals, double faces, const std::string& title) {
 
 /// Seconds of jobs on one mesh that share a cache, one after the other.
 struct SecondJobs {
-  double first = 1e300, again = 1e300, anew = 1e300, other = 1e300, direct = 1e300, moved = 1e300;
+  double first = 1e300, again = 1e300, bypass_cache = 1e300, other = 1e300, direct = 1e300,
+         moved = 1e300;
 
   void run(const TriMesh& mesh) {
     UnwrapOptions nine = kTenIterations, hybrid = kTenIterations, asap = kTenIterations;
@@ -108,15 +109,15 @@ struct SecondJobs {
     hybrid.method = Method::hybrid, hybrid.lambda = 1, asap.method = Method::asap;
     TriMesh changed = mesh;
     for (Vec3& p : changed.positions) p.z() *= 1.1;
-    server::SolverCache cache({std::int64_t{1} << 30, std::int64_t{1} << 34}, 1);
-    server::ThreadExecutor one(1, &cache);
+    server::work::SolverCache cache({std::int64_t{1} << 30, std::int64_t{1} << 34}, 1);
+    server::work::ThreadExecutor one(1, &cache);
     const auto least = [&](double& seconds, const TriMesh& given, const UnwrapOptions& options) {
       const auto job = [&] { unwrap_once(given, options, one); };
       seconds = std::min(seconds, seconds_of(processor_seconds, job, 1));
     };
     least(first, mesh, kTenIterations);
     least(again, mesh, kTenIterations);
-    least(anew, mesh, nine);
+    least(bypass_cache, mesh, nine);
     least(other, mesh, hybrid);
     unwrap_once(mesh, asap, one);
     least(direct, mesh, asap);
@@ -129,7 +130,8 @@ void show_second_jobs(Goals& goals, const TriMesh& mesh) {
   for (int k = 0; k < kRuns; ++k) took.run(mesh);
   goals.at_most("100k faces: the same job again, share of the first's time", .25,
                 took.again / took.first);
-  goals.at_most("100k faces: again, nine iterations made anew", .25, took.anew / took.first);
+  goals.at_most("100k faces: again, nine iterations made anew", .25,
+                took.bypass_cache / took.first);
   goals.at_most("100k faces: again with another lambda", .25, took.other / took.first);
   goals.at_most("100k faces: ASAP again", .25, took.direct / took.first);
   goals.at_most("100k faces: other positions, known connectivity", .55, took.moved / took.first);
@@ -137,14 +139,15 @@ void show_second_jobs(Goals& goals, const TriMesh& mesh) {
 
 void show_iteration(Goals& goals, const TriMesh& mesh, const std::string& title) {
   const shapes::OwnedDisk owned = shapes::disk_of(mesh);
-  const Holds nothing;
+  const solve::Holds nothing;
   SerialExecutor serial;
-  const GlobalStep global(owned.disk, nothing, &serial);
-  const auto panels = static_cast<double>(analyse(arap_matrix(owned.disk))->panel_bytes());
-  const UvMap start = initial_map(owned.disk, InitialMap::automatic, global);
+  const solve::arap::GlobalStep global(owned.disk, nothing, &serial);
+  const auto panels =
+      static_cast<double>(linear::analyse(linear::arap_matrix(owned.disk))->panel_bytes());
+  const UvMap start = solve::initial_map(owned.disk, InitialMap::automatic, global);
   const auto run = [&](int iterations) {
     return seconds_of(processor_seconds, [&] {
-      local_global({owned.disk, nothing, global}, start, {{}, iterations}, {}, serial);
+      solve::arap::local_global({owned.disk, nothing, global}, start, {{}, iterations}, {}, serial);
     });
   };
   const double iteration = (run(30) - run(10)) / 20;
@@ -165,14 +168,14 @@ struct Descended {
   }
 };
 
-Descended descend(const Disk& disk, const Stop& stop) {
+Descended descend(const solve::Disk& disk, const Stop& stop) {
   SerialExecutor serial;
   const UnwrapOptions options{.stop = stop};
-  Solver solver(disk, options, {}, serial);
+  solve::Solver solver(disk, options, {}, serial);
   Descended descended;
   const double start = processor_seconds();
-  SolveWatch watch;
-  watch.loop.on_iteration = [&](const Solution& s) {
+  solve::SolveWatch watch;
+  watch.loop.on_iteration = [&](const solve::Solution& s) {
     descended.trail.emplace_back(processor_seconds() - start, s.energy.back());
   };
   descended.lowest = solver.run(0, watch).energy.back();
@@ -190,7 +193,7 @@ void show_convergence(Goals& goals, const TriMesh& mesh, const std::string& titl
 }
 
 void show_threads(Goals& goals, const TriMesh& mesh) {
-  server::ThreadExecutor one(1), two(2);
+  server::work::ThreadExecutor one(1), two(2);
   const auto seconds = [&](Executor& executor) {
     return seconds_of(wall_seconds, [&] { unwrap_once(mesh, kTenIterations, executor); });
   };
@@ -206,7 +209,7 @@ void show_threads(Goals& goals, const TriMesh& mesh) {
 void show_growth(Goals& goals) {
   SerialExecutor serial;
   const auto seconds = [&](double faces) {
-    const TriMesh mesh = sheet(faces);
+    const TriMesh mesh = surface(faces);
     return seconds_of(
         processor_seconds, [&] { unwrap_once(mesh, kTenIterations, serial); }, 2);
   };
@@ -215,9 +218,9 @@ void show_growth(Goals& goals) {
 }
 
 int show_memory(double faces) {
-  const TriMesh mesh = sheet(faces);
-  server::SolverCache cache({}, 1);  // what is kept counts
-  server::ThreadExecutor one(1, &cache);
+  const TriMesh mesh = surface(faces);
+  server::work::SolverCache cache({}, 1);  // what is kept counts
+  server::work::ThreadExecutor one(1, &cache);
   const double s = seconds_of(
       processor_seconds, [&] { unwrap_once(mesh, kTenIterations, one); }, 1);
   std::printf("%.0f %.1f\n", peak_megabytes(), s);
@@ -242,12 +245,12 @@ void show_all(Goals& goals, const std::string& self) {
   }
   compare_engines(goals, 1e5, "100k faces");
   compare_engines(goals, 1e6, "1M faces");
-  show_second_jobs(goals, sheet(1e5));
-  show_iteration(goals, sheet(1e5), "100k faces");
-  show_iteration(goals, sheet(3.2e5), "320k faces");
+  show_second_jobs(goals, surface(1e5));
+  show_iteration(goals, surface(1e5), "100k faces");
+  show_iteration(goals, surface(3.2e5), "320k faces");
   if (!test_data().empty())
     show_convergence(goals, read_obj(test_data() / "paper" / "Gargoyle_ABF.obj"), "Gargoyle");
-  show_threads(goals, sheet(3.2e5));
+  show_threads(goals, surface(3.2e5));
   show_growth(goals);
 }
 

@@ -41,8 +41,8 @@ std::vector<Vec2> sum(const std::vector<Vec2>& a, double weight, const std::vect
 }
 
 struct Problem {
-  const Assembly& assembly;
-  Objective& objective;
+  const solve::arap::Assembly& assembly;
+  solve::arap::Objective& objective;
 };
 
 /// Plain iterations from extrapolated points; the extrapolation starts anew when the energy rises
@@ -108,22 +108,22 @@ int first_below(const std::vector<double>& energy, double bound) {
 }
 
 /// Iterations from a mean-value map to 1e-3 and to 1e-5 above the lowest energy; -1: not in 2,000.
-void compare_iterations(const Disk& disk) {
+void compare_iterations(const solve::Disk& disk) {
   SerialExecutor serial;
-  const Holds free;
-  const GlobalStep global(disk, free);
-  const Assembly assembly{disk, free, global};
-  Objective objective(disk, {}, free, global.rank(), serial);
-  const UvMap start = initial_map(disk, InitialMap::mean_value, global);
-  Descent descent(assembly, start, {}, serial);
-  run(descent, {1e-12, kMost}, {});
+  const solve::Holds free;
+  const solve::arap::GlobalStep global(disk, free);
+  const solve::arap::Assembly assembly{disk, free, global};
+  solve::arap::Objective objective(disk, {}, free, global.rank(), serial);
+  const UvMap start = solve::initial_map(disk, InitialMap::mean_value, global);
+  solve::arap::Descent descent(assembly, start, {}, serial);
+  solve::arap::run(descent, {1e-12, kMost}, {});
   const double least = descent.energy();
   const auto row = [&](const char* name, const std::vector<double>& energy) {
     std::printf("    %-9s %5d %5d\n", name, first_below(energy, least * 1.001),
                 first_below(energy, least * 1.00001));
   };
-  row("plain", local_global(assembly, start, {{}, kMost}, {}, serial).energy);
-  const UvMap sorted = by_rank(start, global.rank());
+  row("plain", solve::arap::local_global(assembly, start, {{}, kMost}, {}, serial).energy);
+  const UvMap sorted = solve::arap::by_rank(start, global.rank());
   row("Anderson", anderson({assembly, objective}, sorted));
   row("Nesterov", nesterov({assembly, objective}, sorted));
   row("L-BFGS", descent.solution().energy);
@@ -138,13 +138,13 @@ struct Cost {
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-Cost run_from(const Disk& disk, InitialMap start, Solution& solution) {
+Cost run_from(const solve::Disk& disk, InitialMap start, solve::Solution& solution) {
   const UnwrapOptions options{.initial = start};
   Cost cost;
   for (double spent = 0; spent < 0.5;) {
     CountingExecutor executor;
     const double before = processor_seconds();
-    solution = Solver(disk, options, {}, executor).run(0, {});
+    solution = solve::Solver(disk, options, {}, executor).run(0, {});
     const double took = processor_seconds() - before;
     cost = {std::min(cost.seconds, took), executor.sweeps};
     spent += std::max(took, 0.01);
@@ -174,18 +174,18 @@ struct Tally {
 };
 
 /// Against the mean of the starts that can be named.
-void compare_starts(const Disk& disk, Tally& tally) {
+void compare_starts(const solve::Disk& disk, Tally& tally) {
   double least = 1e300, seconds = 0, sweeps = 0;
   for (const auto& [name, start] : {std::pair{"mean_value", InitialMap::mean_value},
                                     {"tutte", InitialMap::tutte},
                                     {"lscm", InitialMap::lscm}}) {
-    Solution s;
+    solve::Solution s;
     const Cost cost = run_from(disk, start, s);
     seconds += cost.seconds / 3, sweeps += cost.sweeps / 3.0;
     least = std::min(least, s.energy.back());
     std::printf("    %-10s energy %.6g  iterations %4d\n", name, s.energy.back(), s.iterations);
   }
-  Solution s;
+  solve::Solution s;
   const Cost cost = run_from(disk, InitialMap::automatic, s);
   const double energy = s.energy.back();
   std::printf(
@@ -203,9 +203,9 @@ struct Tables {
 };
 
 void compare(const std::string& name, const TriMesh& mesh, Tables& tables) try {
-  const Charts charts = make_charts(shapes::surface_of(mesh), SeamMode::keep);
-  const Chart& chart = charts.charts.front();
-  const Disk disk = make_disk(chart.mesh, chart.loops);
+  const charts::Charts charts = charts::make_charts(shapes::surface_of(mesh), SeamMode::keep);
+  const charts::Chart& chart = charts.charts.front();
+  const solve::Disk disk = solve::make_disk(chart.mesh, chart.loops);
   std::printf("%s: %zu faces, %zu boundaries\n", name.c_str(), disk.faces.size(),
               disk.loops.size());
   if (tables.iterations) compare_iterations(disk);

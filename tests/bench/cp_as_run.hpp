@@ -11,6 +11,6 @@
 namespace unwrapd::bench {
 
 /// In disk units, any scale; flips are left. Throws Error{solver_failed}.
-UvMap cp_as_run(const Disk& disk);
+UvMap cp_as_run(const solve::Disk& disk);
 
 }  // namespace unwrapd::bench

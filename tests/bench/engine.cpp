@@ -68,8 +68,8 @@ class Table {
   bool is_first_ = true;
 };
 
-ComplexMatrix lscm_matrix(const Disk& disk) {
-  ComplexMatrix lower = conformal_matrix(disk);
+linear::ComplexMatrix lscm_matrix(const solve::Disk& disk) {
+  linear::ComplexMatrix lower = solve::maps::conformal_matrix(disk);
   for (Index v = 0; v < disk.vertex_count(); ++v) lower.coeffRef(v, v) += kShift;
   lower.makeCompressed();
   return lower;
@@ -78,12 +78,12 @@ ComplexMatrix lscm_matrix(const Disk& disk) {
 void compare(const std::string& name, const TriMesh& mesh, Table& table) {
   const shapes::OwnedDisk owned = shapes::disk_of(mesh);
   const std::size_t faces = mesh.faces.size();
-  const SparseMatrix arap = arap_matrix(owned.disk);
+  const linear::SparseMatrix arap = linear::arap_matrix(owned.disk);
   table.start(name + ", ARAP", faces, time_ours(arap, Unknowns::single));
   table.add("Eigen", time_eigen(arap, Unknowns::single));
   if (const auto times = time_cholmod(arap, Unknowns::single)) table.add("CHOLMOD", *times);
-  const ComplexMatrix lscm = lscm_matrix(owned.disk);
-  const SparseMatrix pairs = as_pairs(lscm);
+  const linear::ComplexMatrix lscm = lscm_matrix(owned.disk);
+  const linear::SparseMatrix pairs = linear::as_pairs(lscm);
   table.start(name + ", pairs", faces, time_ours(pairs, Unknowns::pairs));
   table.add("Eigen", time_eigen(pairs, Unknowns::pairs));
   table.add("Eigen C", time_eigen(lscm));
@@ -92,7 +92,7 @@ void compare(const std::string& name, const TriMesh& mesh, Table& table) {
 
 void compare_all(double most_faces, Table& table) {
   for (double faces : {20e3, 100e3, 320e3, 1e6})
-    if (faces <= most_faces) compare("sheet", sheet(faces), table);
+    if (faces <= most_faces) compare("sheet", surface(faces), table);
   if (test_data().empty()) return;
   TriMesh mesh = read_obj(test_data() / "paper" / "Gargoyle_ABF.obj");
   for (; static_cast<double>(mesh.faces.size()) <= std::min(most_faces, 400e3);

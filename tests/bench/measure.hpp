@@ -16,7 +16,7 @@
 namespace unwrapd::bench {
 
 /// A bumpy open surface of about `faces` triangles.
-inline TriMesh sheet(double faces) {
+inline TriMesh surface(double faces) {
   const auto side = static_cast<Index>(std::lround(std::sqrt(faces / 2)));
   return shapes::mapped_grid(side, side, shapes::Wrap::none, [](double u, double v) {
     return Vec3(u, v,
@@ -53,7 +53,7 @@ inline double thread_seconds() {
 /// and sharing the memory cost is left out.
 class DealtToTwo final : public Executor {
  public:
-  explicit DealtToTwo(SolverCore* core = nullptr) : core_(core) {}
+  explicit DealtToTwo(SharedCache* core = nullptr) : core_(core) {}
 
   void for_each_block(int block_count, const std::function<void(int)>& body) override {
     double busy[2] = {0, 0}, last = thread_seconds();
@@ -64,13 +64,13 @@ class DealtToTwo final : public Executor {
     }
     saved_ += std::min(busy[0], busy[1]);
   }
-  [[nodiscard]] SolverCore* shared_core() const override { return core_; }
+  [[nodiscard]] SharedCache* shared_cache() const override { return core_; }
 
   /// Seconds that the second thread would have saved so far.
   [[nodiscard]] double saved() const { return saved_; }
 
  private:
-  SolverCore* core_;
+  SharedCache* core_;
   double saved_ = 0;
 };
 

@@ -22,9 +22,9 @@
 namespace unwrapd::bench {
 namespace {
 
-Solution solved(const Disk& disk, const UnwrapOptions& options) {
+solve::Solution solved(const solve::Disk& disk, const UnwrapOptions& options) {
   SerialExecutor serial;
-  return Solver(disk, options, {}, serial).run(options.lambda, {});
+  return solve::Solver(disk, options, {}, serial).run(options.lambda, {});
 }
 
 // --- Table 1 ------------------------------------------------------------------------------------
@@ -51,13 +51,14 @@ void print_pair(const std::optional<double>& paper, const std::optional<double>&
   std::printf("%10s %9s", figure(paper, 2).c_str(), figure(ours, 3).c_str());
 }
 
-void print_row(const Disk& disk, const Model& model, const Column& column, const Printed& paper) {
+void print_row(const solve::Disk& disk, const Model& model, const Column& column,
+               const Printed& paper) {
   std::printf("  %-5s", column.name);
   const Stopwatch watch;
   try {
     const UvMap uv = map_of(disk, model, column);
     const double seconds = watch.seconds();
-    const Distortion d = distortion(distortion_sums(disk.rest, disk.faces, uv));
+    const Distortion d = measure::distortion(measure::distortion_sums(disk.rest, disk.faces, uv));
     print_pair(paper.angle, d.angle), print_pair(paper.area, d.area);
     const bool is_as_printed = !is_off(paper.angle, d.angle) && !is_off(paper.area, d.area);
     std::printf(" %7d %9.3f  %s\n", d.flipped, seconds, is_as_printed ? "" : column.why);
@@ -74,10 +75,10 @@ int show_table1() {
   }
   std::puts(kTableHead);
   for (std::size_t m = 0; m < kModels.size(); ++m) {
-    const Charts charts = make_charts(
+    const charts::Charts charts = charts::make_charts(
         shapes::surface_of(read_obj(test_data() / "paper" / kModels[m].file)), SeamMode::automatic);
-    const Chart& chart = charts.charts.at(0);
-    const Disk disk = make_disk(chart.mesh, chart.loops);
+    const charts::Chart& chart = charts.charts.at(0);
+    const solve::Disk disk = solve::make_disk(chart.mesh, chart.loops);
     std::printf("\n%s: %zu faces, boundaries: %zu\n", kModels[m].name, disk.faces.size(),
                 disk.loops.size());
     std::puts(
@@ -114,13 +115,13 @@ int run_one(const char* name, double faces) {
   alarm(kPatienceSeconds + 5);
   for (const Named& named : kMethods) {
     if (std::strcmp(named.name, name) != 0) continue;
-    const TriMesh mesh = sheet(faces);
-    const Charts charts = make_charts(shapes::surface_of(mesh), SeamMode::keep);
-    const Disk disk = make_disk(charts.charts[0].mesh, charts.charts[0].loops);
+    const TriMesh mesh = surface(faces);
+    const charts::Charts charts = charts::make_charts(shapes::surface_of(mesh), SeamMode::keep);
+    const solve::Disk disk = solve::make_disk(charts.charts[0].mesh, charts.charts[0].loops);
     const double before = peak_megabytes();
     const Stopwatch watch;
     try {
-      const Solution s = solved(disk, {.method = named.method});
+      const solve::Solution s = solved(disk, {.method = named.method});
       std::printf("%.4f %.0f %.0f\n", watch.seconds(), peak_megabytes(), before);
       return s.uv.empty() ? 1 : 0;
     } catch (const Error& error) {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/scrambled.hpp"
+#include "core/base/splitmix64.hpp"
 
 namespace unwrapd::bench {
 namespace {
@@ -137,7 +137,7 @@ class Nets {
 
 /// In [-1, 1).
 double drawn(std::size_t k) {
-  return static_cast<double>(scrambled((k + 1) * kGoldenStep) >> 11) * 0x1p-52 - 1;
+  return static_cast<double>(splitmix64((k + 1) * kGoldenStep) >> 11) * 0x1p-52 - 1;
 }
 
 void add_noise(TriMesh& mesh, double noise) {

@@ -52,14 +52,14 @@ Times time_simplicial(const Matrix& lower, Eigen::Index columns) {
 
 }  // namespace
 
-Times time_ours(const SparseMatrix& lower, Unknowns unknowns) {
+Times time_ours(const linear::SparseMatrix& lower, Unknowns unknowns) {
   const bool is_pairs = unknowns == Unknowns::pairs;
-  std::shared_ptr<const Analysis> analysis;
-  std::optional<Factor> factor;
+  std::shared_ptr<const linear::Analysis> analysis;
+  std::optional<linear::Factor> factor;
   bool is_definite = false;
   Times times;
-  times.analysis =
-      milliseconds([&] { analysis = is_pairs ? analyse_pairs(lower) : analyse(lower); });
+  times.analysis = milliseconds(
+      [&] { analysis = is_pairs ? linear::analyse_pairs(lower) : linear::analyse(lower); });
   times.factor = milliseconds([&] { is_definite = factor.emplace(analysis).refill(lower); });
   times.refactor = milliseconds([&] { is_definite = factor->refill(lower) && is_definite; });
   if (!is_definite) std::abort();
@@ -70,11 +70,11 @@ Times time_ours(const SparseMatrix& lower, Unknowns unknowns) {
   return times;
 }
 
-Times time_eigen(const SparseMatrix& lower, Unknowns unknowns) {
+Times time_eigen(const linear::SparseMatrix& lower, Unknowns unknowns) {
   return time_simplicial(lower, unknowns == Unknowns::pairs ? 1 : 2);
 }
 
-Times time_eigen(const ComplexMatrix& lower) { return time_simplicial(lower, 1); }
+Times time_eigen(const linear::ComplexMatrix& lower) { return time_simplicial(lower, 1); }
 
 #ifdef UNWRAPD_HAS_CHOLMOD
 
@@ -110,7 +110,7 @@ std::optional<Times> time_cholmod(const SparseMatrix& lower, Unknowns unknowns) 
 
 #else
 
-std::optional<Times> time_cholmod(const SparseMatrix&, Unknowns) { return std::nullopt; }
+std::optional<Times> time_cholmod(const linear::SparseMatrix&, Unknowns) { return std::nullopt; }
 
 #endif
 

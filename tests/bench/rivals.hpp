@@ -22,13 +22,13 @@ struct Times {
 /// What a matrix is solved for: two right-hand sides, or one of pairs of unknowns.
 enum class Unknowns { single, pairs };
 
-Times time_ours(const SparseMatrix& lower, Unknowns unknowns);
-Times time_eigen(const SparseMatrix& lower, Unknowns unknowns);
+Times time_ours(const linear::SparseMatrix& lower, Unknowns unknowns);
+Times time_eigen(const linear::SparseMatrix& lower, Unknowns unknowns);
 
 /// As complex matrices were factored before pairs were.
-Times time_eigen(const ComplexMatrix& lower);
+Times time_eigen(const linear::ComplexMatrix& lower);
 
 /// Supernodal, with AMD; nothing where it is not there.
-std::optional<Times> time_cholmod(const SparseMatrix& lower, Unknowns unknowns);
+std::optional<Times> time_cholmod(const linear::SparseMatrix& lower, Unknowns unknowns);
 
 }  // namespace unwrapd::bench

@@ -85,11 +85,11 @@ inline UnwrapOptions options_of(const Model& model, Method method) {
 }
 
 /// The map of a column, in disk units. Throws Error.
-inline UvMap map_of(const Disk& disk, const Model& model, const Column& column) {
+inline UvMap map_of(const solve::Disk& disk, const Model& model, const Column& column) {
   if (!column.method) return cp_as_run(disk);
   const UnwrapOptions options = options_of(model, *column.method);
   SerialExecutor serial;
-  return Solver(disk, options, {}, serial).run(options.lambda, {}).uv;
+  return solve::Solver(disk, options, {}, serial).run(options.lambda, {}).uv;
 }
 
 }  // namespace unwrapd::bench

@@ -54,9 +54,9 @@ TEST(MaxDistortion, HasNoLongerSeamsWhereItIsLooser) {
 }
 
 /// The borders of all charts.
-double border_of(std::span<const Chart> charts) {
+double border_of(std::span<const charts::Chart> charts) {
   double length = 0;
-  for (const Chart& chart : charts) {
+  for (const charts::Chart& chart : charts) {
     const auto at = [&](Index h, Index i) {
       return chart.mesh.positions[std::size_t(chart.mesh.faces[std::size_t(h / 3)][(h + i) % 3])];
     };
@@ -69,12 +69,14 @@ double border_of(std::span<const Chart> charts) {
 /// A small one, found by the way of large ones.
 TEST(MaxDistortion, HasNoLongerSeamsOnLargeSurfacesEither) {
   SerialExecutor serial;
-  const Charts whole = components_of(shapes::surface_of(bent(shapes::cube(2), 3)), {});
+  const charts::Charts whole =
+      charts::components_of(shapes::surface_of(bent(shapes::cube(2), 3)), {});
   double last = std::numeric_limits<double>::infinity();
   for (const double bound : {2.02, 2.03, 2.07}) {
-    SegmentRules rules;
+    segment::SegmentRules rules;
     rules.max_distortion = bound;
-    const double border = border_of(large_charts(whole.charts.front(), rules, serial).charts);
+    const double border =
+        border_of(segment::large_charts(whole.charts.front(), rules, serial).charts);
     EXPECT_LE(border, last * (1 + 1e-9)) << bound;
     last = border;
   }
@@ -90,8 +92,8 @@ TEST(MaxDistortion, HasNoLongerSeamsWithFewChartsEither) {
   for (const int most : {2, 3}) {
     double last = std::numeric_limits<double>::infinity();
     for (const double bound : {2.02, 2.2}) {
-      std::vector<Charts> surfaces{components_of(surface, {})};
-      segment_charts(surfaces, {.max_distortion = bound, .max_charts = most}, {}, serial);
+      std::vector<charts::Charts> surfaces{charts::components_of(surface, {})};
+      segment::segment_charts(surfaces, {.max_distortion = bound, .max_charts = most}, {}, serial);
       EXPECT_LE(int(surfaces[0].charts.size()), most);
       const double border = border_of(surfaces[0].charts);
       EXPECT_LE(border, last * (1 + 1e-9)) << most << ' ' << bound;

@@ -9,14 +9,14 @@
 
 namespace unwrapd::shapes {
 
-inline Outline polygon(const UvMap& points) {
-  Outline outline;
+inline charts::Outline polygon(const UvMap& points) {
+  charts::Outline outline;
   for (std::size_t k = 0; k < points.size(); ++k)
     outline.push_back({points[k], points[(k + 1) % points.size()]});
   return outline;
 }
 
-inline Outline star(std::mt19937& rng) {
+inline charts::Outline star(std::mt19937& rng) {
   std::uniform_real_distribution<double> share(0.3, 1), size(-1.5, 1.5);
   const double radius = std::exp(size(rng));
   UvMap points;
@@ -27,15 +27,15 @@ inline Outline star(std::mt19937& rng) {
   return polygon(points);
 }
 
-inline std::vector<Outline> stars(int count, unsigned seed) {
+inline std::vector<charts::Outline> stars(int count, unsigned seed) {
   std::mt19937 rng(seed);
-  std::vector<Outline> islands;
+  std::vector<charts::Outline> islands;
   for (int k = 0; k < count; ++k) islands.push_back(star(rng));
   return islands;
 }
 
 /// A net of a box as a staircase, turned by the angle: its smallest rectangle lies aslant.
-inline Outline net(double a, double b, double angle) {
+inline charts::Outline net(double a, double b, double angle) {
   const UvMap corners{{0, 0},         {2 * a, 0},     {2 * a, b},     {3 * a, b},
                       {3 * a, 2 * b}, {4 * a, 2 * b}, {4 * a, 3 * b}, {2 * a, 3 * b},
                       {2 * a, 2 * b}, {a, 2 * b},     {a, b},         {0, b}};
@@ -47,11 +47,12 @@ inline Outline net(double a, double b, double angle) {
 }
 
 /// On this thread alone.
-inline Packed pack_alone(std::span<const Outline> islands, const PageOptions& page = {},
-                         const std::stop_token& stop = {}) {
+inline pack::Packed pack_alone(std::span<const charts::Outline> islands,
+                               const pack::PageOptions& page = {},
+                               const std::stop_token& stop = {}) {
   SerialExecutor serial;
   JobExecutor job(serial, stop);
-  return pack(islands, page, job);
+  return pack::pack(islands, page, job);
 }
 
 }  // namespace unwrapd::shapes

@@ -65,7 +65,7 @@ test("a backup of a server that was killed, and one that is damaged", async (t) 
   writeFileSync(join(backup, "blobs", id, "result.obj"), "v 0 0 0\n");
   const refused = run("restore", backup, "--data", join(place, "c"));
   assert.equal(refused.status, 1);
-  assert.match(refused.stderr, /no whole backup: j_\w+\/result\.obj is damaged.*Nothing was restored/);
+  assert.match(refused.stderr, /not a complete backup: j_\w+\/result\.obj is damaged.*Nothing was restored/);
   const checked = run("check", "--data", backup);
   assert.deepEqual([checked.status, readdirSync(place)], [3, ["b"]]);
   assert.match(run("--help").stdout, /unwrapd backup, restore and check/);

@@ -22,14 +22,14 @@ constexpr std::int64_t kMaxBytes = std::int64_t{64} * 1024;  // what a socket ta
 
 void head(std::string_view bytes) {
   const std::string whole = std::string(bytes.substr(0, bytes.find("\r\n\r\n"))) + "\r\n\r\n";
-  const server::Framing framing = server::vet_head(whole);
+  const server::http::Framing framing = server::http::vet_head(whole);
   promise(framing.content_length >= 0, "a length is no less than 0");
   promise(!framing.chunked || framing.content_length == 0, "a body has one length");
   std::string plain = whole;
-  const std::ptrdiff_t shorter = server::simplify(plain, framing);
+  const std::ptrdiff_t shorter = server::http::simplify(plain, framing);
   promise(std::ssize(plain) == std::ssize(whole) - shorter, "a head is as long as it says");
   promise(plain.at(framing.target) == '/', "a target is a path then");
-  const server::Framing again = server::vet_head(plain);
+  const server::http::Framing again = server::http::vet_head(plain);
   promise(again.authority == 0 && again.content_length == framing.content_length &&
               again.chunked == framing.chunked,
           "and nothing else has changed");
@@ -44,21 +44,22 @@ std::vector<std::string> head_seeds() {
 }
 
 /// Reads a request whole, as the handlers of uploads do. No more can come out than went in.
-server::Response swallow(const server::Request& request, std::size_t sent) {
+server::http::Response swallow(const server::http::Request& request, std::size_t sent) {
   std::size_t got = 0;
-  const server::BodyReader::Sink count = [&](std::string_view piece) { got += piece.size(); };
+  const server::http::BodyReader::Sink count = [&](std::string_view piece) { got += piece.size(); };
   try {
     const auto type = request.headers.find("Content-Type");
     const bool parts = type != request.headers.end() && type->second.starts_with("multipart/");
     if (request.body != nullptr && parts)
-      request.body->read_parts([&](const server::Part& part) { got += part.name.size(); }, count);
+      request.body->read_parts([&](const server::http::Part& part) { got += part.name.size(); },
+                               count);
     else if (request.body != nullptr)
       request.body->read(count);
   } catch (const Error& error) {
-    return server::error_response(error);
+    return server::http::error_response(error);
   }
   promise(got <= sent, "a body is no longer than what was sent");
-  server::Response response;
+  server::http::Response response;
   response.status = 200;
   response.content_type = "text/plain";
   response.body = std::string("ok");
@@ -75,12 +76,14 @@ void connection(std::string_view bytes) {
   ::shutdown(ends[0], SHUT_WR);
   {
     const server::Log log(server::LogLevel::off);
-    const server::HttpUses uses{
-        .answer = [&](const server::Request& request) { return swallow(request, bytes.size()); },
-        .observe = [](const server::Exchanged& /*done*/) {}};
-    server::Connection served({.transport = std::make_unique<server::Transport>(ends[1])}, -1,
-                              {.max_body_bytes = kMaxBytes});
-    server::Exchange exchange(uses, log, std::chrono::seconds(15));
+    const server::http::HttpUses uses{
+        .answer =
+            [&](const server::http::Request& request) { return swallow(request, bytes.size()); },
+        .observe = [](const server::http::Exchanged& /*done*/) {}};
+    server::http::Connection served(
+        {.transport = std::make_unique<server::http::Transport>(ends[1])}, -1,
+        {.max_body_bytes = kMaxBytes});
+    server::http::Exchange exchange(uses, log, std::chrono::seconds(15));
     try {
       while (served.next_request() && exchange.answer_request(served, false)) {
       }
@@ -115,7 +118,7 @@ std::vector<std::string> multipart_seeds() {
 }
 
 void reference(std::string_view bytes) {
-  const server::MeshReference named = server::parse_mesh_reference(bytes);
+  const server::uploads::MeshReference named = server::uploads::parse_mesh_reference(bytes);
   promise(server::is_sha256(named.sha256),
           "a mesh is named by its digest, which leads nowhere else");
   promise(!named.options ||

@@ -8,7 +8,7 @@
 #include <array>
 
 #include "server/http/http_head.hpp"
-#include "server/http/parking.hpp"
+#include "server/http/idle_connections.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace unwrapd::fuzz {
@@ -19,11 +19,11 @@ constexpr int kMaxIdle = 3;
 constexpr std::string_view kHeadEnd = "\r\n\r\n";
 
 /// Opens with a handshake of two bytes, each a step.
-class Shy final : public server::Transport {
+class Shy final : public server::http::Transport {
  public:
-  using server::Transport::Transport;
+  using server::http::Transport::Transport;
   [[nodiscard]] bool is_open() const override { return steps_ == 2; }
-  bool greet() override {
+  bool handshake() override {
     char byte = 0;
     const std::int64_t got = receive(&byte, 1);
     steps_ += got == 1 ? 1 : 0;
@@ -44,7 +44,7 @@ struct Peer {
 
 class Play {
  public:
-  Play() : parking_(door(), uses(), {.max_idle = kMaxIdle}) {}
+  Play() : idle_connections_(door(), uses(), {.max_idle = kMaxIdle}) {}
   Play(const Play&) = delete;
   Play& operator=(const Play&) = delete;
   ~Play() {
@@ -64,28 +64,28 @@ class Play {
         script.remove_prefix(std::min(size, script.size()));
       }
       act(peer, byte);
-      parking_.turn(0);
+      idle_connections_.turn(0);
     }
     for (Peer& peer : peers_) leave(peer);
-    for (int i = 0; i < 3; ++i) parking_.turn(0);  // a handshake is handed out and back
-    promise(parking_.count() == 0, "who has left is not parked");
+    for (int i = 0; i < 3; ++i) idle_connections_.turn(0);  // a handshake is handed out and back
+    promise(idle_connections_.count() == 0, "who has left is not parked");
   }
 
  private:
-  static const server::Listener& door() {
-    static const server::Listener listener("127.0.0.1", 0);
+  static const server::http::Listener& door() {
+    static const server::http::Listener listener("127.0.0.1", 0);
     return listener;
   }
 
-  server::Parking::Uses uses() {
+  server::http::IdleConnections::Uses uses() {
     return {.accept = [] { return std::nullopt; },
-            .greet =
-                [this](server::Client client) {
-                  if (client.transport->greet()) parking_.park(std::move(client));
+            .handshake =
+                [this](server::http::Client client) {
+                  if (client.transport->handshake()) idle_connections_.park(std::move(client));
                 },
-            .ready = [this](server::Client client) { take(std::move(client)); },
+            .ready = [this](server::http::Client client) { take(std::move(client)); },
             .refuse =
-                [](const server::Client& client, const Error& why) {
+                [](const server::http::Client& client, const Error& why) {
                   promise(!client.received.empty() && why.code() == ErrorCode::request_timeout,
                           "only who began is told that it is late");
                 }};
@@ -105,7 +105,8 @@ class Play {
       case 6:
         return give_back();
       case 7:
-        return parking_.expire(server::Parking::Clock::now() + std::chrono::hours(byte / 128));
+        return idle_connections_.expire(server::http::IdleConnections::Clock::now() +
+                                        std::chrono::hours(byte / 128));
       default:
         return;
     }
@@ -117,12 +118,12 @@ class Play {
     promise(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends.data()) == 0,
             "there are sockets");
     peer = {.socket = ends[0], .name = std::to_string(++came_), .sent = {}, .shy = shy ? 2U : 0U};
-    server::Client client{.transport = nullptr, .address = peer.name};
+    server::http::Client client{.transport = nullptr, .address = peer.name};
     if (shy)
       client.transport = std::make_unique<Shy>(ends[1]);
     else
-      client.transport = std::make_unique<server::Transport>(ends[1]);
-    parking_.park(std::move(client));
+      client.transport = std::make_unique<server::http::Transport>(ends[1]);
+    idle_connections_.park(std::move(client));
   }
 
   static void send(Peer& peer, std::string_view bytes) {
@@ -137,9 +138,9 @@ class Play {
   }
 
   /// What has a head, or more than one may have.
-  void take(server::Client client) {
+  void take(server::http::Client client) {
     const std::size_t head = client.received.find(kHeadEnd);
-    promise(head != std::string::npos || client.received.size() > server::kMaxHeadBytes,
+    promise(head != std::string::npos || client.received.size() > server::http::kMaxHeadBytes,
             "who is ready has a head, or too long a one");
     const auto peer = std::ranges::find(peers_, client.address, &Peer::name);
     if (peer != peers_.end()) {
@@ -153,7 +154,7 @@ class Play {
   /// As after an answer: the head is used, what follows it is not.
   void give_back() {
     if (ready_.empty()) return;
-    server::Client client = std::move(ready_.back());
+    server::http::Client client = std::move(ready_.back());
     ready_.pop_back();
     const std::size_t end = client.received.find(kHeadEnd);
     if (end == std::string::npos) return;
@@ -164,16 +165,16 @@ class Play {
       peer->shy = 0;
     }
     client.received.erase(0, used);
-    parking_.park(std::move(client));
+    idle_connections_.park(std::move(client));
   }
 
   std::array<Peer, kPeers> peers_{};
   int came_ = 0;
-  std::vector<server::Client> ready_;
-  server::Parking parking_;
+  std::vector<server::http::Client> ready_;
+  server::http::IdleConnections idle_connections_;
 };
 
-void parking(std::string_view bytes) { Play().perform(bytes.substr(0, 400)); }
+void idle_connections(std::string_view bytes) { Play().perform(bytes.substr(0, 400)); }
 
 std::vector<std::string> seeds() {
   return {std::string("\x00\x02\x05GET /\r\n\x03\x06\x03\x06", 13), "\x09\x0a\x03hello\x0b\x0e\x0d",
@@ -182,6 +183,6 @@ std::vector<std::string> seeds() {
 
 }  // namespace
 
-Target parking_target() { return {"parking", parking, seeds}; }
+Target parking_target() { return {"parking", idle_connections, seeds}; }
 
 }  // namespace unwrapd::fuzz

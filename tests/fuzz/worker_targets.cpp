@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kMaxFrameBytes = std::int64_t{1} << 16;
 
-class EventSink final : public server::JobOutput {
+class EventSink final : public server::work::JobOutput {
  public:
   void stage(const StageEvent& event) override {
     promise(event.stage <= Stage::write, "a stage is one of ours");
@@ -25,12 +25,13 @@ class EventSink final : public server::JobOutput {
   void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
 };
 
-void read_frame(const server::Frame& frame) {
+void read_frame(const server::work::Frame& frame) {
   EventSink sink;
-  promise(frame.name.size() <= server::kMaxFrameName, "a name is as long as names may be");
+  promise(frame.name.size() <= server::work::kMaxFrameName, "a name is as long as names may be");
   promise(static_cast<std::int64_t>(frame.bytes.size()) <= kMaxFrameBytes, "a frame is bounded");
-  if (frame.kind == server::FrameKind::stage) unpack_stage(frame.bytes, sink);
-  if (frame.kind == server::FrameKind::iteration) unpack_iteration(frame.bytes, sink);
+  if (frame.kind == server::work::FrameKind::stage) server::work::unpack_stage(frame.bytes, sink);
+  if (frame.kind == server::work::FrameKind::iteration)
+    server::work::unpack_iteration(frame.bytes, sink);
 }
 
 void frames(std::string_view bytes) {
@@ -41,7 +42,8 @@ void frames(std::string_view bytes) {
     return true;
   };
   try {
-    for (server::Frame frame; receive_frame(receive, kMaxFrameBytes, frame);) read_frame(frame);
+    for (server::work::Frame frame; server::work::receive_frame(receive, kMaxFrameBytes, frame);)
+      read_frame(frame);
   } catch (const Error& error) {
     promise(error.code() == ErrorCode::internal, "a worker that sends no frames is at fault");
   }
@@ -50,16 +52,19 @@ void frames(std::string_view bytes) {
 std::vector<std::string> frames_seeds() {
   std::string all;
   const auto send = [&](std::string_view piece) { all += piece; };
-  send_frame(send, server::FrameKind::ready, {}, {});
-  send_frame(send, server::FrameKind::stage, {}, server::pack(StageEvent{.stage = Stage::solve}));
-  send_frame(send, server::FrameKind::iteration, {}, server::pack(IterationEvent{}, 1.5));
-  send_frame(send, server::FrameKind::result, "glb", "glTF");
-  send_frame(send, server::FrameKind::done, "glb", {});
+  server::work::send_frame(send, server::work::FrameKind::ready, {}, {});
+  server::work::send_frame(send, server::work::FrameKind::stage, {},
+                           server::work::pack(StageEvent{.stage = Stage::solve}));
+  server::work::send_frame(send, server::work::FrameKind::iteration, {},
+                           server::work::pack(IterationEvent{}, 1.5));
+  server::work::send_frame(send, server::work::FrameKind::result, "glb", "glTF");
+  server::work::send_frame(send, server::work::FrameKind::done, "glb", {});
   return {all};
 }
 
 void uvs(std::string_view bytes) {
-  promise(server::encode_uvs(server::decode_uvs(bytes)) == bytes, "a map is written as it was");
+  promise(server::work::encode_uvs(server::work::decode_uvs(bytes)) == bytes,
+          "a map is written as it was");
 }
 
 std::vector<std::string> uvs_seeds() {
@@ -67,7 +72,8 @@ std::vector<std::string> uvs_seeds() {
   surface.faces = {Triangle{0, 1, 2}};
   surface.source = {0, 1, 2};
   surface.uv.resize(3);
-  return {server::encode_uvs({surface}), server::encode_uvs({surface, {}}), server::encode_uvs({})};
+  return {server::work::encode_uvs({surface}), server::work::encode_uvs({surface, {}}),
+          server::work::encode_uvs({})};
 }
 
 constexpr std::array kTargets = {Target{"frames", frames, frames_seeds},

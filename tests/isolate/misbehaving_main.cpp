@@ -35,8 +35,8 @@ void eat_memory() {
   while (true) eaten.emplace_back(std::size_t{64} << 20, 'x');
 }
 
-void send(server::FrameKind kind, std::string_view name, std::string_view bytes) {
-  server::send_frame(
+void send(server::work::FrameKind kind, std::string_view name, std::string_view bytes) {
+  server::work::send_frame(
       [](std::string_view piece) {
         while (!piece.empty()) {
           const ssize_t sent = ::write(STDIN_FILENO, piece.data(), piece.size());
@@ -51,7 +51,8 @@ void send(server::FrameKind kind, std::string_view name, std::string_view bytes)
 }
 
 void tell_of_work() {
-  send(server::FrameKind::stage, {}, server::pack(unwrapd::StageEvent{.fraction = 0.1}));
+  send(server::work::FrameKind::stage, {},
+       server::work::pack(unwrapd::StageEvent{.fraction = 0.1}));
 }
 
 /// Events without end, however often it is told to stop.
@@ -77,8 +78,8 @@ void begin_threads() {
 
 void end_within_a_frame() {
   std::string frame;
-  server::send_frame([&](std::string_view piece) { frame += piece; }, server::FrameKind::file,
-                     "uv.bin", std::string(100, 'x'));
+  server::work::send_frame([&](std::string_view piece) { frame += piece; },
+                           server::work::FrameKind::file, "uv.bin", std::string(100, 'x'));
   frame.resize(frame.size() / 2);
   static_cast<void>(!::write(STDIN_FILENO, frame.data(), frame.size()));
   std::_Exit(3);
@@ -87,17 +88,17 @@ void end_within_a_frame() {
 void claim(std::string_view code) {
   std::string text(8, '\0');
   text[0] = 1;
-  send(server::FrameKind::failed, code, text + "x" + std::string(8, '\0'));
+  send(server::work::FrameKind::failed, code, text + "x" + std::string(8, '\0'));
   hang();
 }
 
-void write_many(server::JobOutput& output) {
+void write_many(server::work::JobOutput& output) {
   for (int file = 0; file < 12'000; ++file) output.file("f" + std::to_string(file), "");
 }
 
 pid_t victim = 0;
 
-using Deed = std::function<void(server::JobOutput&)>;
+using Deed = std::function<void(server::work::JobOutput&)>;
 
 const std::map<std::string, Deed> kDeeds = {
     {"segv", [](auto&) { std::raise(SIGSEGV); }},
@@ -141,7 +142,7 @@ const std::map<std::string, Deed> kDeeds = {
 };
 
 void misbehave(std::string_view when, const unwrapd::asset::Input& input,
-               server::JobOutput& output) {
+               server::work::JobOutput& output) {
   constexpr std::string_view named = "\n# victim ";
   const std::size_t at = input.document.find(named);
   if (at != std::string_view::npos) victim = ::atoi(input.document.data() + at + named.size());
@@ -149,14 +150,14 @@ void misbehave(std::string_view when, const unwrapd::asset::Input& input,
     if (input.document.starts_with("# " + std::string(when) + " " + name + "\n")) deed(output);
 }
 
-std::string run(const server::JobTask& task, const unwrapd::asset::Input& input,
-                server::JobOutput& output, const unwrapd::api::Limits& limits,
+std::string run(const server::work::JobTask& task, const unwrapd::asset::Input& input,
+                server::work::JobOutput& output, const unwrapd::api::Limits& limits,
                 unwrapd::Executor& executor) {
   misbehave("do", input, output);
-  return server::run_job(task, input, output, limits, executor);
+  return server::work::run_job(task, input, output, limits, executor);
 }
 
-class NoOutput final : public server::JobOutput {
+class NoOutput final : public server::work::JobOutput {
  public:
   void stage(const unwrapd::StageEvent& /*event*/) override {}
   void iteration(const unwrapd::IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
@@ -164,11 +165,11 @@ class NoOutput final : public server::JobOutput {
   void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
 };
 
-std::string draw(const server::Rendering& rendering, const server::RenderingInput& input,
-                 const unwrapd::api::Limits& limits) {
+std::string draw(const server::work::Rendering& rendering,
+                 const server::work::RenderingInput& input, const unwrapd::api::Limits& limits) {
   NoOutput none;
   misbehave("draw", input.asset, none);
-  return server::render(rendering, input, limits);
+  return server::work::render(rendering, input, limits);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@ import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { dirname, join, relative, sep } from "node:path";
 import { fileURLToPath } from "node:url";
 
-import { HOUSES, ROOMS, roomOf, table, upward } from "./rooms.mjs";
+import { HOUSES, ROOMS, namespaceOf, roomOf, table, upward } from "./rooms.mjs";
 
 /** A header (or the start of its name) -> where alone it may be included. */
 const ONLY_IN = [
@@ -62,6 +62,15 @@ function includeBreaches(path, header, quoted) {
   return breaches;
 }
 
+/** A line that opens a namespace other than that of the file's room, or one in it. */
+function namespaceBreaches(path, line) {
+  const opened = line.match(/^namespace (unwrapd[\w:]*) \{/)?.[1];
+  const room = opened && /^(core|server)\//.test(path) && roomOf(path);
+  if (!room) return [];
+  const own = namespaceOf(room.folder);
+  return `${opened}::`.startsWith(`${own}::`) ? [] : [`${opened} is not the namespace of ${room.folder}, ${own}`];
+}
+
 /** All breaches of one file. */
 export function check(path, text) {
   const breaches = [];
@@ -73,7 +82,8 @@ export function check(path, text) {
     const include = isCode && line.match(/^\s*#\s*include\s+(["<])([^">]+)[">]/);
     const found = include ? includeBreaches(path, include[2], include[1] === '"') : [];
     const words = path.startsWith("tests/layers/") ? [] : FORBIDDEN.filter((word) => word.test(line));
-    for (const breach of [...found, ...words.map((word) => `forbidden: ${word.source}`)])
+    const spaces = isCode ? namespaceBreaches(path, line) : [];
+    for (const breach of [...found, ...spaces, ...words.map((word) => `forbidden: ${word.source}`)])
       breaches.push(`${path}:${number + 1}: ${breach}`);
   });
   const length = text.endsWith("\n") ? lines.length - 1 : lines.length;

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { check, deadPaths, twins } from "./check_layers.mjs";
+import { check, twins } from "./check_layers.mjs";
 import { ROOMS, upward } from "./rooms.mjs";
 
 const including = (path, header) => check(path, `#include ${header}\n`);
@@ -34,6 +34,18 @@ test("every source is in a room", () => {
   assert.deepEqual(check("core/attic/a.cpp", ""), ["core/attic/a.cpp: is in no room"]);
   assert.deepEqual(check("server/http/a.cpp", ""), []);
   refuses("server/service.cpp", '"server/attic/a.hpp"');
+});
+
+test("a file opens the namespace of its room", () => {
+  const opening = (path, space) => check(path, `namespace ${space} {\n`);
+  assert.deepEqual(opening("core/pack/pack.cpp", "unwrapd::pack"), []);
+  assert.deepEqual(opening("core/solve/base/disk.cpp", "unwrapd::solve"), []);
+  assert.deepEqual(opening("core/types/options.cpp", "unwrapd"), []);
+  assert.deepEqual(opening("server/base/log.cpp", "unwrapd::server"), []);
+  assert.deepEqual(opening("server/http/router.cpp", "unwrapd::server::http"), []);
+  assert.equal(opening("core/pack/pack.cpp", "unwrapd").length, 1);
+  assert.equal(opening("core/pack/pack.cpp", "unwrapd::packing").length, 1);
+  assert.equal(opening("server/http/router.cpp", "unwrapd::server::store").length, 1);
 });
 
 test("a table that goes both ways is refused", () => {
@@ -92,14 +104,4 @@ test("no two headers define a type of one name", () => {
   const named = { path: "core/d.hpp", text: "namespace unwrapd {\nstruct Patch;\n" };
   assert.deepEqual(twins([a, other, named]), []);
   assert.deepEqual(twins([a, b]), ["core/b.hpp: unwrapd::Patch is defined in core/a.hpp, too"]);
-});
-
-test("guides name files that exist", () => {
-  const exists = (name) => ["core/unwrap.cpp", "docs/api.md", "SECURITY.md"].includes(name);
-  const dead = (path, text) => deadPaths(path, text, exists).length;
-  assert.equal(dead("CONTRIBUTING.md", "`core/unwrap.cpp`, `core/unwrap`, [here](docs/api.md#a), `GET /v1`"), 0);
-  assert.equal(dead("docs/api.md", "[here](../SECURITY.md), [there](https://example.com)"), 0);
-  assert.equal(dead("CONTRIBUTING.md", "`core/gone.cpp`"), 1);
-  assert.equal(dead("docs/api.md", "[here](SECURITY.md)"), 1);
-  assert.equal(dead("docs/adr/0001-a.md", "`core/gone.cpp`"), 0);
 });

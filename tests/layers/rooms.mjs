@@ -53,6 +53,15 @@ export function roomOf(path) {
   return ROOMS.find((room) => room.folder === folder);
 }
 
+/** Rooms of words that all of core speaks in: they have no namespace of their own. */
+const COMMON = ["core", ...TERMS];
+
+/** The namespace of a room of core or the server: its folders; `base` is that of the room around it. */
+export function namespaceOf(folder) {
+  const names = COMMON.includes(folder) ? [] : folder.replace(/^core\//, "").split("/");
+  return ["unwrapd", ...names.filter((name) => name !== "base")].join("::");
+}
+
 /** Top folders whose files must all be in a room. */
 export const HOUSES = [...new Set(ROOMS.map(({ folder }) => folder.split("/")[0]))];
 

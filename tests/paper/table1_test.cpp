@@ -56,16 +56,16 @@ Exception exception_of(const Column& column, const Model& model) {
 }
 
 /// One of the paper's models as its one chart.
-Charts load(const char* file) {
-  return make_charts(shapes::surface_of(read_obj(test_data() / "paper" / file)),
-                     SeamMode::automatic);
+charts::Charts load(const char* file) {
+  return charts::make_charts(shapes::surface_of(read_obj(test_data() / "paper" / file)),
+                             SeamMode::automatic);
 }
 
-Distortion solved(const Chart& chart, const UnwrapOptions& options) {
-  const Disk disk = make_disk(chart.mesh, chart.loops);
+Distortion solved(const charts::Chart& chart, const UnwrapOptions& options) {
+  const solve::Disk disk = solve::make_disk(chart.mesh, chart.loops);
   SerialExecutor serial;
-  const Solution s = Solver(disk, options, {}, serial).run(options.lambda, {});
-  return distortion(distortion_sums(disk.rest, disk.faces, s.uv));
+  const solve::Solution s = solve::Solver(disk, options, {}, serial).run(options.lambda, {});
+  return measure::distortion(measure::distortion_sums(disk.rest, disk.faces, s.uv));
 }
 
 class Paper : public testing::Test {
@@ -85,15 +85,15 @@ void expect_figure(double ours, std::optional<double> printed, std::optional<dou
 
 TEST_F(Paper, Table1IsReproduced) {
   for (std::size_t m = 0; m < kModels.size(); ++m) {
-    const Charts charts = load(kModels[m].file);
+    const charts::Charts charts = load(kModels[m].file);
     ASSERT_EQ(charts.charts.size(), 1U) << kModels[m].name;
     for (const Column& column : kColumns) {
       const auto& printed = column.printed[m];
       if (!printed.angle) continue;
       SCOPED_TRACE(std::string(column.name) + " of " + kModels[m].name);
-      const Disk disk = make_disk(charts.charts[0].mesh, charts.charts[0].loops);
+      const solve::Disk disk = solve::make_disk(charts.charts[0].mesh, charts.charts[0].loops);
       const UvMap uv = bench::map_of(disk, kModels[m], column);
-      const Distortion d = distortion(distortion_sums(disk.rest, disk.faces, uv));
+      const Distortion d = measure::distortion(measure::distortion_sums(disk.rest, disk.faces, uv));
       const Exception known = exception_of(column, kModels[m]);
       expect_figure(d.angle, printed.angle, known.angle);
       expect_figure(d.area, printed.area, known.area);
@@ -112,7 +112,7 @@ struct Peer {
 
 void expect_peer(Method method, const Peer& peer) {
   SCOPED_TRACE(kModels[peer.model].name);
-  const Charts charts = load(kModels[peer.model].file);
+  const charts::Charts charts = load(kModels[peer.model].file);
   const Distortion d = solved(charts.charts[0], {.method = method});
   EXPECT_NEAR(d.angle, peer.angle, 0.005);
   EXPECT_NEAR(d.area, peer.area, peer.tolerance);
@@ -142,8 +142,8 @@ struct Step {
 };
 
 void expect_curve(const char* file, std::initializer_list<Step> steps) {
-  const Charts charts = load(file);
-  const double area = surface_area(charts.charts[0].mesh);
+  const charts::Charts charts = load(file);
+  const double area = measure::surface_area(charts.charts[0].mesh);
   std::printf("%-13s lambda  D_angle  D_area\n", file);
   Distortion last{.angle = 0, .area = 1e9};
   for (const Step& step : steps) {
@@ -181,7 +181,7 @@ TEST_F(Paper, HybridWalksFromConformalToRigidOnBalls) {
 
 TEST_F(Paper, DimensionlessLambdaIsMonotone) {
   for (const char* file : {"Isis_dABF.obj", "Balls.obj"}) {
-    const Charts charts = load(file);
+    const charts::Charts charts = load(file);
     Distortion last{.angle = 0, .area = 1e9};
     for (double lambda : {0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0, 1e4}) {
       const Distortion d =

@@ -35,12 +35,12 @@ class HttpServerTest : public testing::Test {
   ~HttpServerTest() override { stop(); }
 
   void start() {
-    server_ = std::make_unique<HttpServer>(
+    server_ = std::make_unique<http::HttpServer>(
         config_,
-        HttpUses{.answer = [this](const Request& request) { return answer_(request); },
-                 .observe = [this](const Exchanged& done) { observe(done); },
-                 .trusted_proxies = proxies_,
-                 .news = news_},
+        http::HttpUses{.answer = [this](const http::Request& request) { return answer_(request); },
+                       .observe = [this](const http::Exchanged& done) { observe(done); },
+                       .trusted_proxies = proxies_,
+                       .news = news_},
         log_);
     serving_ = std::jthread([this] { server_->serve(); });
   }
@@ -48,13 +48,13 @@ class HttpServerTest : public testing::Test {
     if (server_) server_->stop();
     if (serving_.joinable()) serving_.join();
   }
-  void observe(const Exchanged& done) {
+  void observe(const http::Exchanged& done) {
     const std::lock_guard lock(mutex_);
     seen_.push_back(done);
   }
   std::size_t refused(std::string_view problem) {
     const std::lock_guard lock(mutex_);
-    return static_cast<std::size_t>(std::ranges::count(seen_, problem, &Exchanged::problem));
+    return static_cast<std::size_t>(std::ranges::count(seen_, problem, &http::Exchanged::problem));
   }
   [[nodiscard]] std::unique_ptr<RawClient> connect() const {
     return std::make_unique<RawClient>(server_->port());
@@ -65,17 +65,17 @@ class HttpServerTest : public testing::Test {
     return client->finish();
   }
 
-  HttpConfig config_;
-  AddressSet proxies_;
-  std::function<Response(const Request&)> answer_ = [](const Request& request) {
-    return json_response(200, "\"" + request.client + "\"");
+  http::HttpConfig config_;
+  http::AddressSet proxies_;
+  std::function<http::Response(const http::Request&)> answer_ = [](const http::Request& request) {
+    return http::json_response(200, "\"" + request.client + "\"");
   };
-  std::shared_ptr<Doorbell> news_ = std::make_shared<Doorbell>();
+  std::shared_ptr<Wakeup> news_ = std::make_shared<Wakeup>();
   Log log_{LogLevel::off};
-  std::unique_ptr<HttpServer> server_;
+  std::unique_ptr<http::HttpServer> server_;
   std::jthread serving_;
   std::mutex mutex_;
-  std::vector<Exchanged> seen_;
+  std::vector<http::Exchanged> seen_;
 };
 
 /// PEM files of a certificate of receiver.example that signs itself, and its key.

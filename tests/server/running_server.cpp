@@ -136,8 +136,9 @@ httplib::Client RunningServer::client() const {
 }
 
 std::string RunningServer::submit(const std::string& query, int size) {
-  const httplib::Headers anew = {{"Cache-Control", "no-cache"}};  // not answered from the store
-  const auto answer = client().Post("/v1/jobs" + query, anew, grid_obj(size), "model/obj");
+  const httplib::Headers bypass_cache = {
+      {"Cache-Control", "no-cache"}};  // not answered from the store
+  const auto answer = client().Post("/v1/jobs" + query, bypass_cache, grid_obj(size), "model/obj");
   if (!answer || answer->status != 202) {
     ADD_FAILURE() << "no job: " << (answer ? answer->body : "no answer");
     return "none";

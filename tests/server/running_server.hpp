@@ -46,7 +46,7 @@ class RunningServer : public testing::Test {
                       const httplib::Headers& headers = {});
 
   TempDir dir_;
-  Config config_;
+  config::Config config_;
   Log log_{LogLevel::off};
   std::unique_ptr<Service> service_;
 };

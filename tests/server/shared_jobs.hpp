@@ -13,18 +13,19 @@
 
 namespace unwrapd::server {
 
-inline constexpr MemoryLimits kRoomForAll{.cache_bytes = std::int64_t{1} << 32,
-                                          .job_bytes = std::int64_t{1} << 40};
+inline constexpr work::MemoryLimits kRoomForAll{.cache_bytes = std::int64_t{1} << 32,
+                                                .job_bytes = std::int64_t{1} << 40};
 
 using Surfaces = std::vector<Surface>;
 
 /// A job's whole answer as bytes: UVs, and all that is told of them. cache: null where the job is
 /// alone.
 inline std::string answer(const Surfaces& surfaces, const UnwrapOptions& options,
-                          SolverCache* cache, int threads = 1, const Progress& progress = {}) {
-  ThreadExecutor executor(threads, cache);
+                          work::SolverCache* cache, int threads = 1,
+                          const Progress& progress = {}) {
+  work::ThreadExecutor executor(threads, cache);
   const Unwrapped unwrapped = unwrap(surfaces, options, progress, executor);
-  return encode_uvs(unwrapped.surfaces) + api::to_json(unwrapped.report, {}).dump();
+  return work::encode_uvs(unwrapped.surfaces) + api::to_json(unwrapped.report, {}).dump();
 }
 
 inline TriMesh bent(TriMesh mesh, double by) {

@@ -104,7 +104,7 @@ TEST_F(Shutdown, OneDirectoryHasOneServer) {
 
 TEST_F(Shutdown, AnAddressThatIsTakenIsAnError) {
   start();
-  Config second = config_;
+  config::Config second = config_;
   second.data = dir_.path() / "second";
   second.listen.port = service_->port();
   EXPECT_THROW(Service(second, log_), Error);

@@ -47,7 +47,7 @@ TEST_F(Start, AnAddressInUseIsThatOfItsOption) {
   start();
   const int taken = service_->port();
   const TempDir dir;
-  Config other = config_;
+  config::Config other = config_;
   other.data = dir.path();
   other.admin = Address{"127.0.0.1", taken};
   const auto start_other = [&] { const Service service(other, log_); };

@@ -12,7 +12,7 @@
 
 #include "core/base/cancel.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
 constexpr double kSufficient = 1e-4;  // Armijo: this share of the fall that the slope promises
@@ -23,7 +23,7 @@ constexpr int kHalvings = 3;
 Descent::Descent(const Assembly& assembly, const UvMap& start, const Rigidity& rigidity,
                  Executor& executor)
     : global_(assembly.global),
-      objective_(assembly.disk, rigidity, assembly.holds, global_.rank(), executor),
+      objective_(assembly.disk, rigidity, assembly.constraints, global_.rank(), executor),
       memory_(executor),
       uv_(by_rank(start, global_.rank())),
       trial_(uv_.size()) {
@@ -110,4 +110,4 @@ StopReason run(Descent& descent, const DescentOptions& options, const LoopWatch&
   return StopReason::converged;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

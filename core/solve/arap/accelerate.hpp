@@ -4,7 +4,7 @@
 #include "core/solve/arap/accelerate_memory.hpp"
 #include "core/solve/arap/local_global.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 
 /// One descent, iteration by iteration.
 class Descent {
@@ -68,4 +68,4 @@ struct DescentOptions {
 /// Throws Error{cancelled} within one iteration of a stop request.
 StopReason run(Descent& descent, const DescentOptions& options, const LoopWatch& watch);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
 constexpr std::size_t kBlock = 4096;       // vertices a block: fixed, so sums ignore the executor
@@ -131,4 +131,4 @@ double StepMemory::direct(const Slope& now, std::span<Vec2> direction) const {
   return slope;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

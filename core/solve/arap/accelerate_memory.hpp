@@ -8,7 +8,7 @@
 #include "core/base/executor.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 
 /// The slope at a point of the descent: one entry a vertex each.
 struct Slope {
@@ -58,4 +58,4 @@ class StepMemory {
   std::vector<std::size_t> order_;  // the pairs in use, oldest first
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
 constexpr int kPatience = 16;    // iterations of the first descent on its own, then of the second
@@ -73,4 +73,4 @@ Solution run_race(const Race& race, const UvMap& first,
   return go_on(race, std::move(challenger));
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

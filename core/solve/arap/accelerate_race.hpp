@@ -5,7 +5,7 @@
 
 #include "core/solve/arap/accelerate.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 
 /// What both descents have in common. What it refers to must outlive the call.
 struct Race {
@@ -24,4 +24,4 @@ struct Race {
 Solution run_race(const Race& race, const UvMap& first,
                   const std::function<const UvMap*()>& second);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

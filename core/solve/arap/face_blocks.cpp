@@ -5,14 +5,15 @@
 #include <numeric>
 
 #include "core/base/cancel.hpp"
+#include "core/linear/sparse.hpp"
 #include "core/mesh/counting_sort.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
 constexpr Index kNone = -1;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linear::at;
 
 /// By the lowest rank of their corners, ties as they come.
 std::vector<Index> sorted_faces(std::span<const Triangle> faces, std::span<const Index> rank,
@@ -29,7 +30,7 @@ std::vector<Index> sorted_faces(std::span<const Triangle> faces, std::span<const
 
 class Builder {
  public:
-  Builder(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+  Builder(std::span<const measure::RestTriangle> rest, std::span<const Triangle> faces,
           std::span<const Index> rank)
       : rest_(rest), faces_(faces), rank_(rank), number_(rank.size(), kNone) {}
 
@@ -87,7 +88,7 @@ class Builder {
     return number_[at(rank)];
   }
 
-  std::span<const RestTriangle> rest_;
+  std::span<const measure::RestTriangle> rest_;
   std::span<const Triangle> faces_;
   std::span<const Index> rank_;
   std::vector<Index> number_;  ///< of each rank beyond the block being built
@@ -96,10 +97,10 @@ class Builder {
 
 }  // namespace
 
-FaceBlocks face_blocks(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+FaceBlocks face_blocks(std::span<const measure::RestTriangle> rest, std::span<const Triangle> faces,
                        std::span<const Index> rank, const std::stop_token& stop) {
   assert(rest.size() == faces.size());
   return Builder(rest, faces, rank).build(stop);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

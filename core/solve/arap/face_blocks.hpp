@@ -11,7 +11,7 @@
 
 #include "core/measure/rest_triangle.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 
 inline constexpr std::size_t kFacesAbreast = 4;
 
@@ -54,7 +54,7 @@ inline std::size_t bytes_of(const FaceBlocks& blocks) {
 }
 
 /// rest: one a face; rank: one a vertex, a permutation. Throws Error{cancelled}.
-FaceBlocks face_blocks(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+FaceBlocks face_blocks(std::span<const measure::RestTriangle> rest, std::span<const Triangle> faces,
                        std::span<const Index> rank, const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

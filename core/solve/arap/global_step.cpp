@@ -11,73 +11,81 @@
 
 #include "core/base/cancel.hpp"
 #include "core/linear/solve_panels.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
-SparseMatrix held_matrix(const Disk& disk, const HeldPattern& held, Executor& executor) {
+linear::SparseMatrix held_matrix(const Disk& disk, const ConstraintPattern& constrained,
+                                 Executor& executor) {
   std::vector<double> weight;
   weight.reserve(3 * disk.rest.size());
-  for (const RestTriangle& rest : disk.rest)
+  for (const measure::RestTriangle& rest : disk.rest)
     weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
   throw_if_cancelled(disk.stop);
-  SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight, executor);
-  for (std::size_t k = 0; k < held.spring.size(); ++k)
-    lower.coeffRef(held.spring[k], held.spring[k]) += 2 * held.weight[k];
-  if (held.is_empty()) lower.coeffRef(0, 0) *= 2;
+  linear::SparseMatrix lower =
+      linear::lower_laplacian(disk.faces, disk.vertex_count(), weight, executor);
+  for (std::size_t k = 0; k < constrained.soft_constraint.size(); ++k)
+    lower.coeffRef(constrained.soft_constraint[k], constrained.soft_constraint[k]) +=
+        2 * constrained.weight[k];
+  if (constrained.is_empty()) lower.coeffRef(0, 0) *= 2;
   return lower;
 }
 
-SparseMatrix free_matrix(const Disk& disk, const HeldPattern& held, Executor& executor) {
-  SparseMatrix lower = held_matrix(disk, held, executor);
-  const std::size_t count = held.free.slot.size();
-  if (static_cast<std::size_t>(held.free.count) == count) return lower;
+linear::SparseMatrix free_matrix(const Disk& disk, const ConstraintPattern& constrained,
+                                 Executor& executor) {
+  linear::SparseMatrix lower = held_matrix(disk, constrained, executor);
+  const std::size_t count = constrained.free.slot.size();
+  if (static_cast<std::size_t>(constrained.free.count) == count) return lower;
   const std::vector<Vec2> nowhere(count, Vec2::Zero());  // only the matrix is wanted
-  return eliminate<SparseMatrix, Vec2>(lower, held.free, nowhere, disk.stop).lower;
+  return linear::eliminate<linear::SparseMatrix, Vec2>(lower, constrained.free, nowhere, disk.stop)
+      .lower;
 }
 
-std::shared_ptr<const Analysis> analysed(const Making& by, const SparsePattern& lower,
-                                         bool is_ordered) {
-  return is_ordered ? analyse_in_order(lower, by.stop) : analyse(lower, by.stop);
+std::shared_ptr<const linear::Analysis> analysed(const Making& by,
+                                                 const linear::SparsePattern& lower,
+                                                 bool is_ordered) {
+  return is_ordered ? linear::analyse_in_order(lower, by.stop) : linear::analyse(lower, by.stop);
 }
 
-std::shared_ptr<const Factor> factored(const Making& by, const Disk& disk,
-                                       const HeldPattern& held) {
-  const SparseMatrix lower = free_matrix(disk, held, *by.executor);
+std::shared_ptr<const linear::Factor> factored(const Making& by, const Disk& disk,
+                                               const ConstraintPattern& constrained) {
+  const linear::SparseMatrix lower = free_matrix(disk, constrained, *by.executor);
   throw_if_cancelled(by.executor->stop());
-  const auto analysis = kept<analysed>(by, SparsePattern(lower), disk.is_ordered);
+  const auto analysis = cached<analysed>(by, linear::SparsePattern(lower), disk.is_ordered);
   throw_if_cancelled(by.executor->stop());
   check_memory(disk, analysis->job_bytes());
-  return definite(try_factor(analysis, lower, *by.executor));
+  return linear::definite(linear::try_factor(analysis, lower, *by.executor));
 }
 
-std::vector<Index> ranks(const FreeVertices& free, std::span<const Index> position) {
+std::vector<Index> ranks(const linear::FreeVertices& free, std::span<const Index> position) {
   std::vector<Index> rank;
   rank.reserve(free.slot.size());
   Index next_fixed = free.count;
   for (const Index slot : free.slot)
-    rank.push_back(slot == kFixed ? next_fixed++ : position[static_cast<std::size_t>(slot)]);
+    rank.push_back(slot == linear::kFixed ? next_fixed++
+                                          : position[static_cast<std::size_t>(slot)]);
   return rank;
 }
 
 }  // namespace
 
-HeldPattern::HeldPattern(std::size_t vertex_count, const Holds& holds)
-    : free(free_vertices(vertex_count, holds)) {
-  for (const Spring& s : holds.springs) spring.push_back(s.vertex), weight.push_back(s.weight);
+ConstraintPattern::ConstraintPattern(std::size_t vertex_count, const VertexConstraints& constraints)
+    : free(free_vertices(vertex_count, constraints)) {
+  for (const SoftConstraint& s : constraints.soft)
+    soft_constraint.push_back(s.vertex), weight.push_back(s.weight);
 }
 
-bool HeldPattern::is_empty() const {
-  return static_cast<std::size_t>(free.count) == free.slot.size() && spring.empty();
+bool ConstraintPattern::is_empty() const {
+  return static_cast<std::size_t>(free.count) == free.slot.size() && soft_constraint.empty();
 }
 
-void describe(Fingerprint& key, const HeldPattern& held) {
-  const auto& [free, spring, weight] = held;
-  key.add(free.slot).add(spring).add(weight);
+void describe(CacheKey& key, const ConstraintPattern& constrained) {
+  const auto& [free, soft_constraint, weight] = constrained;
+  key.add(free.slot).add(soft_constraint).add(weight);
 }
 
-void describe(Fingerprint& key, const GlobalStep& global) { key.add(global.made_of()); }
+void describe(CacheKey& key, const GlobalStep& global) { key.add(global.made_of()); }
 
 std::vector<Vec2> by_rank(std::span<const Vec2> by_vertex, std::span<const Index> rank) {
   std::vector<Vec2> sorted(rank.size());
@@ -93,14 +101,14 @@ std::vector<Vec2> by_vertex(std::span<const Vec2> by_rank, std::span<const Index
   return sorted;
 }
 
-GlobalStep::GlobalStep(const Disk& disk, const Holds& holds, Executor* executor)
-    : held_(disk.positions.size(), holds), executor_(executor) {
+GlobalStep::GlobalStep(const Disk& disk, const VertexConstraints& constraints, Executor* executor)
+    : held_(disk.positions.size(), constraints), executor_(executor) {
   if (disk.core != nullptr) made_of_ = key_of<factored>(*disk.core, disk, held_);
   if (held_.free.count == 0) {
     rank_ = ranks(held_.free, {});
     return;
   }
-  system_ = kept<factored>(Making{disk.core, disk.stop, &this->executor()}, disk, held_);
+  system_ = cached<factored>(Making{disk.core, disk.stop, &this->executor()}, disk, held_);
   rank_ = ranks(held_.free, system_->analysis()->nodes.position);
 }
 
@@ -132,16 +140,16 @@ void GlobalStep::ascend_by_rank(std::span<Vec2> force, std::span<const char> ove
 }
 
 std::vector<char> GlobalStep::over(std::span<const Index> ranks) const {
-  return supernodes_over(*system_->analysis(), ranks);
+  return linear::supernodes_over(*system_->analysis(), ranks);
 }
 
-void GlobalStep::solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const {
+void GlobalStep::solve_alike(const linear::SparseMatrix& lower, std::span<Vec2> b) const {
   assert(held_.free.count == static_cast<Index>(b.size()));
   throw_if_cancelled(executor().stop());
-  const auto other = definite(try_factor(system_->analysis(), lower, executor()));
+  const auto other = linear::definite(linear::try_factor(system_->analysis(), lower, executor()));
   throw_if_cancelled(executor().stop());
   other->solve(b, executor());
   throw_if_cancelled(executor().stop());
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

@@ -10,20 +10,20 @@
 #include "core/linear/eliminate.hpp"
 #include "core/linear/engine.hpp"
 #include "core/solve/base/disk.hpp"
-#include "core/solve/base/holds.hpp"
+#include "core/solve/base/vertex_constraints.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 
 /// How vertices are held, wherever that is: all that the matrix reads of Holds.
-struct HeldPattern {
-  FreeVertices free;
-  std::vector<Index> spring;  ///< vertices, and the weights of their springs
+struct ConstraintPattern {
+  linear::FreeVertices free;
+  std::vector<Index> soft_constraint;  ///< vertices, and the weights of their springs
   std::vector<double> weight;
 
-  HeldPattern(std::size_t vertex_count, const Holds& holds);
+  ConstraintPattern(std::size_t vertex_count, const VertexConstraints& constraints);
   [[nodiscard]] bool is_empty() const;
 };
-void describe(Fingerprint& key, const HeldPattern& held);
+void describe(CacheKey& key, const ConstraintPattern& constrained);
 
 /// The matrix of Eq. (4), factored once: the Hessian of Objective for fixed fits. It depends on the
 /// mesh, on which vertices are held and on the springs' weights, not on where they are held: jobs
@@ -32,7 +32,7 @@ class GlobalStep {
  public:
   /// executor: runs the factor and all solves; null: the calling thread. Throws
   /// Error{solver_failed, too_much_memory}.
-  GlobalStep(const Disk& disk, const Holds& holds, Executor* executor = nullptr);
+  GlobalStep(const Disk& disk, const VertexConstraints& constraints, Executor* executor = nullptr);
 
   /// What runs its solves.
   [[nodiscard]] Executor& executor() const { return executor_ != nullptr ? *executor_ : serial_; }
@@ -60,25 +60,25 @@ class GlobalStep {
 
   /// Replaces b by the solution for another positive definite matrix of the same pattern, of which
   /// the lower triangle is given; nothing is held. Throws Error{solver_failed}.
-  void solve_alike(const SparseMatrix& lower, std::span<Vec2> b) const;
+  void solve_alike(const linear::SparseMatrix& lower, std::span<Vec2> b) const;
 
   /// What it was made of; nothing where nothing is shared.
   [[nodiscard]] const std::optional<Digest>& made_of() const { return made_of_; }
 
  private:
-  HeldPattern held_;
+  ConstraintPattern held_;
   std::optional<Digest> made_of_;
-  std::shared_ptr<const Factor> system_;  // null where no vertex is free
+  std::shared_ptr<const linear::Factor> system_;  // null where no vertex is free
   std::vector<Index> rank_;
   Executor* executor_;
   mutable SerialExecutor serial_;
 };
 
 /// All but what runs it.
-void describe(Fingerprint& key, const GlobalStep& global);
+void describe(CacheKey& key, const GlobalStep& global);
 
 /// One entry a vertex, listed by ranks; and back.
 std::vector<Vec2> by_rank(std::span<const Vec2> by_vertex, std::span<const Index> rank);
 std::vector<Vec2> by_vertex(std::span<const Vec2> by_rank, std::span<const Index> rank);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

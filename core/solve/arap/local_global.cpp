@@ -2,12 +2,12 @@
 
 #include "core/base/cancel.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 Solution local_global(const Assembly& assembly, const UvMap& start,
                       const LocalGlobalOptions& options, const LoopWatch& watch,
                       Executor& executor) {
   const std::span<const Index> rank = assembly.global.rank();
-  Objective objective(assembly.disk, options.rigidity, assembly.holds, rank, executor);
+  Objective objective(assembly.disk, options.rigidity, assembly.constraints, rank, executor);
   UvMap uv = by_rank(start, rank), next(uv.size());
   std::vector<Vec2> step(uv.size());  // the force on the map, then the change that it makes
   Solution solution;
@@ -33,4 +33,4 @@ Solution local_global(const Assembly& assembly, const UvMap& start,
   return solution;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

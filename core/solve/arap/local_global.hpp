@@ -5,12 +5,12 @@
 #include "core/solve/arap/objective.hpp"
 #include "core/solve/base/solution.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 
 /// A disk, its held vertices, and the system that was factored for both.
 struct Assembly {
   const Disk& disk;
-  const Holds& holds;
+  const VertexConstraints& constraints;
   const GlobalStep& global;
 };
 
@@ -29,4 +29,4 @@ Solution local_global(const Assembly& assembly, const UvMap& start,
 
 inline constexpr double kMinAreaShare = 0.01;
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

@@ -14,9 +14,9 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/solve/arap/fit_abreast.hpp"
+#include "core/solve/arap/local_step_simd.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
 /// The vertices of one block: where they lie, and the forces on them.
@@ -56,7 +56,7 @@ class BlockVertices {
 template <typename Registers>
 [[gnu::always_inline]] inline LocalSums fit_block(const LocalStep& step, const FaceBlock& block) {
   BlockVertices vertices(step, block);
-  FitAbreast<Registers> fit(vertices.uv(), vertices.force(), step.rigidity);
+  SimdLocalStep<Registers> fit(vertices.uv(), vertices.force(), step.rigidity);
   for (std::size_t g = block.group_begin; g < block.group_end; ++g) fit.add(step.blocks.groups[g]);
   vertices.give_back();
   return fit.sums();
@@ -103,7 +103,7 @@ double hybrid_scale(double lambda, double q) {
   return r;
 }
 
-Similarity fit_similarity(const Jacobian& j, double lambda) {
+Similarity fit_similarity(const measure::Jacobian& j, double lambda) {
   assert(lambda >= 0);
   const double q = j.turn_scale();
   const double r = hybrid_scale(lambda, q);
@@ -111,7 +111,7 @@ Similarity fit_similarity(const Jacobian& j, double lambda) {
   return {r * j.e / q, -r * j.h / q};
 }
 
-double fit_energy(const Jacobian& j, const Similarity& fit, double area, double lambda) {
+double fit_energy(const measure::Jacobian& j, const Similarity& fit, double area, double lambda) {
   const double de = j.e - fit.a, dh = j.h + fit.b;
   const double misfit = 2 * (de * de + dh * dh + j.f * j.f + j.g * j.g);
   const double excess = fit.a * fit.a + fit.b * fit.b - 1;
@@ -128,4 +128,4 @@ LocalSums LocalStep::run_on_baseline(Executor& executor) const {
   return fit_all(*this, fit_block_on_baseline, executor);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

@@ -9,7 +9,7 @@
 #include "core/measure/jacobian.hpp"
 #include "core/solve/arap/face_blocks.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 
 /// How strongly a triangle's fit is held to a rotation: the dimensionless lambda of
 ///   E = sum A_t [ |J_t - L_t|^2 + lambda_t (a_t^2 + b_t^2 - 1)^2 ].
@@ -34,10 +34,10 @@ inline constexpr double kNewtonTolerance = 1e-8;  ///< of a step to r: its squar
 double hybrid_scale(double lambda, double q);
 
 /// The minimiser of A_t |J - L|^2 + A_t lambda (a^2 + b^2 - 1)^2 over all similarities L.
-Similarity fit_similarity(const Jacobian& j, double lambda);
+Similarity fit_similarity(const measure::Jacobian& j, double lambda);
 
 /// A_t |J - L|^2 + A_t lambda (a^2 + b^2 - 1)^2 for the fitted L.
-double fit_energy(const Jacobian& j, const Similarity& fit, double area, double lambda);
+double fit_energy(const measure::Jacobian& j, const Similarity& fit, double area, double lambda);
 
 /// Of a map.
 struct LocalSums {
@@ -60,4 +60,4 @@ struct LocalStep {
   LocalSums run_on_baseline(Executor& executor) const;
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

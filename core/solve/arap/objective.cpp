@@ -3,41 +3,43 @@
 #include <cassert>
 #include <utility>
 
-#include "core/solve/base/kept.hpp"
+#include "core/linear/sparse.hpp"
+#include "core/solve/base/cached.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linear::at;
 
-Holds renumbered(Holds holds, std::span<const Index> rank) {
-  for (FixedPoint& point : holds.fixed) point.vertex = rank[at(point.vertex)];
-  for (Spring& spring : holds.springs) spring.vertex = rank[at(spring.vertex)];
-  return holds;
+VertexConstraints renumbered(VertexConstraints constraints, std::span<const Index> rank) {
+  for (HardConstraint& point : constraints.hard) point.vertex = rank[at(point.vertex)];
+  for (SoftConstraint& soft_constraint : constraints.soft)
+    soft_constraint.vertex = rank[at(soft_constraint.vertex)];
+  return constraints;
 }
 
-FaceBlocks blocks_of(const Making& by, const SharedList<RestTriangle>& rest,
+FaceBlocks blocks_of(const Making& by, const SharedList<measure::RestTriangle>& rest,
                      ListView<Triangle> faces, std::span<const Index> rank) {
   return face_blocks(rest, faces, rank, by.stop);
 }
 
 }  // namespace
 
-Objective::Objective(const Disk& disk, const Rigidity& rigidity, Holds holds,
+Objective::Objective(const Disk& disk, const Rigidity& rigidity, VertexConstraints constraints,
                      std::span<const Index> rank, Executor& executor)
     : rigidity_(rigidity),
-      holds_(renumbered(std::move(holds), rank)),
+      holds_(renumbered(std::move(constraints), rank)),
       executor_(executor),
-      blocks_(kept<blocks_of>(Making{disk.core, disk.stop}, disk.rest, disk.faces, rank)),
+      blocks_(cached<blocks_of>(Making{disk.core, disk.stop}, disk.rest, disk.faces, rank)),
       beyond_(blocks_->beyond.size()) {}
 
 double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const {
   double energy = 0;
-  for (const Spring& spring : holds_.springs) {
-    const std::size_t v = at(spring.vertex);
-    const Vec2 away = uv[v] - spring.at;
-    energy += spring.weight * away.squaredNorm();
-    force[v] -= 2 * spring.weight * away;
+  for (const SoftConstraint& soft_constraint : holds_.soft) {
+    const std::size_t v = at(soft_constraint.vertex);
+    const Vec2 away = uv[v] - soft_constraint.at;
+    energy += soft_constraint.weight * away.squaredNorm();
+    force[v] -= 2 * soft_constraint.weight * away;
   }
   return energy;
 }
@@ -45,9 +47,9 @@ double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) 
 double Objective::evaluate(std::span<const Vec2> uv, std::span<Vec2> force) {
   const LocalSums fits = LocalStep{*blocks_, uv, rigidity_, force, beyond_}.run(executor_);
   uv_area_ = fits.uv_area;
-  const double springs = pull_springs(uv, force);
-  for (const FixedPoint& point : holds_.fixed) force[at(point.vertex)].setZero();
-  return fits.energy + springs;
+  const double soft = pull_springs(uv, force);
+  for (const HardConstraint& point : holds_.hard) force[at(point.vertex)].setZero();
+  return fits.energy + soft;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

@@ -9,15 +9,15 @@
 #include "core/base/executor.hpp"
 #include "core/solve/arap/local_step.hpp"
 #include "core/solve/base/disk.hpp"
-#include "core/solve/base/holds.hpp"
+#include "core/solve/base/vertex_constraints.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 
 class Objective {
  public:
   /// executor must outlive the objective. rank: that of GlobalStep, or any permutation.
-  Objective(const Disk& disk, const Rigidity& rigidity, Holds holds, std::span<const Index> rank,
-            Executor& executor);
+  Objective(const Disk& disk, const Rigidity& rigidity, VertexConstraints constraints,
+            std::span<const Index> rank, Executor& executor);
 
   /// Returns E(uv). force becomes -dE/du: zero at fixed vertices. For fixed fits the Hessian of E
   /// is the matrix of GlobalStep, so that one plain iteration is uv += A^-1 force. Both spans have
@@ -31,11 +31,11 @@ class Objective {
   double pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const;
 
   Rigidity rigidity_;
-  Holds holds_;  // by ranks
+  VertexConstraints holds_;  // by ranks
   Executor& executor_;
   std::shared_ptr<const FaceBlocks> blocks_;
   std::vector<Vec2> beyond_;  // scratch of the local step
   double uv_area_ = 0;
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

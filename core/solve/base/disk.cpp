@@ -4,9 +4,9 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 
 namespace {
 
@@ -23,18 +23,18 @@ std::vector<Vec3> normalised(std::span<const Vec3> positions, double unit,
   return moved;
 }
 
-std::vector<RestTriangle> rest_of(const Making& by, const SharedList<Vec3>& positions,
-                                  ListView<Triangle> faces) {
-  return flatten(positions, faces, *by.executor);
+std::vector<measure::RestTriangle> rest_of(const Making& by, const SharedList<Vec3>& positions,
+                                           ListView<Triangle> faces) {
+  return measure::flatten(positions, faces, *by.executor);
 }
 
-VertexCorners corners_of(const Making& by, ListView<Triangle> faces, Index vertex_count) {
-  return vertex_corners(faces, vertex_count, by.stop);
+linear::VertexCorners corners_of(const Making& by, ListView<Triangle> faces, Index vertex_count) {
+  return linear::vertex_corners(faces, vertex_count, by.stop);
 }
 
 /// Long lists are known by a digest, so that their bytes are not read again for every key: faces
 /// and places by that of their bytes, what follows from them by theirs.
-void tell_digests(const SolverCore& core, Disk& disk) {
+void tell_digests(const SharedCache& core, Disk& disk) {
   disk.faces = known_by_bytes(&core, disk.faces);
   disk.positions = known_by_bytes(&core, disk.positions);
   disk.rest = disk.rest.known_as(key_of<rest_of>(core, disk.positions, disk.faces));
@@ -44,7 +44,7 @@ void tell_digests(const SolverCore& core, Disk& disk) {
 
 }  // namespace
 
-void describe(Fingerprint& key, const Disk& disk) {
+void describe(CacheKey& key, const Disk& disk) {
   const auto& [faces, loops, positions, rest, corners, unit, core, twin, is_ordered, stop] = disk;
   static_cast<void>(core), static_cast<void>(stop);
   key.add(faces).add(loops).add(positions).add(rest).add(corners.begin).add(corners.corner);
@@ -54,7 +54,7 @@ void describe(Fingerprint& key, const Disk& disk) {
 Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, Executor& executor) {
   const std::stop_token stop = executor.stop();
   throw_if_cancelled(stop);
-  const double area = surface_area(mesh, executor);
+  const double area = measure::surface_area(mesh, executor);
   if (!(area > 0) || !std::isfinite(area))
     throw Error(ErrorCode::zero_area,
                 "a part of the mesh has no area that double precision can hold; scale the mesh to "
@@ -65,7 +65,7 @@ Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, Executo
             .rest = {},
             .corners = {},
             .unit = std::sqrt(area),
-            .core = executor.shared_core(),
+            .core = executor.shared_cache(),
             .stop = stop};
   const Making by{disk.core, stop, &executor};
   disk.positions = normalised(mesh.positions, disk.unit, stop);
@@ -82,4 +82,4 @@ Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops,
   return make_disk(mesh, loops, job);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

@@ -5,37 +5,39 @@
 #include <stop_token>
 
 #include "core/base/executor.hpp"
-#include "core/base/solver_core.hpp"
+#include "core/base/shared_cache.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/halfedges.hpp"
 #include "core/mesh/shared_list.hpp"
-#include "core/types/fingerprint.hpp"
+#include "core/types/cache_key.hpp"
 
-namespace unwrapd {
+template <>
+inline constexpr bool unwrapd::kIsPlain<unwrapd::measure::RestTriangle> =
+    sizeof(unwrapd::measure::RestTriangle) == 10 * sizeof(double);
+
+namespace unwrapd::solve {
 
 /// Views into a chart, plus its geometry in units in which the surface area is 1: results do not
 /// depend on the scale or the place of the input. Copies share their lists.
 struct Disk {
   ListView<Triangle> faces;
-  ListView<BoundaryLoop> loops;   ///< the longest first
-  SharedList<Vec3> positions;     ///< one a vertex, centroid at the origin
-  SharedList<RestTriangle> rest;  ///< one a face, areas add up to 1 (up to the height floor)
-  VertexCorners corners;
-  double unit = 1;             ///< mesh units in one disk unit of length
-  SolverCore* core = nullptr;  ///< shares what is made of the disk with other jobs; null: none
-  ListView<Index> twin = {};   ///< of half-edges, as in Chart::halfedges; empty: not known
+  ListView<BoundaryLoop> loops;  ///< the longest first
+  SharedList<Vec3> positions;    ///< one a vertex, centroid at the origin
+  SharedList<measure::RestTriangle>
+      rest;  ///< one a face, areas add up to 1 (up to the height floor)
+  linear::VertexCorners corners;
+  double unit = 1;              ///< mesh units in one disk unit of length
+  SharedCache* core = nullptr;  ///< shares what is made of the disk with other jobs; null: none
+  ListView<Index> twin = {};    ///< of half-edges, as in Chart::halfedges; empty: not known
   bool is_ordered = false;  ///< vertices are numbered in a good order of elimination; core is null
   std::stop_token stop = {};  ///< of the job: what is made of the disk looks at it (cancel.hpp)
 
   [[nodiscard]] Index vertex_count() const { return static_cast<Index>(positions.size()); }
 };
 
-template <>
-inline constexpr bool kIsPlain<RestTriangle> = sizeof(RestTriangle) == 10 * sizeof(double);
-
 /// All of a disk but the job that it belongs to.
-void describe(Fingerprint& key, const Disk& disk);
+void describe(CacheKey& key, const Disk& disk);
 
 /// mesh, loops and what the executor's jobs share must outlive the disk. The same bits by any
 /// executor. Throws Error{zero_area, cancelled}.
@@ -45,4 +47,4 @@ Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, Executo
 Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops,
                const std::stop_token& stop = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

@@ -6,13 +6,13 @@
 
 #include "core/mesh/edges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 
-EdgeLengths edge_lengths(const RestTriangle& triangle) {
+EdgeLengths edge_lengths(const measure::RestTriangle& triangle) {
   return {triangle.edge[0].norm(), triangle.edge[1].norm(), triangle.edge[2].norm()};
 }
 
-std::array<double, 3> corner_angles(const RestTriangle& triangle) {
+std::array<double, 3> corner_angles(const measure::RestTriangle& triangle) {
   std::array<double, 3> angle{};
   for (std::size_t i = 0; i < 3; ++i) angle[(i + 2) % 3] = std::atan2(1.0, triangle.cot[i]);
   return angle;
@@ -25,7 +25,7 @@ std::vector<char> boundary_vertices(const Disk& disk) {
   return on;
 }
 
-std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> triangles,
+std::vector<double> curvature(const Disk& disk, std::span<const measure::RestTriangle> triangles,
                               Executor& executor) {
   std::vector<std::array<double, 3>> angles(triangles.size());
   for_each_part(angles.size(), executor, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -36,14 +36,14 @@ std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> tr
   for (std::size_t v = 0; v < k.size(); ++v)
     k[v] = (on_boundary[v] != 0 ? 1 : 2) * std::numbers::pi;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    look_now_and_then(t, disk.stop);
+    check_cancelled_every(t, disk.stop);
     for (std::size_t i = 0; i < 3; ++i)
       k[static_cast<std::size_t>(disk.faces[t][i])] -= angles[t][i];
   }
   return k;
 }
 
-std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> triangles) {
+std::vector<double> curvature(const Disk& disk, std::span<const measure::RestTriangle> triangles) {
   SerialExecutor serial;
   return curvature(disk, triangles, serial);
 }
@@ -56,18 +56,19 @@ double inner_curvature(const Disk& disk, std::span<const double> curvature) {
   return greatest;
 }
 
-SparseMatrix cotan_laplacian(const Disk& disk, std::span<const RestTriangle> triangles) {
+linear::SparseMatrix cotan_laplacian(const Disk& disk,
+                                     std::span<const measure::RestTriangle> triangles) {
   std::vector<double> weight;
   weight.reserve(3 * triangles.size());
-  for (const RestTriangle& t : triangles)
+  for (const measure::RestTriangle& t : triangles)
     for (double cot : t.cot) weight.push_back(cot / 2);
-  return lower_laplacian(disk.faces, disk.vertex_count(), weight, disk.stop);
+  return linear::lower_laplacian(disk.faces, disk.vertex_count(), weight, disk.stop);
 }
 
-std::vector<double> product(const SparseMatrix& laplacian, std::span<const double> x) {
+std::vector<double> product(const linear::SparseMatrix& laplacian, std::span<const double> x) {
   std::vector<double> y(x.size(), 0.0);
   for (Index j = 0; j < static_cast<Index>(laplacian.cols()); ++j)
-    for (SparseMatrix::InnerIterator it(laplacian, j); it; ++it) {
+    for (linear::SparseMatrix::InnerIterator it(laplacian, j); it; ++it) {
       const auto row = static_cast<std::size_t>(it.row()), column = static_cast<std::size_t>(j);
       y[row] += it.value() * x[column];
       if (row != column) y[column] += it.value() * x[row];
@@ -75,19 +76,22 @@ std::vector<double> product(const SparseMatrix& laplacian, std::span<const doubl
   return y;
 }
 
-InnerSystem::InnerSystem(const Disk& disk, const SparseMatrix& lower)
-    : inner_(number_free(boundary_vertices(disk))), stop_(disk.stop) {
+InnerSystem::InnerSystem(const Disk& disk, const linear::SparseMatrix& lower)
+    : inner_(linear::number_free(boundary_vertices(disk))), stop_(disk.stop) {
   if (inner_.count == 0) return;
   const std::vector<Vec2> zero(disk.positions.size(), Vec2::Zero());
-  system_ = factor(eliminate<SparseMatrix, Vec2>(lower, inner_, zero, stop_).lower, stop_);
+  system_ = linear::factor(
+      linear::eliminate<linear::SparseMatrix, Vec2>(lower, inner_, zero, stop_).lower, stop_);
   for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j) {
-    look_now_and_then(j, stop_);
-    for (SparseMatrix::InnerIterator it(lower, j); it; ++it) {
+    check_cancelled_every(j, stop_);
+    for (linear::SparseMatrix::InnerIterator it(lower, j); it; ++it) {
       const auto i = static_cast<Index>(it.row());
       const Index row = inner_.slot[static_cast<std::size_t>(i)];
       const Index column = inner_.slot[static_cast<std::size_t>(j)];
-      if (row != kFixed && column == kFixed) coupling_.push_back({row, j, it.value()});
-      if (row == kFixed && column != kFixed) coupling_.push_back({column, i, it.value()});
+      if (row != linear::kFixed && column == linear::kFixed)
+        coupling_.push_back({row, j, it.value()});
+      if (row == linear::kFixed && column != linear::kFixed)
+        coupling_.push_back({column, i, it.value()});
     }
   }
 }
@@ -96,12 +100,12 @@ void InnerSystem::solve(std::span<Vec2> x) const {
   if (inner_.count == 0) return;
   std::vector<Vec2> rhs(static_cast<std::size_t>(inner_.count));
   for (std::size_t v = 0; v < x.size(); ++v)
-    if (inner_.slot[v] != kFixed) rhs[static_cast<std::size_t>(inner_.slot[v])] = x[v];
+    if (inner_.slot[v] != linear::kFixed) rhs[static_cast<std::size_t>(inner_.slot[v])] = x[v];
   for (const Coupling& c : coupling_)
     rhs[static_cast<std::size_t>(c.row)] -= c.value * x[static_cast<std::size_t>(c.boundary)];
   system_->solve(rhs, stop_);
   for (std::size_t v = 0; v < x.size(); ++v)
-    if (inner_.slot[v] != kFixed) x[v] = rhs[static_cast<std::size_t>(inner_.slot[v])];
+    if (inner_.slot[v] != linear::kFixed) x[v] = rhs[static_cast<std::size_t>(inner_.slot[v])];
 }
 
 std::vector<double> flat_scales(const Disk& disk, const InnerSystem& inner,
@@ -117,4 +121,4 @@ std::vector<double> flat_scales(const Disk& disk, const InnerSystem& inner,
   return u;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

@@ -12,20 +12,20 @@
 #include "core/linear/factor.hpp"
 #include "core/solve/base/disk.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 
 using EdgeLengths = std::array<double, 3>;  ///< of one face; [i] is from corner i to corner i+1
 
-EdgeLengths edge_lengths(const RestTriangle& triangle);
+EdgeLengths edge_lengths(const measure::RestTriangle& triangle);
 
 /// The angles at the corners, radians, in (0, pi).
-std::array<double, 3> corner_angles(const RestTriangle& triangle);
+std::array<double, 3> corner_angles(const measure::RestTriangle& triangle);
 
 /// What each vertex lacks to a flat neighbourhood, radians: 2 pi - the sum of its angles inside,
 /// pi - that sum on the boundary. triangles: one a face. All together: 2 pi times the Euler
 /// characteristic (Gauss, Bonnet).
-std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> triangles);
-std::vector<double> curvature(const Disk& disk, std::span<const RestTriangle> triangles,
+std::vector<double> curvature(const Disk& disk, std::span<const measure::RestTriangle> triangles);
+std::vector<double> curvature(const Disk& disk, std::span<const measure::RestTriangle> triangles,
                               Executor& executor);
 
 /// The greatest |curvature| of an inner vertex; 0 where there is none.
@@ -37,16 +37,17 @@ std::vector<char> boundary_vertices(const Disk& disk);
 /// The lower triangle of the cotangent Laplacian, positive semidefinite:
 /// (L u)_i = sum over edges of (cot + cot) / 2 (u_i - u_j). When lengths are scaled by exp(u),
 /// L u is the change of the curvature, to first order.
-SparseMatrix cotan_laplacian(const Disk& disk, std::span<const RestTriangle> triangles);
+linear::SparseMatrix cotan_laplacian(const Disk& disk,
+                                     std::span<const measure::RestTriangle> triangles);
 
 /// L x at every vertex, from the lower triangle of L.
-std::vector<double> product(const SparseMatrix& laplacian, std::span<const double> x);
+std::vector<double> product(const linear::SparseMatrix& laplacian, std::span<const double> x);
 
 /// The rows of a Laplacian that belong to inner vertices, factored once.
 class InnerSystem {
  public:
   /// lower: as from cotan_laplacian(). Throws Error{solver_failed, cancelled}.
-  InnerSystem(const Disk& disk, const SparseMatrix& lower);
+  InnerSystem(const Disk& disk, const linear::SparseMatrix& lower);
 
   /// x: one entry a vertex. Values on the boundary stay; inside, x becomes the solution of L x =
   /// what was there. Zeros inside give the harmonic extension of the boundary. Thread-safe. Throws
@@ -60,9 +61,9 @@ class InnerSystem {
     double value;
   };
 
-  FreeVertices inner_;
+  linear::FreeVertices inner_;
   std::vector<Coupling> coupling_;
-  std::unique_ptr<RealSystem> system_;
+  std::unique_ptr<linear::RealSystem> system_;
   std::stop_token stop_;
 };
 
@@ -71,4 +72,4 @@ class InnerSystem {
 std::vector<double> flat_scales(const Disk& disk, const InnerSystem& inner,
                                 std::span<const double> curvature);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

@@ -9,7 +9,7 @@
 #include "core/types/progress.hpp"
 #include "core/types/report.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 
 /// A chart's map. uv is in disk units (the surface has area 1); energies are divided by the surface
 /// area and hence without unit.
@@ -32,4 +32,4 @@ struct SolveWatch {
   LoopWatch loop;
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

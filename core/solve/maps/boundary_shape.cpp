@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 namespace {
 
 /// A loop from one of its vertices on: vertex[k] lies arc[k] after it; the last arc is the whole.
@@ -46,7 +46,7 @@ double angle_at(const Disk& disk, Index v) {
   for (Index k = disk.corners.begin[static_cast<std::size_t>(v)];
        k < disk.corners.begin[static_cast<std::size_t>(v) + 1]; ++k) {
     const Index corner = disk.corners.corner[static_cast<std::size_t>(k)];
-    const RestTriangle& rest = disk.rest[static_cast<std::size_t>(corner / 3)];
+    const measure::RestTriangle& rest = disk.rest[static_cast<std::size_t>(corner / 3)];
     sum += std::atan2(1, rest.cot[static_cast<std::size_t>((corner + 1) % 3)]);
   }
   return sum;
@@ -61,9 +61,9 @@ std::size_t sharpest(const Disk& disk) {
   return static_cast<std::size_t>(std::min_element(angle.begin(), angle.end()) - angle.begin());
 }
 
-std::vector<FixedPoint> on_circle(const Chain& chain) {
+std::vector<HardConstraint> on_circle(const Chain& chain) {
   const double radius = std::sqrt(1 / std::numbers::pi);
-  std::vector<FixedPoint> points;
+  std::vector<HardConstraint> points;
   points.reserve(chain.vertex.size());
   for (std::size_t k = 0; k < chain.vertex.size(); ++k) {
     const double angle = 2 * std::numbers::pi * chain.arc[k] / chain.arc.back();
@@ -86,13 +86,13 @@ std::vector<std::size_t> corners_of(const Chain& chain) {
   return corner;
 }
 
-std::vector<FixedPoint> on_square(const Chain& chain) {
+std::vector<HardConstraint> on_square(const Chain& chain) {
   const std::array<Vec2, 4> place{Vec2(-0.5, -0.5), Vec2(0.5, -0.5), Vec2(0.5, 0.5),
                                   Vec2(-0.5, 0.5)};
   std::vector<std::size_t> corner = corners_of(chain);
   const std::size_t count = corner.size();
   corner.push_back(chain.vertex.size());
-  std::vector<FixedPoint> points;
+  std::vector<HardConstraint> points;
   points.reserve(chain.vertex.size());
   for (std::size_t k = 0; k < count; ++k) {
     const double begin = chain.arc[corner[k]], end = chain.arc[corner[k + 1]];
@@ -112,9 +112,9 @@ int sides_of(const Vec2& p) {
 
 }  // namespace
 
-bool flattens_a_triangle(const Disk& disk, const std::vector<FixedPoint>& points) {
+bool flattens_a_triangle(const Disk& disk, const std::vector<HardConstraint>& points) {
   std::vector<int> sides(disk.positions.size(), 0);
-  for (const FixedPoint& p : points) sides[static_cast<std::size_t>(p.vertex)] = sides_of(p.at);
+  for (const HardConstraint& p : points) sides[static_cast<std::size_t>(p.vertex)] = sides_of(p.at);
   std::vector<char> is_boundary(3 * disk.faces.size(), 0);
   for (Index h : disk.loops.front()) is_boundary[static_cast<std::size_t>(h)] = 1;
   for (std::size_t h = 0; h < is_boundary.size(); ++h) {
@@ -126,10 +126,10 @@ bool flattens_a_triangle(const Disk& disk, const std::vector<FixedPoint>& points
   return false;
 }
 
-std::vector<FixedPoint> boundary_points(const Disk& disk, BoundaryShape shape) {
+std::vector<HardConstraint> boundary_points(const Disk& disk, BoundaryShape shape) {
   assert(shape != BoundaryShape::free);
   if (shape == BoundaryShape::circle) return on_circle(chain_from(disk, 0));
   return on_square(chain_from(disk, sharpest(disk)));
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

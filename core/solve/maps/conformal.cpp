@@ -9,13 +9,13 @@
 
 #include "core/base/error.hpp"
 #include "core/measure/distortion.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 #include "core/solve/maps/conformal_system.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 namespace {
 
-Index start_vertex(const Disk& disk, Index h) {
+Index pinned_start(const Disk& disk, Index h) {
   return disk.faces[static_cast<std::size_t>(h / 3)][static_cast<std::size_t>(h % 3)];
 }
 
@@ -26,7 +26,7 @@ std::array<Index, 2> pins_at_diameter(const Disk& disk) {
   std::vector<Vec3> position;
   for (const BoundaryLoop& loop : disk.loops)
     for (Index h : loop) {
-      vertex.push_back(start_vertex(disk, h));
+      vertex.push_back(pinned_start(disk, h));
       position.push_back(disk.positions[static_cast<std::size_t>(vertex.back())]);
     }
   const auto [a, b] = diameter(position);
@@ -34,12 +34,12 @@ std::array<Index, 2> pins_at_diameter(const Disk& disk) {
 }
 
 /// One at the origin, the other as far away as it lies in space.
-Holds pinned_at_diameter(const Disk& disk) {
+VertexConstraints pinned_at_diameter(const Disk& disk) {
   const auto [a, b] = pins_at_diameter(disk);
   const double length =
       (disk.positions[static_cast<std::size_t>(b)] - disk.positions[static_cast<std::size_t>(a)])
           .norm();
-  return {.fixed = {{a, Vec2::Zero()}, {b, Vec2(length, 0)}}, .springs = {}};
+  return {.hard = {{a, Vec2::Zero()}, {b, Vec2(length, 0)}}, .soft = {}};
 }
 
 /// Inverse iteration on H x = mu B x, B the indicator of the boundary, constants projected out.
@@ -48,10 +48,10 @@ class SpectralIteration {
   explicit SpectralIteration(const Disk& disk)
       : on_boundary_(static_cast<std::size_t>(disk.vertex_count()), 0.0), stop_(disk.stop) {
     for (const BoundaryLoop& loop : disk.loops)
-      for (Index h : loop) on_boundary_[static_cast<std::size_t>(start_vertex(disk, h))] = 1;
+      for (Index h : loop) on_boundary_[static_cast<std::size_t>(pinned_start(disk, h))] = 1;
     boundary_count_ = std::accumulate(on_boundary_.begin(), on_boundary_.end(), 0.0);
     for (double softening = 0; !system_; softening = more_softening(softening)) {
-      ComplexMatrix shifted = conformal_matrix(disk, softening);
+      linear::ComplexMatrix shifted = conformal_matrix(disk, softening);
       for (Index v = 0; v < disk.vertex_count(); ++v)
         shifted.coeffRef(v, v) += kShift * on_boundary_[static_cast<std::size_t>(v)];
       const auto check = [&](std::size_t bytes) { check_memory(disk, bytes); };
@@ -60,11 +60,11 @@ class SpectralIteration {
   }
 
   UvMap run(const UvMap& start) const {
-    std::vector<Complex> z;
+    std::vector<linear::Complex> z;
     for (const Vec2& u : start) z.emplace_back(u.x(), u.y());
     normalise(z);
     for (int k = 0; k < kMaxIterations; ++k) {
-      std::vector<Complex> next(z.size());
+      std::vector<linear::Complex> next(z.size());
       for (std::size_t v = 0; v < z.size(); ++v) next[v] = on_boundary_[v] * z[v];
       system_->solve(next, stop_);
       normalise(next);
@@ -73,7 +73,7 @@ class SpectralIteration {
       if (turned < kTolerance) break;
     }
     UvMap uv;
-    for (const Complex& x : z) uv.emplace_back(x.real(), x.imag());
+    for (const linear::Complex& x : z) uv.emplace_back(x.real(), x.imag());
     return uv;
   }
 
@@ -82,29 +82,30 @@ class SpectralIteration {
   static constexpr double kTolerance = 1e-14;
   static constexpr int kMaxIterations = 200;
 
-  Complex product(std::span<const Complex> x, std::span<const Complex> y) const {
-    Complex sum = 0;
+  linear::Complex product(std::span<const linear::Complex> x,
+                          std::span<const linear::Complex> y) const {
+    linear::Complex sum = 0;
     for (std::size_t v = 0; v < x.size(); ++v) sum += on_boundary_[v] * std::conj(x[v]) * y[v];
     return sum;
   }
 
-  void normalise(std::vector<Complex>& z) const {
-    Complex mean = 0;
+  void normalise(std::vector<linear::Complex>& z) const {
+    linear::Complex mean = 0;
     for (std::size_t v = 0; v < z.size(); ++v) mean += on_boundary_[v] * z[v] / boundary_count_;
-    for (Complex& x : z) x -= mean;
+    for (linear::Complex& x : z) x -= mean;
     const double norm = std::sqrt(std::abs(product(z, z)));
     if (!(norm > 0)) throw Error(ErrorCode::solver_failed, "the spectral map collapsed to a point");
-    for (Complex& x : z) x /= norm;
+    for (linear::Complex& x : z) x /= norm;
   }
 
   std::vector<double> on_boundary_;
   double boundary_count_ = 0;
-  std::unique_ptr<HermitianSystem> system_;
+  std::unique_ptr<linear::HermitianSystem> system_;
   std::stop_token stop_;
 };
 
 UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
-  const double area = uv_area(disk.rest, disk.faces, uv);
+  const double area = measure::uv_area(disk.rest, disk.faces, uv);
   if (!(area > 0) || !std::isfinite(area))
     throw Error(ErrorCode::solver_failed,
                 "the conformal map collapsed; choose another method or initial map");
@@ -115,28 +116,28 @@ UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
 
 /// Empty where there is none.
 UvMap exact_map(const Disk& disk) {
-  const Holds holds = pinned_at_diameter(disk);
-  const auto system = ConformalSystem::exact(disk, holds);
-  return system ? scaled_to_unit_area(disk, system->solve(holds)) : UvMap();
+  const VertexConstraints constraints = pinned_at_diameter(disk);
+  const auto system = ConformalSystem::exact(disk, constraints);
+  return system ? scaled_to_unit_area(disk, system->solve(constraints)) : UvMap();
 }
 
 }  // namespace
 
 UvMap make_conformal_map(const Disk& disk, Pins pins) {
-  const Holds holds = pinned_at_diameter(disk);
-  UvMap uv = ConformalSystem(disk, holds).solve(holds);
+  const VertexConstraints constraints = pinned_at_diameter(disk);
+  UvMap uv = ConformalSystem(disk, constraints).solve(constraints);
   if (pins == Pins::spectral) uv = SpectralIteration(disk).run(uv);
   return scaled_to_unit_area(disk, std::move(uv));
 }
 
 UvMap conformal_map(const Disk& disk, Pins pins) {
-  return kept_of_disk<make_conformal_map>(disk, pins);
+  return cached_of_disk<make_conformal_map>(disk, pins);
 }
 
 std::optional<UvMap> exact_conformal_map(const Disk& disk) {
-  UvMap uv = kept_of_disk<exact_map>(disk);
+  UvMap uv = cached_of_disk<exact_map>(disk);
   if (uv.empty()) return std::nullopt;
   return uv;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

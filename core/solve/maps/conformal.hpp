@@ -8,7 +8,7 @@
 #include "core/solve/base/disk.hpp"
 #include "core/types/options.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 
 /// The map of least conformal energy, scaled so that UV area = 3D area.
 /// Pins::diameter fixes the two boundary vertices that lie farthest apart in space (Sec. 4.2; Levy
@@ -29,4 +29,4 @@ std::optional<UvMap> exact_conformal_map(const Disk& disk);
 /// best pair found by then.
 std::array<Index, 2> diameter(std::span<const Vec3> positions);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

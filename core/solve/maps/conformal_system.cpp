@@ -10,12 +10,12 @@
 #include <cassert>
 #include <utility>
 
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 namespace {
 
-constexpr Complex kI(0, 1);
+constexpr linear::Complex kI(0, 1);
 
 /// Bending a ribbon a million times longer than wide costs less energy than rounding: H is then
 /// indefinite in double precision. Some of L, which holds lengths, makes it definite again.
@@ -26,17 +26,18 @@ std::pair<Index, Index> ends(const Disk& disk, Index h) {
   return {face[static_cast<std::size_t>(h % 3)], face[static_cast<std::size_t>((h + 1) % 3)]};
 }
 
-Complex as_complex(const Vec2& u) { return {u.x(), u.y()}; }
+linear::Complex as_complex(const Vec2& u) { return {u.x(), u.y()}; }
 
 }  // namespace
 
-ComplexMatrix conformal_matrix(const Disk& disk, double softening) {
+linear::ComplexMatrix conformal_matrix(const Disk& disk, double softening) {
   std::vector<double> weight;
   weight.reserve(3 * disk.rest.size());
-  for (const RestTriangle& rest : disk.rest)
+  for (const measure::RestTriangle& rest : disk.rest)
     for (double cot : rest.cot) weight.push_back((1 + softening) * cot);
-  ComplexMatrix lower =
-      lower_laplacian(disk.faces, disk.vertex_count(), weight, disk.stop).cast<Complex>();
+  linear::ComplexMatrix lower =
+      linear::lower_laplacian(disk.faces, disk.vertex_count(), weight, disk.stop)
+          .cast<linear::Complex>();
   for (const BoundaryLoop& loop : disk.loops)
     for (Index h : loop) {
       const auto [i, j] = ends(disk, h);
@@ -48,63 +49,67 @@ ComplexMatrix conformal_matrix(const Disk& disk, double softening) {
   return lower;
 }
 
-std::unique_ptr<HermitianSystem> try_softened(const ComplexMatrix& lower, double softening,
-                                              const MemoryCheck& check,
-                                              const std::stop_token& stop) {
-  std::unique_ptr<HermitianSystem> system = try_factor(lower, check, stop);
-  return softening < kMostSoftening ? std::move(system) : definite(std::move(system));
+std::unique_ptr<linear::HermitianSystem> try_softened(const linear::ComplexMatrix& lower,
+                                                      double softening,
+                                                      const linear::MemoryCheck& check,
+                                                      const std::stop_token& stop) {
+  std::unique_ptr<linear::HermitianSystem> system = linear::try_factor(lower, check, stop);
+  return softening < kMostSoftening ? std::move(system) : linear::definite(std::move(system));
 }
 
 double more_softening(double softening) { return std::max(100 * softening, kLeastSoftening); }
 
-bool ConformalSystem::try_build(const Disk& disk, const Holds& holds, double softening,
-                                bool may_throw) {
+bool ConformalSystem::try_build(const Disk& disk, const VertexConstraints& constraints,
+                                double softening, bool may_throw) {
   stop_ = disk.stop;
   lower_ = conformal_matrix(disk, softening);
-  for (const Spring& spring : holds.springs)
-    lower_.coeffRef(spring.vertex, spring.vertex) += 4 * spring.weight;
-  free_ = free_vertices(disk.positions.size(), holds);
+  for (const SoftConstraint& soft_constraint : constraints.soft)
+    lower_.coeffRef(soft_constraint.vertex, soft_constraint.vertex) += 4 * soft_constraint.weight;
+  free_ = free_vertices(disk.positions.size(), constraints);
   if (free_.count == 0) return true;
-  const std::vector<Complex> nowhere(free_.slot.size());  // only the matrix is wanted
-  const auto reduced = eliminate<ComplexMatrix, Complex>(lower_, free_, nowhere, stop_);
+  const std::vector<linear::Complex> nowhere(free_.slot.size());  // only the matrix is wanted
+  const auto reduced =
+      linear::eliminate<linear::ComplexMatrix, linear::Complex>(lower_, free_, nowhere, stop_);
   const auto check = [&](std::size_t bytes) { check_memory(disk, bytes); };
   system_ = may_throw ? try_softened(reduced.lower, softening, check, disk.stop)
-                      : try_factor(reduced.lower, check, disk.stop);
+                      : linear::try_factor(reduced.lower, check, disk.stop);
   return system_ != nullptr;
 }
 
-ConformalSystem::ConformalSystem(const Disk& disk, const Holds& holds) {
-  assert(holds.count() >= 2);
-  for (double softening = 0; !try_build(disk, holds, softening, true);)
+ConformalSystem::ConformalSystem(const Disk& disk, const VertexConstraints& constraints) {
+  assert(constraints.count() >= 2);
+  for (double softening = 0; !try_build(disk, constraints, softening, true);)
     softening = more_softening(softening);
 }
 
-std::optional<ConformalSystem> ConformalSystem::exact(const Disk& disk, const Holds& holds) {
+std::optional<ConformalSystem> ConformalSystem::exact(const Disk& disk,
+                                                      const VertexConstraints& constraints) {
   ConformalSystem system;
-  if (!system.try_build(disk, holds, 0, false)) return std::nullopt;
+  if (!system.try_build(disk, constraints, 0, false)) return std::nullopt;
   return system;
 }
 
-UvMap ConformalSystem::solve(const Holds& holds) const {
-  using Vector = Eigen::Matrix<Complex, Eigen::Dynamic, 1>;
+UvMap ConformalSystem::solve(const VertexConstraints& constraints) const {
+  using Vector = Eigen::Matrix<linear::Complex, Eigen::Dynamic, 1>;
   Vector z = Vector::Zero(lower_.cols());
-  for (const FixedPoint& point : holds.fixed) z[point.vertex] = as_complex(point.at);
+  for (const HardConstraint& point : constraints.hard) z[point.vertex] = as_complex(point.at);
   Vector pull = -(lower_.selfadjointView<Eigen::Lower>() * z);
-  for (const Spring& spring : holds.springs)
-    pull[spring.vertex] += 4 * spring.weight * as_complex(spring.at);
-  std::vector<Complex> rhs(static_cast<std::size_t>(free_.count));
+  for (const SoftConstraint& soft_constraint : constraints.soft)
+    pull[soft_constraint.vertex] += 4 * soft_constraint.weight * as_complex(soft_constraint.at);
+  std::vector<linear::Complex> rhs(static_cast<std::size_t>(free_.count));
   for (std::size_t v = 0; v < free_.slot.size(); ++v)
-    if (free_.slot[v] != kFixed)
+    if (free_.slot[v] != linear::kFixed)
       rhs[static_cast<std::size_t>(free_.slot[v])] = pull[static_cast<Eigen::Index>(v)];
   if (system_) system_->solve(rhs, stop_);
   UvMap uv;
   uv.reserve(free_.slot.size());
   for (std::size_t v = 0; v < free_.slot.size(); ++v) {
-    const Complex& u = free_.slot[v] == kFixed ? z[static_cast<Eigen::Index>(v)]
-                                               : rhs[static_cast<std::size_t>(free_.slot[v])];
+    const linear::Complex& u = free_.slot[v] == linear::kFixed
+                                   ? z[static_cast<Eigen::Index>(v)]
+                                   : rhs[static_cast<std::size_t>(free_.slot[v])];
     uv.emplace_back(u.real(), u.imag());
   }
   return uv;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

@@ -9,44 +9,44 @@
 #include "core/linear/dominant_lu.hpp"
 #include "core/linear/eliminate.hpp"
 #include "core/linear/factor.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 #include "core/solve/maps/boundary_shape.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 namespace {
 
 /// The boundary where it shall lie, and the numbers of the inner vertices, which are unknown.
 struct ConvexMap {
-  FreeVertices inner;
+  linear::FreeVertices inner;
   UvMap uv;  ///< of all vertices; inner ones at the origin
 };
 
-ConvexMap with_boundary(const Disk& disk, std::span<const FixedPoint> boundary) {
+ConvexMap with_boundary(const Disk& disk, std::span<const HardConstraint> boundary) {
   ConvexMap map{{}, UvMap(disk.positions.size(), Vec2::Zero())};
-  std::vector<char> fixed(disk.positions.size(), 0);
-  for (const FixedPoint& point : boundary) {
-    fixed[static_cast<std::size_t>(point.vertex)] = 1;
+  std::vector<char> hard(disk.positions.size(), 0);
+  for (const HardConstraint& point : boundary) {
+    hard[static_cast<std::size_t>(point.vertex)] = 1;
     map.uv[static_cast<std::size_t>(point.vertex)] = point.at;
   }
-  map.inner = number_free(fixed);
+  map.inner = linear::number_free(hard);
   return map;
 }
 
 void place_inner(std::span<const Vec2> solution, ConvexMap& map) {
   for (std::size_t v = 0; v < map.uv.size(); ++v)
-    if (map.inner.slot[v] != kFixed)
+    if (map.inner.slot[v] != linear::kFixed)
       map.uv[v] = solution[static_cast<std::size_t>(map.inner.slot[v])];
 }
 
 /// tan(angle / 2) at corner i of a rest triangle, from the cotangent, without cancellation.
-double half_angle_tangent(const RestTriangle& rest, std::size_t corner) {
+double half_angle_tangent(const measure::RestTriangle& rest, std::size_t corner) {
   const double cot = rest.cot[(corner + 1) % 3];
   const double root = std::sqrt(1 + cot * cot);
   return cot > 0 ? 1 / (root + cot) : root - cot;
 }
 
 struct LinearSystem {
-  SparseMatrix matrix;
+  linear::SparseMatrix matrix;
   std::vector<Vec2> rhs;
 };
 
@@ -59,17 +59,17 @@ LinearSystem mean_value_system(const Disk& disk, const ConvexMap& map) {
   const auto couple = [&](Index i, Index j, double w) {
     const Index row = map.inner.slot[static_cast<std::size_t>(i)];
     const Index column = map.inner.slot[static_cast<std::size_t>(j)];
-    if (row == kFixed) return;
+    if (row == linear::kFixed) return;
     entries.emplace_back(row, row, w);
-    if (column == kFixed)
+    if (column == linear::kFixed)
       rhs[static_cast<std::size_t>(row)] += w * map.uv[static_cast<std::size_t>(j)];
     else
       entries.emplace_back(row, column, -w);
   };
   for (std::size_t t = 0; t < disk.faces.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) {
-      look_now_and_then(3 * t + i, disk.stop);
-      const RestTriangle& rest = disk.rest[t];
+      check_cancelled_every(3 * t + i, disk.stop);
+      const measure::RestTriangle& rest = disk.rest[t];
       const Triangle& face = disk.faces[t];
       const double tangent = half_angle_tangent(rest, i);
       couple(face[i], face[(i + 1) % 3], tangent / rest.edge[i].norm());
@@ -87,32 +87,33 @@ UvMap tutte_map(const Disk& disk) {
   constexpr auto kMake = [](const Disk& d) {
     return tutte_map(d, boundary_points(d, BoundaryShape::circle));
   };
-  return kept_of_disk<kMake>(disk);
+  return cached_of_disk<kMake>(disk);
 }
 
 UvMap mean_value_map(const Disk& disk) {
   constexpr auto kMake = [](const Disk& d) {
     return mean_value_map(d, boundary_points(d, BoundaryShape::circle));
   };
-  return kept_of_disk<kMake>(disk);
+  return cached_of_disk<kMake>(disk);
 }
 
-UvMap tutte_map(const Disk& disk, std::span<const FixedPoint> boundary) {
+UvMap tutte_map(const Disk& disk, std::span<const HardConstraint> boundary) {
   ConvexMap map = with_boundary(disk, boundary);
   const std::vector<double> equal(3 * disk.faces.size(), 1.0);
-  const SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), equal, disk.stop);
-  auto reduced = eliminate<SparseMatrix, Vec2>(lower, map.inner, map.uv, disk.stop);
-  if (map.inner.count > 0) factor(reduced.lower, disk.stop)->solve(reduced.rhs, disk.stop);
+  const linear::SparseMatrix lower =
+      linear::lower_laplacian(disk.faces, disk.vertex_count(), equal, disk.stop);
+  auto reduced = linear::eliminate<linear::SparseMatrix, Vec2>(lower, map.inner, map.uv, disk.stop);
+  if (map.inner.count > 0) linear::factor(reduced.lower, disk.stop)->solve(reduced.rhs, disk.stop);
   place_inner(reduced.rhs, map);
   return std::move(map.uv);
 }
 
-UvMap mean_value_map(const Disk& disk, std::span<const FixedPoint> boundary) {
+UvMap mean_value_map(const Disk& disk, std::span<const HardConstraint> boundary) {
   ConvexMap map = with_boundary(disk, boundary);
   LinearSystem system = mean_value_system(disk, map);
-  if (map.inner.count > 0) solve_dominant(system.matrix, system.rhs, disk.stop);
+  if (map.inner.count > 0) linear::solve_dominant(system.matrix, system.rhs, disk.stop);
   place_inner(system.rhs, map);
   return std::move(map.uv);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

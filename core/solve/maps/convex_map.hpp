@@ -5,9 +5,9 @@
 #include <span>
 
 #include "core/solve/base/disk.hpp"
-#include "core/solve/base/holds.hpp"
+#include "core/solve/base/vertex_constraints.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 
 /// Equal weights. The longest boundary loop lies on the circle by arc length; vertices of other
 /// loops are inner vertices.
@@ -17,7 +17,7 @@ UvMap tutte_map(const Disk& disk);
 UvMap mean_value_map(const Disk& disk);
 
 /// The same with the longest loop where boundary has it: every vertex of it, on a convex curve.
-UvMap tutte_map(const Disk& disk, std::span<const FixedPoint> boundary);
-UvMap mean_value_map(const Disk& disk, std::span<const FixedPoint> boundary);
+UvMap tutte_map(const Disk& disk, std::span<const HardConstraint> boundary);
+UvMap mean_value_map(const Disk& disk, std::span<const HardConstraint> boundary);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

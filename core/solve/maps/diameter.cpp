@@ -7,7 +7,7 @@
 
 #include "core/solve/maps/conformal.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 namespace {
 
 constexpr std::int64_t kMaxPairs = 20'000'000;
@@ -62,4 +62,4 @@ std::array<Index, 2> diameter(std::span<const Vec3> positions) {
   return {best.a, best.b};
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

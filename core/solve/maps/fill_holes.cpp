@@ -6,10 +6,10 @@
 #include "core/mesh/edges.hpp"
 #include "core/solve/maps/lay_out.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 namespace {
 
-RestTriangle triangle_of(std::span<const Vec3> positions, const Triangle& face) {
+measure::RestTriangle triangle_of(std::span<const Vec3> positions, const Triangle& face) {
   std::array<double, 3> length{};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto a = static_cast<std::size_t>(face[i]);
@@ -22,7 +22,7 @@ RestTriangle triangle_of(std::span<const Vec3> positions, const Triangle& face) 
 /// What the fans add to.
 struct Lists {
   std::vector<Vec3> positions;
-  std::vector<RestTriangle> rest;
+  std::vector<measure::RestTriangle> rest;
 };
 
 void close(const BoundaryLoop& loop, Lists& lists, std::vector<Triangle>& faces) {
@@ -52,8 +52,8 @@ FilledDisk fill_holes(const Disk& disk) {
   filled.disk.stop = disk.stop;
   filled.disk.faces = filled.faces;
   filled.disk.loops = filled.loops;
-  filled.disk.corners = vertex_corners(filled.faces, filled.disk.vertex_count(), disk.stop);
+  filled.disk.corners = linear::vertex_corners(filled.faces, filled.disk.vertex_count(), disk.stop);
   return filled;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

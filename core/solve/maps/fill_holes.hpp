@@ -6,7 +6,7 @@
 
 #include "core/solve/base/disk.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 
 /// A disk without inner holes. Its view looks into the two lists: it moves, but is not copied.
 struct FilledDisk {
@@ -24,4 +24,4 @@ struct FilledDisk {
 /// closer; an ear-cut would bring slivers of its own.
 FilledDisk fill_holes(const Disk& disk);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

@@ -9,14 +9,14 @@
 #include "core/measure/distortion.hpp"
 #include "core/solve/maps/conformal.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 namespace {
 
 /// The rest triangle with its side k from (0, 0) to (base, 0), its longest, and the third corner at
 /// that foot and height.
-RestTriangle triangle_on(std::size_t k, double base, double foot, double height) {
-  height = std::max(height, kMinHeight * base);
-  RestTriangle t;
+measure::RestTriangle triangle_on(std::size_t k, double base, double foot, double height) {
+  height = std::max(height, measure::kMinHeight * base);
+  measure::RestTriangle t;
   t.edge[k] = Vec2(-base, 0);
   t.edge[(k + 1) % 3] = Vec2(base - foot, -height);
   t.edge[(k + 2) % 3] = Vec2(foot, height);
@@ -32,7 +32,7 @@ std::size_t longest_of(const std::array<double, 3>& l) {
 
 }  // namespace
 
-UvMap lay_out(const Disk& disk, std::vector<RestTriangle> flat) {
+UvMap lay_out(const Disk& disk, std::vector<measure::RestTriangle> flat) {
   Disk other = disk;
   other.rest = std::move(flat);
   UvMap uv = make_conformal_map(other, Pins::diameter);
@@ -42,15 +42,15 @@ UvMap lay_out(const Disk& disk, std::vector<RestTriangle> flat) {
 
 void scale_to_area(const Disk& disk, UvMap& uv) {
   double rest_area = 0;
-  for (const RestTriangle& rest : disk.rest) rest_area += rest.area;
-  const double area = uv_area(disk.rest, disk.faces, uv);
+  for (const measure::RestTriangle& rest : disk.rest) rest_area += rest.area;
+  const double area = measure::uv_area(disk.rest, disk.faces, uv);
   if (!(area > 0) || !std::isfinite(area))
     throw Error(ErrorCode::solver_failed,
                 "the map fitted to the flattened triangles collapsed; choose another method");
   for (Vec2& u : uv) u *= std::sqrt(rest_area / area);
 }
 
-RestTriangle triangle_of_lengths(const std::array<double, 3>& l) {
+measure::RestTriangle triangle_of_lengths(const std::array<double, 3>& l) {
   const std::size_t k = longest_of(l);
   const double base = l[k], far = l[(k + 1) % 3], near = l[(k + 2) % 3];
   const double foot =
@@ -59,17 +59,17 @@ RestTriangle triangle_of_lengths(const std::array<double, 3>& l) {
   return triangle_on(k, base, foot, height);
 }
 
-RestTriangle triangle_of_angles(const std::array<double, 3>& angle) {
+measure::RestTriangle triangle_of_angles(const std::array<double, 3>& angle) {
   const double unit = std::numbers::pi / (angle[0] + angle[1] + angle[2]);
   std::array<double, 3> sine{};  // of the angle that faces the side, as the lengths are
   for (std::size_t i = 0; i < 3; ++i) sine[i] = std::sin(unit * angle[(i + 2) % 3]);
   const std::size_t k = longest_of(sine);
   const double near = sine[(k + 2) % 3], at = unit * angle[k];
-  RestTriangle t = triangle_on(k, sine[k], near * std::cos(at), near * std::sin(at));
+  measure::RestTriangle t = triangle_on(k, sine[k], near * std::cos(at), near * std::sin(at));
   const double scale = 1 / std::sqrt(t.area);
   for (Vec2& e : t.edge) e *= scale;
   t.area = 1;
   return t;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

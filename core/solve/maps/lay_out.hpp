@@ -6,13 +6,13 @@
 
 #include "core/solve/base/disk.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 
 /// The map in which every triangle is as similar as possible to its entry in flat (Sec. 4.2 with
 /// other reference triangles; one entry a face), scaled to UV area = 3D area. Exact where the
 /// triangles fit together in the plane; otherwise what does not fit is spread in least squares,
 /// where a layout triangle by triangle would tear. Throws Error{solver_failed}.
-UvMap lay_out(const Disk& disk, std::vector<RestTriangle> flat);
+UvMap lay_out(const Disk& disk, std::vector<measure::RestTriangle> flat);
 
 /// Scales uv so that UV area = 3D area. Throws Error{solver_failed} where uv has no finite area.
 void scale_to_area(const Disk& disk, UvMap& uv);
@@ -20,10 +20,10 @@ void scale_to_area(const Disk& disk, UvMap& uv);
 /// The rest triangle of edge lengths l[i] (of the side from corner i to i+1), in any unit, the
 /// longest > 0. Lengths that break the triangle inequality are drawn to it: the longest stays, and
 /// the third corner lies kMinHeight of it above.
-RestTriangle triangle_of_lengths(const std::array<double, 3>& l);
+measure::RestTriangle triangle_of_lengths(const std::array<double, 3>& l);
 
 /// The rest triangle of these angles (angle[i] at corner i, > 0), with area 1. They are scaled to a
 /// sum of pi first; heights below kMinHeight are raised to it.
-RestTriangle triangle_of_angles(const std::array<double, 3>& angle);
+measure::RestTriangle triangle_of_angles(const std::array<double, 3>& angle);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

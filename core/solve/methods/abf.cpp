@@ -16,7 +16,7 @@
 
 #include "core/base/cancel.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -30,7 +30,7 @@ double square(double x) { return x * x; }
 /// The wheel multiplier of a corner's ring; 0 where it has none.
 double wheel(const Triangle& face, std::size_t corner, const AngleSystem& system) {
   const Index ring = system.rings().of.slot[static_cast<std::size_t>(face[corner])];
-  return ring == kFixed ? 0 : system.multipliers()[static_cast<std::size_t>(ring)][1];
+  return ring == linear::kFixed ? 0 : system.multipliers()[static_cast<std::size_t>(ring)][1];
 }
 
 class AngleNewton {
@@ -126,4 +126,4 @@ Solution abf(const Disk& disk, const SolveWatch& watch, Executor& executor) {
   return solution;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

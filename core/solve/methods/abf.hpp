@@ -9,7 +9,7 @@
 #include "core/solve/base/solution.hpp"
 #include "core/solve/methods/angle_system.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 
 /// Angles on their way to lying flat.
 struct FlatAngles {
@@ -35,4 +35,4 @@ inline constexpr int kMaxAngleIterations = 30;
 /// The map of flat_angles(), laid out; energy as there.
 Solution abf(const Disk& disk, const SolveWatch& watch, Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

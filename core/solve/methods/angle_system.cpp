@@ -8,13 +8,13 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 #include "core/solve/maps/lay_out.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 constexpr double kLeastGap = 0.1;  // of an angle's distance from pi, which scaling may not use up
 constexpr std::size_t kBlock = 2048;  // faces a block
 
@@ -31,7 +31,7 @@ template <class Body>
 void for_ring_corners(const Triangle& face, const Rings& rings, Body body) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Index slot = rings.of.slot[static_cast<std::size_t>(face[i])];
-    if (slot != kFixed) body(static_cast<std::size_t>(slot), i);
+    if (slot != linear::kFixed) body(static_cast<std::size_t>(slot), i);
   }
 }
 
@@ -51,12 +51,12 @@ std::vector<FaceAngles> target_angles(const Disk& disk) {
     for (std::size_t i = 0; i < 3; ++i)
       sum[static_cast<std::size_t>(disk.faces[t][i])] += angles[t][i];
   for (const BoundaryLoop& loop : disk.loops)
-    for (Index h : loop) sum[static_cast<std::size_t>(start_vertex(disk, h))] = 2 * kPi;
+    for (Index h : loop) sum[static_cast<std::size_t>(start_vertex(disk, h))] = 2 * kHalfTurn;
   for (std::size_t t = 0; t < angles.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) {
       const double scaled =
-          angles[t][i] * 2 * kPi / sum[static_cast<std::size_t>(disk.faces[t][i])];
-      angles[t][i] = std::min(scaled, kPi - kLeastGap * (kPi - angles[t][i]));
+          angles[t][i] * 2 * kHalfTurn / sum[static_cast<std::size_t>(disk.faces[t][i])];
+      angles[t][i] = std::min(scaled, kHalfTurn - kLeastGap * (kHalfTurn - angles[t][i]));
     }
   return angles;
 }
@@ -65,12 +65,12 @@ Rings make_rings(const Disk& disk) {
   std::vector<char> on_boundary(disk.positions.size(), 0);
   for (const BoundaryLoop& loop : disk.loops)
     for (Index h : loop) on_boundary[static_cast<std::size_t>(start_vertex(disk, h))] = 1;
-  Rings rings{number_free(on_boundary), {}};
-  rings.turn.assign(static_cast<std::size_t>(rings.of.count), 2 * kPi);
+  Rings rings{linear::number_free(on_boundary), {}};
+  rings.turn.assign(static_cast<std::size_t>(rings.of.count), 2 * kHalfTurn);
   for (std::size_t hole = 1; hole < disk.loops.size(); ++hole) {
     for (Index h : disk.loops[hole])
       rings.of.slot[static_cast<std::size_t>(start_vertex(disk, h))] = rings.of.count;
-    rings.turn.push_back(static_cast<double>(disk.loops[hole].size() + 2) * kPi);
+    rings.turn.push_back(static_cast<double>(disk.loops[hole].size() + 2) * kHalfTurn);
     ++rings.of.count;
   }
   return rings;
@@ -94,7 +94,7 @@ struct AngleSystem::FaceBlock {
   void set(const FaceAngles& angle, const FaceAngles& slope, const FaceAngles& curvature);
 
   /// B P B'
-  [[nodiscard]] PairElement element() const;
+  [[nodiscard]] linear::PairElement element() const;
 };
 
 /// P = 1/D - (1/D) 1 1' (1/D) / (1' (1/D) 1), written without its cancellation.
@@ -102,7 +102,7 @@ void AngleSystem::FaceBlock::set(const FaceAngles& angle, const FaceAngles& slop
                                  const FaceAngles& curvature) {
   const FaceAngles give{1 / curvature[0], 1 / curvature[1], 1 / curvature[2]};
   const double total = give[0] + give[1] + give[2];
-  const double excess = angle[0] + angle[1] + angle[2] - kPi;
+  const double excess = angle[0] + angle[1] + angle[2] - kHalfTurn;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     projection[i][i] = give[i] * (give[j] + give[k]) / total;
@@ -115,8 +115,8 @@ void AngleSystem::FaceBlock::set(const FaceAngles& angle, const FaceAngles& slop
     change[i] = -excess * give[i] / total - dot(projection[i], slope);
 }
 
-PairElement AngleSystem::FaceBlock::element() const {
-  PairElement element{};
+linear::PairElement AngleSystem::FaceBlock::element() const {
+  linear::PairElement element{};
   for (std::size_t i = 0; i < 6; ++i) {
     FaceAngles pushed{};
     for (std::size_t j = 0; j < 3; ++j) pushed[j] = dot(gradient[i], projection[j]);
@@ -136,9 +136,9 @@ Misfit AngleSystem::misfit(std::span<const FaceAngles> angles) const {
   Misfit misfit{std::vector<double>(angles.size()), std::vector<Vec2>(rings_.turn.size())};
   for (std::size_t r = 0; r < misfit.ring.size(); ++r) misfit.ring[r] = Vec2(-rings_.turn[r], 0);
   for (std::size_t t = 0; t < angles.size(); ++t) {
-    look_now_and_then(t, disk_.stop);
+    check_cancelled_every(t, disk_.stop);
     const FaceAngles& a = angles[t];
-    misfit.triangle[t] = a[0] + a[1] + a[2] - kPi;
+    misfit.triangle[t] = a[0] + a[1] + a[2] - kHalfTurn;
     for_ring_corners(disk_.faces[t], rings_, [&](std::size_t v, std::size_t i) {
       misfit.ring[v] += Vec2(a[i], std::log(std::sin(a[(i + 1) % 3]) / std::sin(a[(i + 2) % 3])));
     });
@@ -171,7 +171,7 @@ std::vector<FaceAngles> AngleSystem::step(std::span<const FaceAngles> angles,
   const std::vector<FaceBlock> block = blocks(angles, model);
   Misfit left = misfit(angles);
   for (std::size_t t = 0; t < angles.size(); ++t) {
-    look_now_and_then(t, disk_.stop);
+    check_cancelled_every(t, disk_.stop);
     for_ring_corners(disk_.faces[t], rings_, [&](std::size_t v, std::size_t i) {
       left.ring[v] += Vec2(dot(block[t].gradient[2 * i], block[t].change),
                            dot(block[t].gradient[2 * i + 1], block[t].change));
@@ -184,7 +184,7 @@ std::vector<FaceAngles> AngleSystem::step(std::span<const FaceAngles> angles,
   }
   std::vector<FaceAngles> change(angles.size());
   for (std::size_t t = 0; t < angles.size(); ++t) {
-    look_now_and_then(t, disk_.stop);
+    check_cancelled_every(t, disk_.stop);
     FaceAngles pull{};
     for_ring_corners(disk_.faces[t], rings_, [&](std::size_t v, std::size_t i) {
       for (std::size_t j = 0; j < 3; ++j)
@@ -209,9 +209,9 @@ double angle_energy(const AngleSystem& system, std::span<const FaceAngles> angle
 }
 
 UvMap map_of_angles(const Disk& disk, std::span<const FaceAngles> angles) {
-  std::vector<RestTriangle> flat(angles.size());
-  std::transform(angles.begin(), angles.end(), flat.begin(), triangle_of_angles);
-  return lay_out(disk, std::move(flat));
+  std::vector<measure::RestTriangle> flat(angles.size());
+  std::transform(angles.begin(), angles.end(), flat.begin(), maps::triangle_of_angles);
+  return maps::lay_out(disk, std::move(flat));
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -22,7 +22,7 @@
 #include "core/linear/pair_system.hpp"
 #include "core/solve/base/disk.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 
 using FaceAngles = std::array<double, 3>;  ///< at corner i of a face, radians
 
@@ -35,7 +35,7 @@ std::vector<FaceAngles> target_angles(const Disk& disk);
 
 /// What a walk can be made about: inner vertices and holes.
 struct Rings {
-  FreeVertices of;           ///< slot[v]: the ring of vertex v; kFixed on the longest loop
+  linear::FreeVertices of;   ///< slot[v]: the ring of vertex v; kFixed on the longest loop
   std::vector<double> turn;  ///< what the angles of each ring must add up to; 2 pi, (n + 2) pi
 };
 
@@ -81,7 +81,7 @@ class AngleSystem {
   const Disk& disk_;
   Executor& executor_;
   Rings rings_;
-  std::optional<PairSystem> system_;
+  std::optional<linear::PairSystem> system_;
   std::vector<Vec2> multipliers_;
 };
 
@@ -93,4 +93,4 @@ double angle_energy(const AngleSystem& system, std::span<const FaceAngles> angle
 /// The map that these angles, all in (0, pi), give; UV area = 3D area. Throws Error{solver_failed}.
 UvMap map_of_angles(const Disk& disk, std::span<const FaceAngles> angles);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

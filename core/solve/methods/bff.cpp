@@ -23,7 +23,7 @@
 #include "core/solve/maps/fill_holes.hpp"
 #include "core/solve/maps/lay_out.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 /// Edges of the curve may shrink or grow by this share to close it; beyond, all its points move.
@@ -86,20 +86,21 @@ std::vector<Vec2> curve(const Chain& chain, std::span<const Vec2> tangent) {
 
 /// The harmonic conjugates of the two coordinates, as which the curve is given: L y = -d x / d s on
 /// the boundary.
-UvMap conjugates(const Disk& disk, const SparseMatrix& laplacian, const Chain& chain,
+UvMap conjugates(const Disk& disk, const linear::SparseMatrix& laplacian, const Chain& chain,
                  std::span<const Vec2> point) {
   std::vector<char> fixed(disk.positions.size(), 0);
   fixed[chain.vertex.front()] = 1;  // conjugates are defined up to a constant
-  const FreeVertices free = number_free(fixed);
+  const linear::FreeVertices free = linear::number_free(fixed);
   UvMap map(fixed.size(), Vec2::Zero());
-  auto [lower, rhs] = eliminate<SparseMatrix, Vec2>(laplacian, free, map, disk.stop);
+  auto [lower, rhs] =
+      linear::eliminate<linear::SparseMatrix, Vec2>(laplacian, free, map, disk.stop);
   const std::size_t count = point.size();
   for (std::size_t i = 1; i < count; ++i)
     rhs[static_cast<std::size_t>(free.slot[chain.vertex[i]])] +=
         (point[i - 1] - point[(i + 1) % count]) / 2;
-  factor(lower, disk.stop)->solve(rhs, disk.stop);
+  linear::factor(lower, disk.stop)->solve(rhs, disk.stop);
   for (std::size_t v = 0; v < map.size(); ++v)
-    if (free.slot[v] != kFixed) map[v] = rhs[static_cast<std::size_t>(free.slot[v])];
+    if (free.slot[v] != linear::kFixed) map[v] = rhs[static_cast<std::size_t>(free.slot[v])];
   return map;
 }
 
@@ -116,7 +117,7 @@ UvMap holomorphic(const Chain& chain, UvMap harmonic, const UvMap& conjugate) {
 UvMap flatten(const Disk& disk, const SolveWatch& watch) {
   throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::factor);
-  const SparseMatrix laplacian = cotan_laplacian(disk, disk.rest);
+  const linear::SparseMatrix laplacian = cotan_laplacian(disk, disk.rest);
   const InnerSystem inner(disk, laplacian);
   throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::solve);
@@ -135,13 +136,13 @@ UvMap flatten(const Disk& disk, const SolveWatch& watch) {
 }  // namespace
 
 Solution bff(const Disk& disk, const SolveWatch& watch) {
-  const FilledDisk filled = fill_holes(disk);
+  const maps::FilledDisk filled = maps::fill_holes(disk);
   Solution solution{
       .uv = flatten(filled.disk, watch), .energy = {}, .stop_reason = StopReason::direct};
   solution.uv.resize(disk.positions.size());
-  scale_to_area(disk, solution.uv);
-  solution.energy.push_back(asap_energy(disk.rest, disk.faces, solution.uv));
+  maps::scale_to_area(disk, solution.uv);
+  solution.energy.push_back(measure::asap_energy(disk.rest, disk.faces, solution.uv));
   return solution;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

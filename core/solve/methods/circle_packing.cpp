@@ -17,7 +17,7 @@
 #include "core/mesh/edges.hpp"
 #include "core/solve/base/metric.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 constexpr double kLeastLength = 1e-6;  // disk units: shorter edges count as this long
@@ -73,7 +73,7 @@ void fit(const Disk& disk, std::span<const EdgeLengths> length, std::span<const 
          std::vector<double>& radius) {
   std::vector<double> pull(radius.size(), 0.0), stiffness(radius.size(), 0.0);
   for (std::size_t t = 0; t < length.size(); ++t) {
-    look_now_and_then(t, disk.stop);
+    check_cancelled_every(t, disk.stop);
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t a = index(disk.faces[t][i]), b = index(disk.faces[t][(i + 1) % 3]);
       const Demand of_a = demand(radius[a], radius[b], length[t][i]);
@@ -183,7 +183,7 @@ PackedAngles packed_angles(const Disk& disk, const CirclePacking& packing) {
   for (char on_boundary : boundary_vertices(disk))
     packed.curvature.push_back((on_boundary != 0 ? 1 : 2) * std::numbers::pi);
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    look_now_and_then(t, disk.stop);
+    check_cancelled_every(t, disk.stop);
     const CircleTriangle triangle = circles(disk.faces[t], packing, t);
     const double twice_area = triangle.twice_area();
     std::array<double, 3> angle{};
@@ -197,4 +197,4 @@ PackedAngles packed_angles(const Disk& disk, const CirclePacking& packing) {
   return packed;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

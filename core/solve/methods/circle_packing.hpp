@@ -7,7 +7,7 @@
 
 #include "core/solve/base/disk.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 
 /// Thurston's circle packing metric. The length of an edge between circles of radii r, s is
 /// l^2 = r^2 + s^2 + 2 c r s, c being the cosine of the angle at which they cross, in [0, 1]. Any
@@ -30,4 +30,4 @@ struct PackedAngles {
 /// The Laplacian of weight is the Jacobian of the curvature by the logarithms of the radii.
 PackedAngles packed_angles(const Disk& disk, const CirclePacking& packing);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -16,7 +16,7 @@
 #include "core/solve/maps/fill_holes.hpp"
 #include "core/solve/maps/lay_out.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 /// A triangle may lose this share of its height over its longest edge and not more.
@@ -29,24 +29,25 @@ double mean_scale(double a, double b) {
   return std::exp((a + b) / 2) * spread;
 }
 
-double slenderness(const RestTriangle& triangle) {
+double slenderness(const measure::RestTriangle& triangle) {
   const EdgeLengths l = edge_lengths(triangle);
   const double longest = std::max({l[0], l[1], l[2]});
   return 2 * triangle.area / (longest * longest);
 }
 
 /// u: at the corners. Only the shape of the result counts.
-RestTriangle scaled(const RestTriangle& triangle, const std::array<double, 3>& u) {
+measure::RestTriangle scaled(const measure::RestTriangle& triangle,
+                             const std::array<double, 3>& u) {
   const double greatest = std::max({u[0], u[1], u[2]});  // against overflow
   EdgeLengths l = edge_lengths(triangle);
   for (std::size_t i = 0; i < 3; ++i)
     l[i] *= mean_scale(u[i] - greatest, u[(i + 1) % 3] - greatest);
-  const RestTriangle flat = triangle_of_lengths(l);
+  const measure::RestTriangle flat = maps::triangle_of_lengths(l);
   return slenderness(flat) < (1 - kMostThinning) * slenderness(triangle) ? triangle : flat;
 }
 
-std::vector<RestTriangle> scaled(const Disk& disk, std::span<const double> u) {
-  std::vector<RestTriangle> flat;
+std::vector<measure::RestTriangle> scaled(const Disk& disk, std::span<const double> u) {
+  std::vector<measure::RestTriangle> flat;
   flat.reserve(disk.rest.size());
   for (std::size_t t = 0; t < disk.rest.size(); ++t) {
     const auto at = [&](std::size_t i) { return u[static_cast<std::size_t>(disk.faces[t][i])]; };
@@ -58,7 +59,7 @@ std::vector<RestTriangle> scaled(const Disk& disk, std::span<const double> u) {
 }  // namespace
 
 Solution cp(const Disk& disk, const SolveWatch& watch) {
-  const FilledDisk filled = fill_holes(disk);
+  const maps::FilledDisk filled = maps::fill_holes(disk);
   const std::vector<double> bent = curvature(filled.disk, filled.disk.rest);
   throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::factor);
@@ -66,17 +67,17 @@ Solution cp(const Disk& disk, const SolveWatch& watch) {
   const std::vector<double> u = flat_scales(filled.disk, inner, bent);
   throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::solve);
-  std::vector<RestTriangle> flat = scaled(filled.disk, u);
+  std::vector<measure::RestTriangle> flat = scaled(filled.disk, u);
   const std::vector<double> left = curvature(filled.disk, flat);
-  Solution solution{.uv = lay_out(filled.disk, std::move(flat)),
+  Solution solution{.uv = maps::lay_out(filled.disk, std::move(flat)),
                     .energy = {inner_curvature(filled.disk, bent)},
                     .stop_reason = StopReason::direct};
   solution.uv.resize(disk.positions.size());
-  scale_to_area(disk, solution.uv);
+  maps::scale_to_area(disk, solution.uv);
   solution.energy.push_back(inner_curvature(filled.disk, left));
   solution.iterations = 1;
   if (watch.loop.on_iteration) watch.loop.on_iteration(solution);
   return solution;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

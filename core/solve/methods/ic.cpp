@@ -16,7 +16,7 @@
 #include "core/solve/maps/lay_out.hpp"
 #include "core/solve/methods/circle_packing.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 constexpr double kFlat = 1e-9;  // radians
@@ -54,10 +54,10 @@ class Flow {
     return false;
   }
 
-  [[nodiscard]] std::vector<RestTriangle> triangles() const {
-    std::vector<RestTriangle> flat;
+  [[nodiscard]] std::vector<measure::RestTriangle> triangles() const {
+    std::vector<measure::RestTriangle> flat;
     flat.reserve(packed_.angle.size());
-    for (const auto& angle : packed_.angle) flat.push_back(triangle_of_angles(angle));
+    for (const auto& angle : packed_.angle) flat.push_back(maps::triangle_of_angles(angle));
     return flat;
   }
 
@@ -72,7 +72,7 @@ class Flow {
     std::vector<double> weight = packed_.weight;
     for (double& w : weight) w = std::max(w, kLeastWeight);
     const InnerSystem jacobian(
-        disk_, lower_laplacian(disk_.faces, disk_.vertex_count(), weight, disk_.stop));
+        disk_, linear::lower_laplacian(disk_.faces, disk_.vertex_count(), weight, disk_.stop));
     return flat_scales(disk_, jacobian, packed_.curvature);
   }
 
@@ -89,10 +89,10 @@ class Flow {
   PackedAngles packed_;
 };
 
-UvMap drawn(const Disk& disk, const FilledDisk& filled, const Flow& flow) {
-  UvMap uv = lay_out(filled.disk, flow.triangles());
+UvMap drawn(const Disk& disk, const maps::FilledDisk& filled, const Flow& flow) {
+  UvMap uv = maps::lay_out(filled.disk, flow.triangles());
   uv.resize(disk.positions.size());
-  scale_to_area(disk, uv);
+  maps::scale_to_area(disk, uv);
   return uv;
 }
 
@@ -100,7 +100,7 @@ UvMap drawn(const Disk& disk, const FilledDisk& filled, const Flow& flow) {
 
 Solution ic(const Disk& disk, const SolveWatch& watch) {
   throw_if_cancelled(watch.loop.stop);
-  const FilledDisk filled = fill_holes(disk);
+  const maps::FilledDisk filled = maps::fill_holes(disk);
   Flow flow(filled.disk);
   if (watch.on_stage) watch.on_stage(Stage::solve);
   Solution solution{
@@ -119,4 +119,4 @@ Solution ic(const Disk& disk, const SolveWatch& watch) {
   return solution;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -4,7 +4,7 @@
 #include "core/solve/base/disk.hpp"
 #include "core/solve/base/solution.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 
 /// Yang, Kim, Luo, Hu, Gu 2008: circles about the vertices grow and shrink until the metric that
 /// they make is flat inside; those on the longest boundary keep their size, which distorts areas
@@ -13,4 +13,4 @@ namespace unwrapd {
 /// Throws Error{solver_failed, cancelled}.
 Solution ic(const Disk& disk, const SolveWatch& watch);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -8,7 +8,7 @@
 
 #include "core/base/cancel.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 /// An angle may shrink to this share of its target, where the linear model has lost its meaning.
@@ -65,4 +65,4 @@ Solution linabf(const Disk& disk, const SolveWatch& watch, Executor& executor) {
   return solution;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -6,7 +6,7 @@
 #include "core/solve/base/solution.hpp"
 #include "core/solve/methods/angle_system.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 
 /// The angles that lie flat to first order and deviate least, relative to each, from the targets:
 /// one linear solve. Where a target is far from flat an angle may leave (0, pi).
@@ -17,4 +17,4 @@ std::vector<FaceAngles> linear_angles(const Disk& disk, Executor& executor);
 /// angles. Throws Error{solver_failed, cancelled}.
 Solution linabf(const Disk& disk, const SolveWatch& watch, Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

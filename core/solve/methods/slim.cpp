@@ -13,18 +13,18 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 #include "core/solve/maps/conformal.hpp"
 #include "core/solve/maps/convex_map.hpp"
 #include "core/solve/maps/fill_holes.hpp"
 #include "core/solve/methods/symmetric_dirichlet.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 constexpr double kShareOfFlip = 0.8;  // of the step at which the first triangle flips
 constexpr double kArmijo = 1e-4;      // of the decrease that the gradient promises
-constexpr int kMaxHalvings = 40;
+constexpr int kMaxStepHalvings = 40;
 
 struct Start {
   UvMap uv;
@@ -48,15 +48,15 @@ Start start_from(const Disk& disk, Map map, Executor& executor) {
 
 Start best_start(const Disk& disk, Executor& executor) {
   const bool has_holes = disk.loops.size() > 1;
-  const FilledDisk filled = has_holes ? fill_holes(disk) : FilledDisk();
+  const maps::FilledDisk filled = has_holes ? maps::fill_holes(disk) : maps::FilledDisk();
   const Disk& closed = has_holes ? filled.disk : disk;
   std::array<Start, 3> starts{
       start_from(
-          disk, [&] { return mean_value_map(closed); }, executor),
+          disk, [&] { return maps::mean_value_map(closed); }, executor),
       start_from(
-          disk, [&] { return tutte_map(closed); }, executor),
+          disk, [&] { return maps::tutte_map(closed); }, executor),
       start_from(
-          disk, [&] { return conformal_map(disk, Pins::diameter); }, executor)};
+          disk, [&] { return maps::conformal_map(disk, Pins::diameter); }, executor)};
   Start* best = &starts.front();
   for (Start& start : starts)
     if (start.energy < best->energy) best = &start;  // false for NaN
@@ -67,10 +67,10 @@ Start best_start(const Disk& disk, Executor& executor) {
   return std::move(*best);
 }
 
-FreeVertices all_but_the_first(const Disk& disk) {
+linear::FreeVertices all_but_the_first(const Disk& disk) {
   std::vector<char> fixed(disk.positions.size(), 0);
   fixed.front() = 1;  // translation costs nothing
-  return number_free(fixed);
+  return linear::number_free(fixed);
 }
 
 class Slim {
@@ -103,8 +103,9 @@ class Slim {
   void to_the_minimum_of_the_proxy() {
     system_.clear();
     for (std::size_t t = 0; t < disk_.faces.size(); ++t)
-      system_.add(
-          t, proxy_element(disk_.rest[t], jacobian(disk_.rest[t], uv_edges(disk_.faces[t], uv_))));
+      system_.add(t, proxy_element(
+                         disk_.rest[t],
+                         measure::jacobian(disk_.rest[t], measure::uv_edges(disk_.faces[t], uv_))));
     if (!system_.factor())
       throw Error(ErrorCode::solver_failed,
                   "a triangle became too thin for double precision; remove needle and zero-area "
@@ -119,7 +120,7 @@ class Slim {
     double slope = 0;
     for (std::size_t v = 0; v < uv_.size(); ++v) slope += gradient_[v].dot(step_[v]);
     double length = std::min(1.0, kShareOfFlip * step_to_flip(disk_, uv_, step_, executor_));
-    for (int k = 0; k < kMaxHalvings; ++k, length /= 2) {
+    for (int k = 0; k < kMaxStepHalvings; ++k, length /= 2) {
       UvMap next = uv_;
       for (std::size_t v = 0; v < next.size(); ++v) next[v] += length * step_[v];
       const double energy = symmetric_dirichlet_energy(disk_, next, executor_);
@@ -132,8 +133,8 @@ class Slim {
 
   const Disk& disk_;
   Executor& executor_;
-  FreeVertices free_;
-  PairSystem system_;
+  linear::FreeVertices free_;
+  linear::PairSystem system_;
   UvMap uv_;
   double energy_;
   std::vector<Vec2> gradient_;
@@ -166,4 +167,4 @@ Solution slim(const Disk& disk, const Stop& stop, const SolveWatch& watch, Execu
   return solution;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -6,7 +6,7 @@
 #include "core/solve/base/disk.hpp"
 #include "core/solve/base/solution.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 
 /// The map of a local minimum of symmetric_dirichlet_energy(), which is what energy has: it never
 /// rises, its least is 4. Every map on the way is free of flips. Ends after stop.iterations, where
@@ -15,4 +15,4 @@ namespace unwrapd {
 /// Throws Error{solver_failed} where no start without flips is found, and Error{cancelled}.
 Solution slim(const Disk& disk, const Stop& stop, const SolveWatch& watch, Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

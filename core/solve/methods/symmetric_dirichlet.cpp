@@ -9,32 +9,36 @@
 
 #include "core/measure/orientation.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // faces or vertices a block: sums do not depend on threads
+constexpr std::size_t kFacesOfBlock =
+    4096;  // faces or vertices a block: sums do not depend on threads
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class Body>
 void for_blocks(std::size_t count, Executor& executor, Body body) {
-  executor.for_each_block(static_cast<int>((count + kBlock - 1) / kBlock), [&](int block) {
-    const std::size_t first = static_cast<std::size_t>(block) * kBlock;
-    body(static_cast<std::size_t>(block), first, std::min(count, first + kBlock));
-  });
+  executor.for_each_block(
+      static_cast<int>((count + kFacesOfBlock - 1) / kFacesOfBlock), [&](int block) {
+        const std::size_t first = static_cast<std::size_t>(block) * kFacesOfBlock;
+        body(static_cast<std::size_t>(block), first, std::min(count, first + kFacesOfBlock));
+      });
 }
 
-std::size_t block_count(std::size_t count) { return (count + kBlock - 1) / kBlock; }
+std::size_t block_count(std::size_t count) { return (count + kFacesOfBlock - 1) / kFacesOfBlock; }
 
-double norm2(const Jacobian& j) { return 2 * (j.e * j.e + j.h * j.h + j.f * j.f + j.g * j.g); }
+double norm2(const measure::Jacobian& j) {
+  return 2 * (j.e * j.e + j.h * j.h + j.f * j.f + j.g * j.g);
+}
 
 /// The gradient of the hat function of corner i.
-Vec2 hat_gradient(const RestTriangle& rest, std::size_t i) {
+Vec2 hat_gradient(const measure::RestTriangle& rest, std::size_t i) {
   const Vec2& opposite = rest.edge[(i + 1) % 3];
   return Vec2(opposite.y(), -opposite.x()) / (2 * rest.area);
 }
 
 /// dE/dJ = p J + q cof(J): the similarity part of cof(J) is that of J, the rest has the other sign.
-Jacobian energy_slope(const Jacobian& j) {
+measure::Jacobian energy_slope(const measure::Jacobian& j) {
   const double det = j.determinant();
   const double p = 2 + 2 / (det * det);
   const double q = -2 * norm2(j) / (det * det * det);
@@ -54,14 +58,14 @@ double least_root(double a, double b, double c) {
   return least;
 }
 
-double face_step_to_flip(const Jacobian& j, const Jacobian& d) {
+double face_step_to_flip(const measure::Jacobian& j, const measure::Jacobian& d) {
   const double across = 2 * (j.e * d.e + j.h * d.h - j.f * d.f - j.g * d.g);
   return least_root(d.determinant(), across, j.determinant());
 }
 
 }  // namespace
 
-double symmetric_dirichlet(const Jacobian& j) {
+double symmetric_dirichlet(const measure::Jacobian& j) {
   const double det = j.determinant();
   return det > 0 ? norm2(j) * (1 + 1 / (det * det)) : kInfinity;
 }
@@ -70,8 +74,9 @@ double symmetric_dirichlet_energy(const Disk& disk, std::span<const Vec2> uv, Ex
   std::vector<double> sum(block_count(disk.faces.size()), 0.0);
   for_blocks(disk.faces.size(), executor, [&](std::size_t b, std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end && sum[b] < kInfinity; ++t) {
-      const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
-      const bool is_upright = orientation(disk.faces[t], uv) > 0;
+      const measure::Jacobian j =
+          measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], uv));
+      const bool is_upright = measure::orientation(disk.faces[t], uv) > 0;
       const double density = is_upright ? symmetric_dirichlet(j) : kInfinity;
       sum[b] += disk.rest[t].area * density;
     }
@@ -86,13 +91,14 @@ void symmetric_dirichlet_gradient(const Disk& disk, std::span<const Vec2> uv,
   std::vector<Vec2> pull(3 * disk.faces.size());
   for_blocks(disk.faces.size(), executor, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      const RestTriangle& rest = disk.rest[t];
-      const Jacobian slope = energy_slope(jacobian(rest, uv_edges(disk.faces[t], uv)));
+      const measure::RestTriangle& rest = disk.rest[t];
+      const measure::Jacobian slope =
+          energy_slope(measure::jacobian(rest, measure::uv_edges(disk.faces[t], uv)));
       for (std::size_t i = 0; i < 3; ++i)
-        pull[3 * t + i] = rest.area * apply(slope, hat_gradient(rest, i));
+        pull[3 * t + i] = rest.area * measure::apply(slope, hat_gradient(rest, i));
     }
   });
-  const VertexCorners& corners = disk.corners;
+  const linear::VertexCorners& corners = disk.corners;
   for_blocks(gradient.size(), executor, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       gradient[v].setZero();
@@ -105,7 +111,8 @@ void symmetric_dirichlet_gradient(const Disk& disk, std::span<const Vec2> uv,
 double best_scale(const Disk& disk, std::span<const Vec2> uv) {
   double growth = 0, shrinkage = 0;
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
+    const measure::Jacobian j =
+        measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], uv));
     const double det = j.determinant();
     growth += disk.rest[t].area * norm2(j);
     shrinkage += disk.rest[t].area * norm2(j) / (det * det);
@@ -113,7 +120,7 @@ double best_scale(const Disk& disk, std::span<const Vec2> uv) {
   return std::sqrt(std::sqrt(shrinkage / growth));
 }
 
-PairElement proxy_element(const RestTriangle& rest, const Jacobian& j) {
+linear::PairElement proxy_element(const measure::RestTriangle& rest, const measure::Jacobian& j) {
   const double m1 = proxy_weight(j.sigma_max());
   const double m2 = proxy_weight(j.determinant() / j.sigma_max());
   const double qr = j.turn_scale() * j.deformation();
@@ -121,7 +128,7 @@ PairElement proxy_element(const RestTriangle& rest, const Jacobian& j) {
   const double tilt = qr > 0 ? (m1 - m2) / (2 * qr) : 0;
   const double c = tilt * (j.e * j.f - j.h * j.g), s = tilt * (j.h * j.f + j.e * j.g);
   const std::array<std::array<double, 2>, 2> weight{{{mean + c, s}, {s, mean - c}}};
-  PairElement element{};
+  linear::PairElement element{};
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t k = 0; k <= i; ++k)
       element[i][k] = 2 * rest.area * weight[i % 2][k % 2] *
@@ -134,12 +141,14 @@ double step_to_flip(const Disk& disk, std::span<const Vec2> uv, std::span<const 
   std::vector<double> least(block_count(disk.faces.size()), kInfinity);
   for_blocks(disk.faces.size(), executor, [&](std::size_t b, std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
-      const Jacobian d = jacobian(disk.rest[t], uv_edges(disk.faces[t], step));
+      const measure::Jacobian j =
+          measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], uv));
+      const measure::Jacobian d =
+          measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], step));
       least[b] = std::min(least[b], face_step_to_flip(j, d));
     }
   });
   return *std::min_element(least.begin(), least.end());
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

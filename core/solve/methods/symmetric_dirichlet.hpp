@@ -10,11 +10,11 @@
 #include "core/measure/jacobian.hpp"
 #include "core/solve/base/disk.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 
 /// |J|^2 + |J^-1|^2: sigma^2 + 1 / sigma^2 summed over both, 4 where the map is isometric. Infinite
 /// where the determinant is not positive.
-double symmetric_dirichlet(const Jacobian& j);
+double symmetric_dirichlet(const measure::Jacobian& j);
 
 /// The sum of A_t symmetric_dirichlet(J_t), at least 4 on a disk of area 1. Infinite where a
 /// triangle is not strictly counter-clockwise, by an exact test. The same for any executor.
@@ -29,11 +29,11 @@ double best_scale(const Disk& disk, std::span<const Vec2> uv);
 
 /// The Hessian of the quadratic proxy of one face (Rabinovich et al. 2017, Sec. 4): the convex
 /// |W (J - R)|^2, R the nearest rotation, whose gradient is the energy's at the current J.
-PairElement proxy_element(const RestTriangle& rest, const Jacobian& j);
+linear::PairElement proxy_element(const measure::RestTriangle& rest, const measure::Jacobian& j);
 
 /// The least t > 0 at which a triangle of uv + t step has no area; infinite when none ever has
 /// (Smith, Schaefer 2015, Sec. 3.3).
 double step_to_flip(const Disk& disk, std::span<const Vec2> uv, std::span<const Vec2> step,
                     Executor& executor);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

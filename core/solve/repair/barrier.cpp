@@ -13,7 +13,7 @@
 #include "core/measure/orientation.hpp"
 #include "core/solve/repair/profile.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -39,7 +39,7 @@ void add_weighted(double w, const Profile& p, Profile& sum) {
   sum.rr += w * p.rr;
 }
 
-Profile profile(const Jacobian& j, double area, const Barrier& barrier) {
+Profile profile(const measure::Jacobian& j, double area, const Barrier& barrier) {
   const double q = j.turn_scale(), r = j.deformation();
   Profile p = own_profile(q, r, area, barrier);
   if (barrier.dirichlet > 0) add_weighted(barrier.dirichlet, symmetric_dirichlet_profile(q, r), p);
@@ -52,7 +52,7 @@ Profile profile(const Jacobian& j, double area, const Barrier& barrier) {
 
 using Rows = Eigen::Matrix<double, 4, 6>;  // (e, h, f, g) by (u, v) of the three corners
 
-Rows rows_of(const RestTriangle& rest) {
+Rows rows_of(const measure::RestTriangle& rest) {
   Rows rows;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Vec2& facing = rest.edge[static_cast<std::size_t>((i + 1) % 3)];
@@ -66,7 +66,7 @@ Vec2 unit(double x, double y, double length) {
   return length > 0 ? Vec2(x / length, y / length) : Vec2(1, 0);
 }
 
-BarrierElement element(const Jacobian& j, const RestTriangle& rest, double share,
+BarrierElement element(const measure::Jacobian& j, const measure::RestTriangle& rest, double share,
                        const Barrier& barrier) {
   Profile p = profile(j, rest.area, barrier);
   const double q = j.turn_scale(), r = j.deformation();
@@ -88,8 +88,8 @@ BarrierElement element(const Jacobian& j, const RestTriangle& rest, double share
   return {share * rows.transpose() * slope, share * rows.transpose() * bend * rows};
 }
 
-Jacobian jacobian_of(const BarrierMesh& mesh, std::size_t t, std::span<const Vec2> uv) {
-  return jacobian(mesh.rest[t], uv_edges(mesh.faces[t], uv));
+measure::Jacobian jacobian_of(const BarrierMesh& mesh, std::size_t t, std::span<const Vec2> uv) {
+  return measure::jacobian(mesh.rest[t], measure::uv_edges(mesh.faces[t], uv));
 }
 
 double share_of(const BarrierMesh& mesh, std::size_t t) {
@@ -97,26 +97,28 @@ double share_of(const BarrierMesh& mesh, std::size_t t) {
 }
 
 /// By the exact test; the determinant too, which the barrier divides by.
-bool is_positive(const Jacobian& j, const Triangle& face, std::span<const Vec2> uv) {
-  return (j.turn_scale() - j.deformation()) * j.sigma_max() > 0 && orientation(face, uv) > 0;
+bool is_positive(const measure::Jacobian& j, const Triangle& face, std::span<const Vec2> uv) {
+  return (j.turn_scale() - j.deformation()) * j.sigma_max() > 0 &&
+         measure::orientation(face, uv) > 0;
 }
 
 /// Where corner coordinate k (of 6) is among the unknowns; negative when the vertex is fixed.
 Index unknown(const BarrierMesh& mesh, std::size_t t, Index k) {
   const Index slot =
       mesh.free.slot[static_cast<std::size_t>(mesh.faces[t][static_cast<std::size_t>(k / 2)])];
-  return slot == kFixed ? kFixed : 2 * slot + k % 2;
+  return slot == linear::kFixed ? linear::kFixed : 2 * slot + k % 2;
 }
 
 /// The diagonal comes first in every column.
 void add_springs(const BarrierMesh& mesh, std::span<const Vec2> uv, Quadratic& model) {
-  for (const Spring& spring : mesh.springs) {
-    const Index slot = mesh.free.slot[static_cast<std::size_t>(spring.vertex)];
-    if (slot == kFixed) continue;
-    const Vec2 away = uv[static_cast<std::size_t>(spring.vertex)] - spring.at;
+  for (const SoftConstraint& soft_constraint : mesh.soft) {
+    const Index slot = mesh.free.slot[static_cast<std::size_t>(soft_constraint.vertex)];
+    if (slot == linear::kFixed) continue;
+    const Vec2 away = uv[static_cast<std::size_t>(soft_constraint.vertex)] - soft_constraint.at;
     for (Index k = 0; k < 2; ++k) {
-      model.gradient[2 * slot + k] += 2 * spring.weight * away[k];
-      model.hessian.valuePtr()[model.hessian.outerIndexPtr()[2 * slot + k]] += 2 * spring.weight;
+      model.gradient[2 * slot + k] += 2 * soft_constraint.weight * away[k];
+      model.hessian.valuePtr()[model.hessian.outerIndexPtr()[2 * slot + k]] +=
+          2 * soft_constraint.weight;
     }
   }
 }
@@ -126,7 +128,7 @@ void add_lower(const Eigen::Matrix<double, 6, 6>& hessian, const std::array<Inde
   const Index* place = places.data();
   for (Index a = 0; a < 6; ++a)
     for (Index b = 0; b <= a; ++b, ++place)
-      if (*place != kFixed) values[*place] += hessian(a, b);
+      if (*place != linear::kFixed) values[*place] += hessian(a, b);
 }
 
 }  // namespace
@@ -144,10 +146,10 @@ BarrierElement barrier_element(const BarrierMesh& mesh, std::size_t t, std::span
 }
 
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier) {
-  double energy = spring_energy(mesh.springs, uv);
+  double energy = soft_constraint_energy(mesh.soft, uv);
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
-    look_now_and_then(t, mesh.stop);
-    const Jacobian j = jacobian_of(mesh, t, uv);
+    check_cancelled_every(t, mesh.stop);
+    const measure::Jacobian j = jacobian_of(mesh, t, uv);
     if (barrier.epsilon == 0 && !is_positive(j, mesh.faces[t], uv)) return kFar;
     energy += share_of(mesh, t) * profile(j, mesh.rest[t].area, barrier).value;
   }
@@ -157,7 +159,7 @@ double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const B
 double least_determinant(const BarrierMesh& mesh, std::span<const Vec2> uv) {
   double least = kFar;
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
-    look_now_and_then(t, mesh.stop);
+    check_cancelled_every(t, mesh.stop);
     least = std::min(least, jacobian_of(mesh, t, uv).determinant());
   }
   return least;
@@ -165,15 +167,17 @@ double least_determinant(const BarrierMesh& mesh, std::span<const Vec2> uv) {
 
 Quadratic barrier_pattern(const BarrierMesh& mesh) {
   const Index size = 2 * mesh.free.count;
-  Quadratic model{Eigen::VectorXd::Zero(size), pair_pattern(mesh.faces, mesh.free, mesh.stop), {}};
+  Quadratic model{
+      Eigen::VectorXd::Zero(size), linear::pair_pattern(mesh.faces, mesh.free, mesh.stop), {}};
   model.place.resize(mesh.faces.size());
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
-    look_now_and_then(t, mesh.stop);
+    check_cancelled_every(t, mesh.stop);
     std::size_t k = 0;
     for (Index a = 0; a < 6; ++a)
       for (Index b = 0; b <= a; ++b, ++k) {
         const auto [column, row] = std::minmax({unknown(mesh, t, a), unknown(mesh, t, b)});
-        model.place[t][k] = column == kFixed ? kFixed : entry_of(model.hessian, row, column);
+        model.place[t][k] = column == linear::kFixed ? linear::kFixed
+                                                     : linear::entry_of(model.hessian, row, column);
       }
   }
   return model;
@@ -185,15 +189,15 @@ void fill_barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const
   double* values = model.hessian.valuePtr();
   std::fill_n(values, model.hessian.nonZeros(), 0.0);
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
-    look_now_and_then(t, mesh.stop);
+    check_cancelled_every(t, mesh.stop);
     const BarrierElement e = barrier_element(mesh, t, uv, barrier);
     for (Index a = 0; a < 6; ++a) {
       const Index row = unknown(mesh, t, a);
-      if (row != kFixed) model.gradient[row] += e.gradient[a];
+      if (row != linear::kFixed) model.gradient[row] += e.gradient[a];
     }
     add_lower(e.hessian, model.place[t], values);
   }
   add_springs(mesh, uv, model);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -10,16 +10,16 @@
 
 #include "core/linear/eliminate.hpp"
 #include "core/solve/arap/local_step.hpp"
-#include "core/solve/base/holds.hpp"
+#include "core/solve/base/vertex_constraints.hpp"
 #include "core/solve/repair/profile.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// E = sum A_t [ own(J_t) + weight wall(J_t) + steep wall^4(J_t) + dirichlet SD(J_t) ],
 /// wall and SD, the symmetric Dirichlet energy, as in profile.hpp, and w |u_v - at|^2 for every
 /// spring.
 struct Barrier {
-  Rigidity rigidity;  ///< of OwnEnergy::fit
+  arap::Rigidity rigidity;  ///< of OwnEnergy::fit
   double weight = 1;
   double epsilon = 0;    ///< 0: infinite unless every triangle is positive
   double dirichlet = 0;  ///< steeper than the wall; epsilon is 0
@@ -36,16 +36,16 @@ struct JobMemory {
 /// Triangles whose free vertices are to be moved. Vertices are numbered by faces.
 struct BarrierMesh {
   std::vector<Triangle> faces;
-  std::vector<RestTriangle> rest;  ///< one a face: the shape and size that it should have
-  FreeVertices free;               ///< one slot a vertex
-  std::vector<Spring> springs = {};
+  std::vector<measure::RestTriangle> rest;  ///< one a face: the shape and size that it should have
+  linear::FreeVertices free;                ///< one slot a vertex
+  std::vector<SoftConstraint> soft = {};
   std::stop_token stop = {};  ///< of the job: what goes over all faces looks at it (cancel.hpp)
   std::vector<double> share = {};  ///< A_t in the energy, one a face; empty: that of rest
   JobMemory memory = {};           ///< that Newton's factor is looked at for
 };
 
 /// The same shape, larger or smaller: all that a barrier's target is looked at for.
-inline RestTriangle scaled(RestTriangle rest, double by) {
+inline measure::RestTriangle scaled(measure::RestTriangle rest, double by) {
   for (Vec2& edge : rest.edge) edge *= by;
   rest.area *= by * by;
   return rest;
@@ -71,7 +71,7 @@ double least_determinant(const BarrierMesh& mesh, std::span<const Vec2> uv);
 /// and v of slot s. Each triangle's Hessian is projected exactly.
 struct Quadratic {
   Eigen::VectorXd gradient;
-  SparseMatrix hessian;
+  linear::SparseMatrix hessian;
   /// Where the lower triangle of each face's Hessian goes, by rows, among the values of hessian;
   /// -1: nowhere.
   std::vector<std::array<Index, 21>> place;
@@ -86,4 +86,4 @@ Quadratic barrier_pattern(const BarrierMesh& mesh);
 void fill_barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier,
                         Quadratic& model);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

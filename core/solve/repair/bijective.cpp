@@ -16,13 +16,13 @@
 #include "core/measure/distortion.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
-#include "core/solve/base/hold_align.hpp"
+#include "core/solve/base/align_constrained.hpp"
 #include "core/solve/maps/convex_map.hpp"
 #include "core/solve/maps/fill_holes.hpp"
 #include "core/solve/methods/symmetric_dirichlet.hpp"
 #include "core/solve/repair/settle_apart.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 /// What a map shall be like: a disk with rest triangles, and what each of them weighs (empty: its
@@ -35,19 +35,19 @@ struct Target {
 /// The surface itself. For angles the method's own map, without flips: the new one then has the
 /// angles nearest to its, and its sizes where nothing presses.
 Target target_of(const Disk& disk, const MapIntent& intent, const UvMap& uv) {
-  if (intent.own != OwnEnergy::mips || !flipped_faces(disk.faces, uv, intent.stop).empty())
+  if (intent.own != OwnEnergy::mips || !measure::flipped_faces(disk.faces, uv, intent.stop).empty())
     return {disk, {}};
   TriMesh mesh;
   mesh.faces.assign(disk.faces.begin(), disk.faces.end());
   for (const Vec2& u : uv) mesh.positions.emplace_back(u.x(), u.y(), 0);
   Target target{disk, {}};
-  target.disk.rest = flatten(mesh, intent.stop);
-  for (const RestTriangle& rest : disk.rest) target.share.push_back(rest.area);
+  target.disk.rest = measure::flatten(mesh, intent.stop);
+  for (const measure::RestTriangle& rest : disk.rest) target.share.push_back(rest.area);
   return target;
 }
 
 UvMap to_best_scale(const Disk& disk, UvMap uv) {
-  const double scale = best_scale(disk, uv);
+  const double scale = methods::best_scale(disk, uv);
   for (Vec2& u : uv) u *= scale;
   return uv;
 }
@@ -56,11 +56,11 @@ UvMap to_best_scale(const Disk& disk, UvMap uv) {
 template <class Map>
 std::optional<UvMap> start_from(const Disk& disk, Map map) {
   try {
-    UvMap uv = map(fill_holes(disk).disk);
+    UvMap uv = map(maps::fill_holes(disk).disk);
     uv.resize(disk.positions.size());
-    if (!is_plainly_injective(disk.faces, disk.loops, uv)) return std::nullopt;
+    if (!measure::is_plainly_injective(disk.faces, disk.loops, uv)) return std::nullopt;
     uv = to_best_scale(disk, std::move(uv));
-    if (is_plainly_injective(disk.faces, disk.loops, uv)) return uv;
+    if (measure::is_plainly_injective(disk.faces, disk.loops, uv)) return uv;
   } catch (const Error&) {  // no such map of this mesh: there is another
     throw_if_cancelled(disk.stop);
   }
@@ -68,8 +68,9 @@ std::optional<UvMap> start_from(const Disk& disk, Map map) {
 }
 
 std::optional<UvMap> injective_start(const Disk& disk) {
-  std::optional<UvMap> start = start_from(disk, [](const Disk& d) { return mean_value_map(d); });
-  return start ? start : start_from(disk, [](const Disk& d) { return tutte_map(d); });
+  std::optional<UvMap> start =
+      start_from(disk, [](const Disk& d) { return maps::mean_value_map(d); });
+  return start ? start : start_from(disk, [](const Disk& d) { return maps::tutte_map(d); });
 }
 
 Vec2 middle_of(const UvMap& uv) {
@@ -99,19 +100,20 @@ UvMap laid_along(const UvMap& old, const UvMap& uv) {
 }
 
 UvMap of_the_area_of(const UvMap& old, const Disk& disk, UvMap uv) {
-  const double scale =
-      std::sqrt(uv_area(disk.rest, disk.faces, old) / uv_area(disk.rest, disk.faces, uv));
+  const double scale = std::sqrt(measure::uv_area(disk.rest, disk.faces, old) /
+                                 measure::uv_area(disk.rest, disk.faces, uv));
   for (Vec2& u : uv) u *= scale;
   return uv;
 }
 
 /// The map moved to where its springs pull it no further: nothing else feels where it lies.
-UvMap moved_to_rest(UvMap uv, const std::vector<Spring>& springs) {
+UvMap moved_to_rest(UvMap uv, const std::vector<SoftConstraint>& soft) {
   Vec2 pull = Vec2::Zero();
   double weight = 0;
-  for (const Spring& spring : springs) {
-    pull += spring.weight * (spring.at - uv[static_cast<std::size_t>(spring.vertex)]);
-    weight += spring.weight;
+  for (const SoftConstraint& soft_constraint : soft) {
+    pull += soft_constraint.weight *
+            (soft_constraint.at - uv[static_cast<std::size_t>(soft_constraint.vertex)]);
+    weight += soft_constraint.weight;
   }
   for (Vec2& u : uv) u += pull / weight;
   return uv;
@@ -119,7 +121,7 @@ UvMap moved_to_rest(UvMap uv, const std::vector<Spring>& springs) {
 
 /// Replaces uv by the map moved, unless moving has rounded it into an overlap.
 void keep_apart(const Disk& disk, UvMap moved, UvMap& uv) {
-  if (is_plainly_injective(disk.faces, disk.loops, moved)) uv = std::move(moved);
+  if (measure::is_plainly_injective(disk.faces, disk.loops, moved)) uv = std::move(moved);
 }
 
 }  // namespace
@@ -137,14 +139,14 @@ bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv) {
     unfold_apart(target.disk, target.share, intent.stop, settled);
   }
   throw_if_cancelled(intent.stop);
-  const bool is_drawn = !intent.springs.empty();
-  if (is_drawn) keep_apart(disk, held_start(settled, {{}, intent.springs}), settled);
+  const bool is_drawn = !intent.soft.empty();
+  if (is_drawn) keep_apart(disk, constrained_start(settled, {{}, intent.soft}), settled);
   settle_apart(target.disk, intent, settled, target.share);
   throw_if_cancelled(intent.stop);
-  keep_apart(disk, is_drawn ? moved_to_rest(settled, intent.springs) : laid_along(uv, settled),
+  keep_apart(disk, is_drawn ? moved_to_rest(settled, intent.soft) : laid_along(uv, settled),
              settled);
   uv = std::move(settled);
   return true;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -4,7 +4,7 @@
 #include "core/solve/base/disk.hpp"
 #include "core/solve/repair/untangle.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// Replaces uv, one a vertex, by a map of little energy that is injective by an exact test, turned
 /// and moved to where uv was or, where the intent has springs, drawn by them. False, and uv as it
@@ -12,4 +12,4 @@ namespace unwrapd {
 /// one in double precision. Throws Error{cancelled}.
 bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

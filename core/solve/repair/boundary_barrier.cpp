@@ -7,7 +7,7 @@
 
 #include "core/mesh/edges.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr double kReach = 0.25;       // of the shortest boundary edge concerned
@@ -145,8 +145,8 @@ void add_contact_gradient(std::span<const Contact> contacts, std::span<const Vec
   }
 }
 
-PairElement contact_curvature(const Contact& contact, std::span<const Vec2> uv) {
-  PairElement element{};
+linear::PairElement contact_curvature(const Contact& contact, std::span<const Vec2> uv) {
+  linear::PairElement element{};
   const Gap gap = gap_of(contact, uv);
   const double q = contact.reach / gap.distance;
   if (!(q > 1)) return element;
@@ -161,4 +161,4 @@ PairElement contact_curvature(const Contact& contact, std::span<const Vec2> uv) 
   return element;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

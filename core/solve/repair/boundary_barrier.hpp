@@ -9,7 +9,7 @@
 #include "core/linear/pair_system.hpp"
 #include "core/solve/base/disk.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// A boundary vertex and a boundary edge without it, which push each other apart where they are
 /// nearer than `reach`.
@@ -58,6 +58,6 @@ void add_contact_gradient(std::span<const Contact> contacts, std::span<const Vec
 
 /// The curvature along the distance, the lower triangle by vertices_of(): it bounds the Hessian
 /// from above, but for how the distance itself bends.
-PairElement contact_curvature(const Contact& contact, std::span<const Vec2> uv);
+linear::PairElement contact_curvature(const Contact& contact, std::span<const Vec2> uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

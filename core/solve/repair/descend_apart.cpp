@@ -15,12 +15,12 @@
 
 #include "core/base/cancel.hpp"
 #include "core/linear/pair_system.hpp"
-#include "core/solve/base/kept.hpp"
+#include "core/solve/base/cached.hpp"
 #include "core/solve/methods/symmetric_dirichlet.hpp"
 #include "core/solve/repair/boundary_barrier.hpp"
 #include "core/solve/repair/injective_step.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr std::size_t kWindow = 3;
@@ -28,8 +28,8 @@ constexpr double kAhead = 2;      // reaches, within which a contact has room in
 constexpr double kFarAbove = 10;  // of the energy's mean over the surface
 constexpr double kShift = 1e-10;  // of the mean of a face's diagonal: turns cost nothing
 
-PairElement shifted(const BarrierElement& e) {
-  PairElement element{};
+linear::PairElement shifted(const BarrierElement& e) {
+  linear::PairElement element{};
   const double shift = kShift * e.hessian.trace() / 6;
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t k = 0; k <= i; ++k)
@@ -61,7 +61,7 @@ class ContactSystem {
     check_memory(disk_, system_->bytes());
   }
 
-  void add(std::size_t face, const PairElement& element) { system_->add(face, element); }
+  void add(std::size_t face, const linear::PairElement& element) { system_->add(face, element); }
 
   void add(const Contact& contact, const UvMap& uv) {
     const auto at = std::lower_bound(contact_.begin(), contact_.end(), vertices_of(contact));
@@ -71,7 +71,7 @@ class ContactSystem {
 
   /// Adds to the diagonal at the vertex of half-edge h.
   void add_at(std::size_t h, double weight) {
-    PairElement element{};
+    linear::PairElement element{};
     const std::size_t i = 2 * (h % 3);
     element[i][i] = element[i + 1][i + 1] = weight;
     system_->add(h / 3, element);
@@ -92,13 +92,14 @@ class ContactSystem {
   template <class Visit>
   void for_each_free(Visit visit) const {
     for (std::size_t v = 0; v < mesh_.free.slot.size(); ++v)
-      if (mesh_.free.slot[v] != kFixed) visit(v, static_cast<std::size_t>(mesh_.free.slot[v]));
+      if (mesh_.free.slot[v] != linear::kFixed)
+        visit(v, static_cast<std::size_t>(mesh_.free.slot[v]));
   }
 
   const Disk& disk_;
   const BarrierMesh& mesh_;
   std::vector<Triangle> contact_;  ///< that the pattern has room for, ascending
-  std::optional<PairSystem> system_;
+  std::optional<linear::PairSystem> system_;
 };
 
 class Descending {
@@ -150,8 +151,10 @@ class Descending {
     for (std::size_t t = 0; t < mesh_.faces.size(); ++t) {
       const BarrierElement e = barrier_element(mesh_, t, uv_, stage_->barrier);
       if (is_far)
-        system_.add(t, proxy_element(disk_.rest[t],
-                                     jacobian(disk_.rest[t], uv_edges(disk_.faces[t], uv_))));
+        system_.add(t,
+                    methods::proxy_element(
+                        disk_.rest[t],
+                        measure::jacobian(disk_.rest[t], measure::uv_edges(disk_.faces[t], uv_))));
       else
         system_.add(t, shifted(e));
       for (std::size_t i = 0; i < 3; ++i)
@@ -165,11 +168,11 @@ class Descending {
   }
 
   void add_springs(std::vector<Vec2>& gradient) {
-    for (const Spring& spring : mesh_.springs) {
-      const auto v = static_cast<std::size_t>(spring.vertex);
-      gradient[v] += 2 * spring.weight * (uv_[v] - spring.at);
+    for (const SoftConstraint& soft_constraint : mesh_.soft) {
+      const auto v = static_cast<std::size_t>(soft_constraint.vertex);
+      gradient[v] += 2 * soft_constraint.weight * (uv_[v] - soft_constraint.at);
       const auto corner = static_cast<std::size_t>(disk_.corners.corner[disk_.corners.begin[v]]);
-      system_.add_at(corner, 2 * spring.weight);
+      system_.add_at(corner, 2 * soft_constraint.weight);
     }
   }
 
@@ -202,4 +205,4 @@ void descend_apart(const Disk& disk, const BarrierMesh& mesh, std::span<const Ap
   for (const ApartStage& stage : stages) descending.descend(stage);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

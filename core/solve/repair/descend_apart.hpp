@@ -6,7 +6,7 @@
 #include "core/solve/base/disk.hpp"
 #include "core/solve/repair/barrier.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// One stage of the way down.
 struct ApartStage {
@@ -24,4 +24,4 @@ struct ApartStage {
 void descend_apart(const Disk& disk, const BarrierMesh& mesh, std::span<const ApartStage> stages,
                    UvMap& uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -9,7 +9,7 @@
 #include "core/measure/overlaps.hpp"
 #include "core/solve/methods/symmetric_dirichlet.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// What its line search goes by.
 struct InjectiveStep {
@@ -28,17 +28,18 @@ std::optional<double> injective_step(const Disk& disk, std::span<const Vec2> ste
   if (!(slope < 0)) return std::nullopt;
   SerialExecutor serial;
   const double before = energy(uv);
-  double length = std::min(1.0, InjectiveStep::kShareOfFlip * step_to_flip(disk, uv, step, serial));
+  double length =
+      std::min(1.0, InjectiveStep::kShareOfFlip * methods::step_to_flip(disk, uv, step, serial));
   for (int k = 0; k < InjectiveStep::kMostHalvings; ++k, length /= 2) {
     UvMap next = uv;
     for (std::size_t v = 0; v < next.size(); ++v) next[v] += length * step[v];
     const double after = energy(next);
     if (!(after <= before + InjectiveStep::kArmijo * length * slope)) continue;
-    if (!is_plainly_injective(disk.faces, disk.loops, next)) continue;
+    if (!measure::is_plainly_injective(disk.faces, disk.loops, next)) continue;
     uv = std::move(next);
     return after;
   }
   return std::nullopt;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

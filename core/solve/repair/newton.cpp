@@ -10,9 +10,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/solver_core.hpp"
+#include "core/base/shared_cache.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr double kArmijo = 1e-4;
@@ -40,7 +40,7 @@ double first_root(double a, double b, double c) {
 double collapse_length(const BarrierMesh& mesh, const UvMap& uv, const UvMap& move) {
   double length = INFINITY;
   for (const Triangle& face : mesh.faces) {
-    const UvEdges u = uv_edges(face, uv), d = uv_edges(face, move);
+    const measure::UvEdges u = measure::uv_edges(face, uv), d = measure::uv_edges(face, move);
     length = std::min(length, first_root(cross(u[0], u[1]), cross(u[0], d[1]) + cross(d[0], u[1]),
                                          cross(d[0], d[1])));
   }
@@ -48,10 +48,10 @@ double collapse_length(const BarrierMesh& mesh, const UvMap& uv, const UvMap& mo
 }
 
 /// x: one entry an unknown, in its first coordinate.
-UvMap spread(const FreeVertices& free, std::span<const Vec2> x) {
+UvMap spread(const linear::FreeVertices& free, std::span<const Vec2> x) {
   UvMap move(free.slot.size(), Vec2::Zero());
   for (std::size_t v = 0; v < move.size(); ++v)
-    if (free.slot[v] != kFixed)
+    if (free.slot[v] != linear::kFixed)
       move[v] = Vec2(x[at(2 * free.slot[v])].x(), x[at(2 * free.slot[v] + 1)].x());
   return move;
 }
@@ -72,10 +72,11 @@ struct Trial {
 }  // namespace
 
 bool Newton::factor(Executor& job) {
-  SparseMatrix& hessian = model_.hessian;
+  linear::SparseMatrix& hessian = model_.hessian;
   if (!factor_) {
-    auto analysis = analyse_pairs(hessian, mesh_.stop);
-    check_memory(mesh_.memory.taken + analysis->job_bytes() + model_.bytes(), mesh_.memory.limit);
+    auto analysis = linear::analyse_pairs(hessian, mesh_.stop);
+    unwrapd::check_memory(mesh_.memory.taken + analysis->job_bytes() + model_.bytes(),
+                          mesh_.memory.limit);
     factor_.emplace(std::move(analysis));
   }
   const double mean = hessian.diagonal().sum() / static_cast<double>(hessian.rows());
@@ -127,4 +128,4 @@ double Newton::search(const UvMap& move, double slope, const Barrier& barrier, U
   return (before - best.energy) / std::abs(before);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

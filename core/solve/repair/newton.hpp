@@ -6,7 +6,7 @@
 #include "core/linear/engine.hpp"
 #include "core/solve/repair/barrier.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// One mesh whose free vertices are moved downhill. The order of elimination is found once.
 class Newton {
@@ -28,7 +28,7 @@ class Newton {
   const BarrierMesh& mesh_;
   Executor* executor_;
   Quadratic model_;
-  std::optional<Factor> factor_;  // its order and memory serve all steps
+  std::optional<linear::Factor> factor_;  // its order and memory serve all steps
 };
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "core/base/cancel.hpp"
-#include "core/base/solver_core.hpp"
+#include "core/base/shared_cache.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr double kMost = 0.5;  // of the vertices: beyond that, all may as well be loose
@@ -24,7 +24,7 @@ std::vector<char> near_vertices(const Disk& disk, std::span<const Index> faces, 
   std::size_t first = 0;
   for (int ring = 0; ring < rings; ++ring)
     for (const std::size_t last = front.size(); first < last; ++first) {
-      look_now_and_then(first, disk.stop);
+      check_cancelled_every(first, disk.stop);
       for (Index c = disk.corners.begin[front[first]]; c < disk.corners.begin[front[first] + 1];
            ++c)
         reach(disk.corners.corner[c] / 3);
@@ -40,7 +40,7 @@ class Cutter {
       : disk_(disk),
         loose_(std::move(loose)),
         taken_(disk.faces.size(), 0),
-        number_(disk.positions.size(), kFixed) {}
+        number_(disk.positions.size(), linear::kFixed) {}
 
   /// Every patch of loose vertices, by their lowest vertex.
   std::vector<Patch> cut() {
@@ -57,7 +57,7 @@ class Cutter {
     std::vector<Index> faces, inside{seed};
     open[seed] = 0;
     for (std::size_t k = 0; k < inside.size(); ++k) {
-      look_now_and_then(k, disk_.stop);
+      check_cancelled_every(k, disk_.stop);
       for (Index c = disk_.corners.begin[inside[k]]; c < disk_.corners.begin[inside[k] + 1]; ++c) {
         const Index t = disk_.corners.corner[c] / 3;
         if (taken_[t] != 0) continue;
@@ -73,23 +73,23 @@ class Cutter {
 
   Patch patch_of(std::vector<Index> faces) {
     Patch patch{.mesh = {}, .face = std::move(faces), .vertex = {}};
-    std::vector<char> fixed;
+    std::vector<char> hard;
     for (Index t : patch.face) {
-      look_now_and_then(patch.mesh.rest.size(), disk_.stop);
+      check_cancelled_every(patch.mesh.rest.size(), disk_.stop);
       patch.mesh.rest.push_back(disk_.rest[t]);
       Triangle& corners = patch.mesh.faces.emplace_back();
       for (std::size_t i = 0; i < 3; ++i) {
         Index& number = number_[disk_.faces[t][i]];
-        if (number == kFixed) {
+        if (number == linear::kFixed) {
           number = static_cast<Index>(patch.vertex.size());
           patch.vertex.push_back(disk_.faces[t][i]);
-          fixed.push_back(loose_[disk_.faces[t][i]] == 0 ? 1 : 0);
+          hard.push_back(loose_[disk_.faces[t][i]] == 0 ? 1 : 0);
         }
         corners[i] = number;
       }
     }
-    for (Index v : patch.vertex) number_[v] = kFixed;
-    patch.mesh.free = number_free(fixed);
+    for (Index v : patch.vertex) number_[v] = linear::kFixed;
+    patch.mesh.free = linear::number_free(hard);
     patch.mesh.stop = disk_.stop;
     if (disk_.core != nullptr)
       patch.mesh.memory = {kJobBytesPerFace * disk_.faces.size(), disk_.core->memory_limit()};
@@ -116,11 +116,11 @@ void put_back(const Patch& patch, std::span<const Vec2> own, UvMap& uv) {
 }
 
 std::vector<Patch> patches_around(const Disk& disk, std::span<const Index> faces, int rings,
-                                  std::span<const char> held) {
+                                  std::span<const char> constrained) {
   std::vector<char> loose = near_vertices(disk, faces, rings);
-  for (std::size_t v = 0; v < held.size(); ++v)
-    if (held[v] != 0) loose[v] = 0;
+  for (std::size_t v = 0; v < constrained.size(); ++v)
+    if (constrained[v] != 0) loose[v] = 0;
   return Cutter(disk, std::move(loose)).cut();
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

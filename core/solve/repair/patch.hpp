@@ -7,7 +7,7 @@
 #include "core/solve/base/disk.hpp"
 #include "core/solve/repair/barrier.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// A part of a disk with vertices numbered anew. Those that may move have all their faces in it.
 struct Patch {
@@ -24,6 +24,6 @@ void put_back(const Patch& patch, std::span<const Vec2> own, UvMap& uv);
 /// held (one a vertex, or empty), their outermost vertices may not. Where most of the disk would be
 /// loose, all of it is. Parts in which nothing may move are left out.
 std::vector<Patch> patches_around(const Disk& disk, std::span<const Index> faces, int rings,
-                                  std::span<const char> held);
+                                  std::span<const char> constrained);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

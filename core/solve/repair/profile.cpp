@@ -7,7 +7,7 @@
 
 #include "core/solve/arap/local_step.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 /// chi and its two derivatives.
@@ -27,17 +27,17 @@ Chi chi_of(double d, double epsilon) {
 double fitted_scale(double q, double lambda) {
   if (lambda == 0) return q;
   if (std::isinf(lambda)) return 1;
-  return fit_similarity({q, 0, 0, 0}, lambda).a;
+  return arap::fit_similarity({q, 0, 0, 0}, lambda).a;
 }
 
 }  // namespace
 
 Profile fit_profile(double q, double r, double lambda) {
-  const Jacobian along{q, 0, r, 0};
+  const measure::Jacobian along{q, 0, r, 0};
   const double scale = fitted_scale(q, lambda);
   const double stiffness = 1 / (1 + 1 / (lambda * (3 * scale * scale - 1)));
   Profile p;
-  p.value = fit_energy(along, {scale, 0}, 1, lambda);
+  p.value = arap::fit_energy(along, {scale, 0}, 1, lambda);
   p.q = 4 * (q - scale);
   p.r = 4 * r;
   p.qq = 4 * stiffness;
@@ -115,4 +115,4 @@ void project(Profile& p) {
   p.qr = high * s / 2;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -3,7 +3,7 @@
 // (core/measure/jacobian.hpp): Q, that of its similarity part, and R, that of the rest. All of them
 // are 0 at their least.
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// What a method wants of a triangle: its fit by Eq. (5), or one of the others below.
 enum class OwnEnergy { fit, symmetric_dirichlet, mips };
@@ -36,4 +36,4 @@ Profile fourth_power(const Profile& p);
 /// Replaces the second derivatives by the nearest positive semidefinite block.
 void project(Profile& p);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

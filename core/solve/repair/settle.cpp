@@ -9,11 +9,11 @@
 #include <map>
 
 #include "core/base/cancel.hpp"
-#include "core/solve/base/side_by_side.hpp"
+#include "core/solve/base/parallel_map.hpp"
 #include "core/solve/repair/newton.hpp"
 #include "core/solve/repair/sizes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 /// How the barrier fades; only its last minimum counts.
@@ -41,15 +41,16 @@ void follow_sizes(const UvMap& own, BarrierMesh& mesh) {
 }
 
 /// The springs at vertices of the patch, by its own numbers.
-std::vector<Spring> springs_at(const Patch& patch, const std::vector<Spring>& springs) {
-  std::vector<Spring> own;
-  if (springs.empty()) return own;
+std::vector<SoftConstraint> springs_at(const Patch& patch,
+                                       const std::vector<SoftConstraint>& soft) {
+  std::vector<SoftConstraint> own;
+  if (soft.empty()) return own;
   std::map<Index, Index> number;
   for (std::size_t v = 0; v < patch.vertex.size(); ++v)
     number[patch.vertex[v]] = static_cast<Index>(v);
-  for (const Spring& spring : springs)
-    if (const auto at = number.find(spring.vertex); at != number.end())
-      own.push_back({at->second, spring.at, spring.weight});
+  for (const SoftConstraint& soft_constraint : soft)
+    if (const auto at = number.find(soft_constraint.vertex); at != number.end())
+      own.push_back({at->second, soft_constraint.at, soft_constraint.weight});
   return own;
 }
 
@@ -63,7 +64,7 @@ void descend(const Disk& disk, const MapIntent& intent, std::span<const Fading> 
              Patch& patch, UvMap& own) {
   const bool is_whole = patch.face.size() == disk.faces.size();
   if (intent.rigidity.lambda < kConformalBelow) follow_sizes(own, patch.mesh);
-  patch.mesh.springs = springs_at(patch, intent.springs);
+  patch.mesh.soft = springs_at(patch, intent.soft);
   Newton newton(patch.mesh, intent.executor);
   for (const Fading& fading : fadings) {
     const double tolerance = is_whole ? kWhole * fading.tolerance : fading.tolerance;
@@ -81,7 +82,7 @@ void descend_all(const Disk& disk, const MapIntent& intent, std::span<const Fadi
   const MapIntent own_intent = intent_of_one(intent, patches.size());
   SerialExecutor serial;
   Executor& executor = intent.executor != nullptr ? *intent.executor : serial;
-  const auto maps = side_by_side<UvMap>(patches.size(), executor, [&](std::size_t k) {
+  const auto maps = parallel_map<UvMap>(patches.size(), executor, [&](std::size_t k) {
     UvMap own = map_of(patches[k], uv);
     descend(disk, own_intent, fadings, patches[k], own);
     return own;
@@ -92,9 +93,10 @@ void descend_all(const Disk& disk, const MapIntent& intent, std::span<const Fadi
 std::vector<Index> needles(const Disk& disk, std::span<const char> is_candidate, const UvMap& uv) {
   std::vector<Index> found;
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    look_now_and_then(t, disk.stop);
+    check_cancelled_every(t, disk.stop);
     if (is_candidate[t] == 0) continue;
-    const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
+    const measure::Jacobian j =
+        measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], uv));
     if (j.sigma_max() > kMostCondition * j.sigma_min()) found.push_back(static_cast<Index>(t));
   }
   return found;
@@ -117,9 +119,9 @@ void widen_needles(const Disk& disk, const MapIntent& intent, std::span<const ch
     const std::vector<Index> found = needles(disk, is_candidate, uv);
     if (found.empty()) return;
     fading.dirichlet *= kRaise;
-    std::vector<Patch> patches = patches_around(disk, found, kNeedleRings, intent.held);
+    std::vector<Patch> patches = patches_around(disk, found, kNeedleRings, intent.constrained);
     descend_all(disk, intent, {&fading, 1}, patches, uv);
   }
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

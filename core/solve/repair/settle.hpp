@@ -6,7 +6,7 @@
 #include "core/solve/repair/patch.hpp"
 #include "core/solve/repair/untangle.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// Lowers the energy of intent.rigidity and the springs over the free vertices of a patch without
 /// flips, under a barrier that fades. A little of the symmetric Dirichlet energy stays: without it
@@ -32,4 +32,4 @@ void widen_needles(const Disk& disk, const MapIntent& intent, std::span<const ch
 
 inline constexpr double kMostCondition = 20;
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

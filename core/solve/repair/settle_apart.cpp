@@ -7,7 +7,7 @@
 
 #include "core/solve/repair/descend_apart.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr ApartStage kUnfolding{
@@ -45,13 +45,13 @@ ApartStage last_stage(const MapIntent& intent) {
 
 /// All vertices free, but for one where nothing else tells where the map lies.
 BarrierMesh loose(const Disk& disk, const std::vector<double>& share,
-                  const std::vector<Spring>& springs, const std::stop_token& stop) {
-  std::vector<char> fixed(disk.positions.size(), 0);
-  fixed.front() = springs.empty() ? 1 : 0;
+                  const std::vector<SoftConstraint>& soft, const std::stop_token& stop) {
+  std::vector<char> hard(disk.positions.size(), 0);
+  hard.front() = soft.empty() ? 1 : 0;
   return {{disk.faces.begin(), disk.faces.end()},
           {disk.rest.begin(), disk.rest.end()},
-          number_free(fixed),
-          springs,
+          linear::number_free(hard),
+          soft,
           stop,
           share};
 }
@@ -68,7 +68,7 @@ void unfold_apart(const Disk& disk, const std::vector<double>& share, const std:
 void settle_apart(const Disk& disk, const MapIntent& intent, UvMap& uv,
                   const std::vector<double>& share) {
   const ApartStage stage = last_stage(intent);
-  descend_apart(disk, loose(disk, share, intent.springs, intent.stop), {&stage, 1}, uv);
+  descend_apart(disk, loose(disk, share, intent.soft, intent.stop), {&stage, 1}, uv);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -6,7 +6,7 @@
 #include "core/solve/base/disk.hpp"
 #include "core/solve/repair/untangle.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// From a convex map to one whose triangles are about of their size and shape: lowers the symmetric
 /// Dirichlet energy. uv must be injective by is_plainly_injective(), and still is afterwards.
@@ -20,4 +20,4 @@ void unfold_apart(const Disk& disk, const std::vector<double>& share, const std:
 void settle_apart(const Disk& disk, const MapIntent& intent, UvMap& uv,
                   const std::vector<double>& share = {});
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -5,7 +5,7 @@
 
 #include "core/measure/jacobian.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr double kLeastStretch = 1e-12;
@@ -13,10 +13,11 @@ constexpr double kLeastStretch = 1e-12;
 }  // namespace
 
 std::vector<double> sizes_around(std::span<const Triangle> faces,
-                                 std::span<const RestTriangle> rest, std::span<const Vec2> uv) {
+                                 std::span<const measure::RestTriangle> rest,
+                                 std::span<const Vec2> uv) {
   std::vector<double> sum(uv.size(), 0), count(uv.size(), 0);
   for (std::size_t t = 0; t < faces.size(); ++t) {
-    const Jacobian j = jacobian(rest[t], uv_edges(faces[t], uv));
+    const measure::Jacobian j = measure::jacobian(rest[t], measure::uv_edges(faces[t], uv));
     const double stretch = std::hypot(j.turn_scale(), j.deformation());
     for (Index v : faces[t]) {
       sum[v] += std::log(std::max(kLeastStretch, stretch));
@@ -30,4 +31,4 @@ std::vector<double> sizes_around(std::span<const Triangle> faces,
   return size;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

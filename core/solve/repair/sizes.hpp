@@ -6,13 +6,14 @@
 
 #include "core/measure/rest_triangle.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// Rigidities below this lambda (Rigidity) do not care about size.
 inline constexpr double kConformalBelow = 0.01;
 
 /// For each face, by how much the map stretches it and the faces around it: their geometric mean.
 std::vector<double> sizes_around(std::span<const Triangle> faces,
-                                 std::span<const RestTriangle> rest, std::span<const Vec2> uv);
+                                 std::span<const measure::RestTriangle> rest,
+                                 std::span<const Vec2> uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

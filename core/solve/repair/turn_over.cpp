@@ -9,7 +9,7 @@
 #include "core/measure/orientation.hpp"
 #include "core/solve/repair/newton.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr int kMostTurning = 90;       // Newton steps under the regularised barrier
@@ -33,12 +33,13 @@ BarrierMesh fitted(const BarrierMesh& mesh, const UvMap& uv) {
   double room = 0, wanted = 0;
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
     wanted += mesh.rest[t].area;
-    room += mesh.rest[t].area * jacobian(mesh.rest[t], uv_edges(mesh.faces[t], uv)).determinant();
+    room += mesh.rest[t].area *
+            measure::jacobian(mesh.rest[t], measure::uv_edges(mesh.faces[t], uv)).determinant();
   }
   BarrierMesh fit = mesh;
-  fit.springs.clear();  // they come when nothing is flipped
+  fit.soft.clear();  // they come when nothing is flipped
   if (has_rim(mesh) && room > 0)
-    for (RestTriangle& rest : fit.rest) rest = scaled(rest, std::sqrt(room / wanted));
+    for (measure::RestTriangle& rest : fit.rest) rest = scaled(rest, std::sqrt(room / wanted));
   return fit;
 }
 
@@ -51,19 +52,20 @@ UvMap evened_out(const BarrierMesh& patch, UvMap uv) {
     std::fill(sum.begin(), sum.end(), Vec2::Zero());
     std::fill(count.begin(), count.end(), 0);
     for (std::size_t t = 0; t < patch.faces.size(); ++t) {
-      look_now_and_then(t, patch.stop);
+      check_cancelled_every(t, patch.stop);
       const auto& [a, b, c] = patch.faces[t];
       const Vec2 all = uv[a] + uv[b] + uv[c];
       for (Index v : patch.faces[t]) sum[v] += all - uv[v], count[v] += 2;
     }
     for (std::size_t v = 0; v < uv.size(); ++v)
-      if (patch.free.slot[v] != kFixed) uv[v] += kSweep * (sum[v] / count[v] - uv[v]);
+      if (patch.free.slot[v] != linear::kFixed) uv[v] += kSweep * (sum[v] / count[v] - uv[v]);
   }
   return uv;
 }
 
 bool is_untangled(const BarrierMesh& mesh, std::span<const Vec2> uv) {
-  return least_determinant(mesh, uv) > 0 && flipped_faces(mesh.faces, uv, mesh.stop).empty();
+  return least_determinant(mesh, uv) > 0 &&
+         measure::flipped_faces(mesh.faces, uv, mesh.stop).empty();
 }
 
 void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t enough, UvMap& uv) {
@@ -71,13 +73,13 @@ void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t en
   Newton newton(mesh, intent.executor);
   // What no rim holds is kept near the map that it has by the method's own energy: else it takes
   // several times as many steps to come back to it.
-  Barrier barrier{Rigidity{0.0}, 1};
+  Barrier barrier{arap::Rigidity{0.0}, 1};
   if (!has_rim(mesh)) barrier = {intent.rigidity, kWholeWall};
-  const std::size_t first = flipped_faces(mesh.faces, uv, mesh.stop).size();
+  const std::size_t first = measure::flipped_faces(mesh.faces, uv, mesh.stop).size();
   std::size_t target = mesh.faces.size(), last = target;
   double floor = kFirstEpsilon;
   for (int k = 0; k < kMostTurning; ++k, floor = std::max(kLeastEpsilon, floor / 2)) {
-    const std::size_t flips = flipped_faces(mesh.faces, uv, mesh.stop).size();
+    const std::size_t flips = measure::flipped_faces(mesh.faces, uv, mesh.stop).size();
     const double worst = least_determinant(mesh, uv);
     const bool is_slow = flips > std::exchange(last, flips) / 2;
     if (flips <= enough && (flips > 0 ? is_slow : worst > 0)) return;
@@ -89,4 +91,4 @@ void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t en
   }
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -7,7 +7,7 @@
 #include "core/solve/repair/barrier.hpp"
 #include "core/solve/repair/untangle.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// Turns the triangles of a patch over until none is flipped, or at most `enough` and a step no
 /// longer halves them. Gives up where they do not grow fewer. Throws Error{cancelled}.
@@ -20,4 +20,4 @@ UvMap evened_out(const BarrierMesh& patch, UvMap uv);
 /// Whether every triangle is counter-clockwise by the exact test, with a positive determinant.
 bool is_untangled(const BarrierMesh& mesh, std::span<const Vec2> uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

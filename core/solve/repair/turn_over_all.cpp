@@ -22,7 +22,7 @@
 #include "core/base/cancel.hpp"
 #include "core/solve/repair/sizes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr double kPenalty = 15;      // rho
@@ -35,12 +35,12 @@ constexpr double kSlope = 1 + kDirichlet + kPenalty;
 constexpr int kMostRootSteps = 8;        // 1 to 3 are taken
 constexpr double kRootTolerance = 1e-3;  // of a step: its square is what is left
 
-Jacobian sum(const Jacobian& a, double w, const Jacobian& b) {
+measure::Jacobian sum(const measure::Jacobian& a, double w, const measure::Jacobian& b) {
   return {a.e + w * b.e, a.h + w * b.h, a.f + w * b.f, a.g + w * b.g};
 }
 
 /// Its similarity part and its rest, each times a number of its own.
-Jacobian weighted(const Jacobian& j, double similarity, double rest) {
+measure::Jacobian weighted(const measure::Jacobian& j, double similarity, double rest) {
   return {similarity * j.e, similarity * j.h, rest * j.f, rest * j.g};
 }
 
@@ -65,11 +65,11 @@ Eigen::Array2d singular_values(const Eigen::Array2d& z, double s) {
   return x;
 }
 
-Holds holds_of(const MapIntent& intent, std::span<const Vec2> uv) {
-  Holds holds{{}, intent.springs};
-  for (std::size_t v = 0; v < intent.held.size(); ++v)
-    if (intent.held[v] != 0) holds.fixed.push_back({static_cast<Index>(v), uv[v]});
-  return holds;
+VertexConstraints constraints_of(const MapIntent& intent, std::span<const Vec2> uv) {
+  VertexConstraints constraints{{}, intent.soft};
+  for (std::size_t v = 0; v < intent.constrained.size(); ++v)
+    if (intent.constrained[v] != 0) constraints.hard.push_back({static_cast<Index>(v), uv[v]});
+  return constraints;
 }
 
 /// The Jacobians of one map in the making.
@@ -82,11 +82,11 @@ class Splitting {
         excess_(disk.faces.size()),
         pull_(3 * disk.faces.size()),
         force_(uv.size()) {
-    if (intent.global == nullptr) own_.emplace(disk, holds_of(intent, uv), &executor);
+    if (intent.global == nullptr) own_.emplace(disk, constraints_of(intent, uv), &executor);
     if (intent.rigidity.lambda < kConformalBelow) size_ = sizes_around(disk.faces, disk.rest, uv);
     for_faces([&](std::size_t t) { excess_[t] = excess_at_rest(t, uv); });
-    for (const Spring& spring : intent.springs)
-      spring_excess_.emplace_back((uv[spring.vertex] - spring.at) / kPenalty);
+    for (const SoftConstraint& soft_constraint : intent.soft)
+      soft_excess_.emplace_back((uv[soft_constraint.vertex] - soft_constraint.at) / kPenalty);
   }
 
   /// Returns the root mean square change of the Jacobians, on a disk of area 1.
@@ -105,7 +105,7 @@ class Splitting {
   }
 
  private:
-  [[nodiscard]] const GlobalStep& global() const { return own_ ? *own_ : *intent_.global; }
+  [[nodiscard]] const arap::GlobalStep& global() const { return own_ ? *own_ : *intent_.global; }
 
   template <class Body>
   void for_faces(Body body) {
@@ -116,19 +116,21 @@ class Splitting {
 
   /// Of the similarity that fits a Jacobian best whose own is q.
   [[nodiscard]] double fitted_scale(std::size_t t, double q) const {
-    return hybrid_scale(intent_.rigidity.at(disk_.rest[t].area), q);
+    return arap::hybrid_scale(intent_.rigidity.at(disk_.rest[t].area), q);
   }
 
   /// rho U = Y - s R where Y is J.
-  [[nodiscard]] Jacobian excess_at_rest(std::size_t t, std::span<const Vec2> uv) const {
-    const Jacobian j = jacobian(disk_.rest[t], uv_edges(disk_.faces[t], uv));
+  [[nodiscard]] measure::Jacobian excess_at_rest(std::size_t t, std::span<const Vec2> uv) const {
+    const measure::Jacobian j =
+        measure::jacobian(disk_.rest[t], measure::uv_edges(disk_.faces[t], uv));
     const double q = j.turn_scale();
     const double misfit = q > 0 ? 1 - fitted_scale(t, q) / q : 0;
     return weighted(j, std::max(misfit / kPenalty, -kLeastTurn), 1 / kPenalty);
   }
 
   /// Y for z = J + U and a fit of this scale.
-  [[nodiscard]] Jacobian upright(std::size_t t, const Jacobian& z, double scale) const {
+  [[nodiscard]] measure::Jacobian upright(std::size_t t, const measure::Jacobian& z,
+                                          double scale) const {
     const double size = size_.empty() ? 1 : size_[t];
     const double q = z.turn_scale(), r = z.deformation();
     const Eigen::Array2d value =
@@ -140,20 +142,20 @@ class Splitting {
 
   /// The new Y and U of a face, and the forces on its corners towards Y - U.
   void pull(std::size_t t, std::span<const Vec2> uv) {
-    const RestTriangle& rest = disk_.rest[t];
-    const UvEdges edges = uv_edges(disk_.faces[t], uv);
-    const Jacobian j = jacobian(rest, edges), z = sum(j, 1, excess_[t]);
-    const Jacobian y = upright(t, z, fitted_scale(t, j.turn_scale()));
+    const measure::RestTriangle& rest = disk_.rest[t];
+    const measure::UvEdges edges = measure::uv_edges(disk_.faces[t], uv);
+    const measure::Jacobian j = measure::jacobian(rest, edges), z = sum(j, 1, excess_[t]);
+    const measure::Jacobian y = upright(t, z, fitted_scale(t, j.turn_scale()));
     excess_[t] = sum(z, -1, y);
-    const Jacobian target = sum(y, -1, excess_[t]);
+    const measure::Jacobian target = sum(y, -1, excess_[t]);
     std::array<Vec2, 3> along;
     for (std::size_t i = 0; i < 3; ++i)
-      along[i] = rest.cot[i] * (apply(target, rest.edge[i]) - edges[i]);
+      along[i] = rest.cot[i] * (measure::apply(target, rest.edge[i]) - edges[i]);
     for (std::size_t i = 0; i < 3; ++i) pull_[3 * t + i] = along[i] - along[(i + 2) % 3];
   }
 
   void add_up() {
-    const VertexCorners& corners = disk_.corners;
+    const linear::VertexCorners& corners = disk_.corners;
     for_each_part(force_.size(), executor_, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         force_[v].setZero();
@@ -164,22 +166,23 @@ class Splitting {
   }
 
   void pull_springs(std::span<const Vec2> uv) {
-    for (std::size_t k = 0; k < spring_excess_.size(); ++k) {
-      const Spring& spring = intent_.springs[k];
-      const Vec2 z = uv[spring.vertex] + spring_excess_[k];
-      const Vec2 y = (spring.at + kPenalty * z) / (1 + kPenalty);
-      spring_excess_[k] = z - y;
-      force_[spring.vertex] += 2 * spring.weight * (2 * y - z - uv[spring.vertex]);
+    for (std::size_t k = 0; k < soft_excess_.size(); ++k) {
+      const SoftConstraint& soft_constraint = intent_.soft[k];
+      const Vec2 z = uv[soft_constraint.vertex] + soft_excess_[k];
+      const Vec2 y = (soft_constraint.at + kPenalty * z) / (1 + kPenalty);
+      soft_excess_[k] = z - y;
+      force_[soft_constraint.vertex] +=
+          2 * soft_constraint.weight * (2 * y - z - uv[soft_constraint.vertex]);
     }
   }
 
   const Disk& disk_;
   const MapIntent& intent_;
   Executor& executor_;
-  std::optional<GlobalStep> own_;
-  std::vector<double> size_;      // empty: that of the surface
-  std::vector<Jacobian> excess_;  // U
-  std::vector<Vec2> spring_excess_;
+  std::optional<arap::GlobalStep> own_;
+  std::vector<double> size_;               // empty: that of the surface
+  std::vector<measure::Jacobian> excess_;  // U
+  std::vector<Vec2> soft_excess_;
   std::vector<Vec2> pull_;  // on each corner
   std::vector<Vec2> force_, change_;
 };
@@ -197,4 +200,4 @@ int turn_over_all(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   return kMostSplitSteps;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

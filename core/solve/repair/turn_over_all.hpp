@@ -4,7 +4,7 @@
 
 #include "core/solve/repair/untangle.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// Steps that turn_over_all() takes at most, each of one solve and one look at every face. A map
 /// that was at rest under the method's energy takes 30 at most.
@@ -16,4 +16,4 @@ inline constexpr int kMostSplitSteps = 120;
 /// Throws Error{solver_failed, too_much_memory, cancelled}.
 int turn_over_all(const Disk& disk, const MapIntent& intent, UvMap& uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

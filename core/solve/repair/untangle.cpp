@@ -15,8 +15,8 @@
 #include "core/base/cancel.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/orientation.hpp"
-#include "core/solve/base/hold_align.hpp"
-#include "core/solve/base/side_by_side.hpp"
+#include "core/solve/base/align_constrained.hpp"
+#include "core/solve/base/parallel_map.hpp"
 #include "core/solve/maps/convex_map.hpp"
 #include "core/solve/maps/fill_holes.hpp"
 #include "core/solve/repair/patch.hpp"
@@ -25,7 +25,7 @@
 #include "core/solve/repair/turn_over_all.hpp"
 #include "core/solve/repair/virtual_boundary.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr int kMostRings = 64;
@@ -37,8 +37,8 @@ constexpr double kManyOfLarge = 0.005;    // the same of a large disk, where the
 constexpr double kFew = 0.02;             // of those flips, to be left to patches
 constexpr int kSettlingRings = 2;         // around what is rough
 bool may_move_all(const MapIntent& intent) {
-  return !intent.in_place &&
-         std::none_of(intent.held.begin(), intent.held.end(), [](char h) { return h != 0; });
+  return !intent.in_place && std::none_of(intent.constrained.begin(), intent.constrained.end(),
+                                          [](char h) { return h != 0; });
 }
 
 bool exceeds(std::size_t count, double share, std::size_t all) {
@@ -84,13 +84,15 @@ void untie(const Patch& patch, const MapIntent& intent, const UvMap& uv, UvMap& 
 
 Attempt mended(const Disk& disk, const MapIntent& intent, Patch& patch, const UvMap& uv) {
   Attempt attempt{map_of(patch, uv)};
-  const std::size_t before = flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size();
+  const std::size_t before =
+      measure::flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size();
   turn_over(patch.mesh, intent, 0, attempt.own);
   untie(patch, intent, uv, attempt.own);
   if (is_untangled(patch.mesh, attempt.own)) {
     settle(disk, intent, patch, attempt.own);
     attempt.state = kSettled;
-  } else if (flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size() <= before / 2) {
+  } else if (measure::flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size() <=
+             before / 2) {
     attempt.state = kRough;
   }
   return attempt;
@@ -102,7 +104,7 @@ void mend_all(const Disk& disk, const MapIntent& intent, std::span<Patch> patche
   const MapIntent own_intent = intent_of_one(intent, patches.size());
   SerialExecutor serial;
   Executor& executor = intent.executor != nullptr ? *intent.executor : serial;
-  const auto attempts = side_by_side<Attempt>(patches.size(), executor, [&](std::size_t k) {
+  const auto attempts = parallel_map<Attempt>(patches.size(), executor, [&](std::size_t k) {
     return mended(disk, own_intent, patches[k], uv);
   });
   for (std::size_t k = 0; k < patches.size(); ++k) {
@@ -120,13 +122,13 @@ Patch whole(const Disk& disk) {
 
 /// A new map at the surface's size or, where there are springs, where they draw it.
 UvMap at_its_place(const Disk& disk, const MapIntent& intent, UvMap uv) {
-  const double area = uv_area(disk.rest, disk.faces, uv);
+  const double area = measure::uv_area(disk.rest, disk.faces, uv);
   for (Vec2& u : uv) u /= std::sqrt(area);
-  return intent.springs.empty() ? uv : held_start(std::move(uv), {{}, intent.springs});
+  return intent.soft.empty() ? uv : constrained_start(std::move(uv), {{}, intent.soft});
 }
 
 UvMap tutte_without_holes(const Disk& disk) {
-  UvMap uv = tutte_map(fill_holes(disk).disk);
+  UvMap uv = maps::tutte_map(maps::fill_holes(disk).disk);
   uv.resize(disk.positions.size());
   return uv;
 }
@@ -139,7 +141,7 @@ bool thin_out_large(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& 
   if (intent.in_place || all <= kLargeDisk || !exceeds(before, kManyOfLarge, all)) return false;
   UvMap own = uv;
   turn_over_all(disk, intent, own);
-  std::vector<Index> flipped = flipped_faces(disk.faces, own, disk.stop);
+  std::vector<Index> flipped = measure::flipped_faces(disk.faces, own, disk.stop);
   if (exceeds(flipped.size(), kFew, before) && exceeds(flipped.size(), kFew * kMany, all))
     return false;
   uv = std::move(own);
@@ -156,15 +158,15 @@ void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) 
   const auto few = static_cast<std::size_t>(kFew * static_cast<double>(before));
   UvMap own = map_of(patch, uv);
   turn_over(patch.mesh, intent, few, own);
-  if (flipped_faces(patch.mesh.faces, own, disk.stop).size() > few) return;
+  if (measure::flipped_faces(patch.mesh.faces, own, disk.stop).size() > few) return;
   put_back(patch, own, uv);
-  left.flipped = flipped_faces(disk.faces, uv, disk.stop);
+  left.flipped = measure::flipped_faces(disk.faces, uv, disk.stop);
   left.mark(patch, kRough);
 }
 
 /// Whether a patch holds more flips than there is hope for within its rim.
 bool is_crowded(const Patch& patch, const UvMap& uv) {
-  const std::size_t flips = flipped_faces(patch.mesh.faces, map_of(patch, uv)).size();
+  const std::size_t flips = measure::flipped_faces(patch.mesh.faces, map_of(patch, uv)).size();
   return exceeds(flips, kCrowded, patch.face.size());
 }
 
@@ -172,13 +174,13 @@ bool is_crowded(const Patch& patch, const UvMap& uv) {
 void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
   bool was_whole = false;
   for (int rings = intent.rings; !was_whole && !left.flipped.empty(); rings *= 2) {
-    std::vector<Patch> patches = patches_around(disk, left.flipped, rings, intent.held);
+    std::vector<Patch> patches = patches_around(disk, left.flipped, rings, intent.constrained);
     was_whole = patches.size() == 1 && patches[0].face.size() == disk.faces.size();
     if (was_whole && std::exchange(left.has_tried_the_whole, true)) return;
     if (may_move_all(intent) && !was_whole && rings < kMostRings)
       std::erase_if(patches, [&](const Patch& patch) { return is_crowded(patch, uv); });
     mend_all(disk, intent, patches, uv, left);
-    left.flipped = flipped_faces(disk.faces, uv, disk.stop);
+    left.flipped = measure::flipped_faces(disk.faces, uv, disk.stop);
     if (rings >= kMostRings) break;
   }
 }
@@ -202,7 +204,7 @@ bool start_over(const Disk& disk, const MapIntent& intent, UvMap& uv) {
 
 bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv) {
   start = at_its_place(disk, intent, std::move(start));
-  if (!flipped_faces(disk.faces, start, disk.stop).empty()) return false;
+  if (!measure::flipped_faces(disk.faces, start, disk.stop).empty()) return false;
   uv = std::move(start);
   Patch patch = whole(disk);
   settle_all(disk, intent, {&patch, 1}, uv);
@@ -212,7 +214,7 @@ bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& u
 
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   assert(intent.rings >= 1);
-  Left left{flipped_faces(disk.faces, uv, disk.stop),
+  Left left{measure::flipped_faces(disk.faces, uv, disk.stop),
             std::vector<char>(disk.faces.size(), kUntouched)};
   thin_out(disk, intent, uv, left);
   if (exceeds(left.flipped.size(), kMany, disk.faces.size()) && start_over(disk, intent, uv))
@@ -220,11 +222,11 @@ Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   mend_in_rounds(disk, intent, uv, left);
   if (!left.flipped.empty())
     return start_over(disk, intent, uv) ? 0 : static_cast<Index>(left.flipped.size());
-  std::vector<Patch> rough = patches_around(disk, left.rough(), kSettlingRings, intent.held);
+  std::vector<Patch> rough = patches_around(disk, left.rough(), kSettlingRings, intent.constrained);
   settle_all(disk, intent, rough, uv);
   for (const Patch& patch : rough) left.mark(patch, kSettled);
   if (!intent.in_place) widen_needles(disk, intent, left.state, uv);
   return 0;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

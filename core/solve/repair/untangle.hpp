@@ -9,22 +9,23 @@
 #include "core/solve/arap/global_step.hpp"
 #include "core/solve/arap/local_step.hpp"
 #include "core/solve/base/disk.hpp"
-#include "core/solve/base/holds.hpp"
+#include "core/solve/base/vertex_constraints.hpp"
 #include "core/solve/repair/profile.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// What a map was made for, and what of it must stay.
 struct MapIntent {
-  Rigidity rigidity;       ///< the energy whose rise shall be small
-  std::vector<char> held;  ///< one a vertex, 1: it must not move; empty: none
+  arap::Rigidity rigidity;        ///< the energy whose rise shall be small
+  std::vector<char> constrained;  ///< one a vertex, 1: it must not move; empty: none
   std::stop_token stop;
   bool in_place = false;           ///< only near the flips: never a new map of the whole disk
   int rings = 2;                   ///< how far around a flip vertices are let loose at first; >= 1
   OwnEnergy own = OwnEnergy::fit;  ///< of a new map of the whole (bijective.hpp)
-  std::vector<Spring> springs = {};    ///< what draws vertices to places, weighed like rigidity
-  Executor* executor = nullptr;        ///< on which patches are mended side by side; null: none
-  const GlobalStep* global = nullptr;  ///< of the disk, held and springs; null: made when needed
+  std::vector<SoftConstraint> soft = {};  ///< what draws vertices to places, weighed like rigidity
+  Executor* executor = nullptr;           ///< on which patches are mended side by side; null: none
+  const arap::GlobalStep* global =
+      nullptr;  ///< of the disk, held and springs; null: made when needed
 };
 
 /// Moves the vertices near flipped or collapsed triangles (not counter-clockwise, by the exact
@@ -39,4 +40,4 @@ Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv);
 /// uv as it was, where start has flips. Held vertices are not looked at. Throws Error{cancelled}.
 bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -17,7 +17,7 @@
 #include "core/linear/eliminate.hpp"
 #include "core/solve/maps/fill_holes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 constexpr double kRimRadius = 2;  // of the map's farthest vertex
@@ -55,7 +55,7 @@ void append_rim(const std::vector<Index>& loop, UvMap& uv) {
 }
 
 Padded padded(const Disk& disk, const UvMap& map) {
-  const FilledDisk filled = fill_holes(disk);
+  const maps::FilledDisk filled = maps::fill_holes(disk);
   Padded p{filled.faces, map, 0};
   std::vector<Vec2> sum(filled.disk.positions.size(), Vec2::Zero());
   std::vector<int> count(sum.size(), 0);
@@ -147,11 +147,11 @@ UvMap virtual_boundary_map(const Disk& disk, const UvMap& uv) {
         x[v] += weight[k] * p.uv[w];
     }
   }
-  SparseMatrix matrix(static_cast<Index>(p.rim), static_cast<Index>(p.rim));
+  linear::SparseMatrix matrix(static_cast<Index>(p.rim), static_cast<Index>(p.rim));
   matrix.setFromTriplets(entries.begin(), entries.end());
-  solve_dominant(matrix, x, disk.stop);
+  linear::solve_dominant(matrix, x, disk.stop);
   x.resize(uv.size());
   return x;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -11,22 +11,22 @@
 #include "core/solve/repair/turn_over.hpp"
 #include "core/solve/repair/virtual_boundary.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
-constexpr int kMostRings = 64;
+constexpr int kMostPatchRings = 64;
 
 Vec2 turned(const Vec2& by, const Vec2& u) {  // the product of complex numbers
   return {by.x() * u.x() - by.y() * u.y(), by.x() * u.y() + by.y() * u.x()};
 }
 
 /// One map laid on another by the similarity that fits best over the vertices that are not free.
-UvMap laid_on(const FreeVertices& free, const UvMap& to, UvMap map) {
+UvMap laid_on(const linear::FreeVertices& free, const UvMap& to, UvMap map) {
   Vec2 here = Vec2::Zero(), there = Vec2::Zero(), across = Vec2::Zero();
   double count = 0, spread = 0;
   const auto for_rim = [&](const auto& visit) {
     for (std::size_t v = 0; v < map.size(); ++v)
-      if (free.slot[v] == kFixed) visit(v);
+      if (free.slot[v] == linear::kFixed) visit(v);
   };
   for_rim([&](std::size_t v) { here += map[v], there += to[v], ++count; });
   if (count == 0) return map;
@@ -50,18 +50,18 @@ UvMap bent_into(const Patch& patch, const UvMap& to, UvMap map) {
   for (const Triangle& face : patch.mesh.faces)
     for (const Index v : face)
       for (const Index w : face) {
-        if (v == w || slot[v] == kFixed) continue;
+        if (v == w || slot[v] == linear::kFixed) continue;
         entries.emplace_back(slot[v], slot[v], 1);
-        if (slot[w] == kFixed)
+        if (slot[w] == linear::kFixed)
           shift[slot[v]] += to[w] - map[w];
         else
           entries.emplace_back(slot[v], slot[w], -1);
       }
-  SparseMatrix matrix(patch.mesh.free.count, patch.mesh.free.count);
+  linear::SparseMatrix matrix(patch.mesh.free.count, patch.mesh.free.count);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  solve_dominant(matrix, shift, patch.mesh.stop);
+  linear::solve_dominant(matrix, shift, patch.mesh.stop);
   for (std::size_t v = 0; v < map.size(); ++v)
-    map[v] = slot[v] == kFixed ? to[v] : Vec2(map[v] + shift[slot[v]]);
+    map[v] = slot[v] == linear::kFixed ? to[v] : Vec2(map[v] + shift[slot[v]]);
   return map;
 }
 
@@ -71,7 +71,7 @@ UvMap partway(const Patch& patch, const MapIntent& intent, const UvMap& from, co
   for (const double share : {0.25, 0.5, 1.0}) {
     UvMap own = from;
     for (std::size_t v = 0; v < own.size(); ++v)
-      if (patch.mesh.free.slot[v] != kFixed) own[v] += share * (to[v] - from[v]);
+      if (patch.mesh.free.slot[v] != linear::kFixed) own[v] += share * (to[v] - from[v]);
     turn_over(patch.mesh, intent, 0, own);
     if (is_untangled(patch.mesh, own)) return own;
   }
@@ -85,12 +85,12 @@ bool is_whole(const Disk& disk, const Patch& patch) {
 }  // namespace
 
 bool mend_by_virtual_boundary(const Disk& disk, const MapIntent& intent, UvMap& uv) {
-  std::vector<Index> flipped = flipped_faces(disk.faces, uv, disk.stop);
+  std::vector<Index> flipped = measure::flipped_faces(disk.faces, uv, disk.stop);
   const UvMap upright = virtual_boundary_map(disk, uv);
   std::vector<char> is_mended(disk.faces.size(), 0);
   bool has_mended = false;
-  for (int rings = intent.rings; rings <= kMostRings && !flipped.empty(); rings *= 2) {
-    for (Patch& patch : patches_around(disk, flipped, rings, intent.held)) {
+  for (int rings = intent.rings; rings <= kMostPatchRings && !flipped.empty(); rings *= 2) {
+    for (Patch& patch : patches_around(disk, flipped, rings, intent.constrained)) {
       if (is_whole(disk, patch)) return start_anew(disk, intent, upright, uv) || has_mended;
       const UvMap old = map_of(patch, uv);
       UvMap own = partway(patch, intent, old, bent_into(patch, old, map_of(patch, upright)));
@@ -100,10 +100,10 @@ bool mend_by_virtual_boundary(const Disk& disk, const MapIntent& intent, UvMap& 
       for (Index t : patch.face) is_mended[t] = 1;
       has_mended = true;
     }
-    flipped = flipped_faces(disk.faces, uv, disk.stop);
+    flipped = measure::flipped_faces(disk.faces, uv, disk.stop);
   }
   if (flipped.empty()) widen_needles(disk, intent, is_mended, uv);
   return has_mended;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

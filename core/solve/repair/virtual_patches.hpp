@@ -4,7 +4,7 @@
 
 #include "core/solve/repair/untangle.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 
 /// Takes patches around the flips from virtual_boundary_map(), which has none, bends them to fit
 /// into the rest of the map, and lets them settle. A patch that does not fit grows, in the end to
@@ -12,4 +12,4 @@ namespace unwrapd {
 /// Throws Error{cancelled}.
 bool mend_by_virtual_boundary(const Disk& disk, const MapIntent& intent, UvMap& uv);
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -12,7 +12,7 @@
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 using namespace shapes;
@@ -220,9 +220,9 @@ TEST(Charts, TellTwinsByPositionOfAllFacesWhateverIsSetAside) {
   for (const TriMesh& mesh : {repeated, flat, whole, shapes::soup(whole)})
     for (const SeamMode mode : {SeamMode::automatic, SeamMode::keep, SeamMode::none}) {
       const Charts charts = components_of(shapes::surface_of(mesh), {mode});
-      EXPECT_EQ(charts.by_position->twin, halfedges_by_position(mesh).twin);
+      EXPECT_EQ(charts.by_position->twin, measure::halfedges_by_position(mesh).twin);
     }
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -8,7 +8,7 @@
 #include "core/mesh/topology.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 using namespace shapes;
@@ -103,4 +103,4 @@ TEST(Cut, HasNoDanglingBranchWhenThereAreHandles) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -6,7 +6,7 @@
 
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::charts {
 namespace {
 
 using shapes::disk_of;
@@ -67,4 +67,4 @@ TEST(SplitChart, SeparatesTheSeeds) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::charts

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr std::array kEveryColouring = {Colouring::stretch, Colouring::angle, Colouring::area,
@@ -14,7 +14,7 @@ constexpr std::array kEveryColouring = {Colouring::stretch, Colouring::angle, Co
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The Jacobian diag(a, d).
-Jacobian diagonal(double a, double d) { return {(a + d) / 2, 0, (a - d) / 2, 0}; }
+measure::Jacobian diagonal(double a, double d) { return {(a + d) / 2, 0, (a - d) / 2, 0}; }
 
 /// Relative luminance (WCAG 2).
 double luminance(const Rgb& colour) {
@@ -82,7 +82,7 @@ TEST(ColourScale, EveryTickLiesOnItsBar) {
 }
 
 TEST(ColourScale, FiguresAreThoseOfTheSingularValues) {
-  const Jacobian j = diagonal(6, 0.5);
+  const measure::Jacobian j = diagonal(6, 0.5);
   EXPECT_NEAR(shown_value(Colouring::angle, j, 3), 12, 1e-12);
   EXPECT_NEAR(shown_value(Colouring::area, j, 0.5), 0.75, 1e-12);
   EXPECT_NEAR(shown_value(Colouring::stretch, j, 0.5), 4, 1e-12);  // 1 / (0.5 * 0.5)
@@ -91,7 +91,7 @@ TEST(ColourScale, FiguresAreThoseOfTheSingularValues) {
 }
 
 TEST(ColourScale, AnImageWithoutAreaIsWorstAndNoTrap) {
-  for (const Jacobian& j : {diagonal(0, 0), diagonal(1, 0)}) {
+  for (const measure::Jacobian& j : {diagonal(0, 0), diagonal(1, 0)}) {
     EXPECT_EQ(colour_scale(Colouring::angle).colour_of(shown_value(Colouring::angle, j, 1)), 11);
     EXPECT_EQ(colour_scale(Colouring::stretch).colour_of(shown_value(Colouring::stretch, j, 1)),
               11);
@@ -105,4 +105,4 @@ TEST(ColourScale, ColoursAreWrittenInHexadecimal) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

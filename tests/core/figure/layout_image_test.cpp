@@ -14,7 +14,7 @@
 #include "tests/api/error_of.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 using namespace shapes;
@@ -164,4 +164,4 @@ TEST(LayoutImage, HearsAStop) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -7,7 +7,7 @@
 
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 using namespace shapes;
@@ -114,4 +114,4 @@ TEST(LayoutSvg, AnEmptyPageIsStillADocument) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -12,7 +12,7 @@
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 using namespace shapes;
@@ -202,4 +202,4 @@ TEST(View, LooksAtTheOuterSideOfAnOpenSurface) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

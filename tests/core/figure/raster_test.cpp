@@ -7,7 +7,7 @@
 
 #include "core/figure/lettering.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr Rgb kWhite = {255, 255, 255}, kBlack = {0, 0, 0}, kRed = {200, 0, 0};
@@ -98,4 +98,4 @@ TEST(Raster, WhatIsUnknownIsLeftBlank) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

@@ -7,7 +7,7 @@
 
 #include "core/figure/raster.hpp"
 
-namespace unwrapd {
+namespace unwrapd::figure {
 namespace {
 
 constexpr int kSide = 64;  // pixels
@@ -140,4 +140,4 @@ TEST(Scan, WeightsSayWhereASampleIs) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::figure

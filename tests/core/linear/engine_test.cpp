@@ -13,7 +13,7 @@
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/solve/ranks.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 /// The engine that ours is compared with.
@@ -40,8 +40,10 @@ void for_each_disk_of_the_data(Visit visit) {
     for (const auto& entry : std::filesystem::directory_iterator(test_data() / folder)) {
       if (entry.path().extension() != ".obj") continue;
       SCOPED_TRACE(entry.path().filename());
-      const Charts charts = make_charts(shapes::surface_of(read_obj(entry.path())), SeamMode::keep);
-      for (const Chart& chart : charts.charts) visit(make_disk(chart.mesh, chart.loops));
+      const charts::Charts charts =
+          charts::make_charts(shapes::surface_of(read_obj(entry.path())), SeamMode::keep);
+      for (const charts::Chart& chart : charts.charts)
+        visit(solve::make_disk(chart.mesh, chart.loops));
     }
 }
 
@@ -72,7 +74,7 @@ TEST(Engine, SolvesLikeTheReference) {
 
 TEST(Engine, SolvesLikeTheReferenceOnAllData) {
   if (test_data().empty()) GTEST_SKIP() << "no test data";
-  for_each_disk_of_the_data([](const Disk& disk) {
+  for_each_disk_of_the_data([](const solve::Disk& disk) {
     const SparseMatrix lower = arap_matrix(disk);
     const std::vector<Vec2> b = random_forces(lower, 2);
     const auto system = ours(lower);
@@ -84,11 +86,12 @@ TEST(Engine, SolvesLikeTheReferenceOnAllData) {
   });
 }
 
-double energy_after_ten_iterations(const Disk& disk, const RealSystem& system) {
+double energy_after_ten_iterations(const solve::Disk& disk, const RealSystem& system) {
   SerialExecutor serial;
-  const Holds nothing;
-  UvMap uv = tutte_map(disk);
-  Objective objective(disk, Rigidity{}, nothing, shapes::as_listed(uv.size()), serial);
+  const solve::VertexConstraints nothing;
+  UvMap uv = solve::maps::tutte_map(disk);
+  solve::arap::Objective objective(disk, solve::arap::Rigidity{}, nothing,
+                                   shapes::as_listed(uv.size()), serial);
   std::vector<Vec2> force(uv.size());
   for (int k = 0; k < 10; ++k) {
     objective.evaluate(uv, force);
@@ -100,7 +103,7 @@ double energy_after_ten_iterations(const Disk& disk, const RealSystem& system) {
 
 TEST(Engine, GivesTheReferencesEnergyOnAllData) {
   if (test_data().empty()) GTEST_SKIP() << "no test data";
-  for_each_disk_of_the_data([](const Disk& disk) {
+  for_each_disk_of_the_data([](const solve::Disk& disk) {
     const SparseMatrix lower = arap_matrix(disk);
     const double expected = energy_after_ten_iterations(disk, Reference(lower));
     EXPECT_NEAR(energy_after_ten_iterations(disk, *ours(lower)), expected, 1e-7 * expected + 1e-12);
@@ -139,8 +142,8 @@ TEST(Engine, HoldsOutOnCapsAndNeedles) {
 }
 
 /// LSCM's, made definite without pins.
-ComplexMatrix conformal_matrix_of(const Disk& disk) {
-  ComplexMatrix lower = conformal_matrix(disk);
+ComplexMatrix conformal_matrix_of(const solve::Disk& disk) {
+  ComplexMatrix lower = solve::maps::conformal_matrix(disk);
   for (Index v = 0; v < disk.vertex_count(); ++v) lower.coeffRef(v, v) += 1e-4;
   lower.makeCompressed();
   return lower;
@@ -152,7 +155,7 @@ double backward_error(const ComplexMatrix& lower, const Eigen::VectorXcd& z,
   return (lower.selfadjointView<Eigen::Lower>() * z - b).norm() / (lower.norm() * z.norm());
 }
 
-void expect_hermitian_like_the_reference(const Disk& disk) {
+void expect_hermitian_like_the_reference(const solve::Disk& disk) {
   const ComplexMatrix lower = conformal_matrix_of(disk);
   const Eigen::VectorXcd b = Eigen::VectorXcd::Random(lower.cols());
   std::vector<Complex> x(b.begin(), b.end());
@@ -209,4 +212,4 @@ TEST(Engine, SolvesWhatFallsApart) {  // several components, one of them a singl
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -10,7 +10,7 @@
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 /// Last block first, each on its own thread.
@@ -152,4 +152,4 @@ TEST(Engine, RefillsAFactorInPlace) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

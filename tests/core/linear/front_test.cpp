@@ -9,7 +9,7 @@
 #include "core/linear/front.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 Eigen::MatrixXd random_definite(Eigen::Index n, unsigned seed) {
@@ -197,4 +197,4 @@ TEST(Panel, MultipliesToTheSameBitsOnTheBaseline) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

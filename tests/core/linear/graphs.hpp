@@ -4,7 +4,7 @@
 #include "core/linear/ordering.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 inline SparseMatrix unit_laplacian(const TriMesh& mesh) {
   return lower_laplacian(mesh.faces, mesh.vertex_count(),
@@ -18,4 +18,4 @@ inline Graph graph_of(const SparseMatrix& lower) {
 
 inline Graph graph_of(const TriMesh& mesh) { return graph_of(unit_laplacian(mesh)); }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

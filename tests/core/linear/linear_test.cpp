@@ -9,7 +9,7 @@
 #include "core/linear/factor.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 Eigen::MatrixXd dense_laplacian(const TriMesh& mesh, std::span<const double> weight) {
@@ -126,20 +126,20 @@ TEST(Eliminate, LeavesTheSystemOfTheFreeVertices) {
   const std::vector<double> weight = random_weights(mesh, 11);
   const Eigen::MatrixXd dense = dense_laplacian(mesh, weight);
   const auto n = std::size_t(mesh.vertex_count());
-  std::vector<char> fixed(n, 0);
+  std::vector<char> hard(n, 0);
   std::vector<Vec2> value(n, Vec2(0, 0));
-  for (std::size_t v = 0; v < n; v += 3) fixed[v] = 1, value[v] = Vec2(double(v), 1);
-  const FreeVertices free = number_free(fixed);
+  for (std::size_t v = 0; v < n; v += 3) hard[v] = 1, value[v] = Vec2(double(v), 1);
+  const FreeVertices free = number_free(hard);
   auto reduced = eliminate<SparseMatrix, Vec2>(
       lower_laplacian(mesh.faces, mesh.vertex_count(), weight), free, value);
   factor(reduced.lower)->solve(reduced.rhs);
   Eigen::MatrixX2d u(mesh.vertex_count(), 2);
   for (std::size_t v = 0; v < n; ++v)
-    u.row(Index(v)) = fixed[v] ? value[v] : reduced.rhs[std::size_t(free.slot[v])];
+    u.row(Index(v)) = hard[v] ? value[v] : reduced.rhs[std::size_t(free.slot[v])];
   const Eigen::MatrixX2d residual = dense * u;
   for (std::size_t v = 0; v < n; ++v)
-    EXPECT_TRUE(fixed[v] || residual.row(Index(v)).norm() < 1e-10) << v;
+    EXPECT_TRUE(hard[v] || residual.row(Index(v)).norm() < 1e-10) << v;
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -9,7 +9,7 @@
 #include "core/linear/elimination_tree.hpp"
 #include "tests/core/linear/graphs.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 Graph graph_of_edges(Index n, const std::vector<std::pair<Index, Index>>& edges) {
@@ -83,4 +83,4 @@ TEST(Ordering, StopsInTheMiddleWhenTold) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -8,7 +8,7 @@
 
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -76,9 +76,9 @@ TEST(PairSystem, SolvesLikeADenseMatrix) {
 
 TEST(PairSystem, LeavesOutVerticesWithoutASlot) {
   const TriMesh mesh = shapes::random_disk(6, 3);
-  std::vector<char> fixed(mesh.positions.size(), 0);
-  for (std::size_t v = 0; v < fixed.size(); v += 3) fixed[v] = 1;
-  expect_solves(mesh, number_free(fixed));
+  std::vector<char> hard(mesh.positions.size(), 0);
+  for (std::size_t v = 0; v < hard.size(); v += 3) hard[v] = 1;
+  expect_solves(mesh, number_free(hard));
 }
 
 TEST(PairSystem, LetsVerticesShareASlot) {  // also two corners of one face
@@ -115,4 +115,4 @@ TEST(PairSystem, RefusesAnIndefiniteMatrix) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -8,7 +8,7 @@
 #include "core/linear/supernodal.hpp"
 #include "tests/core/linear/graphs.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 namespace {
 
 std::vector<Index> random_order(Index n, unsigned seed) {
@@ -140,4 +140,4 @@ TEST(Supernodes, PileTheirUpdatesInPostorder) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -8,12 +8,12 @@
 #include "core/linear/factor.hpp"
 #include "core/solve/base/disk.hpp"
 
-namespace unwrapd {
+namespace unwrapd::linear {
 
 /// The matrix of the global step, nothing held.
-inline SparseMatrix arap_matrix(const Disk& disk) {
+inline SparseMatrix arap_matrix(const solve::Disk& disk) {
   std::vector<double> weight;
-  for (const RestTriangle& rest : disk.rest)
+  for (const measure::RestTriangle& rest : disk.rest)
     weight.insert(weight.end(), rest.cot.begin(), rest.cot.end());
   SparseMatrix lower = lower_laplacian(disk.faces, disk.vertex_count(), weight);
   lower.coeffRef(0, 0) *= 2;
@@ -59,4 +59,4 @@ inline double backward_error(const SparseMatrix& lower, const std::vector<Vec2>&
   return (ax - right).norm() / (lower.norm() * dense.norm());
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::linear

@@ -8,7 +8,7 @@
 #include "tests/core/shapes.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 UvMap flattened(const TriMesh& mesh) {
@@ -240,4 +240,4 @@ TEST(Energy, IsZeroForAnIsometryAndKnownForAStretch) {  // Eqs. (A2), (A3)
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

@@ -7,7 +7,7 @@
 
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 __extension__ using Wide = __int128;
@@ -91,4 +91,4 @@ TEST(Orientation, FindsEveryFlippedOrCollapsedFace) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

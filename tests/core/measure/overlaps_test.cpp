@@ -9,7 +9,7 @@
 #include "core/measure/winding.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::measure {
 namespace {
 
 using Corners = std::array<Vec2, 3>;
@@ -97,7 +97,7 @@ std::vector<BoundaryLoop> loops_of(const TriMesh& mesh) {
 }
 
 bool is_plainly_injective(const TriMesh& mesh, const UvMap& uv) {
-  return unwrapd::is_plainly_injective(mesh.faces, loops_of(mesh), uv);
+  return unwrapd::measure::is_plainly_injective(mesh.faces, loops_of(mesh), uv);
 }
 
 TEST(PlainlyInjective, SeesABoundaryThatCrossesItself) {
@@ -205,4 +205,4 @@ TEST(PlainlyInjective, NeverContradictsTheCount) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::measure

@@ -8,18 +8,18 @@
 
 #include "core/pack/occupancy.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 /// A star with n spikes, round the origin; hollow between them.
-Outline star(std::mt19937& rng, int n, double radius) {
+charts::Outline star(std::mt19937& rng, int n, double radius) {
   std::uniform_real_distribution<double> share(0.2, 1);
   UvMap points;
   for (int k = 0; k < n; ++k) {
     const double angle = 2 * M_PI * k / n, r = radius * share(rng);
     points.emplace_back(r * std::cos(angle), r * std::sin(angle));
   }
-  Outline outline;
+  charts::Outline outline;
   for (std::size_t k = 0; k < points.size(); ++k)
     outline.push_back({points[k], points[(k + 1) % points.size()]});
   return outline;
@@ -32,7 +32,7 @@ bool has(const Rows& rows, int x, int y) {
                      [&](const Run& run) { return run.begin <= x && x < run.end; });
 }
 
-int winding(const Outline& outline, const Vec2& p) {
+int winding(const charts::Outline& outline, const Vec2& p) {
   int sum = 0;
   for (const auto& [a, b] : outline) {
     const double side = (b - a).x() * (p - a).y() - (b - a).y() * (p - a).x();
@@ -46,7 +46,7 @@ TEST(Mask, HasEveryCellInWhichThereIsAPointOfTheIsland) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> at(-20, 20);
   for (int k = 0; k < 30; ++k) {
-    const Outline outline = star(rng, 5 + k % 9, 20);
+    const charts::Outline outline = star(rng, 5 + k % 9, 20);
     const Mask mask = make_mask(outline, {}, 2);
     for (int sample = 0; sample < 400; ++sample) {
       const Vec2 p(at(rng), at(rng)), cell = p - mask.low;
@@ -63,10 +63,10 @@ TEST(Mask, HasEveryCellInWhichThereIsAPointOfTheIsland) {
 }
 
 TEST(Mask, LeavesHollowsAndHolesFree) {
-  const Outline frame{{Vec2(0, 0), Vec2(10, 0)},        {Vec2(10, 0), Vec2(10, 10)},
-                      {Vec2(10, 10), Vec2(0, 10)},      {Vec2(0, 10), Vec2(0, 0)},
-                      {Vec2(2.5, 2.5), Vec2(2.5, 7.5)}, {Vec2(2.5, 7.5), Vec2(7.5, 7.5)},
-                      {Vec2(7.5, 7.5), Vec2(7.5, 2.5)}, {Vec2(7.5, 2.5), Vec2(2.5, 2.5)}};
+  const charts::Outline frame{{Vec2(0, 0), Vec2(10, 0)},        {Vec2(10, 0), Vec2(10, 10)},
+                              {Vec2(10, 10), Vec2(0, 10)},      {Vec2(0, 10), Vec2(0, 0)},
+                              {Vec2(2.5, 2.5), Vec2(2.5, 7.5)}, {Vec2(2.5, 7.5), Vec2(7.5, 7.5)},
+                              {Vec2(7.5, 7.5), Vec2(7.5, 2.5)}, {Vec2(7.5, 2.5), Vec2(2.5, 2.5)}};
   const Mask mask = make_mask(frame, {}, 0);
   for (int y = 0; y < 10; ++y)
     for (int x = 0; x < 10; ++x)
@@ -131,4 +131,4 @@ TEST(Occupancy, FindsTheLeftmostFreePlaceBruteForce) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

@@ -10,7 +10,7 @@
 #include "tests/core/outlines.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 using shapes::net;
@@ -19,13 +19,13 @@ using shapes::polygon;
 using shapes::star;
 using shapes::stars;
 
-double area(const Outline& outline) {
+double area(const charts::Outline& outline) {
   double sum = 0;
   for (const auto& [a, b] : outline) sum += a.x() * b.y() - a.y() * b.x();
   return sum / 2;
 }
 
-double fill(const std::vector<Outline>& islands, const std::vector<Placement>& placements) {
+double fill(const std::vector<charts::Outline>& islands, const std::vector<Placement>& placements) {
   double sum = 0;
   for (std::size_t k = 0; k < islands.size(); ++k)
     sum += area(islands[k]) * placements[k].scale * placements[k].scale;
@@ -37,7 +37,7 @@ double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
   return (p - a - t * (b - a)).norm();
 }
 
-bool inside(const Outline& outline, const Vec2& p) {
+bool inside(const charts::Outline& outline, const Vec2& p) {
   bool odd = false;
   for (const auto& [a, b] : outline)
     if ((a.y() > p.y()) != (b.y() > p.y()))
@@ -46,7 +46,7 @@ bool inside(const Outline& outline, const Vec2& p) {
 }
 
 /// Between two simple polygons, from their corners: exact where they do not overlap.
-double gap(const Outline& one, const Outline& other) {
+double gap(const charts::Outline& one, const charts::Outline& other) {
   double least = 1e300;
   for (const auto& [p, q] : one)
     for (const auto& [a, b] : other)
@@ -54,9 +54,9 @@ double gap(const Outline& one, const Outline& other) {
   return inside(one, other.front()[0]) || inside(other, one.front()[0]) ? 0 : least;
 }
 
-void expect_apart(const std::vector<Outline>& islands, const PageOptions& page) {
+void expect_apart(const std::vector<charts::Outline>& islands, const PageOptions& page) {
   const std::vector<Placement> placements = pack_alone(islands, page).placements;
-  std::vector<Outline> placed = islands;
+  std::vector<charts::Outline> placed = islands;
   for (std::size_t k = 0; k < placed.size(); ++k)
     for (auto& segment : placed[k])
       for (Vec2& p : segment) p = placements[k](p);
@@ -84,9 +84,9 @@ TEST(PackOutlines, KeepsIslandsAndTheBorderApartByThePadding) {
 
 TEST(PackOutlines, FillsHollowsThatRowsLeaveEmpty) {
   for (int count : {5, 12, 60, 500}) {
-    const std::vector<Outline> islands = stars(count, 4);
+    const std::vector<charts::Outline> islands = stars(count, 4);
     std::vector<UvMap> points;
-    for (const Outline& island : islands) {
+    for (const charts::Outline& island : islands) {
       points.emplace_back();
       for (const auto& [a, b] : island) points.back().push_back(a);
     }
@@ -98,7 +98,7 @@ TEST(PackOutlines, FillsHollowsThatRowsLeaveEmpty) {
 }
 
 TEST(PackOutlines, ThousandsLieInRowsAtOnce) {
-  const std::vector<Outline> islands(20'000, polygon({{0, 0}, {1, 0}, {0, 1}}));
+  const std::vector<charts::Outline> islands(20'000, polygon({{0, 0}, {1, 0}, {0, 1}}));
   const std::vector<UvMap> points(20'000, UvMap{{0, 0}, {1, 0}, {0, 1}});
   EXPECT_EQ(pack_alone(islands).placements.back().offset, pack_in_rows(points, {}).back().offset);
 }
@@ -106,7 +106,7 @@ TEST(PackOutlines, ThousandsLieInRowsAtOnce) {
 TEST(PackOutlines, LaysTheSmallInTheHollowOfTheLarge) {
   const UvMap cup{{0, 0}, {10, 0}, {10, 10}, {9, 10}, {9, 1}, {1, 1}, {1, 10}, {0, 10}};
   const UvMap block{{0, 0}, {7, 0}, {7, 7}, {0, 7}};
-  const std::vector<Outline> islands{polygon(cup), polygon(block)};
+  const std::vector<charts::Outline> islands{polygon(cup), polygon(block)};
   EXPECT_GT(pack_alone(islands, {.resolution = 512, .padding = 1}).placements.front().scale,
             0.09);  // 0.1 is all
 }
@@ -149,30 +149,30 @@ TEST(SquarestBox, HasTheLeastLongerSideOfAllAngles) {
 }
 
 TEST(PackOutlines, IsRatedAtAGlanceAsItIsPacked) {
-  const Outline square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
-  EXPECT_GT(rough_fill(std::vector<Outline>(4, square)), 0.9);  // they tile the page
-  const Outline cross = polygon({{1, 0},
-                                 {1.2, 0},
-                                 {1.2, 1},
-                                 {2.2, 1},
-                                 {2.2, 1.2},
-                                 {1.2, 1.2},
-                                 {1.2, 2.2},
-                                 {1, 2.2},
-                                 {1, 1.2},
-                                 {0, 1.2},
-                                 {0, 1},
-                                 {1, 1}});
-  EXPECT_LT(rough_fill(std::vector<Outline>{cross, cross}), 0.4);
-  EXPECT_EQ(rough_fill(std::vector<Outline>{cross, cross}, 0.9),  // never comes to that
-            rough_fill(std::vector<Outline>{cross, cross}));
-  const std::vector<Outline> islands = stars(12, 7);
+  const charts::Outline square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  EXPECT_GT(rough_fill(std::vector<charts::Outline>(4, square)), 0.9);  // they tile the page
+  const charts::Outline cross = polygon({{1, 0},
+                                         {1.2, 0},
+                                         {1.2, 1},
+                                         {2.2, 1},
+                                         {2.2, 1.2},
+                                         {1.2, 1.2},
+                                         {1.2, 2.2},
+                                         {1, 2.2},
+                                         {1, 1.2},
+                                         {0, 1.2},
+                                         {0, 1},
+                                         {1, 1}});
+  EXPECT_LT(rough_fill(std::vector<charts::Outline>{cross, cross}), 0.4);
+  EXPECT_EQ(rough_fill(std::vector<charts::Outline>{cross, cross}, 0.9),  // never comes to that
+            rough_fill(std::vector<charts::Outline>{cross, cross}));
+  const std::vector<charts::Outline> islands = stars(12, 7);
   EXPECT_NEAR(rough_fill(islands), fill(islands, pack_alone(islands, {.padding = 0}).placements),
               0.12);
 }
 
 TEST(PackOutlines, AreRatedNoLongerThanUntilThePageIsFullEnough) {
-  const std::vector<Outline> islands = stars(12, 7);
+  const std::vector<charts::Outline> islands = stars(12, 7);
   const double all = rough_fill(islands);
   for (const double enough : {0.5 * all, 0.8 * all, 0.999 * all}) {
     EXPECT_GE(rough_fill(islands, enough), enough);
@@ -185,7 +185,7 @@ TEST(PackOutlines, AreRatedNoLongerThanUntilThePageIsFullEnough) {
 TEST(PackOutlines, ShapesOfRightAnglesLieAlongThePage) {
   std::mt19937 rng(8);
   std::uniform_real_distribution<double> side(0.4, 1), angle(0, 6);
-  std::vector<Outline> nets;
+  std::vector<charts::Outline> nets;
   for (int k = 0; k < 120; ++k) nets.push_back(net(side(rng), side(rng), angle(rng)));
   const std::vector<Placement> placements = pack_alone(nets, {}).placements;
   for (std::size_t k = 0; k < nets.size(); ++k) {
@@ -224,4 +224,4 @@ TEST(PageGrid, PaddingHasFewCellsHoweverMuchOfThePageItIs) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

@@ -10,7 +10,7 @@
 #include "core/pack/box.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 using Rng = std::mt19937;
@@ -193,4 +193,4 @@ TEST(Pack, ScaleOfTheIslandsDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

@@ -8,16 +8,18 @@
 #include "core/pack/pack.hpp"
 #include "tests/core/outlines.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pack {
 namespace {
 
 using shapes::pack_alone;
 using shapes::polygon;
 
-Outline square(double side) { return polygon({{0, 0}, {side, 0}, {side, side}, {0, side}}); }
+charts::Outline square(double side) {
+  return polygon({{0, 0}, {side, 0}, {side, side}, {0, side}});
+}
 
 /// A corner cut off, so that no turn maps it onto itself; moved, and turned by an angle.
-Outline flag(double size, double angle, const Vec2& at) {
+charts::Outline flag(double size, double angle, const Vec2& at) {
   UvMap points{{0, 0}, {3, 0}, {3, 1}, {1, 1.5}, {1, 2}, {0, 2}};
   for (Vec2& p : points)
     p = at + size * Vec2(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
@@ -25,12 +27,12 @@ Outline flag(double size, double angle, const Vec2& at) {
   return polygon(points);
 }
 
-int page_of(const Outline& island, const Placement& placement) {
+int page_of(const charts::Outline& island, const Placement& placement) {
   return static_cast<int>(std::floor(placement(island.front()[0]).x()));
 }
 
 TEST(Pages, EveryIslandHasTheDensityThatIsAskedFor) {
-  const std::vector<Outline> islands{square(1), square(2), flag(1, 0.3, {7, 7})};
+  const std::vector<charts::Outline> islands{square(1), square(2), flag(1, 0.3, {7, 7})};
   const Packed packed = pack_alone(
       islands, {.resolution = 1024, .padding = 4, .packing = {.texels_per_unit = 100.0}});
   EXPECT_EQ(packed.pages, 1);
@@ -39,7 +41,7 @@ TEST(Pages, EveryIslandHasTheDensityThatIsAskedFor) {
 }
 
 TEST(Pages, WhatDoesNotFitOnOnePageGoesToTheNextAndNeverAcrossTheBorder) {
-  const std::vector<Outline> islands(7, square(1));
+  const std::vector<charts::Outline> islands(7, square(1));
   const PageOptions page{
       .resolution = 256, .padding = 2, .packing = {.texels_per_unit = 100.0, .max_pages = 4}};
   const Packed packed = pack_alone(islands, page);
@@ -55,7 +57,7 @@ TEST(Pages, WhatDoesNotFitOnOnePageGoesToTheNextAndNeverAcrossTheBorder) {
 }
 
 TEST(Pages, SaysClearlyThatADensityDoesNotFit) {
-  const auto code_of = [](const std::vector<Outline>& islands, const Packing& packing) {
+  const auto code_of = [](const std::vector<charts::Outline>& islands, const Packing& packing) {
     try {
       pack_alone(islands, {.resolution = 256, .padding = 2, .packing = packing});
     } catch (const Error& error) {
@@ -64,13 +66,13 @@ TEST(Pages, SaysClearlyThatADensityDoesNotFit) {
     }
     return ErrorCode::internal;
   };
-  const std::vector<Outline> seven(7, square(1)), large{square(3)};
+  const std::vector<charts::Outline> seven(7, square(1)), large{square(3)};
   EXPECT_EQ(code_of(seven, {.texels_per_unit = 100.0}), ErrorCode::does_not_fit);
   EXPECT_EQ(code_of(large, {.texels_per_unit = 100.0, .max_pages = 10}), ErrorCode::does_not_fit);
 }
 
 TEST(Pages, MorePagesGiveMoreTexels) {
-  std::vector<Outline> islands;
+  std::vector<charts::Outline> islands;
   for (int k = 0; k < 20; ++k) islands.push_back(flag(1 + 0.03 * k, 0.1 * k, {0, 0}));
   const Packed one = pack_alone(islands, {}),
                four = pack_alone(islands, {.packing = {.max_pages = 4}});
@@ -80,7 +82,7 @@ TEST(Pages, MorePagesGiveMoreTexels) {
 }
 
 TEST(Stacks, IslandsOfOneShapeShareAPlaceWhateverWayTheyLie) {
-  std::vector<Outline> islands;
+  std::vector<charts::Outline> islands;
   for (int k = 0; k < 6; ++k) islands.push_back(flag(1, 0.7 * k, {5.0 * k, -k}));
   islands.push_back(square(2));
   const PageOptions page{.packing = {.stack_identical = true}};
@@ -95,13 +97,13 @@ TEST(Stacks, IslandsOfOneShapeShareAPlaceWhateverWayTheyLie) {
 }
 
 TEST(Stacks, MirrorImagesAndOtherSizesAreOtherShapes) {
-  Outline mirrored = flag(1, 0, {0, 0});
+  charts::Outline mirrored = flag(1, 0, {0, 0});
   for (auto& segment : mirrored) {
     for (Vec2& p : segment) p.x() = -p.x();
     std::swap(segment[0], segment[1]);
   }
   std::reverse(mirrored.begin(), mirrored.end());
-  const std::vector<Outline> islands{flag(1, 0, {0, 0}), mirrored, flag(1.01, 0, {0, 0})};
+  const std::vector<charts::Outline> islands{flag(1, 0, {0, 0}), mirrored, flag(1.01, 0, {0, 0})};
   const Packed packed = pack_alone(islands, {.packing = {.stack_identical = true}});
   EXPECT_EQ(packed.is_stacked, (std::vector<char>{0, 0, 0}));
 }
@@ -109,7 +111,7 @@ TEST(Stacks, MirrorImagesAndOtherSizesAreOtherShapes) {
 TEST(Pages, ThousandsOfIslandsAreStoppedAtOnce) {
   std::stop_source stop;
   stop.request_stop();
-  const std::vector<Outline> islands(3000, square(1));
+  const std::vector<charts::Outline> islands(3000, square(1));
   try {
     pack_alone(islands, {}, stop.get_token());
     ADD_FAILURE() << "it went on";
@@ -119,4 +121,4 @@ TEST(Pages, ThousandsOfIslandsAreStoppedAtOnce) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::pack

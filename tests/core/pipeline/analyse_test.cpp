@@ -6,7 +6,7 @@
 #include "core/unwrap.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 namespace {
 
 InputAnalysis analysis_of_shape(const TriMesh& mesh) {
@@ -51,4 +51,4 @@ TEST(Analyse, SaysWhatAJobsReportSays) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

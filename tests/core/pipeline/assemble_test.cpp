@@ -10,13 +10,13 @@
 #include "core/pipeline/assemble.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 namespace {
 
 using namespace shapes;
 
 /// A UV of its own for every chart vertex, so that mistakes show.
-std::vector<UvMap> labels(const Charts& charts) {
+std::vector<UvMap> labels(const charts::Charts& charts) {
   std::vector<UvMap> all;
   for (std::size_t k = 0; k < charts.charts.size(); ++k) {
     UvMap uv;
@@ -29,14 +29,14 @@ std::vector<UvMap> labels(const Charts& charts) {
 
 struct Assembled {
   Surface surface;
-  Charts charts;
+  charts::Charts charts;
   std::vector<UvMap> uv;
   UnwrappedSurface out;
 };
 
 Assembled assembled(const TriMesh& mesh, SeamMode seams = SeamMode::none) {
   Assembled a{surface_of(mesh), {}, {}, {}};
-  a.charts = make_charts(a.surface, seams);
+  a.charts = charts::make_charts(a.surface, seams);
   a.uv = labels(a.charts);
   a.out = assemble(a.surface, a.charts, a.uv);
   return a;
@@ -56,7 +56,7 @@ void expect_consistent(const Assembled& a) {
     EXPECT_TRUE(
         distinct.insert({double(a.out.source[v]), a.out.uv[v].x(), a.out.uv[v].y()}).second);
   for (std::size_t k = 0; k < a.charts.charts.size(); ++k) {
-    const Chart& chart = a.charts.charts[k];
+    const charts::Chart& chart = a.charts.charts[k];
     for (std::size_t t = 0; t < chart.face_source.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i)
         EXPECT_EQ(a.out.uv[a.out.faces[chart.face_source[t]][i]], a.uv[k][chart.mesh.faces[t][i]]);
@@ -162,7 +162,7 @@ TEST(Assemble, AFaceWithoutAreaMakesNoSeam) {
   ASSERT_EQ(a.charts.set_aside, (std::vector<Index>{5}));
   ASSERT_EQ(a.charts.charts.size(), 2U);
   EXPECT_EQ(points_of_degenerate(a, 5), 2U);
-  EXPECT_EQ(seam_length(a.surface, a.out), 0);
+  EXPECT_EQ(measure::seam_length(a.surface, a.out), 0);
 }
 
 TEST(Assemble, WithoutAnyChartEverythingIsAtTheOrigin) {
@@ -174,4 +174,4 @@ TEST(Assemble, WithoutAnyChartEverythingIsAtTheOrigin) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

@@ -17,11 +17,11 @@
 #include "core/mesh/weld.hpp"
 #include "core/pack/pack.hpp"
 #include "core/pipeline/assemble.hpp"
-#include "core/segment/carry.hpp"
 #include "core/segment/coarsen.hpp"
+#include "core/segment/transfer_seams.hpp"
+#include "core/solve/arap/even_boundary_scale_factors.hpp"
 #include "core/solve/arap/face_blocks.hpp"
-#include "core/solve/arap/frames.hpp"
-#include "core/solve/arap/level_scales.hpp"
+#include "core/solve/arap/initial_rotations.hpp"
 #include "core/solve/base/metric.hpp"
 #include "core/solve/maps/conformal_system.hpp"
 #include "core/solve/maps/convex_map.hpp"
@@ -30,7 +30,7 @@
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/solve/ranks.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 namespace {
 
 using Stop = const std::stop_token&;
@@ -63,8 +63,8 @@ struct Sample {
   UvMap uv = shapes::from_above(mesh.positions);
 
   /// As in a job that may be told to stop.
-  [[nodiscard]] Disk disk(Stop stop) const {
-    Disk disk = owned.disk;
+  [[nodiscard]] solve::Disk disk(Stop stop) const {
+    solve::Disk disk = owned.disk;
     disk.stop = stop;
     return disk;
   }
@@ -89,87 +89,97 @@ TEST(Cancel, IsHeardInTopology) {
        {"vertices", [&](Stop stop) { corner_vertices(s.halfedges, stop); }},
        {"loops", [&](Stop stop) { boundary_loops(mesh, s.halfedges, stop); }},
        {"components", [&](Stop stop) {
-          components_of(s.surface, {SeamMode::automatic, {}, 0, stop});
+          charts::components_of(s.surface, {SeamMode::automatic, {}, 0, stop});
         }}});
 }
 
 TEST(Cancel, IsHeardInLinearAlgebra) {
   const Sample s;
   const TriMesh& mesh = s.mesh;
-  const SparseMatrix lower = arap_matrix(s.owned.disk);
-  const SparseMatrix dominant = SparseMatrix(lower.selfadjointView<Eigen::Lower>()) +
-                                SparseMatrix(Eigen::VectorXd::Ones(lower.cols()).asDiagonal());
-  const Graph graph = graph_of(mesh);
-  const std::vector<Index> order = fill_reducing_order(graph);
+  const linear::SparseMatrix lower = linear::arap_matrix(s.owned.disk);
+  const linear::SparseMatrix dominant =
+      linear::SparseMatrix(lower.selfadjointView<Eigen::Lower>()) +
+      linear::SparseMatrix(Eigen::VectorXd::Ones(lower.cols()).asDiagonal());
+  const linear::Graph graph = linear::graph_of(mesh);
+  const std::vector<Index> order = linear::fill_reducing_order(graph);
   const std::vector<double> ones(3 * mesh.faces.size(), 1);
   expect_all_to_hear(
       {{"assembly",
-        [&](Stop stop) { lower_laplacian(mesh.faces, mesh.vertex_count(), ones, stop); }},
-       {"corners", [&](Stop stop) { vertex_corners(mesh.faces, mesh.vertex_count(), stop); }},
+        [&](Stop stop) { linear::lower_laplacian(mesh.faces, mesh.vertex_count(), ones, stop); }},
+       {"corners",
+        [&](Stop stop) { linear::vertex_corners(mesh.faces, mesh.vertex_count(), stop); }},
        {"graph",
         [&](Stop stop) {
-          graph_of_lower({lower.outerIndexPtr(), std::size_t(lower.cols()) + 1},
-                         {lower.innerIndexPtr(), std::size_t(lower.nonZeros())}, stop);
+          linear::graph_of_lower({lower.outerIndexPtr(), std::size_t(lower.cols()) + 1},
+                                 {lower.innerIndexPtr(), std::size_t(lower.nonZeros())}, stop);
         }},
-       {"order", [&](Stop stop) { fill_reducing_order(graph, stop); }},
-       {"tree", [&](Stop stop) { elimination_tree(graph, order, stop); }},
-       {"factor", [&](Stop stop) { factor(lower, stop); }},
+       {"order", [&](Stop stop) { linear::fill_reducing_order(graph, stop); }},
+       {"tree", [&](Stop stop) { linear::elimination_tree(graph, order, stop); }},
+       {"factor", [&](Stop stop) { linear::factor(lower, stop); }},
        {"L U", [&](Stop stop) {
           std::vector<Vec2> b(std::size_t(lower.cols()), Vec2(1, 2));
-          solve_dominant(dominant, b, stop);
+          linear::solve_dominant(dominant, b, stop);
         }}});
 }
 
 TEST(Cancel, IsHeardWhileMapsAreMade) {
   const Sample s;
-  const GlobalStep global(s.owned.disk, {});
+  const solve::arap::GlobalStep global(s.owned.disk, {});
   const std::vector<Index> rank = shapes::as_listed(s.mesh.positions.size());
   const std::vector<double> curved(s.mesh.positions.size(), 1);
   expect_all_to_hear(
-      {{"disk", [&](Stop stop) { make_disk(s.mesh, s.owned.disk.loops, stop); }},
-       {"flatten", [&](Stop stop) { flatten(s.mesh, stop); }},
-       {"curvature", [&](Stop stop) { curvature(s.disk(stop), s.owned.disk.rest); }},
-       {"level scales", [&](Stop stop) { level_scales(s.disk(stop), global, curved, 99); }},
-       {"frames", [&](Stop stop) { frame_map(s.disk(stop), global); }},
-       {"global step", [&](Stop stop) { GlobalStep(s.disk(stop), {}); }},
-       {"Tutte", [&](Stop stop) { tutte_map(s.disk(stop)); }},
-       {"mean value", [&](Stop stop) { mean_value_map(s.disk(stop)); }},
-       {"blocks", [&](Stop stop) { face_blocks(s.owned.disk.rest, s.mesh.faces, rank, stop); }},
+      {{"disk", [&](Stop stop) { solve::make_disk(s.mesh, s.owned.disk.loops, stop); }},
+       {"flatten", [&](Stop stop) { measure::flatten(s.mesh, stop); }},
+       {"curvature", [&](Stop stop) { solve::curvature(s.disk(stop), s.owned.disk.rest); }},
+       {"level scales",
+        [&](Stop stop) {
+          solve::arap::even_boundary_scale_factors(s.disk(stop), global, curved, 99);
+        }},
+       {"frames", [&](Stop stop) { solve::arap::map_from_rotations(s.disk(stop), global); }},
+       {"global step", [&](Stop stop) { solve::arap::GlobalStep(s.disk(stop), {}); }},
+       {"Tutte", [&](Stop stop) { solve::maps::tutte_map(s.disk(stop)); }},
+       {"mean value", [&](Stop stop) { solve::maps::mean_value_map(s.disk(stop)); }},
+       {"blocks",
+        [&](Stop stop) { solve::arap::face_blocks(s.owned.disk.rest, s.mesh.faces, rank, stop); }},
        {"conformal", [&](Stop stop) {
-          ConformalSystem(s.disk(stop), {{{0, Vec2(0, 0)}, {5, Vec2(1, 0)}}, {}});
+          solve::maps::ConformalSystem(s.disk(stop), {{{0, Vec2(0, 0)}, {5, Vec2(1, 0)}}, {}});
         }}});
 }
 
 TEST(Cancel, IsHeardWhileMapsAreMeasuredAndPutBack) {
   const Sample s;
-  const Charts charts = make_charts(s.surface, SeamMode::keep);
+  const charts::Charts charts = charts::make_charts(s.surface, SeamMode::keep);
   const UnwrappedSurface flat{s.mesh.faces, {}, s.uv};
   const std::vector<UvMap> maps{s.uv};
   const auto& faces = s.mesh.faces;
   expect_all_to_hear(
-      {{"flips", [&](Stop stop) { flipped_faces(faces, s.uv, stop); }},
+      {{"flips", [&](Stop stop) { measure::flipped_faces(faces, s.uv, stop); }},
        {"injective",
-        [&](Stop stop) { is_plainly_injective(faces, s.owned.disk.loops, s.uv, stop); }},
-       {"overlaps", [&](Stop stop) { overlapping_pairs(faces, s.uv, 9, stop); }},
+        [&](Stop stop) { measure::is_plainly_injective(faces, s.owned.disk.loops, s.uv, stop); }},
+       {"overlaps", [&](Stop stop) { measure::overlapping_pairs(faces, s.uv, 9, stop); }},
        {"winding",
-        [&](Stop stop) { faces_perhaps_overlapped(faces, s.owned.disk.loops, s.uv, stop); }},
-       {"distortion", [&](Stop stop) { distortion_sums(s.owned.disk.rest, faces, s.uv, stop); }},
+        [&](Stop stop) {
+          measure::faces_perhaps_overlapped(faces, s.owned.disk.loops, s.uv, stop);
+        }},
+       {"distortion",
+        [&](Stop stop) { measure::distortion_sums(s.owned.disk.rest, faces, s.uv, stop); }},
        {"assemble", [&](Stop stop) { assemble(s.surface, charts, maps, stop); }},
-       {"seams", [&](Stop stop) { seam_lengths(s.surface, flat, stop); }}});
+       {"seams", [&](Stop stop) { measure::seam_lengths(s.surface, flat, stop); }}});
 }
 
 TEST(Cancel, IsHeardWhereLargeSurfacesAreTakenApart) {
   const Sample s;
-  const Coarse coarse = coarsen(s.mesh, s.halfedges, 60, {});
+  const segment::Coarse coarse = segment::coarsen(s.mesh, s.halfedges, 60, {});
   const std::vector<char> seam(coarse.halfedges.twin.size(), 0);
-  const Chart& chart = *s.owned.chart;
-  expect_all_to_hear({{"coarsen", [&](Stop stop) { coarsen(s.mesh, s.halfedges, 60, stop); }},
-                      {"carry", [&](Stop stop) { carry(s.mesh, s.halfedges, coarse, seam, stop); }},
-                      {"parts", [&](Stop stop) { parts_of(chart, chart.halfedges, stop); }},
-                      {"split", [&](Stop stop) {
-                         split_chart(chart, {{{0}, {200}}}, stop);
-                       }}});
+  const charts::Chart& chart = *s.owned.chart;
+  expect_all_to_hear(
+      {{"coarsen", [&](Stop stop) { segment::coarsen(s.mesh, s.halfedges, 60, stop); }},
+       {"carry", [&](Stop stop) { segment::carry(s.mesh, s.halfedges, coarse, seam, stop); }},
+       {"parts", [&](Stop stop) { charts::parts_of(chart, chart.halfedges, stop); }},
+       {"split", [&](Stop stop) {
+          charts::split_chart(chart, {{{0}, {200}}}, stop);
+        }}});
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

@@ -7,7 +7,7 @@
 #include "core/base/error.hpp"
 #include "core/unwrap.hpp"
 
-namespace unwrapd {
+namespace unwrapd::pipeline {
 namespace {
 
 /// n separate quads, quad k at size 1 + k in space and 1 / (1 + k) in UV, the odd ones mirrored.
@@ -96,4 +96,4 @@ TEST(Repack, TellsOfFacesWithoutUvs) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::pipeline

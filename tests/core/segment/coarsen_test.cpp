@@ -12,10 +12,10 @@
 #include "core/charts/charts.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/mesh/topology.hpp"
-#include "core/segment/carry.hpp"
+#include "core/segment/transfer_seams.hpp"
 #include "tests/core/hard_shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 using namespace shapes;
@@ -78,14 +78,14 @@ struct Contracted {
 };
 
 /// What contracting as far as it goes leaves of a surface.
-Contracted contracted(const Chart& c) {
+Contracted contracted(const charts::Chart& c) {
   const Coarse coarse = coarsen(c.mesh, c.halfedges, 1, {});
   return {component_of(c.mesh.faces, c.halfedges),
           component_of(corner_vertices(coarse.halfedges).faces, coarse.halfedges)};
 }
 
-Chart component(const TriMesh& mesh) {
-  return std::move(components_of(surface_of(mesh), {}).charts.front());
+charts::Chart component(const TriMesh& mesh) {
+  return std::move(charts::components_of(surface_of(mesh), {}).charts.front());
 }
 
 /// Where an edge's ends have a third neighbour in common, where an edge runs from rim to rim, and
@@ -116,7 +116,7 @@ TEST(Coarsen, TurnsNoFaceOver) {
     return p.y() > 0.3 && std::fmod(p.x() * 15, 2) > 1;
   });
   for (Vec3& p : comb.positions) p += 0.006 * Vec3(std::sin(900 * p.y()), std::sin(700 * p.x()), 0);
-  const Chart chart = component(comb);
+  const charts::Chart chart = component(comb);
   const Coarse coarse = coarsen(chart.mesh, chart.halfedges, 60, {});
   const Vec3 up = Vec3::UnitZ();
   for (const Triangle& face : coarse.mesh.faces) {
@@ -186,7 +186,7 @@ TEST(Carry, CutsTheLargeSurfaceIntoPartsOfTheSameGenusAndBoundaries) {
       for (std::size_t h = 0; h < seam.size(); ++h)
         if (seam[h] != 0) cut.twin[h] = kNoTwin;
       for (Index t = 0; t < coarse.mesh.face_count(); ++t) all.push_back(t);
-      const Carried carried = carry(mesh, halfedges, coarse, seam, {});
+      const TransferredSeams carried = carry(mesh, halfedges, coarse, seam, {});
       EXPECT_EQ(kinds(carried.cut, coarse.face), kinds(cut, all)) << name << ' ' << width;
       EXPECT_GE(std::ranges::min(carried.near), 0) << name;
     }
@@ -210,7 +210,7 @@ TEST(Carry, TakesTheShortestWay) {
     Halfedges cut = coarse.halfedges;
     for (std::size_t h = 0; h < seam.size(); ++h)
       if (seam[h] != 0) cut.twin[h] = kNoTwin;
-    const Carried carried = carry(mesh, halfedges, coarse, seam, {});
+    const TransferredSeams carried = carry(mesh, halfedges, coarse, seam, {});
     const double large = seam_length(mesh, carried.cut, halfedges);
     const double small = seam_length(coarse.mesh, cut, coarse.halfedges);
     EXPECT_LT(large, 1.15 * small) << name;
@@ -236,7 +236,8 @@ TEST(Carry, LeavesNoPartWithoutAFaceOfTheSmallSurface) {
     for (const int target : {20, 60, 300}) {
       const Coarse coarse = coarsen(mesh, halfedges, target, {});
       for (int k = 0; k < 80; ++k) {
-        const Carried carried = carry(mesh, halfedges, coarse, seams_by_lot(coarse, rng), {});
+        const TransferredSeams carried =
+            carry(mesh, halfedges, coarse, seams_by_lot(coarse, rng), {});
         EXPECT_GE(std::ranges::min(carried.near), 0) << name << ' ' << target << ' ' << k;
       }
     }
@@ -261,4 +262,4 @@ TEST(Coarsen, StopsWhenTold) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

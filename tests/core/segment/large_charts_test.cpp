@@ -10,7 +10,7 @@
 #include "tests/core/hard_shapes.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 using namespace shapes;
@@ -48,7 +48,8 @@ TEST(LargeCharts, SaySoWhereNoiseLeavesNoRoomForTheBound) {
 }
 
 TEST(LargeCharts, AreTheSameForAnyExecutor) {
-  const Charts whole = components_of(surface_of(bench::noisy_body(20'000, 0.25)), {});
+  const charts::Charts whole =
+      charts::components_of(surface_of(bench::noisy_body(20'000, 0.25)), {});
   SerialExecutor serial;
   TwoThreads two;
   const auto one = large_charts(whole.charts.front(), {}, serial).charts;
@@ -61,25 +62,25 @@ TEST(LargeCharts, AreTheSameForAnyExecutor) {
 }
 
 /// A disk that begins with its shadow.
-Chart chart_of(const TriMesh& mesh) {
-  Chart chart = std::move(components_of(surface_of(mesh), {}).charts.front());
+charts::Chart chart_of(const TriMesh& mesh) {
+  charts::Chart chart = std::move(charts::components_of(surface_of(mesh), {}).charts.front());
   for (const Vec3& p : chart.mesh.positions) chart.start.emplace_back(p.x(), p.y());
   return chart;
 }
 
 TEST(ChartExcess, IsNoneOfWhatLiesFlatAndThatOfTheSolvedMapElse) {
   SerialExecutor serial;
-  const std::vector<Chart> flat{chart_of(grid(20, 20))};
+  const std::vector<charts::Chart> flat{chart_of(grid(20, 20))};
   EXPECT_NEAR(chart_excess(flat, serial, {}).worst(), 0, 1e-9);
   const TriMesh bowl = mapped_grid(30, 30, Wrap::none, [](double u, double v) {
     return Vec3(3 * u, 3 * v, 4 * (u - u * u + v - v * v));
   });
-  const std::vector<Chart> charts{chart_of(bowl)};
-  const Excess excess = chart_excess(charts, serial, {});
+  const std::vector<charts::Chart> charts{chart_of(bowl)};
+  const ExcessDistortion excess = chart_excess(charts, serial, {});
   const Distortion solved = unwrapped(bowl).report.distortion;
   EXPECT_NEAR(excess.angle, solved.angle - 2, 0.05 * (solved.angle - 2));
   EXPECT_NEAR(excess.area, solved.area - 2, 0.05 * (solved.area - 2));
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -8,44 +8,45 @@
 
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 /// Patches of a flat sheet, one for each value of label(middle of a face), with their own places
 /// for maps.
 template <class Label>
-Partition parted(const Sheet& sheet, Label label) {
-  Partition parts{{}, std::vector<char>(sheet.length.size(), 0)};
-  for (Index t = 0; t < sheet.face_count(); ++t) {
+Partition parted(const SegmentationMesh& surface, Label label) {
+  Partition parts{{}, std::vector<char>(surface.length.size(), 0)};
+  for (Index t = 0; t < surface.face_count(); ++t) {
     Vec3 middle = Vec3::Zero();
-    for (const Index v : sheet.mesh.faces[std::size_t(t)])
-      middle += sheet.mesh.positions[std::size_t(v)] / 3;
+    for (const Index v : surface.mesh.faces[std::size_t(t)])
+      middle += surface.mesh.positions[std::size_t(v)] / 3;
     const auto k = std::size_t(label(middle));
     if (parts.patches.size() <= k) parts.patches.resize(k + 1);
     parts.patches[k].region.faces.push_back(t);
   }
   for (MappedRegion& patch : parts.patches) {
-    patch.region.uv = projected(sheet, patch.region.faces);
-    for (const Index t : patch.region.faces) patch.area += sheet.area(t);
+    patch.region.uv = projected(surface, patch.region.faces);
+    for (const Index t : patch.region.faces) patch.area += surface.area(t);
     patch.is_sound = true;
   }
   return parts;
 }
 
-Sheet sheet_of(const TriMesh& mesh) {
-  return make_sheet(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+SegmentationMesh without_creases(const TriMesh& mesh) {
+  return make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
 }
 
-std::size_t merged_count(const Sheet& sheet, const Partition& from, MergeRules rules) {
+std::size_t merged_count(const SegmentationMesh& surface, const Partition& from, MergeRules rules) {
   SerialExecutor serial;
   rules.budget = rules.cap = 0.02;
-  return merge_patches(Joiner(sheet), sheet, from, rules, serial).patches.size();
+  return merge_patches(Joiner(surface), surface, from, rules, serial).patches.size();
 }
 
 /// Halves of a strip 16 wide and 1 high, and of one 2 wide.
 TEST(Merge, RefusesWhatIsTooLongForAPageOnlyWhereThePageShallBeFilled) {
   const auto half = [](const Vec3& middle) { return middle.x() < 0 ? 0 : 1; };
-  const Sheet strip = sheet_of(shapes::grid(16, 1, 16, 1)), brick = sheet_of(shapes::grid(4, 2, 2));
+  const SegmentationMesh strip = without_creases(shapes::grid(16, 1, 16, 1)),
+                         brick = without_creases(shapes::grid(4, 2, 2));
   EXPECT_EQ(merged_count(strip, parted(strip, half), {}), 1U);
   EXPECT_EQ(merged_count(strip, parted(strip, half), {.least_fill = 0.3}), 2U);
   EXPECT_EQ(merged_count(brick, parted(brick, half), {.least_fill = 0.3}), 1U);
@@ -73,11 +74,11 @@ TEST(Merge, RefusesALargeUnionThatFillsItsHullTooLittle) {
       v = number[std::size_t(v)];
     }
   }
-  const Sheet sheet = sheet_of(mesh);
-  const double bend = sheet.mesh.positions[std::size_t(number[12])].y();  // (0.5, 0.5)
-  const Partition halves = parted(sheet, [&](const Vec3& m) { return m.y() < bend ? 0 : 1; });
+  const SegmentationMesh surface = without_creases(mesh);
+  const double bend = surface.mesh.positions[std::size_t(number[12])].y();  // (0.5, 0.5)
+  const Partition halves = parted(surface, [&](const Vec3& m) { return m.y() < bend ? 0 : 1; });
   const auto count = [&](double least_solid, double page_area) {
-    return merged_count(sheet, halves,
+    return merged_count(surface, halves,
                         {.page_area = page_area, .least_fill = 0.01, .least_solid = least_solid});
   };
   EXPECT_EQ(count(0.8, 1), 1U);
@@ -87,19 +88,19 @@ TEST(Merge, RefusesALargeUnionThatFillsItsHullTooLittle) {
 
 /// Sixteen squares: which unions come first is all the same by their borders.
 TEST(Merge, DrawsLotsWhereItHasAWhim) {
-  const Sheet sheet = sheet_of(shapes::grid(8, 8));
-  const double side = sheet.mesh.positions.back().x() - sheet.mesh.positions.front().x();
-  const Vec3 corner = sheet.mesh.positions.front();
-  const Partition squares = parted(sheet, [&](const Vec3& m) {
+  const SegmentationMesh surface = without_creases(shapes::grid(8, 8));
+  const double side = surface.mesh.positions.back().x() - surface.mesh.positions.front().x();
+  const Vec3 corner = surface.mesh.positions.front();
+  const Partition squares = parted(surface, [&](const Vec3& m) {
     const auto cell = [&](int axis) { return int(4 * (m[axis] - corner[axis]) / side); };
     return 4 * cell(1) + cell(0);
   });
-  const auto merged = [&](double whim, int lot) {
+  const auto merged = [&](double noise, int seed) {
     SerialExecutor serial;
     std::vector<std::vector<Index>> faces;
-    const MergeRules rules{.budget = 0.02, .cap = 0.02, .whim = whim, .lot = lot, .enough = 6};
+    const MergeRules rules{.budget = 0.02, .cap = 0.02, .noise = noise, .seed = seed, .enough = 6};
     for (const MappedRegion& patch :
-         merge_patches(Joiner(sheet), sheet, squares, rules, serial).patches)
+         merge_patches(Joiner(surface), surface, squares, rules, serial).patches)
       faces.push_back(patch.region.faces);
     return faces;
   };
@@ -112,20 +113,20 @@ TEST(Merge, DrawsLotsWhereItHasAWhim) {
 /// Six sides of a cube lie flat as a cross, but only with slits, which are told.
 TEST(Merge, TellsOfSlitsOnBothSides) {
   const TriMesh mesh = shapes::cube(1);
-  const Sheet sheet = sheet_of(mesh);
+  const SegmentationMesh surface = without_creases(mesh);
   const auto side = [](const Vec3& m) {
     Eigen::Index axis = 0;
     m.cwiseAbs().maxCoeff(&axis);
     return 2 * int(axis) + (m[axis] > 0 ? 1 : 0);
   };
   SerialExecutor serial;
-  const Partition all = merge_patches(Joiner(sheet), sheet, parted(sheet, side),
+  const Partition all = merge_patches(Joiner(surface), surface, parted(surface, side),
                                       {.budget = 0.02, .cap = 0.08}, serial);
   double slit = 0;
   for (std::size_t h = 0; h < all.open.size(); ++h) {
     if (all.open[h] == 0) continue;
-    EXPECT_EQ(all.open[std::size_t(sheet.halfedges.twin[h])], 1);
-    slit += sheet.length[h] / 2;
+    EXPECT_EQ(all.open[std::size_t(surface.halfedges.twin[h])], 1);
+    slit += surface.length[h] / 2;
   }
   EXPECT_EQ(all.patches.size(), 1U);
   EXPECT_NEAR(slit, 7 * std::sqrt(1.0 / 6), 1e-9);  // of twelve edges a tree of five is glued
@@ -140,9 +141,9 @@ std::vector<Index> slit_of_tube(const Vec3& offset, double scale) {
     flat.emplace_back(std::atan2(p.y(), p.x()), p.z());
     p = scale * (turn * p) + offset;
   }
-  const Sheet sheet = sheet_of(mesh);
+  const SegmentationMesh surface = without_creases(mesh);
   std::array<MappedRegion, 2> halves;
-  for (Index t = 0; t < sheet.face_count(); ++t) {
+  for (Index t = 0; t < surface.face_count(); ++t) {
     CornerUv uv;
     for (std::size_t i = 0; i < 3; ++i) uv[i] = flat[std::size_t(mesh.faces[std::size_t(t)][i])];
     const bool is_upper = uv[0].y() + uv[1].y() + uv[2].y() > 0 && t % 48 < 24;
@@ -151,10 +152,10 @@ std::vector<Index> slit_of_tube(const Vec3& offset, double scale) {
     MappedRegion& half = halves[is_upper ? 0 : 1];
     half.region.faces.push_back(t);
     half.region.uv.push_back(uv);
-    half.area += sheet.area(t);
+    half.area += surface.area(t);
   }
-  const std::vector<char> open(sheet.length.size(), 0);
-  return Joiner(sheet).join(halves[0], halves[1], open, 1, {}).slit;
+  const std::vector<char> open(surface.length.size(), 0);
+  return Joiner(surface).join(halves[0], halves[1], open, 1, {}).slit;
 }
 
 TEST(Join, SlitsATubeAtTheSamePlaceWhereverItLies) {
@@ -166,4 +167,4 @@ TEST(Join, SlitsATubeAtTheSamePlaceWhereverItLies) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -4,45 +4,45 @@
 
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 /// A flat strip 16 wide and 1 high: as one chart, and as 2 that leave a page no fuller than they
 /// must.
 struct Strip {
-  Sheet sheet;
+  SegmentationMesh surface;
   Partition whole, halves;
 
   Strip() {
     const TriMesh mesh = shapes::grid(32, 2, 16, 1);
-    sheet = make_sheet(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
-    const double middle = sheet.mesh.positions[16].x();
-    whole = halves = {{}, std::vector<char>(sheet.length.size(), 0)};
+    surface = make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+    const double middle = surface.mesh.positions[16].x();
+    whole = halves = {{}, std::vector<char>(surface.length.size(), 0)};
     whole.patches.resize(1);
     halves.patches.resize(2);
-    for (Index t = 0; t < sheet.face_count(); ++t) {
+    for (Index t = 0; t < surface.face_count(); ++t) {
       double x = 0;
-      for (const Index v : sheet.mesh.faces[std::size_t(t)])
-        x += sheet.mesh.positions[std::size_t(v)].x() / 3;
+      for (const Index v : surface.mesh.faces[std::size_t(t)])
+        x += surface.mesh.positions[std::size_t(v)].x() / 3;
       whole.patches[0].region.faces.push_back(t);
       halves.patches[x < middle ? 0 : 1].region.faces.push_back(t);
     }
     for (Partition* own : {&whole, &halves})
       for (MappedRegion& patch : own->patches)
-        patch.region.uv = projected(sheet, patch.region.faces);
+        patch.region.uv = projected(surface, patch.region.faces);
     whole.patches[0].area = 1;
     for (MappedRegion& half : halves.patches) half.area = 0.5;
   }
 
   [[nodiscard]] PartitionCost cost(CostRules rules) const {
     rules.chart = 0.15;
-    return partition_cost(sheet, halves, rules);
+    return partition_cost(surface, halves, rules);
   }
 };
 
 TEST(PartitionCost, IsNothingWithoutASeam) {
   const Strip strip;
-  EXPECT_EQ(partition_cost(strip.sheet, strip.whole, {}).all, 0);
+  EXPECT_EQ(partition_cost(strip.surface, strip.whole, {}).all, 0);
 }
 
 TEST(PartitionCost, CountsSeamsChartsAndWhatThePageLeavesEmpty) {
@@ -75,4 +75,4 @@ TEST(PartitionCost, IsTheSameWhereItIsBelowTheLimitAndNeverBelowItElsewhere) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

@@ -6,16 +6,17 @@
 #include "tests/core/hard_shapes.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
-std::vector<Chart> charts_through_a_small_surface(const Chart& component, Executor& executor) {
+std::vector<charts::Chart> charts_through_a_small_surface(const charts::Chart& component,
+                                                          Executor& executor) {
   const Coarse coarse = coarsen(component.mesh, component.halfedges, 2000, {});
-  const Sheet sheet = make_sheet(coarse.mesh, coarse.halfedges);
-  return region_charts(component, coarse, segment(sheet, {}, executor), {});
+  const SegmentationMesh surface = make_segmentation_mesh(coarse.mesh, coarse.halfedges);
+  return region_charts(component, coarse, segment(surface, {}, executor), {});
 }
 
-double area_of_start(const Chart& chart) {
+double area_of_start(const charts::Chart& chart) {
   double area = 0;
   for (const Triangle& face : chart.mesh.faces) {
     const auto at = [&](std::size_t i) { return chart.start[std::size_t(face[i])]; };
@@ -26,29 +27,31 @@ double area_of_start(const Chart& chart) {
 }
 
 TEST(RegionCharts, ShallNotOverlapThemselves) {
-  const Charts whole = components_of(shapes::surface_of(shapes::cube(1)), {});
-  const Chart& cube = whole.charts.front();
+  const charts::Charts whole = charts::components_of(shapes::surface_of(shapes::cube(1)), {});
+  const charts::Chart& cube = whole.charts.front();
   SerialExecutor serial;
-  const Segments segments = segment(make_sheet(cube.mesh, cube.halfedges), {}, serial);
-  const std::vector<Chart> charts = region_charts(cube, segments);
+  const Segments segments = segment(make_segmentation_mesh(cube.mesh, cube.halfedges), {}, serial);
+  const std::vector<charts::Chart> charts = region_charts(cube, segments);
   ASSERT_FALSE(charts.empty());
-  for (const Chart& chart : charts) EXPECT_EQ(chart.least, Guarantee::bijective);
+  for (const charts::Chart& chart : charts) EXPECT_EQ(chart.least, Guarantee::bijective);
 }
 
 TEST(RegionCharts, TakeANoisySurfaceApartIntoAFewDisksTheSameOnTwoThreads) {
   const TriMesh mesh = shapes::noisy(shapes::torus(150, 75, 1, 0.4), 0.004);  // edges of 0.04
-  const Charts whole = components_of(shapes::surface_of(mesh), {});
+  const charts::Charts whole = charts::components_of(shapes::surface_of(mesh), {});
   SerialExecutor one;
   TwoThreads two;
-  const std::vector<Chart> charts = charts_through_a_small_surface(whole.charts.front(), one);
-  const std::vector<Chart> again = charts_through_a_small_surface(whole.charts.front(), two);
+  const std::vector<charts::Chart> charts =
+      charts_through_a_small_surface(whole.charts.front(), one);
+  const std::vector<charts::Chart> again =
+      charts_through_a_small_surface(whole.charts.front(), two);
   EXPECT_LE(charts.size(), 4U);
   ASSERT_EQ(again.size(), charts.size());
   std::size_t faces = 0;
   double area = 0;
   for (std::size_t k = 0; k < charts.size(); ++k) {
-    EXPECT_TRUE(is_disk(charts[k]));
-    EXPECT_LE(flipped_faces(charts[k].mesh.faces, charts[k].start).size(),
+    EXPECT_TRUE(charts::is_disk(charts[k]));
+    EXPECT_LE(measure::flipped_faces(charts[k].mesh.faces, charts[k].start).size(),
               charts[k].mesh.faces.size() / 100);
     EXPECT_EQ(again[k].start, charts[k].start);
     EXPECT_EQ(charts[k].least, Guarantee::bijective);
@@ -60,4 +63,4 @@ TEST(RegionCharts, TakeANoisySurfaceApartIntoAFewDisksTheSameOnTwoThreads) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

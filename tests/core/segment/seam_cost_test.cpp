@@ -4,43 +4,44 @@
 #include <cmath>
 
 #include "core/mesh/edges.hpp"
-#include "core/segment/glue_slits.hpp"
+#include "core/segment/close_slits.hpp"
 #include "core/segment/segment_charts.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 using namespace shapes;
 
-Sheet sheet_of(const TriMesh& mesh, std::span<const char> crease = {}) {
-  return make_sheet(mesh, build_halfedges(mesh.faces, mesh.vertex_count()), crease);
+SegmentationMesh segmentation_mesh_of(const TriMesh& mesh, std::span<const char> crease = {}) {
+  return make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()), crease);
 }
 
 /// Half-edges whose length counts less.
-std::size_t creases_of(const Sheet& sheet) {
+std::size_t creases_of(const SegmentationMesh& surface) {
   std::size_t count = 0;
-  for (std::size_t h = 0; h < sheet.length.size(); ++h)
-    if (sheet.seam_cost[h] != sheet.length[h]) {
-      EXPECT_LT(sheet.seam_cost[h], sheet.length[h]);
+  for (std::size_t h = 0; h < surface.length.size(); ++h)
+    if (surface.seam_cost[h] != surface.length[h]) {
+      EXPECT_LT(surface.seam_cost[h], surface.length[h]);
       ++count;
     }
   return count;
 }
 
 TEST(SeamCost, IsLessAlongSharpEdgesAndGivenOnesUnlessMostAre) {
-  EXPECT_EQ(creases_of(sheet_of(cube(1))), 2U * 12 * 2);  // twelve edges in two pieces, both sides
-  EXPECT_EQ(creases_of(sheet_of(sphere(3))), 0U);
+  EXPECT_EQ(creases_of(segmentation_mesh_of(cube(1))),
+            2U * 12 * 2);  // twelve edges in two pieces, both sides
+  EXPECT_EQ(creases_of(segmentation_mesh_of(sphere(3))), 0U);
   const TriMesh plane = grid(4, 4);
   std::vector<char> given(3 * plane.faces.size(), 0);
-  EXPECT_EQ(creases_of(sheet_of(plane, given)), 0U);
-  const Sheet sheet = sheet_of(plane);
+  EXPECT_EQ(creases_of(segmentation_mesh_of(plane, given)), 0U);
+  const SegmentationMesh surface = segmentation_mesh_of(plane);
   const auto h = std::size_t(
-      std::ranges::find_if(sheet.halfedges.twin, [](Index twin) { return twin != kNoTwin; }) -
-      sheet.halfedges.twin.begin());
-  given[h] = given[std::size_t(sheet.halfedges.twin[h])] = 1;
-  EXPECT_EQ(creases_of(sheet_of(plane, given)), 2U);
-  EXPECT_EQ(creases_of(sheet_of(plane, std::vector<char>(given.size(), 1))), 0U);
+      std::ranges::find_if(surface.halfedges.twin, [](Index twin) { return twin != kNoTwin; }) -
+      surface.halfedges.twin.begin());
+  given[h] = given[std::size_t(surface.halfedges.twin[h])] = 1;
+  EXPECT_EQ(creases_of(segmentation_mesh_of(plane, given)), 2U);
+  EXPECT_EQ(creases_of(segmentation_mesh_of(plane, std::vector<char>(given.size(), 1))), 0U);
 }
 
 /// 1 for each face above the equator, else 0.
@@ -55,7 +56,7 @@ std::vector<Index> halves(const TriMesh& mesh) {
 }
 
 std::ptrdiff_t flagged(const Surface& surface) {
-  const Charts charts = components_of(surface, {.mode = SeamMode::none});
+  const charts::Charts charts = charts::components_of(surface, {.mode = SeamMode::none});
   return std::ranges::count(charts.charts.front().crease, 1);
 }
 
@@ -72,11 +73,11 @@ TEST(SeamCost, KnowsWhereMaterialsMeetAndWhereTheInputWasSplit) {
 
 /// The share of all chart borders that lies at |z| <= height.
 double share_at_equator(const Surface& surface, double height) {
-  std::vector<Charts> surfaces{components_of(surface, {})};
+  std::vector<charts::Charts> surfaces{charts::components_of(surface, {})};
   SerialExecutor serial;
   segment_charts(surfaces, {}, {}, serial);
   double all = 0, there = 0;
-  for (const Chart& chart : surfaces.front().charts)
+  for (const charts::Chart& chart : surfaces.front().charts)
     for (const BoundaryLoop& loop : chart.loops)
       for (const Index h : loop) {
         const Vec3 &a = chart.mesh.positions[std::size_t(start_of(chart.mesh.faces, h))],
@@ -97,47 +98,48 @@ TEST(SeamCost, DrawsSeamsToWhereMaterialsMeet) {
 
 /// All faces as one region, mapped by `place`, slit along the edges for which is_slit is true.
 template <class IsSlit>
-Partition slit_open(const Sheet& sheet, IsSlit is_slit) {
-  Partition whole{std::vector<MappedRegion>(1), std::vector<char>(sheet.length.size(), 0)};
-  for (Index h = 0; h < Index(sheet.length.size()); ++h)
-    if (sheet.halfedges.twin[std::size_t(h)] != kNoTwin &&
-        is_slit(sheet.mesh.positions[std::size_t(start_of(sheet.mesh.faces, h))],
-                sheet.mesh.positions[std::size_t(end_of(sheet.mesh.faces, h))]))
+Partition slit_open(const SegmentationMesh& surface, IsSlit is_slit) {
+  Partition whole{std::vector<MappedRegion>(1), std::vector<char>(surface.length.size(), 0)};
+  for (Index h = 0; h < Index(surface.length.size()); ++h)
+    if (surface.halfedges.twin[std::size_t(h)] != kNoTwin &&
+        is_slit(surface.mesh.positions[std::size_t(start_of(surface.mesh.faces, h))],
+                surface.mesh.positions[std::size_t(end_of(surface.mesh.faces, h))]))
       whole.open[std::size_t(h)] = 1;
   MappedRegion& region = whole.patches.front();
-  for (Index t = 0; t < sheet.face_count(); ++t) region.region.faces.push_back(t);
-  region.region.uv = projected(sheet, region.region.faces);
+  for (Index t = 0; t < surface.face_count(); ++t) region.region.faces.push_back(t);
+  region.region.uv = projected(surface, region.region.faces);
   region.area = 1;
-  region.excess =
-      try_map(sheet, whole.open, {.iterations = 40, .most_excess = 1}, region.region).excess;
+  region.excess = test_parameterization(surface, whole.open, {.iterations = 40, .most_excess = 1},
+                                        region.region)
+                      .excess;
   region.is_sound = true;
   return whole;
 }
 
-double slit_length(const Sheet& sheet, const Partition& partition) {
+double slit_length(const SegmentationMesh& surface, const Partition& partition) {
   double length = 0;
   for (std::size_t h = 0; h < partition.open.size(); ++h)
-    if (partition.open[h] != 0) length += sheet.length[h] / 2;
+    if (partition.open[h] != 0) length += surface.length[h] / 2;
   return length;
 }
 
 TEST(GlueSlits, ClosesOnesThatAreOfNoUse) {
-  const Sheet sheet = sheet_of(grid(8, 8));
+  const SegmentationMesh surface = segmentation_mesh_of(grid(8, 8));
   const auto on_line = [](const Vec3& a, const Vec3& b) {
     return std::abs(a.y()) < 1e-9 && std::abs(b.y()) < 1e-9 && std::min(a.x(), b.x()) > -0.3;
   };
-  Partition whole = slit_open(sheet, on_line);
-  EXPECT_GT(slit_length(sheet, whole), 0.5);
-  glue_slits(sheet, {.budget = 0.02, .cap = 0.08}, whole);
-  EXPECT_EQ(slit_length(sheet, whole), 0);
+  Partition whole = slit_open(surface, on_line);
+  EXPECT_GT(slit_length(surface, whole), 0.5);
+  close_slits(surface, {.budget = 0.02, .cap = 0.08}, whole);
+  EXPECT_EQ(slit_length(surface, whole), 0);
   EXPECT_LT(whole.patches.front().excess.worst(), 1e-6);
 }
 
 /// A cap opened from its rim to the pole.
-Partition opened_cap(const Sheet& sheet) {
+Partition opened_cap(const SegmentationMesh& surface) {
   const Vec3 pole =
-      *std::ranges::max_element(sheet.mesh.positions, {}, [](const Vec3& p) { return p.z(); });
-  return slit_open(sheet, [&](const Vec3& a, const Vec3& b) {
+      *std::ranges::max_element(surface.mesh.positions, {}, [](const Vec3& p) { return p.z(); });
+  return slit_open(surface, [&](const Vec3& a, const Vec3& b) {
     return std::abs(a.y() - pole.y()) < 1e-9 && std::abs(b.y() - pole.y()) < 1e-9 &&
            std::min(a.x(), b.x()) > pole.x() - 1e-9;
   });
@@ -145,20 +147,21 @@ Partition opened_cap(const Sheet& sheet) {
 
 /// The more may be bent, by either bound, the less stays open; the rest would bend it more.
 TEST(GlueSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound) {
-  const Sheet sheet = sheet_of(sphere_cap(24, 12, 1.3));
-  const Partition open = opened_cap(sheet);
+  const SegmentationMesh surface = segmentation_mesh_of(sphere_cap(24, 12, 1.3));
+  const Partition open = opened_cap(surface);
   const double least = open.patches.front().excess.worst();
   for (const bool is_of_all : {true, false}) {
-    double last = slit_length(sheet, open);
+    double last = slit_length(surface, open);
     for (const double bound : {0.01, 0.02, 0.2}) {
       Partition glued = open;
-      glue_slits(sheet, {.budget = is_of_all ? bound : 1, .cap = is_of_all ? 1 : bound}, glued);
-      EXPECT_LT(slit_length(sheet, glued), last) << bound;
-      last = slit_length(sheet, glued);
+      close_slits(surface, {.budget = is_of_all ? bound : 1, .cap = is_of_all ? 1 : bound}, glued);
+      EXPECT_LT(slit_length(surface, glued), last) << bound;
+      last = slit_length(surface, glued);
       const MappedRegion& region = glued.patches.front();
       EXPECT_LE(region.excess.worst(), std::max(bound, least)) << is_of_all;
       Region again = region.region;
-      EXPECT_EQ(try_map(sheet, glued.open, {.most_excess = 1}, again).verdict, Verdict::sound);
+      EXPECT_EQ(test_parameterization(surface, glued.open, {.most_excess = 1}, again).verdict,
+                Verdict::sound);
     }
     EXPECT_EQ(last, 0);
   }
@@ -166,19 +169,19 @@ TEST(GlueSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound)
 
 /// The bound of all regions counts what the others have.
 TEST(GlueSlits, LeavesOneOpenWhereTheOthersHaveAllThatThereIs) {
-  const Sheet sheet = sheet_of(sphere_cap(24, 12, 1.3));
-  Partition open = opened_cap(sheet);
+  const SegmentationMesh surface = segmentation_mesh_of(sphere_cap(24, 12, 1.3));
+  Partition open = opened_cap(surface);
   MappedRegion& elsewhere = open.patches.emplace_back();
   elsewhere.excess = {0.19, 0.19};
-  const double before = slit_length(sheet, open);
+  const double before = slit_length(surface, open);
   Partition glued = open;
-  glue_slits(sheet, {.budget = 1, .cap = 0.2}, glued);
-  EXPECT_EQ(slit_length(sheet, glued), 0);
+  close_slits(surface, {.budget = 1, .cap = 0.2}, glued);
+  EXPECT_EQ(slit_length(surface, glued), 0);
   glued = open;
-  glue_slits(sheet, {.budget = 0.2, .cap = 0.2}, glued);
-  EXPECT_GT(slit_length(sheet, glued), before / 2);
+  close_slits(surface, {.budget = 0.2, .cap = 0.2}, glued);
+  EXPECT_GT(slit_length(surface, glued), before / 2);
   EXPECT_LE((glued.patches[0].excess + glued.patches[1].excess).worst(), 0.2);
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

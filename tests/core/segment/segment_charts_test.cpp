@@ -13,26 +13,26 @@
 #include "tests/core/shapes.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::segment {
 namespace {
 
 using namespace shapes;
 
 struct Cut {
-  std::vector<Charts> surfaces;
+  std::vector<charts::Charts> surfaces;
   std::string note;
 };
 
 Cut cut_up(const TriMesh& mesh, const SegmentOptions& options = {},
            const SegmentWatch& watch = {}) {
   SerialExecutor serial;
-  Cut result{{components_of(surface_of(mesh), {})}, {}};
+  Cut result{{charts::components_of(surface_of(mesh), {})}, {}};
   result.note = segment_charts(result.surfaces, options, watch, serial);
   return result;
 }
 
 /// A disk by counting: its Euler characteristic from sets of vertices and edges.
-void expect_disk(const Chart& chart) {
+void expect_disk(const charts::Chart& chart) {
   std::set<Index> vertices;
   std::set<std::pair<Index, Index>> edges;
   for (const Triangle& face : chart.mesh.faces)
@@ -47,7 +47,7 @@ void expect_disk(const Chart& chart) {
 }
 
 /// Every pair of triangles, without a tree.
-void expect_no_overlap(const Chart& chart) {
+void expect_no_overlap(const charts::Chart& chart) {
   const auto corners = [&](std::size_t t) {
     const auto& [a, b, c] = chart.mesh.faces[t];
     return std::array{chart.start[std::size_t(a)], chart.start[std::size_t(b)],
@@ -56,13 +56,13 @@ void expect_no_overlap(const Chart& chart) {
   for (std::size_t s = 0; s < chart.mesh.faces.size(); ++s) {
     const auto [a, b, c] = corners(s);
     EXPECT_GT((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x(), 0);
-    for (std::size_t t = 0; t < s; ++t) ASSERT_FALSE(overlap(corners(s), corners(t)));
+    for (std::size_t t = 0; t < s; ++t) ASSERT_FALSE(measure::overlap(corners(s), corners(t)));
   }
 }
 
 void expect_sound(const Cut& cut, std::size_t face_count) {
   std::vector<int> seen(face_count, 0);
-  for (const Chart& chart : cut.surfaces.front().charts) {
+  for (const charts::Chart& chart : cut.surfaces.front().charts) {
     expect_disk(chart);
     for (const Index t : chart.face_source) ++seen[std::size_t(t)];
     if (!chart.start.empty()) expect_no_overlap(chart);
@@ -72,7 +72,7 @@ void expect_sound(const Cut& cut, std::size_t face_count) {
 
 std::vector<std::vector<Index>> faces_of(const Cut& cut) {
   std::vector<std::vector<Index>> faces;
-  for (const Chart& chart : cut.surfaces.front().charts) faces.push_back(chart.face_source);
+  for (const charts::Chart& chart : cut.surfaces.front().charts) faces.push_back(chart.face_source);
   return faces;
 }
 
@@ -80,7 +80,7 @@ std::vector<std::vector<Index>> faces_of(const Cut& cut) {
 /// its own area: the formula of the paper, not the one that the code sums.
 std::array<double, 2> distortion_by_svd(const Cut& cut) {
   double total = 0, angle = 0, area = 0;
-  for (const Chart& chart : cut.surfaces.front().charts) {
+  for (const charts::Chart& chart : cut.surfaces.front().charts) {
     double own = 0, mapped = 0, inverse = 0;
     for (const auto& [a, b, c] : chart.mesh.faces) {
       const Vec3 ab = chart.mesh.positions[std::size_t(b)] - chart.mesh.positions[std::size_t(a)];
@@ -138,7 +138,7 @@ TEST(SegmentCharts, LeavesADiskWholeUnlessABoundIsAskedFor) {
 /// The length of all boundaries of all charts.
 double border_of(const Cut& cut) {
   double length = 0;
-  for (const Chart& chart : cut.surfaces.front().charts)
+  for (const charts::Chart& chart : cut.surfaces.front().charts)
     for (const BoundaryLoop& loop : chart.loops)
       for (std::size_t k = 0; k < loop.size(); ++k) {
         const auto at = [&](std::size_t i) {
@@ -171,7 +171,7 @@ TEST(SegmentCharts, KeepsToANumberOfChartsWhereMapsAllow) {
   const std::vector<TriMesh> pair{cube(1), moved(cube(1), {5, 0, 0})};
   const Cut two_pieces = cut_up(merged(pair), {.max_charts = 1});
   EXPECT_EQ(faces_of(two_pieces).size(), 2U);
-  EXPECT_NE(two_pieces.note.find("2 pieces"), std::string::npos);
+  EXPECT_NE(two_pieces.note.find("2 components"), std::string::npos);
 }
 
 TEST(SegmentCharts, CutsToOneDiskEachWhereComponentsShallStayWhole) {
@@ -195,7 +195,7 @@ TEST(SegmentCharts, FindsTheSameMapsOnTwoThreads) {
   const TriMesh mesh = sphere(3);
   const Cut serial = cut_up(mesh);
   TwoThreads two;
-  std::vector<Charts> threaded{components_of(surface_of(mesh), {})};
+  std::vector<charts::Charts> threaded{charts::components_of(surface_of(mesh), {})};
   segment_charts(threaded, {}, {}, two);
   ASSERT_EQ(threaded[0].charts.size(), serial.surfaces[0].charts.size());
   for (std::size_t k = 0; k < threaded[0].charts.size(); ++k)
@@ -236,14 +236,15 @@ TEST(SegmentCharts, CutsAlongGivenPathsAndNamesThePathThatLeavesTheMesh) {
   SeamPath along{.surface = 0, .vertices = {}};
   for (Index row = 0; row <= 4; ++row) along.vertices.push_back(12 * row);
   const std::vector<SeamPath> paths{along};
-  const Charts opened = components_of(tube, {SeamMode::automatic, paths, 0});
+  const charts::Charts opened = charts::components_of(tube, {SeamMode::automatic, paths, 0});
   ASSERT_EQ(opened.charts.size(), 1U);
   EXPECT_EQ(opened.charts[0].loops.size(), 1U);
-  EXPECT_EQ(components_of(tube, {SeamMode::automatic, paths, 1}).charts[0].loops.size(), 2U);
+  EXPECT_EQ(charts::components_of(tube, {SeamMode::automatic, paths, 1}).charts[0].loops.size(),
+            2U);
   for (const Index stray : {Index(18), Index(-1), Index(99)}) {
     const std::vector<SeamPath> wrong{along, {0, {0, stray}}};
     try {
-      components_of(tube, {SeamMode::automatic, wrong, 0});
+      charts::components_of(tube, {SeamMode::automatic, wrong, 0});
       ADD_FAILURE() << stray;
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ErrorCode::invalid_option);
@@ -263,10 +264,10 @@ TEST(SegmentCharts, CutsWhereTheUvsThatCameInHaveTheirSeams) {
     }
     box.corner_uv.push_back(uv);
   }
-  const Charts sides = components_of(box, {.mode = SeamMode::uv0});
+  const charts::Charts sides = charts::components_of(box, {.mode = SeamMode::uv0});
   EXPECT_EQ(sides.charts.size(), 6U);
-  for (const Chart& side : sides.charts) EXPECT_EQ(side.mesh.face_count(), 2);
-  EXPECT_EQ(components_of(box, {.mode = SeamMode::automatic}).charts.size(), 1U);
+  for (const charts::Chart& side : sides.charts) EXPECT_EQ(side.mesh.face_count(), 2);
+  EXPECT_EQ(charts::components_of(box, {.mode = SeamMode::automatic}).charts.size(), 1U);
 }
 
 /// A band along three quarters of a circle, rolled up: it lies flat without distortion, and leaves
@@ -287,4 +288,4 @@ TEST(SegmentCharts, LeavesWholeWhatLiesFlatHoweverEmptyThePage) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::segment

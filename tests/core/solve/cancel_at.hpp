@@ -6,7 +6,7 @@
 #include "core/base/error.hpp"
 #include "core/solve/solve.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 
 /// Runs `solve(watch)`, asks it to stop when it tells of iteration `last`, and expects the error
 /// `cancelled` without another iteration.
@@ -29,4 +29,4 @@ void expect_cancelled_at(int last, Solve solve) {
   EXPECT_EQ(seen, last);
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

@@ -14,15 +14,15 @@ namespace unwrapd::shapes {
 
 /// Owns the chart that its disk looks into.
 struct OwnedDisk {
-  std::shared_ptr<Chart> chart;
-  Disk disk;
+  std::shared_ptr<charts::Chart> chart;
+  solve::Disk disk;
 };
 
 inline OwnedDisk disk_of(TriMesh mesh) {
-  Charts charts = make_charts(surface_of(std::move(mesh)), SeamMode::keep);
+  charts::Charts charts = charts::make_charts(surface_of(std::move(mesh)), SeamMode::keep);
   if (charts.charts.size() != 1) throw std::invalid_argument("not one disk");
-  auto chart = std::make_shared<Chart>(std::move(charts.charts.front()));
-  Disk disk = make_disk(chart->mesh, chart->loops);
+  auto chart = std::make_shared<charts::Chart>(std::move(charts.charts.front()));
+  solve::Disk disk = solve::make_disk(chart->mesh, chart->loops);
   return {std::move(chart), std::move(disk)};
 }
 
@@ -41,6 +41,6 @@ inline UvMap shaken(UvMap uv, double by, unsigned seed) {
   return uv;
 }
 
-inline UvMap from_above(const Disk& disk) { return from_above(disk.positions); }
+inline UvMap from_above(const solve::Disk& disk) { return from_above(disk.positions); }
 
 }  // namespace unwrapd::shapes

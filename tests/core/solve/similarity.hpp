@@ -6,7 +6,7 @@
 
 #include "core/mesh/tri_mesh.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 
 /// The greatest distance between points of b and those of a after the turn, scale and shift that
 /// bring a closest to b in least squares.
@@ -26,4 +26,4 @@ inline double gap_up_to_similarity(const UvMap& a, const UvMap& b) {
   return gap;
 }
 
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

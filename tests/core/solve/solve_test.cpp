@@ -12,7 +12,7 @@
 #include "tests/core/solve/similarity.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 namespace {
 
 using shapes::disk_of;
@@ -47,10 +47,11 @@ TEST(Solve, ReportedEnergyIsThatOfTheSingularValues) {  // Eq. (A2)
   for (const TriMesh& mesh : curved_disks()) {
     const OwnedDisk d = disk_of(mesh);
     const Solution s = solved(d.disk, {});
-    EXPECT_NEAR(s.energy.back(), arap_energy(d.disk.rest, d.disk.faces, s.uv), 1e-12);
+    EXPECT_NEAR(s.energy.back(), measure::arap_energy(d.disk.rest, d.disk.faces, s.uv), 1e-12);
     EXPECT_EQ(s.energy.size(), std::size_t(s.iterations) + 1);
     const Solution plain = solved(d.disk, {.stop = {.iterations = 10}});
-    EXPECT_NEAR(plain.energy.back(), arap_energy(d.disk.rest, d.disk.faces, plain.uv), 1e-12);
+    EXPECT_NEAR(plain.energy.back(), measure::arap_energy(d.disk.rest, d.disk.faces, plain.uv),
+                1e-12);
     EXPECT_EQ(plain.iterations, 10);
     EXPECT_EQ(plain.energy.size(), 11U);
     EXPECT_EQ(plain.stop_reason, StopReason::iterations);
@@ -63,8 +64,8 @@ UvMap dense_arap_iteration(const Disk& disk, const UvMap& uv) {
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixX2d b = Eigen::MatrixX2d::Zero(n, 2);
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    const RestTriangle& rest = disk.rest[t];
-    const UvEdges u = uv_edges(disk.faces[t], uv);
+    const measure::RestTriangle& rest = disk.rest[t];
+    const measure::UvEdges u = measure::uv_edges(disk.faces[t], uv);
     Eigen::Matrix2d s = Eigen::Matrix2d::Zero();  // the cross-covariance of Sec. 4.4.1
     for (std::size_t i = 0; i < 3; ++i) s += rest.cot[i] * u[i] * rest.edge[i].transpose();
     const Eigen::JacobiSVD<Eigen::Matrix2d, Eigen::FullPivHouseholderQRPreconditioner> svd(
@@ -89,7 +90,7 @@ UvMap dense_arap_iteration(const Disk& disk, const UvMap& uv) {
 TEST(Solve, AgreesWithDenseMatricesAndAnSvd) {
   for (const TriMesh& mesh : {shapes::random_disk(8, 5), shapes::annulus(12, 3)}) {
     const OwnedDisk d = disk_of(mesh);
-    UvMap dense = initial_map(d.disk, InitialMap::tutte, GlobalStep(d.disk, {}));
+    UvMap dense = initial_map(d.disk, InitialMap::tutte, arap::GlobalStep(d.disk, {}));
     for (int k = 0; k < 5; ++k) dense = dense_arap_iteration(d.disk, dense);
     const UvMap uv = solved(d.disk, {.stop = {.iterations = 5}, .initial = InitialMap::tutte}).uv;
     EXPECT_LT(gap_up_to_similarity(uv, dense), 1e-8);
@@ -102,7 +103,7 @@ TEST(Solve, FlattensDevelopableShapesWithoutEnergy) {
     const OwnedDisk d = disk_of(mesh);
     const Solution s = solved(d.disk, {});
     EXPECT_LT(s.energy.back(), 1e-10);
-    EXPECT_EQ(distortion_sums(d.disk.rest, d.disk.faces, s.uv).flipped, 0);
+    EXPECT_EQ(measure::distortion_sums(d.disk.rest, d.disk.faces, s.uv).flipped, 0);
   }
 }
 
@@ -110,7 +111,7 @@ TEST(Solve, HybridIsAsapAtLambdaZeroAndBelowTheCollapse) {
   for (const TriMesh& mesh : curved_disks()) {
     const OwnedDisk d = disk_of(mesh);
     const UvMap asap = solved(d.disk, {.method = Method::asap}).uv;
-    const double c = asap_energy(d.disk.rest, d.disk.faces, asap);
+    const double c = measure::asap_energy(d.disk.rest, d.disk.faces, asap);
     for (double lambda : {0.0, 1e-15, 0.49 * c})
       EXPECT_LT(gap_up_to_similarity(
                     solved(d.disk, {.method = Method::hybrid, .lambda = lambda}).uv, asap),
@@ -135,7 +136,7 @@ TEST(Solve, SmallLambdaNeverCollapses) {
       const OwnedDisk d = disk_of(mesh);
       const Solution s =
           solved(d.disk, {.method = Method::hybrid, .lambda = lambda, .stop = {.iterations = 500}});
-      EXPECT_GE(uv_area(d.disk.rest, d.disk.faces, s.uv), kMinAreaShare);
+      EXPECT_GE(measure::uv_area(d.disk.rest, d.disk.faces, s.uv), arap::kMinAreaShare);
     }
 }
 
@@ -146,14 +147,15 @@ TEST(Solve, PaperLambdaIsThatOfEquation5) {  // the energy as printed, in mesh u
   const UnwrapOptions options{
       .method = Method::hybrid, .lambda = 0.7, .lambda_units = LambdaUnits::paper};
   const Solution s = solved(d.disk, options);
-  const double area = surface_area(mesh);
+  const double area = measure::surface_area(mesh);
   double printed = 0;
   for (std::size_t t = 0; t < d.disk.faces.size(); ++t) {
     const double a = d.disk.rest[t].area * area;
-    const Jacobian j = jacobian(d.disk.rest[t], uv_edges(d.disk.faces[t], s.uv));
-    const Similarity l = fit_similarity(j, options.lambda / (2 * a));
+    const measure::Jacobian j =
+        measure::jacobian(d.disk.rest[t], measure::uv_edges(d.disk.faces[t], s.uv));
+    const arap::Similarity l = arap::fit_similarity(j, options.lambda / (2 * a));
     const double excess = l.a * l.a + l.b * l.b - 1;
-    printed += fit_energy(j, l, a, 0) + 0.5 * options.lambda * excess * excess;
+    printed += arap::fit_energy(j, l, a, 0) + 0.5 * options.lambda * excess * excess;
   }
   EXPECT_NEAR(s.energy.back() * area / printed, 1, 1e-9);
 }
@@ -189,7 +191,7 @@ TEST(Solve, DoesNotDependOnTheOrderOfVerticesAndFaces) {
     SerialExecutor serial;
     const auto uv_of = [&](const TriMesh& m) {
       const std::vector<Surface> surface{shapes::surface_of(m)};
-      const Charts charts = make_charts(surface[0], SeamMode::keep);
+      const charts::Charts charts = charts::make_charts(surface[0], SeamMode::keep);
       const Disk disk = make_disk(charts.charts[0].mesh, charts.charts[0].loops);
       const UvMap chart_uv = solved(disk, options).uv;
       UvMap uv(m.positions.size());
@@ -252,4 +254,4 @@ TEST(Solve, FlattensARibbonAMillionTimesLongerThanWide) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

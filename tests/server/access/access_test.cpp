@@ -14,11 +14,11 @@
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::access {
 namespace {
 
-Request request_of(const std::string& method, const std::string& path) {
-  Request request;
+http::Request request_of(const std::string& method, const std::string& path) {
+  http::Request request;
   request.method = method;
   request.path = path;
   return request;
@@ -39,8 +39,8 @@ TEST(AsksForKeys, WhereOthersCanConnectUnlessTheOperatorInsists) {
 class Keys : public testing::Test {
  protected:
   /// The caller of a request with this key.
-  Caller admit(const std::string& text, const std::string& method = "GET") {
-    Request request = request_of(method, "/v1/jobs");
+  http::Caller admit(const std::string& text, const std::string& method = "GET") {
+    http::Request request = request_of(method, "/v1/jobs");
     if (!text.empty()) request.headers.emplace("Authorization", "Bearer " + text);
     access_.admit(request, "/v1/jobs");
     return request.caller;
@@ -150,8 +150,8 @@ TEST(RateLimit, LetsAMinutesWorthThroughAndThenOneByOne) {
 }
 
 /// The request that opens a link.
-Request opening(const std::string& link) {
-  Request request = request_of("GET", link.substr(0, link.find('?')));
+http::Request opening(const std::string& link) {
+  http::Request request = request_of("GET", link.substr(0, link.find('?')));
   std::string query = link.substr(link.find('?') + 1) + "&lambda=1";
   for (std::size_t end = 0; !query.empty(); query.erase(0, end)) {
     const std::size_t equals = query.find('=');
@@ -164,14 +164,14 @@ Request opening(const std::string& link) {
 
 TEST_F(Keys, ALinkOpensItsOwnFileUntilItExpires) {
   constexpr std::int64_t kFarAway = 1'000'000'000'000;
-  const Caller caller = admit(add("ci", {.read = true}));
+  const http::Caller caller = admit(add("ci", {.read = true}));
   const LinkKey key{.id = caller.owner, .sha256 = caller.key_sha256};
   const std::string link = links_.sign("/v1/jobs/j_1/result", kFarAway, key);
-  Request request = opening(link);
+  http::Request request = opening(link);
   access_.admit(request, "/v1/jobs/{id}/result");
   EXPECT_TRUE(request.caller.sees_all);
   EXPECT_EQ(request.query.size(), 1U) << "the handler does not see what signs the link";
-  std::vector<Request> refused(4, opening(link));
+  std::vector<http::Request> refused(4, opening(link));
   refused[0].path = "/v1/jobs/j_2/result";
   refused[1].method = "DELETE";
   refused[2].query.erase("expires");
@@ -181,7 +181,7 @@ TEST_F(Keys, ALinkOpensItsOwnFileUntilItExpires) {
   refused.push_back(opening(links_.sign("/v1/jobs/j_1/result", kFarAway)));  // of no key
   refused.push_back(opening(link));
   refused.back().query.erase("key");
-  for (Request& each : refused) {
+  for (http::Request& each : refused) {
     EXPECT_EQ(error_of([&] { access_.admit(each, "/v1/jobs/{id}/result"); }).code(),
               ErrorCode::invalid_link);
   }
@@ -191,10 +191,10 @@ TEST_F(Keys, ALinkGoesWithItsKeyAndNoOtherTakesItsPlace) {
   constexpr std::int64_t kFarAway = 1'000'000'000'000;
   const std::string path = "/v1/jobs/j_1/result";
   const auto open = [&](const LinkKey& key) {
-    Request request = opening(links_.sign(path, kFarAway, key));
+    http::Request request = opening(links_.sign(path, kFarAway, key));
     access_.admit(request, "/v1/jobs/{id}/result");
   };
-  const Caller caller = admit(add("ci", {.read = true}));
+  const http::Caller caller = admit(add("ci", {.read = true}));
   const LinkKey key{.id = caller.owner, .sha256 = caller.key_sha256};
   EXPECT_NO_THROW(open(key));
   EXPECT_EQ(error_of([&] { open({.id = key.id, .sha256 = sha256("other")}); }).code(),
@@ -202,7 +202,7 @@ TEST_F(Keys, ALinkGoesWithItsKeyAndNoOtherTakesItsPlace) {
   EXPECT_TRUE(keys_.remove(key.id));
   EXPECT_EQ(error_of([&] { open(key); }).code(), ErrorCode::invalid_link);
   Access keyless(keys_, links_, false);
-  Request request = opening(links_.sign(path, kFarAway));
+  http::Request request = opening(links_.sign(path, kFarAway));
   EXPECT_NO_THROW(keyless.admit(request, "/v1/jobs/{id}/result"));
 }
 
@@ -211,10 +211,11 @@ TEST_F(Keys, LinksAndLargePicturesCountForTheRateOfTheirKey) {
   limited.name = "ci";
   limited.scopes.read = true;
   limited.requests_per_minute = 20;
-  const Caller caller = admit(keys_.add(limited));  // 1
+  const http::Caller caller = admit(keys_.add(limited));  // 1
   const LinkKey key{.id = caller.owner, .sha256 = caller.key_sha256};
   const auto open = [&](const std::string& size) {
-    Request request = opening(links_.sign("/v1/jobs/j_1/preview.png", 1'000'000'000'000, key));
+    http::Request request =
+        opening(links_.sign("/v1/jobs/j_1/preview.png", 1'000'000'000'000, key));
     if (!size.empty()) request.query.emplace("size", size);
     access_.admit(request, "/v1/jobs/{id}/preview.png");
   };
@@ -233,20 +234,21 @@ TEST(RateLimit, WhatCostsMoreThanAMinuteIsWorthComesThroughOnceAMinute) {
 }
 
 TEST(Webhook, AreSignedAsStandardWebhooksHasIt) {  // the example of that specification
-  EXPECT_EQ(webhook_signature("whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw",
-                              "msg_p5jXN8AQM9LWM0D4loKWxJek.1614265330.{\"test\": 2432232314}"),
-            "v1,g0hM9SsE+OTPJTGt/tmIKtSyZlE3uFJELVlNIOLJ1OE=");
-  EXPECT_NE(webhook_secret("s", "k_a"), webhook_secret("s", "k_b"));
-  EXPECT_NO_THROW(webhook_signature(webhook_secret("s", "k_a"), "text"));
+  EXPECT_EQ(
+      webhooks::webhook_signature("whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw",
+                                  "msg_p5jXN8AQM9LWM0D4loKWxJek.1614265330.{\"test\": 2432232314}"),
+      "v1,g0hM9SsE+OTPJTGt/tmIKtSyZlE3uFJELVlNIOLJ1OE=");
+  EXPECT_NE(webhooks::webhook_secret("s", "k_a"), webhooks::webhook_secret("s", "k_b"));
+  EXPECT_NO_THROW(webhooks::webhook_signature(webhooks::webhook_secret("s", "k_a"), "text"));
 }
 
 TEST(Cors, LetsOnlyPagesOfListedSitesIn) {
-  const Cors cors({"https://a.example"});
+  const http::Cors cors({"https://a.example"});
   const auto allowed = [&](const std::string& origin) {
-    Request request = request_of("OPTIONS", "/v1/jobs");
+    http::Request request = request_of("OPTIONS", "/v1/jobs");
     request.headers.emplace("Origin", origin);
     request.headers.emplace("Access-Control-Request-Method", "POST");
-    Response response;
+    http::Response response;
     cors.allow(request, response);
     bool told = false;
     for (const auto& [name, value] : response.headers) told |= value == origin;
@@ -260,4 +262,4 @@ TEST(Cors, LetsOnlyPagesOfListedSitesIn) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::access

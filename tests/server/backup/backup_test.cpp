@@ -12,7 +12,7 @@
 #include "tests/api/error_of.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::backup {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,9 +65,9 @@ class Backup : public RunningServer {
 
 TEST_F(Backup, OfAServerAtWorkIsOneThatAnswersTheSame) {
   start();
-  ApiKey reader;
+  access::ApiKey reader;
   reader.scopes.read = true;
-  const std::string key = KeyStore(config_.data).add(reader);
+  const std::string key = access::KeyStore(config_.data).add(reader);
   const std::string mesh = grid_obj(6);
   client().Put("/v1/meshes/" + sha256(mesh), mesh, "model/obj");
   const std::vector<std::string> done = {succeeded(), of_mesh(mesh), of_mesh(mesh)};
@@ -88,7 +88,7 @@ TEST_F(Backup, OfAServerAtWorkIsOneThatAnswersTheSame) {
   start();
   for (std::size_t k = 0; k < done.size(); ++k) EXPECT_EQ(all_of(done[k]), answers[k]);
   EXPECT_EQ(client().Put("/v1/meshes/" + sha256(mesh), mesh, "model/obj")->status, 200) << "known";
-  EXPECT_TRUE(KeyStore(restored()).find(key));
+  EXPECT_TRUE(access::KeyStore(restored()).find(key));
   await_state(running, "running");
   client().Delete("/v1/jobs/" + running);
   await_state(waiting, "succeeded");
@@ -163,7 +163,7 @@ TEST_F(Backup, ACheckNamesWhatIsWrongWhileTheServerWorks) {
   const std::string other = succeeded("?resolution=64");
   EXPECT_THAT(check_store(config_.data).damaged, IsEmpty());
   damage(config_.data / "blobs" / id / "uv.bin");
-  Database(config_.data / kStoreFile)
+  store::Database(config_.data / store::kStoreFile)
       .run(("UPDATE jobs SET notes = '{' WHERE id = '" + other + "'").c_str());
   fs::create_directories(config_.data / "blobs" / "j_nobodys");
   const StoreReport found = check_store(config_.data);
@@ -172,4 +172,4 @@ TEST_F(Backup, ACheckNamesWhatIsWrongWhileTheServerWorks) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::backup

@@ -34,11 +34,13 @@ TEST(Log, OfServerErrorsLeavesOutThatAKeyHasUsedUpItsQuota) {
   testing::internal::CaptureStderr();
   const Log log(LogLevel::info);
   const auto fail = [&log](ErrorCode code) {
-    const Handler handler = [code](const Request&) -> Response { throw Error(code, "why"); };
-    Request request;
+    const http::Handler handler = [code](const http::Request&) -> http::Response {
+      throw Error(code, "why");
+    };
+    http::Request request;
     request.method = "GET";
     request.path = "/";
-    return Router({{"GET", "/", handler}}, log).answer(request).status;
+    return http::Router({{"GET", "/", handler}}, log).answer(request).status;
   };
   EXPECT_EQ(fail(ErrorCode::quota_exceeded), 507);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");

@@ -11,7 +11,7 @@
 #include "server/config/config_row.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::config {
 namespace {
 
 using testing::AllOf;
@@ -233,4 +233,4 @@ TEST(Config, EveryOptionTellsItselfWithoutItsSecret) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::config

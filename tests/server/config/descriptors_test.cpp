@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "server/base/retry_later.hpp"
-#include "server/config/parts_config.hpp"
+#include "server/config/component_config.hpp"
 #include "server/http/listener.hpp"
 #include "server/store/blob_store.hpp"
 #include "tests/api/error_of.hpp"
@@ -12,7 +12,7 @@
 #include "tests/server/raw_client.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::config {
 namespace {
 
 TEST(Descriptors, AreKeptBackForAnswersJobsAndTheAdminPort) {
@@ -55,7 +55,7 @@ TEST(Descriptors, AreNotNeededToRemoveAFile) {
 
 TEST(Descriptors, WithoutWhichNothingCanBeRemovedLeaveNoFolderBehind) {
   const TempDir dir;
-  BlobStore blobs(dir.path());
+  store::BlobStore blobs(dir.path());
   const std::filesystem::path upload = blobs.begin_upload("u");
   write_file(upload / "document", "x");
   {
@@ -71,7 +71,7 @@ TEST(Descriptors, WithoutWhichNothingCanBeRemovedLeaveNoFolderBehind) {
 }
 
 TEST(Descriptors, OfWhichNoneIsLeftShutOutClientsWithoutDelay) {
-  const Listener listener("127.0.0.1", 0);
+  const http::Listener listener("127.0.0.1", 0);
   const auto first = std::make_unique<RawClient>(listener.port());
   const auto second = std::make_unique<RawClient>(listener.port());
   {
@@ -79,10 +79,10 @@ TEST(Descriptors, OfWhichNoneIsLeftShutOutClientsWithoutDelay) {
     EXPECT_FALSE(listener.accept());
   }
   EXPECT_EQ(first->read_to_end(), "") << "it is told at once";
-  const std::optional<Accepted> served = listener.accept();
+  const std::optional<http::Accepted> served = listener.accept();
   ASSERT_TRUE(served) << "the second was not touched";
   ::close(served->socket);
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::config

@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 using std::chrono::milliseconds;
@@ -136,4 +136,4 @@ TEST_F(ConnectionTest, ManySmallChunksKeepTheLimitToo) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

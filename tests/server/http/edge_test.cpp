@@ -9,7 +9,7 @@
 
 #include "tests/server/raw_client.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 using testing::AllOf;
@@ -280,4 +280,4 @@ TEST_F(Edge, RandomBytesNeverEndTheServer) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

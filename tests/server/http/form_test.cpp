@@ -10,7 +10,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 struct ReadPart {
@@ -114,4 +114,4 @@ TEST(Form, RefusesWhatIsNoForm) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

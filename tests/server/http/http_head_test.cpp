@@ -8,7 +8,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 std::string head(const std::string& line, const std::string& fields = "") {
@@ -183,4 +183,4 @@ TEST(HttpHead, AnyBytesAreAnsweredWithAnErrorOrAFraming) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

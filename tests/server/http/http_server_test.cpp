@@ -10,7 +10,7 @@
 #include <memory>
 #include <thread>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 using std::chrono::milliseconds;
@@ -74,8 +74,8 @@ void allow_many_files() {
 TEST_F(HttpServerTest, AThousandIdleAndTwoHundredSlowClientsTakeNoThreadFromOthers) {
   allow_many_files();
   config_.max_requests = 1;
-  config_.parking.idle = std::chrono::minutes(5);
-  config_.parking.head = std::chrono::minutes(5);
+  config_.idle_connections.idle = std::chrono::minutes(5);
+  config_.idle_connections.head = std::chrono::minutes(5);
   start();
   std::vector<std::unique_ptr<RawClient>> waiting;
   for (int i = 0; i < 1200; ++i) {
@@ -90,7 +90,7 @@ TEST_F(HttpServerTest, AThousandIdleAndTwoHundredSlowClientsTakeNoThreadFromOthe
 }
 
 TEST_F(HttpServerTest, AHeadThatDripsIsRefusedWhenItsTimeIsOver) {
-  config_.parking.head = milliseconds(150);
+  config_.idle_connections.head = milliseconds(150);
   start();
   const auto slow = connect();
   std::jthread drip([&](const std::stop_token& stop) {
@@ -102,13 +102,13 @@ TEST_F(HttpServerTest, AHeadThatDripsIsRefusedWhenItsTimeIsOver) {
 }
 
 TEST_F(HttpServerTest, WhoIsIdleTooLongIsClosedWithoutAWord) {
-  config_.parking.idle = milliseconds(50);
+  config_.idle_connections.idle = milliseconds(50);
   start();
   EXPECT_EQ(connect()->read_to_end(), "");
 }
 
 TEST_F(HttpServerTest, KeepAliveSaysForHowLongAClientMayBeIdle) {
-  config_.parking.idle = std::chrono::milliseconds(2500);
+  config_.idle_connections.idle = std::chrono::milliseconds(2500);
   start();
   const auto client = connect();
   client->send("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
@@ -118,7 +118,7 @@ TEST_F(HttpServerTest, KeepAliveSaysForHowLongAClientMayBeIdle) {
 }
 
 TEST_F(HttpServerTest, OneIdleClientTooManyDrivesOutTheLongest) {
-  config_.parking.max_idle = 2;
+  config_.idle_connections.max_idle = 2;
   start();
   const auto first = connect();
   await([&] { return server_->parked() == 1; });
@@ -156,12 +156,14 @@ TEST_F(HttpServerTest, AClientThatWaitsBetweenRequestsHasNoThread) {
 
 TEST_F(HttpServerTest, OnlyTrustedProxiesAreBelieved) {
   start();
-  const httplib::Headers claim = {{"X-Forwarded-For", "9.9.9.9"}};
-  EXPECT_EQ(httplib::Client("127.0.0.1", server_->port()).Get("/", claim)->body, "\"127.0.0.1\"");
+  const httplib::Headers reservation = {{"X-Forwarded-For", "9.9.9.9"}};
+  EXPECT_EQ(httplib::Client("127.0.0.1", server_->port()).Get("/", reservation)->body,
+            "\"127.0.0.1\"");
   stop();
   proxies_ = AddressSet({"127.0.0.0/8"});
   start();
-  EXPECT_EQ(httplib::Client("127.0.0.1", server_->port()).Get("/", claim)->body, "\"9.9.9.9\"");
+  EXPECT_EQ(httplib::Client("127.0.0.1", server_->port()).Get("/", reservation)->body,
+            "\"9.9.9.9\"");
 }
 
 TEST_F(HttpServerTest, AnUploadThatDoesNotEndDoesNotHoldUpTheEnd) {
@@ -184,7 +186,7 @@ TEST_F(HttpServerTest, TlsCarriesRequestsBodiesAndTheDeadlines) {
   const TempDir dir;
   config_.tls_certificate = dir.path() / "cert.pem";
   config_.tls_key = dir.path() / "key.pem";
-  config_.parking.idle = milliseconds(500);
+  config_.idle_connections.idle = milliseconds(500);
   write_certificate(config_.tls_certificate, config_.tls_key);
   answer_ = [](const Request& request) {
     std::string body;
@@ -222,4 +224,4 @@ TEST_F(HttpServerTest, ACertificateThatCannotBeUsedIsNamed) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -6,7 +6,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 TEST(MediaTypes, AcceptChoosesAndTheJobSaysTheRest) {
@@ -81,4 +81,4 @@ TEST(MediaTypes, ReadsOneRange) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

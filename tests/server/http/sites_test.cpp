@@ -7,7 +7,7 @@
 #include "tests/server/raw_client.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 using testing::AllOf;
@@ -96,4 +96,4 @@ TEST_F(SitesOfAServer, WhereKeysAreAskedForNamesAndOriginsAreFree) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

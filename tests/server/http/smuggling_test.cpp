@@ -8,7 +8,7 @@
 
 #include "tests/server/raw_client.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 using testing::HasSubstr;
@@ -146,4 +146,4 @@ TEST_F(Smuggling, AHundredMegabytesAreReceivedInAFewOfMemory) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

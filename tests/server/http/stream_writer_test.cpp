@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 using std::chrono::milliseconds;
@@ -25,7 +25,7 @@ constexpr std::string_view kGet = "GET / HTTP/1.1\r\nHost: x\r\n\r\n";
 /// What all streams tell: a text that grows, from its beginning, some of it at a time.
 class Story {
  public:
-  explicit Story(const Doorbell& bell) : bell_(bell) {}
+  explicit Story(const Wakeup& bell) : bell_(bell) {}
 
   void tell(std::string_view more, bool end = false) {
     {
@@ -51,7 +51,7 @@ class Story {
 
  private:
   static constexpr std::size_t kMostBytes = 4096;
-  const Doorbell& bell_;
+  const Wakeup& bell_;
   std::mutex mutex_;
   std::string text_;
   bool end_ = false;
@@ -163,7 +163,7 @@ TEST_F(StreamWriting, AfterTheEndTheConnectionTakesAnotherRequest) {
 }
 
 TEST_F(StreamWriting, WhoAskedForTheEndOfTheConnectionGetsIt) {
-  config_.parking.idle = std::chrono::hours(1);
+  config_.idle_connections.idle = std::chrono::hours(1);
   start();
   story_.tell("all", true);
   const auto reader = connect();
@@ -173,7 +173,7 @@ TEST_F(StreamWriting, WhoAskedForTheEndOfTheConnectionGetsIt) {
 }
 
 TEST_F(StreamWriting, ForHttp10IsTheBodyAsItIsAndEndsWithTheConnection) {  // RFC 9112, 6.1
-  config_.parking.idle = std::chrono::hours(1);
+  config_.idle_connections.idle = std::chrono::hours(1);
   start();
   story_.tell("all");
   const auto reader = connect();
@@ -252,4 +252,4 @@ TEST_F(StreamWriting, GoesThroughTls) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -7,7 +7,7 @@
 #include <atomic>
 #include <csignal>
 
-namespace unwrapd::server {
+namespace unwrapd::server::http {
 namespace {
 
 using testing::HasSubstr;
@@ -54,7 +54,7 @@ class TlsRecords : public HttpServerTest {
     config_.tls_certificate = dir_.path() / "cert.pem";
     config_.tls_key = dir_.path() / "key.pem";
     config_.limits.head = std::chrono::seconds(60);
-    config_.parking.head = std::chrono::seconds(60);
+    config_.idle_connections.head = std::chrono::seconds(60);
     write_certificate(config_.tls_certificate, config_.tls_key);
     start();
   }
@@ -96,4 +96,4 @@ TEST_F(TlsRecords, AFloodOfKeyUpdatesHoldsNobodyUp) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::http

@@ -9,7 +9,7 @@
 #include <atomic>
 #include <thread>
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 using testing::HasSubstr;
@@ -122,7 +122,7 @@ TEST(EventFeed, EndingEndsReadersAndWaitsWithoutAFinalEvent) {
 }
 
 TEST(EventFeed, TheBellRingsAtEventsAndAtTheEndOfAll) {
-  const auto bell = std::make_shared<Doorbell>();
+  const auto bell = std::make_shared<Wakeup>();
   const auto has_rung = [&] {
     pollfd polled{bell->descriptor(), POLLIN, 0};
     const bool rung = ::poll(&polled, 1, 0) == 1;
@@ -192,4 +192,4 @@ TEST(EventFeed, ManyReadersOfABusyFeedMissNothingUntold) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

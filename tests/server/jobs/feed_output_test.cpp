@@ -5,7 +5,7 @@
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 /// Events in the order told, of a ring that forgets none of them.
@@ -21,15 +21,15 @@ class FeedOutputs : public testing::Test {
   [[nodiscard]] std::int64_t told() const { return job_.feed->next_seq() - 1; }
 
   TempDir dir_;
-  BlobStore blobs_{dir_.path()};
-  JobStore store_{dir_.path() / "jobs.sqlite"};
-  Claims claims_{store_};
-  Claim claim_{claims_, "his"};
+  store::BlobStore blobs_{dir_.path()};
+  store::JobStore store_{dir_.path() / "jobs.sqlite"};
+  store::QuotaReservations reservations_{store_};
+  store::QuotaReservation reservation_{reservations_, "his"};
   std::int64_t most_ = 0;
   const std::function<std::int64_t(const std::string&)> most_bytes_ =
       [this](const std::string& owner) { return owner == "his" ? most_ : 0; };
   RunningJob job_;
-  FeedOutput output_{job_, blobs_, {claim_, most_bytes_}};
+  FeedOutput output_{job_, blobs_, {reservation_, most_bytes_}};
 };
 
 TEST_F(FeedOutputs, TellAStageAsItMovesOnAndNotEachStep) {
@@ -53,9 +53,9 @@ TEST_F(FeedOutputs, WriteNothingBeyondTheQuota) {
   EXPECT_EQ(error_of([&] { output_.file("uv.bin", "12345"); }).code(), ErrorCode::quota_exceeded);
   EXPECT_FALSE(std::filesystem::exists(blobs_.path("j_1", "uv.bin")));
   output_.file("uv.bin", "1234");
-  FeedOutput again(job_, blobs_, {claim_, most_bytes_});
+  FeedOutput again(job_, blobs_, {reservation_, most_bytes_});
   again.result("obj", "1234567890");
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -9,7 +9,7 @@
 #include <set>
 #include <thread>
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 using testing::HasSubstr;
@@ -273,4 +273,4 @@ TEST_F(Jobs, TheSameMeshGivesTheSameBytesOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -1,7 +1,7 @@
 // The limit on a job's memory, from the flag to the answer, and the cache from one job to the next.
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 using MemoryLimit = RunningServer;
@@ -20,9 +20,10 @@ TEST_F(MemoryLimit, RefusesAJobByItsEstimateAndServesOn) {
 
 TEST_F(MemoryLimit, AnswersTheSameFromTheCache) {
   start();
-  const httplib::Headers anew{{"Cache-Control", "no-cache"}};  // not the result that is stored
+  const httplib::Headers bypass_cache{
+      {"Cache-Control", "no-cache"}};  // not the result that is stored
   const auto ask = [&](const std::string& query) {
-    return client().Post("/v1/unwrap" + query, anew, grid_obj(20), "model/obj");
+    return client().Post("/v1/unwrap" + query, bypass_cache, grid_obj(20), "model/obj");
   };
   const auto first = ask(""), hybrid = ask("?method=hybrid"), again = ask("");
   ASSERT_TRUE(first && again && hybrid);
@@ -32,4 +33,4 @@ TEST_F(MemoryLimit, AnswersTheSameFromTheCache) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

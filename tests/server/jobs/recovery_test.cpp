@@ -7,13 +7,13 @@
 #include "server/jobs/job_queue.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 using api::JobState;
 
-JobRecord some_job(const std::string& id) {
-  JobRecord job;
+store::JobRecord some_job(const std::string& id) {
+  store::JobRecord job;
   job.id = id;
   job.options = {{"method", "arap"}};
   return job;
@@ -23,7 +23,7 @@ class Recovery : public testing::Test {
  protected:
   static constexpr std::int64_t kLeaseMs = 5000;
 
-  static JobOutcome succeeded(std::int64_t finished_ms = 2000) {
+  static store::JobOutcome succeeded(std::int64_t finished_ms = 2000) {
     return {.state = JobState::succeeded,
             .result_format = "glb",
             .problem = {},
@@ -31,8 +31,9 @@ class Recovery : public testing::Test {
   }
 
   TempDir dir_;
-  std::unique_ptr<JobStore> store_ = std::make_unique<JobStore>(dir_.path() / "jobs.sqlite");
-  BlobStore blobs_{dir_.path()};
+  std::unique_ptr<store::JobStore> store_ =
+      std::make_unique<store::JobStore>(dir_.path() / "jobs.sqlite");
+  store::BlobStore blobs_{dir_.path()};
   EventFeed events_;
   const Log log_{LogLevel::off};
 };
@@ -68,7 +69,7 @@ TEST_F(Recovery, AJobThatStopsForTheEndAndIsCancelledMeanwhileIsNotRunAgain) {
   const std::shared_ptr<RunningJob> job = queue.take();
   job->request_stop(StopCause::draining);
   EXPECT_TRUE(queue.cancel_or_remove("j_1"));
-  queue.finish(*job, ended(JobState::cancelled, Error(ErrorCode::cancelled, ""), "j_1"));
+  queue.finish(*job, store::ended(JobState::cancelled, Error(ErrorCode::cancelled, ""), "j_1"));
   EXPECT_EQ(store_->find("j_1")->state, JobState::cancelled);
 }
 
@@ -110,7 +111,7 @@ TEST_F(Recovery, AJobAtWorkAtTenDeathsIsGivenUpThoughItWasTriedApart) {
 class BoundedStore : public Recovery {
  protected:
   void add_ended(const std::string& id, const std::string& owner, bool expired = false) {
-    JobRecord job = some_job(id);
+    store::JobRecord job = some_job(id);
     job.owner = owner;
     store_->insert(job);
     store_->finish(*store_->take(owner, kLeaseMs), succeeded(++ended_));
@@ -126,7 +127,7 @@ class BoundedStore : public Recovery {
   }
   [[nodiscard]] std::string ids() {
     std::string all;
-    for (const JobRecord& job : store_->list({.owner = {}, .state = {}})) all += job.id;
+    for (const store::JobRecord& job : store_->list({.owner = {}, .state = {}})) all += job.id;
     return all;
   }
 
@@ -145,7 +146,7 @@ TEST_F(BoundedStore, GivesUpExpiredJobsThenThoseOfTheOwnerWithTheMost) {
   EXPECT_TRUE(std::filesystem::exists(dir_.path() / "blobs" / "j_1"));
   const std::shared_ptr<RunningJob> job = queue.take();
   queue.finish(*job, succeeded(++ended_));
-  queue.beat();
+  queue.renew_leases();
   EXPECT_EQ(ids(), "j_7j_6j_3j_1") << "of the owner with three jobs";
 }
 
@@ -153,9 +154,9 @@ TEST_F(BoundedStore, MeetsABoundThatWasLowered) {
   for (const char* id : {"j_1", "j_2", "j_3"}) add_ended(id, "");
   JobQueue queue(*store_, blobs_, events_, log_, {.max_stored = 2});
   queue.recover(false);
-  queue.beat();
+  queue.renew_leases();
   EXPECT_EQ(ids(), "j_3j_2");
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -9,7 +9,7 @@
 #include "core/base/error.hpp"
 #include "tests/server/shared_jobs.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 /// One chart, two boundaries: a second start counts.
@@ -17,7 +17,7 @@ Surfaces ring() { return {shapes::surface_of(bent(shapes::annulus(14, 4), 0.5))}
 
 TEST(JobsAtOnce, MakeEverythingOnce) {
   const Surfaces mesh{shapes::surface_of(shapes::sphere(0))};
-  SolverCache alone(kRoomForAll, 1), shared(kRoomForAll, 1);
+  work::SolverCache alone(kRoomForAll, 1), shared(kRoomForAll, 1);
   const std::string expected = answer(mesh, {}, &alone);
   constexpr int kJobs = 4;
   std::latch all_here(kJobs);
@@ -34,7 +34,7 @@ TEST(JobsAtOnce, MakeEverythingOnce) {
 }
 
 /// A job that is cancelled at the first event which is_last() accepts, once others may wait for it.
-void cancelled_job(const Surfaces& mesh, SolverCache& cache, std::latch& may_join,
+void cancelled_job(const Surfaces& mesh, work::SolverCache& cache, std::latch& may_join,
                    const std::function<bool(Stage)>& is_last) {
   std::stop_source source;
   const Progress progress{.on_stage =
@@ -59,7 +59,7 @@ TEST(JobsAtOnce, AreAnsweredThoughTheOneThatMakesIsCancelled) {
     for (const Stage last : {Stage::segment, Stage::factor, Stage::solve}) {
       if ((last == Stage::segment) != (mesh.front().mesh.faces == body.front().mesh.faces))
         continue;  // a ring is not taken apart; a body's charts are too many to wait at each
-      SolverCache cache(kRoomForAll, 1);
+      work::SolverCache cache(kRoomForAll, 1);
       std::latch may_join(2);
       std::jthread maker([&] {
         cancelled_job(mesh, cache, may_join, [&](Stage stage) { return stage == last; });
@@ -77,7 +77,7 @@ TEST(JobsAtOnce, AreAnsweredThoughTheOneThatMakesIsCancelled) {
 }
 
 TEST(JobsAtOnce, FailAsTheyWouldAlone) {
-  SolverCache cache(kRoomForAll, 1);
+  work::SolverCache cache(kRoomForAll, 1);
   const Surfaces nothing{shapes::surface_of({})};
   for (int again : {1, 2}) {
     try {
@@ -91,7 +91,7 @@ TEST(JobsAtOnce, FailAsTheyWouldAlone) {
 }
 
 TEST(JobsThatFollow, HearOfSegmentingWhereTheySegment) {
-  SolverCache cache(kRoomForAll, 1);
+  work::SolverCache cache(kRoomForAll, 1);
   const Surfaces body{shapes::surface_of(shapes::sphere(0))};
   std::vector<int> segment_events(2, 0);
   for (int& events : segment_events) {
@@ -114,7 +114,8 @@ TEST(JobsThatFollow, HearOfSegmentingWhereTheySegment) {
 using Told = std::vector<std::vector<double>>;
 
 /// What a job tells of its iterations.
-Told iterations_of(const Surfaces& surfaces, const UnwrapOptions& options, SolverCache* cache) {
+Told iterations_of(const Surfaces& surfaces, const UnwrapOptions& options,
+                   work::SolverCache* cache) {
   Told told;
   const auto on_iteration = [&](const IterationEvent& e) {
     told.push_back({double(e.chart), double(e.iteration), e.energy, e.rel_change, e.angle, e.area,
@@ -125,7 +126,7 @@ Told iterations_of(const Surfaces& surfaces, const UnwrapOptions& options, Solve
 }
 
 TEST(JobsThatFollow, HearOfEveryIterationEvenWhereNoneIsMade) {
-  SolverCache cache(kRoomForAll, 1);
+  work::SolverCache cache(kRoomForAll, 1);
   const Surfaces disk{shapes::surface_of(shapes::random_disk(6, 3))};
   const Surfaces both{disk.front(), shapes::surface_of(bent(disk.front().mesh, 0.2))};
   std::vector<UnwrapOptions> jobs(4);
@@ -143,4 +144,4 @@ TEST(JobsThatFollow, HearOfEveryIterationEvenWhereNoneIsMade) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

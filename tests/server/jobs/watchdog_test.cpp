@@ -8,7 +8,7 @@
 #include "server/work/run_job.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::jobs {
 namespace {
 
 using testing::HasSubstr;
@@ -29,16 +29,16 @@ class Deaf : public RunningServer {
   }
 
   void start_deaf() {
-    Duties duties;
-    duties.run = [this](const JobTask& task, const asset::Input& input, JobOutput& output,
-                        const api::Limits& limits, Executor& executor) {
+    work::WorkerFunctions functions;
+    functions.run = [this](const work::JobTask& task, const asset::Input& input,
+                           work::JobOutput& output, const api::Limits& limits, Executor& executor) {
       if (input.document == deaf_document_) hear_nothing(output);
-      return run_job(task, input, output, limits, executor);
+      return work::run_job(task, input, output, limits, executor);
     };
-    service_ = std::make_unique<Service>(config_, log_, duties);
+    service_ = std::make_unique<Service>(config_, log_, functions);
   }
   /// What it says afterwards comes too late.
-  void hear_nothing(JobOutput& output) {
+  void hear_nothing(work::JobOutput& output) {
     std::unique_lock lock(mutex_);
     ++deaf_;
     changed_.notify_all();
@@ -139,4 +139,4 @@ TEST_F(Deaf, AServerThatHasLostAThreadSaysSoAtItsEnd) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::jobs

@@ -17,7 +17,7 @@
 #include "tests/server/raw_client.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::results {
 namespace {
 
 using testing::HasSubstr;
@@ -33,20 +33,20 @@ class Makers : public RunningServer {
   }
 
   void start_held_up() {
-    Duties duties;
-    duties.draw = [this](const Rendering& what, const RenderingInput& input,
-                         const api::Limits& limits) {
+    work::WorkerFunctions functions;
+    functions.draw = [this](const work::Rendering& what, const work::RenderingInput& input,
+                            const api::Limits& limits) {
       begin(what, input.asset.stop);
       std::string bytes = what.picture && what.picture->size == kCostlySize
                               ? "no picture"
-                              : render(what, input, limits);
+                              : work::render(what, input, limits);
       const std::lock_guard lock(mutex_);
       --at_once_;
       return bytes;
     };
-    service_ = std::make_unique<Service>(config_, log_, duties);
+    service_ = std::make_unique<Service>(config_, log_, functions);
   }
-  void begin(const Rendering& what, const std::stop_token& stop) {
+  void begin(const work::Rendering& what, const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     nice_ = ::getpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()));
     ++made_;
@@ -182,4 +182,4 @@ TEST_F(Makers, AreBoundedInNumber) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::results

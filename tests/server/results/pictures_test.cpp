@@ -7,7 +7,7 @@
 #include "tests/server/decode_png.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::results {
 namespace {
 
 using testing::HasSubstr;
@@ -38,7 +38,7 @@ TEST_F(Pictures, AreWhatTheirNamesSay) {
     const auto answer = client().Get(links.at(link).get<std::string>());
     EXPECT_EQ(answer->status, 200) << answer->body;
     EXPECT_EQ(answer->get_header_value("Content-Type"), "image/png");
-    const Image image = decode_png(answer->body);
+    const figure::Image image = decode_png(answer->body);
     EXPECT_EQ(image.width, width);
     EXPECT_EQ(image.height, height);
   }
@@ -156,4 +156,4 @@ TEST_F(Pictures, ShareTheFateOfTheirJob) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::results

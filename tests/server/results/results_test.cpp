@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace unwrapd::server {
+namespace unwrapd::server::results {
 namespace {
 
 using testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST_F(Results, TheOneCallRefusesWhatOnlyAJobMayBe) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::results

@@ -4,7 +4,7 @@
 #include "tests/server/raw_client.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 using testing::ContainsRegex;
@@ -87,12 +87,12 @@ TEST_F(Answers, ThatNobodyCanHaveForWantOfAKeyAreToldOfAtTheStart) {
     return testing::internal::GetCapturedStderr();
   };
   EXPECT_THAT(told(), HasSubstr("unwrapd keys add --data " + dir_.path().string()));
-  ApiKey key;
+  access::ApiKey key;
   key.name = "ci";
   key.scopes.read = true;
-  KeyStore(dir_.path()).add(key);
+  access::KeyStore(dir_.path()).add(key);
   EXPECT_THAT(told(), Not(HasSubstr("keys add")));
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

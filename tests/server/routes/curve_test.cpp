@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 using testing::HasSubstr;
@@ -166,4 +166,4 @@ TEST_F(Curve, OfTheOneCallIsAnsweredWithItsFirstLambda) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

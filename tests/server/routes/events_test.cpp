@@ -9,7 +9,7 @@
 #include "api/events.hpp"
 #include "server/access/key_store.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 using testing::HasSubstr;
@@ -101,9 +101,9 @@ TEST_F(Events, StreamsAreLimitedAndStarveNoOtherRequest) {
 TEST_F(Events, OfOneKeyLeaveHalfOfTheStreamsToOthers) {
   config_.access.require_keys = true;
   start();
-  KeyStore keys(config_.data);
+  access::KeyStore keys(config_.data);
   const auto holder = [&] {
-    ApiKey key;
+    access::ApiKey key;
     key.scopes = {.submit = true, .read = true};
     return httplib::Headers{{"Authorization", "Bearer " + keys.add(key)}};
   };
@@ -145,4 +145,4 @@ TEST_F(Events, ThatAreNoLongerKeptAreTold) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

@@ -9,7 +9,7 @@
 #include "server/store/job_store.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 using api::JobState;
@@ -35,7 +35,7 @@ class History : public testing::Test {
   ~History() override { sqlite3_reset_auto_extension(); }
 
   std::int64_t insert(const std::string& owner) {
-    JobRecord job;
+    store::JobRecord job;
     job.id = "j_" + std::to_string(++count_);
     job.options = job.notes = api::Json::array();
     job.owner = owner;
@@ -47,7 +47,7 @@ class History : public testing::Test {
   void keep(const std::string& owner, int jobs) {
     for (int k = 0; k < jobs; ++k) {
       insert(owner);
-      JobOutcome outcome;
+      store::JobOutcome outcome;
       outcome.finished_ms = count_;
       outcome.stored_bytes = 100;
       store_->finish(*store_->take(owner, 1), outcome);
@@ -68,7 +68,7 @@ class History : public testing::Test {
                               std::optional<std::string>("modest")}) {
       for (const auto& state : {std::optional<JobState>(), std::optional(JobState::queued),
                                 std::optional(JobState::succeeded)}) {
-        const JobFilter filter{.owner = owner, .state = state, .before_seq = 0, .limit = 5};
+        const store::JobFilter filter{.owner = owner, .state = state, .before_seq = 0, .limit = 5};
         all += steps_of([&] { store_->list(filter); });
       }
     }
@@ -82,7 +82,7 @@ class History : public testing::Test {
   }
 
   TempDir dir_;
-  std::optional<JobStore> store_;
+  std::optional<store::JobStore> store_;
   std::int64_t count_ = 0;
 };
 
@@ -117,4 +117,4 @@ TEST_F(History, BytesAreThoseOfAllRowsWhateverBecomesOfThem) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

@@ -15,7 +15,7 @@
 #include "server/store/database.hpp"
 #include "server/store/store_file.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::routes {
 namespace {
 
 using testing::AllOf;
@@ -108,10 +108,11 @@ TEST_F(Operations, TheAdminPortAnswersProbesAndNothingElse) {
 
 TEST_F(Operations, TheServerIsNotReadyWhileNothingCanBeStored) {
   start();
-  Database behind(config_.data / kStoreFile);
+  store::Database behind(config_.data / store::kStoreFile);
   behind.run("ALTER TABLE jobs RENAME TO away");
-  const httplib::Headers anew = {{"Cache-Control", "no-cache"}};
-  expect_problem(client().Post("/v1/jobs", anew, grid_obj(2), "model/obj"), 500, "storage_failed");
+  const httplib::Headers bypass_cache = {{"Cache-Control", "no-cache"}};
+  expect_problem(client().Post("/v1/jobs", bypass_cache, grid_obj(2), "model/obj"), 500,
+                 "storage_failed");
   expect_problem(admin().Get("/readyz"), 500, "storage_failed");
   expect_problem(client().Get("/readyz"), 500, "storage_failed");
   EXPECT_EQ(admin().Get("/healthz")->status, 200);
@@ -122,7 +123,7 @@ TEST_F(Operations, TheServerIsNotReadyWhileNothingCanBeStored) {
 
 TEST_F(Operations, TheServerIsNotReadyWithoutItsFiles) {
   start();
-  for (const char* name : {"blobs", kStoreFile}) {
+  for (const char* name : {"blobs", store::kStoreFile}) {
     const auto place = config_.data / name, away = config_.data / "away";
     std::filesystem::rename(place, away);
     expect_problem(client().Get("/readyz"), 500, "storage_failed");
@@ -134,10 +135,10 @@ TEST_F(Operations, TheServerIsNotReadyWithoutItsFiles) {
 TEST_F(Operations, TheHealthCheckOfTheProgramAsksTheAdminPort) {
   start();
   const Address address{"0.0.0.0", *service_->admin_port()};
-  EXPECT_EQ(probe(address), 0);
+  EXPECT_EQ(http::probe(address), 0);
   service_->drain();
   testing::internal::CaptureStderr();
-  EXPECT_EQ(probe(address), 1);
+  EXPECT_EQ(http::probe(address), 1);
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("no health at 0.0.0.0:"));
 }
 
@@ -263,4 +264,4 @@ TEST_F(Operations, RequestsThatCannotBeReadAreLoggedAndCountedAsWell) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::routes

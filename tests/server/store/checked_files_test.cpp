@@ -10,7 +10,7 @@
 #include "server/base/identity.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 class CheckedFilesTest : public testing::Test {
@@ -76,4 +76,4 @@ TEST_F(CheckedFilesTest, AreForgottenWhenThereAreMany) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

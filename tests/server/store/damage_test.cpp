@@ -10,7 +10,7 @@
 #include "tests/api/error_of.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -168,10 +168,11 @@ TEST_F(Damage, ARowThatCannotBeReadIsSetAsideAndNamedAndTheOthersGoOn) {
                            "', '" + waiting + "'); UPDATE stored SET bytes = -5000000000")
                               .c_str());
     EXPECT_THAT(start_and_hear(), AllOf(HasSubstr(done), HasSubstr(waiting))) << damage;
-    client().Delete("/v1/jobs/" + ahead);
+    const bool has_ended =
+        client().Delete("/v1/jobs/" + ahead)->status == 204;  // on a slow machine
     await_state(whole, "succeeded");
     const auto list = client().Get("/v1/jobs");
-    EXPECT_EQ(api::Json::parse(list->body).at("jobs").size(), 4U) << damage;
+    EXPECT_EQ(api::Json::parse(list->body).at("jobs").size(), has_ended ? 3U : 4U) << damage;
     for (const std::string& id : {done, waiting}) {
       EXPECT_EQ(job(id).at("problem").at("code"), "storage_corrupt") << damage;
       expect_problem(get(id, "result"), 500, "storage_corrupt");
@@ -254,4 +255,4 @@ TEST_F(Lost, CountsAfterARestartAndGoesFirst) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -16,7 +16,7 @@
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 using api::JobState;
@@ -243,7 +243,7 @@ TEST_F(Durability, WhatSaysThatSomethingIsRemovedHasRoomOnAFullDiskOnce) {
 }
 
 TEST(FairShare, ManyJobsOfOneOwnerDoNotKeepAnotherWaiting) {
-  FairShare share;
+  jobs::FairShare share;
   for (int k = 0; k < 1000; ++k) share.add("greedy");
   std::string order;
   for (int k = 0; k < 5; ++k) {
@@ -261,7 +261,7 @@ TEST(FairShare, ManyJobsOfOneOwnerDoNotKeepAnotherWaiting) {
 }
 
 TEST(FairShare, LongJobsCountForMoreThanShortOnes) {
-  FairShare share;
+  jobs::FairShare share;
   for (int k = 0; k < 100; ++k) {
     share.add("long");
     share.add("short");
@@ -278,7 +278,7 @@ TEST(FairShare, LongJobsCountForMoreThanShortOnes) {
 }
 
 TEST(FairShare, RunningJobsCountBeforeTheyEnd) {
-  FairShare share;
+  jobs::FairShare share;
   for (int k = 0; k < 3; ++k) {
     share.add("a");
     share.add("b");
@@ -290,4 +290,4 @@ TEST(FairShare, RunningJobsCountBeforeTheyEnd) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

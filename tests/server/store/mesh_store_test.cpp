@@ -9,7 +9,7 @@
 #include "server/store/sweeper.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 MeshRecord some_mesh(const std::string& id, std::int64_t kept_since_ms) {
@@ -114,4 +114,4 @@ TEST_F(StoreOfMeshes, GivesUpWhatWasLeftAloneForTheLongest) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

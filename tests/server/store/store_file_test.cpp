@@ -5,7 +5,7 @@
 #include "tests/api/error_of.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 using testing::AllOf;
@@ -75,4 +75,4 @@ TEST_F(StoreFile, SweepsSayHowMuchTheySetAside) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -12,7 +12,7 @@
 #include "server/store/sweeper.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 using api::JobState;
@@ -253,11 +253,11 @@ TEST_F(Store, TheEndOfAJobIsTellableBeforeItIsTold) {
   BlobStore blobs(dir_.path());
   blobs.begin_upload("j_1");
   blobs.keep_upload("j_1", "j_1");
-  EventFeed events;
+  jobs::EventFeed events;
   const Log log(LogLevel::off);
-  JobQueue queue(*store_, blobs, events, log, {});
+  jobs::JobQueue queue(*store_, blobs, events, log, {});
   queue.recover(false);
-  const std::shared_ptr<RunningJob> job = queue.take();
+  const std::shared_ptr<jobs::RunningJob> job = queue.take();
   int calls = 0;
   queue.finish(*job, succeeded(), [&] {
     ++calls;
@@ -269,4 +269,4 @@ TEST_F(Store, TheEndOfAJobIsTellableBeforeItIsTold) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -77,13 +77,13 @@ extern "C" int fsync(int descriptor) {
 
 extern "C" int rename(const char* from, const char* to) {
   const std::filesystem::path path(to);
-  if (path.filename() == unwrapd::server::kDigestsFile)
+  if (path.filename() == unwrapd::server::store::kDigestsFile)
     for (const auto& entry : std::filesystem::directory_iterator(path.parent_path()))
       if (entry.path() != path && !is_synced(entry.path())) noted_early.push_back(entry.path());
   return ::renameat(AT_FDCWD, from, AT_FDCWD, to);
 }
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 /// A folder, and all that is in it.
@@ -94,10 +94,10 @@ void expect_synced(const std::filesystem::path& folder) {
 }
 
 /// A body that has come whole.
-class TextBody final : public BodyReader {
+class TextBody final : public http::BodyReader {
  public:
   void read(const std::function<void(std::string_view)>& take) override { take("v 0 0 0"); }
-  void read_parts(const std::function<void(const Part&)>& start,
+  void read_parts(const std::function<void(const http::Part&)>& start,
                   const std::function<void(std::string_view)>& take) override {
     start({.name = "mesh", .filename = {}});
     take("v 0 0 0");
@@ -119,7 +119,8 @@ TEST_F(Synchronising, AnUploadIsOnTheDiskBeforeItIsAJob) {
     BlobStore blobs(dir_.path());
     const UploadFolder folder{.path = blobs.begin_upload("u")};
     TextBody body;
-    const Upload upload = in_parts ? receive_parts(body, folder) : receive_asset(body, folder);
+    const uploads::Upload upload =
+        in_parts ? uploads::receive_parts(body, folder) : uploads::receive_asset(body, folder);
     const std::string job = in_parts ? "j_parts" : "j_whole";
     blobs.keep_upload("u", job, digests_of(upload.input));
     EXPECT_EQ(blobs.read(job, kDocumentFile), "v 0 0 0");
@@ -152,4 +153,4 @@ TEST_F(Synchronising, AFileWrittenByItselfIsOnTheDiskAtOnce) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

@@ -7,7 +7,7 @@
 #include "server/store/schema.hpp"
 #include "tests/server/temp_dir.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::store {
 namespace {
 
 /// The options of a job as version 0.1.0 resolved them.
@@ -125,4 +125,4 @@ TEST_F(Upgrade, OfAJobWithoutItsMapTheResultIsThere) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::store

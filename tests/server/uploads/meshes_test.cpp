@@ -9,7 +9,7 @@
 #include "server/work/rendering.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 namespace {
 
 using testing::HasSubstr;
@@ -98,12 +98,13 @@ TEST_F(StoredMeshes, OnesThatCannotBeUnwrappedSayWhy) {
 
 TEST_F(StoredMeshes, AreAnalysedOnceForAllWhoAsk) {
   std::atomic<int> made = 0;
-  Duties duties;
-  duties.draw = [&](const Rendering& what, const RenderingInput& input, const auto& limits) {
+  work::WorkerFunctions functions;
+  functions.draw = [&](const work::Rendering& what, const work::RenderingInput& input,
+                       const auto& limits) {
     ++made;
-    return render(what, input, limits);
+    return work::render(what, input, limits);
   };
-  service_ = std::make_unique<Service>(config_, log_, duties);
+  service_ = std::make_unique<Service>(config_, log_, functions);
   const std::string mesh = grid_obj(20);
   put(mesh);
   std::vector<std::jthread> askers;
@@ -230,4 +231,4 @@ TEST_F(StoredMeshes, OnesThatAreDamagedAreNoticedAndCanBeSentAgain) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

@@ -5,7 +5,7 @@
 #include "server/base/identity.hpp"
 #include "tests/server/running_server.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 namespace {
 
 class Repeats : public RunningServer {
@@ -56,4 +56,4 @@ TEST_F(Repeats, OfALargeMeshLeaveOthersTheirResults) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-namespace unwrapd::server {
+namespace unwrapd::server::uploads {
 namespace {
 
 using testing::HasSubstr;
@@ -196,4 +196,4 @@ TEST_F(Replays, OfAnIdAreOfThatIdAlone) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::uploads

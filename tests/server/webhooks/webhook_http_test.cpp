@@ -22,7 +22,7 @@
 #include "server/webhooks/webhooks.hpp"
 #include "tests/server/http_server_fixture.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 namespace {
 
 /// Reads until the sender's bytes end so, or there are no more.
@@ -59,7 +59,7 @@ class Receiver {
   }
 
  private:
-  const Listener listener_{"127.0.0.1", 0};
+  const http::Listener listener_{"127.0.0.1", 0};
   std::jthread thread_;
 };
 
@@ -205,4 +205,4 @@ TEST(Webhook, IsCalledAgainAfterDoubledPausesOrWhenTheReceiverAskedFor) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

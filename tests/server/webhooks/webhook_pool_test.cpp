@@ -8,7 +8,7 @@
 
 #include "server/webhooks/webhook_url.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 namespace {
 
 constexpr int kAtOnce = 16;
@@ -101,4 +101,4 @@ TEST_F(WebhookPlaces, AHostThatFailsHasToProveItselfAgain) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

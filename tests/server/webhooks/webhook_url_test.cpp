@@ -8,7 +8,7 @@
 #include "core/base/error.hpp"
 #include "tests/api/error_of.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::webhooks {
 namespace {
 
 TEST(Webhook, OnlyPublicAddressesAreCalled) {
@@ -96,4 +96,4 @@ TEST(Webhook, GoOnlyToHostsThatAreAllowed) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::webhooks

@@ -12,7 +12,7 @@
 #include "tests/core/hard_shapes.hpp"
 #include "tests/server/shared_jobs.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 constexpr std::array kMethods{Method::asap, Method::arap,   Method::hybrid,
@@ -137,4 +137,4 @@ TEST(JobsInAnyOrder, AnswerAsAFreshProcessDoes) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -1,5 +1,5 @@
 // Keys of kept things: other arguments, another key.
-#include "core/types/fingerprint.hpp"
+#include "core/types/cache_key.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include "core/solve/base/disk.hpp"
 #include "tests/server/shared_jobs.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
-TEST(Fingerprint, TellsWhereOneArgumentEndsAndTheNextBegins) {
+TEST(CacheKey, TellsWhereOneArgumentEndsAndTheNextBegins) {
   const SolverCache core({}, 1);
   const std::string ab = "ab", a = "a", bc = "bc", c = "c", none;
   const std::vector<std::string> two{a, bc}, one{"abc"}, more{a, bc, none};
@@ -20,7 +20,7 @@ TEST(Fingerprint, TellsWhereOneArgumentEndsAndTheNextBegins) {
   const std::string longer(100, 'x');
   std::vector<Digest> all;
   const auto add = [&](const auto&... values) {
-    Fingerprint key(core);
+    CacheKey key(core);
     (key.add(values), ...);
     all.push_back(key.digest());
   };
@@ -32,18 +32,18 @@ TEST(Fingerprint, TellsWhereOneArgumentEndsAndTheNextBegins) {
 
 /// A list that takes the place of one that knew its digest is told from it, though the disk that it
 /// is in was copied.
-TEST(Fingerprint, OfADiskIsOfWhatTheDiskHoldsNow) {
+TEST(CacheKey, OfADiskIsOfWhatTheDiskHoldsNow) {
   SolverCache core(MemoryLimits{}, 1);
   ThreadExecutor executor(1, &core);
   const TriMesh mesh = shapes::random_disk(5, 3);
   const Halfedges halfedges = build_halfedges(mesh.faces, mesh.vertex_count());
   const std::vector<BoundaryLoop> loops = boundary_loops(mesh, halfedges);
-  const Disk disk = make_disk(mesh, loops, executor);
-  const auto key = [&](const Disk& d) { return Fingerprint(core).add(d).digest(); };
+  const solve::Disk disk = solve::make_disk(mesh, loops, executor);
+  const auto key = [&](const solve::Disk& d) { return CacheKey(core).add(d).digest(); };
   const Digest own = key(disk);
-  EXPECT_EQ(key(make_disk(mesh, loops, executor)), own);
-  std::vector<Disk> others(7, disk);
-  std::vector<RestTriangle> rest(disk.rest.begin(), disk.rest.end());
+  EXPECT_EQ(key(solve::make_disk(mesh, loops, executor)), own);
+  std::vector<solve::Disk> others(7, disk);
+  std::vector<measure::RestTriangle> rest(disk.rest.begin(), disk.rest.end());
   rest.back().area *= 2;
   others[0].rest = std::move(rest);
   std::vector<Vec3> positions(disk.positions.begin(), disk.positions.end());
@@ -57,10 +57,10 @@ TEST(Fingerprint, OfADiskIsOfWhatTheDiskHoldsNow) {
   others[5].unit *= 2;
   others[6].is_ordered = true;
   std::vector<Digest> all{own};
-  for (const Disk& other : others) all.push_back(key(other));
+  for (const solve::Disk& other : others) all.push_back(key(other));
   std::sort(all.begin(), all.end());
   EXPECT_EQ(std::unique(all.begin(), all.end()), all.end());
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -7,7 +7,7 @@
 #include "tests/core/hard_shapes.hpp"
 #include "tests/server/shared_jobs.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 void expect_answers_as_alone(const std::vector<Surfaces>& meshes,
@@ -209,4 +209,4 @@ TEST(JobsThatShare, CountTheBytesThatTheyKeep) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

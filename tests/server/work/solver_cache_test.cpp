@@ -13,14 +13,14 @@
 #include "server/work/thread_executor.hpp"
 #include "tests/core/shapes.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 constexpr std::int64_t kPlenty = std::int64_t{1} << 40;
 
 Digest key(char name) { return Digest{std::byte(name)}; }
 
-SolverCore::Made number(int value, std::size_t bytes = 10) {
+SharedCache::Made number(int value, std::size_t bytes = 10) {
   return {std::make_shared<const int>(value), bytes};
 }
 
@@ -110,7 +110,7 @@ TEST(SolverCache, HandsOutTheRightThingHoweverManyAskForMoreThanItKeeps) {
 
 TEST(SolverCache, LetsTheNextOneTryWhereMakingFailed) {
   SolverCache cache({.cache_bytes = 30, .job_bytes = kPlenty}, 1);
-  const auto fail = []() -> SolverCore::Made { throw Error(ErrorCode::solver_failed, "no"); };
+  const auto fail = []() -> SharedCache::Made { throw Error(ErrorCode::solver_failed, "no"); };
   EXPECT_THROW(cache.obtain(key('a'), fail, {}), Error);
   EXPECT_EQ(ask(cache, 'a', 5), 5);
 }
@@ -118,7 +118,7 @@ TEST(SolverCache, LetsTheNextOneTryWhereMakingFailed) {
 TEST(SolverCache, LetsAnotherMakeItWhereTheMakerIsStopped) {
   SolverCache cache({.cache_bytes = 30, .job_bytes = kPlenty}, 1);
   std::latch is_making(1);
-  const auto is_stopped = [&]() -> SolverCore::Made {
+  const auto is_stopped = [&]() -> SharedCache::Made {
     is_making.count_down();
     throw Error(ErrorCode::cancelled, "stopped");
   };
@@ -142,7 +142,7 @@ TEST(SolverCache, LetsAJobStopThatWaitsForAnother) {
   is_making.wait();
   std::stop_source stop;
   std::jthread stopper([&] { stop.request_stop(); });
-  const auto never = []() -> SolverCore::Made { throw std::logic_error("made twice"); };
+  const auto never = []() -> SharedCache::Made { throw std::logic_error("made twice"); };
   EXPECT_THROW(cache.obtain(key('a'), never, stop.get_token()), Error);
   may_end.count_down();
   maker.join();
@@ -224,4 +224,4 @@ TEST(SharedCore, RefusesAJobThatNeedsMoreThanItMay) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

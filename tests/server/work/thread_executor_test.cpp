@@ -5,7 +5,7 @@
 #include <atomic>
 #include <vector>
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 TEST(ThreadExecutor, RunsEveryBlockOnceOnAnyNumberOfThreads) {
@@ -36,4 +36,4 @@ TEST(ThreadExecutor, ManyCanBeMadeAndLeftIdle) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -4,7 +4,7 @@
 
 #include "core/base/error.hpp"
 
-namespace unwrapd::server {
+namespace unwrapd::server::work {
 namespace {
 
 std::vector<UnwrappedSurface> two_surfaces() {
@@ -38,4 +38,4 @@ TEST(UvFile, RefusesCountsThatTheFileCannotHold) {
 }
 
 }  // namespace
-}  // namespace unwrapd::server
+}  // namespace unwrapd::server::work

@@ -6,7 +6,7 @@
 
 #include "core/solve/arap/accelerate_memory.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
 /// The textbook's update of the inverse Hessian (BFGS), with dense matrices.
@@ -84,4 +84,4 @@ TEST(StepMemory, LeavesOutAStepAlongWhichTheForceDoesNotFall) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

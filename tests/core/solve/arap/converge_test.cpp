@@ -4,8 +4,8 @@
 #include "core/base/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/measure/energy.hpp"
-#include "core/solve/arap/frames.hpp"
-#include "core/solve/base/hold_align.hpp"
+#include "core/solve/arap/initial_rotations.hpp"
+#include "core/solve/base/align_constrained.hpp"
 #include "core/solve/maps/conformal.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/core/counting_executor.hpp"
@@ -17,7 +17,7 @@
 #include "tests/core/solve/similarity.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
 using shapes::disk_of;
@@ -58,7 +58,7 @@ TEST(Converge, EveryStartReachesTheLowestEnergiesKnown) {
       EXPECT_LT(s.energy.back(), model.energy * 1.001) << model.file;
       EXPECT_LE(s.iterations, 250) << model.file;
       EXPECT_EQ(s.stop_reason, StopReason::converged);
-      EXPECT_NEAR(s.energy.back(), arap_energy(d.disk.rest, d.disk.faces, s.uv), 1e-12);
+      EXPECT_NEAR(s.energy.back(), measure::arap_energy(d.disk.rest, d.disk.faces, s.uv), 1e-12);
       expect_never_rises(s.energy);
     }
 }
@@ -102,7 +102,7 @@ TEST(Converge, UnfoldsDevelopableShapes) {
     const OwnedDisk d = disk_of(mesh);
     const Solution s = solved(d.disk, {});
     EXPECT_LT(s.energy.back(), 1e-8);
-    EXPECT_EQ(distortion_sums(d.disk.rest, d.disk.faces, s.uv).flipped, 0);
+    EXPECT_EQ(measure::distortion_sums(d.disk.rest, d.disk.faces, s.uv).flipped, 0);
     EXPECT_EQ(s.stop_reason, StopReason::converged);
     EXPECT_LE(s.iterations, 5);  // rounding is not descended into
   }
@@ -153,18 +153,22 @@ TEST(Converge, GivesTheSameBytesOnOneAndTwoThreads) {
 
 TEST(Converge, HeldVerticesStayAndTheOthersComeToRest) {
   const OwnedDisk d = disk_of(shapes::random_disk(12, 8));
-  Holds holds{.fixed = {{3, {-.7, 0}}, {100, {.5, .4}}}, .springs = {{60, {.1, .1}, 2}}};
-  const Held held{holds, held_start(conformal_map(d.disk, Pins::diameter), holds)};
+  VertexConstraints constraints{.hard = {{3, {-.7, 0}}, {100, {.5, .4}}},
+                                .soft = {{60, {.1, .1}, 2}}};
+  const ConstrainedStart constrained{
+      constraints, constrained_start(maps::conformal_map(d.disk, Pins::diameter), constraints)};
   SerialExecutor serial;
   const UnwrapOptions options{.stop = {.tolerance = 1e-13}};
-  const Solution s = Solver(d.disk, options, held, serial).run(0, {});
+  const Solution s = Solver(d.disk, options, constrained, serial).run(0, {});
   expect_never_rises(s.energy);
-  EXPECT_EQ(s.uv[3], holds.fixed[0].at);
-  EXPECT_EQ(s.uv[100], holds.fixed[1].at);
+  EXPECT_EQ(s.uv[3], constraints.hard[0].at);
+  EXPECT_EQ(s.uv[100], constraints.hard[1].at);
   EXPECT_NEAR(s.energy.back(),
-              arap_energy(d.disk.rest, d.disk.faces, s.uv) + spring_energy(holds, s.uv), 1e-12);
+              measure::arap_energy(d.disk.rest, d.disk.faces, s.uv) +
+                  soft_constraint_energy(constraints, s.uv),
+              1e-12);
   std::vector<Vec2> force(s.uv.size());
-  Objective(d.disk, {}, holds, shapes::as_listed(force.size()), serial).evaluate(s.uv, force);
+  Objective(d.disk, {}, constraints, shapes::as_listed(force.size()), serial).evaluate(s.uv, force);
   for (const Vec2& f : force) EXPECT_LT(f.norm(), 1e-6);
 }
 
@@ -183,11 +187,11 @@ TEST(Converge, SmallLambdasKeepTheAreaOfTheConformalMap) {
   for (const TriMesh& mesh : meshes) {
     const OwnedDisk d = disk_of(mesh);
     const UvMap asap = solved(d.disk, {.method = Method::asap}).uv;
-    const double c = asap_energy(d.disk.rest, d.disk.faces, asap);
+    const double c = measure::asap_energy(d.disk.rest, d.disk.faces, asap);
     for (double lambda : {c * .4, c * .51, c * .6, c, 1e-6, 1e-4, 1e-2}) {
       const Solution s = solved(d.disk, {.method = Method::hybrid, .lambda = lambda});
-      EXPECT_GE(uv_area(d.disk.rest, d.disk.faces, s.uv),
-                0.01 * uv_area(d.disk.rest, d.disk.faces, asap));
+      EXPECT_GE(measure::uv_area(d.disk.rest, d.disk.faces, s.uv),
+                0.01 * measure::uv_area(d.disk.rest, d.disk.faces, asap));
     }
   }
 }
@@ -250,10 +254,11 @@ TEST(Starts, ADescentThatIsSoonAtRestIsNotTriedTwice) {
 TEST(Starts, FramesUnfoldAConeWithItsCurvatureAtTheApex) {
   for (double height : {0.3, 1.0, 2.0}) {
     const OwnedDisk d = disk_of(shapes::cone(24, 1, height));  // one inner vertex
-    const UvMap uv = frame_map(d.disk, GlobalStep(d.disk, {}));
+    const UvMap uv = map_from_rotations(d.disk, GlobalStep(d.disk, {}));
     double spread_least = 10, spread_most = 0;  // all triangles are alike, and so are their images
     for (std::size_t t = 0; t < d.disk.faces.size(); ++t) {
-      const Jacobian j = jacobian(d.disk.rest[t], uv_edges(d.disk.faces[t], uv));
+      const measure::Jacobian j =
+          measure::jacobian(d.disk.rest[t], measure::uv_edges(d.disk.faces[t], uv));
       spread_least = std::min(spread_least, j.sigma_max());
       spread_most = std::max(spread_most, j.sigma_max());
       EXPECT_GT(j.sigma_min(), 0);
@@ -266,7 +271,7 @@ TEST(Starts, FramesDoNotDependOnWhereTheyAreCarriedFrom) {
   TriMesh mesh = shapes::random_disk(15, 6);
   const auto frames_by_corner = [](const TriMesh& m, std::size_t first) {
     const OwnedDisk d = disk_of(m);
-    const UvMap uv = frame_map(d.disk, GlobalStep(d.disk, {}));
+    const UvMap uv = map_from_rotations(d.disk, GlobalStep(d.disk, {}));
     UvMap corners;
     for (std::size_t t = 0; t < d.disk.faces.size(); ++t)
       for (Index v : d.disk.faces[(t + first) % d.disk.faces.size()])
@@ -282,11 +287,11 @@ TEST(Starts, FramesAreTheSameWhetherTwinsAreKnownOrSought) {
   for (const TriMesh& mesh : {shapes::random_disk(15, 6), shapes::cone(24, 8, 2)}) {
     OwnedDisk d = disk_of(mesh);
     const GlobalStep global(d.disk, {});
-    const UvMap expected = frame_map(d.disk, global);
+    const UvMap expected = map_from_rotations(d.disk, global);
     d.disk.twin = d.chart->halfedges.twin;
-    EXPECT_EQ(frame_map(d.disk, global), expected);
+    EXPECT_EQ(map_from_rotations(d.disk, global), expected);
   }
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

@@ -10,24 +10,24 @@
 #include "tests/core/solve/ranks.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::arap {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Jacobian random_jacobian(std::mt19937& rng) {
+measure::Jacobian random_jacobian(std::mt19937& rng) {
   std::normal_distribution<double> any;
   return {any(rng), any(rng), any(rng), any(rng)};
 }
 
-Eigen::Matrix2d dense(const Jacobian& j) {
+Eigen::Matrix2d dense(const measure::Jacobian& j) {
   Eigen::Matrix2d m;
   m << j.e + j.f, j.g - j.h, j.h + j.g, j.e - j.f;
   return m;
 }
 
 /// Eq. (5) for one triangle of area 1, by the Frobenius norm.
-double energy(const Jacobian& j, const Similarity& l, double lambda) {
+double energy(const measure::Jacobian& j, const Similarity& l, double lambda) {
   Eigen::Matrix2d m;
   m << l.a, l.b, -l.b, l.a;
   const double excess = l.a * l.a + l.b * l.b - 1;
@@ -37,7 +37,7 @@ double energy(const Jacobian& j, const Similarity& l, double lambda) {
 TEST(LocalStep, AsapScaleIsTheMeanSignedSingularValue) {  // Sec. 4.1
   std::mt19937 rng(1);
   for (int k = 0; k < 1000; ++k) {
-    const Jacobian j = random_jacobian(rng);
+    const measure::Jacobian j = random_jacobian(rng);
     const Similarity l = fit_similarity(j, 0);
     EXPECT_NEAR(std::hypot(l.a, l.b), (j.sigma_max() + j.sigma_min()) / 2, 1e-14);
   }
@@ -46,7 +46,7 @@ TEST(LocalStep, AsapScaleIsTheMeanSignedSingularValue) {  // Sec. 4.1
 TEST(LocalStep, ArapFitIsTheRotationOfTheSignedSvd) {  // Sec. 4.1
   std::mt19937 rng(2);
   for (int k = 0; k < 1000; ++k) {
-    const Jacobian j = random_jacobian(rng);
+    const measure::Jacobian j = random_jacobian(rng);
     const Eigen::JacobiSVD<Eigen::Matrix2d, Eigen::FullPivHouseholderQRPreconditioner> svd(
         dense(j), Eigen::ComputeFullU | Eigen::ComputeFullV);
     Eigen::Matrix2d u = svd.matrixU();
@@ -62,7 +62,7 @@ TEST(LocalStep, NoNearbySimilarityHasLessEnergy) {  // Eq. (5) is minimised, not
   std::mt19937 rng(4);
   std::normal_distribution<double> bump(0, 0.5);
   for (int k = 0; k < 1000; ++k) {
-    const Jacobian j = random_jacobian(rng);
+    const measure::Jacobian j = random_jacobian(rng);
     for (double lambda : {0.0, 1e-6, 0.1, 0.5, 1.0, 2.0, 1e3}) {
       const Similarity best = fit_similarity(j, lambda);
       const Similarity other{best.a + bump(rng), best.b + bump(rng)};
@@ -93,7 +93,7 @@ TEST(LocalStep, QuarterTurnsAreNoSpecialCase) {  // C2 = 0, where Eq. (B3) divid
 TEST(LocalStep, FitEnergyIsTheEnergyOfTheFit) {
   std::mt19937 rng(5);
   for (int k = 0; k < 100; ++k) {
-    const Jacobian j = random_jacobian(rng);
+    const measure::Jacobian j = random_jacobian(rng);
     for (double lambda : {0.0, 0.7, 30.0}) {
       const Similarity l = fit_similarity(j, lambda);
       EXPECT_NEAR(fit_energy(j, l, 2.5, lambda), 2.5 * energy(j, l, lambda), 1e-9);
@@ -107,7 +107,7 @@ struct Fitted {
   std::vector<Vec2> force, beyond;
   LocalSums sums;
 
-  Fitted(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+  Fitted(std::span<const measure::RestTriangle> rest, std::span<const Triangle> faces,
          std::span<const Index> rank)
       : blocks(face_blocks(rest, faces, rank)), force(rank.size()), beyond(blocks.beyond.size()) {}
 
@@ -124,7 +124,7 @@ TEST(LocalStep, ForceIsMinusTheGradientOfTheEnergy) {  // Eq. (4), by finite dif
   for (const Vec3& p : mesh.positions) uv.emplace_back(1.2 * p.x() + 0.3 * p.y(), p.y() - p.z());
   SerialExecutor serial;
   for (const Rigidity& rigidity : kRigidities) {
-    Fitted fitted(flatten(mesh), mesh.faces, shapes::as_listed(uv.size()));
+    Fitted fitted(measure::flatten(mesh), mesh.faces, shapes::as_listed(uv.size()));
     const auto energy_of = [&](const UvMap& map) {
       return fitted.step(map, rigidity).run(serial).energy;
     };
@@ -157,11 +157,11 @@ struct Expected {
 };
 
 /// Face by face.
-Expected expected_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
+Expected expected_sums(std::span<const measure::RestTriangle> rest, std::span<const Triangle> faces,
                        const UvMap& uv, const Rigidity& rigidity) {
   Expected sums;
   for (std::size_t t = 0; t < rest.size(); ++t) {
-    const Jacobian j = jacobian(rest[t], uv_edges(faces[t], uv));
+    const measure::Jacobian j = measure::jacobian(rest[t], measure::uv_edges(faces[t], uv));
     const double lambda = rigidity.at(rest[t].area);
     sums.energy += fit_energy(j, fit_similarity(j, lambda), rest[t].area, lambda);
     sums.area += rest[t].area * std::abs(j.determinant());
@@ -171,7 +171,7 @@ Expected expected_sums(std::span<const RestTriangle> rest, std::span<const Trian
 
 TEST(LocalStep, AddsUpTheFitsOfAllFacesWhateverTheirNumber) {  // groups are filled up
   const TriMesh disk = shapes::random_disk(4, 6);
-  const std::vector<RestTriangle> all = flatten(disk);
+  const std::vector<measure::RestTriangle> all = measure::flatten(disk);
   const UvMap uv = collapsed_map(disk);
   SerialExecutor serial;
   for (std::size_t count = 6; count < 12; ++count)
@@ -188,14 +188,14 @@ TEST(LocalStep, AddsUpTheFitsOfAllFacesWhateverTheirNumber) {  // groups are fil
 
 /// -2 A (J - L) W^T of every face, [x^1 x^2] W = 1, at its corners.
 std::vector<Vec2> expected_forces(const TriMesh& mesh, const UvMap& uv, const Rigidity& rigidity) {
-  const std::vector<RestTriangle> rest = flatten(mesh);
+  const std::vector<measure::RestTriangle> rest = measure::flatten(mesh);
   std::vector<Vec2> force(uv.size(), Vec2::Zero());
   for (std::size_t t = 0; t < rest.size(); ++t) {
     Eigen::Matrix2d x, u;
     x << -rest[t].edge[0], rest[t].edge[2];
     const auto at = [&](int i) { return uv[std::size_t(mesh.faces[t][std::size_t(i)])]; };
     u << at(1) - at(0), at(2) - at(0);
-    const Jacobian j = jacobian(rest[t], uv_edges(mesh.faces[t], uv));
+    const measure::Jacobian j = measure::jacobian(rest[t], measure::uv_edges(mesh.faces[t], uv));
     const Similarity fit = fit_similarity(j, rigidity.at(rest[t].area));
     Eigen::Matrix2d l;
     l << fit.a, fit.b, -fit.b, fit.a;
@@ -210,7 +210,7 @@ std::vector<Vec2> expected_forces(const TriMesh& mesh, const UvMap& uv, const Ri
 TEST(LocalStep, GivesTheForcesOfAllFacesWhateverTheOrderOfVertices) {  // several blocks
   const TriMesh mesh = shapes::random_disk(70, 6);
   ASSERT_GT(mesh.vertex_count(), 2 * FaceBlocks::kOwn);
-  const std::vector<RestTriangle> rest = flatten(mesh);
+  const std::vector<measure::RestTriangle> rest = measure::flatten(mesh);
   const UvMap uv = folded_map(mesh);
   SerialExecutor serial;
   TwoThreads two;
@@ -235,7 +235,7 @@ TEST(LocalStep, GivesTheForcesOfAllFacesWhateverTheOrderOfVertices) {  // severa
 TEST(LocalStep, GivesTheSameBitsOnTheBaseline) {
   const TriMesh mesh = shapes::random_disk(60, 7);
   const UvMap uv = collapsed_map(mesh);
-  const std::vector<RestTriangle> rest = flatten(mesh);
+  const std::vector<measure::RestTriangle> rest = measure::flatten(mesh);
   const std::vector<Index> rank = shapes::shuffled_ranks(uv.size(), 8);
   SerialExecutor serial;
   for (const Rigidity& rigidity : kRigidities) {
@@ -249,4 +249,4 @@ TEST(LocalStep, GivesTheSameBitsOnTheBaseline) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::arap

@@ -3,14 +3,14 @@
 
 #include "core/base/error.hpp"
 #include "core/measure/distortion.hpp"
-#include "core/solve/hold_page.hpp"
+#include "core/solve/constrain_chart.hpp"
 #include "core/solve/maps/boundary_shape.hpp"
 #include "core/solve/solve.hpp"
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/solve/holds_of.hpp"
 #include "tests/core/solve/ranks.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 namespace {
 
 using shapes::disk_of;
@@ -25,15 +25,16 @@ std::vector<UnwrapOptions> all_methods(Stop stop = {}) {
 
 /// A chart held on the page, and how it was solved there.
 struct PageSolve {
-  ChartHold hold;
+  ChartConstraints hold;
   Solution solution;
   UvMap page;
 };
 
-PageSolve solved_on_page(const Disk& disk, const UnwrapOptions& options, const Holds& page) {
+PageSolve solved_on_page(const Disk& disk, const UnwrapOptions& options,
+                         const VertexConstraints& page) {
   SerialExecutor serial;
-  PageSolve s{.hold = hold_chart(disk, options, page, {}, serial), .solution = {}, .page = {}};
-  s.solution = Solver(disk, options, s.hold.held, serial).run(options.lambda, {});
+  PageSolve s{.hold = constrain_chart(disk, options, page, {}, serial), .solution = {}, .page = {}};
+  s.solution = Solver(disk, options, s.hold.constrained, serial).run(options.lambda, {});
   s.page = s.hold.frame->to_page(s.solution.uv, page);
   return s;
 }
@@ -41,11 +42,11 @@ PageSolve solved_on_page(const Disk& disk, const UnwrapOptions& options, const H
 TEST(HeldSolve, KeepsHardPinsToTheLastBitInAllMethods) {
   const OwnedDisk d = disk_of(shapes::random_disk(12, 3));
   for (std::size_t count : {1U, 2U, 3U, 50U}) {
-    const Holds page{scattered(d.disk, count, 5), {}};
+    const VertexConstraints page{scattered(d.disk, count, 5), {}};
     for (const UnwrapOptions& options : all_methods()) {
       const PageSolve s = solved_on_page(d.disk, options, page);
-      for (const FixedPoint& p : page.fixed) EXPECT_EQ(s.page[std::size_t(p.vertex)], p.at);
-      for (const FixedPoint& p : s.hold.held.holds.fixed)
+      for (const HardConstraint& p : page.hard) EXPECT_EQ(s.page[std::size_t(p.vertex)], p.at);
+      for (const HardConstraint& p : s.hold.constrained.constraints.hard)
         EXPECT_EQ(s.solution.uv[std::size_t(p.vertex)], p.at);
       for (const Vec2& u : s.page) EXPECT_TRUE(u.allFinite());
     }
@@ -56,14 +57,15 @@ TEST(HeldSolve, KeepsAWholeBoundaryInAllMethods) {
   for (const TriMesh& mesh : {shapes::sphere_cap(24, 8, 1.2), shapes::annulus(24, 4)})
     for (BoundaryShape shape : {BoundaryShape::circle, BoundaryShape::square}) {
       const OwnedDisk d = disk_of(mesh);
-      const auto points = boundary_points(d.disk, shape);
+      const auto points = maps::boundary_points(d.disk, shape);
       SerialExecutor serial;
       for (UnwrapOptions options : all_methods()) {
         options.boundary = shape;
-        const ChartHold hold = hold_chart(d.disk, options, {}, {}, serial);
+        const ChartConstraints hold = constrain_chart(d.disk, options, {}, {}, serial);
         EXPECT_FALSE(hold.frame);
-        const Solution s = Solver(d.disk, options, hold.held, serial).run(options.lambda, {});
-        for (const FixedPoint& p : points) EXPECT_EQ(s.uv[std::size_t(p.vertex)], p.at);
+        const Solution s =
+            Solver(d.disk, options, hold.constrained, serial).run(options.lambda, {});
+        for (const HardConstraint& p : points) EXPECT_EQ(s.uv[std::size_t(p.vertex)], p.at);
       }
     }
 }
@@ -73,8 +75,8 @@ TEST(HeldSolve, NeverRaisesTheEnergy) {
     for (const Stop& stop : {Stop{.iterations = 40}, Stop{}}) {
       const OwnedDisk d = disk_of(mesh);
       const auto points = scattered(d.disk, 20, 8);
-      const Holds page{{points.begin(), points.begin() + 7},
-                       as_springs({points.begin() + 7, points.end()}, 0.5)};
+      const VertexConstraints page{{points.begin(), points.begin() + 7},
+                                   as_springs({points.begin() + 7, points.end()}, 0.5)};
       for (const UnwrapOptions& options : all_methods(stop)) {
         const std::vector<double> energy = solved_on_page(d.disk, options, page).solution.energy;
         for (std::size_t k = 1; k < energy.size(); ++k)
@@ -86,8 +88,8 @@ TEST(HeldSolve, NeverRaisesTheEnergy) {
 TEST(HeldSolve, EndsWhereTheForceIsZero) {
   const OwnedDisk d = disk_of(shapes::random_disk(10, 4));
   const auto points = scattered(d.disk, 12, 2);
-  const Holds page{{points.begin(), points.begin() + 4},
-                   as_springs({points.begin() + 4, points.end()}, 0.5)};
+  const VertexConstraints page{{points.begin(), points.begin() + 4},
+                               as_springs({points.begin() + 4, points.end()}, 0.5)};
   const Stop stop{.tolerance = 1e-13, .max_iterations = 3000};
   SerialExecutor serial;
   for (const UnwrapOptions& options : all_methods(stop)) {
@@ -96,8 +98,8 @@ TEST(HeldSolve, EndsWhereTheForceIsZero) {
                               ? std::numeric_limits<double>::infinity()
                               : (options.method == Method::asap ? 0 : options.lambda);
     std::vector<Vec2> force(s.page.size());
-    Objective objective(d.disk, {lambda, false}, s.hold.held.holds, shapes::as_listed(force.size()),
-                        serial);
+    arap::Objective objective(d.disk, {lambda, false}, s.hold.constrained.constraints,
+                              shapes::as_listed(force.size()), serial);
     EXPECT_NEAR(objective.evaluate(s.solution.uv, force), s.solution.energy.back(), 1e-12);
     for (const Vec2& f : force) EXPECT_LT(f.norm(), 2e-5) << "lambda " << lambda;
   }
@@ -112,7 +114,7 @@ TEST(HeldSolve, ApproachesHardPinsAsTheWeightGrows) {
     for (double weight : {0.1, 10.0, 1e3, 1e5, 1e7}) {
       const UvMap soft = solved_on_page(d.disk, options, {{}, as_springs(points, weight)}).page;
       double gap = 0;
-      for (const FixedPoint& p : points)
+      for (const HardConstraint& p : points)
         gap = std::max(gap, (soft[std::size_t(p.vertex)] - p.at).norm());
       EXPECT_LT(gap, before);
       before = gap;
@@ -127,8 +129,8 @@ TEST(HeldSolve, ApproachesHardPinsAsTheWeightGrows) {
 TEST(HeldSolve, OfOnePinIsTheFreeMapMoved) {
   const OwnedDisk d = disk_of(shapes::random_disk(10, 4));
   SerialExecutor serial;
-  const Holds hard{{{17, Vec2(0.3, 0.4)}}, {}}, soft{{}, {{17, Vec2(0.3, 0.4), 0.1}}};
-  for (const Holds& page : {hard, soft})
+  const VertexConstraints hard{{{17, Vec2(0.3, 0.4)}}, {}}, soft{{}, {{17, Vec2(0.3, 0.4), 0.1}}};
+  for (const VertexConstraints& page : {hard, soft})
     for (const UnwrapOptions& options : all_methods({.tolerance = 1e-12})) {
       const PageSolve s = solved_on_page(d.disk, options, page);
       const Solution free = Solver(d.disk, options, {}, serial).run(options.lambda, {});
@@ -143,17 +145,17 @@ TEST(HeldSolve, OfOnePinIsTheFreeMapMoved) {
 TEST(HeldSolve, OfAFlatSheetInPlaceIsTheSheet) {
   const TriMesh mesh = shapes::grid(8, 5, 2, 1);
   const OwnedDisk d = disk_of(mesh);
-  Holds boundary, corners;
+  VertexConstraints boundary, corners;
   UvMap sheet;
   for (const Vec3& p : d.chart->mesh.positions)
     sheet.push_back({0.1 + 0.3 * p.x(), 0.2 + 0.3 * p.y()});
   for (Index h : d.disk.loops.front()) {
     const Index v = d.disk.faces[std::size_t(h / 3)][std::size_t(h % 3)];
-    boundary.fixed.push_back({v, sheet[std::size_t(v)]});
-    if (boundary.fixed.size() % 9 == 1) corners.springs.push_back({v, sheet[std::size_t(v)], 2});
+    boundary.hard.push_back({v, sheet[std::size_t(v)]});
+    if (boundary.hard.size() % 9 == 1) corners.soft.push_back({v, sheet[std::size_t(v)], 2});
   }
   for (const UnwrapOptions& options : all_methods())
-    for (const Holds& page : {boundary, corners}) {
+    for (const VertexConstraints& page : {boundary, corners}) {
       const PageSolve s = solved_on_page(d.disk, options, page);
       EXPECT_LT(greatest_gap(s.page, sheet), 1e-5);
       EXPECT_LT(s.solution.energy.back(), 1e-9);
@@ -164,35 +166,36 @@ TEST(HeldSolve, MovedTargetsGiveWhatAFreshSolverGives) {
   const OwnedDisk d = disk_of(shapes::random_disk(10, 4));
   const auto points = scattered(d.disk, 8, 2);
   SerialExecutor serial;
-  Holds page{{points.begin(), points.begin() + 4},
-             as_springs({points.begin() + 4, points.end()}, 0.5)};
-  Holds moved = page;
-  for (FixedPoint& p : moved.fixed) p.at = Vec2(0.9 - p.at.y(), 2 * p.at.x());
-  for (Spring& s : moved.springs) s.at = Vec2(0.9 - s.at.y(), 2 * s.at.x());
+  VertexConstraints page{{points.begin(), points.begin() + 4},
+                         as_springs({points.begin() + 4, points.end()}, 0.5)};
+  VertexConstraints moved = page;
+  for (HardConstraint& p : moved.hard) p.at = Vec2(0.9 - p.at.y(), 2 * p.at.x());
+  for (SoftConstraint& s : moved.soft) s.at = Vec2(0.9 - s.at.y(), 2 * s.at.x());
   for (const UnwrapOptions& options : all_methods()) {
-    const ChartHold before = hold_chart(d.disk, options, page, {}, serial);
-    const ChartHold after = hold_chart(d.disk, options, moved, {}, serial);
-    Solver solver(d.disk, options, before.held, serial);
+    const ChartConstraints before = constrain_chart(d.disk, options, page, {}, serial);
+    const ChartConstraints after = constrain_chart(d.disk, options, moved, {}, serial);
+    Solver solver(d.disk, options, before.constrained, serial);
     const Solution first = solver.run(options.lambda, {});
     int factored = 0;
     SolveWatch watch;
     watch.on_stage = [&](Stage stage) { factored += stage == Stage::factor; };
-    solver.move(after.held);
+    solver.move(after.constrained);
     const Solution second = solver.run(options.lambda, watch);
     EXPECT_EQ(factored, 0);
-    const Solution fresh = Solver(d.disk, options, after.held, serial).run(options.lambda, {});
+    const Solution fresh =
+        Solver(d.disk, options, after.constrained, serial).run(options.lambda, {});
     EXPECT_EQ(greatest_gap(second.uv, fresh.uv), 0);
     EXPECT_EQ(second.energy, fresh.energy);
-    solver.move(before.held);
+    solver.move(before.constrained);
     EXPECT_EQ(greatest_gap(solver.run(options.lambda, {}).uv, first.uv), 0);
   }
 }
 
 TEST(HeldSolve, DoesNotDependOnWhereThePageIsOrHowLarge) {
   const OwnedDisk d = disk_of(shapes::random_disk(10, 4));
-  const Holds page{scattered(d.disk, 6, 2), {}};
-  Holds far = page;
-  for (FixedPoint& p : far.fixed) p.at = 1e4 * Vec2(-p.at.y(), p.at.x()) + Vec2(3e6, -5e5);
+  const VertexConstraints page{scattered(d.disk, 6, 2), {}};
+  VertexConstraints far = page;
+  for (HardConstraint& p : far.hard) p.at = 1e4 * Vec2(-p.at.y(), p.at.x()) + Vec2(3e6, -5e5);
   for (const UnwrapOptions& options : all_methods({.iterations = 10})) {
     const UvMap near = solved_on_page(d.disk, options, page).page;
     UvMap there = solved_on_page(d.disk, options, far).page;
@@ -204,12 +207,12 @@ TEST(HeldSolve, DoesNotDependOnWhereThePageIsOrHowLarge) {
 
 TEST(HeldSolve, AcceptsMirroredTargets) {
   const OwnedDisk d = disk_of(shapes::random_disk(10, 4));
-  Holds page{scattered(d.disk, 5, 2), {}};
-  for (FixedPoint& p : page.fixed) p.at.x() = 1 - p.at.x();
+  VertexConstraints page{scattered(d.disk, 5, 2), {}};
+  for (HardConstraint& p : page.hard) p.at.x() = 1 - p.at.x();
   for (const UnwrapOptions& options : all_methods()) {
     const PageSolve s = solved_on_page(d.disk, options, page);
     for (const Vec2& u : s.page) EXPECT_TRUE(u.allFinite());
-    for (const FixedPoint& p : page.fixed) EXPECT_EQ(s.page[std::size_t(p.vertex)], p.at);
+    for (const HardConstraint& p : page.hard) EXPECT_EQ(s.page[std::size_t(p.vertex)], p.at);
     EXPECT_GT(s.hold.frame->scale, 0.1);
   }
 }
@@ -221,13 +224,14 @@ TEST(HeldSolve, AcceptsEveryWeightAndShape) {
     for (double weight : {1e-9, 1e-3, 1e9}) {
       const OwnedDisk d = disk_of(mesh);
       const auto points = scattered(d.disk, 4, 2);
-      const Holds soft{{}, as_springs(points, weight)};
-      const Holds mixed{{points[0]}, as_springs({points.begin() + 1, points.end()}, weight)};
+      const VertexConstraints soft{{}, as_springs(points, weight)};
+      const VertexConstraints mixed{{points[0]},
+                                    as_springs({points.begin() + 1, points.end()}, weight)};
       for (const UnwrapOptions& options : all_methods())
-        for (const Holds& page : {soft, mixed}) {
+        for (const VertexConstraints& page : {soft, mixed}) {
           const PageSolve s = solved_on_page(d.disk, options, page);
           for (const Vec2& u : s.page) ASSERT_TRUE(u.allFinite());
-          EXPECT_GT(uv_area(d.disk.rest, d.disk.faces, s.page), 0);
+          EXPECT_GT(measure::uv_area(d.disk.rest, d.disk.faces, s.page), 0);
         }
     }
 }
@@ -235,9 +239,9 @@ TEST(HeldSolve, AcceptsEveryWeightAndShape) {
 TEST(HeldSolve, DoesNotHoldByOtherMethodsAndNotWhenNothingIsAsked) {
   const OwnedDisk d = disk_of(shapes::grid(3, 3));
   SerialExecutor serial;
-  EXPECT_TRUE(hold_chart(d.disk, {}, {}, {}, serial).held.holds.empty());
+  EXPECT_TRUE(constrain_chart(d.disk, {}, {}, {}, serial).constrained.constraints.empty());
   const UnwrapOptions slim{.method = Method::slim, .boundary = BoundaryShape::circle};
-  EXPECT_TRUE(hold_chart(d.disk, slim, {}, {}, serial).held.holds.empty());
+  EXPECT_TRUE(constrain_chart(d.disk, slim, {}, {}, serial).constrained.constraints.empty());
 }
 
 TEST(HeldSolve, StopsWhenAskedWhileItLooksForTheScale) {
@@ -246,7 +250,7 @@ TEST(HeldSolve, StopsWhenAskedWhileItLooksForTheScale) {
   std::stop_source source;
   source.request_stop();
   try {
-    hold_chart(d.disk, {}, {scattered(d.disk, 3, 1), {}}, source.get_token(), serial);
+    constrain_chart(d.disk, {}, {scattered(d.disk, 3, 1), {}}, source.get_token(), serial);
     FAIL() << "not stopped";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::cancelled);
@@ -254,4 +258,4 @@ TEST(HeldSolve, StopsWhenAskedWhileItLooksForTheScale) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

@@ -12,7 +12,7 @@
 #include "core/solve/maps/lay_out.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve {
 namespace {
 
 using shapes::disk_of;
@@ -24,7 +24,7 @@ double total(const std::vector<double>& values) {
   return sum;
 }
 
-Eigen::MatrixXd dense(const SparseMatrix& lower) {
+Eigen::MatrixXd dense(const linear::SparseMatrix& lower) {
   return Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
 }
 
@@ -64,13 +64,13 @@ TEST(CotanLaplacian, IsTheChangeOfTheCurvatureUnderScaling) {  // central differ
   const Eigen::MatrixXd laplacian = dense(cotan_laplacian(d.disk, d.disk.rest));
   constexpr double kStep = 1e-6;
   const auto scaled = [&](std::size_t v, double u) {
-    std::vector<RestTriangle> triangles;
+    std::vector<measure::RestTriangle> triangles;
     for (std::size_t t = 0; t < d.disk.faces.size(); ++t) {
       EdgeLengths l = edge_lengths(d.disk.rest[t]);
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t end : {i, (i + 1) % 3})
           if (std::size_t(d.disk.faces[t][end]) == v) l[i] *= std::exp(u / 2);
-      triangles.push_back(triangle_of_lengths(l));
+      triangles.push_back(maps::triangle_of_lengths(l));
     }
     return curvature(d.disk, triangles);
   };
@@ -83,7 +83,7 @@ TEST(CotanLaplacian, IsTheChangeOfTheCurvatureUnderScaling) {  // central differ
 
 TEST(Product, IsThatOfTheWholeMatrix) {
   const OwnedDisk d = disk_of(shapes::random_disk(6, 4));
-  const SparseMatrix lower = cotan_laplacian(d.disk, d.disk.rest);
+  const linear::SparseMatrix lower = cotan_laplacian(d.disk, d.disk.rest);
   std::mt19937 rng(1);
   std::normal_distribution<double> normal;
   std::vector<double> x(d.disk.positions.size());
@@ -96,7 +96,7 @@ TEST(Product, IsThatOfTheWholeMatrix) {
 
 TEST(InnerSystem, SolvesInsideAndLeavesTheBoundary) {
   const OwnedDisk d = disk_of(shapes::random_disk(7, 5));
-  const SparseMatrix lower = cotan_laplacian(d.disk, d.disk.rest);
+  const linear::SparseMatrix lower = cotan_laplacian(d.disk, d.disk.rest);
   std::mt19937 rng(2);
   std::normal_distribution<double> normal;
   UvMap x;
@@ -116,7 +116,7 @@ TEST(InnerSystem, SolvesInsideAndLeavesTheBoundary) {
 
 TEST(FlatScales, CancelTheCurvatureInsideToFirstOrder) {
   const OwnedDisk d = disk_of(shapes::random_disk(7, 6));
-  const SparseMatrix lower = cotan_laplacian(d.disk, d.disk.rest);
+  const linear::SparseMatrix lower = cotan_laplacian(d.disk, d.disk.rest);
   const std::vector<double> k = curvature(d.disk, d.disk.rest);
   const std::vector<double> u = flat_scales(d.disk, InnerSystem(d.disk, lower), k);
   const std::vector<double> change = product(lower, u);
@@ -131,7 +131,7 @@ TEST(FlatScales, CancelTheCurvatureInsideToFirstOrder) {
 
 TEST(FillHoles, LeavesAManifoldDiskOfOneBoundary) {
   const OwnedDisk d = disk_of(shapes::annulus(12, 3));
-  const FilledDisk filled = fill_holes(d.disk);
+  const maps::FilledDisk filled = maps::fill_holes(d.disk);
   const Halfedges halfedges = build_halfedges(filled.faces, filled.disk.vertex_count());
   const auto open = std::count(halfedges.twin.begin(), halfedges.twin.end(), kNoTwin);
   EXPECT_EQ(std::size_t(open), d.disk.loops.front().size());
@@ -143,18 +143,18 @@ TEST(FillHoles, LeavesAManifoldDiskOfOneBoundary) {
 
 TEST(FillHoles, LeavesADiskOfOneBoundaryAsItIs) {
   const OwnedDisk d = disk_of(shapes::random_disk(5, 7));
-  const FilledDisk filled = fill_holes(d.disk);
+  const maps::FilledDisk filled = maps::fill_holes(d.disk);
   EXPECT_EQ(filled.faces.size(), d.disk.faces.size());
   EXPECT_EQ(filled.disk.vertex_count(), d.disk.vertex_count());
 }
 
 TEST(FillHoles, OutlivesAMove) {
   const OwnedDisk d = disk_of(shapes::annulus(8, 2));
-  FilledDisk first = fill_holes(d.disk);
-  const FilledDisk second = std::move(first);
+  maps::FilledDisk first = maps::fill_holes(d.disk);
+  const maps::FilledDisk second = std::move(first);
   EXPECT_EQ(second.disk.faces.data(), second.faces.data());
   EXPECT_EQ(second.disk.loops.data(), second.loops.data());
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve

@@ -9,7 +9,7 @@
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 namespace {
 
 using shapes::disk_of;
@@ -21,7 +21,7 @@ std::vector<TriMesh> disks() {
 }
 
 /// The arc on the surface from a boundary vertex of the loop to the next.
-std::vector<double> sides(const Disk& disk, const std::vector<FixedPoint>& points) {
+std::vector<double> sides(const Disk& disk, const std::vector<HardConstraint>& points) {
   std::vector<double> length;
   for (std::size_t k = 0; k < points.size(); ++k)
     length.push_back((disk.positions[std::size_t(points[(k + 1) % points.size()].vertex)] -
@@ -30,7 +30,7 @@ std::vector<double> sides(const Disk& disk, const std::vector<FixedPoint>& point
   return length;
 }
 
-double enclosed_area(const std::vector<FixedPoint>& points) {
+double enclosed_area(const std::vector<HardConstraint>& points) {
   double sum = 0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Vec2 &a = points[k].at, &b = points[(k + 1) % points.size()].at;
@@ -61,7 +61,7 @@ TEST(BoundaryShape, FillsTheSquareToItsCorners) {
     const OwnedDisk d = disk_of(mesh);
     const auto points = boundary_points(d.disk, BoundaryShape::square);
     ASSERT_EQ(points.size(), d.disk.loops.front().size());
-    for (const FixedPoint& p : points) EXPECT_EQ(p.at.lpNorm<Eigen::Infinity>(), 0.5);
+    for (const HardConstraint& p : points) EXPECT_EQ(p.at.lpNorm<Eigen::Infinity>(), 0.5);
     EXPECT_NEAR(enclosed_area(points), points.size() == 3 ? 0.5 : 1, 1e-12);
   }
 }
@@ -84,7 +84,7 @@ TEST(BoundaryShape, StretchesEverySideOfTheSquareEvenly) {
 TEST(BoundaryShape, KeepsTheCornersOfASheet) {
   for (unsigned seed : {1U, 2U, 3U, 4U}) {  // wherever its boundary is told to begin
     const OwnedDisk d = disk_of(shapes::shuffled(shapes::grid(6, 6), seed));
-    for (const FixedPoint& p : boundary_points(d.disk, BoundaryShape::square)) {
+    for (const HardConstraint& p : boundary_points(d.disk, BoundaryShape::square)) {
       const Vec3& at = d.disk.positions[std::size_t(p.vertex)];
       const bool corner = at.head<2>().cwiseAbs().minCoeff() > 0.499;
       EXPECT_EQ(corner, p.at.cwiseAbs().minCoeff() == 0.5);
@@ -125,13 +125,13 @@ TEST(ConvexMap, KeepsAGivenBoundaryAndDoesNotFlip) {
     for (BoundaryShape shape : {BoundaryShape::circle, BoundaryShape::square}) {
       const auto points = boundary_points(d.disk, shape);
       for (const UvMap& uv : {tutte_map(d.disk, points), mean_value_map(d.disk, points)}) {
-        for (const FixedPoint& p : points) EXPECT_EQ(uv[std::size_t(p.vertex)], p.at);
-        EXPECT_EQ(distortion_sums(d.disk.rest, d.disk.faces, uv).flipped, 0);
-        EXPECT_NEAR(uv_area(d.disk.rest, d.disk.faces, uv), enclosed_area(points), 1e-9);
+        for (const HardConstraint& p : points) EXPECT_EQ(uv[std::size_t(p.vertex)], p.at);
+        EXPECT_EQ(measure::distortion_sums(d.disk.rest, d.disk.faces, uv).flipped, 0);
+        EXPECT_NEAR(measure::uv_area(d.disk.rest, d.disk.faces, uv), enclosed_area(points), 1e-9);
       }
     }
   }
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

@@ -10,14 +10,14 @@
 #include "core/solve/maps/convex_map.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::maps {
 namespace {
 
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
 Index flips(const Disk& disk, const UvMap& uv) {
-  return distortion_sums(disk.rest, disk.faces, uv).flipped;
+  return measure::distortion_sums(disk.rest, disk.faces, uv).flipped;
 }
 
 std::vector<char> on_longest_loop(const Disk& disk) {
@@ -37,9 +37,9 @@ TEST(ConvexMap, HasNoFlipsOnRandomDisks) {
 TEST(ConvexMap, TutteVerticesAreMeansOfTheirNeighbours) {
   const OwnedDisk d = disk_of(shapes::annulus(16, 4));
   const UvMap uv = tutte_map(d.disk);
-  const std::vector<char> fixed = on_longest_loop(d.disk);
+  const std::vector<char> hard = on_longest_loop(d.disk);
   for (std::size_t v = 0; v < uv.size(); ++v) {
-    if (fixed[v]) continue;
+    if (hard[v]) continue;
     Vec2 sum = Vec2::Zero();
     double count = 0;
     for (const Triangle& face : d.disk.faces)
@@ -58,9 +58,9 @@ double angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 TEST(ConvexMap, MeanValueVerticesBalanceFloatersWeights) {  // Floater 2003, Eq. (2.1)
   const OwnedDisk d = disk_of(shapes::random_disk(8, 5));
   const UvMap uv = mean_value_map(d.disk);
-  const std::vector<char> fixed = on_longest_loop(d.disk);
+  const std::vector<char> hard = on_longest_loop(d.disk);
   for (std::size_t v = 0; v < uv.size(); ++v) {
-    if (fixed[v]) continue;
+    if (hard[v]) continue;
     Vec2 sum = Vec2::Zero();
     double total = 0;
     for (const Triangle& face : d.disk.faces)
@@ -84,7 +84,7 @@ TEST(ConvexMap, ReproducesAFlatDisk) {  // mean values are exact on linear funct
     return Vec3(r * std::cos(phi), r * std::sin(phi), 0);
   }));
   const UvMap uv = mean_value_map(d.disk);
-  const Distortion q = distortion(distortion_sums(d.disk.rest, d.disk.faces, uv));
+  const Distortion q = measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, uv));
   EXPECT_NEAR(q.angle, 2, 1e-9);
   EXPECT_NEAR(q.area, 2, 1e-9);
 }
@@ -104,7 +104,8 @@ Eigen::MatrixXd dense_conformal(const Disk& disk) {
       for (int k : {0, 1}) {
         UvMap unit(disk.positions.size(), Vec2::Zero());
         unit[std::size_t(disk.faces[t][i])][k] = 1;
-        const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], unit));
+        const measure::Jacobian j =
+            measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], unit));
         const double w = std::sqrt(2 * disk.rest[t].area);
         rows(2 * Index(t), 2 * disk.faces[t][i] + k) += w * j.f;
         rows(2 * Index(t) + 1, 2 * disk.faces[t][i] + k) += w * j.g;
@@ -124,7 +125,7 @@ TEST(ConformalMap, IsStationaryButForItsTwoPins) {  // Sec. 4.2, against a dense
     const UvMap uv = conformal_map(d.disk, Pins::diameter);
     const Eigen::MatrixXd form = dense_conformal(d.disk);
     const Eigen::VectorXd x = stacked(uv);
-    EXPECT_NEAR(x.dot(form * x), asap_energy(d.disk.rest, d.disk.faces, uv), 1e-12);
+    EXPECT_NEAR(x.dot(form * x), measure::asap_energy(d.disk.rest, d.disk.faces, uv), 1e-12);
     const Eigen::VectorXd force = form * x;
     int loaded = 0;
     for (Index v = 0; v < d.disk.vertex_count(); ++v)
@@ -162,7 +163,7 @@ TEST(ConformalMap, FlattensDevelopableShapesExactly) {
     for (Pins pins : {Pins::diameter, Pins::spectral}) {
       const OwnedDisk d = disk_of(mesh);
       const UvMap uv = conformal_map(d.disk, pins);
-      EXPECT_LT(arap_energy(d.disk.rest, d.disk.faces, uv), 1e-10);
+      EXPECT_LT(measure::arap_energy(d.disk.rest, d.disk.faces, uv), 1e-10);
       EXPECT_EQ(flips(d.disk, uv), 0);
     }
 }
@@ -185,4 +186,4 @@ TEST(Diameter, IsTheFarthestPairOfBruteForce) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::maps

@@ -14,7 +14,7 @@
 #include "tests/core/solve/odd_disks.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 using shapes::disk_of;
@@ -216,7 +216,8 @@ TEST(FlatAngles, KeepAwayFromZeroOnSpheresButForAPinhole) {
     EXPECT_EQ(f.stop_reason, StopReason::converged) << angle;
     EXPECT_LE(f.iterations, 20);
     const UvMap uv = map_of_angles(d.disk, f.angles);
-    const Distortion map = distortion(distortion_sums(d.disk.rest, d.disk.faces, uv));
+    const Distortion map =
+        measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, uv));
     EXPECT_LT(map.angle, 3);  // 4 to 105 where angles are let go to 0
     EXPECT_EQ(map.flipped, 0);
   }
@@ -270,7 +271,8 @@ TEST(Abf, KeepsAnglesOnTheModelsOfThePaper) {  // Table 1, dABF, D_angle within 
     const OwnedDisk d = disk_of(read_obj(test_data() / "paper" / (name + ".obj")));
     SerialExecutor serial;
     const Solution s = abf(d.disk, {}, serial);
-    const Distortion got = distortion(distortion_sums(d.disk.rest, d.disk.faces, s.uv));
+    const Distortion got =
+        measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, s.uv));
     EXPECT_NEAR(got.angle, angle, 0.02) << name;
     EXPECT_EQ(got.flipped, 0) << name;
     EXPECT_EQ(s.stop_reason, StopReason::converged) << name;
@@ -279,4 +281,4 @@ TEST(Abf, KeepsAnglesOnTheModelsOfThePaper) {  // Table 1, dABF, D_angle within 
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -11,7 +11,7 @@
 #include "core/solve/maps/conformal.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 using shapes::disk_of;
@@ -51,10 +51,12 @@ TEST(Bff, IsNearlyAsConformalAsTheMapOfLeastConformalEnergy) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const OwnedDisk d = disk_of(shapes::random_disk(14, seed));
     const Solution s = bff(d.disk, {});
-    const UvMap asap = conformal_map(d.disk, Pins::spectral);
-    EXPECT_NEAR(s.energy.back(), asap_energy(d.disk.rest, d.disk.faces, s.uv), 1e-12);
-    const double angle = distortion(distortion_sums(d.disk.rest, d.disk.faces, s.uv)).angle;
-    const double least = distortion(distortion_sums(d.disk.rest, d.disk.faces, asap)).angle;
+    const UvMap asap = maps::conformal_map(d.disk, Pins::spectral);
+    EXPECT_NEAR(s.energy.back(), measure::asap_energy(d.disk.rest, d.disk.faces, s.uv), 1e-12);
+    const double angle =
+        measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, s.uv)).angle;
+    const double least =
+        measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, asap)).angle;
     EXPECT_LT(angle - 2, 1.2 * (least - 2)) << seed;
   }
 }
@@ -62,10 +64,10 @@ TEST(Bff, IsNearlyAsConformalAsTheMapOfLeastConformalEnergy) {
 TEST(Bff, DistortsAreasLessThanTheConformalMapOfTwoPins) {
   const OwnedDisk d = disk_of(lopsided_cap(60, 10));
   const auto area = [&](const UvMap& uv) {
-    return distortion(distortion_sums(d.disk.rest, d.disk.faces, uv)).area;
+    return measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, uv)).area;
   };
-  EXPECT_LT(area(bff(d.disk, {}).uv), area(conformal_map(d.disk, Pins::diameter)));
+  EXPECT_LT(area(bff(d.disk, {}).uv), area(maps::conformal_map(d.disk, Pins::diameter)));
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

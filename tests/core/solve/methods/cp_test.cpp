@@ -10,7 +10,7 @@
 #include "core/solve/maps/conformal.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 using shapes::disk_of;
@@ -52,12 +52,12 @@ TEST(Cp, IsNoWorseThanAsapWhereTheScalesWouldBreakTriangles) {  // steep cones
     for (double height : {2.0, 5.0, 12.0}) {
       const OwnedDisk d = disk_of(shapes::cone(around, 8, height));
       const auto angle = [&](const UvMap& uv) {
-        return distortion(distortion_sums(d.disk.rest, d.disk.faces, uv)).angle;
+        return measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, uv)).angle;
       };
-      EXPECT_LT(angle(cp(d.disk, {}).uv), 1.1 * angle(conformal_map(d.disk, Pins::diameter)))
+      EXPECT_LT(angle(cp(d.disk, {}).uv), 1.1 * angle(maps::conformal_map(d.disk, Pins::diameter)))
           << around << ' ' << height;
     }
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -12,14 +12,14 @@
 #include "tests/core/solve/similarity.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
 Distortion distortion_of(const Disk& disk, const UvMap& uv) {
-  return distortion(distortion_sums(disk.rest, disk.faces, uv));
+  return measure::distortion(measure::distortion_sums(disk.rest, disk.faces, uv));
 }
 
 class Flattening : public testing::TestWithParam<Method> {
@@ -37,7 +37,7 @@ class Flattening : public testing::TestWithParam<Method> {
       ASSERT_EQ(s.uv.size(), d.disk.positions.size()) << what;
       for (const Vec2& u : s.uv) ASSERT_TRUE(u.allFinite()) << what;
       for (double e : s.energy) ASSERT_TRUE(std::isfinite(e)) << what;
-      EXPECT_NEAR(uv_area(d.disk.rest, d.disk.faces, s.uv), 1, 1e-3) << what;
+      EXPECT_NEAR(measure::uv_area(d.disk.rest, d.disk.faces, s.uv), 1, 1e-3) << what;
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::solver_failed) << what;
       EXPECT_GT(std::strlen(error.what()), 30U) << what;
@@ -78,7 +78,7 @@ UvMap stereographic(const Disk& disk, const TriMesh& mesh) {
     uv.emplace_back(p.x() / (1 + p.z()), p.y() / (1 + p.z()));
   }
   UvMap scaled = uv;
-  const double unit = 1 / std::sqrt(uv_area(disk.rest, disk.faces, uv));
+  const double unit = 1 / std::sqrt(measure::uv_area(disk.rest, disk.faces, uv));
   for (Vec2& u : scaled) u *= unit;
   return scaled;
 }
@@ -167,7 +167,7 @@ TEST_P(Flattening, AnswersRandomDisks) {
     const Distortion got = distortion_of(d.disk, s.uv);
     EXPECT_LT(got.angle, 2.3) << seed;
     EXPECT_EQ(got.flipped, 0) << seed;
-    EXPECT_NEAR(uv_area(d.disk.rest, d.disk.faces, s.uv), 1, 1e-9) << seed;
+    EXPECT_NEAR(measure::uv_area(d.disk.rest, d.disk.faces, s.uv), 1, 1e-9) << seed;
   }
 }
 
@@ -250,4 +250,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, ExactFlattening,
                          name_of);
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -14,7 +14,7 @@
 #include "core/solve/methods/circle_packing.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 using shapes::disk_of;
@@ -67,7 +67,8 @@ TEST(PackedAngles, WeightsAreTheDerivativesOfTheCurvature) {
   const OwnedDisk d = disk_of(shapes::random_disk(5, 3));
   const CirclePacking packing = random_packing(d.disk, rng, 0.5);
   const PackedAngles packed = packed_angles(d.disk, packing);
-  const SparseMatrix lower = lower_laplacian(d.disk.faces, d.disk.vertex_count(), packed.weight);
+  const linear::SparseMatrix lower =
+      linear::lower_laplacian(d.disk.faces, d.disk.vertex_count(), packed.weight);
   constexpr double kStep = 1e-6;
   for (std::size_t v = 0; v < packing.log_radius.size(); ++v) {
     CirclePacking up = packing, down = packing;
@@ -128,7 +129,7 @@ TEST(Ic, IsIsometricWhereNoTriangleIsObtuseAndNothingIsCurved) {
   for (const TriMesh& mesh : {equilateral_strip(8, 6), shapes::grid(6, 6)}) {
     const OwnedDisk d = disk_of(mesh);
     const Distortion got =
-        distortion(distortion_sums(d.disk.rest, d.disk.faces, ic(d.disk, {}).uv));
+        measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, ic(d.disk, {}).uv));
     EXPECT_NEAR(got.angle, 2, 1e-6);
     EXPECT_NEAR(got.area, 2, 1e-6);
   }
@@ -219,7 +220,7 @@ TriMesh hemisphere(int levels) {
 TEST(Ic, IsNearlyConformalOnAcuteMeshes) {
   const OwnedDisk d = disk_of(hemisphere(4));
   const auto measured = [&](const Solution& s) {
-    return distortion(distortion_sums(d.disk.rest, d.disk.faces, s.uv));
+    return measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, s.uv));
   };
   const Distortion circles = measured(ic(d.disk, {})), best = measured(bff(d.disk, {}));
   EXPECT_LT(circles.angle, best.angle + 0.02);
@@ -227,4 +228,4 @@ TEST(Ic, IsNearlyConformalOnAcuteMeshes) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

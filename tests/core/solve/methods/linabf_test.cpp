@@ -13,7 +13,7 @@
 #include "tests/core/solve/odd_disks.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 using shapes::disk_of;
@@ -122,7 +122,8 @@ TEST(Linabf, IsNoWorseThanTableOne) {  // and the same within 0.02 but on Isis, 
     const OwnedDisk d = disk_of(read_obj(test_data() / "paper" / (name + ".obj")));
     SerialExecutor serial;
     const Solution s = linabf(d.disk, {}, serial);
-    const Distortion got = distortion(distortion_sums(d.disk.rest, d.disk.faces, s.uv));
+    const Distortion got =
+        measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, s.uv));
     EXPECT_LT(got.angle, angle + 0.02) << name;
     EXPECT_LT(got.area, area + 0.02) << name;
     EXPECT_EQ(s.iterations, 1);
@@ -133,4 +134,4 @@ TEST(Linabf, IsNoWorseThanTableOne) {  // and the same within 0.02 but on Isis, 
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -16,7 +16,7 @@
 #include "tests/core/solve/similarity.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 using shapes::disk_of;
@@ -33,13 +33,14 @@ double energy_of(const Disk& disk, const UvMap& uv) {
 }
 
 /// Every map on the way is free of flips, by an exact test, and none costs more than the last.
-void expect_promise_kept(const Disk& disk, const std::string& what) {
+void expect_guarantee_kept(const Disk& disk, const std::string& what) {
   std::vector<double> told;
   const Solution s = solved(
       disk, {.on_stage = {},
              .loop = {.on_iteration =
                           [&](const Solution& so_far) {
-                            EXPECT_TRUE(flipped_faces(disk.faces, so_far.uv).empty()) << what;
+                            EXPECT_TRUE(measure::flipped_faces(disk.faces, so_far.uv).empty())
+                                << what;
                             told.push_back(so_far.energy.back());
                           },
                       .stop = {}}});
@@ -47,13 +48,13 @@ void expect_promise_kept(const Disk& disk, const std::string& what) {
   ASSERT_EQ(told.size() + 1, s.energy.size()) << what;
   for (std::size_t k = 1; k < s.energy.size(); ++k) EXPECT_LE(s.energy[k], s.energy[k - 1]) << what;
   EXPECT_GE(s.energy.back(), 4 * 0.999) << what;
-  EXPECT_TRUE(flipped_faces(disk.faces, s.uv).empty()) << what;
+  EXPECT_TRUE(measure::flipped_faces(disk.faces, s.uv).empty()) << what;
 }
 
 TEST(Slim, KeepsItsPromiseOnRandomDisks) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const OwnedDisk d = disk_of(shapes::random_disk(Index(1 + seed), seed));
-    expect_promise_kept(d.disk, std::to_string(seed));
+    expect_guarantee_kept(d.disk, std::to_string(seed));
   }
 }
 
@@ -61,14 +62,14 @@ TEST(Slim, KeepsItsPromiseAroundHoles) {
   for (const TriMesh& mesh : {shapes::cylinder(12, 8), shapes::pierced_disk(9, 2),
                               shapes::pierced_disk(17, 3), shapes::annulus(9, 2)}) {
     const OwnedDisk d = disk_of(mesh);
-    expect_promise_kept(d.disk, std::to_string(mesh.faces.size()));
+    expect_guarantee_kept(d.disk, std::to_string(mesh.faces.size()));
   }
 }
 
 TEST(Slim, KeepsItsPromiseOnHardDisks) {
   for (const auto& [name, mesh] : odd::hard_disks()) {
     const OwnedDisk d = disk_of(mesh);
-    expect_promise_kept(d.disk, name);
+    expect_guarantee_kept(d.disk, name);
   }
 }
 
@@ -98,16 +99,16 @@ TEST(Slim, StartsNoWorseThanAnyConvexMapAtAnyScale) {
   for (const TriMesh& mesh : {shapes::sphere_cap(24, 10, 2.6), shapes::random_disk(12, 4)}) {
     const OwnedDisk d = disk_of(mesh);
     const double start = solved(d.disk).energy.front();
-    EXPECT_LE(start, energy_at_best_scale(d.disk, tutte_map(d.disk)));
-    EXPECT_LE(start, energy_at_best_scale(d.disk, mean_value_map(d.disk)));
+    EXPECT_LE(start, energy_at_best_scale(d.disk, maps::tutte_map(d.disk)));
+    EXPECT_LE(start, energy_at_best_scale(d.disk, maps::mean_value_map(d.disk)));
   }
 }
 
 TEST(Slim, ClosesHolesForItsStart) {  // left open they spread: 9.7 against 19 on this tube
   const OwnedDisk d = disk_of(shapes::cylinder(20, 10));
   const double start = solved(d.disk).energy.front();
-  EXPECT_LT(1.5 * start, energy_at_best_scale(d.disk, tutte_map(d.disk)));
-  EXPECT_LT(1.5 * start, energy_at_best_scale(d.disk, mean_value_map(d.disk)));
+  EXPECT_LT(1.5 * start, energy_at_best_scale(d.disk, maps::tutte_map(d.disk)));
+  EXPECT_LT(1.5 * start, energy_at_best_scale(d.disk, maps::mean_value_map(d.disk)));
 }
 
 TEST(Slim, IsIsometricOnDevelopableDisks) {
@@ -116,7 +117,8 @@ TEST(Slim, IsIsometricOnDevelopableDisks) {
     const OwnedDisk d = disk_of(mesh);
     const Solution s = solved(d.disk);
     EXPECT_NEAR(s.energy.back(), 4, 1e-9);
-    const Distortion got = distortion(distortion_sums(d.disk.rest, d.disk.faces, s.uv));
+    const Distortion got =
+        measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, s.uv));
     EXPECT_NEAR(got.angle, 2, 1e-9);
     EXPECT_NEAR(got.area, 2, 1e-9);
   }
@@ -239,7 +241,8 @@ TEST(Slim, ReachesWhatLibiglReachesOnTheModelsOfThePaper) {
   for (const auto& [name, angle, area] : peer) {
     const OwnedDisk d = disk_of(read_obj(test_data() / "paper" / (name + ".obj")));
     const Solution s = solved(d.disk);
-    const Distortion got = distortion(distortion_sums(d.disk.rest, d.disk.faces, s.uv));
+    const Distortion got =
+        measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, s.uv));
     EXPECT_NEAR(got.angle, angle, 0.002) << name;
     EXPECT_NEAR(got.area, area, 0.002) << name;
     EXPECT_EQ(s.stop_reason, StopReason::converged) << name;
@@ -247,4 +250,4 @@ TEST(Slim, ReachesWhatLibiglReachesOnTheModelsOfThePaper) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

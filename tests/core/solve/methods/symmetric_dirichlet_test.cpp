@@ -10,7 +10,7 @@
 #include "core/solve/maps/convex_map.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::methods {
 namespace {
 
 using shapes::disk_of;
@@ -21,17 +21,17 @@ double energy_of(const Disk& disk, const UvMap& uv) {
   return symmetric_dirichlet_energy(disk, uv, serial);
 }
 
-Eigen::Matrix2d matrix(const Jacobian& j) {
+Eigen::Matrix2d matrix(const measure::Jacobian& j) {
   return (Eigen::Matrix2d() << j.e + j.f, j.g - j.h, j.g + j.h, j.e - j.f).finished();
 }
 
-Jacobian jacobian_of(const Disk& disk, std::size_t t, const UvMap& uv) {
-  return jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
+measure::Jacobian jacobian_of(const Disk& disk, std::size_t t, const UvMap& uv) {
+  return measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], uv));
 }
 
 /// A map without flips that is far from isometric.
 UvMap stretched(const Disk& disk) {
-  UvMap uv = tutte_map(disk);
+  UvMap uv = maps::tutte_map(disk);
   for (Vec2& u : uv) u = Vec2(1.5 * u.x() + 0.2 * u.y() * u.y(), 0.8 * u.y());
   return uv;
 }
@@ -40,7 +40,7 @@ TEST(SymmetricDirichlet, IsTheSumOverSingularValues) {
   std::mt19937 rng(1);
   std::normal_distribution<double> normal;
   for (int k = 0; k < 1000; ++k) {
-    const Jacobian j{normal(rng), normal(rng), normal(rng), normal(rng)};
+    const measure::Jacobian j{normal(rng), normal(rng), normal(rng), normal(rng)};
     const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::Matrix2d>(matrix(j)).singularValues();
     const double expected = s.squaredNorm() + s.cwiseInverse().squaredNorm();
     if (matrix(j).determinant() > 0)
@@ -71,7 +71,7 @@ TEST(SymmetricDirichlet, HasTheSlopeOfItsDifferences) {
 
 TEST(SymmetricDirichlet, IsInfiniteWhereATriangleIsNotUpright) {
   const OwnedDisk d = disk_of(shapes::grid(2, 2));
-  UvMap uv = tutte_map(d.disk);
+  UvMap uv = maps::tutte_map(d.disk);
   EXPECT_TRUE(std::isfinite(energy_of(d.disk, uv)));
   std::swap(uv[0], uv[8]);
   EXPECT_TRUE(std::isinf(energy_of(d.disk, uv)));
@@ -88,9 +88,9 @@ TEST(SymmetricDirichlet, AsksTheExactTestWhereRoundingHidesAFlip) {
     const Vec2 a(unit(rng), unit(rng)), along(unit(rng), unit(rng));
     UvMap uv{a, a + unit(rng) * along, a + along, a + unit(rng) * along};  // on a line, nearly
     for (std::size_t t : {0U, 1U})
-      hidden +=
-          jacobian_of(d.disk, t, uv).determinant() > 0 && orientation(d.disk.faces[t], uv) <= 0;
-    const bool is_flipped = !flipped_faces(d.disk.faces, uv).empty();
+      hidden += jacobian_of(d.disk, t, uv).determinant() > 0 &&
+                measure::orientation(d.disk.faces[t], uv) <= 0;
+    const bool is_flipped = !measure::flipped_faces(d.disk.faces, uv).empty();
     ASSERT_TRUE(!is_flipped || std::isinf(energy_of(d.disk, uv))) << k;
   }
   EXPECT_GT(hidden, 0);
@@ -101,12 +101,12 @@ TEST(SlimProxy, HasTheSlopeOfTheEnergy) {
   const OwnedDisk d = disk_of(shapes::random_disk(6, 3));
   const UvMap uv = stretched(d.disk);
   for (std::size_t t = 0; t < d.disk.faces.size(); ++t) {
-    const RestTriangle& rest = d.disk.rest[t];
-    const Jacobian j = jacobian_of(d.disk, t, uv);
+    const measure::RestTriangle& rest = d.disk.rest[t];
+    const measure::Jacobian j = jacobian_of(d.disk, t, uv);
     const Eigen::JacobiSVD<Eigen::Matrix2d> svd(matrix(j),
                                                 Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Matrix2d turn = svd.matrixU() * svd.matrixV().transpose();
-    const PairElement element = proxy_element(rest, j);
+    const linear::PairElement element = proxy_element(rest, j);
     const std::array<Vec2, 3> x{Vec2(0, 0), Vec2(-rest.edge[0]), Vec2(rest.edge[2])};
     Eigen::Matrix<double, 6, 1> away;  // of the image from the turned rest triangle
     for (std::size_t i = 0; i < 3; ++i)
@@ -132,9 +132,9 @@ TEST(SlimProxy, HasTheSlopeOfTheEnergy) {
 
 TEST(SlimProxy, IsIsotropicWhereTheMapIsConformal) {  // no direction to divide by
   const OwnedDisk d = disk_of(shapes::grid(1, 1));
-  const PairElement e = proxy_element(d.disk.rest[0], Jacobian{2, 0, 0, 0});
+  const linear::PairElement e = proxy_element(d.disk.rest[0], measure::Jacobian{2, 0, 0, 0});
   const double weight = 3 * 5 / 8.0;  // (s + 1) (s^2 + 1) / s^3 at s = 2
-  const RestTriangle& rest = d.disk.rest[0];
+  const measure::RestTriangle& rest = d.disk.rest[0];
   EXPECT_NEAR(e[2][0], -weight * rest.cot[0], 1e-12);  // 2 A grad . grad = -cot
   EXPECT_NEAR(e[2][1], 0, 1e-12);
 }
@@ -170,4 +170,4 @@ TEST(StepToFlip, IsNeverForAShift) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::methods

@@ -10,7 +10,7 @@
 #include "core/solve/repair/newton.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
@@ -19,11 +19,11 @@ using shapes::shaken;
 
 constexpr double kRigid = std::numeric_limits<double>::infinity();
 
-BarrierMesh loose_mesh(const Disk& disk, std::vector<char> fixed = {}) {
-  fixed.resize(disk.positions.size(), 0);
+BarrierMesh loose_mesh(const Disk& disk, std::vector<char> hard = {}) {
+  hard.resize(disk.positions.size(), 0);
   return {{disk.faces.begin(), disk.faces.end()},
           {disk.rest.begin(), disk.rest.end()},
-          number_free(fixed)};
+          linear::number_free(hard)};
 }
 
 /// The energy of the header's formula, by the singular values of a matrix.
@@ -75,9 +75,9 @@ TEST(Barrier, IsZeroForRotationsAndInfiniteForFlips) {
 
 TEST(Barrier, GradientIsTheSlopeOfTheEnergy) {
   const auto owned = disk_of(shapes::random_disk(3, 5));
-  std::vector<char> fixed(owned.disk.positions.size(), 0);
-  fixed[3] = fixed[7] = 1;
-  const BarrierMesh mesh = loose_mesh(owned.disk, fixed);
+  std::vector<char> hard(owned.disk.positions.size(), 0);
+  hard[3] = hard[7] = 1;
+  const BarrierMesh mesh = loose_mesh(owned.disk, hard);
   for (const Barrier& barrier : {Barrier{{kRigid}, 1, 0.3},
                                  {{0.0}, 0.5, 0.3},
                                  {{0.2}, 0.1, 0.1},
@@ -87,7 +87,7 @@ TEST(Barrier, GradientIsTheSlopeOfTheEnergy) {
     const Quadratic model = barrier_model(mesh, uv, barrier);
     for (std::size_t v = 0; v < uv.size(); ++v)
       for (int k : {0, 1}) {
-        if (mesh.free.slot[v] == kFixed) continue;
+        if (mesh.free.slot[v] == linear::kFixed) continue;
         constexpr double kStep = 1e-7;
         const double at = uv[v][k];
         uv[v][k] = at + kStep;
@@ -128,8 +128,8 @@ TEST(Barrier, CanBeTheSymmetricDirichletEnergy) {
   const BarrierMesh mesh = loose_mesh(owned.disk);
   SerialExecutor serial;
   double area = 0;
-  for (const RestTriangle& rest : owned.disk.rest) area += rest.area;
-  const double whole = symmetric_dirichlet_energy(owned.disk, uv, serial);
+  for (const measure::RestTriangle& rest : owned.disk.rest) area += rest.area;
+  const double whole = methods::symmetric_dirichlet_energy(owned.disk, uv, serial);
   EXPECT_NEAR(
       barrier_energy(mesh, uv, {{kRigid}, 0, 0, 0.3}) - barrier_energy(mesh, uv, {{kRigid}, 0, 0}),
       0.3 * (whole - 4 * area), 1e-9 * whole);
@@ -154,9 +154,9 @@ TEST(Barrier, HessianIsNeverIndefinite) {
 
 TEST(Barrier, ARefilledModelIsThatOfTheNewMapAlone) {
   const auto owned = disk_of(shapes::random_disk(3, 5));
-  std::vector<char> fixed(owned.disk.positions.size(), 0);
-  fixed[3] = fixed[7] = 1;
-  const BarrierMesh mesh = loose_mesh(owned.disk, fixed);
+  std::vector<char> hard(owned.disk.positions.size(), 0);
+  hard[3] = hard[7] = 1;
+  const BarrierMesh mesh = loose_mesh(owned.disk, hard);
   const UvMap first = shaken(from_above(owned.disk), 0.4, 1);
   const UvMap second = shaken(from_above(owned.disk), 0.4, 2);
   const Barrier barrier{{0.2}, 0.1, 0.1};
@@ -185,20 +185,20 @@ TEST(Newton, FallsToTheBottomWithoutAFlipOnTheWay) {
 
 TEST(Newton, LeavesFixedVerticesWhereTheyAre) {
   const auto owned = disk_of(shapes::random_disk(4, 9));
-  std::vector<char> fixed(owned.disk.positions.size(), 0);
-  for (std::size_t v = 0; v < fixed.size(); v += 3) fixed[v] = 1;
-  const BarrierMesh mesh = loose_mesh(owned.disk, fixed);
+  std::vector<char> hard(owned.disk.positions.size(), 0);
+  for (std::size_t v = 0; v < hard.size(); v += 3) hard[v] = 1;
+  const BarrierMesh mesh = loose_mesh(owned.disk, hard);
   const UvMap start = from_above(owned.disk);
   UvMap uv = start;
   Newton newton(mesh);
   for (int k = 0; k < 10; ++k) newton.step(uv, {{}, 1, 0.1});
   double moved = 0;
-  for (std::size_t v = 0; v < fixed.size(); ++v) {
-    EXPECT_TRUE(fixed[v] == 0 || uv[v] == start[v]) << v;
+  for (std::size_t v = 0; v < hard.size(); ++v) {
+    EXPECT_TRUE(hard[v] == 0 || uv[v] == start[v]) << v;
     moved += (uv[v] - start[v]).norm();
   }
   EXPECT_GT(moved, 0.01);
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -14,7 +14,7 @@
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
@@ -28,7 +28,7 @@ UvMap map_of(const Disk& disk, Method method = Method::arap) {
 }
 
 std::size_t pairs_in(const Disk& disk, const UvMap& uv) {
-  return overlapping_pairs(disk.faces, uv, 1 << 20).size();
+  return measure::overlapping_pairs(disk.faces, uv, 1 << 20).size();
 }
 
 /// ARAP's energy at its best scale, and the worst stretch where UV area = 3D area.
@@ -39,7 +39,8 @@ struct Quality {
 Quality quality_of(const Disk& disk, const UvMap& uv) {
   double area = 0, uv_area = 0, sum = 0, square = 0, high = 0, low = 1e9;
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
+    const measure::Jacobian j =
+        measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], uv));
     area += disk.rest[t].area;
     uv_area += disk.rest[t].area * j.determinant();
     sum += disk.rest[t].area * (j.sigma_max() + j.sigma_min());
@@ -64,9 +65,9 @@ TriMesh hilly_ramp() {
 double turned_angles(const Disk& disk, const UvMap& from, const UvMap& to) {
   double sum = 0, area = 0;
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    const UvEdges u = uv_edges(disk.faces[t], from);
-    const RestTriangle rest{u, {}, (u[0].x() * u[1].y() - u[0].y() * u[1].x()) / 2};
-    const Jacobian j = jacobian(rest, uv_edges(disk.faces[t], to));
+    const measure::UvEdges u = measure::uv_edges(disk.faces[t], from);
+    const measure::RestTriangle rest{u, {}, (u[0].x() * u[1].y() - u[0].y() * u[1].x()) / 2};
+    const measure::Jacobian j = measure::jacobian(rest, measure::uv_edges(disk.faces[t], to));
     sum += disk.rest[t].area * (j.squared_norm() / j.determinant() - 2);
     area += disk.rest[t].area;
   }
@@ -80,11 +81,11 @@ TEST(BijectiveEnergy, KeepsTheAnglesOfEachMethod) {
   int overlapping = 0;
   for (const Method method : methods) {
     own.push_back(map_of(d.disk, method));
-    ASSERT_TRUE(flipped_faces(d.disk.faces, own.back()).empty());
+    ASSERT_TRUE(measure::flipped_faces(d.disk.faces, own.back()).empty());
     overlapping += pairs_in(d.disk, own.back()) > 0 ? 1 : 0;
     apart.push_back(own.back());
     ASSERT_TRUE(map_injectively(
-        d.disk, {.rigidity = {.lambda = 0}, .held = {}, .stop = {}, .own = OwnEnergy::mips},
+        d.disk, {.rigidity = {.lambda = 0}, .constrained = {}, .stop = {}, .own = OwnEnergy::mips},
         apart.back()));
     EXPECT_EQ(pairs_in(d.disk, apart.back()), 0U);
   }
@@ -109,10 +110,11 @@ TEST(BijectiveEnergy, LowersTheEnergyOfItsMethod) {
   UvMap arap = map_of(d.disk), slim = arap;
   ASSERT_TRUE(map_injectively(d.disk, {}, arap));
   ASSERT_TRUE(map_injectively(
-      d.disk, {.rigidity = {}, .held = {}, .stop = {}, .own = OwnEnergy::symmetric_dirichlet},
+      d.disk,
+      {.rigidity = {}, .constrained = {}, .stop = {}, .own = OwnEnergy::symmetric_dirichlet},
       slim));
-  EXPECT_LT(symmetric_dirichlet_energy(d.disk, slim, serial),
-            symmetric_dirichlet_energy(d.disk, arap, serial));
+  EXPECT_LT(methods::symmetric_dirichlet_energy(d.disk, slim, serial),
+            methods::symmetric_dirichlet_energy(d.disk, arap, serial));
   EXPECT_LT(quality_of(d.disk, arap).energy, quality_of(d.disk, slim).energy);
 }
 
@@ -121,10 +123,11 @@ TEST(BijectiveEnergy, CostsSlimNextToNothing) {
   const OwnedDisk d = disk_of(read_obj(test_data() / "paper/Cow_dABF.obj"));
   SerialExecutor serial;
   UvMap uv = map_of(d.disk, Method::slim);
-  const double free = symmetric_dirichlet_energy(d.disk, uv, serial);
+  const double free = methods::symmetric_dirichlet_energy(d.disk, uv, serial);
   ASSERT_TRUE(map_injectively(
-      d.disk, {.rigidity = {}, .held = {}, .stop = {}, .own = OwnEnergy::symmetric_dirichlet}, uv));
-  EXPECT_LT(symmetric_dirichlet_energy(d.disk, uv, serial), 1.005 * free);
+      d.disk,
+      {.rigidity = {}, .constrained = {}, .stop = {}, .own = OwnEnergy::symmetric_dirichlet}, uv));
+  EXPECT_LT(methods::symmetric_dirichlet_energy(d.disk, uv, serial), 1.005 * free);
 }
 
 /// Flat pieces around points of curvature: spikes, where ARAP alone lets triangles collapse.
@@ -173,4 +176,4 @@ TEST(BijectiveEnergy, HasLittleEnergyAndStretchOnRealMeshes) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

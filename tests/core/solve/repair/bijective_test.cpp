@@ -17,7 +17,7 @@
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
@@ -30,7 +30,7 @@ UvMap solved(const Disk& disk) {
 }
 
 std::size_t overlaps(const Disk& disk, const UvMap& uv) {
-  return overlapping_pairs(disk.faces, uv, 1 << 20).size();
+  return measure::overlapping_pairs(disk.faces, uv, 1 << 20).size();
 }
 
 /// A ramp of more than one turn around a hollow axis: nearly developable, onto a ring that covers
@@ -43,10 +43,10 @@ TriMesh ramp(Index along, Index across, double turns) {
 }
 
 void expect_injective(const Disk& disk, const UvMap& uv, double most_energy) {
-  EXPECT_TRUE(flipped_faces(disk.faces, uv).empty());
+  EXPECT_TRUE(measure::flipped_faces(disk.faces, uv).empty());
   EXPECT_EQ(overlaps(disk, uv), 0U);
   SerialExecutor serial;
-  EXPECT_LT(symmetric_dirichlet_energy(disk, uv, serial), most_energy);
+  EXPECT_LT(methods::symmetric_dirichlet_energy(disk, uv, serial), most_energy);
 }
 
 TEST(Bijective, PartsARampThatLiesOnItself) {
@@ -84,10 +84,10 @@ TEST(Bijective, EndsWithTheEnergyThatIsAskedFor) {
   const OwnedDisk d = disk_of(shapes::sphere_cap(24, 12, 2));
   UvMap rigid(d.disk.positions.size(), Vec2::Zero()), conformal = rigid;
   ASSERT_TRUE(map_injectively(d.disk, {}, rigid));
-  ASSERT_TRUE(
-      map_injectively(d.disk, {.rigidity = {.lambda = 0}, .held = {}, .stop = {}}, conformal));
+  ASSERT_TRUE(map_injectively(d.disk, {.rigidity = {.lambda = 0}, .constrained = {}, .stop = {}},
+                              conformal));
   const auto angle = [&](const UvMap& uv) {
-    return distortion(distortion_sums(d.disk.rest, d.disk.faces, uv)).angle - 2;
+    return measure::distortion(measure::distortion_sums(d.disk.rest, d.disk.faces, uv)).angle - 2;
   };
   EXPECT_LT(angle(conformal), 0.25 * angle(rigid));
 }
@@ -115,7 +115,7 @@ TEST(Bijective, IsDrawnByItsSprings) {
   for (const Vec3& p : d.disk.positions)
     turned.emplace_back(3 + 0.6 * p.x() - 0.8 * p.y(), 0.8 * p.x() + 0.6 * p.y() - 2);
   MapIntent intent;
-  for (const std::size_t v : {0U, 9U, 44U, 79U}) intent.springs.push_back({Index(v), turned[v], 1});
+  for (const std::size_t v : {0U, 9U, 44U, 79U}) intent.soft.push_back({Index(v), turned[v], 1});
   ASSERT_TRUE(map_injectively(d.disk, intent, uv));
   for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT((uv[v] - turned[v]).norm(), 0.02) << v;
 }
@@ -125,10 +125,11 @@ TEST(Bijective, IsStretchedByStrongSprings) {
   UvMap uv = solved(d.disk);
   MapIntent intent;
   for (const std::size_t v : {0U, 9U, 70U, 79U})
-    intent.springs.push_back({Index(v), 1.2 * d.disk.positions[v].head<2>(), 1e4});
+    intent.soft.push_back({Index(v), 1.2 * d.disk.positions[v].head<2>(), 1e4});
   ASSERT_TRUE(map_injectively(d.disk, intent, uv));
-  for (const Spring& spring : intent.springs)
-    EXPECT_LT((uv[std::size_t(spring.vertex)] - spring.at).norm(), 0.01) << spring.vertex;
+  for (const SoftConstraint& soft_constraint : intent.soft)
+    EXPECT_LT((uv[std::size_t(soft_constraint.vertex)] - soft_constraint.at).norm(), 0.01)
+        << soft_constraint.vertex;
 }
 
 TEST(Bijective, GivesTheSameBytesAgain) {
@@ -147,7 +148,7 @@ TEST(Bijective, StopsWhenAsked) {
   std::stop_source source;
   source.request_stop();
   try {
-    map_injectively(d.disk, {.rigidity = {}, .held = {}, .stop = source.get_token()}, uv);
+    map_injectively(d.disk, {.rigidity = {}, .constrained = {}, .stop = source.get_token()}, uv);
     FAIL() << "went on";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::cancelled);
@@ -172,7 +173,7 @@ TEST(Bijective, MapsEveryHardDisk) {
     const OwnedDisk d = disk_of(mesh);
     UvMap uv(d.disk.positions.size(), Vec2::Zero());
     if (map_injectively(d.disk, {}, uv))
-      EXPECT_TRUE(is_plainly_injective(d.disk.faces, d.disk.loops, uv));
+      EXPECT_TRUE(measure::is_plainly_injective(d.disk.faces, d.disk.loops, uv));
     else
       ADD_FAILURE() << "no start";
   }
@@ -196,11 +197,11 @@ TEST(InjectiveStep, EndsFourFifthsOfTheWayToTheFirstFlip) {
   std::vector<Vec2> step(start.size(), Vec2::Zero());
   step[0] = 3 * (start.back() - start.front());  // the farther the better, until it flips
   const auto energy = [&](const UvMap& uv) {
-    const bool is_flipped = !flipped_faces(d.disk.faces, uv).empty();
+    const bool is_flipped = !measure::flipped_faces(d.disk.faces, uv).empty();
     return is_flipped ? std::numeric_limits<double>::infinity() : -uv[0].dot(step[0]);
   };
   SerialExecutor serial;
-  const double flip = step_to_flip(d.disk, start, step, serial);
+  const double flip = methods::step_to_flip(d.disk, start, step, serial);
   ASSERT_LT(flip, 1);
   UvMap uv = start;
   ASSERT_TRUE(injective_step(d.disk, step, -step[0].squaredNorm(), energy, uv));
@@ -208,4 +209,4 @@ TEST(InjectiveStep, EndsFourFifthsOfTheWayToTheFirstFlip) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -10,7 +10,7 @@
 #include "tests/core/hard_shapes.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
@@ -106,7 +106,7 @@ TEST(BoundaryBarrier, IsBentNoMoreThanItsCurvature) {
   std::uniform_real_distribution<double> place(-0.4, 0.4);
   for (int k = 0; k < 200; ++k) {
     UvMap uv{Vec2(place(rng), 0.5 + place(rng)), Vec2(-0.3, 0), Vec2(0.3, 0)};
-    const PairElement bend = contact_curvature(contact.front(), uv);
+    const linear::PairElement bend = contact_curvature(contact.front(), uv);
     const Vec2 way(place(rng), place(rng));
     const double h = 1e-4, at = contact_energy(contact, uv);
     double around = -2 * at;
@@ -124,7 +124,7 @@ TEST(BoundaryBarrier, IsBentNoMoreThanItsCurvature) {
 TEST(BoundaryBarrier, IsBentAsItsDifferencesWhereTheEdgeMovesAcrossItself) {
   const std::vector<Contact> contact{{0, {1, 2}, 1, 0.5}};
   const UvMap uv{Vec2(0.1, 0.4), Vec2(-0.3, 0), Vec2(0.5, 0)};
-  const PairElement bend = contact_curvature(contact.front(), uv);
+  const linear::PairElement bend = contact_curvature(contact.front(), uv);
   const std::array<double, 3> way{1, 0.5, 0.5};  // v of the vertex and of both ends: no turn
   const double h = 1e-4;
   double around = -2 * contact_energy(contact, uv), bound = 0;
@@ -157,4 +157,4 @@ TEST(BoundaryBarrier, GrowsWithoutBound) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

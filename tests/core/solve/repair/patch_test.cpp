@@ -4,7 +4,7 @@
 
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
@@ -22,7 +22,7 @@ TEST(Patches, LetRingsLooseAndHoldTheRim) {
     for (std::size_t k = 0; k < patch.vertex.size(); ++k) {
       const auto v = std::size_t(patch.vertex[k]);
       const Index all = owned.disk.corners.begin[v + 1] - owned.disk.corners.begin[v];
-      EXPECT_TRUE(patch.mesh.free.slot[k] == kFixed || faces_of[v] == all) << v;
+      EXPECT_TRUE(patch.mesh.free.slot[k] == linear::kFixed || faces_of[v] == all) << v;
     }
     for (std::size_t k = 0; k < patch.face.size(); ++k)
       for (std::size_t i = 0; i < 3; ++i)
@@ -51,4 +51,4 @@ TEST(Patches, ThatDoNotTouchAreApart) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using ProfileOf = std::function<Profile(double, double)>;
@@ -61,4 +61,4 @@ TEST(Profile, IsNothingForRotations) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

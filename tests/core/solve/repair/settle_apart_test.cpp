@@ -15,7 +15,7 @@
 #include "tests/core/hard_shapes.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
@@ -26,20 +26,21 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 double energy_of(const Disk& disk, const UvMap& uv, double lambda) {
   double energy = 0;
   for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    const Jacobian j = jacobian(disk.rest[t], uv_edges(disk.faces[t], uv));
-    energy += fit_energy(j, fit_similarity(j, lambda), disk.rest[t].area, lambda);
+    const measure::Jacobian j =
+        measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], uv));
+    energy += arap::fit_energy(j, arap::fit_similarity(j, lambda), disk.rest[t].area, lambda);
   }
   return energy;
 }
 
 bool is_injective(const Disk& disk, const UvMap& uv) {
-  return is_plainly_injective(disk.faces, disk.loops, uv);
+  return measure::is_plainly_injective(disk.faces, disk.loops, uv);
 }
 
 UvMap start_of(const Disk& disk) {
-  UvMap uv = tutte_map(fill_holes(disk).disk);
+  UvMap uv = maps::tutte_map(maps::fill_holes(disk).disk);
   uv.resize(disk.positions.size());
-  const double scale = best_scale(disk, uv);
+  const double scale = methods::best_scale(disk, uv);
   for (Vec2& u : uv) u *= scale;
   return uv;
 }
@@ -53,7 +54,7 @@ TEST(SettleApart, LowersEveryEnergyAndStaysInjective) {
       UvMap uv = start_of(d.disk);
       ASSERT_TRUE(is_injective(d.disk, uv));
       const double before = energy_of(d.disk, uv, lambda);
-      settle_apart(d.disk, {.rigidity = {lambda}, .held = {}, .stop = {}}, uv);
+      settle_apart(d.disk, {.rigidity = {lambda}, .constrained = {}, .stop = {}}, uv);
       EXPECT_TRUE(is_injective(d.disk, uv));
       EXPECT_LT(energy_of(d.disk, uv, lambda), 0.5 * before);
     }
@@ -82,7 +83,7 @@ TEST(SettleApart, StopsWhenAsked) {
   std::stop_source source;
   source.request_stop();
   try {
-    settle_apart(d.disk, {.rigidity = {}, .held = {}, .stop = source.get_token()}, uv);
+    settle_apart(d.disk, {.rigidity = {}, .constrained = {}, .stop = source.get_token()}, uv);
     FAIL() << "went on";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::cancelled);
@@ -102,7 +103,7 @@ TEST(InjectiveStep, IsHalvedUntilNothingOverlaps) {
     uv.emplace_back(p.x(), p.y());
     step.push_back(std::hypot(p.x(), p.y()) * Vec2(std::cos(wide), std::sin(wide)) - uv.back());
   }
-  if (!flipped_faces(d.disk.faces, uv).empty())
+  if (!measure::flipped_faces(d.disk.faces, uv).empty())
     for (std::size_t v = 0; v < uv.size(); ++v) uv[v].y() *= -1, step[v].y() *= -1;
   ASSERT_TRUE(is_injective(d.disk, uv));
   UvMap whole = uv;
@@ -133,4 +134,4 @@ TEST(InjectiveStep, IsNoneUphill) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

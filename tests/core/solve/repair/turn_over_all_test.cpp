@@ -12,14 +12,14 @@
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
 std::size_t flip_count(const Disk& disk, const UvMap& uv) {
-  return flipped_faces(disk.faces, uv).size();
+  return measure::flipped_faces(disk.faces, uv).size();
 }
 
 /// Counts what is handed to it: work without a clock. Large blocks and small ones count alike, so
@@ -67,7 +67,8 @@ TEST(TurnOverAll, LeavesAFewFlipsOfATornMapInAFewSteps) {
     EXPECT_LE(turn_over_all(torn.disk(), torn.intent(), uv), 30);
     EXPECT_LE(flip_count(torn.disk(), uv), before / 50);
     const auto sums = [&](const UvMap& map) {
-      return distortion(distortion_sums(torn.disk().rest, torn.disk().faces, map));
+      return measure::distortion(
+          measure::distortion_sums(torn.disk().rest, torn.disk().faces, map));
     };
     EXPECT_LT(sums(uv).angle, sums(torn.uv).angle);
   }
@@ -83,7 +84,7 @@ TEST(TurnOverAll, CostsUntanglingNoMoreThanTheSolve) {
 }
 
 /// A job that may take what its faces and the factor of its solve take.
-class TightCore final : public SolverCore {
+class TightCore final : public SharedCache {
  public:
   explicit TightCore(std::size_t bytes) : bytes_(bytes) {}
   [[nodiscard]] Digest digest(std::span<const std::byte>) const override { return {}; }
@@ -165,14 +166,15 @@ TEST(TurnOverAll, MindsTheEnergyOfEveryRigidity) {
     UvMap uv = shapes::shaken(torn.uv, 0.004, 3);
     const std::size_t before = flip_count(torn.disk(), uv);
     ASSERT_GT(before, torn.disk().faces.size() / 100);
-    turn_over_all(torn.disk(), {.rigidity = {lambda}, .held = {}, .stop = {}}, uv);
+    turn_over_all(torn.disk(), {.rigidity = {lambda}, .constrained = {}, .stop = {}}, uv);
     EXPECT_LE(flip_count(torn.disk(), uv), before / 50);
     const auto energy = [&](const UvMap& map) {
       double sum = 0;
       for (std::size_t t = 0; t < torn.disk().faces.size(); ++t) {
-        const RestTriangle& rest = torn.disk().rest[t];
-        const Jacobian j = jacobian(rest, uv_edges(torn.disk().faces[t], map));
-        sum += fit_energy(j, fit_similarity(j, lambda), rest.area, lambda);
+        const measure::RestTriangle& rest = torn.disk().rest[t];
+        const measure::Jacobian j =
+            measure::jacobian(rest, measure::uv_edges(torn.disk().faces[t], map));
+        sum += arap::fit_energy(j, arap::fit_similarity(j, lambda), rest.area, lambda);
       }
       return sum;
     };
@@ -183,14 +185,14 @@ TEST(TurnOverAll, MindsTheEnergyOfEveryRigidity) {
 TEST(TurnOverAll, LeavesHeldVerticesAndHearsSprings) {
   const Torn torn(rough_cap());
   const Vec2 aside(0.05, -0.03);
-  MapIntent intent{.rigidity = {}, .held = std::vector<char>(torn.uv.size(), 0), .stop = {}};
-  for (std::size_t v = 7; v < torn.uv.size(); v += 601) intent.held[v] = 1;
-  intent.springs = {{11, torn.uv[11] + aside, 50}};
+  MapIntent intent{.rigidity = {}, .constrained = std::vector<char>(torn.uv.size(), 0), .stop = {}};
+  for (std::size_t v = 7; v < torn.uv.size(); v += 601) intent.constrained[v] = 1;
+  intent.soft = {{11, torn.uv[11] + aside, 50}};
   UvMap uv = torn.uv;
   turn_over_all(torn.disk(), intent, uv);
   for (std::size_t v = 0; v < uv.size(); ++v)
-    EXPECT_TRUE(intent.held[v] == 0 || uv[v] == torn.uv[v]) << v;
-  EXPECT_LT((uv[11] - intent.springs[0].at).norm(), 0.2 * aside.norm());
+    EXPECT_TRUE(intent.constrained[v] == 0 || uv[v] == torn.uv[v]) << v;
+  EXPECT_LT((uv[11] - intent.soft[0].at).norm(), 0.2 * aside.norm());
 }
 
 TEST(TurnOverAll, StopsWhenAsked) {
@@ -199,9 +201,9 @@ TEST(TurnOverAll, StopsWhenAsked) {
   stop.request_stop();
   UvMap uv = torn.uv;
   EXPECT_THROW(
-      turn_over_all(torn.disk(), {.rigidity = {}, .held = {}, .stop = stop.get_token()}, uv),
+      turn_over_all(torn.disk(), {.rigidity = {}, .constrained = {}, .stop = stop.get_token()}, uv),
       Error);
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -10,7 +10,7 @@
 #include "core/solve/solve.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
@@ -19,48 +19,49 @@ using shapes::OwnedDisk;
 constexpr double kTurn = 0.6, kPull = 5;
 
 /// Four vertices drawn to where they lie in the map, turned and moved.
-std::vector<Spring> springs_on(const UvMap& uv) {
-  std::vector<Spring> springs;
+std::vector<SoftConstraint> springs_on(const UvMap& uv) {
+  std::vector<SoftConstraint> soft;
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t v = (2 * k + 1) * uv.size() / 8;
     const Vec2 at(std::cos(kTurn) * uv[v].x() - std::sin(kTurn) * uv[v].y() + 0.3,
                   std::sin(kTurn) * uv[v].x() + std::cos(kTurn) * uv[v].y() - 0.2);
-    springs.push_back({Index(v), 1.1 * at, kPull});
+    soft.push_back({Index(v), 1.1 * at, kPull});
   }
-  return springs;
+  return soft;
 }
 
 struct Sprung {
   OwnedDisk owned = disk_of(shapes::random_disk(12, 4));
-  Holds holds;
+  VertexConstraints constraints;
   UvMap uv;  ///< the least of ARAP's energy and the springs'
 
   Sprung() {
     SerialExecutor serial;
     const UnwrapOptions options{.stop = {.tolerance = 1e-12}};
     const UvMap free = Solver(owned.disk, options, {}, serial).run(0, {}).uv;
-    holds.springs = springs_on(free);
-    uv = Solver(owned.disk, options, {holds, free}, serial).run(0, {}).uv;
+    constraints.soft = springs_on(free);
+    uv = Solver(owned.disk, options, {constraints, free}, serial).run(0, {}).uv;
   }
   [[nodiscard]] double energy(const UvMap& map) const {
-    return arap_energy(owned.disk.rest, owned.disk.faces, map) + spring_energy(holds, map);
+    return measure::arap_energy(owned.disk.rest, owned.disk.faces, map) +
+           soft_constraint_energy(constraints, map);
   }
   [[nodiscard]] MapIntent intent() const {
-    return {.rigidity = {}, .held = {}, .stop = {}, .springs = holds.springs};
+    return {.rigidity = {}, .constrained = {}, .stop = {}, .soft = constraints.soft};
   }
 };
 
 TEST(UntangleSprings, AVertexTornAwayReturnsToItsSpring) {
   const Sprung s;
-  ASSERT_TRUE(flipped_faces(s.owned.disk.faces, s.uv).empty());
-  for (const Spring& spring : s.holds.springs) {
+  ASSERT_TRUE(measure::flipped_faces(s.owned.disk.faces, s.uv).empty());
+  for (const SoftConstraint& soft_constraint : s.constraints.soft) {
     UvMap uv = s.uv;
-    uv[std::size_t(spring.vertex)] += Vec2(0.16, 0.12);
-    ASSERT_FALSE(flipped_faces(s.owned.disk.faces, uv).empty());
+    uv[std::size_t(soft_constraint.vertex)] += Vec2(0.16, 0.12);
+    ASSERT_FALSE(measure::flipped_faces(s.owned.disk.faces, uv).empty());
     EXPECT_EQ(untangle(s.owned.disk, s.intent(), uv), 0);
     EXPECT_LT(s.energy(uv), 1.02 * s.energy(s.uv));
     const auto away = [&](const UvMap& map) {
-      return (map[std::size_t(spring.vertex)] - spring.at).norm();
+      return (map[std::size_t(soft_constraint.vertex)] - soft_constraint.at).norm();
     };
     EXPECT_NEAR(away(uv), away(s.uv), 0.01);
   }
@@ -69,25 +70,25 @@ TEST(UntangleSprings, AVertexTornAwayReturnsToItsSpring) {
 TEST(UntangleSprings, ANewMapComesToLieWhereTheyDrawIt) {
   const Sprung s;
   UvMap uv = s.uv;
-  ASSERT_TRUE(start_anew(s.owned.disk, s.intent(), tutte_map(s.owned.disk), uv));
-  EXPECT_TRUE(flipped_faces(s.owned.disk.faces, uv).empty());
+  ASSERT_TRUE(start_anew(s.owned.disk, s.intent(), maps::tutte_map(s.owned.disk), uv));
+  EXPECT_TRUE(measure::flipped_faces(s.owned.disk.faces, uv).empty());
   EXPECT_LT(s.energy(uv), 1.02 * s.energy(s.uv));
-  for (const Spring& spring : s.holds.springs) {
-    const auto v = std::size_t(spring.vertex);
+  for (const SoftConstraint& soft_constraint : s.constraints.soft) {
+    const auto v = std::size_t(soft_constraint.vertex);
     EXPECT_LT((uv[v] - s.uv[v]).norm(), 0.02);
   }
 }
 
 TEST(UntangleSprings, TheModelHasTheirSlopeAndCurvature) {
   const Sprung s;
-  std::vector<char> fixed(s.uv.size(), 0);
-  fixed[std::size_t(s.holds.springs[1].vertex)] = 1;  // a spring there pulls at nothing
+  std::vector<char> hard(s.uv.size(), 0);
+  hard[std::size_t(s.constraints.soft[1].vertex)] = 1;  // a spring there pulls at nothing
   const Disk& disk = s.owned.disk;
   const BarrierMesh mesh{{disk.faces.begin(), disk.faces.end()},
                          {disk.rest.begin(), disk.rest.end()},
-                         number_free(fixed)};
+                         linear::number_free(hard)};
   BarrierMesh sprung = mesh;
-  sprung.springs = s.holds.springs;
+  sprung.soft = s.constraints.soft;
   Quadratic without = barrier_pattern(mesh), with = barrier_pattern(sprung);
   const Barrier barrier{{}, 0.1, 0};
   fill_barrier_model(mesh, s.uv, barrier, without);
@@ -95,14 +96,14 @@ TEST(UntangleSprings, TheModelHasTheirSlopeAndCurvature) {
   const Eigen::VectorXd slope = with.gradient - without.gradient;
   const Eigen::MatrixXd bend = Eigen::MatrixXd(with.hessian) - Eigen::MatrixXd(without.hessian);
   const double energy = barrier_energy(sprung, s.uv, barrier) - barrier_energy(mesh, s.uv, barrier);
-  EXPECT_NEAR(energy, spring_energy(s.holds, s.uv), 1e-12);
+  EXPECT_NEAR(energy, soft_constraint_energy(s.constraints, s.uv), 1e-12);
   Eigen::VectorXd expected_slope = Eigen::VectorXd::Zero(slope.size());
   Eigen::VectorXd expected_bend = Eigen::VectorXd::Zero(slope.size());
-  for (const Spring& spring : s.holds.springs) {
-    const Index slot = mesh.free.slot[std::size_t(spring.vertex)];
-    if (slot == kFixed) continue;
+  for (const SoftConstraint& soft_constraint : s.constraints.soft) {
+    const Index slot = mesh.free.slot[std::size_t(soft_constraint.vertex)];
+    if (slot == linear::kFixed) continue;
     expected_slope.segment<2>(2 * slot) =
-        2 * kPull * (s.uv[std::size_t(spring.vertex)] - spring.at);
+        2 * kPull * (s.uv[std::size_t(soft_constraint.vertex)] - soft_constraint.at);
     expected_bend.segment<2>(2 * slot).setConstant(2 * kPull);
   }
   EXPECT_LT((slope - expected_slope).norm(), 1e-10);
@@ -110,4 +111,4 @@ TEST(UntangleSprings, TheModelHasTheirSlopeAndCurvature) {
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

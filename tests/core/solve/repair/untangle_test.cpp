@@ -18,14 +18,14 @@
 #include "tests/core/solve/disk_of.hpp"
 #include "tests/core/two_threads.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
 using shapes::from_above;
 
 std::size_t flips(const Disk& disk, const UvMap& uv) {
-  return flipped_faces(disk.faces, uv).size();
+  return measure::flipped_faces(disk.faces, uv).size();
 }
 
 UvMap solved(const Disk& disk, const UnwrapOptions& options = {}) {
@@ -54,7 +54,7 @@ TEST(Untangle, TurnsOneVertexBackAndMovesOnlyItsNeighbours) {
   for (std::size_t k = 0; k < uv.size(); ++k) {
     EXPECT_TRUE((flat[k] - flat[v]).norm() < 0.3 || uv[k] == flat[k]) << k;
   }
-  EXPECT_LT(arap_energy(owned.disk.rest, owned.disk.faces, uv), 1e-3);
+  EXPECT_LT(measure::arap_energy(owned.disk.rest, owned.disk.faces, uv), 1e-3);
 }
 
 TEST(Untangle, TurnsBackWhatAnyShakingFlipped) {
@@ -90,7 +90,7 @@ TEST(Untangle, UnfoldsAFlapHoweverMuchOfTheMapItIs) {
     ASSERT_GT(flips(owned.disk, uv), 0U);
     EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
     EXPECT_EQ(flips(owned.disk, uv), 0U);
-    EXPECT_LT(arap_energy(owned.disk.rest, owned.disk.faces, uv), 1e-3);
+    EXPECT_LT(measure::arap_energy(owned.disk.rest, owned.disk.faces, uv), 1e-3);
   }
 }
 
@@ -110,14 +110,14 @@ TEST(Untangle, NeverMovesHeldVertices) {
   const auto owned = disk_of(shapes::grid(8, 8));
   UvMap uv = from_above(owned.disk);
   const std::size_t v = 4 * 9 + 4;
-  MapIntent intent{.rigidity = {}, .held = std::vector<char>(uv.size(), 0), .stop = {}};
+  MapIntent intent{.rigidity = {}, .constrained = std::vector<char>(uv.size(), 0), .stop = {}};
   uv[v] += Vec2(0.2, 0);
-  intent.held[v] = 1;
-  for (std::size_t k = 0; k < 9; ++k) intent.held[k] = 1;
+  intent.constrained[v] = 1;
+  for (std::size_t k = 0; k < 9; ++k) intent.constrained[k] = 1;
   const UvMap before = uv;
   EXPECT_EQ(untangle(owned.disk, intent, uv), 0);
   for (std::size_t k = 0; k < uv.size(); ++k)
-    EXPECT_TRUE(intent.held[k] == 0 || uv[k] == before[k]) << k;
+    EXPECT_TRUE(intent.constrained[k] == 0 || uv[k] == before[k]) << k;
 }
 
 TEST(Untangle, TurnsTrianglesBackWithinARimMuchTooSmallForThem) {
@@ -125,10 +125,10 @@ TEST(Untangle, TurnsTrianglesBackWithinARimMuchTooSmallForThem) {
   UvMap uv = solved(owned.disk);
   const Vec2 middle = uv[13 * 6 + 6];
   for (Vec2& u : uv) u = 1e-6 * (u - middle);
-  MapIntent intent{.rigidity = {}, .held = std::vector<char>(uv.size(), 1), .stop = {}};
+  MapIntent intent{.rigidity = {}, .constrained = std::vector<char>(uv.size(), 1), .stop = {}};
   for (std::size_t row = 2; row < 11; ++row)
     for (std::size_t column = 2; column < 11; ++column) {
-      intent.held[13 * row + column] = 0;
+      intent.constrained[13 * row + column] = 0;
       uv[13 * row + column].x() *= -0.5;  // mirrored
     }
   ASSERT_GT(flips(owned.disk, uv), 100U);
@@ -139,7 +139,8 @@ TEST(Untangle, TurnsTrianglesBackWithinARimMuchTooSmallForThem) {
 TEST(Untangle, SaysSoWhereHeldVerticesLeaveNoWay) {
   const auto owned = disk_of(shapes::grid(2, 2));
   UvMap uv = from_above(owned.disk);
-  const MapIntent intent{.rigidity = {}, .held = std::vector<char>(uv.size(), 1), .stop = {}};
+  const MapIntent intent{
+      .rigidity = {}, .constrained = std::vector<char>(uv.size(), 1), .stop = {}};
   std::swap(uv[0], uv[8]);
   EXPECT_EQ(std::size_t(untangle(owned.disk, intent, uv)), flips(owned.disk, uv));
   EXPECT_GT(flips(owned.disk, uv), 0U);
@@ -148,11 +149,11 @@ TEST(Untangle, SaysSoWhereHeldVerticesLeaveNoWay) {
 TEST(Untangle, KeepsTheSizesOfAConformalMap) {
   const auto owned = disk_of(shapes::sphere_cap(40, 30, 2.9));  // scales from 1 to some hundred
   UvMap uv = solved(owned.disk, {.method = Method::asap});
-  const double before = asap_energy(owned.disk.rest, owned.disk.faces, uv);
+  const double before = measure::asap_energy(owned.disk.rest, owned.disk.faces, uv);
   uv[0] += 3 * (uv[41] - uv[0]);
   ASSERT_GT(flips(owned.disk, uv), 0U);
-  EXPECT_EQ(untangle(owned.disk, {.rigidity = {0.0}, .held = {}, .stop = {}}, uv), 0);
-  EXPECT_LT(asap_energy(owned.disk.rest, owned.disk.faces, uv), before * 1.01);
+  EXPECT_EQ(untangle(owned.disk, {.rigidity = {0.0}, .constrained = {}, .stop = {}}, uv), 0);
+  EXPECT_LT(measure::asap_energy(owned.disk.rest, owned.disk.faces, uv), before * 1.01);
 }
 
 TEST(Untangle, StopsWhenAsked) {
@@ -161,8 +162,9 @@ TEST(Untangle, StopsWhenAsked) {
   std::swap(uv[0], uv[35]);
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(untangle(owned.disk, {.rigidity = {}, .held = {}, .stop = stop.get_token()}, uv),
-               Error);
+  EXPECT_THROW(
+      untangle(owned.disk, {.rigidity = {}, .constrained = {}, .stop = stop.get_token()}, uv),
+      Error);
 }
 
 TEST(Untangle, CostsLittleEnergyOnRealMeshes) {
@@ -172,10 +174,10 @@ TEST(Untangle, CostsLittleEnergyOnRealMeshes) {
        {"paper/Beetle_ABF.obj", "paper/Cow_dABF.obj", "paper/Gargoyle_ABF.obj"}) {
     const auto owned = disk_of(read_obj(test_data() / name));
     UvMap uv = solved(owned.disk);
-    const double before = arap_energy(owned.disk.rest, owned.disk.faces, uv);
+    const double before = measure::arap_energy(owned.disk.rest, owned.disk.faces, uv);
     turned += flips(owned.disk, uv);
     EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
-    EXPECT_LT(arap_energy(owned.disk.rest, owned.disk.faces, uv), before * 1.007) << name;
+    EXPECT_LT(measure::arap_energy(owned.disk.rest, owned.disk.faces, uv), before * 1.007) << name;
   }
   EXPECT_GT(turned, 0U) << "these meshes no longer show anything";
 }
@@ -188,7 +190,7 @@ double worst_moved_condition(const Disk& disk, const UvMap& before, const UvMap&
     if (std::ranges::all_of(
             f, [&](Index v) { return before[std::size_t(v)] == after[std::size_t(v)]; }))
       continue;
-    const Jacobian j = jacobian(disk.rest[t], uv_edges(f, after));
+    const measure::Jacobian j = measure::jacobian(disk.rest[t], measure::uv_edges(f, after));
     worst = std::max(worst, j.sigma_max() / j.sigma_min());
   }
   return worst;
@@ -218,7 +220,8 @@ TEST(Untangle, KeepsTheDistortionOfThePapersModelsLow) {
     const UvMap before = solved(owned.disk);
     UvMap after = before;
     ASSERT_EQ(untangle(owned.disk, {}, after), 0);
-    const Distortion d = distortion(distortion_sums(owned.disk.rest, owned.disk.faces, after));
+    const Distortion d =
+        measure::distortion(measure::distortion_sums(owned.disk.rest, owned.disk.faces, after));
     EXPECT_LT(d.angle, most_angle);
     EXPECT_LE(worst_moved_condition(owned.disk, before, after), 20);
   }
@@ -234,9 +237,11 @@ TEST(Untangle, GivesTheSameMapOnAnyThreads) {
     ASSERT_GT(flips(owned.disk, shaken), 3U);
     for (const double lambda : {0.0, std::numeric_limits<double>::infinity()}) {
       UvMap alone = shaken, abreast = shaken;
-      EXPECT_EQ(untangle(owned.disk, {.rigidity = {lambda}, .held = {}, .stop = {}}, alone), 0);
+      EXPECT_EQ(untangle(owned.disk, {.rigidity = {lambda}, .constrained = {}, .stop = {}}, alone),
+                0);
       EXPECT_EQ(untangle(owned.disk,
-                         {.rigidity = {lambda}, .held = {}, .stop = {}, .executor = &two}, abreast),
+                         {.rigidity = {lambda}, .constrained = {}, .stop = {}, .executor = &two},
+                         abreast),
                 0);
       EXPECT_EQ(alone, abreast);
     }
@@ -254,7 +259,7 @@ TEST(Untangle, UntiesAKnotWithinTwoRings) {  // where flipped triangles hold eac
     const UvMap before = uv;
     std::vector<char> near(uv.size(), 0);  // and as far around the needles that are left
     for (const Patch& patch :
-         patches_around(owned.disk, flipped_faces(owned.disk.faces, uv), 5, {}))
+         patches_around(owned.disk, measure::flipped_faces(owned.disk.faces, uv), 5, {}))
       for (Index v : patch.vertex) near[std::size_t(v)] = 1;
     EXPECT_EQ(untangle(owned.disk, {}, uv), 0);
     for (std::size_t v = 0; v < uv.size(); ++v)
@@ -272,12 +277,12 @@ TEST(Untangle, SettlesOnlyAroundWhatItTurnedOver) {  // many flips, on which sev
   UvMap after = before;
   EXPECT_EQ(untangle(owned.disk, {}, after), 0);
   EXPECT_EQ(flips(owned.disk, after), 0U);
-  EXPECT_LE(arap_energy(owned.disk.rest, owned.disk.faces, after),
-            arap_energy(owned.disk.rest, owned.disk.faces, before));
+  EXPECT_LE(measure::arap_energy(owned.disk.rest, owned.disk.faces, after),
+            measure::arap_energy(owned.disk.rest, owned.disk.faces, before));
   std::size_t moved = 0;
   for (std::size_t v = 0; v < before.size(); ++v) moved += before[v] != after[v] ? 1 : 0;
   EXPECT_LT(moved, before.size() / 4);
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

@@ -5,7 +5,7 @@
 #include "core/measure/orientation.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
@@ -22,7 +22,7 @@ TEST(VirtualBoundary, LeavesAMapWithoutFlipsWhereItIs) {
        {shapes::grid(8, 8), shapes::annulus(24, 4), shapes::sphere_cap(16, 5)}) {
     const auto owned = disk_of(mesh);
     const UvMap uv = from_above(owned.disk);
-    ASSERT_TRUE(flipped_faces(owned.disk.faces, uv).empty());
+    ASSERT_TRUE(measure::flipped_faces(owned.disk.faces, uv).empty());
     EXPECT_LT(farthest_move(virtual_boundary_map(owned.disk, uv), uv), 1e-9);
   }
 }
@@ -32,7 +32,8 @@ TEST(VirtualBoundary, TurnsEveryFlipBackWhateverTheMap) {
     SCOPED_TRACE(seed);
     const auto owned = disk_of(shapes::random_disk(Index(2 + seed % 10), seed));
     const UvMap uv = shapes::shaken(from_above(owned.disk), 0.02 * seed, seed);
-    EXPECT_TRUE(flipped_faces(owned.disk.faces, virtual_boundary_map(owned.disk, uv)).empty());
+    EXPECT_TRUE(
+        measure::flipped_faces(owned.disk.faces, virtual_boundary_map(owned.disk, uv)).empty());
   }
 }
 
@@ -40,9 +41,9 @@ TEST(VirtualBoundary, LetsTheBoundaryKeepItsShape) {
   const auto owned = disk_of(shapes::grid(16, 4, 4, 1));
   UvMap uv = from_above(owned.disk);
   uv[2 * 17 + 8] += Vec2(0.3, 0.02);
-  ASSERT_FALSE(flipped_faces(owned.disk.faces, uv).empty());
+  ASSERT_FALSE(measure::flipped_faces(owned.disk.faces, uv).empty());
   const UvMap mended = virtual_boundary_map(owned.disk, uv);
-  EXPECT_TRUE(flipped_faces(owned.disk.faces, mended).empty());
+  EXPECT_TRUE(measure::flipped_faces(owned.disk.faces, mended).empty());
   Vec2 low = mended[0], high = mended[0];
   for (const Vec2& u : mended) low = low.cwiseMin(u), high = high.cwiseMax(u);
   EXPECT_GT((high - low).x(), 2.5 * (high - low).y());  // 4 by 1, where a circle is 1 by 1
@@ -52,9 +53,10 @@ TEST(VirtualBoundary, ClosesHolesWithoutFlips) {
   const auto owned = disk_of(shapes::annulus(20, 2));
   UvMap uv = from_above(owned.disk);
   for (std::size_t v = 0; v < uv.size(); v += 3) uv[v] = -uv[v];
-  ASSERT_FALSE(flipped_faces(owned.disk.faces, uv).empty());
-  EXPECT_TRUE(flipped_faces(owned.disk.faces, virtual_boundary_map(owned.disk, uv)).empty());
+  ASSERT_FALSE(measure::flipped_faces(owned.disk.faces, uv).empty());
+  EXPECT_TRUE(
+      measure::flipped_faces(owned.disk.faces, virtual_boundary_map(owned.disk, uv)).empty());
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

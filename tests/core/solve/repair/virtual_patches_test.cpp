@@ -11,7 +11,7 @@
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
-namespace unwrapd {
+namespace unwrapd::solve::repair {
 namespace {
 
 using shapes::disk_of;
@@ -30,12 +30,12 @@ TEST(VirtualPatches, MoveOnlyWhatLiesAroundTheFlip) {
     const UvMap flat = from_above(owned.disk);
     UvMap before = flat;
     before[v] += Vec2(0.07, 0.08);
-    ASSERT_FALSE(flipped_faces(owned.disk.faces, before).empty());
+    ASSERT_FALSE(measure::flipped_faces(owned.disk.faces, before).empty());
     UvMap after = before;
     EXPECT_TRUE(mend_by_virtual_boundary(owned.disk, {}, after));
-    EXPECT_TRUE(flipped_faces(owned.disk.faces, after).empty());
+    EXPECT_TRUE(measure::flipped_faces(owned.disk.faces, after).empty());
     EXPECT_LT(moved(before, after), 80U);  // of 441
-    EXPECT_LT(arap_energy(owned.disk.rest, owned.disk.faces, after), 1e-3);
+    EXPECT_LT(measure::arap_energy(owned.disk.rest, owned.disk.faces, after), 1e-3);
   }
 }
 
@@ -44,8 +44,8 @@ TEST(VirtualPatches, NeverMoveHeldVertices) {
   UvMap before = from_above(owned.disk);
   const std::size_t v = 6 * 13 + 6;
   before[v] += Vec2(0.1, 0.02);
-  MapIntent intent{.rigidity = {}, .held = std::vector<char>(before.size(), 0), .stop = {}};
-  intent.held[v] = 1;
+  MapIntent intent{.rigidity = {}, .constrained = std::vector<char>(before.size(), 0), .stop = {}};
+  intent.constrained[v] = 1;
   UvMap after = before;
   mend_by_virtual_boundary(owned.disk, intent, after);
   EXPECT_EQ(after[v], before[v]);
@@ -62,19 +62,19 @@ TEST(VirtualPatches, ChangeLittleElseOfThePapersModels) {
     SerialExecutor serial;
     const UnwrapOptions options;
     const UvMap before = Solver(disk, options, {}, serial).run(options.lambda, {}).uv;
-    ASSERT_FALSE(flipped_faces(disk.faces, before).empty());
+    ASSERT_FALSE(measure::flipped_faces(disk.faces, before).empty());
     UvMap after = before;
     EXPECT_TRUE(mend_by_virtual_boundary(disk, {}, after));
-    EXPECT_TRUE(flipped_faces(disk.faces, after).empty());
+    EXPECT_TRUE(measure::flipped_faces(disk.faces, after).empty());
     EXPECT_LT(moved(before, after), 60U);
     const auto angle = [&](const UvMap& uv) {
-      return distortion(distortion_sums(disk.rest, disk.faces, uv)).angle;
+      return measure::distortion(measure::distortion_sums(disk.rest, disk.faces, uv)).angle;
     };
     EXPECT_LT(angle(after), angle(before) + 0.002);
-    EXPECT_LT(arap_energy(disk.rest, disk.faces, after),
-              1.007 * arap_energy(disk.rest, disk.faces, before));
+    EXPECT_LT(measure::arap_energy(disk.rest, disk.faces, after),
+              1.007 * measure::arap_energy(disk.rest, disk.faces, before));
   }
 }
 
 }  // namespace
-}  // namespace unwrapd
+}  // namespace unwrapd::solve::repair

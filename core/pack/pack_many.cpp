@@ -1,0 +1,109 @@
+// Several rules are tried on a coarse grid, where one try shows how much of a page they fill; the
+// best go on with a fine one, at scales at which their islands should just fit. How high a strip
+// gets is partly chance, so scales are tried from both sides.
+#include "core/pack/pack_many.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "core/pack/page_layout.hpp"
+#include "core/pack/touching_perimeter.hpp"
+#include "core/solve/base/parallel_map.hpp"
+
+namespace unwrapd::pack {
+namespace {
+
+constexpr std::array kRules = {TouchingRules{.2, .45}, TouchingRules{.2, .3},
+                               TouchingRules{.05, .3}, TouchingRules{.1, .6}};
+/// How much is tried.
+struct HowMuch {
+  std::size_t rules = 0;  ///< on the coarse grid
+  std::size_t fine = 0;   ///< rules that go on
+  int scales = 0;         ///< of each
+  double first = 1;       ///< of them, in shares of what the coarse grid suggests
+};
+constexpr HowMuch kUsualEffort{kRules.size(), 2, 3}, kOfVeryMany{1, 1, 1, 1.03};
+constexpr std::size_t kVeryMany = 1000;
+constexpr int kRoughCells = 512;
+constexpr double kRoughPerIsland = 15;
+constexpr double kSmallerTrial = 0.9;  // where islands did not fit in at all
+constexpr double kTrialStep = 1.002;   // of the scale, beyond what seems to fit
+
+struct Rated {
+  TouchingRules rules;
+  double scale = 0;  ///< page sides a unit at which they should just fit
+};
+
+class SnugPacker {
+ public:
+  SnugPacker(const BottomLeftPlacer& placer, const PageGrid& grid, Executor& executor)
+      : placer_(placer),
+        grid_(grid),
+        executor_(executor),
+        effort_(placer.size() > kVeryMany ? kOfVeryMany : kUsualEffort) {}
+
+  std::vector<Placement> packed() {
+    auto rated = solve::parallel_map<Rated>(effort_.rules, executor_,
+                                            [&](std::size_t k) { return rate(kRules[k]); });
+    std::ranges::stable_sort(rated, std::greater(), &Rated::scale);
+    auto found = solve::parallel_map<std::vector<Placement>>(
+        effort_.fine, executor_, [&](std::size_t k) { return fitted(rated[k]); });
+    return std::move(
+        *std::ranges::max_element(found, {}, [](const auto& own) { return own.front().scale; }));
+  }
+
+ private:
+  [[nodiscard]] int rough_side() const {
+    return grid_.tight_side(cells_for(placer_.size(), kRoughPerIsland, kRoughCells));
+  }
+
+  [[nodiscard]] Rated rate(const TouchingRules& rules) const {
+    const int side = rough_side();
+    BottomLeftPlacer placer = placer_;
+    for (double scale = usual_scale(placer, grid_, 1, side);; scale *= kSmallerTrial) {
+      placer.set_scale(scale, grid_.padding(side));
+      const TouchingPage page = place_by_touching_perimeter(placer, side, rules, executor_.stop());
+      if (page.found.side > 0) return {rules, scale / side * std::sqrt(double(side) / page.height)};
+    }
+  }
+
+  /// On the fine grid: the largest scale of some at which the strip is no higher than wide.
+  [[nodiscard]] std::vector<Placement> fitted(const Rated& rated) const {
+    const int side = grid_.tight_side(fine_cells(placer_.size()));
+    BottomLeftPlacer placer = placer_;
+    std::vector<Placement> best;
+    double scale = effort_.first * rated.scale * side, largest = 0, step = kTrialStep;
+    for (int tries = 0; tries < effort_.scales || best.empty(); ++tries) {
+      placer.set_scale(scale, grid_.padding(side));
+      const TouchingPage page =
+          place_by_touching_perimeter(placer, side, rated.rules, executor_.stop());
+      const bool fits = page.found.side == side;
+      if (fits && scale > largest) {
+        largest = scale;
+        best = placements_of(page.found, placer, grid_);
+      }
+      if (page.found.side == 0)
+        scale *= kSmallerTrial;
+      else
+        scale *= std::sqrt(double(side) / page.height) * (fits ? step : 1 / step);
+      if (!fits) step *= kTrialStep;
+    }
+    return best;
+  }
+
+  const BottomLeftPlacer& placer_;
+  const PageGrid& grid_;
+  Executor& executor_;
+  HowMuch effort_;
+};
+
+}  // namespace
+
+std::vector<Placement> pack_many(const BottomLeftPlacer& placer, const PageGrid& grid,
+                                 Executor& executor) {
+  return SnugPacker(placer, grid, executor).packed();
+}
+
+}  // namespace unwrapd::pack

@@ -1,0 +1,18 @@
+#pragma once
+// Many islands on one page.
+
+#include <vector>
+
+#include "core/base/executor.hpp"
+#include "core/pack/bottom_left.hpp"
+#include "core/pack/pack.hpp"
+#include "core/pack/page_grid.hpp"
+
+namespace unwrapd::pack {
+
+/// The arranger's islands as large as fits. The same for any number of threads. Throws
+/// Error{cancelled}.
+std::vector<Placement> pack_many(const BottomLeftPlacer& placer, const PageGrid& grid,
+                                 Executor& executor);
+
+}  // namespace unwrapd::pack

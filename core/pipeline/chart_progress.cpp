@@ -1,0 +1,100 @@
+#include "core/pipeline/chart_progress.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/cancel.hpp"
+#include "core/measure/distortion.hpp"
+
+namespace unwrapd::pipeline {
+namespace {
+
+/// Accelerated runs do not know their length: half of it is taken to be over after so many
+/// iterations, half of the rest after as many again, and so on.
+constexpr double kHalfWay = 20;
+
+double share_done(int iterations, const Stop& stop) {
+  if (stop.iterations) return std::min(1.0, static_cast<double>(iterations) / *stop.iterations);
+  return 1 - std::exp2(-iterations / kHalfWay);
+}
+
+IterationEvent describe(const solve::Disk& disk, const solve::Solution& s, Executor& executor) {
+  const Distortion d =
+      measure::distortion(measure::distortion_sums(disk.rest, disk.faces, s.uv, executor));
+  const double before = s.energy[s.energy.size() - 2], now = s.energy.back();
+  return {.iteration = s.iterations,
+          .energy = now,
+          .rel_change = before > 0 ? (before - now) / before : 0,
+          .angle = d.angle,
+          .area = d.area,
+          .flipped = d.flipped};
+}
+
+}  // namespace
+
+ChartProgress::ChartProgress(const Progress& progress, Index chart_count, std::size_t face_count,
+                             double begin, Executor& executor)
+    : progress_(progress),
+      executor_(executor),
+      chart_count_(chart_count),
+      faces_total_(static_cast<double>(std::max<std::size_t>(face_count, 1))),
+      begin_(begin) {}
+
+void ChartProgress::begin_chart(std::size_t faces, std::size_t lambda_count) {
+  faces_now_ = static_cast<double>(faces);
+  runs_ = static_cast<double>(lambda_count);
+  runs_done_ = 0;
+}
+
+void ChartProgress::begin_run(std::optional<double> lambda) {
+  throw_if_cancelled();
+  lambda_ = lambda;
+}
+
+void ChartProgress::end_chart() {
+  ++chart_;
+  faces_done_ += std::exchange(faces_now_, 0);
+  runs_done_ = 0;
+}
+
+double ChartProgress::fraction(double of_run) const {
+  const double of_chart = (runs_done_ + of_run) / runs_;
+  const double done = (faces_done_ + of_chart * faces_now_) / faces_total_;
+  return begin_ + (kSolveEnd - begin_) * done;
+}
+
+void ChartProgress::tell(Stage stage) const {
+  if (!progress_.on_stage) return;
+  const double of_run = stage == Stage::untangle ? 1 : 0;
+  progress_.on_stage({stage, chart_, chart_count_, fraction(of_run), lambda_});
+}
+
+/// Where it belongs in the job.
+IterationEvent ChartProgress::placed(IterationEvent event, const Stop& stop) const {
+  event.chart = chart_;
+  event.fraction = fraction(share_done(event.iteration, stop));
+  event.lambda = lambda_;
+  return event;
+}
+
+solve::SolveWatch ChartProgress::solve_watch(const solve::Disk& disk, const Stop& stop,
+                                             std::vector<IterationEvent>& told) const {
+  solve::SolveWatch watch;
+  watch.loop.stop = progress_.stop;
+  watch.on_stage = [this](Stage stage) { tell(stage); };
+  if (is_followed())
+    watch.loop.on_iteration = [this, &disk, &stop, &told](const solve::Solution& s) {
+      told.push_back(describe(disk, s, executor_));
+      progress_.on_iteration(placed(told.back(), stop));
+    };
+  return watch;
+}
+
+void ChartProgress::tell_again(const std::vector<IterationEvent>& told, const Stop& stop) const {
+  tell(Stage::solve);
+  for (const IterationEvent& event : told) progress_.on_iteration(placed(event, stop));
+}
+
+void ChartProgress::throw_if_cancelled() const { unwrapd::throw_if_cancelled(progress_.stop); }
+
+}  // namespace unwrapd::pipeline

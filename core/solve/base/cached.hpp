@@ -1,0 +1,86 @@
+#pragma once
+// What is made once for all jobs that need it: of a function's arguments, under a key that is made
+// of the same arguments.
+
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "core/linear/engine.hpp"
+#include "core/solve/base/disk.hpp"
+#include "core/types/cache_key.hpp"
+
+namespace unwrapd::solve {
+
+template <typename T>
+std::size_t bytes_of(const std::vector<T>& list) {
+  return sizeof(T) * list.size();
+}
+template <typename T>
+std::size_t bytes_of(const SharedList<T>& list) {
+  return sizeof(T) * list.size();
+}
+inline std::size_t bytes_of(const Halfedges& halfedges) { return bytes_of(halfedges.twin); }
+inline std::size_t bytes_of(const linear::Analysis& analysis) { return analysis.bytes(); }
+inline std::size_t bytes_of(const linear::Factor& factor) { return factor.bytes(); }
+
+/// By what a thing is made: nothing in here, or in a type derived from it, changes what is made.
+struct Making {
+  SharedCache* core = nullptr;  ///< null where nothing is shared
+  std::stop_token stop = {};
+  Executor* executor = nullptr;  ///< null: the calling thread
+};
+
+/// One object for each function: its address tells their keys apart.
+template <auto kMake>
+inline constexpr char kKind = 0;
+
+template <auto kMake, class... Inputs>
+Digest key_of(const SharedCache& core, const Inputs&... inputs) {
+  CacheKey key(core);
+  key.add(reinterpret_cast<std::uintptr_t>(&kKind<kMake>));
+  (key.add(inputs), ...);
+  return key.digest();
+}
+
+template <typename T>
+std::shared_ptr<const T> shared(std::shared_ptr<const T> made) {
+  return made;
+}
+template <typename T>
+std::shared_ptr<const T> shared(T made) {
+  return std::make_shared<const T>(std::move(made));
+}
+
+/// What kMake(by, inputs...) gives, or an equal one that another job made: a std::shared_ptr<const
+/// T>, of a function that returns one, or a T. kMake is a function, or a lambda without captures:
+/// all that it can read and that is not `by` is in the key. by: a Making, or derived from it.
+/// Throws Error{cancelled}, and what kMake throws.
+template <auto kMake, class By, class... Inputs>
+auto cached(const By& by, Inputs&&... inputs) {
+  static_assert(std::is_base_of_v<Making, By>);
+  using Pointer = decltype(shared(kMake(by, inputs...)));
+  if (by.core == nullptr) return shared(kMake(by, inputs...));
+  const auto make = [&]() -> SharedCache::Made {
+    const Pointer value = shared(kMake(by, inputs...));
+    return {value, bytes_of(*value)};
+  };
+  return std::static_pointer_cast<typename Pointer::element_type>(
+      by.core->obtain(key_of<kMake>(*by.core, inputs...), make, by.stop));
+}
+
+/// The same of kMake(disk, inputs...), copied. The disk is one of the inputs, as it is now.
+template <auto kMake, class... Inputs>
+auto cached_of_disk(const Disk& disk, const Inputs&... inputs) {
+  constexpr auto kOfDisk = [](const Making&, const auto&... all) { return kMake(all...); };
+  if (disk.core == nullptr) return kMake(disk, inputs...);
+  return decltype(kMake(disk, inputs...))(
+      *cached<kOfDisk>(Making{disk.core, disk.stop}, disk, inputs...));
+}
+
+/// Throws Error{too_much_memory} when a job on this disk that keeps so many bytes needs more than
+/// it may have.
+void check_memory(const Disk& disk, std::size_t bytes);
+
+}  // namespace unwrapd::solve

@@ -1,0 +1,45 @@
+#include "server/jobs/admission.hpp"
+
+#include <algorithm>
+
+#include "server/base/queue_errors.hpp"
+
+namespace unwrapd::server::jobs {
+
+using Clock = SlotReservations::Clock;
+
+QueueForecast Admission::line(const FairShare& share, const std::vector<AtWork>& running) const {
+  std::vector<double> ran;
+  for (const AtWork& job : running) ran.push_back(job.seconds);
+  return forecast_queue(places_, share.waiting(), workers_, share.lengths(), ran);
+}
+
+void Admission::check_place(const Applicant& sender, const FairShare& share,
+                            const std::vector<AtWork>& running) {
+  if (const auto later = promised_.ask(Clock::now(), sender, line(share, running)))
+    throw queue_full(places_, *later);
+}
+
+/// The owners with jobs share the workers: one of his ends once in so many.
+void Admission::check_quota(std::string_view sender, const http::Quota& quota,
+                            const store::OwnerUsage& usage, const store::JobRecord& job,
+                            const FairShare& share, const std::vector<AtWork>& running) {
+  if (quota.max_bytes > 0 && usage.stored_bytes + job.stored_bytes > quota.max_bytes)
+    throw quota_exceeded(quota.max_bytes);
+  if (quota.max_jobs == 0) return;
+  QueueForecast his = line(share, running);
+  const auto owners = static_cast<double>(std::max<std::int64_t>(1, share.owners()));
+  his.places = quota.max_jobs;
+  his.waiting = usage.live_jobs;
+  his.interval *= owners;
+  his.spread *= owners;
+  if (std::ranges::count(running, job.owner, &AtWork::owner) == 0)
+    his.first += his.interval + share.lengths().mean;
+  SlotReservations& promised = promised_to_owner_[job.owner];
+  const auto later = promised.ask(Clock::now(), {.who = sender}, his);
+  promised.leave(sender);
+  std::erase_if(promised_to_owner_, [](const auto& entry) { return entry.second.empty(); });
+  if (later) throw too_many_jobs(quota.max_jobs, *later);
+}
+
+}  // namespace unwrapd::server::jobs

@@ -1,0 +1,48 @@
+#pragma once
+// Who may send a job now: there is a place in the queue for it, and one among the jobs of its
+// owner.
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/http/caller.hpp"
+#include "server/jobs/fair_share.hpp"
+#include "server/jobs/slot_reservations.hpp"
+#include "server/store/job_store.hpp"
+
+namespace unwrapd::server::jobs {
+
+/// A job at work.
+struct AtWork {
+  std::string_view owner;
+  double seconds = 0;  ///< since it began
+};
+
+/// Not for use by two threads at once.
+class Admission {
+ public:
+  Admission(int places, int workers) : places_(places), workers_(workers) {}
+
+  /// Keeps a place in the queue for the sender until leave(), for half a minute; throws
+  /// RetryLater{queue_full} when there is none.
+  void check_place(const Applicant& sender, const FairShare& share,
+                   const std::vector<AtWork>& running);
+  /// Throws quota_exceeded, and RetryLater{too_many_jobs}, when its owner has what he may have.
+  void check_quota(std::string_view sender, const http::Quota& quota,
+                   const store::OwnerUsage& usage, const store::JobRecord& job,
+                   const FairShare& share, const std::vector<AtWork>& running);
+  void leave(std::string_view sender) { promised_.leave(sender); }
+
+ private:
+  [[nodiscard]] QueueForecast line(const FairShare& share,
+                                   const std::vector<AtWork>& running) const;
+
+  const int places_;
+  const int workers_;
+  SlotReservations promised_;
+  std::map<std::string, SlotReservations> promised_to_owner_;  // of those at the end of their quota
+};
+
+}  // namespace unwrapd::server::jobs

@@ -1,0 +1,51 @@
+#include "server/uploads/upload_budget.hpp"
+
+#include <algorithm>
+
+#include "server/base/files.hpp"
+#include "server/base/queue_errors.hpp"
+
+namespace unwrapd::server::uploads {
+
+/// False where what comes again finds no quota: then nothing is given up for it. Throws
+/// Error{quota_exceeded} for anything else.
+bool UploadBudget::reservation(std::int64_t bytes) {
+  if (reservation_.try_set(bytes, quota_, size_.known_bytes)) return true;
+  if (bytes > size_.known_bytes) throw quota_exceeded(quota_);
+  return false;
+}
+
+void UploadBudget::check_declared() {
+  static_cast<void>(reservation(size_.declared_bytes));
+  disk_.check_upload(size_.declared_bytes);
+}
+
+/// Of a body of unknown length twice what has come is claimed where there is so much, so that the
+/// store is not asked for each piece.
+void UploadBudget::claim_ahead(std::int64_t all) {
+  if (all <= reservation_.bytes()) return;
+  if (!reservation_.try_set(2 * all, quota_)) static_cast<void>(reservation(all));
+}
+
+void UploadBudget::take(std::int64_t bytes) {
+  const std::int64_t all = taken_ + bytes;
+  claim_ahead(all);
+  if (!disk_.try_take_for_upload(upload_, bytes)) {
+    const std::int64_t whole = std::max(all, size_.declared_bytes);
+    if (!reservation(whole)) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
+    disk_.take_for_upload(upload_, bytes, whole);
+  }
+  taken_ = all;
+}
+
+void UploadBudget::put_back(std::int64_t bytes) {
+  taken_ -= bytes;
+  disk_.put_back(upload_, bytes);
+}
+
+store::UploadMeter UploadBudget::counter() {
+  return {.take = [this](std::int64_t bytes) { take(bytes); },
+          .put_back = [this](std::int64_t bytes) { put_back(bytes); }};
+}
+
+}  // namespace unwrapd::server::uploads
