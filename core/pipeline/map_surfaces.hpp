@@ -18,7 +18,7 @@ struct Layout {
   std::vector<std::vector<std::shared_ptr<const charts::Chart>>>
       charts;                               ///< of each surface, as mapped
   std::vector<std::vector<UvMap>> islands;  ///< islands[s][k]: the map of charts[s][k]
-  std::vector<std::vector<std::vector<char>>> constrained;  ///< held[s][k]: see MappedChart
+  std::vector<std::vector<std::vector<char>>> constrained;  ///< constrained[s][k]: see MappedChart
   measure::DistortionSums sums;  ///< of all charts, from space to the page as it is written
   Report report;
 };

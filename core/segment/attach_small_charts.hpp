@@ -5,7 +5,8 @@
 
 namespace unwrapd::segment {
 
-inline constexpr double kSmallRegion = 0.01;  ///< of the sheet's area: below that a region is small
+inline constexpr double kSmallRegion =
+    0.01;  ///< of the surface's area: below that a region is small
 
 /// Each small region that no neighbour took as a whole becomes part of one where the two have a
 /// sound map with some of their common border glued, down to one edge; the rest of it stays a slit.

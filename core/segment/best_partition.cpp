@@ -8,18 +8,18 @@
 
 namespace unwrapd::segment {
 
-BestMerge::BestMerge(const SegmentationMesh& surface, const Partition& from,
-                     const MergeRules& rules, std::size_t steps, Executor& executor)
+BestPartition::BestPartition(const SegmentationMesh& surface, const Partition& from,
+                             const MergeRules& rules, std::size_t steps, Executor& executor)
     : search_(surface, from, rules, steps, executor) {}
 
-const Partition& BestMerge::first() {
+const Partition& BestPartition::first() {
   mended_ = search_.greedy();
   search_.mend(mended_);
   best_ = search_.taken_apart(search_.finished(mended_));
   return best_.partition;
 }
 
-bool BestMerge::loosen(double budget) {
+bool BestPartition::loosen(double budget) {
   if (!std::exchange(is_priced_, true)) best_ = search_.priced(std::move(best_));
   const double seam = best_.cost.seam;
   if (seam <= 0) return false;  // it needs no cut

@@ -10,12 +10,12 @@ namespace unwrapd::segment {
 /// Merges greedily at several prices, with and without an eye on the page, and takes what is best
 /// by seam, number of charts and how well they fill a page; its borders are then straightened, and
 /// what fits together after that is merged. The same for any executor. All throw Error{cancelled}.
-class BestMerge {
+class BestPartition {
  public:
-  /// rules: price and least_fill are chosen here. steps: how often loosen() is going to be called.
-  /// sheet, from and executor must outlive this.
-  BestMerge(const SegmentationMesh& surface, const Partition& from, const MergeRules& rules,
-            std::size_t steps, Executor& executor);
+  /// rules: distortion_weight and least_fill are chosen here. steps: how often loosen() is going to
+  /// be called. surface, from and executor must outlive this.
+  BestPartition(const SegmentationMesh& surface, const Partition& from, const MergeRules& rules,
+                std::size_t steps, Executor& executor);
 
   /// The best for the budget of the rules. It comes first, once.
   const Partition& first();

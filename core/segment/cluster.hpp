@@ -10,7 +10,7 @@ namespace unwrapd::segment {
 
 /// One label a face, 0.. by first face; the faces of a label hang together. Within a patch the mean
 /// of (1 - cosine of the angle to the patch's normal) stays below flatness, in (0, 2).
-/// normals: one a face (those of the sheet, or smoothed). Throws Error{cancelled}.
+/// normals: one a face (those of the surface, or smoothed). Throws Error{cancelled}.
 std::vector<Index> cluster_faces(const SegmentationMesh& surface, std::span<const Vec3> normals,
                                  double flatness, const std::stop_token& stop);
 

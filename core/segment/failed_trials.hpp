@@ -16,7 +16,7 @@ namespace unwrapd::segment {
 /// A number for all that a trial reads; two trials with the same number are the same.
 std::uint64_t trial_key(std::span<const char> open, const TestRules& rules, const Region& region);
 
-/// Of one sheet, for one thread.
+/// Of one surface, for one thread.
 class FailedTrials {
  public:
   FailedTrials() = default;

@@ -11,7 +11,7 @@ namespace unwrapd::segment {
 struct MappedRegion {
   Region region;
   ExcessDistortion excess;  ///< of that map
-  double area = 0;          ///< of the sheet's 1
+  double area = 0;          ///< of the surface's 1
   bool is_sound = false;    ///< its map is; what is not sound merges with nothing
 };
 
@@ -25,16 +25,16 @@ struct Joined {
 Region beside(const SegmentationMesh& surface, const Region& a, const Region& b,
               std::span<const Index> border);
 
-/// What joining regions needs of the sheet, worked out once.
+/// What joining regions needs of the surface, worked out once.
 class Joiner {
  public:
-  /// sheet must outlive the joiner.
+  /// surface must outlive the joiner.
   explicit Joiner(const SegmentationMesh& surface);
 
   /// b laid beside a, turned and moved as their common border asks, then mapped together. Where
   /// that has no sound map, only the longest stretch of the border is glued: stretches end at
   /// vertices that are far from flat. cap: most excess over area, where joining adds some.
-  /// open: one a half-edge of the sheet, 1: not glued. trial: but for the excess. A
+  /// open: one a half-edge of the surface, 1: not glued. trial: but for the excess. A
   /// stop request ends it early.
   [[nodiscard]] Joined join(const MappedRegion& a, const MappedRegion& b,
                             std::span<const char> open, double cap, const TestRules& trial) const;

@@ -29,7 +29,7 @@ struct MergeRules {
 /// Regions, and the half-edges inside of them that are seams all the same.
 struct Partition {
   std::vector<MappedRegion> patches;
-  std::vector<char> open;  ///< one a half-edge of the sheet, 1: not glued
+  std::vector<char> open;  ///< one a half-edge of the surface, 1: not glued
 };
 
 /// The same for any executor. Throws Error{cancelled}.

@@ -9,11 +9,11 @@
 
 namespace unwrapd::segment {
 
-/// Partitions of one sheet that compete. Every step is the same for any executor and throws
+/// Partitions of one surface that compete. Every step is the same for any executor and throws
 /// Error{cancelled}.
 class MergeSearch {
  public:
-  /// steps: how often widen() is going to be called. sheet, from and executor must outlive this.
+  /// steps: how often widen() is going to be called. surface, from and executor must outlive this.
   MergeSearch(const SegmentationMesh& surface, const Partition& from, const MergeRules& rules,
               std::size_t steps, Executor& executor);
 

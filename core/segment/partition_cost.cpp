@@ -1,5 +1,5 @@
 // Packing takes as long as merging, so it is left out where it can change nothing: where seams and
-// charts alone cost too much, and where the sheet has but a part of a page, for then other charts
+// charts alone cost too much, and where the surface has but a part of a page, for then other charts
 // fill the gaps. It ends where the page is as full as it need be.
 #include "core/segment/partition_cost.hpp"
 
@@ -12,7 +12,7 @@
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kMostPage = 1.5;  // of the sheet
+constexpr double kMostPage = 1.5;  // of the surface
 
 std::vector<charts::Outline> outlines(const SegmentationMesh& surface, const Partition& partition,
                                       const std::vector<Index>& owner) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a partition of a sheet costs: what its user would see of it.
+// What a partition of a surface costs: what its user would see of it.
 
 #include <limits>
 #include <stop_token>
@@ -12,7 +12,7 @@ namespace unwrapd::segment {
 inline constexpr double kCostOfEmptiness = 40;  ///< of a whole page, in length of seams
 
 struct PartitionCost {
-  double seams = std::numeric_limits<double>::infinity();  ///< and charts; area of the sheet: 1
+  double seams = std::numeric_limits<double>::infinity();  ///< and charts; area of the surface: 1
   double all = std::numeric_limits<double>::infinity();    ///< and what the page leaves empty
   double seam = std::numeric_limits<double>::infinity();   ///< alone
 };
@@ -20,14 +20,14 @@ struct PartitionCost {
 struct CostRules {
   double chart = 0;        ///< what each chart costs, in length of seams
   double small_chart = 0;  ///< one below kSmallRegion: most of them can be hung on others
-  double page_area = 1;    ///< of all that comes onto the page, in units of the sheet's
+  double page_area = 1;    ///< of all that comes onto the page, in units of the surface's
   double wanted_fill = 1;  ///< share of the page; a page that is fuller costs nothing
   double limit = std::numeric_limits<double>::infinity();    ///< from here on it is all the same
   double longest = std::numeric_limits<double>::infinity();  ///< seams of which cost without limit
   std::stop_token stop = {};
 };
 
-/// The length of all seams; area of the sheet: 1.
+/// The length of all seams; area of the surface: 1.
 double seam_length(const SegmentationMesh& surface, const Partition& partition);
 
 /// Seams by their lengths, so much for each chart, and more for each share of a rough packing

@@ -1,5 +1,5 @@
 #pragma once
-// Where in a list each face of a sheet stands, without a walk over the sheet for every list.
+// Where in a list each face of a surface stands, without a walk over the surface for every list.
 
 #include <span>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace unwrapd::segment {
 
-/// Kept per thread and wiped after use: what it costs is the list, not the sheet.
+/// Kept per thread and wiped after use: what it costs is the list, not the surface.
 class Ranks {
  public:
   /// faces, each once, below face_count, must outlive it.

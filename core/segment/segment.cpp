@@ -137,8 +137,8 @@ Partition limited(const SegmentationMesh& surface, Partition partition, const Se
 
 }  // namespace
 
-SheetSegmentation::SheetSegmentation(const SegmentationMesh& surface, SegmentRules rules,
-                                     std::size_t steps, Executor& executor)
+SurfaceSegmentation::SurfaceSegmentation(const SegmentationMesh& surface, SegmentRules rules,
+                                         std::size_t steps, Executor& executor)
     : surface_(surface),
       rules_(std::move(rules)),
       steps_(steps),
@@ -147,7 +147,7 @@ SheetSegmentation::SheetSegmentation(const SegmentationMesh& surface, SegmentRul
         if (rules_.on_progress) rules_.on_progress(stage_, share);
       }) {}
 
-Segments SheetSegmentation::first(double excess) {
+Segments SurfaceSegmentation::first(double excess) {
   const Work work{rules_.stop, effort_, executor_};
   patches_ = {over_segment(surface_, excess, work), std::vector<char>(surface_.length.size(), 0)};
   stage_ = Stage::merge;
@@ -161,12 +161,12 @@ Segments SheetSegmentation::first(double excess) {
   return segments_of(merge_.emplace(surface_, patches_, merging, steps_, executor_).first());
 }
 
-std::optional<Segments> SheetSegmentation::destroy(double excess) {
+std::optional<Segments> SurfaceSegmentation::loosened(double excess) {
   if (!merge_->loosen(kMargin * excess)) return std::nullopt;
   return segments_of(merge_->best());
 }
 
-Segments SheetSegmentation::segments_of(Partition best) const {
+Segments SurfaceSegmentation::segments_of(Partition best) const {
   best = limited(surface_, std::move(best), rules_, executor_);
   Segments segments{.regions = {},
                     .open = {},
@@ -187,13 +187,13 @@ bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most)
 
 Segments segment(const SegmentationMesh& surface, const SegmentRules& rules, Executor& executor) {
   const std::vector<double> steps = excess_steps(rules.max_distortion);
-  SheetSegmentation segmentation(surface, rules, steps.size() - 1, executor);
+  SurfaceSegmentation segmentation(surface, rules, steps.size() - 1, executor);
   const auto seams = [](const Segments& own) {
     return SeamsOfCharts{own.regions.size(), own.seam_length};
   };
   Segments best = segmentation.first(steps.front());
   for (const double excess : std::span(steps).subspan(1)) {
-    std::optional<Segments> next = segmentation.destroy(excess);
+    std::optional<Segments> next = segmentation.loosened(excess);
     if (next && is_better(seams(*next), seams(best), rules.most_regions)) best = std::move(*next);
   }
   return best;

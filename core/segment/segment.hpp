@@ -18,7 +18,7 @@ namespace unwrapd::segment {
 struct SegmentRules {
   double max_distortion = kDefaultDistortion;  ///< of all regions together, D_angle and D_area; > 2
   Index most_regions = std::numeric_limits<Index>::max();  ///< however distorted, if maps allow it
-  double page_area = 1;   ///< of all that lies on one page with this sheet, in units of its area
+  double page_area = 1;   ///< of all that lies on one page with this surface, in units of its area
   bool is_quick = false;  ///< one merge, no search for the best
   std::function<void(Stage, double)> on_progress = {};  ///< the share that is done
   std::stop_token stop = {};
@@ -26,9 +26,9 @@ struct SegmentRules {
 
 struct Segments {
   std::vector<Region> regions;
-  std::vector<char> open;        ///< one a half-edge of the sheet, 1: a seam inside a region
-  ExcessDistortion excess = {};  ///< of all maps, over the sheet's area
-  double seam_length = 0;        ///< area of the sheet: 1
+  std::vector<char> open;        ///< one a half-edge of the surface, 1: a seam inside a region
+  ExcessDistortion excess = {};  ///< of all maps, over the surface's area
+  double seam_length = 0;        ///< area of the surface: 1
 };
 
 /// What is compared where several steps lead to a bound.
@@ -40,17 +40,17 @@ struct SeamsOfCharts {
 /// Shorter seams are better; first of all, fewer of the charts beyond `most` are.
 bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most);
 
-/// A sheet taken apart for one bound, and from there for looser ones. Every face of the sheet is in
-/// exactly one region; each region is a disk (holes allowed) whose map has no flip and no overlap.
-/// Ends with single triangles in the worst case. The same for any executor, and for the sheet of a
-/// mesh that was moved or scaled. All throw Error{cancelled}.
-class SheetSegmentation {
+/// A surface taken apart for one bound, and from there for looser ones. Every face of the surface
+/// is in exactly one region; each region is a disk (holes allowed) whose map has no flip and no
+/// overlap. Ends with single triangles in the worst case. The same for any executor, and for the
+/// surface of a mesh that was moved or scaled. All throw Error{cancelled}.
+class SurfaceSegmentation {
  public:
-  /// steps: how often destroy() is going to be called. sheet and executor must outlive this.
-  SheetSegmentation(const SegmentationMesh& surface, SegmentRules rules, std::size_t steps,
-                    Executor& executor);
-  SheetSegmentation(const SheetSegmentation&) = delete;
-  SheetSegmentation& operator=(const SheetSegmentation&) = delete;
+  /// steps: how often loosened() is going to be called. surface and executor must outlive this.
+  SurfaceSegmentation(const SegmentationMesh& surface, SegmentRules rules, std::size_t steps,
+                      Executor& executor);
+  SurfaceSegmentation(const SurfaceSegmentation&) = delete;
+  SurfaceSegmentation& operator=(const SurfaceSegmentation&) = delete;
 
   /// The regions for this excess over 2, whatever the rules' bound. It comes first, once.
   Segments first(double excess);
@@ -58,7 +58,7 @@ class SheetSegmentation {
   /// Those for a larger excess than the last one; nothing where the same partition is the best.
   /// Another one has shorter seams, unless there are more regions than the rules allow: either is
   /// then merged further.
-  std::optional<Segments> destroy(double excess);
+  std::optional<Segments> loosened(double excess);
 
  private:
   [[nodiscard]] Segments segments_of(Partition best) const;
@@ -70,7 +70,7 @@ class SheetSegmentation {
   Stage stage_ = Stage::segment;
   ProgressEstimate effort_;
   Partition patches_;
-  std::optional<BestMerge> merge_;
+  std::optional<BestPartition> merge_;
 };
 
 /// The regions for the rules' bound: of those of all steps up to it (excess_steps()), the ones with

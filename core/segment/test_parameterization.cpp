@@ -41,7 +41,7 @@ Halfedges glued(const SegmentationMesh& surface, std::span<const char> open,
   return own;
 }
 
-/// Numbers vertices as the sheet would eliminate them, those that are one on the sheet as they
+/// Numbers vertices as the surface would eliminate them, those that are one on the surface as they
 /// come.
 void renumber(const SegmentationMesh& surface, std::span<const Index> faces,
               CornerVertices& corners) {
@@ -91,7 +91,7 @@ bool is_disk(const Part& part) {
   return pending.size() == part.mesh.faces.size();
 }
 
-/// In the units of the sheet: what the solver reads of a part does not ask for area 1.
+/// In the units of the surface: what the solver reads of a part does not ask for area 1.
 solve::Disk disk_of(const SegmentationMesh& surface, std::span<const Index> faces, const Part& part,
                     const std::stop_token& stop) {
   std::vector<measure::RestTriangle> rest;

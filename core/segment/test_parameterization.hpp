@@ -9,7 +9,7 @@
 
 namespace unwrapd::segment {
 
-/// Area-weighted distortion above the ideal, in units of the sheet: area * (D - 2).
+/// Area-weighted distortion above the ideal, in units of the surface: area * (D - 2).
 struct ExcessDistortion {
   double angle = 0;
   double area = 0;
@@ -55,7 +55,7 @@ struct TestRules {
 
 /// A few iterations of ARAP from the rotations of region.uv, which need not hold together. Where
 /// the map is sound, region.uv becomes it, with UV area = 3D area; else it is of no use. open: one
-/// a half-edge of the sheet, 1: not glued; empty: none. A stop request ends it early, with any
+/// a half-edge of the surface, 1: not glued; empty: none. A stop request ends it early, with any
 /// verdict.
 struct TestResult {
   Verdict verdict = Verdict::impossible;

@@ -131,7 +131,7 @@ void RunningServer::restart() {
 
 httplib::Client RunningServer::client() const {
   httplib::Client client("127.0.0.1", service_->port());
-  client.set_read_timeout(std::chrono::minutes(2));
+  client.set_read_timeout(std::chrono::minutes(10));
   return client;
 }
 
