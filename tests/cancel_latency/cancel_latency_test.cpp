@@ -64,14 +64,14 @@ struct Sample {
   [[nodiscard]] long at_least(long times = 1) const { return times * (faces / 4096); }
 };
 
-TEST(Looks, ComeWithEveryHoleFilled) {
+TEST(CancelLatency, ComeWithEveryHoleFilled) {
   const Sample s;
   solve::Disk filled_disk;
   EXPECT_GE(looks_of([&] { filled_disk = solve::maps::fill_holes(s.disk()).disk; }), s.at_least());
   EXPECT_TRUE(filled_disk.stop.stop_possible());  // what is made of it looks as well
 }
 
-TEST(Looks, ComeWithPatches) {
+TEST(CancelLatency, ComeWithPatches) {
   const Sample s;
   std::vector<solve::repair::Patch> patches;
   const auto cut = [&] {
@@ -83,7 +83,7 @@ TEST(Looks, ComeWithPatches) {
   EXPECT_TRUE(patches[0].mesh.stop.stop_possible());
 }
 
-TEST(Looks, ComeWithStepsUnderABarrier) {
+TEST(CancelLatency, ComeWithStepsUnderABarrier) {
   const Sample s;
   solve::repair::Patch whole =
       std::move(solve::repair::patches_around(s.disk(), std::vector<Index>{0}, 999, {})[0]);
@@ -106,7 +106,7 @@ TEST(Looks, ComeWithStepsUnderABarrier) {
   EXPECT_GE(step, by_hand + 8);  // factor and solution
 }
 
-TEST(Looks, ComeWithEverySolution) {
+TEST(CancelLatency, ComeWithEverySolution) {
   const Sample s;
   const solve::InnerSystem inner(s.disk(), solve::cotan_laplacian(s.disk(), s.disk().rest));
   UvMap uv = s.flat;
@@ -114,7 +114,7 @@ TEST(Looks, ComeWithEverySolution) {
 }
 
 /// A spectral map takes a pinned one, one more factor, and a solution an iteration: more than one.
-TEST(Looks, ComeWithEveryIterationOfASpectralMap) {
+TEST(CancelLatency, ComeWithEveryIterationOfASpectralMap) {
   const Sample s(shapes::sphere_cap(120, 50, 2.8));
   const long pinned = looks_of([&] { solve::maps::conformal_map(s.disk(), Pins::diameter); });
   EXPECT_GT(looks_of([&] { solve::maps::conformal_map(s.disk(), Pins::spectral); }), 2 * pinned);
@@ -137,7 +137,7 @@ void expect_to_stop_at_any_look(const TriMesh& mesh, const UnwrapOptions& option
 }
 
 /// A try is as long as a union is large: its order, factor, solutions and overlap test look, too.
-TEST(Looks, ComeWithEveryTryOfAUnion) {
+TEST(CancelLatency, ComeWithEveryTryOfAUnion) {
   const TriMesh mesh = shapes::annulus(160, 50);
   const segment::SegmentationMesh surface =
       segment::make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
@@ -156,7 +156,7 @@ TEST(Looks, ComeWithEveryTryOfAUnion) {
     EXPECT_LE(looks_of(work, last), last + 40);  // it goes on nowhere
 }
 
-TEST(Looks, AreObeyedByEveryMethod) {
+TEST(CancelLatency, AreObeyedByEveryMethod) {
   for (const Method method : {Method::asap, Method::arap, Method::hybrid, Method::abf,
                               Method::linabf, Method::cp, Method::bff, Method::ic, Method::slim}) {
     SCOPED_TRACE(static_cast<int>(method));
@@ -166,7 +166,7 @@ TEST(Looks, AreObeyedByEveryMethod) {
   }
 }
 
-TEST(Looks, AreObeyedWhereAMapIsMended) {
+TEST(CancelLatency, AreObeyedWhereAMapIsMended) {
   for (const RepairMethod repair : {RepairMethod::untangle, RepairMethod::virtual_boundary})
     expect_to_stop_at_any_look(shapes::sphere_cap(12, 8, 3),
                                {.method = Method::asap,
@@ -176,7 +176,7 @@ TEST(Looks, AreObeyedWhereAMapIsMended) {
                                10);
 }
 
-TEST(Looks, AreObeyedWhereASurfaceIsTakenApart) {
+TEST(CancelLatency, AreObeyedWhereASurfaceIsTakenApart) {
   expect_to_stop_at_any_look(shapes::torus(10, 6), {}, 15);
 }
 

@@ -81,7 +81,7 @@ TEST(Pages, MorePagesGiveMoreTexels) {
   EXPECT_GT(four.placements[0].scale, 1.7 * one.placements[0].scale);  // 2 is all
 }
 
-TEST(Stacks, IslandsOfOneShapeShareAPlaceWhateverWayTheyLie) {
+TEST(CongruentIslands, IslandsOfOneShapeShareAPlaceWhateverWayTheyLie) {
   std::vector<charts::Outline> islands;
   for (int k = 0; k < 6; ++k) islands.push_back(flag(1, 0.7 * k, {5.0 * k, -k}));
   islands.push_back(square(2));
@@ -96,7 +96,7 @@ TEST(Stacks, IslandsOfOneShapeShareAPlaceWhateverWayTheyLie) {
   EXPECT_GT(packed.placements[0].scale, 1.5 * pack_alone(islands, {}).placements[0].scale);
 }
 
-TEST(Stacks, MirrorImagesAndOtherSizesAreOtherShapes) {
+TEST(CongruentIslands, MirrorImagesAndOtherSizesAreOtherShapes) {
   charts::Outline mirrored = flag(1, 0, {0, 0});
   for (auto& segment : mirrored) {
     for (Vec2& p : segment) p.x() = -p.x();

@@ -175,7 +175,7 @@ std::vector<Kind> kinds(const Halfedges& cut, std::span<const Index> cores) {
   return kinds;
 }
 
-TEST(Carry, CutsTheLargeSurfaceIntoPartsOfTheSameGenusAndBoundaries) {
+TEST(TransferSeams, CutsTheLargeSurfaceIntoPartsOfTheSameGenusAndBoundaries) {
   for (const auto& [name, mesh] : surfaces())
     for (const double width : {0.3, 0.7, 50.0}) {
       const Halfedges halfedges = build_halfedges(mesh.faces, mesh.vertex_count());
@@ -202,7 +202,7 @@ double seam_length(const TriMesh& mesh, const Halfedges& cut, const Halfedges& u
   return length / 2;
 }
 
-TEST(Carry, TakesTheShortestWay) {
+TEST(TransferSeams, TakesTheShortestWay) {
   for (const auto& [name, mesh] : surfaces()) {
     const Halfedges halfedges = build_halfedges(mesh.faces, mesh.vertex_count());
     const Coarse coarse = coarsen(mesh, halfedges, 300, {});
@@ -229,7 +229,7 @@ std::vector<char> seams_by_lot(const Coarse& coarse, std::mt19937& rng) {
 }
 
 /// A row of seams may enclose faces between two that the small surface has: they are no part.
-TEST(Carry, LeavesNoPartWithoutAFaceOfTheSmallSurface) {
+TEST(TransferSeams, LeavesNoPartWithoutAFaceOfTheSmallSurface) {
   std::mt19937 rng(1);
   for (const auto& [name, mesh] : surfaces()) {
     const Halfedges halfedges = build_halfedges(mesh.faces, mesh.vertex_count());
@@ -244,7 +244,7 @@ TEST(Carry, LeavesNoPartWithoutAFaceOfTheSmallSurface) {
   }
 }
 
-TEST(Carry, CutsNothingWhereThereIsNoSeam) {
+TEST(TransferSeams, CutsNothingWhereThereIsNoSeam) {
   const TriMesh mesh = sphere(4);
   const Halfedges halfedges = build_halfedges(mesh.faces, mesh.vertex_count());
   const Coarse coarse = coarsen(mesh, halfedges, 300, {});

@@ -123,7 +123,7 @@ double slit_length(const SegmentationMesh& surface, const Partition& partition) 
   return length;
 }
 
-TEST(GlueSlits, ClosesOnesThatAreOfNoUse) {
+TEST(CloseSlits, ClosesOnesThatAreOfNoUse) {
   const SegmentationMesh surface = segmentation_mesh_of(grid(8, 8));
   const auto on_line = [](const Vec3& a, const Vec3& b) {
     return std::abs(a.y()) < 1e-9 && std::abs(b.y()) < 1e-9 && std::min(a.x(), b.x()) > -0.3;
@@ -146,7 +146,7 @@ Partition opened_cap(const SegmentationMesh& surface) {
 }
 
 /// The more may be bent, by either bound, the less stays open; the rest would bend it more.
-TEST(GlueSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound) {
+TEST(CloseSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound) {
   const SegmentationMesh surface = segmentation_mesh_of(sphere_cap(24, 12, 1.3));
   const Partition open = opened_cap(surface);
   const double least = open.patches.front().excess.worst();
@@ -168,7 +168,7 @@ TEST(GlueSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound)
 }
 
 /// The bound of all regions counts what the others have.
-TEST(GlueSlits, LeavesOneOpenWhereTheOthersHaveAllThatThereIs) {
+TEST(CloseSlits, LeavesOneOpenWhereTheOthersHaveAllThatThereIs) {
   const SegmentationMesh surface = segmentation_mesh_of(sphere_cap(24, 12, 1.3));
   Partition open = opened_cap(surface);
   MappedRegion& elsewhere = open.patches.emplace_back();

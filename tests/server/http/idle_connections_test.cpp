@@ -43,9 +43,9 @@ class Handshake final : public Transport {
   bool open_ = false;
 };
 
-class ParkingTest : public testing::Test {
+class IdleConnectionsTest : public testing::Test {
  protected:
-  ~ParkingTest() override {
+  ~IdleConnectionsTest() override {
     listener_.stop();
     for (const auto& pair : pairs_) ::close(pair[0]);
   }
@@ -89,7 +89,7 @@ class ParkingTest : public testing::Test {
   std::jthread running_;
 };
 
-TEST_F(ParkingTest, OneTooManyDrivesOutWhoWouldBeLateNext) {
+TEST_F(IdleConnectionsTest, OneTooManyDrivesOutWhoWouldBeLateNext) {
   rules_.max_parked = 2;
   start(std::chrono::minutes(1));
   const int first = come();
@@ -105,7 +105,7 @@ TEST_F(ParkingTest, OneTooManyDrivesOutWhoWouldBeLateNext) {
   EXPECT_EQ(ready_.get_future().get(), kHead);
 }
 
-TEST_F(ParkingTest, AHandshakeThatComputesLongDelaysNobody) {
+TEST_F(IdleConnectionsTest, AHandshakeThatComputesLongDelaysNobody) {
   const auto begun = std::make_shared<std::promise<void>>();
   std::promise<void> release;
   start(std::chrono::minutes(1));
@@ -124,7 +124,7 @@ TEST_F(ParkingTest, AHandshakeThatComputesLongDelaysNobody) {
   release.set_value();
 }
 
-TEST_F(ParkingTest, AHandshakeThatDripsHasOneDeadline) {
+TEST_F(IdleConnectionsTest, AHandshakeThatDripsHasOneDeadline) {
   start(milliseconds(200));
   const int slow = come([] {});
   while (send(slow, ".")) std::this_thread::sleep_for(milliseconds(5));  // until it is closed
