@@ -67,11 +67,11 @@ sigset_t block_end_signals() {
 }
 
 /// A second signal leaves the jobs at work no more time.
-std::jthread hurry_at_next(const sigset_t& signals, Service& service, const Log& log) {
+std::jthread stop_waiting_at_next(const sigset_t& signals, Service& service, const Log& log) {
   return std::jthread([signals, &service, &log](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       if (::sigtimedwait(&signals, nullptr, &kLook) < 0) continue;
-      log.info("hurrying");
+      log.info("stopping without waiting for jobs");
       service.stop_waiting();
       return;
     }
@@ -93,7 +93,7 @@ void serve(const config::Config& config, const Log& log, const work::WorkerFunct
   int signal = 0;
   sigwait(&signals, &signal);
   log.info("draining", {{"signal", signal}});
-  const std::jthread watching = hurry_at_next(signals, service, log);
+  const std::jthread watching = stop_waiting_at_next(signals, service, log);
   if (!service.drain()) {
     log.warning("ended although jobs did not stop");
     std::_Exit(EXIT_SUCCESS);  // without their threads; what they do is no longer wanted

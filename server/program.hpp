@@ -6,7 +6,7 @@
 namespace unwrapd::server {
 
 /// Reads the command line, serves until SIGTERM or SIGINT, drains. With --job-worker alone it is
-/// the worker process of a server instead, which does these duties; the program that is
+/// the worker process of a server instead, which calls these functions; the program that is
 /// started for it is this one when they name none. Returns the exit code.
 int run_program(int argc, char** argv, work::WorkerFunctions functions = {});
 

@@ -15,7 +15,7 @@ class Service {
  public:
   /// Opens the data directory, takes up what the last process left, and serves. Throws Error when
   /// the directory is in use, the store cannot be read or the address cannot be had. Without a
-  /// program among the duties there is no worker process.
+  /// program among the functions there is no worker process.
   Service(const config::Config& config, const Log& log,
           const work::WorkerFunctions& functions = {});
   /// Like drain(), without patience.

@@ -26,7 +26,7 @@ class Executor {
   /// further blocks and throws Error{cancelled}.
   virtual void for_each_block(int block_count, const std::function<void(int)>& body) = 0;
 
-  /// What jobs share (solver_core.hpp); null where this one is alone. Outlives the job.
+  /// What jobs share (shared_cache.hpp); null where this one is alone. Outlives the job.
   [[nodiscard]] virtual SharedCache* shared_cache() const { return nullptr; }
 
   /// Of the job whose blocks these are: long work looks at it (cancel.hpp).

@@ -24,7 +24,7 @@ class SharedCache {
   SharedCache& operator=(const SharedCache&) = delete;
   virtual ~SharedCache() = default;
 
-  /// Another one for other bytes. Keys are written by Fingerprint (fingerprint.hpp).
+  /// Another one for other bytes. Keys are written by Fingerprint (cache_key.hpp).
   [[nodiscard]] virtual Digest digest(std::span<const std::byte> bytes) const = 0;
 
   /// What was made under this key before, or what make() gives. Jobs that ask for the same key at

@@ -112,7 +112,7 @@ const Pin* hard_pin(std::span<const Pin> pins) {
   return hard;
 }
 
-/// Springs of one vertex, as one: sum w |u - p|^2 is W |u - sum w p / W|^2 and a constant.
+/// Soft constraints of one vertex, as one: sum w |u - p|^2 is W |u - sum w p / W|^2 and a constant.
 solve::SoftConstraint merged(std::span<const Pin> pins) {
   solve::SoftConstraint soft_constraint{pins.front().vertex, Vec2::Zero(), 0};
   for (const Pin& pin : pins) soft_constraint.weight += pin.weight;

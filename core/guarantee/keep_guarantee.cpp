@@ -157,7 +157,8 @@ void split(const GuaranteedPart& part, const Seeds& seeds, const std::stop_token
 }
 
 /// A map of the part in which nothing overlaps, in units of which one is `unit` of the mesh's,
-/// drawn by the springs. The part stays as it is where there is none, or none that is good enough.
+/// drawn by the soft constraints. The part stays as it is where there is none, or none that is good
+/// enough.
 bool unfold(GuaranteedPart& part, double unit, const GuaranteeRules& rules) {
   const solve::repair::MapIntent& intent = rules.intent;
   const solve::Disk disk = solve::make_disk(part.chart->mesh, part.chart->loops, intent.stop);

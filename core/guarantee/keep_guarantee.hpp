@@ -28,7 +28,7 @@ struct GuaranteeRules {
   Guarantee guarantee = Guarantee::flip_free;
   RepairMethod repair = RepairMethod::untangle;
   solve::repair::MapIntent intent =
-      {};  ///< held vertices stay; a chart that has some, or springs, is not split
+      {};  ///< hard constraints stay; a chart with hard or soft ones is not split
   /// What a new map's energy has above the least there is may be more by this share of what the old
   /// one's has; rather than that the chart is split.
   double most_rise = std::numeric_limits<double>::infinity();
@@ -51,7 +51,7 @@ struct Written {
 };
 
 /// Rounds a kept part's page UVs to what every format writes exactly, and keeps the promise there;
-/// vertices that promise.intent holds are only rounded, and under Guarantee::none all are.
+/// vertices that rules.intent constrains are only rounded, and under Guarantee::none all are.
 /// Gaps that rounding closes are opened again (separate_rounded_boundaries()).
 /// Throws Error{guarantee_failed, cancelled}.
 Written keep_on_page(const charts::Chart& chart, const GuaranteeRules& rules, UvMap& page_uv);

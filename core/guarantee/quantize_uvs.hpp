@@ -16,15 +16,16 @@ inline constexpr double kUvStep = 0x1p-24;
 /// kUvStep, or where constraints put UVs beyond [0, 1] the power of two at which the same holds.
 double uv_step(const UvMap& uv);
 
-/// Every UV to the nearest multiple of uv_step(), whatever becomes of the triangles. Where held[v]
-/// (one a vertex, or empty), each coordinate is as exact as it can be written: to the step that
-/// uv_step() says of it alone.
+/// Every UV to the nearest multiple of uv_step(), whatever becomes of the triangles. Where
+/// constrained[v] (one a vertex, or empty), each coordinate is as exact as it can be written: to
+/// the step that uv_step() says of it alone.
 void round_to_step(UvMap& uv, std::span<const char> constrained = {});
 
 /// Every UV on the page to the nearest multiple of uv_step(); uv is a chart's map without flips.
 /// Triangles that would flip or vanish by that are made a few steps larger, at their neighbours'
-/// expense; vertices with held[v] (one a vertex, or empty) are only rounded, as by round_to_step().
-/// Returns how many triangles are not counter-clockwise in the end. Throws Error{cancelled}.
+/// expense; vertices with constrained[v] (one a vertex, or empty) are only rounded, as by
+/// round_to_step(). Returns how many triangles are not counter-clockwise in the end. Throws
+/// Error{cancelled}.
 Index quantize_uvs(const charts::Chart& chart, const std::vector<char>& constrained,
                    const std::stop_token& stop, UvMap& uv);
 

@@ -9,9 +9,9 @@ namespace unwrapd::guarantee {
 
 /// page_uv: a chart's UVs after quantize_uvs(), without flips. Where triangles overlap because
 /// rounding closed a gap between two stretches of boundary, both draw back, by a few steps of
-/// uv_step() and then by more, up to some hundred; vertices with held[v] (one a vertex, or empty)
-/// stay. Returns whether nothing overlaps in the end; no triangle is flipped by this, and where it
-/// is false nothing has moved.
+/// uv_step() and then by more, up to some hundred; vertices with constrained[v] (one a vertex, or
+/// empty) stay. Returns whether nothing overlaps in the end; no triangle is flipped by this, and
+/// where it is false nothing has moved.
 bool separate_rounded_boundaries(const charts::Chart& chart, const std::vector<char>& constrained,
                                  UvMap& page_uv);
 

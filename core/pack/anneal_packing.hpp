@@ -25,7 +25,7 @@ struct AnnealRules {
 };
 
 /// Looks for the smallest page that holds all, within the budget. What was found from each start,
-/// the smallest first. The arranger's scale stays what it is: the page shrinks.
+/// the smallest first. The placer's scale stays what it is: the page shrinks.
 std::vector<Found> smallest_page(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
                                  const AnnealRules& rules, Budget& budget);
 

@@ -15,7 +15,7 @@ struct CompactRules {
 
 /// from: one page, of any side: it is stretched to the one to begin with, and beyond where islands
 /// do not get apart. Returns the smallest page that was found; side 0 when the budget ended before
-/// any was. The arranger's scale stays what it is. Throws Error{cancelled}.
+/// any was. The placer's scale stays what it is. Throws Error{cancelled}.
 Found compact(BottomLeftPlacer& placer, const Found& from, const CompactRules& rules,
               Budget& budget);
 

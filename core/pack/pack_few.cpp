@@ -34,7 +34,7 @@ constexpr double kMostShares = 12;
 constexpr double kSidesAShare = 30;  // of outlines: small shapes need no long search
 constexpr double kSmaller = 0.9;     // where islands did not fit in
 
-/// Islands on a page, and the arranger whose masks these are.
+/// Islands on a page, and the placer whose masks these are.
 struct Tried {
   std::optional<BottomLeftPlacer> placer = {};
   Found found = {};

@@ -10,7 +10,7 @@
 
 namespace unwrapd::pack {
 
-/// The arranger's islands as large as fits. The same for any number of threads. Throws
+/// The placer's islands as large as fits. The same for any number of threads. Throws
 /// Error{cancelled}.
 std::vector<Placement> pack_many(const BottomLeftPlacer& placer, const PageGrid& grid,
                                  Executor& executor);

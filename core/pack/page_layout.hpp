@@ -28,7 +28,7 @@ int fine_cells(std::size_t islands);
 /// many pages of `side` cells.
 double usual_scale(const BottomLeftPlacer& placer, const PageGrid& grid, int pages, double side);
 
-/// found: as it was made at the arranger's scale.
+/// found: as it was made at the placer's scale.
 std::vector<Placement> placements_of(const Found& found, BottomLeftPlacer& placer,
                                      const PageGrid& grid);
 

@@ -37,7 +37,7 @@ void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
   layout.constrained[surface].push_back(std::move(mapped.constrained));
 }
 
-ChartProgress chart_watch(const PreparedCharts& taken, const Progress& progress,
+ChartProgress progress_of(const PreparedCharts& taken, const Progress& progress,
                           Executor& executor) {
   std::size_t chart_count = 0, face_count = 0;
   for (const charts::Charts& part : taken.all->surfaces) {
@@ -49,7 +49,7 @@ ChartProgress chart_watch(const PreparedCharts& taken, const Progress& progress,
 }
 
 /// What a map without overlaps keeps of the method's own.
-std::string kept_of(Method method) {
+std::string kept_energy_of(Method method) {
   switch (method) {
     case Method::arap:
       return "ARAP's energy";
@@ -72,7 +72,7 @@ void note_new_maps(Layout& layout, const UnwrapOptions& options) {
     layout.report.notes.push_back(
         "Charts that overlapped themselves and got a new map without overlaps: " +
         std::to_string(count) + ". The new map stays as close as possible to " +
-        kept_of(options.method) + "; energy_rise of the chart's mending tells the cost.");
+        kept_energy_of(options.method) + "; energy_rise of the chart's mending tells the cost.");
 }
 
 std::vector<Layout> parameterize_charts(const PreparedCharts& taken,
@@ -82,7 +82,7 @@ std::vector<Layout> parameterize_charts(const PreparedCharts& taken,
   const Prepared& all = *taken.all;
   const auto page =
       charts::page_constraints(surfaces, all.surfaces, options.constraints, progress.stop);
-  ChartProgress watch = chart_watch(taken, progress, executor);
+  ChartProgress watch = progress_of(taken, progress, executor);
   std::vector<Layout> layouts = empty_layouts(taken.all, lambdas_of(options).size());
   if (!all.note.empty())
     for (Layout& layout : layouts) layout.report.notes.push_back(all.note);

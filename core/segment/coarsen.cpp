@@ -2,9 +2,9 @@
 // costs what Ward (1963) takes for joining two clusters, the rise of their variance, so clusters
 // stay round and of one size, and at their means noise averages out. An edge goes only where the
 // link condition holds (Dey, Edelsbrunner et al. 1999), so that every cluster is a disk: that is
-// what lets seams be carried back whatever their topology (carry.hpp). Sweeps under a rising
-// threshold take the place of a queue. Rejected: quadric errors (Garland, Heckbert 1997), which
-// follow noise; clusters by nearest seeds, whose dual need not be a surface.
+// what lets seams be carried back whatever their topology (transfer_seams.hpp). Sweeps under a
+// rising threshold take the place of a queue. Rejected: quadric errors (Garland, Heckbert 1997),
+// which follow noise; clusters by nearest seeds, whose dual need not be a surface.
 #include "core/segment/coarsen.hpp"
 
 #include <cmath>

@@ -112,7 +112,8 @@ class Search {
     return found;
   }
 
-  /// What the small surface may have where the large one may have so much.
+  /// What the small surface may have where the large one may have so much. Rounded as a bound of
+  /// distortion is, of which the excess is taken.
   [[nodiscard]] double on_small(double excess) const { return 2 + excess - hidden_ - 2; }
 
   [[nodiscard]] bool misses(const Found& found, double excess) const {

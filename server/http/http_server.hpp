@@ -1,6 +1,6 @@
 #pragma once
 // The HTTP edge: connections in, Requests to one answer function, Responses
-// out. Who has no complete head waits in the parking lot (parking.hpp), without
+// out. Who has no complete head waits in the parking lot (idle_connections.hpp), without
 // a thread; a request is answered by a thread of its own, but for the bodies of
 // streams (stream_writer.hpp). cpp-httplib parses and writes
 // (http_exchange.hpp); accepting, waiting, framing and limits are

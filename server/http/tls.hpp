@@ -1,7 +1,7 @@
 #pragma once
 // TLS by OpenSSL, for those who have no proxy before the server: TLS 1.2
 // and 1.3, one certificate. The handshake is part of the first bytes; it takes
-// the same deadlines as a slow head, and threads of its own (greeters.hpp).
+// the same deadlines as a slow head, and threads of its own (tls_handshake_pool.hpp).
 
 #include <filesystem>
 #include <memory>

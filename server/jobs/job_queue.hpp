@@ -3,8 +3,8 @@
 // The store is the truth; this class adds the waiting, whose turn it is (fair_share.hpp), the stop
 // requests and the events. A full queue refuses at once rather than let requests pile up.
 //
-// A job at work is on lease, which beat() prolongs. One whose end could not be stored, for a disk
-// that is full, keeps its lease until that ends, and is then run again.
+// A job at work is on lease, which renew_leases() prolongs. One whose end could not be stored, for
+// a disk that is full, keeps its lease until that ends, and is then run again.
 
 #include <atomic>
 #include <chrono>
@@ -92,7 +92,7 @@ class JobQueue {
   /// Once, before any worker: what the last process left running waits again; a job whose row
   /// cannot be read is set aside. The death of that process is held against those jobs: they are
   /// given up at the third, where they are tried apart from this process from now on, at the tenth.
-  /// Those that find no room on the disk for that wait for a beat() that does.
+  /// Those that find no room on the disk for that wait for a renew_leases() that does.
   void recover(bool tried_apart);
 
   /// Throws RetryLater{queue_full, draining} when a submission would be refused now, else keeps a

@@ -15,9 +15,9 @@ class PictureStore {
  public:
   PictureStore(store::BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
-  /// The picture of one of a succeeded job's maps (see map_choice.hpp). Those whose size is a power
-  /// of two are kept with the job, so that whoever asks for every size fills no disk; a damaged one
-  /// is drawn again. Throws what Renderer::render() throws.
+  /// The picture of one of a succeeded job's maps (see lambda_selection.hpp). Those whose size is a
+  /// power of two are kept with the job, so that whoever asks for every size fills no disk; a
+  /// damaged one is drawn again. Throws what Renderer::render() throws.
   StoredResult open(const store::JobRecord& job, std::size_t map, const work::Picture& picture,
                     const http::HasLeft& has_left = {});
   [[nodiscard]] const FileCounts& counts() const { return counts_; }

@@ -35,9 +35,9 @@ class ResultStore {
  public:
   ResultStore(store::BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
-  /// The result of a succeeded job by one of its maps (see map_choice.hpp), in a format (glb, gltf,
-  /// obj, json); one that is missing or damaged is made from the job's input and map. Throws what
-  /// Renderer::render() throws.
+  /// The result of a succeeded job by one of its maps (see lambda_selection.hpp), in a format (glb,
+  /// gltf, obj, json); one that is missing or damaged is made from the job's input and map. Throws
+  /// what Renderer::render() throws.
   StoredResult open(const store::JobRecord& job, std::size_t map, std::string_view format,
                     const http::HasLeft& has_left = {});
   [[nodiscard]] const FileCounts& counts() const { return counts_; }

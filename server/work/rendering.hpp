@@ -24,7 +24,7 @@ struct Picture {
 };
 
 struct Rendering {
-  std::size_t map = 0;                  ///< of the job, see map_choice.hpp
+  std::size_t map = 0;                  ///< of the job, see lambda_selection.hpp
   std::optional<Picture> picture;       ///< none: the result
   std::optional<asset::Format> format;  ///< of the result; none: JSON
   /// What the mesh is, where a job may take so much memory; there is no map then.

@@ -22,7 +22,7 @@ namespace unwrapd::server::work {
 /// totals, the result.
 class AnswerFiles {
  public:
-  /// maps: how many the job has (map_choice.hpp).
+  /// maps: how many the job has (lambda_selection.hpp).
   explicit AnswerFiles(std::size_t maps);
 
   /// Whether a file of this name may come now. It may not come again.

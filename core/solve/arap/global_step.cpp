@@ -1,8 +1,9 @@
 // Eq. (4): sum_j [cot + cot](u_i - u_j) = sum_j [cot L + cot L](x_i - x_j) for every vertex i.
 // The matrix is a sum of positive semidefinite element matrices whatever the cotangents' signs; its
-// only null space is translation. Fixed vertices are eliminated and springs add to the diagonal:
-// either removes that null space. Where nothing is held, adding the diagonal entry of vertex 0 once
-// more does, and leaves the solution exact, because the right-hand side adds up to zero.
+// only null space is translation. Fixed vertices are eliminated and soft constraints add to the
+// diagonal: either removes that null space. Where nothing is held, adding the diagonal entry of
+// vertex 0 once more does, and leaves the solution exact, because the right-hand side adds up to
+// zero.
 #include "core/solve/arap/global_step.hpp"
 
 #include <algorithm>

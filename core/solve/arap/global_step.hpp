@@ -17,7 +17,7 @@ namespace unwrapd::solve::arap {
 /// How vertices are held, wherever that is: all that the matrix reads of Holds.
 struct ConstraintPattern {
   linear::FreeVertices free;
-  std::vector<Index> soft_constraint;  ///< vertices, and the weights of their springs
+  std::vector<Index> soft_constraint;  ///< vertices, and the weights of their soft constraints
   std::vector<double> weight;
 
   ConstraintPattern(std::size_t vertex_count, const VertexConstraints& constraints);
@@ -26,8 +26,8 @@ struct ConstraintPattern {
 void describe(CacheKey& key, const ConstraintPattern& constrained);
 
 /// The matrix of Eq. (4), factored once: the Hessian of Objective for fixed fits. It depends on the
-/// mesh, on which vertices are held and on the springs' weights, not on where they are held: jobs
-/// that share disk.core share it, and jobs on meshes of the same faces its analysis.
+/// mesh, on which vertices are held and on the soft constraints' weights, not on where they are
+/// held: jobs that share disk.core share it, and jobs on meshes of the same faces its analysis.
 class GlobalStep {
  public:
   /// executor: runs the factor and all solves; null: the calling thread. Throws

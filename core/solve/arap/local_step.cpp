@@ -7,7 +7,7 @@
 // by C2 of Eq. (B3), which vanishes at quarter turns:
 //   g(r) = w r^3 + (1 - 2w) r - (1 - w) Q,   w = lambda / (1 + lambda),   Q = |(e, h)|.
 // w = 0 is ASAP (r = Q) and w = 1 is ARAP (r = 1).
-// LocalStep fits four triangles at once (fit_abreast.hpp).
+// LocalStep fits four triangles at once (local_step_simd.hpp).
 #include "core/solve/arap/local_step.hpp"
 
 #include <algorithm>

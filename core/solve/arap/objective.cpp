@@ -33,7 +33,7 @@ Objective::Objective(const Disk& disk, const Rigidity& rigidity, VertexConstrain
       blocks_(cached<blocks_of>(Making{disk.core, disk.stop}, disk.rest, disk.faces, rank)),
       beyond_(blocks_->beyond.size()) {}
 
-double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const {
+double Objective::pull_soft_constraints(std::span<const Vec2> uv, std::span<Vec2> force) const {
   double energy = 0;
   for (const SoftConstraint& soft_constraint : holds_.soft) {
     const std::size_t v = at(soft_constraint.vertex);
@@ -47,7 +47,7 @@ double Objective::pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) 
 double Objective::evaluate(std::span<const Vec2> uv, std::span<Vec2> force) {
   const LocalSums fits = LocalStep{*blocks_, uv, rigidity_, force, beyond_}.run(executor_);
   uv_area_ = fits.uv_area;
-  const double soft = pull_springs(uv, force);
+  const double soft = pull_soft_constraints(uv, force);
   for (const HardConstraint& point : holds_.hard) force[at(point.vertex)].setZero();
   return fits.energy + soft;
 }

@@ -1,6 +1,6 @@
 #pragma once
 // What the iterations of ARAP and Hybrid minimise: the energy of the method, each triangle's fit
-// being the best there is (min over L of Eq. 2, 5), plus that of the springs (Sec. 7).
+// being the best there is (min over L of Eq. 2, 5), plus that of the soft constraints (Sec. 7).
 
 #include <memory>
 #include <span>
@@ -28,7 +28,7 @@ class Objective {
   [[nodiscard]] double uv_area() const { return uv_area_; }
 
  private:
-  double pull_springs(std::span<const Vec2> uv, std::span<Vec2> force) const;
+  double pull_soft_constraints(std::span<const Vec2> uv, std::span<Vec2> force) const;
 
   Rigidity rigidity_;
   VertexConstraints holds_;  // by ranks

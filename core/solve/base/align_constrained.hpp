@@ -1,5 +1,5 @@
 #pragma once
-// A map turned, scaled and moved to where its held vertices shall lie.
+// A map turned, scaled and moved to where its constrained vertices shall lie.
 
 #include <span>
 
@@ -21,13 +21,14 @@ struct Alignment {
   }
 };
 
-/// Takes the held vertices of uv to places of the same mean and the same mean square distance from
-/// it as those where they shall lie, turned so as to lie nearest to them. A fixed vertex counts 1,
-/// one on a spring of weight w counts w / (1 + w). One held vertex: moved there, neither turned nor
-/// scaled. holds: not empty; with two vertices or more, not all at one place.
+/// Takes the constrained vertices of uv to places of the same mean and the same mean square
+/// distance from it as those where they shall lie, turned so as to lie nearest to them. A fixed
+/// vertex counts 1, a soft one of weight w counts w / (1 + w). One constrained vertex: moved there,
+/// neither turned nor scaled. constraints: not empty; with two vertices or more, not all at one
+/// place.
 Alignment align(std::span<const Vec2> uv, const VertexConstraints& constraints);
 
-/// The map aligned with the holds, then the fixed vertices put where they are held.
+/// The map aligned with the constraints, then the hard ones put in their places.
 UvMap constrained_start(UvMap uv, const VertexConstraints& constraints);
 
 }  // namespace unwrapd::solve

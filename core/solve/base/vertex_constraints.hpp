@@ -1,5 +1,5 @@
 #pragma once
-// Vertices of a disk that are held in the plane (Sec. 7).
+// Vertices of a disk that are constrained in the plane (Sec. 7).
 
 #include <algorithm>
 #include <span>
@@ -32,8 +32,8 @@ struct VertexConstraints {
   [[nodiscard]] std::size_t count() const { return hard.size() + soft.size(); }
 };
 
-/// What is held, and a map from which the iterations may start: fixed vertices lie at their places.
-/// All empty: nothing is held.
+/// The constraints, and a map that satisfies the hard ones, from which the iterations may start.
+/// All empty: there are none.
 struct ConstrainedStart {
   VertexConstraints constraints;
   UvMap start;
@@ -72,14 +72,14 @@ inline bool is_moved(const VertexConstraints& a, const VertexConstraints& b) {
   const auto same_vertex = [](const HardConstraint& p, const HardConstraint& q) {
     return p.vertex == q.vertex;
   };
-  const auto same_spring = [](const SoftConstraint& p, const SoftConstraint& q) {
+  const auto same_soft = [](const SoftConstraint& p, const SoftConstraint& q) {
     return p.vertex == q.vertex && p.weight == q.weight;
   };
   return std::ranges::equal(a.hard, b.hard, same_vertex) &&
-         std::ranges::equal(a.soft, b.soft, same_spring);
+         std::ranges::equal(a.soft, b.soft, same_soft);
 }
 
-/// What the springs add to the energy of the map uv.
+/// What the soft constraints add to the energy of the map uv.
 inline double soft_constraint_energy(std::span<const SoftConstraint> soft,
                                      std::span<const Vec2> uv) {
   double energy = 0;

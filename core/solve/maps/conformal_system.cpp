@@ -2,8 +2,8 @@
 //   4 E(z) = z* H z,  H = L - 4 M,
 // L the cotangent Laplacian (z* L z = 2 sum A_t |J_t|^2) and M the area form (z* M z = sum of
 // A_t det J_t), which only lives on the boundary: each boundary half-edge (i, j), the surface to
-// its left, adds Im(conj(z_i) z_j) / 2. A spring w |z_v - p|^2 adds 4 w to H_vv and 4 w p to the
-// right-hand side; fixed vertices are eliminated.
+// its left, adds Im(conj(z_i) z_j) / 2. A soft constraint w |z_v - p|^2 adds 4 w to H_vv and 4 w p
+// to the right-hand side; fixed vertices are eliminated.
 #include "core/solve/maps/conformal_system.hpp"
 
 #include <algorithm>

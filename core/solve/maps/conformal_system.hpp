@@ -26,8 +26,8 @@ std::unique_ptr<linear::HermitianSystem> try_softened(const linear::ComplexMatri
 /// The softening to try after this one.
 double more_softening(double softening);
 
-/// Depends on the mesh, on which vertices are held and on the springs' weights, not on where they
-/// are held.
+/// Depends on the mesh, on which vertices are held and on the soft constraints' weights, not on
+/// where they are held.
 class ConformalSystem {
  public:
   /// At least two vertices are held. Where double precision does not suffice for H, softens it;
@@ -38,9 +38,9 @@ class ConformalSystem {
   static std::optional<ConformalSystem> exact(const Disk& disk,
                                               const VertexConstraints& constraints);
 
-  /// The map of least E + sum of weight |u_v - at|^2 over the springs, fixed vertices at their
-  /// places. holds: the same vertices and weights as those of the constructor. Thread-safe. Throws
-  /// Error{cancelled}, as the disk's job.
+  /// The map of least E + sum of weight |u_v - at|^2 over the soft constraints, fixed vertices at
+  /// their places. holds: the same vertices and weights as those of the constructor. Thread-safe.
+  /// Throws Error{cancelled}, as the disk's job.
   [[nodiscard]] UvMap solve(const VertexConstraints& constraints) const;
 
  private:

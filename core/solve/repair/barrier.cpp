@@ -110,7 +110,7 @@ Index unknown(const BarrierMesh& mesh, std::size_t t, Index k) {
 }
 
 /// The diagonal comes first in every column.
-void add_springs(const BarrierMesh& mesh, std::span<const Vec2> uv, Quadratic& model) {
+void add_soft_constraints(const BarrierMesh& mesh, std::span<const Vec2> uv, Quadratic& model) {
   for (const SoftConstraint& soft_constraint : mesh.soft) {
     const Index slot = mesh.free.slot[static_cast<std::size_t>(soft_constraint.vertex)];
     if (slot == linear::kFixed) continue;
@@ -197,7 +197,7 @@ void fill_barrier_model(const BarrierMesh& mesh, std::span<const Vec2> uv, const
     }
     add_lower(e.hessian, model.place[t], values);
   }
-  add_springs(mesh, uv, model);
+  add_soft_constraints(mesh, uv, model);
 }
 
 }  // namespace unwrapd::solve::repair

@@ -17,7 +17,7 @@ namespace unwrapd::solve::repair {
 
 /// E = sum A_t [ own(J_t) + weight wall(J_t) + steep wall^4(J_t) + dirichlet SD(J_t) ],
 /// wall and SD, the symmetric Dirichlet energy, as in profile.hpp, and w |u_v - at|^2 for every
-/// spring.
+/// soft constraint.
 struct Barrier {
   arap::Rigidity rigidity;  ///< of OwnEnergy::fit
   double weight = 1;

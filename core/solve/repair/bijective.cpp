@@ -106,7 +106,8 @@ UvMap of_the_area_of(const UvMap& old, const Disk& disk, UvMap uv) {
   return uv;
 }
 
-/// The map moved to where its springs pull it no further: nothing else feels where it lies.
+/// The map moved to where its soft constraints pull it no further: nothing else feels where it
+/// lies.
 UvMap moved_to_rest(UvMap uv, const std::vector<SoftConstraint>& soft) {
   Vec2 pull = Vec2::Zero();
   double weight = 0;

@@ -163,11 +163,11 @@ class Descending {
     }
     add_contact_gradient(acting, uv_, gradient);
     for (const Contact& contact : acting) system_.add(contact, uv_);
-    add_springs(gradient);
+    add_soft_constraints(gradient);
     return gradient;
   }
 
-  void add_springs(std::vector<Vec2>& gradient) {
+  void add_soft_constraints(std::vector<Vec2>& gradient) {
     for (const SoftConstraint& soft_constraint : mesh_.soft) {
       const auto v = static_cast<std::size_t>(soft_constraint.vertex);
       gradient[v] += 2 * soft_constraint.weight * (uv_[v] - soft_constraint.at);

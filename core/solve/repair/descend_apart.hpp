@@ -19,7 +19,7 @@ struct ApartStage {
 
 /// Lowers the energies of the stages, one after the other. All of them are 0 at their least, so
 /// that a share of one is a share of what may be to gain. mesh: the disk's faces with what they
-/// shall be; without springs at least one vertex is fixed. uv must be injective by
+/// shall be; without soft constraints at least one vertex is fixed. uv must be injective by
 /// is_plainly_injective(), and still is afterwards. Throws Error{too_much_memory, cancelled}.
 void descend_apart(const Disk& disk, const BarrierMesh& mesh, std::span<const ApartStage> stages,
                    UvMap& uv);

@@ -40,9 +40,9 @@ void follow_sizes(const UvMap& own, BarrierMesh& mesh) {
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) mesh.rest[t] = scaled(mesh.rest[t], size[t]);
 }
 
-/// The springs at vertices of the patch, by its own numbers.
-std::vector<SoftConstraint> springs_at(const Patch& patch,
-                                       const std::vector<SoftConstraint>& soft) {
+/// The soft constraints at vertices of the patch, by its own numbers.
+std::vector<SoftConstraint> soft_constraints_at(const Patch& patch,
+                                                const std::vector<SoftConstraint>& soft) {
   std::vector<SoftConstraint> own;
   if (soft.empty()) return own;
   std::map<Index, Index> number;
@@ -64,7 +64,7 @@ void descend(const Disk& disk, const MapIntent& intent, std::span<const Fading> 
              Patch& patch, UvMap& own) {
   const bool is_whole = patch.face.size() == disk.faces.size();
   if (intent.rigidity.lambda < kConformalBelow) follow_sizes(own, patch.mesh);
-  patch.mesh.soft = springs_at(patch, intent.soft);
+  patch.mesh.soft = soft_constraints_at(patch, intent.soft);
   Newton newton(patch.mesh, intent.executor);
   for (const Fading& fading : fadings) {
     const double tolerance = is_whole ? kWhole * fading.tolerance : fading.tolerance;

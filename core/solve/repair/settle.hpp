@@ -8,10 +8,10 @@
 
 namespace unwrapd::solve::repair {
 
-/// Lowers the energy of intent.rigidity and the springs over the free vertices of a patch without
-/// flips, under a barrier that fades. A little of the symmetric Dirichlet energy stays: without it
-/// triangles that were turned over end as needles that dominate the distortion. own: the map of the
-/// patch, by its own numbers. Throws Error{cancelled}.
+/// Lowers the energy of intent.rigidity and the soft constraints over the free vertices of a patch
+/// without flips, under a barrier that fades. A little of the symmetric Dirichlet energy stays:
+/// without it triangles that were turned over end as needles that dominate the distortion. own: the
+/// map of the patch, by its own numbers. Throws Error{cancelled}.
 void settle(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& own);
 
 /// The same for patches of one map that share no triangle, side by side.

@@ -15,8 +15,8 @@ namespace unwrapd::solve::repair {
 void unfold_apart(const Disk& disk, const std::vector<double>& share, const std::stop_token& stop,
                   UvMap& uv);
 
-/// Lowers the intent's own energy and that of its springs under a barrier that bounds how much a
-/// triangle is stretched, and one between boundaries. As unfold_apart() otherwise.
+/// Lowers the intent's own energy and that of its soft constraints under a barrier that bounds how
+/// much a triangle is stretched, and one between boundaries. As unfold_apart() otherwise.
 void settle_apart(const Disk& disk, const MapIntent& intent, UvMap& uv,
                   const std::vector<double>& share = {});
 

@@ -1,6 +1,6 @@
 // The alternating direction method of multipliers (Boyd, Parikh, Chu, Peleato, Eckstein 2011, Sec.
 // 3; with rotations: Overby, Brown, Li, Narain 2017). Each triangle has a Jacobian Y_t of its own
-// that is never flipped, and each spring a point y_v; the map u follows them:
+// that is never flipped, and each soft constraint a point y_v; the map u follows them:
 //   minimise sum A_t [ |Y_t - s R_t|^2 + mu SD(Y_t) ] + sum w |y_v - at|^2
 //   subject to Y_t = J_t(u), y_v = u_v.
 // Y_t is found triangle by triangle: with the turns of J_t + U_t kept the sum falls apart into one
@@ -93,7 +93,7 @@ class Splitting {
   double step(UvMap& uv) {
     for_faces([&](std::size_t t) { pull(t, uv); });
     add_up();
-    pull_springs(uv);
+    pull_soft_constraints(uv);
     change_ = force_;
     global().solve(change_);
     double square = 0;
@@ -165,7 +165,7 @@ class Splitting {
     });
   }
 
-  void pull_springs(std::span<const Vec2> uv) {
+  void pull_soft_constraints(std::span<const Vec2> uv) {
     for (std::size_t k = 0; k < soft_excess_.size(); ++k) {
       const SoftConstraint& soft_constraint = intent_.soft[k];
       const Vec2 z = uv[soft_constraint.vertex] + soft_excess_[k];

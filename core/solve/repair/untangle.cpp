@@ -120,7 +120,7 @@ Patch whole(const Disk& disk) {
   return std::move(patches_around(disk, all, 0, {}).front());
 }
 
-/// A new map at the surface's size or, where there are springs, where they draw it.
+/// A new map at the surface's size or, where there are soft constraints, where they draw it.
 UvMap at_its_place(const Disk& disk, const MapIntent& intent, UvMap uv) {
   const double area = measure::uv_area(disk.rest, disk.faces, uv);
   for (Vec2& u : uv) u /= std::sqrt(area);

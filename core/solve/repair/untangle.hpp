@@ -25,19 +25,20 @@ struct MapIntent {
   std::vector<SoftConstraint> soft = {};  ///< what draws vertices to places, weighed like rigidity
   Executor* executor = nullptr;           ///< on which patches are mended side by side; null: none
   const arap::GlobalStep* global =
-      nullptr;  ///< of the disk, held and springs; null: made when needed
+      nullptr;  ///< of the disk under its constraints; null: made when needed
 };
 
 /// Moves the vertices near flipped or collapsed triangles (not counter-clockwise, by the exact
 /// test) until there are none, as few as possible of them. Returns how many are left: above zero
-/// only where held vertices leave no way, or double precision none.
+/// only where hard constraints leave no way, or double precision none.
 /// The same map by any executor.
 /// Throws Error{too_much_memory, cancelled}.
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv);
 
-/// A new map of the whole disk: start, scaled to the surface's area or, where there are springs,
-/// taken to where they draw it; then taken to little energy without a flip on the way. False, and
-/// uv as it was, where start has flips. Held vertices are not looked at. Throws Error{cancelled}.
+/// A new map of the whole disk: start, scaled to the surface's area or, where there are soft
+/// constraints, taken to where they draw it; then taken to little energy without a flip on the way.
+/// False, and uv as it was, where start has flips. Held vertices are not looked at. Throws
+/// Error{cancelled}.
 bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& uv);
 
 }  // namespace unwrapd::solve::repair

@@ -26,8 +26,8 @@ inline std::vector<HardConstraint> scattered(const Disk& disk, std::size_t count
   return points;
 }
 
-inline std::vector<SoftConstraint> as_springs(const std::vector<HardConstraint>& points,
-                                              double weight) {
+inline std::vector<SoftConstraint> as_soft_constraints(const std::vector<HardConstraint>& points,
+                                                       double weight) {
   std::vector<SoftConstraint> soft;
   for (const HardConstraint& p : points) soft.push_back({p.vertex, p.at, weight});
   return soft;

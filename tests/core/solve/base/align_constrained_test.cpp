@@ -33,7 +33,7 @@ TEST(Align, TurnsForLeastSquares) {
   UvMap uv;
   for (const Vec3& p : d.disk.positions) uv.push_back(p.head<2>());
   VertexConstraints constraints{scattered(d.disk, 3, 1), {}};
-  for (SoftConstraint& s : as_springs(scattered(d.disk, 9, 1), 0.3))
+  for (SoftConstraint& s : as_soft_constraints(scattered(d.disk, 9, 1), 0.3))
     if (s.vertex != constraints.hard[0].vertex && s.vertex != constraints.hard[1].vertex &&
         s.vertex != constraints.hard[2].vertex)
       constraints.soft.push_back(s);

@@ -76,7 +76,7 @@ TEST(HeldSolve, NeverRaisesTheEnergy) {
       const OwnedDisk d = disk_of(mesh);
       const auto points = scattered(d.disk, 20, 8);
       const VertexConstraints page{{points.begin(), points.begin() + 7},
-                                   as_springs({points.begin() + 7, points.end()}, 0.5)};
+                                   as_soft_constraints({points.begin() + 7, points.end()}, 0.5)};
       for (const UnwrapOptions& options : all_methods(stop)) {
         const std::vector<double> energy = solved_on_page(d.disk, options, page).solution.energy;
         for (std::size_t k = 1; k < energy.size(); ++k)
@@ -89,7 +89,7 @@ TEST(HeldSolve, EndsWhereTheForceIsZero) {
   const OwnedDisk d = disk_of(shapes::random_disk(10, 4));
   const auto points = scattered(d.disk, 12, 2);
   const VertexConstraints page{{points.begin(), points.begin() + 4},
-                               as_springs({points.begin() + 4, points.end()}, 0.5)};
+                               as_soft_constraints({points.begin() + 4, points.end()}, 0.5)};
   const Stop stop{.tolerance = 1e-13, .max_iterations = 3000};
   SerialExecutor serial;
   for (const UnwrapOptions& options : all_methods(stop)) {
@@ -112,7 +112,8 @@ TEST(HeldSolve, ApproachesHardPinsAsTheWeightGrows) {
     const UvMap hard = solved_on_page(d.disk, options, {points, {}}).page;
     double before = std::numeric_limits<double>::infinity();
     for (double weight : {0.1, 10.0, 1e3, 1e5, 1e7}) {
-      const UvMap soft = solved_on_page(d.disk, options, {{}, as_springs(points, weight)}).page;
+      const UvMap soft =
+          solved_on_page(d.disk, options, {{}, as_soft_constraints(points, weight)}).page;
       double gap = 0;
       for (const HardConstraint& p : points)
         gap = std::max(gap, (soft[std::size_t(p.vertex)] - p.at).norm());
@@ -167,7 +168,7 @@ TEST(HeldSolve, MovedTargetsGiveWhatAFreshSolverGives) {
   const auto points = scattered(d.disk, 8, 2);
   SerialExecutor serial;
   VertexConstraints page{{points.begin(), points.begin() + 4},
-                         as_springs({points.begin() + 4, points.end()}, 0.5)};
+                         as_soft_constraints({points.begin() + 4, points.end()}, 0.5)};
   VertexConstraints moved = page;
   for (HardConstraint& p : moved.hard) p.at = Vec2(0.9 - p.at.y(), 2 * p.at.x());
   for (SoftConstraint& s : moved.soft) s.at = Vec2(0.9 - s.at.y(), 2 * s.at.x());
@@ -224,9 +225,9 @@ TEST(HeldSolve, AcceptsEveryWeightAndShape) {
     for (double weight : {1e-9, 1e-3, 1e9}) {
       const OwnedDisk d = disk_of(mesh);
       const auto points = scattered(d.disk, 4, 2);
-      const VertexConstraints soft{{}, as_springs(points, weight)};
-      const VertexConstraints mixed{{points[0]},
-                                    as_springs({points.begin() + 1, points.end()}, weight)};
+      const VertexConstraints soft{{}, as_soft_constraints(points, weight)};
+      const VertexConstraints mixed{
+          {points[0]}, as_soft_constraints({points.begin() + 1, points.end()}, weight)};
       for (const UnwrapOptions& options : all_methods())
         for (const VertexConstraints& page : {soft, mixed}) {
           const PageSolve s = solved_on_page(d.disk, options, page);

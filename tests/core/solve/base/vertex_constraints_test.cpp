@@ -33,16 +33,17 @@ std::vector<HardConstraint> random_points(const Disk& disk, std::size_t count, u
   return points;
 }
 
-/// The first half of the points fixed, the others on springs.
+/// The first half of the points fixed, the others on soft constraints.
 VertexConstraints random_holds(const Disk& disk, std::size_t count, unsigned seed,
                                double weight = 0.7) {
   const auto points = random_points(disk, count, seed);
   const auto middle = points.begin() + long(count / 2);
-  return {{points.begin(), middle}, as_springs({middle, points.end()}, weight)};
+  return {{points.begin(), middle}, as_soft_constraints({middle, points.end()}, weight)};
 }
 
-/// The conformal energy and the springs as the rows of a dense least-squares problem over the free
-/// coordinates: each triangle's deformation (f, g) of its Jacobian, twice its area the weight.
+/// The conformal energy and the soft constraints as the rows of a dense least-squares problem over
+/// the free coordinates: each triangle's deformation (f, g) of its Jacobian, twice its area the
+/// weight.
 UvMap dense_asap(const Disk& disk, const VertexConstraints& constraints) {
   const auto n = Eigen::Index(disk.vertex_count());
   const auto faces = Eigen::Index(disk.faces.size());
@@ -86,7 +87,7 @@ TEST(ConformalSystem, AgreesWithDenseLeastSquares) {
     const OwnedDisk d = disk_of(mesh);
     for (std::size_t count : {2U, 3U, 20U}) {
       const VertexConstraints pins{random_points(d.disk, count, 1), {}};
-      const VertexConstraints soft{{}, as_springs(random_points(d.disk, count, 2), 0.3)};
+      const VertexConstraints soft{{}, as_soft_constraints(random_points(d.disk, count, 2), 0.3)};
       for (const VertexConstraints& constraints : {pins, soft, random_holds(d.disk, count, 3)})
         EXPECT_LT(greatest_gap(maps::ConformalSystem(d.disk, constraints).solve(constraints),
                                dense_asap(d.disk, constraints)),
@@ -171,7 +172,7 @@ TEST(Objective, CountsTheSpringsInItsEnergy) {
   EXPECT_NEAR(soft_constraint_energy(constraints, uv), soft, 1e-15);
 }
 
-/// The dense matrix of Eq. (4), springs on its diagonal.
+/// The dense matrix of Eq. (4), soft constraints on its diagonal.
 Eigen::MatrixXd dense_matrix(const Disk& disk, const VertexConstraints& constraints) {
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(disk.vertex_count(), disk.vertex_count());
   for (std::size_t t = 0; t < disk.faces.size(); ++t)
@@ -188,7 +189,7 @@ TEST(GlobalStep, SolvesTheRowsOfTheFreeVerticesAndLeavesTheOthers) {
   for (const TriMesh& mesh : small_disks()) {
     const OwnedDisk d = disk_of(mesh);
     const VertexConstraints pins{random_points(d.disk, 6, 1), {}};
-    const VertexConstraints soft{{}, as_springs(random_points(d.disk, 6, 2), 1e-6)};
+    const VertexConstraints soft{{}, as_soft_constraints(random_points(d.disk, 6, 2), 1e-6)};
     for (const VertexConstraints& constraints : {pins, soft, random_holds(d.disk, 9, 3)}) {
       const auto n = Eigen::Index(d.disk.vertex_count());
       const Eigen::MatrixX2d force = Eigen::MatrixX2d::Random(n, 2);

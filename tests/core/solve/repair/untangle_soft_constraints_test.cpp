@@ -19,7 +19,7 @@ using shapes::OwnedDisk;
 constexpr double kTurn = 0.6, kPull = 5;
 
 /// Four vertices drawn to where they lie in the map, turned and moved.
-std::vector<SoftConstraint> springs_on(const UvMap& uv) {
+std::vector<SoftConstraint> soft_constraints_on(const UvMap& uv) {
   std::vector<SoftConstraint> soft;
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t v = (2 * k + 1) * uv.size() / 8;
@@ -33,13 +33,13 @@ std::vector<SoftConstraint> springs_on(const UvMap& uv) {
 struct Sprung {
   OwnedDisk owned = disk_of(shapes::random_disk(12, 4));
   VertexConstraints constraints;
-  UvMap uv;  ///< the least of ARAP's energy and the springs'
+  UvMap uv;  ///< the least of ARAP's energy and the soft constraints'
 
   Sprung() {
     SerialExecutor serial;
     const UnwrapOptions options{.stop = {.tolerance = 1e-12}};
     const UvMap free = Solver(owned.disk, options, {}, serial).run(0, {}).uv;
-    constraints.soft = springs_on(free);
+    constraints.soft = soft_constraints_on(free);
     uv = Solver(owned.disk, options, {constraints, free}, serial).run(0, {}).uv;
   }
   [[nodiscard]] double energy(const UvMap& map) const {
@@ -82,7 +82,7 @@ TEST(UntangleSprings, ANewMapComesToLieWhereTheyDrawIt) {
 TEST(UntangleSprings, TheModelHasTheirSlopeAndCurvature) {
   const Sprung s;
   std::vector<char> hard(s.uv.size(), 0);
-  hard[std::size_t(s.constraints.soft[1].vertex)] = 1;  // a spring there pulls at nothing
+  hard[std::size_t(s.constraints.soft[1].vertex)] = 1;  // a soft constraint there pulls at nothing
   const Disk& disk = s.owned.disk;
   const BarrierMesh mesh{{disk.faces.begin(), disk.faces.end()},
                          {disk.rest.begin(), disk.rest.end()},
