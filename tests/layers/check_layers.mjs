@@ -2,7 +2,7 @@
 // by which files, how long a file may grow. Run on a checkout: node check_layers.mjs [ROOT]. Each
 // breach is one line "path:line: rule"; the exit status is 1 when there is one.
 import { existsSync, readFileSync, readdirSync } from "node:fs";
-import { dirname, join, relative, sep } from "node:path";
+import { basename, dirname, join, relative, sep } from "node:path";
 import { fileURLToPath } from "node:url";
 
 import { HOUSES, ROOMS, namespaceOf, roomOf, table, upward } from "./rooms.mjs";
@@ -134,10 +134,20 @@ export function deadPaths(path, text, exists) {
   return [...named, ...linked].filter((name) => !isThere(name)).map((name) => `${path}: ${name} does not exist`);
 }
 
+/** Sources whose comments name a file that is not in the tree. names: of all files, without folders. */
+export function deadMentions(sources, names) {
+  return sources.flatMap(({ path, text }) =>
+    [...text.matchAll(/\/\/.*?\b(\w+\.[ch]pp)\b/g)]
+      .filter(([, name]) => !names.has(name))
+      .map(([, name]) => `${path}: ${name}, which a comment names, does not exist`),
+  );
+}
+
 /** All breaches of a checkout. */
 export function checkTree(root) {
   const breaches = [];
   const headers = [];
+  const sources = [];
   let count = 0;
   for (const path of files(root)) {
     if (!SOURCE.test(path)) continue;
@@ -145,11 +155,13 @@ export function checkTree(root) {
     const text = readFileSync(join(root, path), "utf8");
     breaches.push(...check(path, text));
     breaches.push(...deadPaths(path, text, (name) => existsSync(join(root, name))));
+    if (/\.[ch]pp$/.test(path)) sources.push({ path, text });
     if (/^(core|api|server|client)\/.*\.hpp$/.test(path)) headers.push({ path, text });
   }
   if (!readFileSync(join(root, "docs/architecture.md"), "utf8").includes(table()))
     breaches.push("docs/architecture.md: its table of rooms is not that of `node tests/layers/rooms.mjs`");
-  return { breaches: [...breaches, ...upward(ROOMS), ...twins(headers)], count };
+  const names = new Set(sources.map(({ path }) => basename(path)));
+  return { breaches: [...breaches, ...upward(ROOMS), ...twins(headers), ...deadMentions(sources, names)], count };
 }
 
 const self = fileURLToPath(import.meta.url);

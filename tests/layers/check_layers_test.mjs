@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { check, twins } from "./check_layers.mjs";
+import { check, deadMentions, deadPaths, twins } from "./check_layers.mjs";
 import { ROOMS, upward } from "./rooms.mjs";
 
 const including = (path, header) => check(path, `#include ${header}\n`);
@@ -97,6 +97,12 @@ test("left-overs and private paths are found", () => {
   assert.equal(check("tests/package-lock.json", '"resolved": "https://"\n').length, 1);
 });
 
+test("comments name files that exist", () => {
+  const source = { path: "core/a.cpp", text: '#include <json.hpp>\nint a;  // see b.hpp\n' };
+  assert.deepEqual(deadMentions([source], new Set(["b.hpp"])), []);
+  assert.deepEqual(deadMentions([source], new Set(["a.hpp"])), ["core/a.cpp: b.hpp, which a comment names, does not exist"]);
+});
+
 test("no two headers define a type of one name", () => {
   const a = { path: "core/a.hpp", text: "namespace unwrapd {\nstruct Patch {\n" };
   const b = { path: "core/b.hpp", text: "namespace unwrapd {\nclass Patch final {\n" };
@@ -104,4 +110,14 @@ test("no two headers define a type of one name", () => {
   const named = { path: "core/d.hpp", text: "namespace unwrapd {\nstruct Patch;\n" };
   assert.deepEqual(twins([a, other, named]), []);
   assert.deepEqual(twins([a, b]), ["core/b.hpp: unwrapd::Patch is defined in core/a.hpp, too"]);
+});
+
+test("guides name files that exist", () => {
+  const exists = (name) => ["core/unwrap.cpp", "docs/api.md", "SECURITY.md"].includes(name);
+  const dead = (path, text) => deadPaths(path, text, exists).length;
+  assert.equal(dead("CONTRIBUTING.md", "`core/unwrap.cpp`, `core/unwrap`, [here](docs/api.md#a), `GET /v1`"), 0);
+  assert.equal(dead("docs/api.md", "[here](../SECURITY.md), [there](https://example.com)"), 0);
+  assert.equal(dead("CONTRIBUTING.md", "`core/gone.cpp`"), 1);
+  assert.equal(dead("docs/api.md", "[here](SECURITY.md)"), 1);
+  assert.equal(dead("docs/adr/0001-a.md", "`core/gone.cpp`"), 0);
 });
