@@ -151,6 +151,16 @@ export function timeLimit(run, binary) {
   });
 }
 
+/** A daemon is sent SIGHUP for its configuration; only at a terminal does it mean the end. */
+export function hangup(run, binary) {
+  return withServer(binary, ['--workers', '1'], async ({base, pid}) => {
+    process.kill(pid, 'SIGHUP');
+    for (let i = 0; i < 3; ++i)
+      await run.call(base, 'unwrap', {headers: kGlb, body: meshes.glb(), status: 200});
+    await run.call(base, 'getReadiness', {status: 200});
+  });
+}
+
 export function draining(run, binary) {
   return withServer(binary, ['--workers', '1'], async ({base, terminate}) => {
     const job = idOf(await slowJob(run, base, 202));
