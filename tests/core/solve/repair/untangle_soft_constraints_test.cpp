@@ -16,15 +16,15 @@ namespace {
 using shapes::disk_of;
 using shapes::OwnedDisk;
 
-constexpr double kTurn = 0.6, kPull = 5;
+constexpr double kTilt = 0.6, kPull = 5;
 
 /// Four vertices drawn to where they lie in the map, turned and moved.
 std::vector<SoftConstraint> soft_constraints_on(const UvMap& uv) {
   std::vector<SoftConstraint> soft;
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t v = (2 * k + 1) * uv.size() / 8;
-    const Vec2 at(std::cos(kTurn) * uv[v].x() - std::sin(kTurn) * uv[v].y() + 0.3,
-                  std::sin(kTurn) * uv[v].x() + std::cos(kTurn) * uv[v].y() - 0.2);
+    const Vec2 at(std::cos(kTilt) * uv[v].x() - std::sin(kTilt) * uv[v].y() + 0.3,
+                  std::sin(kTilt) * uv[v].x() + std::cos(kTilt) * uv[v].y() - 0.2);
     soft.push_back({Index(v), 1.1 * at, kPull});
   }
   return soft;
