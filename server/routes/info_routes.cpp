@@ -2,9 +2,9 @@
 
 #include "api/openapi.hpp"
 #include "api/options.hpp"
+#include "client/web/page.hpp"
 #include "server/base/identity.hpp"
 #include "server/routes/result_routes.hpp"
-#include "web/page.hpp"
 
 namespace unwrapd::server::routes {
 namespace {

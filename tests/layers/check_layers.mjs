@@ -122,7 +122,7 @@ export function twins(headers) {
 
 /** Documents for readers of the tree as it is; decisions (docs/adr) tell of the tree as it was. */
 const GUIDE = /^([A-Z]+|docs\/[a-z]+)\.md$/;
-const PATH_IN_TREE = /^(core|api|web|server|client|tests|docker|docs|cmake)(\/[\w.-]+)+$/;
+const PATH_IN_TREE = /^(core|api|server|client|tests|docker|docs)(\/[\w.-]+)+$|^\w+\/[\w./-]+\.(cpp|hpp|mjs|js|cmake)$/;
 
 /** Files and folders that a guide names or links to and that do not exist. exists: of a path. */
 export function deadPaths(path, text, exists) {
@@ -143,15 +143,24 @@ export function deadMentions(sources, names) {
   );
 }
 
+/** Folders at the top of the tree. */
+const TOP = ["api", "client", "core", "docker", "docs", "server", "tests"];
+
+/** Top folders of the paths that are not among TOP, but for hidden ones. */
+export function strangers(paths) {
+  const folders = new Set(paths.filter((path) => /^[^.].*\//.test(path)).map((path) => path.split("/")[0]));
+  return [...folders]
+    .filter((name) => !TOP.includes(name))
+    .map((name) => `${name}: the top of the tree has the folders ${TOP.join(", ")} alone`);
+}
+
 /** All breaches of a checkout. */
 export function checkTree(root) {
   const breaches = [];
   const headers = [];
   const sources = [];
-  let count = 0;
-  for (const path of files(root)) {
-    if (!SOURCE.test(path)) continue;
-    count += 1;
+  const checked = [...files(root)].filter((path) => SOURCE.test(path));
+  for (const path of checked) {
     const text = readFileSync(join(root, path), "utf8");
     breaches.push(...check(path, text));
     breaches.push(...deadPaths(path, text, (name) => existsSync(join(root, name))));
@@ -161,7 +170,7 @@ export function checkTree(root) {
   if (!readFileSync(join(root, "docs/architecture.md"), "utf8").includes(table()))
     breaches.push("docs/architecture.md: its table of rooms is not that of `node tests/layers/rooms.mjs`");
   const names = new Set(sources.map(({ path }) => basename(path)));
-  return { breaches: [...breaches, ...upward(ROOMS), ...twins(headers), ...deadMentions(sources, names)], count };
+  return { breaches: [...breaches, ...upward(ROOMS), ...twins(headers), ...deadMentions(sources, names), ...strangers(checked)], count: checked.length };
 }
 
 const self = fileURLToPath(import.meta.url);

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { check, deadMentions, deadPaths, twins } from "./check_layers.mjs";
+import { check, deadMentions, deadPaths, strangers, twins } from "./check_layers.mjs";
 import { ROOMS, upward } from "./rooms.mjs";
 
 const including = (path, header) => check(path, `#include ${header}\n`);
@@ -34,6 +34,11 @@ test("every source is in a room", () => {
   assert.deepEqual(check("core/attic/a.cpp", ""), ["core/attic/a.cpp: is in no room"]);
   assert.deepEqual(check("server/http/a.cpp", ""), []);
   refuses("server/service.cpp", '"server/attic/a.hpp"');
+});
+
+test("the top of the tree has the seven folders alone", () => {
+  assert.deepEqual(strangers(["core/unwrap.cpp", "dev", ".ci/run"]), []);
+  assert.equal(strangers(["core/unwrap.cpp", "cmake/a.cmake", "cmake/b.cmake"]).length, 1);
 });
 
 test("a file opens the namespace of its room", () => {
@@ -118,6 +123,7 @@ test("guides name files that exist", () => {
   assert.equal(dead("CONTRIBUTING.md", "`core/unwrap.cpp`, `core/unwrap`, [here](docs/api.md#a), `GET /v1`"), 0);
   assert.equal(dead("docs/api.md", "[here](../SECURITY.md), [there](https://example.com)"), 0);
   assert.equal(dead("CONTRIBUTING.md", "`core/gone.cpp`"), 1);
+  assert.equal(dead("CONTRIBUTING.md", "`web/page.js`"), 1);
   assert.equal(dead("docs/api.md", "[here](SECURITY.md)"), 1);
   assert.equal(dead("docs/adr/0001-a.md", "`core/gone.cpp`"), 0);
 });

@@ -30,7 +30,7 @@ export const ROOMS = [
   ["core/asset", "reads and writes glTF, Draco, meshopt and OBJ; a separate library", TERMS],
   ["api/contract", "`openapi.yaml` as JSON and as a page", []],
   ["api", "the contract; the tables of options and of errors", TERMS],
-  ["web", "the page at `/`, embedded in the program", []],
+  ["client/web", "the page at `/`, embedded in the program", []],
   ["client", "the program `unwrap`: uploads, follows, downloads", ["api"]],
   ["server/base", "files, clocks, log, metrics, waiting", ["core/base", "api"]],
   ["server/http", "the edge: connections, TLS, limits, framing, routing", ["core/base", "api", "server/base"]],
@@ -43,7 +43,7 @@ export const ROOMS = [
   ["server/results", "results and pictures, made on request", [...STORED, "core/asset", "server/http", "server/work", "server/jobs"]],
   ["server/config", "options, variables and the configuration file", [...STORED, "server/http", "server/work", "server/access", "server/webhooks", "server/results"]],
   ["server/uploads", "meshes and jobs as they arrive", [...STORED, "server/http", "server/jobs", "server/webhooks", "server/results"]],
-  ["server/routes", "the handlers of all paths", [...STORED, "web", "server/http", "server/work", "server/jobs", "server/access", "server/results", "server/uploads"]],
+  ["server/routes", "the handlers of all paths", [...STORED, "client/web", "server/http", "server/work", "server/jobs", "server/access", "server/results", "server/uploads"]],
   ["server", "the program `unwrapd`", [...STORED, "server/http", "server/work", "server/jobs", "server/access", "server/webhooks", "server/backup", "server/config", "server/routes"]],
 ].map(([folder, duty, includes]) => ({ folder, duty, includes: [...new Set(includes)].filter((room) => room !== folder) }));
 
