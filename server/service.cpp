@@ -238,7 +238,7 @@ struct Service::Parts {
   store::MeshStore mesh_store;
   store::QuotaReservations reservations{store};
   const uploads::UploadRooms rooms{reservations, blobs.room()};
-  ConcurrencyLimit waiters{config::most_waiting(config)};
+  ConcurrencyLimit waiters{config::most_waiting(config), half_of_the_rest};
   Metrics metrics;
   const std::shared_ptr<Wakeup> news = std::make_shared<Wakeup>();
   jobs::EventFeed events{kEventsKept, kFeedsKept, &metrics, news};

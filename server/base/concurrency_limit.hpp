@@ -1,8 +1,10 @@
 #pragma once
-// Who may hold open what there is little of: a request until a job ends (each holds a thread of the
-// server, which has so many more for them), an event stream. An API key takes
-// no more than half of what the others leave it, so that no few of them take all.
+// A limit on how much happens at once: requests that wait for a job (each holds a thread), event
+// streams, open connections, files that are made, calls to webhooks. Each use has one object of
+// this class. A rule tells how many places one owner (an API key, a network, a receiver) may hold,
+// so that a few owners cannot take them all.
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -10,24 +12,40 @@
 
 namespace unwrapd::server {
 
-/// Thread-safe. Outlives the places.
+/// Thread-safe. A place may outlive it.
 class ConcurrencyLimit {
  public:
-  /// most: at a time, in all.
-  explicit ConcurrencyLimit(int most) : most_(most) {}
+  /// Held until the last copy is destroyed or reset.
+  using Place = std::shared_ptr<void>;
+  /// How many places one owner may hold. places: in all; others: held by all other owners.
+  using Share = std::function<int(int places, int others)>;
+  enum class Refusal { none, full, share };
 
-  /// A place, the caller's while it keeps what is returned; nothing where all are taken. owner: id
-  /// of the API key, empty without one.
-  [[nodiscard]] std::shared_ptr<void> let_in(const std::string& owner);
+  /// An owner without a name is not held to a share: it stands for all who cannot be told apart.
+  ConcurrencyLimit(int places, Share share);
+
+  /// A place, or nullptr and the reason: `full` when all are taken, `share` when this owner holds
+  /// its share. Never waits.
+  [[nodiscard]] Place try_enter(const std::string& owner, Refusal* why = nullptr);
+  /// The reason for which try_enter() would return nullptr now.
+  [[nodiscard]] Refusal refusal(const std::string& owner) const;
+
+  /// Places taken, in all or by this owner.
   [[nodiscard]] int count() const;
+  [[nodiscard]] int count(const std::string& owner) const;
 
  private:
-  void leave(const std::string& owner);
+  struct State;
 
-  const int most_;
-  mutable std::mutex mutex_;
-  int count_ = 0;
-  std::map<std::string, int> of_owner_;
+  const std::shared_ptr<State> state_;
 };
+
+/// Half of the places that the other owners leave free, rounded up: however few owners there are,
+/// a new one finds a place.
+int half_of_the_rest(int places, int others);
+/// Half of all places, at least one.
+int half_of_all(int places, int others);
+/// Three quarters of all places, rounded up.
+int three_quarters(int places, int others);
 
 }  // namespace unwrapd::server

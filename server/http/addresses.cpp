@@ -66,13 +66,6 @@ std::string_view without_port(std::string_view text) {
   return has_port ? text.substr(0, colon) : text;
 }
 
-/// What connections are counted by.
-std::string counted_by(const std::string& address) {
-  const std::optional<Bytes> bytes = parse(address);
-  if (!bytes || address.find(':') == std::string::npos) return address;
-  return {bytes->begin(), bytes->begin() + kNetworkBytes};
-}
-
 }  // namespace
 
 AddressSet::AddressSet(const std::vector<std::string>& ranges) {
@@ -119,27 +112,10 @@ bool is_loopback(std::string_view address) {
   return loopback.contains(address);
 }
 
-std::shared_ptr<void> Places::take(const std::string& address, bool counted, Refusal& refusal) {
-  const std::string key = counted ? counted_by(address) : std::string();
-  const std::lock_guard lock(taken_->mutex);
-  refusal = Refusal::full;
-  if (taken_->all >= most_) return nullptr;
-  refusal = Refusal::too_many_of_address;
-  int& of_address = taken_->of_address[key];
-  if (counted && most_of_address_ > 0 && of_address >= most_of_address_) return nullptr;
-  refusal = Refusal::none;
-  ++of_address;
-  ++taken_->all;
-  return {taken_.get(), [taken = taken_, key](void*) {
-            const std::lock_guard back(taken->mutex);
-            --taken->all;
-            if (--taken->of_address[key] == 0) taken->of_address.erase(key);
-          }};
-}
-
-int Places::taken() const {
-  const std::lock_guard lock(taken_->mutex);
-  return taken_->all;
+std::string network_of(const std::string& address) {
+  const std::optional<Bytes> bytes = parse(address);
+  if (!bytes || address.find(':') == std::string::npos) return address;
+  return {bytes->begin(), bytes->begin() + kNetworkBytes};
 }
 
 }  // namespace unwrapd::server::http

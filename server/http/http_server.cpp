@@ -37,8 +37,9 @@ std::int64_t write_all(Connection& connection, std::string_view bytes) {
   return static_cast<std::int64_t>(all - bytes.size());
 }
 
-RetryLater no_place(Places::Refusal why) {
-  const std::string whose = why == Places::Refusal::full ? "" : " from this address";
+RetryLater no_place(ConcurrencyLimit::Refusal why) {
+  const bool is_full = why == ConcurrencyLimit::Refusal::full;
+  const std::string whose = is_full ? "" : " from this address";
   return {ErrorCode::rate_limited,
           "Too many connections are open" + whose + "; use fewer, or try again after Retry-After.",
           kRetrySeconds};
@@ -47,6 +48,11 @@ RetryLater no_place(Places::Refusal why) {
 std::optional<TlsContext> tls_of(const HttpConfig& config) {
   if (config.tls_certificate.empty()) return std::nullopt;
   return std::optional<TlsContext>(std::in_place, config.tls_certificate, config.tls_key);
+}
+
+/// most: connections of one network, 0 for no limit.
+ConcurrencyLimit::Share share_of_network(int most) {
+  return [most](int places, int) { return most > 0 ? most : places; };
 }
 
 /// Half of the threads may wait for clients that are slow.
@@ -64,7 +70,7 @@ HttpServer::HttpServer(const HttpConfig& config, HttpUses uses, const Log& log)
       log_(log),
       tls_(tls_of(config)),
       listener_(config.address.host, config.address.port, config.option),
-      places_(config.max_connections, config.max_connections_per_address),
+      places_(config.max_connections, share_of_network(config.max_connections_per_address)),
       idle_connections_(
           listener_,
           {.accept = [this] { return let_in(); },
@@ -86,9 +92,9 @@ std::optional<Client> HttpServer::let_in() {
   if (!at_door) return std::nullopt;
   const std::string& address = at_door->address;
   const bool counted = !is_loopback(address) && !uses_.trusted_proxies.contains(address);
-  Places::Refusal refusal = Places::Refusal::none;
+  ConcurrencyLimit::Refusal refusal{};
   Client client{.transport = nullptr, .address = address};
-  client.place = places_.take(address, counted, refusal);
+  client.place = places_.try_enter(counted ? network_of(address) : "", &refusal);
   if (client.place && tls_) {
     client.transport = tls_->accept(at_door->socket);
     return client;

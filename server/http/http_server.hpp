@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "server/base/address.hpp"
+#include "server/base/concurrency_limit.hpp"
 #include "server/base/log.hpp"
 #include "server/http/addresses.hpp"
 #include "server/http/connection.hpp"
@@ -61,7 +62,7 @@ class HttpServer {
   void stop();
 
   [[nodiscard]] int parked() const { return idle_connections_.count(); }
-  [[nodiscard]] int open() const { return places_.taken(); }
+  [[nodiscard]] int open() const { return places_.count(); }
 
  private:
   /// A thread that waits for a client.
@@ -90,7 +91,7 @@ class HttpServer {
   const Log& log_;
   const std::optional<TlsContext> tls_;
   const Listener listener_;
-  Places places_;
+  ConcurrencyLimit places_;  // of connections, each network its share
   IdleConnections idle_connections_;
   std::optional<TlsHandshakePool> handshakes_;  // with TLS only
   std::mutex mutex_;

@@ -1,6 +1,7 @@
 #include "server/results/render_limiter.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "server/base/retry_later.hpp"
 
@@ -9,8 +10,6 @@ namespace {
 
 constexpr int kMakingRetrySeconds = 5;
 
-int half_of(int count) { return std::max(1, count / 2); }
-
 }  // namespace
 
 Error client_left() {
@@ -18,16 +17,17 @@ Error client_left() {
           "The client closed its connection; send the request again and wait."};
 }
 
-std::shared_ptr<void> RenderLimiter::enter(const RenderRequest& making,
+std::shared_ptr<void> RenderLimiter::enter(const RenderRequest& request,
                                            const http::HasLeft& has_left) {
   std::unique_lock lock(mutex_);
-  check_waiting(making.holder);
-  const auto self = waiters_.insert(waiters_.end(), {.making = making});
+  ConcurrencyLimit::Place to_wait = place_to_wait(request.holder);
+  const auto self =
+      visitors_.insert(visitors_.end(), {.request = request, .to_wait = std::move(to_wait)});
   let_in();
   try {
-    await_place(lock, self->is_in, has_left);
+    await_place(lock, *self, has_left);
   } catch (...) {
-    waiters_.erase(self);
+    visitors_.erase(self);
     let_in();
     throw;
   }
@@ -35,66 +35,51 @@ std::shared_ptr<void> RenderLimiter::enter(const RenderRequest& making,
   return {nullptr, [this, self](void*) { leave(self); }};
 }
 
-void RenderLimiter::await_place(std::unique_lock<std::mutex>& lock, const bool& is_in,
+void RenderLimiter::await_place(std::unique_lock<std::mutex>& lock, const Visitor& visitor,
                                 const http::HasLeft& has_left) {
-  while (!let_in_.wait_for(lock, kPresenceLook, [&] { return is_in; }))
+  while (!let_in_.wait_for(lock, kPresenceLook, [&] { return visitor.to_make != nullptr; }))
     if (has_left && has_left()) throw client_left();
 }
 
-int RenderLimiter::waiting() {
-  const std::lock_guard lock(mutex_);
-  return static_cast<int>(std::ranges::count(waiters_, false, &Waiter::is_in));
-}
-
-void RenderLimiter::check_waiting(const std::string& holder) const {
-  const auto waits_for_holder = [&](const Waiter& waiter) {
-    return !waiter.is_in && waiter.making.holder == holder;
-  };
-  if (std::ranges::count(waiters_, false, &Waiter::is_in) < limits_.waiting &&
-      std::ranges::count_if(waiters_, waits_for_holder) < half_of(limits_.waiting))
-    return;
+ConcurrencyLimit::Place RenderLimiter::place_to_wait(const std::string& holder) {
+  if (ConcurrencyLimit::Place place = places_to_wait_.try_enter(holder)) return place;
   throw RetryLater(ErrorCode::rate_limited,
                    "Too many requests wait for pictures and formats; try again after Retry-After.",
                    kMakingRetrySeconds);
 }
 
-/// Whether it waits for its like, so that who came later need not wait for it.
-bool RenderLimiter::is_held_up(const RenderRequest& making) const {
-  const auto same_file = [&](const Waiter& waiter) {
-    return waiter.is_in && waiter.making.file == making.file;
-  };
-  const auto same_holder = [&](const Waiter& waiter) {
-    return waiter.is_in && waiter.making.holder == making.holder;
-  };
-  const auto costly = [](const Waiter& waiter) { return waiter.is_in && waiter.making.is_costly; };
-  return std::ranges::any_of(waiters_, same_file) ||
-         (making.is_costly && std::ranges::any_of(waiters_, costly)) ||
-         std::ranges::count_if(waiters_, same_holder) >= half_of(limits_.places);
+/// True when the request waits for another's end; later ones may overtake it meanwhile.
+bool RenderLimiter::is_held_up(const RenderRequest& request) const {
+  return std::ranges::any_of(visitors_, [&](const Visitor& other) {
+    return other.to_make &&
+           (other.request.file == request.file || (request.is_costly && other.request.is_costly));
+  });
 }
 
-bool RenderLimiter::fits(const RenderRequest& making) const {
-  int places = 0;
+/// A file alone may take more than the limit.
+bool RenderLimiter::fits_memory(const RenderRequest& request) const {
   std::size_t bytes = 0;
-  for (const Waiter& waiter : waiters_) {
-    if (!waiter.is_in) continue;
-    ++places;
-    bytes += waiter.making.bytes;
-  }
-  return places == 0 || (places < limits_.places && bytes + making.bytes <= limits_.bytes);
+  for (const Visitor& visitor : visitors_)
+    if (visitor.to_make) bytes += visitor.request.bytes;
+  return places_.count() == 0 || bytes + request.bytes <= most_bytes_;
 }
 
 void RenderLimiter::let_in() {
-  for (Waiter& waiter : waiters_) {
-    if (waiter.is_in || is_held_up(waiter.making)) continue;
-    if (!fits(waiter.making)) break;  // nobody overtakes it, or it might wait for ever
-    waiter.is_in = true;
+  for (Visitor& visitor : visitors_) {
+    if (visitor.to_make || is_held_up(visitor.request)) continue;
+    const auto refusal = places_.refusal(visitor.request.holder);
+    if (refusal == ConcurrencyLimit::Refusal::share) continue;
+    // Later ones do not overtake it, or it might wait for ever.
+    if (refusal == ConcurrencyLimit::Refusal::full || !fits_memory(visitor.request)) break;
+    visitor.to_make = places_.try_enter(visitor.request.holder);
+    visitor.to_wait.reset();
   }
   let_in_.notify_all();
 }
 
-void RenderLimiter::leave(Waiters_::iterator waiter) {
+void RenderLimiter::leave(Visitors::iterator visitor) {
   const std::lock_guard lock(mutex_);
-  waiters_.erase(waiter);
+  visitors_.erase(visitor);
   let_in();
 }
 

@@ -1,39 +1,40 @@
 #pragma once
-// Who may make a file (a picture, a result in another format) now. Each file is made by one at a
-// time, so that whoever asks for it meanwhile finds it made; a few are made at once, no more than
-// fit into the memory together. Nobody has more than half of the places, nor of those to wait, so
-// that a small picture need not wait for somebody's large ones; else in order of arrival. Of those
-// that cost much and are not kept, one at a time is made in all: whoever asks for one after another
-// takes one thread. Who has gone does not wait any more.
+// Limits which files (pictures, results in another format) are made at the same time. A file is
+// made by one request at a time; the others that ask for it then find it made. Only so many are
+// made at once as fit into memory together. Nobody holds more than half of the places, or of those
+// to wait, so that a small picture need not wait for another client's large ones; apart from that,
+// the order is that of arrival. Of the costly files, which are not stored, one is made at a time in
+// all: a client that asks for one after another takes one thread. A client that disconnects waits
+// no more.
 
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <list>
-#include <memory>
 #include <mutex>
 #include <string>
 
+#include "server/base/concurrency_limit.hpp"
 #include "server/http/http.hpp"
 
 namespace unwrapd::server::results {
 
 struct RenderLimits {
   int places = 2;         ///< files made at once
-  int waiting = 32;       ///< who wait for a place; more are turned away
+  int waiting = 32;       ///< requests that wait for a place; more are turned away
   std::size_t bytes = 0;  ///< of memory for all at work; one alone may take more
 };
 
-/// How often whoever waits looks whether the client is still there.
+/// How often a waiting request looks whether its client is still connected.
 inline constexpr std::chrono::milliseconds kPresenceLook{100};
 
-/// Nobody reads it but the log.
+/// Ends a request whose client has disconnected. Nobody reads it but the log.
 Error client_left();
 
 /// A file that is to be made.
 struct RenderRequest {
   std::string file;       ///< its name, unlike all others
-  std::string holder;     ///< for whom
+  std::string holder;     ///< for whom; not empty
   std::size_t bytes = 0;  ///< of memory that it may take
   bool is_costly = false;
 };
@@ -41,33 +42,40 @@ struct RenderRequest {
 /// Thread-safe.
 class RenderLimiter {
  public:
-  explicit RenderLimiter(const RenderLimits& limits) : limits_(limits) {}
+  explicit RenderLimiter(const RenderLimits& limits)
+      : places_(limits.places, half_of_all),
+        places_to_wait_(limits.waiting, half_of_all),
+        most_bytes_(limits.bytes) {}
 
   /// Waits for a place, which is the caller's while it keeps what is returned. Throws
   /// RetryLater{rate_limited} when too many wait, Error{cancelled} when the client has left.
-  [[nodiscard]] std::shared_ptr<void> enter(const RenderRequest& making,
+  [[nodiscard]] std::shared_ptr<void> enter(const RenderRequest& request,
                                             const http::HasLeft& has_left = {});
-  [[nodiscard]] int waiting();
+  [[nodiscard]] int waiting() const { return places_to_wait_.count(); }
 
  private:
-  struct Waiter {
-    RenderRequest making;
-    bool is_in = false;
+  /// Holds a place to wait, then one to make its file.
+  struct Visitor {
+    RenderRequest request;
+    ConcurrencyLimit::Place to_wait;
+    ConcurrencyLimit::Place to_make = nullptr;
   };
-  using Waiters_ = std::list<Waiter>;
+  using Visitors = std::list<Visitor>;
 
-  void check_waiting(const std::string& holder) const;
-  void await_place(std::unique_lock<std::mutex>& lock, const bool& is_in,
+  ConcurrencyLimit::Place place_to_wait(const std::string& holder);
+  void await_place(std::unique_lock<std::mutex>& lock, const Visitor& visitor,
                    const http::HasLeft& has_left);
-  [[nodiscard]] bool is_held_up(const RenderRequest& making) const;
-  [[nodiscard]] bool fits(const RenderRequest& making) const;
+  [[nodiscard]] bool is_held_up(const RenderRequest& request) const;
+  [[nodiscard]] bool fits_memory(const RenderRequest& request) const;
   void let_in();
-  void leave(Waiters_::iterator waiter);
+  void leave(Visitors::iterator visitor);
 
-  const RenderLimits limits_;
+  ConcurrencyLimit places_;
+  ConcurrencyLimit places_to_wait_;
+  const std::size_t most_bytes_;
   std::mutex mutex_;
   std::condition_variable let_in_;
-  Waiters_ waiters_;  // in order of arrival
+  Visitors visitors_;  // in order of arrival
 };
 
 }  // namespace unwrapd::server::results

@@ -54,7 +54,7 @@ std::string last_frames(const store::JobRecord& job, std::int64_t seen) {
 }  // namespace
 
 std::shared_ptr<void> EventStreams::take_place(const std::string& owner) {
-  std::shared_ptr<void> place = places_.let_in(owner);
+  std::shared_ptr<void> place = places_.try_enter(owner);
   if (place) return place;
   throw RetryLater(ErrorCode::too_many_streams,
                    "All " + std::to_string(max_streams_) +

@@ -24,7 +24,7 @@ struct Watcher {
 class EventStreams {
  public:
   EventStreams(jobs::EventFeed& events, int max_streams)
-      : events_(events), max_streams_(max_streams), places_(max_streams) {}
+      : events_(events), max_streams_(max_streams), places_(max_streams, half_of_the_rest) {}
 
   /// The events of a job after Last-Event-ID. A job whose feed is gone is final: its last event is
   /// made from the record, after a gap for all that were before it. Throws

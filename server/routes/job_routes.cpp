@@ -55,7 +55,7 @@ http::Response post_job(const JobServices& services, const http::Request& reques
   const std::string id = services.submissions.accept(request, false);
   std::optional<int> wait = http::preferred_wait(request.header("Prefer"));
   const int seconds = std::min(wait.value_or(0), services.limits.max_wait_seconds);
-  const auto place = seconds > 0 ? services.waiters.let_in(request.caller.owner) : nullptr;
+  const auto place = seconds > 0 ? services.waiters.try_enter(request.caller.owner) : nullptr;
   if (!place && seconds > 0) wait.reset();  // a preference (RFC 7240), not a promise
   if (place) wait_for(services.events, id, std::chrono::seconds(seconds));
   const store::JobRecord job = stored_job(services.store, id);
@@ -96,7 +96,7 @@ RetryLater too_many_wait() {
 }
 
 http::Response post_unwrap(const JobServices& services, const http::Request& request) {
-  const auto place = services.waiters.let_in(request.caller.owner);
+  const auto place = services.waiters.try_enter(request.caller.owner);
   if (!place) throw too_many_wait();
   const std::string id = services.submissions.accept(request, true);
   wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds) + kTimeToEnd);

@@ -8,15 +8,14 @@ namespace {
 
 constexpr std::size_t kRemembered = 1024;
 
-/// Of so many places, those that this owner may have: where no keys are asked for, all are one.
-int share(int places, const std::string& owner) {
-  return owner.empty() ? places : places - places / 4;
-}
-
 }  // namespace
 
 WebhookPool::WebhookPool(int at_once, int per_receiver, std::function<void()> freed)
-    : at_once_(at_once), per_receiver_(per_receiver), freed_(std::move(freed)) {
+    : at_once_(at_once),
+      per_receiver_(per_receiver),
+      freed_(std::move(freed)),
+      calls_(at_once, three_quarters),
+      trials_(at_once / 2, three_quarters) {
   threads_.reserve(static_cast<std::size_t>(at_once));
   for (int i = 0; i < at_once; ++i)
     threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
@@ -27,48 +26,29 @@ WebhookPool::~WebhookPool() {
   threads_.clear();
 }
 
-bool WebhookPool::is_full() const {
-  const std::lock_guard lock(mutex_);
-  return taken_ >= at_once_;
-}
-
 bool WebhookPool::is_proven(const WebhookReceiver& receiver) const {
   return std::ranges::find(proven_, receiver) != proven_.end();
 }
 
-template <class Is>
-int WebhookPool::count(Is&& is) const {
-  int found = 0;
-  for (const auto& [receiver, calls] : calls_)
-    if (is(receiver)) found += calls;
-  return found;
-}
-
-int WebhookPool::of_owner(const std::string& owner) const {
-  const std::lock_guard lock(mutex_);
-  return count([&](const WebhookReceiver& other) { return other.owner == owner; });
-}
-
 bool WebhookPool::has_room(const WebhookReceiver& receiver) const {
   const std::lock_guard lock(mutex_);
-  const auto is_ours = [&](const WebhookReceiver& other) { return other.owner == receiver.owner; };
-  const auto is_unproven = [&](const WebhookReceiver& other) { return !is_proven(other); };
-  if (taken_ >= at_once_ || count(is_ours) >= share(at_once_, receiver.owner)) return false;
-  const auto known = calls_.find(receiver);
-  const int of_receiver = known == calls_.end() ? 0 : known->second;
+  constexpr auto kNone = ConcurrencyLimit::Refusal::none;
+  if (calls_.refusal(receiver.owner) != kNone) return false;
+  const auto known = of_receiver_.find(receiver);
+  const int of_receiver = known == of_receiver_.end() ? 0 : known->second;
   if (is_proven(receiver)) return of_receiver < per_receiver_;
-  const int places = at_once_ / 2;
-  const int ours =
-      count([&](const WebhookReceiver& other) { return is_ours(other) && is_unproven(other); });
-  return of_receiver == 0 && count(is_unproven) < places && ours < share(places, receiver.owner);
+  return of_receiver == 0 && trials_.refusal(receiver.owner) == kNone;
 }
 
 void WebhookPool::begin(const WebhookReceiver& receiver, Call call) {
   {
     const std::lock_guard lock(mutex_);
-    ++calls_[receiver];
-    ++taken_;
-    waiting_.push_back({receiver, std::move(call)});
+    ++of_receiver_[receiver];
+    waiting_.push_back(
+        {.receiver = receiver,
+         .call = std::move(call),
+         .place = calls_.try_enter(receiver.owner),
+         .trial = is_proven(receiver) ? nullptr : trials_.try_enter(receiver.owner)});
   }
   arrived_.notify_one();
 }
@@ -76,22 +56,22 @@ void WebhookPool::begin(const WebhookReceiver& receiver, Call call) {
 void WebhookPool::work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (arrived_.wait(lock, stop, [&] { return !waiting_.empty(); }) && !stop.stop_requested()) {
-    const Task task = std::move(waiting_.front());
+    Task task = std::move(waiting_.front());
     waiting_.pop_front();
     lock.unlock();
     const bool answered = task.call(stop);
-    end(task.receiver, answered);
+    end(std::move(task), answered);
     freed_();
     lock.lock();
   }
 }
 
-void WebhookPool::end(const WebhookReceiver& receiver, bool answered) {
+/// Gives the places back.
+void WebhookPool::end(Task task, bool answered) {
   const std::lock_guard lock(mutex_);
-  --taken_;
-  if (--calls_[receiver] == 0) calls_.erase(receiver);
-  proven_.remove(receiver);
-  if (answered) proven_.push_front(receiver);
+  if (--of_receiver_[task.receiver] == 0) of_receiver_.erase(task.receiver);
+  proven_.remove(task.receiver);
+  if (answered) proven_.push_front(std::move(task.receiver));
   if (proven_.size() > kRemembered) proven_.pop_back();
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 // Threads that call webhooks: a few calls at once, and of these fewer to one receiver, which is a
-// host as one owner of jobs calls it. A receiver is proven when it has answered its last call.
-// Those that are not have one call each, and half of all places together; one owner has three
-// quarters of either at most, where there are several. So receivers that hang, however many, delay
-// neither proven ones nor, while they are few or another owner's, new ones.
+// host as one owner of jobs calls it. A receiver is proven when it has answered its last call. A
+// call to one that is not proven is a trial: one at a time for each receiver, and half of all
+// places for the trials together. One owner has three quarters of either at most, where there are
+// several. So receivers that hang, however many, delay neither proven ones nor, while they are few
+// or another owner's, new ones.
 
 #include <compare>
 #include <condition_variable>
@@ -16,6 +17,8 @@
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "server/base/concurrency_limit.hpp"
 
 namespace unwrapd::server::webhooks {
 
@@ -40,11 +43,11 @@ class WebhookPool {
   /// Asks all calls to end, and waits for them.
   ~WebhookPool();
 
-  [[nodiscard]] bool is_full() const;
+  [[nodiscard]] bool is_full() const { return calls_.count() >= at_once_; }
   /// Whether this receiver may be called now.
   [[nodiscard]] bool has_room(const WebhookReceiver& receiver) const;
   /// Calls of this owner that wait for a thread or are being made.
-  [[nodiscard]] int of_owner(const std::string& owner) const;
+  [[nodiscard]] int of_owner(const std::string& owner) const { return calls_.count(owner); }
   /// Begins a call, for which there must be room.
   void begin(const WebhookReceiver& receiver, Call call);
 
@@ -52,13 +55,12 @@ class WebhookPool {
   struct Task {
     WebhookReceiver receiver;
     Call call;
+    ConcurrencyLimit::Place place;
+    ConcurrencyLimit::Place trial;  // none when the receiver is proven
   };
   void work(const std::stop_token& stop);
-  void end(const WebhookReceiver& receiver, bool answered);
+  void end(Task task, bool answered);
   [[nodiscard]] bool is_proven(const WebhookReceiver& receiver) const;
-  /// Calls to those receivers for which is() holds.
-  template <class Is>
-  [[nodiscard]] int count(Is&& is) const;
 
   const int at_once_;
   const int per_receiver_;
@@ -66,10 +68,11 @@ class WebhookPool {
   mutable std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::deque<Task> waiting_;
-  std::map<WebhookReceiver, int> calls_;  // waiting or being made
-  int taken_ = 0;                         // the same, in all
-  std::list<WebhookReceiver> proven_;     // the last to answer first
-  std::vector<std::jthread> threads_;     // last: they use the others
+  ConcurrencyLimit calls_;                      // waiting or being made, each owner its share
+  ConcurrencyLimit trials_;                     // of these
+  std::map<WebhookReceiver, int> of_receiver_;  // the same calls
+  std::list<WebhookReceiver> proven_;           // the last to answer first
+  std::vector<std::jthread> threads_;           // last: they use the others
 };
 
 }  // namespace unwrapd::server::webhooks

@@ -1,4 +1,4 @@
-// Requests that wait for the ends of jobs leave threads for those that do not.
+// The limit by itself, and requests that wait for jobs, which leave threads for those that do not.
 #include "api/options.hpp"  // Eigen before httplib, whose headers define _res
 
 #include "server/base/concurrency_limit.hpp"
@@ -17,43 +17,98 @@
 namespace unwrapd::server {
 namespace {
 
-TEST(ConcurrencyLimit, AreSoManyAndOfOneKeyHalfAsMany) {
-  ConcurrencyLimit waiters(4);
-  auto one = waiters.let_in("a");
-  const auto two = waiters.let_in("a");
-  EXPECT_NE(two, nullptr);
-  EXPECT_EQ(waiters.let_in("a"), nullptr);
-  one.reset();
-  one = waiters.let_in("a");
-  EXPECT_NE(one, nullptr) << "who leaves makes room";
-  const auto three = waiters.let_in("b"), four = waiters.let_in("");
-  EXPECT_NE(three, nullptr);
-  EXPECT_NE(four, nullptr);
-  EXPECT_EQ(waiters.let_in("c"), nullptr) << "all places are taken";
+using Place = ConcurrencyLimit::Place;
+using Refusal = ConcurrencyLimit::Refusal;
+
+/// Takes places until one is refused.
+std::vector<Place> take_all(ConcurrencyLimit& limit, const std::string& owner) {
+  std::vector<Place> held;
+  while (Place place = limit.try_enter(owner)) held.push_back(std::move(place));
+  return held;
 }
 
-TEST(ConcurrencyLimit, OfFewKeysDoNotTakeAll) {
-  ConcurrencyLimit waiters(16);
-  std::vector<std::shared_ptr<void>> held;
-  const auto take_all = [&](const std::string& owner) {
-    int got = 0;
-    while (auto place = waiters.let_in(owner)) {
-      held.push_back(std::move(place));
-      ++got;
-    }
-    return got;
-  };
-  EXPECT_EQ(take_all("a"), 8);
-  EXPECT_EQ(take_all("b"), 4);
-  EXPECT_EQ(take_all("c"), 2);
-  EXPECT_EQ(take_all("d"), 1);
-  EXPECT_NE(waiters.let_in("e"), nullptr);
+TEST(ConcurrencyLimit, GivesOneOwnerItsShareAndTellsWhyOneIsRefused) {
+  ConcurrencyLimit limit(4, half_of_the_rest);
+  Refusal why{};
+  Place first = limit.try_enter("a", &why);
+  EXPECT_EQ(why, Refusal::none);
+  const Place second = limit.try_enter("a");
+  EXPECT_EQ(limit.try_enter("a", &why), nullptr);
+  EXPECT_EQ(why, Refusal::share);
+  EXPECT_EQ(limit.refusal("b"), Refusal::none);
+  first.reset();
+  first = limit.try_enter("a");
+  EXPECT_NE(first, nullptr) << "a place that was given back is free";
+  const Place third = limit.try_enter("b"), fourth = limit.try_enter("");
+  EXPECT_NE(fourth, nullptr);
+  EXPECT_EQ(limit.try_enter("c", &why), nullptr);
+  EXPECT_EQ(why, Refusal::full);
+  EXPECT_EQ(limit.count(), 4);
+  EXPECT_EQ(limit.count("a"), 2);
+  EXPECT_EQ(limit.count("c"), 0);
 }
 
-TEST(ConcurrencyLimit, WithoutKeysAreAllAlike) {
-  ConcurrencyLimit waiters(2);
-  const auto one = waiters.let_in(""), two = waiters.let_in("");
-  EXPECT_NE(two, nullptr);
+TEST(ConcurrencyLimit, APlaceIsHeldUntilItsLastCopyIsGoneAndMayOutliveTheLimit) {
+  Place held;
+  {
+    ConcurrencyLimit limit(1, half_of_all);
+    Place place = limit.try_enter("a");
+    held = place;
+    place.reset();
+    EXPECT_EQ(limit.try_enter("b"), nullptr);
+    held.reset();
+    EXPECT_EQ(limit.count(), 0);
+    held = limit.try_enter("b");
+  }
+  EXPECT_NE(held, nullptr);
+}
+
+TEST(ConcurrencyLimit, AFewOwnersDoNotTakeAllPlaces) {
+  ConcurrencyLimit limit(16, half_of_the_rest);
+  const auto a = take_all(limit, "a"), b = take_all(limit, "b"), c = take_all(limit, "c"),
+             d = take_all(limit, "d");
+  EXPECT_EQ(a.size(), 8U);
+  EXPECT_EQ(b.size(), 4U);
+  EXPECT_EQ(c.size(), 2U);
+  EXPECT_EQ(d.size(), 1U);
+  EXPECT_NE(limit.try_enter("e"), nullptr);
+}
+
+TEST(ConcurrencyLimit, SharesAreAsTheirNamesSay) {
+  ConcurrencyLimit half(5, half_of_all), one(1, half_of_all), most(16, three_quarters);
+  ConcurrencyLimit of_two(8, [](int, int) { return 2; });
+  EXPECT_EQ(take_all(half, "a").size(), 2U);
+  EXPECT_EQ(take_all(one, "a").size(), 1U);
+  EXPECT_EQ(take_all(most, "a").size(), 12U);
+  EXPECT_EQ(take_all(of_two, "a").size(), 2U);
+}
+
+TEST(ConcurrencyLimit, AnOwnerWithoutANameMayTakeAll) {
+  ConcurrencyLimit limit(3, half_of_all);
+  EXPECT_EQ(take_all(limit, "").size(), 3U);
+}
+
+TEST(ConcurrencyLimit, LetsNoMoreInThanThereArePlacesWhateverThreadsAsk) {
+  constexpr int kPlaces = 3;
+  ConcurrencyLimit limit(kPlaces, three_quarters);
+  std::atomic<int> inside = 0, most = 0, entered = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (int k = 0; k < 4; ++k)
+      threads.emplace_back([&, owner = std::to_string(k % 2)] {
+        for (int i = 0; i < 2000; ++i) {
+          const Place place = limit.try_enter(owner);
+          if (!place) continue;
+          ++entered;
+          const int now = ++inside;
+          for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) continue;
+          --inside;
+        }
+      });
+  }
+  EXPECT_LE(most, kPlaces);
+  EXPECT_GT(entered, 0);
+  EXPECT_EQ(limit.count(), 0);
 }
 
 class WaitingRequests : public RunningServer {};

@@ -45,23 +45,10 @@ TEST(Addresses, ForwardedAddressesCountAsFarAsTheChainOfTrustedProxiesReaches) {
   EXPECT_EQ(client_behind("10.0.0.1", "[2001:db8::1", proxies), "10.0.0.1");
 }
 
-TEST(Addresses, PlacesAreCountedInAllAndByNetworkAndGivenBack) {
-  Places places(4, 2);
-  Places::Refusal why{};
-  std::vector<std::shared_ptr<void>> held;
-  const auto take = [&](const char* address) {
-    held.push_back(places.take(address, true, why));
-    return why;
-  };
-  EXPECT_EQ(take("1.1.1.1"), Places::Refusal::none);
-  EXPECT_EQ(take("1.1.1.1"), Places::Refusal::none);
-  EXPECT_EQ(take("1.1.1.1"), Places::Refusal::too_many_of_address);
-  EXPECT_EQ(take("fd00::1:0:0:0:1"), Places::Refusal::none);
-  EXPECT_EQ(take("fd00::2"), Places::Refusal::none);  // another /64
-  EXPECT_EQ(take("2.2.2.2"), Places::Refusal::full);
-  held.clear();
-  EXPECT_EQ(places.taken(), 0);
-  EXPECT_TRUE(places.take("1.1.1.1", true, why));
+TEST(Addresses, OfIPv6AreCountedByTheirNetwork) {
+  EXPECT_EQ(network_of("fd00::1:0:0:0:1"), network_of("fd00::1:ffff:0:0:2"));
+  EXPECT_NE(network_of("fd00::1:0:0:0:1"), network_of("fd00::2"));  // another /64
+  EXPECT_NE(network_of("1.1.1.1"), network_of("1.1.1.2"));
 }
 
 void allow_many_files() {

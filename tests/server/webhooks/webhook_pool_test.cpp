@@ -84,6 +84,18 @@ TEST_F(WebhookPlaces, ProvenReceiversOfOneOwnerLeavePlacesToAnother) {
   EXPECT_TRUE(pool_.has_room(of("new", "theirs")));
 }
 
+/// Calls to receivers that were proven when they began are no trials, even if they hang.
+TEST_F(WebhookPlaces, ReceiversThatWereProvenLeaveTrialsToAnotherOwner) {
+  for (int i = 0; i < kAtOnce / 2; ++i) {
+    const std::string host = std::to_string(i);
+    call(host, true);
+    hang(host);
+    call(host, false);
+    EXPECT_FALSE(has_room(host));
+  }
+  EXPECT_TRUE(pool_.has_room(of("new", "theirs")));
+}
+
 TEST_F(WebhookPlaces, AHostIsWhatTheAddressNamesHoweverItIsWritten) {
   for (const auto& [url, host] : {std::pair{"http://[fd00:1::1]:81/x", "fd00:1::1"},
                                   {"http://[fd00:2::2]/", "fd00:2::2"},
