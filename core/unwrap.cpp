@@ -1,173 +1,125 @@
-// The whole of core at a glance: surfaces are taken apart into charts, each chart is mapped, all
-// are packed on one page, and the page's UVs are measured and put back on the surfaces.
+// Unwrapping, step by step. unwrap_curve() is the list for all surfaces: prepare charts, map them,
+// pack, quantize, measure, assemble, report. map_chart() is the list for one chart: constrain,
+// parameterize, guarantee, scale.
 #include "core/unwrap.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
-#include <string>
+#include <optional>
 #include <utility>
 
-#include "core/base/error.hpp"
-#include "core/charts/outline.hpp"
+#include "core/base/cancel.hpp"
+#include "core/charts/constraints.hpp"
 #include "core/guarantee/keep_guarantee.hpp"
-#include "core/measure/distortion.hpp"
-#include "core/measure/rest_triangle.hpp"
-#include "core/measure/seam_length.hpp"
-#include "core/pack/pack.hpp"
-#include "core/pipeline/assemble.hpp"
 #include "core/pipeline/chart_progress.hpp"
-#include "core/pipeline/map_surfaces.hpp"
+#include "core/pipeline/layout.hpp"
 #include "core/pipeline/parameterize_chart.hpp"
-#include "core/pipeline/place_islands.hpp"
+#include "core/pipeline/prepare_charts.hpp"
 #include "core/pipeline/repack.hpp"
+#include "core/segment/excess_steps.hpp"
+#include "core/solve/constrain_chart.hpp"
+#include "core/solve/solve.hpp"
 
 namespace unwrapd {
 namespace {
 
-/// Shares of the job that are behind us when a step of core begins; reading comes before, writing
-/// after.
+using pipeline::Layout;
+using pipeline::MappedChart;
+using pipeline::PreparedCharts;
+
+/// Shares of the job that are done when a step of core begins. Reading comes before these steps,
+/// writing after.
 constexpr double kPackBegin = pipeline::kSolveEnd, kMeasureBegin = 0.93;
 
 void announce(const Progress& progress, Stage stage, std::size_t charts, double fraction) {
   if (progress.on_stage) progress.on_stage({stage, 0, static_cast<Index>(charts), fraction});
 }
 
-/// Places every chart on the page; the maps become page UVs.
-void place(pipeline::Layout& layout, const UnwrapOptions& options, Executor& executor) {
-  std::vector<charts::Outline> outlines;
-  std::vector<UvMap*> maps;
-  for (std::size_t s = 0; s < layout.islands.size(); ++s)
-    for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
-      outlines.push_back(charts::outline_of(*layout.charts[s][k], layout.islands[s][k]));
-      maps.push_back(&layout.islands[s][k]);
-    }
-  pipeline::place_islands(outlines, options, executor, maps, layout.report);
-}
-
-/// Says where constraints reach beyond the page.
-void note_charts_beyond(pipeline::Layout& layout) {
-  const auto is_beyond = [](const Vec2& u) { return u.minCoeff() < 0 || u.maxCoeff() > 1; };
-  std::ptrdiff_t count = 0;
-  for (const std::vector<UvMap>& own : layout.islands)
-    count += std::count_if(own.begin(), own.end(), [&](const UvMap& uv) {
-      return std::any_of(uv.begin(), uv.end(), is_beyond);
-    });
-  if (count > 0)
-    layout.report.notes.push_back("The constraints put " + std::to_string(count) +
-                                  " of the charts partly or wholly outside the page.");
-}
-
-/// Charts under position constraints are on the page already.
-void lay_out_page(pipeline::Layout& layout, const UnwrapOptions& options, Executor& executor) {
-  if (options.constraints.empty())
-    place(layout, options, executor);
-  else
-    note_charts_beyond(layout);
-}
-
-/// The promise kept in what is written.
-void keep_on_page(pipeline::Layout& layout, const UnwrapOptions& options,
-                  const std::stop_token& stop) {
-  auto report = layout.report.charts.begin();
-  layout.report.guarantee = options.guarantee;
-  for (std::size_t s = 0; s < layout.islands.size(); ++s)
-    for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
-      guarantee::GuaranteeRules promise{.guarantee = options.guarantee};
-      promise.intent = {.rigidity = {}, .constrained = layout.constrained[s][k], .stop = stop};
-      const guarantee::Written written =
-          guarantee::keep_on_page(*layout.charts[s][k], promise, layout.islands[s][k]);
-      report->distortion.flipped = written.flipped;
-      report->overlaps = written.overlaps;
-    }
-}
-
-/// Distortion and density of the triangles as they are written: rounding counts, too.
-void measure_layout(pipeline::Layout& layout, const UnwrapOptions& options, Executor& executor) {
-  auto report = layout.report.charts.begin();
-  for (std::size_t s = 0; s < layout.islands.size(); ++s)
-    for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
-      const TriMesh& mesh = layout.charts[s][k]->mesh;
-      measure::DistortionSums own =
-          measure::distortion_sums(measure::flatten(mesh.positions, mesh.faces, executor),
-                                   mesh.faces, layout.islands[s][k], executor);
-      own.flipped = report->distortion.flipped;  // by exact signs
-      report->area = own.area;
-      report->distortion = measure::distortion(own);
-      layout.sums += own;
-    }
-  const measure::DistortionSums& sums = layout.sums;
-  layout.report.distortion = measure::distortion(sums);
-  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * options.resolution;
-  if (!options.constraints.empty()) layout.report.fill = sums.uv_area;
-}
-
-/// What the whole atlas comes to; overlaps only where they were counted in every chart.
-void add_totals(Report& report) {
-  report.overlaps = 0;
-  for (const ChartReport& chart : report.charts) {
-    report.area += chart.area;
-    report.seam_length += chart.seam_length / 2;  // a seam has two sides
-    if (report.overlaps && chart.overlaps)
-      *report.overlaps += *chart.overlaps;
-    else
-      report.overlaps.reset();
+/// The maps of one chart: one for each lambda, in several parts where the guarantee took a split.
+/// The solver analyses and factors the chart once.
+std::vector<std::vector<MappedChart>> map_chart(const pipeline::ChartJob& job,
+                                                const UnwrapOptions& options,
+                                                pipeline::ChartProgress& progress,
+                                                Executor& executor) {
+  solve::Disk disk = job.disk;  // a copy, because jobs share the disk but not the stop token
+  disk.stop = progress.stop();
+  const std::vector<double> lambdas = pipeline::lambdas_of(options);
+  progress.begin_chart(job.chart->mesh.faces.size(), lambdas.size());
+  throw_if_cancelled(disk.stop);
+  const solve::ChartConstraints constraints =
+      solve::constrain_chart(disk, options, job.page, disk.stop, executor);
+  const solve::VertexConstraints& held = constraints.constrained.constraints;
+  solve::Solver solver(
+      disk, options,
+      pipeline::constrained_start(*job.chart, disk, options, constraints.constrained), executor);
+  std::vector<std::vector<MappedChart>> maps;
+  for (const double lambda : lambdas) {
+    progress.begin_run(pipeline::is_curve(options) ? std::optional(lambda) : std::nullopt);
+    solve::Solution solution = pipeline::parameterize_chart(solver, job, options, lambda, progress);
+    if (options.guarantee != Guarantee::none) progress.tell(Stage::untangle);
+    guarantee::GuaranteeRules rules = guarantee::rules_for(*job.chart, disk, options, lambda);
+    rules.intent.constrained = solve::fixed_vertices(disk.positions.size(), held);
+    rules.intent.soft = held.soft;
+    rules.intent.executor = &executor;
+    rules.intent.global = solver.global();
+    guarantee::GuaranteedMap guaranteed =
+        guarantee::keep_guarantee(job.chart, disk, std::move(solution.uv), rules);
+    maps.push_back(
+        pipeline::scale_parts(disk, std::move(guaranteed), constraints, solution, executor));
+    progress.end_run();
   }
-  report.seam_ratio = report.seam_length / std::sqrt(report.area);
+  progress.end_chart();
+  return maps;
 }
 
-/// The plan that is there already, unless charts came apart.
-UnwrappedSurface assembled(const Surface& surface, std::size_t s, const pipeline::Layout& layout,
-                           const std::stop_token& stop) {
-  const pipeline::Prepared& all = *layout.all;
-  const charts::Charts& whole = all.surfaces[s];
-  std::vector<const charts::Chart*> charts;
-  for (const std::shared_ptr<const charts::Chart>& chart : layout.charts[s])
-    charts.push_back(chart.get());
-  if (charts == pipeline::pointers_to(whole.charts))
-    return pipeline::assemble(*all.plans[s], layout.islands[s]);
-  return pipeline::assemble(pipeline::plan_vertices(surface, whole, charts, stop),
-                            layout.islands[s]);
-}
-
-Unwrapped put_back(std::span<const Surface> surfaces, pipeline::Layout layout,
-                   const std::stop_token& stop) {
-  const pipeline::Prepared& all = *layout.all;
-  Unwrapped unwrapped;
-  auto report = layout.report.charts.begin();
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    unwrapped.surfaces.push_back(assembled(surfaces[s], s, layout, stop));
-    const std::vector<double> seams = measure::seam_lengths(
-        surfaces[s].mesh, *all.surfaces[s].by_position, unwrapped.surfaces.back(), stop);
-    for (const std::shared_ptr<const charts::Chart>& chart : layout.charts[s]) {
-      for (const Index t : chart->face_source) report->seam_length += seams[t];
-      ++report;
+/// The maps of all charts: a layout for each lambda.
+std::vector<Layout> map_charts(const PreparedCharts& prepared, std::span<const Surface> surfaces,
+                               const UnwrapOptions& options, const Progress& progress,
+                               Executor& executor) {
+  const pipeline::Prepared& all = *prepared.all;
+  const auto page =
+      charts::page_constraints(surfaces, all.surfaces, options.constraints, progress.stop);
+  pipeline::ChartProgress watch(progress, all.surfaces, prepared.solve_begin, executor);
+  std::vector<Layout> layouts =
+      pipeline::empty_layouts(prepared.all, pipeline::lambdas_of(options).size());
+  for (std::size_t s = 0; s < all.surfaces.size(); ++s)
+    for (std::size_t c = 0; c < all.surfaces[s].charts.size(); ++c) {
+      const std::shared_ptr<const charts::Chart> chart(prepared.all, &all.surfaces[s].charts[c]);
+      auto maps = map_chart({chart, all.disks[s][c], page[s][c]}, options, watch, executor);
+      for (std::size_t k = 0; k < maps.size(); ++k)
+        for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped));
     }
-  }
-  add_totals(layout.report);
-  unwrapped.report = std::move(layout.report);
-  return unwrapped;
+  for (Layout& layout : layouts) note_new_maps(layout, options);
+  return layouts;
 }
 
-CurvePoint curve_point(double lambda, const Report& report) {
-  CurvePoint point{.lambda = lambda, .distortion = report.distortion};
-  double area = 0;
-  for (const ChartReport& chart : report.charts) {
-    area += chart.area;
-    point.energy += chart.area * chart.energy.back();
-    point.iterations = std::max(point.iterations, chart.iterations);
-  }
-  point.energy /= area;
-  return point;
+/// Whether a tighter bound of distortion can lead to other charts.
+bool has_bound(const UnwrapOptions& options) {
+  return options.max_distortion && options.max_charts != 1 && options.constraints.empty() &&
+         options.boundary == BoundaryShape::free;
 }
 
-/// Every map's report has the whole curve.
-void add_curve(std::vector<Unwrapped>& maps, const std::vector<double>& lambdas) {
-  std::vector<CurvePoint> curve;
-  for (std::size_t k = 0; k < maps.size(); ++k)
-    curve.push_back(curve_point(lambdas[k], maps[k].report));
-  for (Unwrapped& map : maps) map.report.curve = curve;
+/// Splits make borders longer. Where charts were split, tighter bounds of distortion are tried, and
+/// the layouts with shorter borders are taken (ADR 0039). The search ends at a bound whose charts
+/// have longer borders before any of them is split.
+void try_tighter_bounds(std::span<const Surface> surfaces, UnwrapOptions options,
+                        const std::stop_token& stop, Executor& executor,
+                        std::vector<Layout>& layouts) {
+  const Progress quiet{.on_stage = {}, .on_iteration = {}, .stop = stop};
+  double last = border_of(*layouts.front().all);
+  const auto is_shorter = [&](const Layout& own) { return last < border_of(own); };
+  bool is_split = std::ranges::any_of(layouts, pipeline::has_split_charts);
+  while (is_split && (options.max_distortion = segment::tighter_bound(*options.max_distortion))) {
+    const PreparedCharts prepared = pipeline::prepare_charts(surfaces, options, quiet, executor);
+    const double border = border_of(*prepared.all);
+    if (std::exchange(last, border) == border) continue;  // the same charts
+    if (!prepared.all->note.empty() || std::ranges::none_of(layouts, is_shorter)) return;
+    std::vector<Layout> others = map_charts(prepared, surfaces, options, quiet, executor);
+    is_split = std::ranges::any_of(others, pipeline::has_split_charts);
+    for (std::size_t k = 0; k < layouts.size(); ++k)
+      if (border_of(others[k]) < border_of(layouts[k])) layouts[k] = std::move(others[k]);
+  }
 }
 
 }  // namespace
@@ -176,23 +128,26 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
                                     const Progress& progress, Executor& executor) {
   validate(options, std::numeric_limits<int>::max());
   JobExecutor job(executor, progress.stop);
+  const std::vector<double> lambdas = pipeline::lambdas_of(options);
   if (options.repack_only)
-    return {pipeline::lambdas_of(options).size(),
-            pipeline::repack(surfaces, options, progress, job)};
+    return {lambdas.size(), pipeline::repack(surfaces, options, progress, job)};
+
   announce(progress, Stage::setup, 0, pipeline::kChartsBegin);
-  std::vector<pipeline::Layout> layouts = pipeline::map_surfaces(surfaces, options, progress, job);
+  const PreparedCharts prepared = pipeline::prepare_charts(surfaces, options, progress, job);
+  std::vector<Layout> layouts = map_charts(prepared, surfaces, options, progress, job);
+  if (has_bound(options)) try_tighter_bounds(surfaces, options, progress.stop, job, layouts);
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
-  for (pipeline::Layout& layout : layouts) {
-    lay_out_page(layout, options, job);
-    keep_on_page(layout, options, progress.stop);
+  for (Layout& layout : layouts) {
+    pack_charts(layout, options, job);
+    quantize_maps(layout, options, progress.stop);
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
-  for (pipeline::Layout& layout : layouts) measure_layout(layout, options, job);
+  for (Layout& layout : layouts) measure_maps(layout, options, job);
   std::vector<Unwrapped> maps;
-  for (pipeline::Layout& layout : layouts)
-    maps.push_back(put_back(surfaces, std::move(layout), progress.stop));
-  if (pipeline::is_curve(options)) add_curve(maps, pipeline::lambdas_of(options));
+  for (Layout& layout : layouts)
+    maps.push_back(assemble_surfaces(surfaces, std::move(layout), progress.stop));
+  if (pipeline::is_curve(options)) pipeline::report_curve(maps, lambdas);
   return maps;
 }
 

@@ -1,7 +1,8 @@
-// First in place (flips are untangled, or the virtual boundary of Sec. 4.4 is used); a chart that
-// lies on itself is mapped anew with a barrier between its boundaries. What neither helps is split:
-// parts keep their share of the map, so that only the seam is lost. A part that still breaks the
-// promise is treated in the same way; in the end single triangles keep any promise.
+// A map is first repaired in place: flips are untangled, or the virtual boundary of Sec. 4.4 is
+// used. A chart that overlaps itself gets a new map with a barrier between its boundaries. If
+// neither helps, the chart is split; its parts keep their share of the map, so that the only cost
+// is the seam. A part without the guarantee is treated in the same way. The splitting ends because
+// a single triangle has every guarantee.
 #include "core/guarantee/keep_guarantee.hpp"
 
 #include <algorithm>
@@ -13,10 +14,8 @@
 #include "core/charts/split_chart.hpp"
 #include "core/guarantee/quantize_uvs.hpp"
 #include "core/guarantee/separate_rounded_boundaries.hpp"
-#include "core/measure/distortion.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
-#include "core/solve/methods/symmetric_dirichlet.hpp"
 #include "core/solve/repair/bijective.hpp"
 #include "core/solve/repair/virtual_patches.hpp"
 
@@ -26,75 +25,28 @@ namespace {
 constexpr std::size_t kMostPairs = 1 << 20;   // of overlapping triangles, counted in one chart
 constexpr Index kMostFacesUnfolded = 50'000;  // a new map of more takes minutes
 
-double fit_energy_of(const solve::Disk& disk, const UvMap& uv,
-                     const solve::arap::Rigidity& rigidity) {
-  double energy = 0;
-  for (std::size_t t = 0; t < disk.faces.size(); ++t) {
-    check_cancelled_every(t, disk.stop);
-    const measure::Jacobian j =
-        measure::jacobian(disk.rest[t], measure::uv_edges(disk.faces[t], uv));
-    const double lambda = rigidity.at(disk.rest[t].area);
-    energy += solve::arap::fit_energy(j, solve::arap::fit_similarity(j, lambda), disk.rest[t].area,
-                                      lambda);
-  }
-  return energy;
-}
-
-/// The method's own energy of a map: for angles D_angle, which flipped triangles have too.
-double energy_of(const solve::Disk& disk, const UvMap& uv, const solve::repair::MapIntent& intent) {
-  SerialExecutor serial;
-  switch (intent.own) {
-    case solve::repair::OwnEnergy::symmetric_dirichlet:
-      return solve::methods::symmetric_dirichlet_energy(disk, uv, serial);
-    case solve::repair::OwnEnergy::mips:
-      return measure::distortion_sums(disk.rest, disk.faces, uv, disk.stop).angle;
-    default:
-      return fit_energy_of(disk, uv, intent.rigidity);
-  }
-}
-
-/// That of an isometric map.
-double least_energy(const solve::Disk& disk, const solve::repair::MapIntent& intent) {
-  double area = 0;
-  for (const measure::RestTriangle& rest : disk.rest) area += rest.area;
-  switch (intent.own) {
-    case solve::repair::OwnEnergy::symmetric_dirichlet:
-      return 4 * area;
-    case solve::repair::OwnEnergy::mips:
-      return 2 * area;
-    default:
-      return 0;
-  }
-}
-
-/// Whether what a map's energy has above the least is more than `most` times that of another.
-bool exceeds(const solve::Disk& disk, const solve::repair::MapIntent& intent, double most,
-             const UvMap& uv, const UvMap& other) {
-  const double least = least_energy(disk, intent);
-  return energy_of(disk, uv, intent) - least > most * (energy_of(disk, other, intent) - least);
-}
-
 bool holds_any(const solve::repair::MapIntent& intent) {
   return std::any_of(intent.constrained.begin(), intent.constrained.end(),
                      [](char h) { return h != 0; });
 }
 
-/// Parts are packed wherever there is room: a chart whose places were asked for stays whole.
+/// Whether the caller asked for places. Such a chart stays whole, since parts are packed anywhere.
 bool has_a_place(const solve::repair::MapIntent& intent) {
   return holds_any(intent) || !intent.soft.empty();
 }
 
-/// Mends the map of one disk; returns how many flips are left.
-Index mend(const solve::Disk& disk, const GuaranteeRules& rules, UvMap& uv, Mending& mending) {
+/// Removes flips from the map of one disk; returns how many are left.
+Index remove_flips(const solve::Disk& disk, const GuaranteeRules& rules, UvMap& uv,
+                   Mending& mending) {
   mending.virtual_boundary = rules.repair == RepairMethod::virtual_boundary &&
                              solve::repair::mend_by_virtual_boundary(disk, rules.intent, uv);
   return solve::repair::untangle(disk, rules.intent, uv);
 }
 
-/// Faces that must come apart: two sets, disjoint, none empty.
+/// Two disjoint sets of faces, none of them empty, that a split separates.
 using Seeds = std::array<std::vector<Index>, 2>;
 
-/// A flipped face and the rest of the chart's rim, so that each part has less to hold together.
+/// A flipped face, and the face farthest from it.
 Seeds seeds_at_flips(const charts::Chart& chart, const std::vector<Index>& flipped) {
   const Index a = flipped.front();
   Index farthest = a == 0 ? 1 : 0;
@@ -114,7 +66,7 @@ std::vector<Index> component_numbers(const charts::Chart& chart, const std::vect
   return topology(corner_vertices(cut).faces, cut).component_of;
 }
 
-/// The two regions of the first overlap whole, where they do not hang together; else the two faces.
+/// The two whole regions of the first overlap where they are not connected, else its two faces.
 Seeds seeds_at_overlaps(const charts::Chart& chart,
                         const std::vector<std::array<Index, 2>>& pairs) {
   std::vector<char> in_set(chart.mesh.faces.size(), 0);
@@ -144,7 +96,7 @@ std::vector<std::array<Index, 2>> overlaps_of(const charts::Chart& chart, const 
               "/guarantee");
 }
 
-/// Splits a part in two or more and puts them on the list of those to be looked at.
+/// Splits a part in two or more and appends these to `open`.
 void split(const GuaranteedPart& part, const Seeds& seeds, const std::stop_token& stop,
            std::vector<GuaranteedPart>& open) {
   throw_if_cancelled(stop);
@@ -156,9 +108,9 @@ void split(const GuaranteedPart& part, const Seeds& seeds, const std::stop_token
   }
 }
 
-/// A map of the part in which nothing overlaps, in units of which one is `unit` of the mesh's,
-/// drawn by the soft constraints. The part stays as it is where there is none, or none that is good
-/// enough.
+/// Gives the part a map without overlaps that follows the soft constraints; unit: of the part's
+/// map, in units of the mesh. The part stays as it is, and the answer is false, where no such map
+/// is found or its energy is too high.
 bool unfold(GuaranteedPart& part, double unit, const GuaranteeRules& rules) {
   const solve::repair::MapIntent& intent = rules.intent;
   const solve::Disk disk = solve::make_disk(part.chart->mesh, part.chart->loops, intent.stop);
@@ -167,14 +119,14 @@ bool unfold(GuaranteedPart& part, double unit, const GuaranteeRules& rules) {
   const bool is_bounded = rules.most_rise < std::numeric_limits<double>::infinity();
   UvMap before = is_bounded ? part.uv : UvMap();
   for (Vec2& u : before) u *= unit / disk.unit;
-  if (is_bounded && exceeds(disk, intent, 1 + rules.most_rise, uv, before)) return false;
+  if (is_bounded && rises_too_far(disk, rules, uv, before)) return false;
   for (Vec2& u : uv) u *= disk.unit / unit;
   part.uv = std::move(uv);
   return overlaps_of(*part.chart, part.uv, intent.stop).empty();
 }
 
-/// The seeds of the split that a part with these flips needs; both empty where it keeps the
-/// promise, if need be after a new map.
+/// The seeds of the split that a part with these flips needs. Both are empty where the part has the
+/// guarantee, perhaps after a new map.
 Seeds seeds_needed(GuaranteedPart& part, const std::vector<Index>& flipped, double unit,
                    const GuaranteeRules& rules, Mending& mending) {
   if (!flipped.empty()) {
@@ -190,8 +142,8 @@ Seeds seeds_needed(GuaranteedPart& part, const std::vector<Index>& flipped, doub
   return seeds_at_overlaps(*part.chart, pairs);
 }
 
-/// The flips of a part that was cut off for its flips: it may be untangled where the whole could
-/// not.
+/// The flips of a part of a split chart, after another try to untangle them: a part may succeed
+/// where the whole chart failed.
 std::vector<Index> flips_left(GuaranteedPart& part, const solve::repair::MapIntent& intent) {
   std::vector<Index> flipped = measure::flipped_faces(part.chart->mesh.faces, part.uv, intent.stop);
   if (flipped.empty()) return flipped;
@@ -205,7 +157,7 @@ std::vector<Index> flips_left(GuaranteedPart& part, const solve::repair::MapInte
   return measure::flipped_faces(part.chart->mesh.faces, part.uv);
 }
 
-/// Splits until every part keeps the promise. flipped: those of the whole.
+/// Splits until every part has the guarantee. flipped: the flipped faces of the whole.
 std::vector<GuaranteedPart> split_as_needed(GuaranteedPart whole, std::vector<Index> flipped,
                                             double unit, const GuaranteeRules& rules,
                                             Mending& mending) {
@@ -241,12 +193,9 @@ GuaranteedMap keep_guarantee(std::shared_ptr<const charts::Chart> chart, const s
   kept.mending.flips = static_cast<Index>(flipped.size());
   const bool may_change = kept.mending.flips > 0 || rules.guarantee == Guarantee::bijective;
   const UvMap before = may_change ? uv : UvMap();
-  const auto rise = [&](const UvMap& now) {
-    const double energy = energy_of(disk, before, rules.intent);
-    return energy > 0 ? std::max(0.0, energy_of(disk, now, rules.intent) / energy - 1) : 0;
-  };
+  const auto rise = [&](const UvMap& now) { return energy_rise(disk, rules, before, now); };
   if (!flipped.empty()) {
-    if (mend(disk, rules, uv, kept.mending) == 0) kept.mending.energy_rise = rise(uv);
+    if (remove_flips(disk, rules, uv, kept.mending) == 0) kept.mending.energy_rise = rise(uv);
     flipped = measure::flipped_faces(disk.faces, uv);
   }
   kept.parts = split_as_needed({std::move(chart), std::move(uv)}, std::move(flipped), disk.unit,

@@ -1,18 +1,18 @@
 #pragma once
-// The guarantee kept for one chart: its map mended, and the chart split where nothing else helps.
+// Keeps the guarantee of one chart: repairs its map, and splits the chart where nothing else helps.
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/charts/charts.hpp"
+#include "core/guarantee/guarantee_rules.hpp"
 #include "core/solve/base/disk.hpp"
-#include "core/solve/repair/untangle.hpp"
+#include "core/types/report.hpp"
 
 namespace unwrapd::guarantee {
 
-/// A chart, whole or one part of it, with its map.
+/// A chart, or one part of it, with its map.
 struct GuaranteedPart {
   std::shared_ptr<const charts::Chart> chart;
   UvMap uv;  ///< in the units of the map that was handed in
@@ -21,17 +21,6 @@ struct GuaranteedPart {
 struct GuaranteedMap {
   std::vector<GuaranteedPart> parts;  ///< one: the chart was not split
   Mending mending;
-};
-
-/// What is promised, and how it may be kept.
-struct GuaranteeRules {
-  Guarantee guarantee = Guarantee::flip_free;
-  RepairMethod repair = RepairMethod::untangle;
-  solve::repair::MapIntent intent =
-      {};  ///< hard constraints stay; a chart with hard or soft ones is not split
-  /// What a new map's energy has above the least there is may be more by this share of what the old
-  /// one's has; rather than that the chart is split.
-  double most_rise = std::numeric_limits<double>::infinity();
 };
 
 /// uv: the solved map of the chart's disk, in disk units. Afterwards no triangle of a part is
@@ -44,14 +33,14 @@ struct GuaranteeRules {
 GuaranteedMap keep_guarantee(std::shared_ptr<const charts::Chart> chart, const solve::Disk& disk,
                              UvMap uv, const GuaranteeRules& rules);
 
-/// What is true of the UVs that are written.
+/// What holds of the UVs that are written.
 struct Written {
   Index flipped = 0;
   std::optional<Index> overlaps = {};  ///< pairs of triangles; not counted under Guarantee::none
 };
 
-/// Rounds a kept part's page UVs to what every format writes exactly, and keeps the promise there;
-/// vertices that rules.intent constrains are only rounded, and under Guarantee::none all are.
+/// Rounds a part's page UVs to numbers that every format writes exactly, and keeps the guarantee in
+/// them. Vertices that rules.intent constrains are only rounded; under Guarantee::none all are.
 /// Gaps that rounding closes are opened again (separate_rounded_boundaries()).
 /// Throws Error{guarantee_failed, cancelled}.
 Written keep_on_page(const charts::Chart& chart, const GuaranteeRules& rules, UvMap& page_uv);

@@ -5,12 +5,13 @@
 
 #include "core/base/cancel.hpp"
 #include "core/measure/distortion.hpp"
+#include "core/pipeline/analyse.hpp"
 
 namespace unwrapd::pipeline {
 namespace {
 
-/// Accelerated runs do not know their length: half of it is taken to be over after so many
-/// iterations, half of the rest after as many again, and so on.
+/// The length of an accelerated run is unknown. So many iterations count as half of it, as many
+/// again as half of the rest, and so on.
 constexpr double kHalfWay = 20;
 
 double share_done(int iterations, const Stop& stop) {
@@ -32,13 +33,17 @@ IterationEvent describe(const solve::Disk& disk, const solve::Solution& s, Execu
 
 }  // namespace
 
-ChartProgress::ChartProgress(const Progress& progress, Index chart_count, std::size_t face_count,
+ChartProgress::ChartProgress(const Progress& progress, std::span<const charts::Charts> surfaces,
                              double begin, Executor& executor)
-    : progress_(progress),
-      executor_(executor),
-      chart_count_(chart_count),
-      faces_total_(static_cast<double>(std::max<std::size_t>(face_count, 1))),
-      begin_(begin) {}
+    : progress_(progress), executor_(executor), begin_(begin) {
+  std::size_t faces = 0;
+  for (const charts::Charts& surface : surfaces) {
+    chart_count_ += static_cast<Index>(surface.charts.size());
+    for (const charts::Chart& chart : surface.charts) faces += chart.mesh.faces.size();
+  }
+  require_area(surfaces);
+  faces_total_ = static_cast<double>(std::max<std::size_t>(faces, 1));
+}
 
 void ChartProgress::begin_chart(std::size_t faces, std::size_t lambda_count) {
   faces_now_ = static_cast<double>(faces);
@@ -69,7 +74,7 @@ void ChartProgress::tell(Stage stage) const {
   progress_.on_stage({stage, chart_, chart_count_, fraction(of_run), lambda_});
 }
 
-/// Where it belongs in the job.
+/// The event with its chart, its lambda and its place in the job.
 IterationEvent ChartProgress::placed(IterationEvent event, const Stop& stop) const {
   event.chart = chart_;
   event.fraction = fraction(share_done(event.iteration, stop));
@@ -78,21 +83,21 @@ IterationEvent ChartProgress::placed(IterationEvent event, const Stop& stop) con
 }
 
 solve::SolveWatch ChartProgress::solve_watch(const solve::Disk& disk, const Stop& stop,
-                                             std::vector<IterationEvent>& told) const {
+                                             std::vector<IterationEvent>& events) const {
   solve::SolveWatch watch;
   watch.loop.stop = progress_.stop;
   watch.on_stage = [this](Stage stage) { tell(stage); };
   if (is_followed())
-    watch.loop.on_iteration = [this, &disk, &stop, &told](const solve::Solution& s) {
-      told.push_back(describe(disk, s, executor_));
-      progress_.on_iteration(placed(told.back(), stop));
+    watch.loop.on_iteration = [this, &disk, &stop, &events](const solve::Solution& s) {
+      events.push_back(describe(disk, s, executor_));
+      progress_.on_iteration(placed(events.back(), stop));
     };
   return watch;
 }
 
-void ChartProgress::tell_again(const std::vector<IterationEvent>& told, const Stop& stop) const {
+void ChartProgress::replay(const std::vector<IterationEvent>& events, const Stop& stop) const {
   tell(Stage::solve);
-  for (const IterationEvent& event : told) progress_.on_iteration(placed(event, stop));
+  for (const IterationEvent& event : events) progress_.on_iteration(placed(event, stop));
 }
 
 void ChartProgress::throw_if_cancelled() const { unwrapd::throw_if_cancelled(progress_.stop); }

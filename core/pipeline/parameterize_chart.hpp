@@ -1,31 +1,25 @@
 #pragma once
-// One chart through the solver: every lambda that is asked for, each map kept to its promise.
+// The steps of one chart that belong to the solver: its start, its solution, and its scale.
 
 #include <memory>
 #include <vector>
 
 #include "core/charts/charts.hpp"
+#include "core/guarantee/keep_guarantee.hpp"
 #include "core/pipeline/chart_progress.hpp"
 #include "core/solve/base/vertex_constraints.hpp"
+#include "core/solve/constrain_chart.hpp"
+#include "core/solve/solve.hpp"
 
 namespace unwrapd::pipeline {
 
-/// A chart with its map: a part of the chart that was solved, if the guarantee took a split.
+/// A chart with its map. The chart is a part of the solved one if the guarantee took a split.
 struct MappedChart {
   std::shared_ptr<const charts::Chart> chart;
   UvMap uv;  ///< in mesh units, UV area = 3D area; under position constraints the page's
   std::vector<char> constrained = {};  ///< one a vertex, 1: fixed by a position constraint
   ChartReport report;  ///< of the solve alone: figures of the map are left to the caller
 };
-
-/// Whether a map is wanted for each value of a list, which counts for Method::hybrid alone.
-bool is_curve(const UnwrapOptions& options);
-
-/// The values of lambda that are asked for: those of the curve, or one.
-std::vector<double> lambdas_of(const UnwrapOptions& options);
-
-/// What holds of a chart's map: what is asked for, or what the chart keeps anyway.
-Guarantee guarantee_of(const charts::Chart& chart, const UnwrapOptions& options);
 
 /// A chart and its position constraints, in the page's coordinates; empty: it is packed.
 struct ChartJob {
@@ -34,10 +28,28 @@ struct ChartJob {
   const solve::VertexConstraints& page;
 };
 
-/// For each of lambdas_of(): the chart's parts with their maps. The mesh is analysed and factored
-/// once. Throws Error{solver_failed, guarantee_failed, cancelled}.
-std::vector<std::vector<MappedChart>> parameterize_chart(const ChartJob& job,
-                                                         const UnwrapOptions& options,
-                                                         ChartProgress& watch, Executor& executor);
+/// Whether a map is wanted for each value of a list, which counts for Method::hybrid alone.
+bool is_curve(const UnwrapOptions& options);
+
+/// The values of lambda that are asked for: those of the curve, or one.
+std::vector<double> lambdas_of(const UnwrapOptions& options);
+
+/// The constraints of a chart. A chart without any starts from its own map, if it has one.
+solve::ConstrainedStart constrained_start(const charts::Chart& chart, const solve::Disk& disk,
+                                          const UnwrapOptions& options,
+                                          const solve::ConstrainedStart& constrained);
+
+/// Memoizes Solver::run() in the cache that jobs share; replays the progress events of an identical
+/// run. Throws what Solver::run() throws.
+solve::Solution parameterize_chart(solve::Solver& solver, const ChartJob& job,
+                                   const UnwrapOptions& options, double lambda,
+                                   const ChartProgress& progress);
+
+/// The parts of a chart, each with its share of the map, scaled to the surface or placed on the
+/// page. The report of the first part tells the repairs of the whole chart. Throws
+/// Error{solver_failed}.
+std::vector<MappedChart> scale_parts(const solve::Disk& disk, guarantee::GuaranteedMap guaranteed,
+                                     const solve::ChartConstraints& constraints,
+                                     const solve::Solution& solution, Executor& executor);
 
 }  // namespace unwrapd::pipeline

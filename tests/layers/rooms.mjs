@@ -25,7 +25,7 @@ export const ROOMS = [
   ["core/pack", "packs islands onto pages", [...TERMS, "core/charts", "core/solve/base"]],
   ["core/segment", "splits a surface into regions that become charts: merging, cutting, shortening seams", [...SOLVING, "core/charts", "core/pack", "core/solve", "core/solve/arap"]],
   ["core/pipeline", "the steps of unwrapping", [...SOLVING, "core/charts", "core/guarantee", "core/pack", "core/segment", "core/solve"]],
-  ["core", "the front door: unwrap()", [...TERMS, "core/charts", "core/guarantee", "core/measure", "core/pack", "core/pipeline"]],
+  ["core", "the front door: unwrap(), the list of its steps", [...TERMS, "core/charts", "core/guarantee", "core/pipeline", "core/segment", "core/solve"]],
   ["core/figure", "layouts and previews as SVG and pixels", [...TERMS, "core/measure"]],
   ["core/asset", "reads and writes glTF, Draco, meshopt and OBJ; a separate library", TERMS],
   ["api/contract", "`openapi.yaml` as JSON and as a page", []],

@@ -1,0 +1,220 @@
+#include "core/pipeline/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/charts/outline.hpp"
+#include "core/guarantee/keep_guarantee.hpp"
+#include "core/measure/rest_triangle.hpp"
+#include "core/measure/seam_length.hpp"
+#include "core/pipeline/analyse.hpp"
+#include "core/pipeline/assemble.hpp"
+#include "core/pipeline/place_islands.hpp"
+#include "core/segment/region_charts.hpp"
+
+namespace unwrapd::pipeline {
+namespace {
+
+/// The energy that a new map without overlaps keeps low.
+std::string kept_energy_of(Method method) {
+  switch (method) {
+    case Method::arap:
+      return "ARAP's energy";
+    case Method::hybrid:
+      return "the method's own energy (below a lambda of 0.01: to the angles of its own map)";
+    case Method::slim:
+      return "the symmetric Dirichlet energy";
+    default:
+      return "the angles of the method's own map";
+  }
+}
+
+/// Places every chart on the page; the maps become page UVs.
+void pack_free_charts(Layout& layout, const UnwrapOptions& options, Executor& executor) {
+  std::vector<charts::Outline> outlines;
+  std::vector<UvMap*> maps;
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
+      outlines.push_back(charts::outline_of(*layout.charts[s][k], layout.islands[s][k]));
+      maps.push_back(&layout.islands[s][k]);
+    }
+  place_islands(outlines, options, executor, maps, layout.report);
+}
+
+/// Notes how many charts the constraints put beyond the page.
+void note_charts_beyond(Layout& layout) {
+  const auto is_beyond = [](const Vec2& u) { return u.minCoeff() < 0 || u.maxCoeff() > 1; };
+  std::ptrdiff_t count = 0;
+  for (const std::vector<UvMap>& own : layout.islands)
+    count += std::count_if(own.begin(), own.end(), [&](const UvMap& uv) {
+      return std::any_of(uv.begin(), uv.end(), is_beyond);
+    });
+  if (count > 0)
+    layout.report.notes.push_back("The constraints put " + std::to_string(count) +
+                                  " of the charts partly or wholly outside the page.");
+}
+
+/// The figures of the whole atlas. Overlaps are told only if they were counted in every chart.
+void add_totals(Report& report) {
+  report.overlaps = 0;
+  for (const ChartReport& chart : report.charts) {
+    report.area += chart.area;
+    report.seam_length += chart.seam_length / 2;  // a seam has two sides
+    if (report.overlaps && chart.overlaps)
+      *report.overlaps += *chart.overlaps;
+    else
+      report.overlaps.reset();
+  }
+  report.seam_ratio = report.seam_length / std::sqrt(report.area);
+}
+
+/// Uses the prepared vertex plan unless charts were split.
+UnwrappedSurface assemble_surface(const Surface& surface, std::size_t s, const Layout& layout,
+                                  const std::stop_token& stop) {
+  const Prepared& all = *layout.all;
+  const charts::Charts& whole = all.surfaces[s];
+  std::vector<const charts::Chart*> charts;
+  for (const std::shared_ptr<const charts::Chart>& chart : layout.charts[s])
+    charts.push_back(chart.get());
+  if (charts == pointers_to(whole.charts)) return assemble(*all.plans[s], layout.islands[s]);
+  return assemble(plan_vertices(surface, whole, charts, stop), layout.islands[s]);
+}
+
+CurvePoint curve_point(double lambda, const Report& report) {
+  CurvePoint point{.lambda = lambda, .distortion = report.distortion};
+  double area = 0;
+  for (const ChartReport& chart : report.charts) {
+    area += chart.area;
+    point.energy += chart.area * chart.energy.back();
+    point.iterations = std::max(point.iterations, chart.iterations);
+  }
+  point.energy /= area;
+  return point;
+}
+
+}  // namespace
+
+std::vector<Layout> empty_layouts(const std::shared_ptr<const Prepared>& all,
+                                  std::size_t map_count) {
+  const std::vector<charts::Charts>& parts = all->surfaces;
+  Layout layout;
+  layout.all = all;
+  layout.charts.resize(parts.size());
+  layout.islands.resize(parts.size());
+  layout.constrained.resize(parts.size());
+  const InputAnalysis analysis = analysis_of(parts);
+  layout.report.input = analysis.input;
+  layout.report.repairs = analysis.repairs;
+  if (!all->note.empty()) layout.report.notes.push_back(all->note);
+  return {map_count, layout};
+}
+
+void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
+  mapped.report.surface = static_cast<Index>(surface);
+  layout.report.charts.push_back(std::move(mapped.report));
+  layout.charts[surface].push_back(std::move(mapped.chart));
+  layout.islands[surface].push_back(std::move(mapped.uv));
+  layout.constrained[surface].push_back(std::move(mapped.constrained));
+}
+
+void note_new_maps(Layout& layout, const UnwrapOptions& options) {
+  const auto is_new = [](const ChartReport& chart) {
+    return chart.mending.overlaps > 0 && chart.mending.parts == 1;
+  };
+  const auto& charts = layout.report.charts;
+  if (const auto count = std::count_if(charts.begin(), charts.end(), is_new); count > 0)
+    layout.report.notes.push_back(
+        "Charts that overlapped themselves and got a new map without overlaps: " +
+        std::to_string(count) + ". The new map stays as close as possible to " +
+        kept_energy_of(options.method) + "; energy_rise of the chart's mending tells the cost.");
+}
+
+bool has_split_charts(const Layout& layout) {
+  return std::ranges::any_of(layout.report.charts,
+                             [](const ChartReport& chart) { return chart.mending.parts > 1; });
+}
+
+double border_of(const Prepared& all) {
+  double length = 0;
+  for (const charts::Charts& surface : all.surfaces)
+    for (const charts::Chart& chart : surface.charts) length += segment::boundary_length(chart);
+  return length;
+}
+
+double border_of(const Layout& layout) {
+  double length = 0;
+  for (const auto& charts : layout.charts)
+    for (const std::shared_ptr<const charts::Chart>& chart : charts)
+      length += segment::boundary_length(*chart);
+  return length;
+}
+
+void pack_charts(Layout& layout, const UnwrapOptions& options, Executor& executor) {
+  if (options.constraints.empty())
+    pack_free_charts(layout, options, executor);
+  else
+    note_charts_beyond(layout);
+}
+
+void quantize_maps(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop) {
+  auto report = layout.report.charts.begin();
+  layout.report.guarantee = options.guarantee;
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
+      guarantee::GuaranteeRules rules{.guarantee = options.guarantee};
+      rules.intent = {.rigidity = {}, .constrained = layout.constrained[s][k], .stop = stop};
+      const guarantee::Written written =
+          guarantee::keep_on_page(*layout.charts[s][k], rules, layout.islands[s][k]);
+      report->distortion.flipped = written.flipped;
+      report->overlaps = written.overlaps;
+    }
+}
+
+void measure_maps(Layout& layout, const UnwrapOptions& options, Executor& executor) {
+  auto report = layout.report.charts.begin();
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
+      const TriMesh& mesh = layout.charts[s][k]->mesh;
+      measure::DistortionSums own =
+          measure::distortion_sums(measure::flatten(mesh.positions, mesh.faces, executor),
+                                   mesh.faces, layout.islands[s][k], executor);
+      own.flipped = report->distortion.flipped;  // by exact signs
+      report->area = own.area;
+      report->distortion = measure::distortion(own);
+      layout.sums += own;
+    }
+  const measure::DistortionSums& sums = layout.sums;
+  layout.report.distortion = measure::distortion(sums);
+  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * options.resolution;
+  if (!options.constraints.empty()) layout.report.fill = sums.uv_area;
+}
+
+Unwrapped assemble_surfaces(std::span<const Surface> surfaces, Layout layout,
+                            const std::stop_token& stop) {
+  const Prepared& all = *layout.all;
+  Unwrapped unwrapped;
+  auto report = layout.report.charts.begin();
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    unwrapped.surfaces.push_back(assemble_surface(surfaces[s], s, layout, stop));
+    const std::vector<double> seams = measure::seam_lengths(
+        surfaces[s].mesh, *all.surfaces[s].by_position, unwrapped.surfaces.back(), stop);
+    for (const std::shared_ptr<const charts::Chart>& chart : layout.charts[s]) {
+      for (const Index t : chart->face_source) report->seam_length += seams[t];
+      ++report;
+    }
+  }
+  add_totals(layout.report);
+  unwrapped.report = std::move(layout.report);
+  return unwrapped;
+}
+
+void report_curve(std::vector<Unwrapped>& maps, const std::vector<double>& lambdas) {
+  std::vector<CurvePoint> curve;
+  for (std::size_t k = 0; k < maps.size(); ++k)
+    curve.push_back(curve_point(lambdas[k], maps[k].report));
+  for (Unwrapped& map : maps) map.report.curve = curve;
+}
+
+}  // namespace unwrapd::pipeline
