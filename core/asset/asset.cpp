@@ -115,7 +115,7 @@ std::string write_from_obj(const Document& document, const UnwrappedSurface& unw
 Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& options) {
   auto document = std::make_unique<Document>();
   document->options = options;
-  document->format = recognise(input.document);
+  document->format = recognise(input.document, input.stop);
   if (document->format == Format::obj) {
     check_for_obj(options);
     document->surfaces.resize(1);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/asset/obj_words.hpp"
+#include "core/asset/pace.hpp"
 #include "core/base/error.hpp"
 
 namespace unwrapd::asset {
@@ -10,46 +12,77 @@ namespace {
 
 constexpr std::string_view kMarkOfUtf8 = "\xef\xbb\xbf";
 constexpr std::string_view kSpaces = " \t\r\n";
-constexpr std::size_t kMaxScanned = 1 << 16;  // bytes of an OBJ that may go before its first vertex
+constexpr std::array<std::string_view, 6> kOtherGeometry = {"vt", "vn", "vp", "f", "l", "p"};
+constexpr std::string_view kStartsOfNumbers = "+-.0123456789";
+constexpr std::size_t kBlock = 1 << 16;
+constexpr std::size_t kMaxStatements = kBlock;  // bytes of other statements before geometry
 
 struct Refusal {
   std::string_view magic;
   std::string_view message;
 };
 
-constexpr std::array<Refusal, 6> kRefusals = {
+constexpr std::array<Refusal, 9> kRefusals = {
     {{"DRACO", "a bare Draco file is not accepted; wrap it into a glTF"},
      {"\x1f\x8b", "a gzip file is not accepted; send it unpacked"},
      {"PK\x03\x04", "a zip archive is not accepted; send the glTF or OBJ in it"},
      {"Kaydara FBX", "FBX is not accepted; convert it to glTF"},
      {"ply\n", "PLY is not accepted; convert it to glTF or OBJ"},
-     {"solid ", "STL is not accepted; convert it to glTF or OBJ"}}};
+     {"ply\r", "PLY is not accepted; convert it to glTF or OBJ"},
+     {"solid ", "STL is not accepted; convert it to glTF or OBJ"},
+     {"\xff\xfe", "UTF-16 text is not accepted; save the file as UTF-8"},
+     {"\xfe\xff", "UTF-16 text is not accepted; save the file as UTF-8"}}};
 
-/// A line that begins a vertex, after any number of other lines of text.
-bool looks_like_obj(std::string_view file) {
-  const std::string_view head = file.substr(0, kMaxScanned);
-  if (head.find('\0') != std::string_view::npos) return false;
-  for (std::size_t at = 0; at < head.size();) {
-    const std::string_view line = head.substr(at, head.find_first_of("\r\n", at) - at);
-    const std::size_t word = std::min(line.find_first_not_of(kSpaces), line.size());
-    if (line.substr(word).starts_with("v ") || line.substr(word).starts_with("v\t")) return true;
-    at += line.size() + 1;
+/// Where the text goes on after spaces and empty lines, its size at the end.
+std::size_t skip_spaces(std::string_view text, std::size_t at, Pace& pace) {
+  while (at < text.size()) {
+    const std::size_t found = text.substr(at, kBlock).find_first_not_of(kSpaces);
+    pace.add(std::min(found, kBlock) / 16);
+    if (found != std::string_view::npos) return at + found;
+    at += kBlock;
+  }
+  return text.size();
+}
+
+/// Whether a line gives a vertex, or an index or number of another statement of geometry.
+bool is_geometry(std::string_view line) {
+  Words words(line);
+  const std::string_view keyword = words.next();
+  if (keyword == "v") return line.size() > keyword.size();
+  const std::string_view value = words.next();
+  return std::ranges::find(kOtherGeometry, keyword) != kOtherGeometry.end() && !value.empty() &&
+         kStartsOfNumbers.find(value.front()) != std::string_view::npos;
+}
+
+/// A line of geometry, after any number of comments and empty lines and some other statements.
+bool looks_like_obj(std::string_view file, Pace& pace) {
+  if (file.substr(0, kBlock).find('\0') != std::string_view::npos) return false;
+  std::size_t statements = 0;
+  for (std::size_t at = skip_spaces(file, 0, pace);
+       at < file.size() && statements < kMaxStatements;) {
+    const std::string_view line = file.substr(at, file.find_first_of("\r\n", at) - at);
+    pace.add(1 + line.size() / 16);
+    if (line.front() != '#') {
+      if (is_geometry(line.substr(0, kBlock))) return true;
+      statements += line.size();
+    }
+    at = skip_spaces(file, at + line.size(), pace);
   }
   return false;
 }
 
 }  // namespace
 
-Format recognise(std::string_view file) {
+Format recognise(std::string_view file, const std::stop_token& stop) {
   if (file.starts_with("glTF")) return Format::glb;
   for (const Refusal& refusal : kRefusals)
     if (file.starts_with(refusal.magic))
       throw Error(ErrorCode::unknown_format, std::string(refusal.message));
   std::string_view text = file;
   if (text.starts_with(kMarkOfUtf8)) text.remove_prefix(kMarkOfUtf8.size());
-  const std::size_t first = text.find_first_not_of(kSpaces);
-  if (first != std::string_view::npos && text[first] == '{') return Format::gltf;
-  if (looks_like_obj(text)) return Format::obj;
+  Pace pace(stop);
+  if (text.substr(skip_spaces(text, 0, pace)).starts_with('{')) return Format::gltf;
+  if (looks_like_obj(text, pace)) return Format::obj;
   throw Error(ErrorCode::unknown_format,
               "the file is neither GLB, glTF nor OBJ; send one of these");
 }
