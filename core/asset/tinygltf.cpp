@@ -28,7 +28,7 @@ tinygltf::Model model_of(const char* begin, const std::string& slice, const char
   tinygltf::TinyGLTF reader;
   if (!reader.LoadASCIIFromString(&model, &error, &warning, document.data(),
                                   static_cast<unsigned>(document.size()), ""))
-    throw Error(ErrorCode::internal, "tinygltf refuses what was looked at: " + error);
+    throw Error(ErrorCode::internal, "tinygltf refuses a checked document: " + error);
   return model;
 }
 
