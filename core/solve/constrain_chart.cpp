@@ -1,6 +1,7 @@
-// ARAP and Hybrid measure stretch against the surface, so they must know how long a mesh unit is on
-// the page. The held vertices tell: the chart, solved freely, is laid over them. Solving for that
-// scale together with the map would let the map shrink wherever that pays.
+// ARAP and Hybrid measure stretch against the surface, so they must know the length of a mesh unit
+// on the page. The constrained vertices determine it: a map of the free chart is aligned with them.
+// If the scale were solved together with the map, the map would shrink wherever that lowers the
+// energy.
 #include "core/solve/constrain_chart.hpp"
 
 #include <cassert>

@@ -1,10 +1,10 @@
-// The methods side by side. ASAP is one direct solve; ARAP is the hybrid of infinite lambda.
+// Selects the method. ASAP is one direct solve; ARAP is the hybrid of infinite lambda.
 //
-// A hybrid of very small lambda has nothing to hold it open: with c the conformal energy of the
-// ASAP map over its area, a map of uniform scale s costs c s^2 + lambda (s^2 - 1)^2 per area, whose
-// only minimum for lambda <= c / 2 is s = 0. There the answer is the limit itself, the ASAP map.
-// Two held vertices hold it open; so does a start of less energy than a collapsed map has, as no
-// iteration raises the energy. Only where neither is so is the ASAP map asked for.
+// A hybrid of very small lambda collapses: with c the conformal energy of the ASAP map over its
+// area, a map of uniform scale s costs c s^2 + lambda (s^2 - 1)^2 per area, whose only minimum for
+// lambda <= c / 2 is s = 0. There the result is the limit itself, the ASAP map. Two constrained
+// vertices prevent the collapse. So does a start of less energy than a collapsed map, since no
+// iteration raises the energy. The ASAP map is computed only if neither holds.
 #include "core/solve/solve.hpp"
 
 #include <algorithm>
@@ -27,15 +27,16 @@
 namespace unwrapd::solve {
 namespace {
 
-/// Above this lambda no conformal map of use has energy enough to collapse the hybrid.
+/// Above this lambda no useful conformal map has enough energy to collapse the hybrid.
 constexpr double kSafeLambda = 0.5;
-/// Below this one no start is likely to keep the hybrid open.
+/// Below this lambda no start is likely to prevent the collapse.
 constexpr double kTrustedLambda = 0.02;
-/// Of a collapsed map's energy, that a start may have: with room, so that it ends nowhere near.
+/// A start below this share of a collapsed map's energy cannot collapse; the margin is for
+/// rounding.
 constexpr double kOpenShare = 0.9;
 constexpr int kTrialIterations = 2;
 
-/// area: that of uv.
+/// area: the area of uv.
 UvMap scaled_to_unit_area(UvMap uv, double area) {
   if (area > 0)
     for (Vec2& u : uv) u /= std::sqrt(area);
@@ -59,7 +60,7 @@ double mean_lambda(const Disk& disk, const arap::Rigidity& rigidity) {
   return sum;
 }
 
-/// Of a map shrunk to a point: |L|^2 is 0 there, or 1 - 1 / lambda where that is more.
+/// The energy of a map shrunk to a point: |L|^2 is 0 there, or 1 - 1 / lambda if that is more.
 double collapsed_energy(const Disk& disk, const arap::Rigidity& rigidity) {
   double sum = 0;
   for (const measure::RestTriangle& rest : disk.rest) {
@@ -76,8 +77,8 @@ Solution direct(const Disk& disk, const VertexConstraints& constraints, UvMap uv
   return solution;
 }
 
-/// Nothing where the frames contradict each other so much that the map collapses, as around a
-/// cylinder. global: that of the disk without holds.
+/// Empty if the rotations contradict each other so much that the map collapses, as around a
+/// cylinder. global: the system of the disk without constraints.
 std::optional<UvMap> usable_frame_map(const Disk& disk, const arap::GlobalStep& global) {
   constexpr auto kMake = [](const Disk& d, const arap::GlobalStep& of_d) {
     UvMap uv = arap::map_from_rotations(d, of_d);
@@ -148,14 +149,14 @@ const UvMap& Solver::start() {
   return *start_;
 }
 
-/// A conformal map to find another minimum from; none where double precision knows none, or where
-/// the first start is that map, or was asked for.
+/// A conformal map, to search for another minimum from. Null if double precision does not suffice
+/// for it, or if options.initial names a start or the first start is that map already.
 const UvMap* Solver::second_start() {
   if (!starts_from_frames_) return nullptr;
   if (second_start_) return &*second_start_;
   try {
     second_start_ = maps::exact_conformal_map(disk_);
-  } catch (const Error& e) {  // the job goes on from the first start
+  } catch (const Error& e) {  // the first start remains
     if (e.code() != ErrorCode::solver_failed) throw;
   }
   return second_start_ ? &*second_start_ : nullptr;
@@ -174,7 +175,8 @@ const UvMap& Solver::conformal() {
   return *conformal_;
 }
 
-/// As many plain iterations as were asked for, from the better start where there are two.
+/// Runs exactly options.stop.iterations iterations, from the better of the two starts if there are
+/// two.
 Solution Solver::iterate_plainly(const arap::Race& race) {
   const auto solution = [&](const UvMap& from, int iterations, const LoopWatch& watch) {
     return arap::local_global(race.assembly, from, {race.rigidity, iterations}, watch, executor_);
@@ -206,8 +208,8 @@ Solution Solver::iterate(const arap::Rigidity& rigidity, const SolveWatch& watch
   return arap::run_race(race, first, [&] { return second_start(); });
 }
 
-/// Whether the start has so little energy that no iteration can shrink the map away. Its energy as
-/// a hybrid is at most that of ARAP, whose fits cost nothing for their scale.
+/// Whether the start's energy is so low that no iteration can collapse the map. The hybrid energy
+/// of the start is at most its ARAP energy, since ARAP's fits pay nothing for their scale.
 bool Solver::stays_open(const arap::Rigidity& rigidity, const SolveWatch& watch) {
   factor(watch);
   return measure::arap_energy(disk_.rest, disk_.faces, start()) <

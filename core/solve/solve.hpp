@@ -1,5 +1,5 @@
 #pragma once
-// One chart, one method: ASAP directly, ARAP and Hybrid by local/global iterations.
+// Solves one chart by one method: ASAP directly, ARAP and Hybrid by local/global iterations.
 
 #include <optional>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace unwrapd::solve {
 
-/// What a solver reads of the options of a job.
+/// The options of a job that a solver reads.
 struct SolveOptions {
   SolveOptions(const UnwrapOptions& options)  // NOLINT(google-explicit-constructor): a part of them
       : method(options.method),
@@ -30,27 +30,28 @@ struct SolveOptions {
 
 void describe(CacheKey& key, const SolveOptions& options);
 
-/// One disk under one set of options. What depends on the mesh and on which vertices are held (the
-/// initial maps, the factored system) is made when it is first needed and kept: another lambda
-/// costs iterations only. Used by one thread at a time.
+/// One disk under one set of options. Whatever depends only on the mesh and on which vertices are
+/// constrained (the initial maps, the factored system) is made when it is first needed and kept, so
+/// another lambda costs iterations only. Not thread-safe.
 class Solver {
  public:
-  /// disk and executor must outlive the solver. Under holds, and wherever there is
-  /// a held.start, the iterations start from it, whatever options.initial says.
+  /// disk and executor must outlive the solver. If constrained has a start, the iterations start
+  /// from it, whatever options.initial says.
   Solver(const Disk& disk, const SolveOptions& options, ConstrainedStart constrained,
          Executor& executor);
 
-  /// Holds the same vertices, with the same weights, at other places: nothing is factored again.
+  /// Moves the same constrained vertices, with the same weights, to other positions. Nothing is
+  /// factored again.
   void move(ConstrainedStart constrained);
 
-  /// Solves by options.method; lambda counts for Method::hybrid, in options.lambda_units. The same
-  /// whatever was run before. Throws Error{solver_failed, cancelled}.
+  /// Solves by options.method. lambda, in options.lambda_units, is read by Method::hybrid only. The
+  /// result does not depend on earlier runs. Throws Error{solver_failed, cancelled}.
   Solution run(double lambda, const SolveWatch& watch);
 
-  /// The system of the iterations; null where no run has needed it yet.
+  /// The system of the iterations; null if no run has needed it yet.
   [[nodiscard]] const arap::GlobalStep* global() const { return global_ ? &*global_ : nullptr; }
 
-  /// The disk, the options and what is held: with lambda all that run() depends on.
+  /// The disk, the options and the constraints: with lambda, all that run() depends on.
   friend void describe(CacheKey& key, const Solver& solver);
 
  private:
@@ -79,11 +80,12 @@ class Solver {
 
 /// The map that the iterations start from, scaled so that UV area = 3D area. Throws
 /// Error{solver_failed}.
+///
 /// mean_value and tutte have no flipped triangles on a disk of one boundary whose inner edges do
-/// not join boundary vertices; lscm may have some. automatic: map_from_rotations(), which is exact
-/// on developable disks and elsewhere some ten iterations ahead of the others; where it has
-/// collapsed, lscm. It may have flips too. Solver then tries lscm beside it, where that may pay
-/// (run_race()); under a given number of plain iterations only with several boundaries.
+/// not join boundary vertices; lscm may have some. automatic is map_from_rotations(), which may
+/// have flips too: it is exact on developable surfaces and elsewhere some ten iterations ahead of
+/// the others. If it collapses, automatic is lscm. Solver also tries lscm where that may lower the
+/// energy (run_race()); under a given number of iterations, only on disks with several boundaries.
 UvMap initial_map(const Disk& disk, InitialMap kind, const arap::GlobalStep& global);
 
 }  // namespace unwrapd::solve

@@ -1,9 +1,9 @@
-// Procrustes' problem in two dimensions (Umeyama 1991), in complex numbers: c = sum w conj(p) q for
-// the places p and q about their means has the angle of the best turn.
+// Procrustes' problem in two dimensions (Umeyama 1991), in complex numbers: with positions p and q
+// relative to their means, c = sum w conj(p) q has the angle of the best rotation.
 //
-// The scale is that of the spreads, not Umeyama's |c| / sum w |p|^2: that one is the smaller the
-// less the places resemble the map, and zero for mirrored ones. The scale decides what is no
-// stretch in ARAP and Hybrid, which shall not come to depend on how badly the targets fit.
+// The scale is the ratio of the spreads, not Umeyama's |c| / sum w |p|^2. His shrinks as the
+// targets resemble the map less, and is zero for mirrored ones. In ARAP and Hybrid the scale
+// defines zero stretch, which must not depend on how well the targets fit.
 #include "core/solve/base/align_constrained.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace unwrapd::solve {
 namespace {
 
-/// Held vertices nearer to each other than this, in disk units, tell no scale.
+/// Constrained vertices nearer to each other than this, in disk units, determine no scale.
 constexpr double kLeastSpread = 1e-9;
 
 struct Pair {

@@ -1,5 +1,5 @@
 #pragma once
-// A map turned, scaled and moved to where its constrained vertices shall lie.
+// Rotates, scales and moves a map to the targets of its constrained vertices.
 
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace unwrapd::solve {
 
-/// A similarity that does not mirror: u goes to `to` + scale * rotation * (u - from).
+/// An orientation-preserving similarity: maps u to `to` + scale * rotation * (u - from).
 struct Alignment {
   double cosine = 1;
   double sine = 0;
@@ -21,14 +21,14 @@ struct Alignment {
   }
 };
 
-/// Takes the constrained vertices of uv to places of the same mean and the same mean square
-/// distance from it as those where they shall lie, turned so as to lie nearest to them. A fixed
-/// vertex counts 1, a soft one of weight w counts w / (1 + w). One constrained vertex: moved there,
-/// neither turned nor scaled. constraints: not empty; with two vertices or more, not all at one
-/// place.
+/// The similarity after which the constrained vertices of uv have the mean and the mean squared
+/// distance from it that their targets have, rotated as near to the targets as possible. A hard
+/// constraint has weight 1, a soft one of weight w has w / (1 + w). A single constrained vertex is
+/// moved, neither rotated nor scaled. constraints is not empty; two or more must not all be at one
+/// position.
 Alignment align(std::span<const Vec2> uv, const VertexConstraints& constraints);
 
-/// The map aligned with the constraints, then the hard ones put in their places.
+/// Aligns the map with the constraints, then puts the hard-constrained vertices exactly in place.
 UvMap constrained_start(UvMap uv, const VertexConstraints& constraints);
 
 }  // namespace unwrapd::solve

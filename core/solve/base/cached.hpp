@@ -1,6 +1,5 @@
 #pragma once
-// What is made once for all jobs that need it: of a function's arguments, under a key that is made
-// of the same arguments.
+// Memoizes functions across jobs: a result is stored under a key made of the function's arguments.
 
 #include <cstdint>
 #include <memory>
@@ -25,14 +24,14 @@ inline std::size_t bytes_of(const Halfedges& halfedges) { return bytes_of(halfed
 inline std::size_t bytes_of(const linear::Analysis& analysis) { return analysis.bytes(); }
 inline std::size_t bytes_of(const linear::Factor& factor) { return factor.bytes(); }
 
-/// By what a thing is made: nothing in here, or in a type derived from it, changes what is made.
+/// How to make a value. No member, of this type or of a derived one, may change the value.
 struct Making {
-  SharedCache* core = nullptr;  ///< null where nothing is shared
+  SharedCache* core = nullptr;  ///< null: nothing is shared
   std::stop_token stop = {};
   Executor* executor = nullptr;  ///< null: the calling thread
 };
 
-/// One object for each function: its address tells their keys apart.
+/// The address of this object identifies the function in its keys.
 template <auto kMake>
 inline constexpr char kKind = 0;
 
@@ -53,10 +52,10 @@ std::shared_ptr<const T> shared(T made) {
   return std::make_shared<const T>(std::move(made));
 }
 
-/// What kMake(by, inputs...) gives, or an equal one that another job made: a std::shared_ptr<const
-/// T>, of a function that returns one, or a T. kMake is a function, or a lambda without captures:
-/// all that it can read and that is not `by` is in the key. by: a Making, or derived from it.
-/// Throws Error{cancelled}, and what kMake throws.
+/// Returns kMake(by, inputs...), or an equal value that another job made. The result is a
+/// std::shared_ptr<const T>, whether kMake returns one or a T. kMake is a function, or a lambda
+/// without captures: the key contains all that it can read except `by`, which is a Making or
+/// derived from it. Throws Error{cancelled}, and what kMake throws.
 template <auto kMake, class By, class... Inputs>
 auto cached(const By& by, Inputs&&... inputs) {
   static_assert(std::is_base_of_v<Making, By>);
@@ -70,7 +69,7 @@ auto cached(const By& by, Inputs&&... inputs) {
       by.core->obtain(key_of<kMake>(*by.core, inputs...), make, by.stop));
 }
 
-/// The same of kMake(disk, inputs...), copied. The disk is one of the inputs, as it is now.
+/// A copy of kMake(disk, inputs...), memoized. The present state of the disk is part of the key.
 template <auto kMake, class... Inputs>
 auto cached_of_disk(const Disk& disk, const Inputs&... inputs) {
   constexpr auto kOfDisk = [](const Making&, const auto&... all) { return kMake(all...); };
@@ -79,8 +78,7 @@ auto cached_of_disk(const Disk& disk, const Inputs&... inputs) {
       *cached<kOfDisk>(Making{disk.core, disk.stop}, disk, inputs...));
 }
 
-/// Throws Error{too_much_memory} when a job on this disk that keeps so many bytes needs more than
-/// it may have.
+/// Throws Error{too_much_memory} if a job on this disk that allocates `bytes` exceeds its limit.
 void check_memory(const Disk& disk, std::size_t bytes);
 
 }  // namespace unwrapd::solve

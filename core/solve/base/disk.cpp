@@ -10,7 +10,7 @@ namespace unwrapd::solve {
 
 namespace {
 
-/// In units of length, about the centroid.
+/// Positions relative to the centroid, in multiples of unit.
 std::vector<Vec3> normalised(std::span<const Vec3> positions, double unit,
                              const std::stop_token& stop) {
   Vec3 centroid = Vec3::Zero();
@@ -32,8 +32,8 @@ linear::VertexCorners corners_of(const Making& by, ListView<Triangle> faces, Ind
   return linear::vertex_corners(faces, vertex_count, by.stop);
 }
 
-/// Long lists are known by a digest, so that their bytes are not read again for every key: faces
-/// and places by that of their bytes, what follows from them by theirs.
+/// Stores digests of the long lists, so that keys need not read them again: faces and positions by
+/// their bytes, lists that follow from them by the same digests.
 void tell_digests(const SharedCache& core, Disk& disk) {
   disk.faces = known_by_bytes(&core, disk.faces);
   disk.positions = known_by_bytes(&core, disk.positions);

@@ -1,5 +1,5 @@
 #pragma once
-// What the solver reads of a chart: a disk, holes allowed, recentred and scaled to unit area.
+// The solver's view of a chart: a disk, which may have holes, recentred and scaled to unit area.
 
 #include <span>
 #include <stop_token>
@@ -18,8 +18,8 @@ inline constexpr bool unwrapd::kIsPlain<unwrapd::measure::RestTriangle> =
 
 namespace unwrapd::solve {
 
-/// Views into a chart, plus its geometry in units in which the surface area is 1: results do not
-/// depend on the scale or the place of the input. Copies share their lists.
+/// Views into a chart, and its geometry in units in which the surface area is 1, so that results do
+/// not depend on the scale or the position of the input. Copies share their lists.
 struct Disk {
   ListView<Triangle> faces;
   ListView<BoundaryLoop> loops;  ///< the longest first
@@ -28,22 +28,22 @@ struct Disk {
       rest;  ///< one a face, areas add up to 1 (up to the height floor)
   linear::VertexCorners corners;
   double unit = 1;              ///< mesh units in one disk unit of length
-  SharedCache* core = nullptr;  ///< shares what is made of the disk with other jobs; null: none
+  SharedCache* core = nullptr;  ///< shares results with other jobs; null: none
   ListView<Index> twin = {};    ///< of half-edges, as in Chart::halfedges; empty: not known
   bool is_ordered = false;  ///< vertices are numbered in a good order of elimination; core is null
-  std::stop_token stop = {};  ///< of the job: what is made of the disk looks at it (cancel.hpp)
+  std::stop_token stop = {};  ///< cancels functions of the disk (cancel.hpp)
 
   [[nodiscard]] Index vertex_count() const { return static_cast<Index>(positions.size()); }
 };
 
-/// All of a disk but the job that it belongs to.
+/// Describes all of a disk except the job that it belongs to.
 void describe(CacheKey& key, const Disk& disk);
 
-/// mesh, loops and what the executor's jobs share must outlive the disk. The same bits by any
-/// executor. Throws Error{zero_area, cancelled}.
+/// mesh, loops and what the executor's jobs share must outlive the disk. Every executor gives the
+/// same bits. Throws Error{zero_area, cancelled}.
 Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, Executor& executor);
 
-/// The same on the calling thread, of a disk that nothing is shared of.
+/// The same on the calling thread. The disk shares nothing with other jobs.
 Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops,
                const std::stop_token& stop = {});
 

@@ -1,6 +1,7 @@
 #pragma once
-// A mesh as lengths alone: its angles, its curvature, and what scaling each vertex does to both.
-// Shared by the methods that flatten the metric first and draw the map afterwards (cp, bff, ic).
+// A mesh given by its edge lengths: its angles, its curvature, and how both change when vertices
+// are scaled. Shared by the methods that flatten the metric first and lay it out afterwards (cp,
+// bff, ic).
 
 #include <array>
 #include <memory>
@@ -21,14 +22,14 @@ EdgeLengths edge_lengths(const measure::RestTriangle& triangle);
 /// The angles at the corners, radians, in (0, pi).
 std::array<double, 3> corner_angles(const measure::RestTriangle& triangle);
 
-/// What each vertex lacks to a flat neighbourhood, radians: 2 pi - the sum of its angles inside,
-/// pi - that sum on the boundary. triangles: one a face. All together: 2 pi times the Euler
-/// characteristic (Gauss, Bonnet).
+/// The angle defect of each vertex, radians: 2 pi - the sum of its angles inside, pi - that sum on
+/// the boundary. triangles: one a face. The total is 2 pi times the Euler characteristic (Gauss,
+/// Bonnet).
 std::vector<double> curvature(const Disk& disk, std::span<const measure::RestTriangle> triangles);
 std::vector<double> curvature(const Disk& disk, std::span<const measure::RestTriangle> triangles,
                               Executor& executor);
 
-/// The greatest |curvature| of an inner vertex; 0 where there is none.
+/// The greatest |curvature| of an inner vertex; 0 if there is none.
 double inner_curvature(const Disk& disk, std::span<const double> curvature);
 
 /// 1 for the vertices on a boundary loop, else 0.
@@ -49,9 +50,9 @@ class InnerSystem {
   /// lower: as from cotan_laplacian(). Throws Error{solver_failed, cancelled}.
   InnerSystem(const Disk& disk, const linear::SparseMatrix& lower);
 
-  /// x: one entry a vertex. Values on the boundary stay; inside, x becomes the solution of L x =
-  /// what was there. Zeros inside give the harmonic extension of the boundary. Thread-safe. Throws
-  /// Error{cancelled}, as the disk's job.
+  /// x: one entry a vertex. Boundary entries stay. Inner entries are the right-hand side of L x = b
+  /// and become the solution; zeros give the harmonic extension of the boundary. Thread-safe.
+  /// Throws Error{cancelled} when the disk's job is cancelled.
   void solve(std::span<Vec2> x) const;
 
  private:
@@ -67,8 +68,8 @@ class InnerSystem {
   std::stop_token stop_;
 };
 
-/// The log scale factors, 0 on the boundary, that make the metric flat inside to first order:
-/// L u = -K inside.
+/// The logarithmic scale factors, 0 on the boundary, that flatten the inside to first order: L u =
+/// -K.
 std::vector<double> flat_scales(const Disk& disk, const InnerSystem& inner,
                                 std::span<const double> curvature);
 

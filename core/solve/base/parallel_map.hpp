@@ -1,5 +1,5 @@
 #pragma once
-// Searches that know nothing of each other, on as many threads as there are.
+// Runs independent searches on all threads of an executor.
 
 #include <cstddef>
 #include <exception>
@@ -9,8 +9,8 @@
 
 namespace unwrapd::solve {
 
-/// What search(0) .. search(count - 1) return, on any threads; Result has a default. Throws what
-/// the first of them that throws does.
+/// Returns search(0) .. search(count - 1), computed on any threads. Result is
+/// default-constructible. If searches throw, throws what the first of them threw.
 template <class Result, class Search>
 std::vector<Result> parallel_map(std::size_t count, Executor& executor, const Search& search) {
   std::vector<Result> found(count);

@@ -1,5 +1,5 @@
 #pragma once
-// What a method makes of a chart, and what may be watched while it does.
+// The result of solving a chart, and the callbacks while it is solved.
 
 #include <functional>
 #include <stop_token>
@@ -11,8 +11,8 @@
 
 namespace unwrapd::solve {
 
-/// A chart's map. uv is in disk units (the surface has area 1); energies are divided by the surface
-/// area and hence without unit.
+/// A chart's map. uv is in disk units (the surface has area 1). Energies are divided by the surface
+/// area and are therefore dimensionless.
 struct Solution {
   UvMap uv;
   std::vector<double> energy;  ///< energy[0] of the start, energy[k] after iteration k
@@ -26,7 +26,7 @@ struct LoopWatch {
   std::stop_token stop;
 };
 
-/// What a caller may watch while a chart is solved.
+/// Callbacks and the stop of a solve.
 struct SolveWatch {
   std::function<void(Stage)> on_stage;  ///< setup, factor, solve
   LoopWatch loop;

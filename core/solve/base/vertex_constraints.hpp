@@ -10,13 +10,13 @@
 
 namespace unwrapd::solve {
 
-/// A vertex that lies exactly at a place, in disk units.
+/// A vertex fixed exactly at a position, in disk units.
 struct HardConstraint {
   Index vertex = 0;
   Vec2 at = Vec2::Zero();
 };
 
-/// A vertex that is drawn to a place: adds weight |u_v - at|^2 to the energy of the disk.
+/// A vertex pulled towards a position: adds weight |u_v - at|^2 to the energy of the disk.
 struct SoftConstraint {
   Index vertex = 0;
   Vec2 at = Vec2::Zero();
@@ -33,13 +33,13 @@ struct VertexConstraints {
 };
 
 /// The constraints, and a map that satisfies the hard ones, from which the iterations may start.
-/// All empty: there are none.
+/// Without constraints both are empty.
 struct ConstrainedStart {
   VertexConstraints constraints;
   UvMap start;
 };
 
-/// One a vertex: 1 where it is fixed.
+/// One entry a vertex: 1 if it has a hard constraint.
 inline std::vector<char> fixed_vertices(std::size_t vertex_count,
                                         const VertexConstraints& constraints) {
   std::vector<char> hard(vertex_count, 0);
@@ -48,7 +48,7 @@ inline std::vector<char> fixed_vertices(std::size_t vertex_count,
   return hard;
 }
 
-/// Numbers the vertices that are not fixed.
+/// Numbers the vertices without a hard constraint.
 inline linear::FreeVertices free_vertices(std::size_t vertex_count,
                                           const VertexConstraints& constraints) {
   return linear::number_free(fixed_vertices(vertex_count, constraints));
@@ -67,7 +67,7 @@ inline void describe(CacheKey& key, const VertexConstraints& constraints) {
   key.add(hard).add(soft);
 }
 
-/// Whether both hold the same vertices with the same weights, be it at other places.
+/// Whether both constrain the same vertices with the same weights; positions may differ.
 inline bool is_moved(const VertexConstraints& a, const VertexConstraints& b) {
   const auto same_vertex = [](const HardConstraint& p, const HardConstraint& q) {
     return p.vertex == q.vertex;
@@ -79,7 +79,7 @@ inline bool is_moved(const VertexConstraints& a, const VertexConstraints& b) {
          std::ranges::equal(a.soft, b.soft, same_soft);
 }
 
-/// What the soft constraints add to the energy of the map uv.
+/// The energy that the soft constraints add to the map uv.
 inline double soft_constraint_energy(std::span<const SoftConstraint> soft,
                                      std::span<const Vec2> uv) {
   double energy = 0;

@@ -1,9 +1,9 @@
-// By arc length, as Floater (1997) and Desbrun, Meyer, Alliez (2002) place a fixed boundary.
+// Places the boundary by arc length, as Floater (1997) and Desbrun, Meyer, Alliez (2002) do.
 //
-// The square's corners are vertices: pure arc length would cut them off, and the page would not be
-// filled to its corners. They are counted from the vertex where the surface's own boundary is
-// sharpest, so that a sheet with four corners keeps them. An edge across the surface between two
-// vertices of one side cuts off what cannot have area; on a circle that cannot be.
+// The square's corners are vertices: pure arc length would cut them off, and the chart would not
+// reach the corners of the page. They are counted from the vertex where the surface's boundary is
+// sharpest, so that a sheet with four corners keeps them. If an inner edge joins two vertices of
+// one side, the triangles that it cuts off have no area. On a circle that cannot happen.
 #include "core/solve/maps/boundary_shape.hpp"
 
 #include <algorithm>
@@ -15,7 +15,8 @@
 namespace unwrapd::solve::maps {
 namespace {
 
-/// A loop from one of its vertices on: vertex[k] lies arc[k] after it; the last arc is the whole.
+/// A loop that starts at one of its vertices: vertex[k] is at arc length arc[k]; the last entry is
+/// the total.
 struct Chain {
   std::vector<Index> vertex;
   std::vector<double> arc;
@@ -52,7 +53,7 @@ double angle_at(const Disk& disk, Index v) {
   return sum;
 }
 
-/// Where on the loop the least angle is; the first of equal ones.
+/// The position in the loop of the least angle; the first of equal ones.
 std::size_t sharpest(const Disk& disk) {
   const BoundaryLoop& loop = disk.loops.front();
   std::vector<double> angle;
@@ -72,7 +73,8 @@ std::vector<HardConstraint> on_circle(const Chain& chain) {
   return points;
 }
 
-/// The k-th corner is the vertex nearest to k quarters of the loop that leaves one for each corner.
+/// The k-th corner is the vertex nearest to k quarters of the loop that leaves a vertex for each
+/// remaining corner.
 std::vector<std::size_t> corners_of(const Chain& chain) {
   const std::size_t n = chain.vertex.size(), count = std::min<std::size_t>(4, n);
   std::vector<std::size_t> corner{0};
@@ -104,7 +106,7 @@ std::vector<HardConstraint> on_square(const Chain& chain) {
   return points;
 }
 
-/// The sides of the square that a place lies on, one bit each.
+/// The sides of the square that contain p, one bit each.
 int sides_of(const Vec2& p) {
   return (p.x() == -0.5 ? 1 : 0) | (p.x() == 0.5 ? 2 : 0) | (p.y() == -0.5 ? 4 : 0) |
          (p.y() == 0.5 ? 8 : 0);

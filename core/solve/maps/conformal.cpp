@@ -1,4 +1,4 @@
-// Two pins, or the smallest eigenvector; the matrix is in conformal_system.cpp.
+// Fixes two pins, or finds the smallest eigenvector. The matrix is in conformal_system.cpp.
 #include "core/solve/maps/conformal.hpp"
 
 #include <cmath>
@@ -33,7 +33,7 @@ std::array<Index, 2> pins_at_diameter(const Disk& disk) {
   return {vertex[static_cast<std::size_t>(a)], vertex[static_cast<std::size_t>(b)]};
 }
 
-/// One at the origin, the other as far away as it lies in space.
+/// Pins one vertex at the origin, the other at its distance in space.
 VertexConstraints pinned_at_diameter(const Disk& disk) {
   const auto [a, b] = pins_at_diameter(disk);
   const double length =
@@ -114,7 +114,7 @@ UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
   return uv;
 }
 
-/// Empty where there is none.
+/// Empty if there is no exact map.
 UvMap exact_map(const Disk& disk) {
   const VertexConstraints constraints = pinned_at_diameter(disk);
   const auto system = ConformalSystem::exact(disk, constraints);

@@ -16,17 +16,17 @@ namespace unwrapd::solve::maps {
 /// unit norm on the boundary (Mullen, Tong, Alliez, Desbrun 2008). Throws Error{solver_failed}.
 UvMap conformal_map(const Disk& disk, Pins pins);
 
-/// The same, made anew and kept for nobody: of a disk that is not asked for again.
+/// The same without the cache, for a disk that is used once.
 UvMap make_conformal_map(const Disk& disk, Pins pins);
 
-/// The map of Pins::diameter where double precision suffices for it. On ribbons a million times
-/// longer than wide it does not: there is no exact map, and conformal_map() gives one that keeps
-/// angles but not areas.
+/// The map of Pins::diameter, if double precision suffices for it. On ribbons a million times
+/// longer than wide it does not; conformal_map() then returns a map that preserves angles but not
+/// areas.
 std::optional<UvMap> exact_conformal_map(const Disk& disk);
 
-/// The two points of greatest distance, {a, b} with a < b. Exact, unless more than some twenty
-/// million pairs are left after pruning (nearly spherical clouds of many thousand points): then the
-/// best pair found by then.
+/// The two points of greatest distance, {a, b} with a < b. Exact, unless pruning leaves more than
+/// some twenty million pairs (nearly spherical clouds of many thousand points). Then it is the best
+/// pair found by then.
 std::array<Index, 2> diameter(std::span<const Vec3> positions);
 
 }  // namespace unwrapd::solve::maps

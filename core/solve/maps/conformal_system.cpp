@@ -17,8 +17,9 @@ namespace {
 
 constexpr linear::Complex kI(0, 1);
 
-/// Bending a ribbon a million times longer than wide costs less energy than rounding: H is then
-/// indefinite in double precision. Some of L, which holds lengths, makes it definite again.
+/// Bending a ribbon a million times longer than wide costs less energy than rounding, so that H is
+/// indefinite in double precision. Adding a multiple of L, which penalizes lengths, makes it
+/// definite again.
 constexpr double kLeastSoftening = 1e-12, kMostSoftening = 1e-2;
 
 std::pair<Index, Index> ends(const Disk& disk, Index h) {
@@ -67,7 +68,7 @@ bool ConformalSystem::try_build(const Disk& disk, const VertexConstraints& const
     lower_.coeffRef(soft_constraint.vertex, soft_constraint.vertex) += 4 * soft_constraint.weight;
   free_ = free_vertices(disk.positions.size(), constraints);
   if (free_.count == 0) return true;
-  const std::vector<linear::Complex> nowhere(free_.slot.size());  // only the matrix is wanted
+  const std::vector<linear::Complex> nowhere(free_.slot.size());  // only the matrix is needed
   const auto reduced =
       linear::eliminate<linear::ComplexMatrix, linear::Complex>(lower_, free_, nowhere, stop_);
   const auto check = [&](std::size_t bytes) { check_memory(disk, bytes); };

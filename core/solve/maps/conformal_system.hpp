@@ -1,5 +1,5 @@
 #pragma once
-// The matrix of the conformal energy (Sec. 4.2), with vertices held, factored once.
+// The matrix of the conformal energy (Sec. 4.2) under constraints, factored once.
 
 #include <memory>
 #include <optional>
@@ -17,30 +17,30 @@ namespace unwrapd::solve::maps {
 /// cotangent Laplacian.
 linear::ComplexMatrix conformal_matrix(const Disk& disk, double softening = 0);
 
-/// As try_factor(), but throws Error{solver_failed} when softening is the most there is to try.
+/// As try_factor(), but throws Error{solver_failed} if softening is already the maximum.
 std::unique_ptr<linear::HermitianSystem> try_softened(const linear::ComplexMatrix& lower,
                                                       double softening,
                                                       const linear::MemoryCheck& check,
                                                       const std::stop_token& stop);
 
-/// The softening to try after this one.
+/// The next softening to try.
 double more_softening(double softening);
 
-/// Depends on the mesh, on which vertices are held and on the soft constraints' weights, not on
-/// where they are held.
+/// Depends on the mesh, on which vertices are constrained and on the soft constraints' weights, but
+/// not on the positions of the constraints.
 class ConformalSystem {
  public:
-  /// At least two vertices are held. Where double precision does not suffice for H, softens it;
-  /// throws Error{solver_failed} when that does not help either.
+  /// Needs at least two constraints. Softens H if double precision does not suffice for it. Throws
+  /// Error{solver_failed} if that does not help.
   ConformalSystem(const Disk& disk, const VertexConstraints& constraints);
 
-  /// Nothing where double precision does not suffice for H.
+  /// Empty if double precision does not suffice for H.
   static std::optional<ConformalSystem> exact(const Disk& disk,
                                               const VertexConstraints& constraints);
 
-  /// The map of least E + sum of weight |u_v - at|^2 over the soft constraints, fixed vertices at
-  /// their places. holds: the same vertices and weights as those of the constructor. Thread-safe.
-  /// Throws Error{cancelled}, as the disk's job.
+  /// The map that minimizes E + sum of weight |u_v - at|^2 over the soft constraints, under the
+  /// hard ones. constraints: the same vertices and weights as in the constructor. Thread-safe.
+  /// Throws Error{cancelled} when the disk's job is cancelled.
   [[nodiscard]] UvMap solve(const VertexConstraints& constraints) const;
 
  private:

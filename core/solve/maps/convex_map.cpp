@@ -1,5 +1,5 @@
-// Equal weights give a symmetric system. Mean-value weights do not: theirs is an M-matrix with
-// dominant diagonal and symmetric pattern, solved by an L U without pivoting.
+// Equal weights give a symmetric system. Mean-value weights do not: their M-matrix has a dominant
+// diagonal and a symmetric pattern, and is solved by LU without pivoting.
 #include "core/solve/maps/convex_map.hpp"
 
 #include <cassert>
@@ -15,10 +15,10 @@
 namespace unwrapd::solve::maps {
 namespace {
 
-/// The boundary where it shall lie, and the numbers of the inner vertices, which are unknown.
+/// The fixed boundary, and the numbers of the inner vertices, which are the unknowns.
 struct ConvexMap {
   linear::FreeVertices inner;
-  UvMap uv;  ///< of all vertices; inner ones at the origin
+  UvMap uv;  ///< all vertices; inner ones are at the origin
 };
 
 ConvexMap with_boundary(const Disk& disk, std::span<const HardConstraint> boundary) {

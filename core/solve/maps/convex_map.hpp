@@ -1,6 +1,6 @@
 #pragma once
-// Maps with the boundary on a circle and every inner vertex a convex combination of its neighbours:
-// without flips where the triangulation is 3-connected (Tutte 1963, Floater 1997).
+// Maps with the boundary on a circle and every inner vertex a convex combination of its neighbours.
+// They have no flips if the triangulation is 3-connected (Tutte 1963, Floater 1997).
 
 #include <span>
 
@@ -16,7 +16,7 @@ UvMap tutte_map(const Disk& disk);
 /// Mean-value weights (Floater 2003), otherwise as tutte_map().
 UvMap mean_value_map(const Disk& disk);
 
-/// The same with the longest loop where boundary has it: every vertex of it, on a convex curve.
+/// The same with a given longest loop: boundary has all of its vertices, on a convex curve.
 UvMap tutte_map(const Disk& disk, std::span<const HardConstraint> boundary);
 UvMap mean_value_map(const Disk& disk, std::span<const HardConstraint> boundary);
 

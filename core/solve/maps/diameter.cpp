@@ -1,6 +1,6 @@
-// The farthest pair by pruning: with a good pair at hand (farthest of farthest, repeated), only
-// points far enough from the centre can do better, and of those, sorted by their distance from the
-// centre, only pairs whose distances add up to more.
+// Finds the farthest pair by pruning. A good pair comes from repeated farthest-point steps. Only
+// points far enough from the centre can then belong to a better pair; of those, sorted by their
+// distance from the centre, only pairs whose distances add up to more.
 #include <algorithm>
 #include <array>
 #include <cstdint>

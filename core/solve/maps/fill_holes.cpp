@@ -19,7 +19,7 @@ measure::RestTriangle triangle_of(std::span<const Vec3> positions, const Triangl
   return triangle_of_lengths(length);
 }
 
-/// What the fans add to.
+/// The lists that the fans are appended to.
 struct Lists {
   std::vector<Vec3> positions;
   std::vector<measure::RestTriangle> rest;

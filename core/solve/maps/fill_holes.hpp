@@ -1,6 +1,6 @@
 #pragma once
-// Inner holes closed, for methods that make a metric flat before they draw it: around an open hole
-// a flat metric may turn or grow, and then no map has it.
+// Closes inner holes, for methods that flatten a metric before they lay it out. Around an open hole
+// a flat metric may have a rotation or a scaling, and then no map has that metric.
 
 #include <vector>
 
@@ -8,10 +8,11 @@
 
 namespace unwrapd::solve::maps {
 
-/// A disk without inner holes. Its view looks into the two lists: it moves, but is not copied.
+/// A disk without inner holes. `disk` is a view of the two lists, so that this type can be moved
+/// but not copied.
 struct FilledDisk {
   std::vector<Triangle> faces;      ///< those of the disk first, then the fans
-  std::vector<BoundaryLoop> loops;  ///< the longest loop of the disk, alone
+  std::vector<BoundaryLoop> loops;  ///< only the longest loop of the disk
   Disk disk;                        ///< its first vertices and rest triangles are the disk's
 
   FilledDisk() = default;
@@ -19,9 +20,9 @@ struct FilledDisk {
   FilledDisk& operator=(FilledDisk&&) = default;
 };
 
-/// Closes every loop but the longest with a fan about the mean of its vertices: right for plane
-/// holes, whatever their shape, and one vertex a hole. A minimal surface would follow crooked rims
-/// closer; an ear-cut would bring slivers of its own.
+/// Closes every loop but the longest with a fan about the mean of its vertices. This suits plane
+/// holes of any shape and costs one vertex a hole. A minimal surface would follow crooked rims more
+/// closely; ear clipping would add slivers.
 FilledDisk fill_holes(const Disk& disk);
 
 }  // namespace unwrapd::solve::maps

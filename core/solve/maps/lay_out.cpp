@@ -12,8 +12,8 @@
 namespace unwrapd::solve::maps {
 namespace {
 
-/// The rest triangle with its side k from (0, 0) to (base, 0), its longest, and the third corner at
-/// that foot and height.
+/// The rest triangle whose side k, its longest, runs from (0, 0) to (base, 0), and whose third
+/// corner is at (foot, height).
 measure::RestTriangle triangle_on(std::size_t k, double base, double foot, double height) {
   height = std::max(height, measure::kMinHeight * base);
   measure::RestTriangle t;
@@ -21,7 +21,7 @@ measure::RestTriangle triangle_on(std::size_t k, double base, double foot, doubl
   t.edge[(k + 1) % 3] = Vec2(base - foot, -height);
   t.edge[(k + 2) % 3] = Vec2(foot, height);
   t.area = base * height / 2;
-  for (std::size_t i = 0; i < 3; ++i)  // facing edge i: the corner between the two others
+  for (std::size_t i = 0; i < 3; ++i)  // edge i faces the corner between the two others
     t.cot[i] = -t.edge[(i + 1) % 3].dot(t.edge[(i + 2) % 3]) / (2 * t.area);
   return t;
 }
@@ -61,7 +61,7 @@ measure::RestTriangle triangle_of_lengths(const std::array<double, 3>& l) {
 
 measure::RestTriangle triangle_of_angles(const std::array<double, 3>& angle) {
   const double unit = std::numbers::pi / (angle[0] + angle[1] + angle[2]);
-  std::array<double, 3> sine{};  // of the angle that faces the side, as the lengths are
+  std::array<double, 3> sine{};  // of the angle that faces side i
   for (std::size_t i = 0; i < 3; ++i) sine[i] = std::sin(unit * angle[(i + 2) % 3]);
   const std::size_t k = longest_of(sine);
   const double near = sine[(k + 2) % 3], at = unit * angle[k];
