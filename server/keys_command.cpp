@@ -7,7 +7,7 @@
 #include "server/access/key_store.hpp"
 #include "server/access/signed_link.hpp"
 #include "server/base/clock.hpp"
-#include "server/base/inside_error.hpp"
+#include "server/base/errors.hpp"
 #include "server/webhooks/webhooks.hpp"
 
 namespace unwrapd::server {

@@ -16,10 +16,10 @@
 #include <thread>
 
 #include "server/backup/backup_command.hpp"
-#include "server/base/inside_error.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/log.hpp"
+#include "server/config/component_config.hpp"
 #include "server/config/config.hpp"
-#include "server/config/descriptors.hpp"
 #include "server/http/http_probe.hpp"
 #include "server/keys_command.hpp"
 #include "server/service.hpp"
@@ -82,11 +82,11 @@ void serve(const config::Config& config, const Log& log, const work::WorkerFunct
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is then EFBIG, as no room is ENOSPC
   const sigset_t signals = block_end_signals();
   Service service(config, log, functions);
-  const std::string address = to_text({config.listen.host, service.port()});
+  const std::string address = http::to_text({config.listen.host, service.port()});
   const char* scheme = config.edge.tls_cert.empty() ? "http" : "https";
   std::printf("unwrapd listening on %s://%s\n", scheme, address.c_str());
   if (service.admin_port()) {
-    const std::string admin = to_text({config.admin->host, *service.admin_port()});
+    const std::string admin = http::to_text({config.admin->host, *service.admin_port()});
     std::printf("unwrapd admin port on http://%s\n", admin.c_str());
   }
   std::fflush(stdout);

@@ -1,7 +1,7 @@
 #pragma once
 // The program unwrapd, as a function: tests build programs of their own around it.
 
-#include "server/work/worker_functions.hpp"
+#include "server/work/job_worker.hpp"
 
 namespace unwrapd::server {
 

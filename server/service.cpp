@@ -7,12 +7,11 @@
 #include <thread>
 #include <vector>
 
+#include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
-#include "server/base/inside_error.hpp"
-#include "server/base/periodic.hpp"
+#include "server/base/threads.hpp"
 #include "server/config/component_config.hpp"
 #include "server/http/access_log.hpp"
-#include "server/http/cors.hpp"
 #include "server/http/sites.hpp"
 #include "server/jobs/worker_pool.hpp"
 #include "server/routes/admin_routes.hpp"
@@ -20,8 +19,7 @@
 #include "server/routes/job_routes.hpp"
 #include "server/routes/mesh_routes.hpp"
 #include "server/routes/picture_routes.hpp"
-#include "server/store/data_lock.hpp"
-#include "server/store/store_file.hpp"
+#include "server/store/data_directory.hpp"
 #include "server/store/sweeper.hpp"
 #include "server/webhooks/webhooks.hpp"
 
@@ -111,7 +109,7 @@ struct Service::Parts {
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
   }
 
-  /// A server that nobody can use must not look like one that runs.
+  /// Warns if no client can use the server, which would look as if it worked.
   void warn_without_keys(const Log& log) {
     if (!access::asks_for_keys(config.access, config.listen.host) || keys.has_any()) return;
     log.warning("API keys are required and none exists yet; add one",
@@ -125,7 +123,8 @@ struct Service::Parts {
     return key ? key->quota.max_bytes : 0;
   }
 
-  /// So many bytes more for a job's owner, if he may store them. A mesh's analysis is short.
+  /// Reserves bytes in the quota of the job's owner, if it allows them. The analysis of a mesh is
+  /// short and not counted.
   std::shared_ptr<void> claim_to_keep(const std::string& id, std::int64_t bytes) {
     const std::optional<store::JobRecord> job = store.find(id);
     if (!job && !is_mesh_id(id)) return nullptr;
@@ -169,7 +168,7 @@ struct Service::Parts {
           blobs.remove_left();
         },
         log);
-    beating.emplace(
+    renewing.emplace(
         "prolonging leases", 10s, [this] { queue.renew_leases(); }, log);
     calling.emplace(
         "calling webhooks", 1s, [this] { webhooks.call_due(); }, log);
@@ -263,7 +262,7 @@ struct Service::Parts {
   http::HttpServer http;
   http::Router admin_router;
   std::optional<http::HttpServer> admin;
-  std::optional<Periodic> sweeping, beating, calling, trimming;
+  std::optional<Periodic> sweeping, renewing, calling, trimming;
   std::optional<jobs::WorkerPool> workers;
   std::jthread serving, serving_admin;
 };

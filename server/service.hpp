@@ -7,7 +7,7 @@
 
 #include "server/base/log.hpp"
 #include "server/config/config.hpp"
-#include "server/work/worker_functions.hpp"
+#include "server/work/job_worker.hpp"
 
 namespace unwrapd::server {
 

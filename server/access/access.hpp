@@ -1,7 +1,7 @@
 #pragma once
-// Who may do what. Every route needs a scope; where keys are asked for, the request brings one as
-// `Authorization: Bearer unw_...`, and what its key may do, how often and how much, holds for it. A
-// link that was signed for a result (signed_link.hpp) opens that result without a key.
+// Which requests are allowed. Every route needs a scope. Where keys are required, a request brings
+// one as `Authorization: Bearer unw_...`; the scopes, rate and quota of that key apply to it. A
+// signed link (signed_link.hpp) opens one result without a key.
 
 #include <chrono>
 #include <filesystem>

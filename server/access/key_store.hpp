@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/http/caller.hpp"
+#include "server/http/http.hpp"
 #include "server/store/database.hpp"
 
 namespace unwrapd::server::access {

@@ -1,9 +1,9 @@
 #pragma once
-// Links that open one file of one job without an API key, until they expire: for a browser, or for
-// whoever a result is passed on to. A link ends in ?expires=SECONDS&key=ID&signature=HEX, the
+// Links that open one file of one job without an API key, until they expire: for a browser, or to
+// pass a result on. A link ends in ?expires=SECONDS&key=ID&signature=HEX. The signature is the
 // HMAC-SHA256 of its path, that time and the digest of the API key that it was made with, under a
-// secret of this server: it goes when the key does. Where no keys are asked for, there is no `key`.
-// Other parameters, which choose among the forms of that file, stay free.
+// secret of this server, so that the link ends with the key. Where no keys are required, there is
+// no `key`. Other parameters, which choose among the forms of the file, remain free.
 
 #include <cstdint>
 #include <filesystem>

@@ -10,13 +10,12 @@
 #include "server/access/signed_link.hpp"
 #include "server/backup/folder_copy.hpp"
 #include "server/base/clock.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
-#include "server/base/inside_error.hpp"
-#include "server/store/data_lock.hpp"
+#include "server/store/data_directory.hpp"
 #include "server/store/job_rows.hpp"
 #include "server/store/schema.hpp"
-#include "server/store/store_file.hpp"
 
 namespace unwrapd::server::backup {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "server/backup/backup.hpp"
-#include "server/base/inside_error.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::backup {
 namespace {

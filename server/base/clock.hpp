@@ -1,6 +1,6 @@
 #pragma once
-// The only place that asks for the time of day; everything else is handed milliseconds. Spans are
-// measured on a clock that nobody can set.
+// The only place that reads the time of day; all other code is given milliseconds. Durations are
+// measured on a clock that cannot be set.
 
 #include <cstdint>
 #include <string>
@@ -13,14 +13,14 @@ std::int64_t now_ms();
 /// Milliseconds since some moment before this process began.
 std::int64_t elapsed_ms();
 
-/// What both clocks show.
+/// Readings of both clocks.
 struct Times {
   std::int64_t of_day_ms = 0;
   std::int64_t elapsed_ms = 0;
   std::string boot = {};  ///< since when elapsed_ms counts: the same within one run of the kernel
 };
 
-/// Of one moment, within a second.
+/// Readings of one moment, to within a second.
 Times read_clocks();
 
 /// RFC 3339 in UTC with milliseconds: "2026-01-31T23:59:58.123Z".

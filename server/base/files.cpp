@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
-#include "server/base/retry_later.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-// Names that nobody can guess, and names that content gives itself.
+// Random names, which cannot be guessed, and digests of content.
 
 #include <cstddef>
 #include <memory>
@@ -16,7 +16,7 @@ std::string random_hex(std::size_t bytes);
 /// A new job id: "j_" and 128 random bits in lowercase hex.
 std::string random_job_id();
 
-/// True for what random_job_id() can return; anything else never reaches the store or a path.
+/// Whether random_job_id() can return it; any other text never reaches the store or a path.
 bool is_job_id(std::string_view text);
 
 /// A new name for the folder of a stored mesh: "m_" and as many.
@@ -27,7 +27,7 @@ bool is_mesh_id(std::string_view text);
 /// True for 64 lowercase hex digits.
 bool is_sha256(std::string_view text);
 
-/// SHA-256 of bytes that come in pieces.
+/// SHA-256 of bytes that are added in pieces.
 class Sha256 {
  public:
   Sha256();

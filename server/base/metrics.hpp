@@ -1,7 +1,6 @@
 #pragma once
-// What the server counts of itself, told in the text format of Prometheus (exposition format
-// 0.0.4) by prometheus-cpp. The families are one table (metrics.cpp); a value has a place in it or
-// does not exist.
+// The metrics of the server, written in the text format of Prometheus (exposition format 0.0.4) by
+// prometheus-cpp. metrics.cpp has the table of all families.
 
 #include <prometheus/counter.h>
 #include <prometheus/gauge.h>
@@ -9,7 +8,9 @@
 #include <prometheus/registry.h>
 
 #include <array>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -62,11 +63,11 @@ class Metrics {
   void count(Metric metric, const Labels& labels = {}, double by = 1);
   /// Puts a value into a histogram.
   void observe(Metric metric, const Labels& labels, double value);
-  /// A value that is asked for whenever the metrics are told; ask must be callable as long as that.
-  /// A metric is either counted or asked for.
+  /// A value that is asked for whenever the metrics are written; ask must stay callable. A metric
+  /// is either counted or asked for.
   void tell(Metric metric, const Labels& labels, Ask ask);
 
-  /// Ends with a line feed. What it tells is of one moment for each series only.
+  /// Ends with a line feed. Each series is of one moment; two series may be of different moments.
   [[nodiscard]] std::string text() const;
 
   static constexpr std::string_view kContentType = "text/plain; version=0.0.4; charset=utf-8";
@@ -84,7 +85,19 @@ class Metrics {
   std::map<Metric, std::map<prometheus::Labels, Ask>> asked_;
 };
 
-/// Adds what the kernel knows of this process.
+/// Adds memory, processor time, open files and start time of this process.
 void tell_process(Metrics& metrics);
+
+/// Counters of a store of files that are made on request, since the start. Thread-safe.
+struct FileCounts {
+  std::atomic<std::uint64_t> hits = 0;    ///< the file was there
+  std::atomic<std::uint64_t> misses = 0;  ///< it was made
+  std::atomic<std::uint64_t> bytes = 0;   ///< of those that were made
+
+  void made(std::string_view file) {
+    ++misses;
+    bytes += file.size();
+  }
+};
 
 }  // namespace unwrapd::server

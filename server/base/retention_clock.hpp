@@ -1,12 +1,12 @@
 #pragma once
-// The time by which it is told how long something is kept, or when a webhook is called: the time of
-// day as if nobody had set it. It is written beside what it is of, and never changed again; by how
-// much the time of day was set is noted in the store, for the next start (JobStore::note_time()).
+// The clock for retention times and webhooks: the time of day as if it had never been set. It is
+// stored beside the object that it belongs to and never changed again. By how much the time of day
+// was set is noted in the store, for the next start (JobStore::note_time()).
 //
-// A start compares the clocks with those that were noted last. Within one boot of the machine both
-// tell how long no server ran. After another boot the time of day alone does, which may be wrong
-// before it is synchronised: what it says is believed up to an hour. A longer pause is taken for a
-// clock that was set, so that nothing is swept for it, and things are kept that much longer.
+// A start compares the clocks with those noted last. Within one boot of the machine, both tell how
+// long no server ran. After another boot only the time of day does, which may be wrong until it is
+// synchronised: it is believed up to an hour. A longer pause is taken for a clock that was set, so
+// that nothing is removed because of it and files are kept that much longer.
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 #pragma once
-// Wakes a thread that waits in epoll: any other thread rings, the waiting one answers and then
+// Wakes a thread that waits in epoll: any thread rings; the waiting one calls answer() and then
 // looks at everything that may be new. Rings before an answer count as one.
 
 namespace unwrapd::server {
@@ -14,9 +14,9 @@ class Wakeup {
   ~Wakeup();
 
   void ring() const;
-  /// Before the look at what is new: whoever rings after it is heard again.
+  /// Call before looking at what is new: a ring after it wakes the thread again.
   void answer() const;
-  /// Readable while somebody has rung.
+  /// Readable after a ring, until answer().
   [[nodiscard]] int descriptor() const { return descriptor_; }
 
  private:

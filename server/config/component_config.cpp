@@ -1,6 +1,9 @@
 #include "server/config/component_config.hpp"
 
 #include <algorithm>
+#include <string>
+
+#include "core/base/error.hpp"
 
 namespace unwrapd::server::config {
 namespace {
@@ -9,7 +12,12 @@ constexpr int kLeastMakers = 4;
 constexpr std::chrono::seconds kStopPatience{5};  // beyond the grace of a job
 constexpr int kAdminThreads = 4;
 constexpr int kAdminConnections = 64;
-constexpr int kAdminParked = 48;  // so that idle ones keep nobody out
+constexpr int kAdminParked = 48;  // so that idle connections keep no other out
+
+constexpr std::int64_t kOfTheServer = 32;  // stores, listeners, wakeups, folders
+constexpr std::int64_t kOfARequest = 3;    // a file, its digests, the folder of both
+constexpr std::int64_t kOfAWorker = 13;    // a mesh with buffers, its results, two processes
+constexpr std::int64_t kFewestParts = 4;   // at least a quarter is for connections
 
 }  // namespace
 
@@ -29,7 +37,7 @@ http::HttpConfig http_config(const Config& config) {
   return http;
 }
 
-http::HttpConfig admin_config(const Address& address) {
+http::HttpConfig admin_config(const http::Address& address) {
   http::HttpConfig http;
   http.address = address;
   http.option = "--admin-listen";
@@ -75,6 +83,19 @@ results::RenderLimits render_limits(const Config& config, std::size_t memory_byt
   return {.places = std::max(kLeastMakers, config.workers),
           .waiting = most_waiting(config),
           .bytes = memory_bytes};
+}
+
+int connections_within(std::int64_t files, const Config& config) {
+  if (files < kFewestDescriptors) {
+    throw Error(ErrorCode::internal,
+                "Only " + std::to_string(files) + " files may be open; allow " +
+                    std::to_string(kFewestDescriptors) + " or more (ulimit -n, LimitNOFILE).");
+  }
+  const std::int64_t admin = config.admin ? admin_config(*config.admin).max_connections : 0;
+  const std::int64_t kept_back = kOfTheServer + kOfARequest * http_config(config).max_requests +
+                                 kOfAWorker * config.workers + admin;
+  const std::int64_t left = std::max(files - kept_back, files / kFewestParts);
+  return static_cast<int>(std::min<std::int64_t>(left, config.edge.max_connections));
 }
 
 }  // namespace unwrapd::server::config

@@ -1,5 +1,7 @@
 #pragma once
-// What the parts of the server are told, made of what the server is told.
+// The settings of each part of the server, made from those of the server.
+
+#include <cstdint>
 
 #include "server/base/log.hpp"
 #include "server/base/metrics.hpp"
@@ -7,13 +9,13 @@
 #include "server/http/http_server.hpp"
 #include "server/results/render_limiter.hpp"
 #include "server/work/job_process.hpp"
+#include "server/work/job_worker.hpp"
 #include "server/work/solver_cache.hpp"
-#include "server/work/worker_functions.hpp"
 
 namespace unwrapd::server::config {
 
 http::HttpConfig http_config(const Config& config);
-http::HttpConfig admin_config(const Address& address);
+http::HttpConfig admin_config(const http::Address& address);
 
 /// How long jobs that were told to stop may go on at the end of the server.
 std::chrono::seconds most_stopping(const Config& config);
@@ -30,8 +32,17 @@ work::Isolation isolation_of(const Config& config, const work::SolverCache& cach
 /// Requests that may wait for the ends of jobs at a time. As many may wait for pictures.
 int most_waiting(const Config& config);
 
-/// Who waits for a picture, or makes one, holds a thread, as who waits for a job does:
-/// http_config() has so many more.
+/// Requests that wait for a picture or make one hold a thread, like those that wait for a job:
+/// http_config() adds that many threads.
 results::RenderLimits render_limits(const Config& config, std::size_t memory_bytes);
+
+/// Open files without which no server can work.
+inline constexpr std::int64_t kFewestDescriptors = 64;
+
+/// The most connections to the main port if the process may open so many files. Connections get
+/// what is left when enough is kept back for stores, the files of requests and jobs, workers and
+/// the admin port: idle clients then take no descriptor that an answer needs. Throws
+/// Error{internal} for fewer than kFewestDescriptors.
+int connections_within(std::int64_t files, const Config& config);
 
 }  // namespace unwrapd::server::config

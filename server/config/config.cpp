@@ -1,4 +1,4 @@
-// Where the values of the options come from, who wins, and what is said of a wrong one.
+// The sources of option values, their precedence, and the errors for wrong values.
 #include "server/config/config.hpp"
 
 #include <unistd.h>  // environ
@@ -179,8 +179,8 @@ void Reading::read_flags(const CLI::App& app) {
 void Reading::finish() {
   if (!sources_.contains("admin-listen")) {
     const int port = config_.listen.port;
-    if (port == kMaxPort) wrong("--listen uses the last port; set --admin-listen too.");
-    config_.admin = Address{"127.0.0.1", port == 0 ? 0 : port + 1};
+    if (port == http::kMaxPort) wrong("--listen uses the last port; set --admin-listen too.");
+    config_.admin = http::Address{"127.0.0.1", port == 0 ? 0 : port + 1};
   }
   check_together(config_);
   if (healthcheck_ && (!config_.admin || config_.admin->port == 0))

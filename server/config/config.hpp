@@ -10,8 +10,8 @@
 
 #include "api/limits.hpp"
 #include "server/access/access.hpp"
-#include "server/base/address.hpp"
 #include "server/base/log.hpp"
+#include "server/http/addresses.hpp"
 #include "server/store/disk_budget.hpp"
 #include "server/webhooks/webhook_url.hpp"
 #include "server/work/solver_cache.hpp"
@@ -33,11 +33,11 @@ struct EdgeConfig {
 };
 
 struct Config {
-  Address listen{"127.0.0.1", 8080};
+  http::Address listen{"127.0.0.1", 8080};
   EdgeConfig edge;
   /// Of the probes and metrics; without one there is none. parse_command_line() gives it the port
   /// after that of listen, on loopback, where nothing else is asked for.
-  std::optional<Address> admin;
+  std::optional<http::Address> admin;
   std::filesystem::path data = "data";
   int workers = 1;
   int threads = 1;  ///< for each job

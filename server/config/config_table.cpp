@@ -16,23 +16,25 @@ constexpr int kMaxStreams = 4096;
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 constexpr std::string_view kNoAdmin = "off";
 
-Address address_of(const std::string& text) {
-  const std::optional<Address> address = parse_address(text);
+http::Address address_of(const std::string& text) {
+  const std::optional<http::Address> address = http::parse_address(text);
   if (!address) expected("HOST:PORT with a port from 0 to 65535");
   return *address;
 }
 
 ConfigRow listen_row() {
-  return {.heading = {"listen", "HOST:PORT", "Address of the service; port 0 takes a free port"},
-          .kind = ConfigKind::text,
-          .set = [](Config& config, const std::string& text) { config.listen = address_of(text); },
-          .get = [](const Config& config) { return to_text(config.listen); }};
+  return {
+      .heading = {"listen", "HOST:PORT", "http::Address of the service; port 0 takes a free port"},
+      .kind = ConfigKind::text,
+      .set = [](Config& config, const std::string& text) { config.listen = address_of(text); },
+      .get = [](const Config& config) { return to_text(config.listen); }};
 }
 
 ConfigRow admin_row() {
-  return {.heading = {"admin-listen", "HOST:PORT",
-                      "Address of probes and metrics, or off. Unset: 127.0.0.1 with the port after "
-                      "that of --listen"},
+  return {.heading =
+              {"admin-listen", "HOST:PORT",
+               "http::Address of probes and metrics, or off. Unset: 127.0.0.1 with the port after "
+               "that of --listen"},
           .kind = ConfigKind::text,
           .set =
               [](Config& config, const std::string& text) {

@@ -1,5 +1,5 @@
 #pragma once
-// Which variables of the environment are meant for the server, and are none.
+// Finds environment variables that are meant for the server and that no option has.
 
 #include <optional>
 #include <string>
@@ -13,9 +13,9 @@ struct UnknownVariable {
   std::string nearest;  ///< the known one that is spelled most like it
 };
 
-/// The first of "NAME=value" (a null ends them) whose name begins with UNWRAPD_, is not known, and
-/// belongs to nobody else: neither to the other programs of this project nor to a container engine
-/// that names a service so.
+/// The first of "NAME=value" (nullptr ends the list) whose name begins with UNWRAPD_, is unknown,
+/// and belongs neither to another program of this project nor to a container engine that names a
+/// service so.
 std::optional<UnknownVariable> unknown_variable(const char* const* environment,
                                                 const std::vector<std::string>& known);
 

@@ -1,6 +1,7 @@
 #pragma once
-// A client's address, behind trusted proxies. X-Forwarded-For counts as far as the chain of trusted
-// proxies reaches and no farther, as anybody can send the header.
+// Addresses: where a server listens, and which client asks. A client's address is found behind
+// trusted proxies. X-Forwarded-For counts as far as the chain of trusted proxies reaches and no
+// farther, as anybody can send the header.
 
 #include <array>
 #include <optional>
@@ -9,6 +10,22 @@
 #include <vector>
 
 namespace unwrapd::server::http {
+
+inline constexpr int kMaxPort = 65535;
+
+/// A host and a port.
+struct Address {
+  std::string host;
+  int port = 0;  ///< 0: a free one
+
+  bool operator==(const Address&) const = default;
+};
+
+/// std::nullopt unless the text is HOST:PORT with a port from 0 to 65535.
+std::optional<Address> parse_address(std::string_view text);
+
+/// "127.0.0.1:8080", "[::1]:8080".
+std::string to_text(const Address& address);
 
 /// Addresses as ranges: "10.0.0.0/8", "::1", "192.168.1.7". Thread-safe.
 class AddressSet {

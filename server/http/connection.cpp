@@ -70,7 +70,7 @@ Client Connection::release() {
 
 bool Connection::has_next() const { return buffer_.find("\r\n\r\n", used_) != std::string::npos; }
 
-/// Raw bytes, be they TLS or not: nobody reads them.
+/// Discards raw bytes, inside TLS or not.
 void Connection::linger() const {
   client_.transport->end();
   const Waiting among(limits_.pressure.get());

@@ -1,9 +1,10 @@
 #pragma once
-// One client's socket: bytes in and out, each wait bounded. A Connection reads
-// the head of a request, then its body without the framing: whoever reads the
-// body meets its end and its limit, not chunk sizes. The body is counted here,
-// so that chunked bodies keep the limit as well.
+// One client's socket: bytes in and out, each wait bounded. A Connection reads the head of a
+// request, then its body without the framing: the reader of a body sees its end and its limit, not
+// the sizes of chunks. The body is counted here, so that the limit holds for chunked bodies as
+// well.
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -13,10 +14,35 @@
 
 #include "core/base/error.hpp"
 #include "server/http/http_head.hpp"
-#include "server/http/slow_client_pressure.hpp"
 #include "server/http/transport.hpp"
 
 namespace unwrapd::server::http {
+
+/// Counts the threads of a server that wait for clients: for bytes of a body, or until an answer is
+/// taken. Slow clients must not hold all of them: above a limit, more is asked of each client.
+struct SlowClientPressure {
+  int many = 0;  ///< above which there are too many
+  std::atomic<int> waiting = 0;
+};
+
+/// Counts the calling thread among those that wait for clients.
+class Waiting {
+ public:
+  explicit Waiting(SlowClientPressure* pressure) : pressure_(pressure) {
+    if (pressure_ != nullptr) ++pressure_->waiting;
+  }
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+  ~Waiting() {
+    if (pressure_ != nullptr) --pressure_->waiting;
+  }
+  [[nodiscard]] bool many() const {
+    return pressure_ != nullptr && pressure_->waiting > pressure_->many;
+  }
+
+ private:
+  SlowClientPressure* const pressure_;
+};
 
 struct ConnectionLimits {
   std::int64_t max_body_bytes = 0;
@@ -27,34 +53,29 @@ struct ConnectionLimits {
   std::int64_t min_bytes_per_second = 1024;  ///< of a body, and of an answer while we wait for it
   std::chrono::milliseconds rate_grace{20'000};       ///< until that counts
   std::shared_ptr<SlowClientPressure> pressure = {};  ///< of one server; none: never many
-  std::chrono::milliseconds crowded{2'000};  ///< instead of read, write and rate_grace in a crowd
-  std::int64_t crowded_bytes_per_second = 16'384;  ///< of a body in a crowd
+  std::chrono::milliseconds crowded{2'000};  ///< replaces read, write and rate_grace under pressure
+  std::int64_t crowded_bytes_per_second = 16'384;  ///< of a body under pressure
 };
 
 class Connection {
  public:
-  /// stop: a descriptor that becomes readable when the server stops; it ends
-  /// idle waits.
+  /// stop: a descriptor that becomes readable when the server stops; it ends idle waits.
   Connection(Client client, int stop, const ConnectionLimits& limits);
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
-  /// Closes; a body that was not read is discarded for a while, so that the
-  /// answer still arrives.
+  /// Closes. A body that was not read is discarded for a while, so that the answer still arrives.
   ~Connection();
 
-  /// Waits for the next request and vets its head, which read() then returns
-  /// first. False when the client has gone or nothing came in time. Throws what
-  /// vet_head() throws.
+  /// Waits for the next request and vets its head, which read() then returns first. False when the
+  /// client has gone or nothing came in time. Throws what vet_head() throws.
   bool next_request();
   /// Whether the head of another request is here already.
   [[nodiscard]] bool has_next() const;
-  /// Gives the client up, with what it has sent beyond the last request;
-  /// nothing else may follow.
+  /// Hands the client over, with what it has sent beyond the last request. Call nothing after it.
   [[nodiscard]] Client release();
-  /// Bytes of the head, then of the body; 0 at the end of the body, -1 on
-  /// failure().
+  /// Reads bytes of the head, then of the body; 0 at the end of the body, -1 on failure().
   std::int64_t read(char* data, std::size_t size);
-  /// -1 when the client has gone or does not read.
+  /// Returns the number of bytes written; -1 when the client has gone or does not read.
   std::int64_t write(std::string_view bytes);
   /// Whether the client takes bytes now or in time, and is still there.
   [[nodiscard]] bool is_writable();

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "api/error_table.hpp"
-#include "server/base/retry_later.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/utf8.hpp"
 
 namespace unwrapd::server::http {

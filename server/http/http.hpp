@@ -15,7 +15,6 @@
 
 #include "core/base/error.hpp"
 #include "server/base/files.hpp"
-#include "server/http/caller.hpp"
 
 namespace unwrapd::server::http {
 
@@ -47,22 +46,37 @@ struct IgnoreCase {
   bool operator()(std::string_view left, std::string_view right) const;
 };
 
-/// Whether a client has closed its connection meanwhile; empty where nobody can tell.
+/// Whether the client has closed its connection meanwhile; empty if that is not known.
 using HasLeft = std::function<bool()>;
+
+/// Limits of one caller; 0: no limit.
+struct Quota {
+  std::int64_t max_jobs = 0;   ///< queued or running
+  std::int64_t max_bytes = 0;  ///< of the files of all jobs
+};
+
+/// On whose behalf a request is made. Without API keys all callers are the same one, without
+/// limits.
+struct Caller {
+  std::string owner;     ///< id of the API key; empty without one
+  bool sees_all = true;  ///< the jobs of others, too
+  Quota quota;
+  std::string key_sha256 = {};  ///< of the API key; signed links end with the key
+};
 
 struct Request {
   std::string method;
   std::string path;  ///< percent-decoded
   std::multimap<std::string, std::string> query;
   std::multimap<std::string, std::string, IgnoreCase> headers;
-  std::string id;      ///< the {id} of the path, once a route has matched
-  std::string sha256;  ///< the {sha256} of the path, the same
-  Caller caller;       ///< who asks, once that has been found out
-  std::string client;  ///< the address of who asks
-  std::string host;    ///< by which the server was reached, and its port; empty when not told
-  BodyReader* body = nullptr;                   ///< of POST, PUT and PATCH
-  std::int64_t declared_bytes = 0;              ///< of the body; 0 when not told beforehand
-  std::optional<Error> refusal = std::nullopt;  ///< what its head has against it, to be answered
+  std::string id;              ///< the {id} of the path, once a route has matched
+  std::string sha256;          ///< the {sha256} of the path, the same
+  Caller caller;               ///< set before the handler runs
+  std::string client;          ///< the address of the client
+  std::string host;            ///< by which the server was reached, with its port; may be empty
+  BodyReader* body = nullptr;  ///< of POST, PUT and PATCH
+  std::int64_t declared_bytes = 0;              ///< of the body; 0 when not declared
+  std::optional<Error> refusal = std::nullopt;  ///< why its head is refused; this is the answer
   HasLeft has_left = {};
 
   /// The headers of this name as one list (RFC 9110, 5.3), one that repeats the one before left
@@ -82,10 +96,9 @@ struct StreamPiece {
   bool end = false;   ///< nothing will follow
 };
 
-/// A body that comes with time. Whoever makes one rings the bell (HttpUses::news) when next() has
-/// more.
+/// A body that comes over time. Its producer rings HttpUses::news when next() has more.
 struct StreamBody {
-  std::function<StreamPiece()> next;  ///< what is there by now, some kB at most; never waits
+  std::function<StreamPiece()> next;  ///< what there is now, a few kB at most; never waits
   std::string_view ping = {};         ///< sent after a silence; outlives the body
 };
 
@@ -100,7 +113,7 @@ struct Response {
 
 using Handler = std::function<Response(const Request&)>;
 
-/// A request and its answer when all is said, for the log and the metrics.
+/// A request and its answer, for the log and the metrics.
 struct Exchanged {
   std::string method;  ///< "" when the request could not be read
   std::string path;
@@ -117,7 +130,7 @@ using Observer = std::function<void(const Exchanged&)>;
 /// An answer with a JSON body.
 Response json_response(int status, std::string_view json);
 
-/// The problem document of an error, with Retry-After where it is one that passes.
+/// The problem document of an error, with Retry-After for RetryLater.
 Response error_response(const Error& error, std::string_view job = {});
 
 }  // namespace unwrapd::server::http

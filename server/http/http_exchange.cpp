@@ -134,8 +134,8 @@ void put(const Response& response, std::optional<StreamBody>& begun, httplib::Re
   }
 }
 
-/// What holds for every answer: it is what its type says, and kept by nobody unasked. A copy with
-/// an ETag may be asked for again.
+/// Headers of every answer: its type is not to be guessed, and it is not cached by default. A copy
+/// with an ETag may be asked for again.
 void add_usual_fields(httplib::Response& out) {
   out.set_header("X-Content-Type-Options", "nosniff");
   if (!out.has_header("Cache-Control"))
@@ -228,7 +228,7 @@ class Exchange::Http final : public httplib::Server {
     }
   }
 
-  /// Who waits for 100, and encodings, are not httplib's business.
+  /// httplib must handle neither 100-continue nor encodings.
   static void unframe(httplib::Request& request) {
     for (const char* name : {"Content-Length", "Transfer-Encoding", "Accept-Encoding", "Expect"})
       request.headers.erase(name);

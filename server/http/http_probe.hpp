@@ -1,7 +1,7 @@
 #pragma once
 // Asks a running server whether it is well, for supervisors in images without a shell or curl.
 
-#include "server/base/address.hpp"
+#include "server/http/addresses.hpp"
 
 namespace unwrapd::server::http {
 

@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "api/error_table.hpp"
-#include "server/base/retry_later.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::http {
 namespace {
 
 constexpr int kRetrySeconds = 5;
-constexpr int kGreeters = 2;  // they only compute: one for each core of a small machine
+constexpr int kHandshakeThreads = 2;  // they only compute: one for each core of a small machine
 
 /// A refusal before httplib has seen the request.
 std::string plain_refusal(const Error& error) {
@@ -64,6 +64,12 @@ HttpConfig with_pressure(HttpConfig config) {
 
 }  // namespace
 
+/// A thread that waits for a client.
+struct HttpServer::Idle {
+  std::condition_variable wake;
+  bool is_woken = false;
+};
+
 HttpServer::HttpServer(const HttpConfig& config, HttpUses uses, const Log& log)
     : config_(with_pressure(config)),
       uses_(std::move(uses)),
@@ -83,7 +89,7 @@ HttpServer::HttpServer(const HttpConfig& config, HttpUses uses, const Log& log)
                 .back = [this](Client client, bool again) { let_go(std::move(client), again); }},
                config.limits, config.ping) {
   if (tls_)
-    handshakes_.emplace(kGreeters,
+    handshakes_.emplace(kHandshakeThreads,
                         [this](Client client) { idle_connections_.park(std::move(client)); });
 }
 
@@ -155,7 +161,7 @@ void HttpServer::serve() {
   streams_.stop();
 }
 
-/// Who is not done in time is cut off: an upload must not hold up the end.
+/// Cuts off clients that are not done in time: an upload must not delay the end.
 void HttpServer::end_late() {
   std::unique_lock lock(mutex_);
   const auto done = [&] { return ready_.empty() && served_.empty(); };

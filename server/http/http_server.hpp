@@ -1,11 +1,9 @@
 #pragma once
-// The HTTP edge: connections in, Requests to one answer function, Responses
-// out. Who has no complete head waits in the parking lot (idle_connections.hpp), without
-// a thread; a request is answered by a thread of its own, but for the bodies of
-// streams (stream_writer.hpp). cpp-httplib parses and writes
-// (http_exchange.hpp); accepting, waiting, framing and limits are
-// ours, since the packaged version keeps its limits for bodies of known length
-// only.
+// The HTTP edge: connections in, Requests to one answer function, Responses out. A connection
+// without a complete head waits in idle_connections.hpp, without a thread. Each request is answered
+// by one thread; one thread more writes the bodies of all streams (stream_writer.hpp). cpp-httplib
+// parses and writes (http_exchange.hpp); accepting, waiting, framing and limits are our own, as the
+// packaged version applies its limits only to bodies of known length.
 
 #include <atomic>
 #include <chrono>
@@ -19,7 +17,6 @@
 #include <thread>
 #include <vector>
 
-#include "server/base/address.hpp"
 #include "server/base/concurrency_limit.hpp"
 #include "server/base/log.hpp"
 #include "server/http/addresses.hpp"
@@ -30,7 +27,6 @@
 #include "server/http/listener.hpp"
 #include "server/http/stream_writer.hpp"
 #include "server/http/tls.hpp"
-#include "server/http/tls_handshake_pool.hpp"
 
 namespace unwrapd::server::http {
 
@@ -51,13 +47,12 @@ struct HttpConfig {
 
 class HttpServer {
  public:
-  /// Listens at once, and answers when serve() runs. Throws Error when the
-  /// address cannot be had, or the certificate cannot be used.
+  /// Listens at once, and answers while serve() runs. Throws Error when the address or the
+  /// certificate cannot be used.
   HttpServer(const HttpConfig& config, HttpUses uses, const Log& log);
 
   [[nodiscard]] int port() const { return listener_.port(); }
-  /// Serves until stop(), then until the requests at hand are answered or
-  /// `last_answers` is over.
+  /// Serves until stop(), then until the current requests are answered or `last_answers` is over.
   void serve();
   void stop();
 
@@ -65,11 +60,7 @@ class HttpServer {
   [[nodiscard]] int open() const { return places_.count(); }
 
  private:
-  /// A thread that waits for a client.
-  struct Idle {
-    std::condition_variable wake;
-    bool is_woken = false;
-  };
+  struct Idle;
 
   std::optional<Client> let_in();
   void turn_away(Client& client, const Error& error) const;

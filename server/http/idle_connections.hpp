@@ -1,13 +1,12 @@
 #pragma once
-// Connections that have no complete request yet wait here, all in one thread:
-// an idle one costs a few hundred bytes, a slow one its bytes so far, and
-// neither a thread. What has a complete head (or too long a one) goes to those
-// who answer.
+// Connections without a complete request wait here, all in one thread: an idle one costs a few
+// hundred bytes, a slow one its bytes so far, and neither costs a thread. A connection with a
+// complete head (or one that is too long) goes to the threads that answer.
 //
-// Each has a deadline: `idle` while it has sent nothing, `head` from its first
-// byte to the empty line, however steadily it drips (slow loris). Epoll is
-// level triggered: a client that is not read to the end now is told of again.
-// Rejected: a thread a connection, which 64 slow clients used up.
+// Each connection has a deadline: `idle` while it has sent nothing, `head` from its first byte to
+// the empty line, however steadily it drips (slow loris). Epoll is level triggered: it reports
+// again a client that was not read to its end. Rejected: a thread a connection, which 64 slow
+// clients used up.
 
 #include <atomic>
 #include <chrono>
@@ -43,14 +42,14 @@ class IdleConnections {
 
   IdleConnections(const Listener& listener, Uses uses, const IdleRules& rules);
 
-  /// Until the listener is stopped; then all that are parked are closed.
+  /// Runs until the listener is stopped; then closes all connections that wait.
   void run();
-  /// One wait of at most so long (-1: as long as it takes), and what comes of it.
+  /// Waits once, for at most so long (-1: without limit), and handles the events.
   void turn(int patience_ms);
-  /// Closes those whose time is over at this moment.
+  /// Closes connections whose deadline has passed at this moment.
   void expire(Clock::time_point now);
-  /// Takes a client back, from any thread, to wait for its next request, or for the next step of
-  /// its handshake.
+  /// Takes a client back, from any thread, until its next request or the next step of its
+  /// handshake.
   void park(Client client);
   [[nodiscard]] int count() const { return count_; }
 

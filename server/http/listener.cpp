@@ -17,7 +17,7 @@
 #include <thread>
 
 #include "core/base/error.hpp"
-#include "server/base/address.hpp"
+#include "server/http/addresses.hpp"
 
 namespace unwrapd::server::http {
 namespace {
@@ -137,7 +137,7 @@ void Listener::shut_out() const {
 
 void Listener::stop() const {
   ::shutdown(socket_,
-             SHUT_RDWR);  // who connects from now on is refused, not left waiting
+             SHUT_RDWR);  // later clients are refused rather than left waiting
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = ::write(stop_, &one, sizeof one);
 }

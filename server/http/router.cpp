@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "api/error_table.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
-#include "server/base/inside_error.hpp"
 
 namespace unwrapd::server::http {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
-// From a request to its handler, and from an error to its answer: every handler runs inside
-// answer(), the one door at which what was thrown becomes a problem document.
+// Finds the handler of a request. All handlers run inside answer(), which turns whatever they throw
+// into a problem document.
 
 #include <functional>
 #include <string>
@@ -19,7 +19,7 @@ struct Route {
   Handler handler;
 };
 
-/// Called before the handler with the path of its route: says who asks, or throws Error.
+/// Called before the handler, with the path of its route: sets the caller, or throws Error.
 using Admit = std::function<void(Request& request, std::string_view route)>;
 
 class Router {
@@ -27,7 +27,7 @@ class Router {
   Router(std::vector<Route> routes, const Log& log, Admit admit = {})
       : routes_(std::move(routes)), log_(log), admit_(std::move(admit)) {}
 
-  /// Never throws. HEAD is answered as GET is; the caller leaves the body out.
+  /// Never throws. HEAD is answered like GET; the caller omits the body.
   [[nodiscard]] Response answer(Request request) const noexcept;
 
  private:

@@ -67,7 +67,7 @@ void StreamWriter::turn(int patience_ms) {
     else
       attend(event.data.fd, event.events);
   }
-  if (news) {  // after the events, which are of sockets that may be somebody else's from now on
+  if (news) {  // after the events: their sockets may belong to other clients from now on
     uses_.news->answer();
     admit();
     go_on_all();

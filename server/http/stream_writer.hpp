@@ -1,7 +1,7 @@
 #pragma once
-// The one thread that writes every answer whose body comes with time (event streams). It never
-// waits for a client: what one does not take now is kept, at most a few kB of it, and nothing more
-// is fetched for it until that is out; who takes nothing for long is cut off. Rejected: a thread a
+// One thread writes all answers whose body comes over time (event streams). It never waits for a
+// client: at most a few kB that a client does not take now are kept, and no more is fetched for it
+// until they are sent. A client that takes nothing for long is cut off. Rejected: a thread a
 // stream, whose stack and allocation caches took 42 kB of memory each.
 
 #include <chrono>
@@ -23,7 +23,7 @@
 
 namespace unwrapd::server::http {
 
-/// An answer whose head is out.
+/// An answer whose head has been sent.
 struct OpenStream {
   StreamBody body;
   Exchanged done = {};  ///< as far as it is known; told to the observer at the end
@@ -36,7 +36,7 @@ struct OpenStream {
 class StreamWriter {
  public:
   struct Uses {
-    std::shared_ptr<Wakeup> news;  ///< rung when some body may have more; this object's alone
+    std::shared_ptr<Wakeup> news;  ///< rung when a body may have more; used by this object alone
     Observer observe;
     /// Gets each client whose stream is over; again: it may send another request.
     std::function<void(Client, bool again)> back;
@@ -49,9 +49,9 @@ class StreamWriter {
   StreamWriter& operator=(const StreamWriter&) = delete;
   ~StreamWriter() { stop(); }
 
-  /// Takes a client over, from any thread. Never waits.
+  /// Takes over a client, from any thread. Never waits.
   void take(Client client, OpenStream stream);
-  /// Cuts off those that are left. Nothing may be taken after it.
+  /// Cuts off the remaining clients. Call take() no more after it.
   void stop();
 
  private:
@@ -86,7 +86,7 @@ class StreamWriter {
   const std::chrono::milliseconds ping_;
   Epoll epoll_;
   Streams streams_;
-  bool more_ = false;  // some body may have more, though nobody rings
+  bool more_ = false;  // a body may have more without a ring
   Clock::time_point next_look_{};
   std::mutex mutex_;
   std::vector<std::pair<Client, OpenStream>> arrived_;

@@ -23,8 +23,8 @@ int clamped(std::size_t size) {
   return static_cast<int>(std::min<std::size_t>(size, std::numeric_limits<int>::max()));
 }
 
-/// The records that a client sends beside its data. One that goes on sending them keeps whoever
-/// reads busy without end: OpenSSL answers a KeyUpdate, or a wish to renegotiate, and reads on.
+/// Counts the records that a client sends beside its data. Without a limit, they would keep the
+/// reading thread busy for ever: OpenSSL answers a KeyUpdate, or a renegotiation, and reads on.
 class Records {
  public:
   /// So many may come until the handshake is done, and so many that are no data after it.
@@ -153,7 +153,7 @@ int TlsTransport::bio_write(BIO* bio, const char* data, int size) {
   return static_cast<int>(std::max<std::int64_t>(sent, -1));
 }
 
-/// Of the first thing that went wrong: the rest follows from it.
+/// The first error of OpenSSL; later ones follow from it.
 std::string reason_of_failure() {
   const unsigned long code = ERR_peek_error();
   if (ERR_SYSTEM_ERROR(code)) return std::generic_category().message(ERR_GET_REASON(code));
@@ -167,7 +167,7 @@ std::string reason_of_failure() {
                                        "); give a PEM file that the server's user may read.");
 }
 
-/// Nobody is asked for a pass phrase: a server starts without a terminal.
+/// Asks for no pass phrase, as a server starts without a terminal.
 int no_pass_phrase(char*, int, int, void* asked) {
   *static_cast<bool*>(asked) = true;
   return -1;
@@ -207,6 +207,32 @@ TlsContext::TlsContext(const std::filesystem::path& certificate, const std::file
 
 std::unique_ptr<Transport> TlsContext::accept(int socket) const {
   return std::make_unique<TlsTransport>(socket, Session(SSL_new(context_.get())));
+}
+
+TlsHandshakePool::TlsHandshakePool(int threads, std::function<void(Client)> back)
+    : back_(std::move(back)) {
+  threads_.reserve(static_cast<std::size_t>(threads));
+  for (int i = 0; i < threads; ++i)
+    threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+}
+
+void TlsHandshakePool::handshake(Client client) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(client));
+  }
+  arrived_.notify_one();
+}
+
+void TlsHandshakePool::work(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (arrived_.wait(lock, stop, [&] { return !waiting_.empty(); }) && !stop.stop_requested()) {
+    Client client = std::move(waiting_.front());
+    waiting_.pop_front();
+    lock.unlock();
+    if (client.transport->handshake()) back_(std::move(client));
+    lock.lock();
+  }
 }
 
 }  // namespace unwrapd::server::http

@@ -1,6 +1,6 @@
 #pragma once
-// The bytes of one client, plain or inside TLS. Nothing here ever waits: who
-// gets kAgain waits for awaits() and asks again.
+// The bytes of one client, plain or inside TLS. No call waits: after kAgain, the caller waits for
+// awaits() and calls again.
 
 #include <chrono>
 #include <cstdint>
@@ -28,11 +28,11 @@ class Transport {
   /// Whether bytes of requests can come; else handshake() is to be called when awaits(POLLIN) is
   /// ready.
   [[nodiscard]] virtual bool is_open() const { return true; }
-  /// A step of the handshake, as far as it goes without waiting; false when it has failed.
+  /// Does a step of the handshake without waiting. False when the handshake has failed.
   virtual bool handshake() { return true; }
-  /// What poll() shall wait for after kAgain: POLLIN or POLLOUT.
+  /// The event to poll() for after kAgain: POLLIN or POLLOUT.
   [[nodiscard]] virtual short awaits(short wanted) const { return wanted; }
-  /// Tells the client that nothing more will come.
+  /// Ends sending: the client reads an end of file.
   virtual void end();
 
   [[nodiscard]] int socket() const { return socket_; }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/base/queue_errors.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::jobs {
 
@@ -20,23 +20,24 @@ void Admission::check_place(const Applicant& sender, const FairShare& share,
     throw queue_full(places_, *later);
 }
 
-/// The owners with jobs share the workers: one of his ends once in so many.
+/// Owners with jobs share the workers: of as many jobs that end as there are owners, one is of this
+/// owner.
 void Admission::check_quota(std::string_view sender, const http::Quota& quota,
                             const store::OwnerUsage& usage, const store::JobRecord& job,
                             const FairShare& share, const std::vector<AtWork>& running) {
   if (quota.max_bytes > 0 && usage.stored_bytes + job.stored_bytes > quota.max_bytes)
     throw quota_exceeded(quota.max_bytes);
   if (quota.max_jobs == 0) return;
-  QueueForecast his = line(share, running);
+  QueueForecast own = line(share, running);
   const auto owners = static_cast<double>(std::max<std::int64_t>(1, share.owners()));
-  his.places = quota.max_jobs;
-  his.waiting = usage.live_jobs;
-  his.interval *= owners;
-  his.spread *= owners;
+  own.places = quota.max_jobs;
+  own.waiting = usage.live_jobs;
+  own.interval *= owners;
+  own.spread *= owners;
   if (std::ranges::count(running, job.owner, &AtWork::owner) == 0)
-    his.first += his.interval + share.lengths().mean;
+    own.first += own.interval + share.lengths().mean;
   SlotReservations& promised = promised_to_owner_[job.owner];
-  const auto later = promised.ask(Clock::now(), {.who = sender}, his);
+  const auto later = promised.ask(Clock::now(), {.who = sender}, own);
   promised.leave(sender);
   std::erase_if(promised_to_owner_, [](const auto& entry) { return entry.second.empty(); });
   if (later) throw too_many_jobs(quota.max_jobs, *later);

@@ -1,20 +1,20 @@
 #pragma once
-// Who may send a job now: there is a place in the queue for it, and one among the jobs of its
-// owner.
+// Decides whether a client may send a job now: the queue and the quota of the owner need a free
+// slot.
 
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "server/http/caller.hpp"
+#include "server/http/http.hpp"
 #include "server/jobs/fair_share.hpp"
 #include "server/jobs/slot_reservations.hpp"
 #include "server/store/job_store.hpp"
 
 namespace unwrapd::server::jobs {
 
-/// A job at work.
+/// A running job.
 struct AtWork {
   std::string_view owner;
   double seconds = 0;  ///< since it began
@@ -25,11 +25,11 @@ class Admission {
  public:
   Admission(int places, int workers) : places_(places), workers_(workers) {}
 
-  /// Keeps a place in the queue for the sender until leave(), for half a minute; throws
+  /// Reserves a slot of the queue for the sender until leave(), for half a minute. Throws
   /// RetryLater{queue_full} when there is none.
   void check_place(const Applicant& sender, const FairShare& share,
                    const std::vector<AtWork>& running);
-  /// Throws quota_exceeded, and RetryLater{too_many_jobs}, when its owner has what he may have.
+  /// Throws quota_exceeded, or RetryLater{too_many_jobs}, when the owner has reached its quota.
   void check_quota(std::string_view sender, const http::Quota& quota,
                    const store::OwnerUsage& usage, const store::JobRecord& job,
                    const FairShare& share, const std::vector<AtWork>& running);

@@ -1,7 +1,7 @@
 #pragma once
-// The events of jobs on their way from the worker to any number of readers. A feed is a bounded
-// ring: a worker never waits for a reader, and a reader that is too slow is told of the gap.
-// Sequence numbers go up over attempts and restarts: attempt k of a job begins at k * 10^9.
+// The events of jobs, from the worker to any number of readers. A feed is a bounded ring: a worker
+// never waits for a reader, and a slow reader gets an event that names the gap. Sequence numbers
+// rise over attempts and restarts: attempt k of a job begins at k * 10^9.
 
 #include <chrono>
 #include <condition_variable>
@@ -26,34 +26,35 @@ namespace unwrapd::server::jobs {
 /// What a reader gets from one call.
 struct Reading {
   std::string frames;         ///< whole frames, empty when nothing is new
-  std::int64_t last_seq = 0;  ///< where to go on
+  std::int64_t last_seq = 0;  ///< of the last event read
   bool end = false;           ///< nothing will follow
 };
 
 /// The events of one job. Thread-safe.
 class JobFeed {
  public:
-  /// Works for the trace of the thread that makes it, or for one of its own.
+  /// Belongs to the trace of the calling thread, or to a new one.
   JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics = nullptr,
           std::shared_ptr<const Wakeup> news = nullptr);
 
-  /// The trace id that the job's log lines tell.
+  /// The trace id of the job's log lines.
   [[nodiscard]] const std::string& trace() const { return trace_; }
 
   /// Appends the event that make(seq) returns; a final event finishes the feed.
   void publish(const std::function<api::Event(std::int64_t seq)>& make);
   void set_progress(const api::JobProgress& progress);
   [[nodiscard]] std::optional<api::JobProgress> progress() const;
-  /// Ends all readings and waits without a final event: the server stops.
+  /// Ends all readings without a final event, as the server stops.
   void end();
 
   /// The sequence number that the next event will get.
   [[nodiscard]] std::int64_t next_seq() const;
-  /// Where a reader with this Last-Event-ID goes on; one that has seen the end sees it again.
+  /// The event after which a reader with this Last-Event-ID goes on. A reader that has seen the end
+  /// sees it again.
   [[nodiscard]] std::int64_t resume_after(std::optional<std::int64_t> last_event_id) const;
-  /// The events after `after` by now, some kB of them at most. The bell tells when there are more.
+  /// The events after `after`, a few kB of them at most. `news` is rung when there are more.
   [[nodiscard]] Reading read(std::int64_t after) const;
-  /// True when the final event has come by then.
+  /// True when the final event is at or before `after`.
   [[nodiscard]] bool wait_finished(std::chrono::steady_clock::time_point until) const;
 
  private:
@@ -78,11 +79,11 @@ class JobFeed {
   bool ended_ = false;
 };
 
-/// All feeds: of the live jobs and, for readers who come late, of the last finished ones.
+/// All feeds: those of live jobs and, for late readers, those of the last finished ones.
 class EventFeed {
  public:
-  /// ring: events kept of a job; kept_finished: finished feeds kept; metrics: told of all events,
-  /// must outlive all feeds; news: rung at all events.
+  /// ring: events kept of a job; kept_finished: finished feeds kept; metrics: counts all events,
+  /// must outlive all feeds; news: rung at every event.
   explicit EventFeed(std::size_t ring = 1024, std::size_t kept_finished = 64,
                      Metrics* metrics = nullptr, std::shared_ptr<const Wakeup> news = nullptr)
       : ring_(ring), kept_finished_(kept_finished), metrics_(metrics), news_(std::move(news)) {}
@@ -90,7 +91,7 @@ class EventFeed {
   /// The feed of a job that waits for its next attempt; attempt: those begun before.
   std::shared_ptr<JobFeed> open(const std::string& job, int attempt);
   [[nodiscard]] std::shared_ptr<JobFeed> find(std::string_view job) const;
-  /// The job is final: its feed is kept until others push it out.
+  /// Marks a job as finished: its feed is kept until newer ones replace it.
   void retire(const std::string& job);
   void forget(const std::string& job);
   void end_all();

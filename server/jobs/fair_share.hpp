@@ -1,9 +1,10 @@
 #pragma once
-// Whose job is next. Of the owners with waiting jobs, the one that has been served least so far:
-// seconds of work done, and for each running job what jobs take in the mean. An owner who comes
-// back after a pause starts level with the least served of the others, so that nobody saves up
-// (start-time fair queueing: Goyal, Vin, Cheng, SIGCOMM 1996, with jobs for packets). One queue in
-// order of arrival was rejected: a thousand jobs of one key made every other key wait for them.
+// Chooses the owner whose job runs next: of those with waiting jobs, the one that has been served
+// least so far. Service is the seconds of ended jobs, and for each running job the mean length of
+// jobs. An owner that comes back after a pause starts level with the least served of the others, so
+// that service cannot be saved up (start-time fair queueing: Goyal, Vin, Cheng, SIGCOMM 1996, with
+// jobs for packets). Rejected: one queue in order of arrival, in which a thousand jobs of one key
+// make all other keys wait.
 
 #include <cstdint>
 #include <map>

@@ -1,5 +1,5 @@
 #pragma once
-// A job's output in the server itself: events go to its feed, files to its folder.
+// The output of a job in the server itself: events go to its feed, files to its folder.
 
 #include <cstdint>
 #include <functional>
@@ -9,25 +9,25 @@
 #include "server/jobs/job_queue.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/store/quota_reservations.hpp"
-#include "server/work/job_output.hpp"
+#include "server/work/run_job.hpp"
 
 namespace unwrapd::server::jobs {
 
-/// The room of a job's results in its owner's quota.
+/// The share of a job's results in the quota of its owner.
 struct ResultClaim {
   store::QuotaReservation& reservation;
-  /// Bytes that an owner may have; 0: any.
+  /// Bytes that an owner may store; 0: any.
   const std::function<std::int64_t(const std::string& owner)>& most_bytes;
 };
 
-/// Of a job that has ended meanwhile nothing is put out any more: files throw Error{cancelled}.
+/// Files of a job that has ended meanwhile throw Error{cancelled}; its events are dropped.
 class FeedOutput final : public work::JobOutput {
  public:
-  /// What an attempt before has claimed is given up: its files are replaced.
+  /// Gives up what an earlier attempt has reserved, as its files are replaced.
   FeedOutput(const RunningJob& job, store::BlobStore& blobs, ResultClaim room);
 
-  /// Told as an event where a stage or a chart begins, and when the job has moved on by half a
-  /// percent: what watches progress would read thousands of them otherwise.
+  /// Publishes an event when a stage or a chart begins, and for each half percent of progress:
+  /// readers would get thousands of events otherwise.
   void stage(const StageEvent& event) override;
   void iteration(const IterationEvent& event, double elapsed_ms) override;
   void result(std::string_view format, std::string_view bytes) override;

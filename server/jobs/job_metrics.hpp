@@ -1,7 +1,7 @@
 #pragma once
-// Counts what the events of a job tell: whether it waits or runs, how long it waited and each stage
-// took, iterations, and how it ended. Events are where every way of running a job meets, in this
-// process or another.
+// Counts jobs by their events: those that wait or run, how long each waited and each stage took,
+// iterations, and how each ended. All ways of running a job, in this process or another, publish
+// these events.
 
 #include <chrono>
 #include <string>
@@ -18,7 +18,7 @@ class JobMetrics {
   JobMetrics& operator=(const JobMetrics&) = delete;
   ~JobMetrics();
 
-  /// The next event of the job, as it is published.
+  /// Counts the next event of the job.
   void see(const api::Event& event);
 
  private:

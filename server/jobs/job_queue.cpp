@@ -2,7 +2,7 @@
 
 #include "api/error_table.hpp"
 #include "server/base/clock.hpp"
-#include "server/base/queue_errors.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/trace.hpp"
 #include "server/jobs/request_fingerprint.hpp"
 #include "server/store/job_rows.hpp"
@@ -132,7 +132,7 @@ bool JobQueue::await_turn(std::unique_lock<std::mutex>& lock) {
   return false;
 }
 
-/// A job whose row cannot be read is nobody's turn.
+/// A job whose row cannot be read never runs.
 std::shared_ptr<RunningJob> JobQueue::take() {
   std::unique_lock lock(mutex_);
   while (await_turn(lock)) {

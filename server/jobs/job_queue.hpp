@@ -1,10 +1,10 @@
 #pragma once
 // The bounded queue of jobs and their life: queued -> running -> succeeded | failed | cancelled.
-// The store is the truth; this class adds the waiting, whose turn it is (fair_share.hpp), the stop
-// requests and the events. A full queue refuses at once rather than let requests pile up.
+// The store has the lasting state. This class adds waiting, turns (fair_share.hpp), stop requests
+// and events. A full queue refuses at once rather than let requests pile up.
 //
-// A job at work is on lease, which renew_leases() prolongs. One whose end could not be stored, for
-// a disk that is full, keeps its lease until that ends, and is then run again.
+// A running job is on lease, which renew_leases() prolongs. A job whose end could not be stored
+// because the disk is full keeps its lease until it expires, and then runs again.
 
 #include <atomic>
 #include <chrono>
@@ -23,9 +23,9 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/log.hpp"
-#include "server/base/retry_later.hpp"
-#include "server/http/caller.hpp"
+#include "server/http/http.hpp"
 #include "server/jobs/admission.hpp"
 #include "server/jobs/disk_full_backoff.hpp"
 #include "server/jobs/event_feed.hpp"
@@ -37,7 +37,7 @@ namespace unwrapd::server::jobs {
 
 enum class StopCause { none, cancelled, time_limit, draining };
 
-/// A job in the hands of a worker. Its end is stored by one alone: the worker, or whoever gives the
+/// A running job. Its end is stored once, either by its worker or by the thread that gives the
 /// worker up.
 struct RunningJob {
   store::JobRecord record;
@@ -59,7 +59,7 @@ struct RunningJob {
     cause.compare_exchange_strong(none, why);
     stop.request_stop();
   }
-  /// Whether the job's end is the caller's to store. Of two callers it is the first's.
+  /// True for the first caller, which then stores the end of the job.
   [[nodiscard]] bool take_end() {
     const std::lock_guard lock(output);
     return !std::exchange(has_ended, true);

@@ -1,8 +1,8 @@
-// Of job_queue.hpp: the jobs that nobody works on any longer.
+// The part of job_queue.hpp for jobs that no worker runs any longer.
 #include <algorithm>
 
 #include "server/base/clock.hpp"
-#include "server/base/queue_errors.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/trace.hpp"
 #include "server/jobs/job_queue.hpp"
 #include "server/store/job_rows.hpp"
@@ -85,7 +85,7 @@ void JobQueue::give_up(const store::JobRecord& job, const Error& why) {
   end_job(job, store::ended(cancelled ? JobState::cancelled : JobState::failed, why, job.id));
 }
 
-/// Its folder goes to lost, and it counts as failed: nobody waits for it, and nobody works on it.
+/// Moves its folder to lost. The job counts as failed, so that it neither waits nor runs.
 void JobQueue::set_aside(const store::JobRecord& unreadable) {
   const Moment now = store_.now();
   store::JobOutcome outcome = store::ended(JobState::failed, unreadable_job(), unreadable.id);

@@ -2,7 +2,7 @@
 
 #include "api/options.hpp"
 #include "server/base/identity.hpp"
-#include "server/store/spilled_options.hpp"
+#include "server/store/stored_input.hpp"
 
 namespace unwrapd::server::jobs {
 

@@ -11,9 +11,9 @@ namespace {
 using Clock = SlotReservations::Clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::chrono::seconds kLate{2};      // how late who was promised a place may come
-constexpr std::chrono::seconds kSending{30};  // how long a place is kept for who sends his job
-constexpr double kMargin = 3;                 // spreads that the line may be late
+constexpr std::chrono::seconds kLate{2};      // how late a promised client may come
+constexpr std::chrono::seconds kSending{30};  // how long a slot is reserved for an upload
+constexpr double kMargin = 3;                 // spreads by which the queue may be late
 constexpr double kShortestMean = 1e-3;        // seconds of a job
 constexpr int kRemembered = 50;               // jobs that the mean length is of, about
 constexpr std::int64_t kFewestPromises = 64;  // that are kept at a time at most, in a short queue
@@ -22,7 +22,7 @@ double seconds_until(Clock::time_point due, Clock::time_point now) {
   return std::max(0.0, Seconds(due - now).count());
 }
 
-/// The line as it moves on, told from how long jobs take in the mean.
+/// Simulates how the queue moves, by the mean length of jobs.
 class Moving {
  public:
   explicit Moving(const QueueForecast& line)
@@ -106,8 +106,8 @@ std::optional<int> SlotReservations::ask(Clock::time_point now, const Applicant&
   return std::nullopt;
 }
 
-/// Of all promises those that count for one of this owner, by due: his own, those of who sends
-/// already, and the first of each other owner.
+/// The promises that rank before a new one of this owner, by due time: its own, those of clients
+/// that send already, and the first of each other owner.
 std::vector<const SlotReservations::Promise*> SlotReservations::before(
     std::string_view owner) const {
   std::set<std::string_view> others;
@@ -119,8 +119,10 @@ std::vector<const SlotReservations::Promise*> SlotReservations::before(
 }
 
 void SlotReservations::leave(std::string_view who) {
-  const auto his = [&](const Promise& promise) { return promise.inside && promise.who == who; };
-  const auto found = std::ranges::find_if(promises_, his);
+  const auto is_of_client = [&](const Promise& promise) {
+    return promise.inside && promise.who == who;
+  };
+  const auto found = std::ranges::find_if(promises_, is_of_client);
   if (found != promises_.end()) promises_.erase(found);
 }
 
@@ -128,11 +130,13 @@ void SlotReservations::forget(Clock::time_point now) {
   std::erase_if(promises_, [&](const Promise& promise) { return promise.until < now; });
 }
 
-/// His place if he sends already, else what he was promised first, if it is time.
+/// The slot of this client if it sends already, else its first promise that is due.
 SlotReservations::Promises::iterator SlotReservations::due_to(Clock::time_point now,
                                                               std::string_view who) {
-  const auto his = [&](const Promise& promise) { return promise.due <= now && promise.who == who; };
-  return std::ranges::find_if(promises_, his);
+  const auto is_of_client = [&](const Promise& promise) {
+    return promise.due <= now && promise.who == who;
+  };
+  return std::ranges::find_if(promises_, is_of_client);
 }
 
 bool SlotReservations::newcomer_fits(Clock::time_point now, const Applicant& applicant,
@@ -145,7 +149,7 @@ bool SlotReservations::newcomer_fits(Clock::time_point now, const Applicant& app
   });
 }
 
-/// again: he was promised one before, so that only others of whom that is true are ahead of him.
+/// again: the client was promised a slot before, so that only such clients are ahead of it.
 int SlotReservations::promise(Clock::time_point now, const Applicant& applicant,
                               const QueueForecast& line, bool again) {
   Moving moving(line);

@@ -1,8 +1,9 @@
 #pragma once
-// Who may come into a queue, and when those who may not are to come back. Whoever is turned away is
-// promised a place, and that place is kept: a newcomer is let in only where all who were promised
-// one still find theirs, or where nobody waits, lest workers wait for who never comes back. When
-// places become free is told from how long jobs take, and how much they differ.
+// Decides which clients may enter a full queue, and when a rejected client should come back. A
+// rejected client is promised a slot, and that slot is reserved: a newcomer is accepted only if all
+// promised clients still find their slots, or if no job waits. Without the second rule, workers
+// would idle for a client that never returns. The length and spread of past jobs tell when slots
+// become free.
 
 #include <chrono>
 #include <cstdint>
@@ -14,13 +15,13 @@
 
 namespace unwrapd::server::jobs {
 
-/// Who asks for a place.
+/// A client that asks for a slot.
 struct Applicant {
-  std::string_view who;         ///< whatever tells him from others
-  std::string_view owner = {};  ///< the key that he has; keys take turns
+  std::string_view who;         ///< tells it from other clients
+  std::string_view owner = {};  ///< its API key; keys take turns
 };
 
-/// A queue as seen from its door. Times in seconds.
+/// The state of a queue and how fast it moves. Times in seconds.
 struct QueueForecast {
   std::int64_t places = 1;
   std::int64_t waiting = 0;  ///< places taken
@@ -29,7 +30,7 @@ struct QueueForecast {
   double spread = 0;         ///< of an interval: how far it is off, in the mean
 };
 
-/// How long jobs took, of late: the mean, and how far they were off it.
+/// The mean length of recent jobs, and their mean deviation from it.
 struct Lengths {
   double mean = 1;
   double spread = 0;
@@ -38,8 +39,9 @@ struct Lengths {
   void add(double seconds);
 };
 
-/// The line before workers, of whose running jobs `ran` tells how long each runs already. How long
-/// they still take is not known: as long as others did, but at least half as long as they have.
+/// The forecast of a queue before workers. ran: for each running job, the seconds since it began.
+/// Its remaining time is not known: it is assumed to run as long as others did, and at least half
+/// as long again as it has run.
 QueueForecast forecast_queue(std::int64_t places, std::int64_t waiting, int workers,
                              const Lengths& lengths, std::span<const double> ran);
 
@@ -48,14 +50,14 @@ class SlotReservations {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// A place for who asks, when this is nothing: it is kept for the
-  /// half minute in which he sends what he has to send, or until leave(). Else he is to come back
-  /// after this many seconds, at least 1. Who was promised a place and comes in time finds it where
-  /// the line went on as told; if not, he is the next. All that an owner was promised stands back
-  /// behind the first of each other owner.
+  /// Returns nothing if the client may enter: its slot is reserved for half a minute, in which it
+  /// sends its job, or until leave(). Else returns the seconds, at least 1, after which it should
+  /// come back. A client that was promised a slot and comes in time finds it if the queue moved as
+  /// forecast; if not, it is the next. An owner's further promises rank behind the first promise of
+  /// each other owner.
   std::optional<int> ask(Clock::time_point now, const Applicant& applicant,
                          const QueueForecast& line);
-  /// The place that `who` was given is his no longer: taken for good, or given up.
+  /// Ends the reservation of a client that has entered for good, or given up.
   void leave(std::string_view who);
 
   [[nodiscard]] bool empty() const { return promises_.empty(); }
@@ -66,8 +68,8 @@ class SlotReservations {
     std::string owner;
     Clock::time_point due;
     Clock::time_point until;
-    bool inside = false;  ///< he came, and sends
-    bool again = false;   ///< he was promised one before, and found none
+    bool inside = false;  ///< the client came, and sends its job
+    bool again = false;   ///< the client was promised one before, and found none
   };
   using Promises = std::vector<Promise>;
 

@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <exception>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <new>
+#include <stop_token>
+#include <thread>
+#include <utility>
 
 #include "api/error_table.hpp"
-#include "server/base/inside_error.hpp"
-#include "server/base/priority.hpp"
+#include "server/base/errors.hpp"
+#include "server/base/threads.hpp"
 #include "server/base/trace.hpp"
 #include "server/jobs/feed_output.hpp"
-#include "server/jobs/watchdog.hpp"
-#include "server/store/loaded_input.hpp"
+#include "server/store/stored_input.hpp"
 #include "server/work/thread_executor.hpp"
 
 namespace unwrapd::server::jobs {
@@ -21,7 +26,7 @@ namespace {
 using api::JobState;
 
 constexpr std::chrono::seconds kPauseAfterFailure{1};
-constexpr int kMaxCrashes = 3;
+constexpr int kMaxProcessEnds = 3;
 constexpr std::chrono::seconds kTimeToKill{10};  // a process, and to reap it
 
 /// A stop is a failure when time ran out; else the owner, or the server's end, has stopped the job.
@@ -43,7 +48,56 @@ Error too_many_crashes() {
           "again. Check the mesh, or send a smaller part of it."};
 }
 
+/// Asks a job to stop when its time is up, and gives it up when it does not stop then. Watches
+/// while it exists. Each function is called at most once, by a thread of its own.
+class Watchdog {
+ public:
+  struct Limits {
+    std::chrono::seconds time;
+    std::chrono::seconds grace;     ///< from the stop
+    std::function<void()> late;     ///< after `time`; asks for the stop
+    std::function<void()> overdue;  ///< when the job still runs at the end of its grace
+  };
+
+  /// stop: of the job, whoever asks for it.
+  Watchdog(const std::stop_token& stop, Limits limits)
+      : stop_(stop),
+        watch_(
+            [this, limits = std::move(limits)](const std::stop_token& end) { watch(end, limits); }),
+        wake_at_stop_(stop, [this] {
+          const std::lock_guard lock(mutex_);
+          wake_.notify_all();
+        }) {}
+
+ private:
+  void watch(const std::stop_token& end, const Limits& limits) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, end, limits.time, [&] { return stop_.stop_requested(); });
+    }
+    if (end.stop_requested()) return;
+    if (!stop_.stop_requested()) limits.late();
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, end, limits.grace, [] { return false; });
+    }
+    if (!end.stop_requested()) limits.overdue();
+  }
+
+  const std::stop_token stop_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread watch_;                                      // it uses the others
+  std::stop_callback<std::function<void()>> wake_at_stop_;  // last: it wakes the thread
+};
+
 }  // namespace
+
+/// What a job is run with.
+struct WorkerPool::Means {
+  Executor& executor;
+  store::QuotaReservation& reservation;
+};
 
 WorkerPool::WorkerPool(JobQueue& queue, store::BlobStore& blobs, const api::Limits& limits,
                        const Log& log, const WorkerConfig& config)
@@ -52,7 +106,7 @@ WorkerPool::WorkerPool(JobQueue& queue, store::BlobStore& blobs, const api::Limi
   for (int worker = 0; worker < config.workers; ++worker) begin_thread();
 }
 
-/// A thread that leaves now wants the mutex: it is not held while they are awaited.
+/// A thread that ends now takes the mutex, so that it is not held while the threads are joined.
 WorkerPool::~WorkerPool() {
   Threads threads;
   const std::lock_guard lock(mutex_);
@@ -96,11 +150,11 @@ WorkerPool::Then WorkerPool::work_on(RunningJob& job, Executor& executor) {
   const auto to_kill = is_apart(job.record) ? kTimeToKill : std::chrono::seconds(0);
   store::JobOutcome outcome;
   {
-    const Watchdog watchdog(
-        job.stop.get_token(),
-        {std::chrono::seconds(limits_.max_job_seconds), config_.isolation.grace + to_kill},
-        {.late = [&] { job.request_stop(StopCause::time_limit); },
-         .overdue = [&] { give_up(job, reservation); }});
+    const Watchdog watchdog(job.stop.get_token(),
+                            {.time = std::chrono::seconds(limits_.max_job_seconds),
+                             .grace = config_.isolation.grace + to_kill,
+                             .late = [&] { job.request_stop(StopCause::time_limit); },
+                             .overdue = [&] { give_up(job, reservation); }});
     outcome = attempt(job, {executor, reservation});
   }
   if (!job.take_end()) return come_back(job);
@@ -108,14 +162,14 @@ WorkerPool::Then WorkerPool::work_on(RunningJob& job, Executor& executor) {
   return Then::next_job;
 }
 
-/// In a process of its own.
+/// Whether the job runs in a process of its own.
 bool WorkerPool::is_apart(const store::JobRecord& job) const {
   const bool has_crashed = job.crashes > 0 || job.process_ends > 0;
   return config_.isolation.on || (has_crashed && config_.isolation.possible);
 }
 
-/// From the watchdog's thread, of a job whose own goes on without hearing its stop. At the end of
-/// the server the queue has other means.
+/// Called by the watchdog's thread for a job whose thread does not react to its stop. While the
+/// server ends, JobQueue::drain() does this.
 void WorkerPool::give_up(RunningJob& job, store::QuotaReservation& reservation) {
   if (job.cause == StopCause::draining || !job.take_end()) return;
   const TraceScope trace(job.feed->trace());
@@ -145,7 +199,7 @@ void WorkerPool::lose_thread(const RunningJob& job) {
                                                       {"replaced", has_heir}});
 }
 
-/// Of a thread whose job was given up meanwhile: it works on where no other has its place.
+/// Called by a thread whose job was given up meanwhile: it takes jobs again unless it was replaced.
 WorkerPool::Then WorkerPool::come_back(const RunningJob& job) {
   const std::lock_guard lock(mutex_);
   --lost_;
@@ -183,10 +237,10 @@ std::string WorkerPool::run(const RunningJob& job, const Means& means) {
   }
 }
 
-/// Again after a crash, which may have been an accident: the memory of the machine, an operator.
-/// Crashes under servers before this one count.
+/// Runs the job again after a crash, which may have been an accident (the memory of the machine, an
+/// operator). Crashes under earlier servers count.
 std::string WorkerPool::run_patiently(const RunningJob& job, const Means& means) {
-  for (int crashes = job.record.process_ends; crashes < kMaxCrashes;) {
+  for (int crashes = job.record.process_ends; crashes < kMaxProcessEnds;) {
     try {
       return run(job, means);
     } catch (const work::WorkerCrashed& crash) {

@@ -1,12 +1,12 @@
 #pragma once
-// The threads that do the work: each takes the job whose turn it is and runs it, one after another.
-// They are nice to the threads that answer, which would otherwise wait for their turns on a full
-// machine. A job that was at work when a server died is suspected, and tried in a process of its
-// own where that can be had: only if it ends that, too, three times, is it to blame (`poison`).
+// The threads that run jobs, one after another, in the order of the queue. Their priority is lower
+// than that of threads that answer, which would otherwise wait for their turns on a full machine. A
+// job that ran when a server died is suspected, and runs in a process of its own where that is
+// possible. Only if it ends three processes, too, it fails as `poison`.
 //
-// A job that was told to stop and goes on is ended by force when its grace is over: its process is
-// killed. A thread cannot be killed: the job is given up, another thread takes the worker's place,
-// and the lost one ends where its work does. Of these there are no more than there are workers.
+// A job that does not stop when asked is ended by force after its grace: its process is killed. A
+// thread cannot be killed, so the job is given up and another thread takes the place of its thread,
+// which ends when its work does. At most as many threads are replaced as there are workers.
 
 #include <cstdint>
 #include <functional>
@@ -25,7 +25,7 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/quota_reservations.hpp"
 #include "server/work/job_process.hpp"
-#include "server/work/worker_functions.hpp"
+#include "server/work/job_worker.hpp"
 
 namespace unwrapd::server::jobs {
 
@@ -34,33 +34,30 @@ struct WorkerConfig {
   int threads = 1;                                   ///< for each worker's job
   SharedCache* core = nullptr;                       ///< that their jobs share; outlives the pool
   store::QuotaReservations* reservations = nullptr;  ///< of their results; outlives the pool
-  /// Bytes that an owner may have; 0: any.
+  /// Bytes that an owner may store; 0: any.
   std::function<std::int64_t(const std::string& owner)> most_bytes;
   work::Isolation isolation = {};  ///< its grace holds for threads, too
   work::WorkerFunctions functions = {};
-  /// Told of each job that was ended by force: "killed" or "given_up".
+  /// Called for each job that was ended by force: "killed" or "given_up".
   std::function<void(std::string_view how)> on_force = [](std::string_view) {};
 };
 
 class WorkerPool {
  public:
-  /// Starts at once; ends when the queue is closed and the jobs at hand are done.
+  /// Starts at once; the destructor waits until the queue is closed and the running jobs have
+  /// ended.
   WorkerPool(JobQueue& queue, store::BlobStore& blobs, const api::Limits& limits, const Log& log,
              const WorkerConfig& config);
   ~WorkerPool();
 
-  /// Threads that are still at work on a job that was given up.
+  /// Threads that still run a job that was given up.
   [[nodiscard]] int lost() const;
-  /// Whether a thread is there that takes jobs.
+  /// Whether a thread is left that takes jobs.
   [[nodiscard]] bool are_left() const;
 
  private:
-  /// What a job is run with.
-  struct Means {
-    Executor& executor;
-    store::QuotaReservation& reservation;
-  };
-  /// What becomes of a thread when it is done with a job.
+  struct Means;
+  /// What a thread does after a job.
   enum class Then { next_job, leave };
   using Threads = std::list<std::jthread>;
 
@@ -84,7 +81,7 @@ class WorkerPool {
   int lost_ = 0;      // threads
   int replaced_ = 0;  // of those, by another thread
   Threads threads_;
-  Threads ended_;  // about to, and to be joined
+  Threads ended_;  // to be joined
 };
 
 }  // namespace unwrapd::server::jobs

@@ -1,5 +1,5 @@
 #pragma once
-// The pictures of a job: drawn when somebody asks, from what the job keeps anyway.
+// The pictures of a job, drawn on request from its stored files.
 
 #include <string>
 
@@ -15,9 +15,9 @@ class PictureStore {
  public:
   PictureStore(store::BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
-  /// The picture of one of a succeeded job's maps (see lambda_selection.hpp). Those whose size is a
-  /// power of two are kept with the job, so that whoever asks for every size fills no disk; a
-  /// damaged one is drawn again. Throws what Renderer::render() throws.
+  /// The picture of one of the maps of a succeeded job (lambda_selection.hpp). Only sizes that are
+  /// a power of two are stored with the job, so that requests for every size do not fill the disk.
+  /// A damaged picture is drawn again. Throws what Renderer::render() throws.
   StoredResult open(const store::JobRecord& job, std::size_t map, const work::Picture& picture,
                     const http::HasLeft& has_left = {});
   [[nodiscard]] const FileCounts& counts() const { return counts_; }

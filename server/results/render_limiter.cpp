@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/base/retry_later.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::results {
 namespace {

@@ -7,9 +7,9 @@
 #include <system_error>
 #include <thread>
 
-#include "server/base/priority.hpp"
+#include "server/base/threads.hpp"
 #include "server/base/trace.hpp"
-#include "server/store/loaded_input.hpp"
+#include "server/store/stored_input.hpp"
 #include "server/work/lambda_selection.hpp"
 
 namespace unwrapd::server::results {
@@ -22,7 +22,7 @@ constexpr std::uintmax_t kBytesAByte = 8;
 }  // namespace
 
 std::shared_ptr<void> Renderer::enter(const store::JobRecord& job, const WantedFile& wanted) {
-  std::error_code gone;  // then there is nothing to make, and whoever tries will say so
+  std::error_code gone;  // then rendering reports it
   const std::uintmax_t uvs = std::filesystem::file_size(
       blobs_.path(job.id, work::map_file(store::kUvFile, wanted.map)), gone);
   const auto kept = static_cast<std::uintmax_t>(job.input.bytes) + (gone ? 0 : uvs);

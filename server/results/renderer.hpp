@@ -1,6 +1,6 @@
 #pragma once
-// Results in other formats and pictures, made from what a job keeps: here, or with --isolate in a
-// worker process of its own, so that a crash costs the request and no more.
+// Results in other formats and pictures, made from the stored files of a job: in this process, or
+// with --isolate in a worker process, so that a crash costs only the request.
 
 #include <memory>
 #include <string>
@@ -11,17 +11,17 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
 #include "server/work/job_process.hpp"
-#include "server/work/worker_functions.hpp"
+#include "server/work/job_worker.hpp"
 
 namespace unwrapd::server::results {
 
-/// A file of a job that somebody asks for.
+/// A requested file of a job.
 struct WantedFile {
   std::string file;
   std::size_t map = 0;            ///< that it is made from
   std::size_t bytes = 0;          ///< of memory that it takes besides what its mesh does
   bool is_costly = false;         ///< takes seconds and is not kept
-  const http::HasLeft& has_left;  ///< of who asks
+  const http::HasLeft& has_left;  ///< of the request
 };
 
 /// Thread-safe.
@@ -38,18 +38,18 @@ class Renderer {
         room_(making),
         functions_(functions) {}
 
-  /// Waits until a file of a job may be made; then it is the caller's to make while the pointer is
-  /// kept, unless somebody has made it meanwhile. Throws RetryLater{rate_limited} when too many
-  /// wait, Error{cancelled} when who asks has left.
+  /// Waits until a file of a job may be made. The caller may make it while it holds the pointer,
+  /// unless it was made meanwhile. Throws RetryLater{rate_limited} when too many requests wait,
+  /// Error{cancelled} when the client has left.
   [[nodiscard]] std::shared_ptr<void> enter(const store::JobRecord& job, const WantedFile& wanted);
 
-  /// The bytes of a file of a succeeded job, made by a thread that yields to answers. Throws what
-  /// render() throws, storage_corrupt, time_limit, cancelled when who asks has left, and in a
-  /// process memory_limit, and internal when the process has ended.
+  /// The bytes of a file of a succeeded job, made by a thread of low priority. Throws what
+  /// work::render() throws, storage_corrupt, time_limit, cancelled when the client has left, and
+  /// from a process memory_limit, and internal when the process has ended.
   [[nodiscard]] std::string render(const store::JobRecord& job, const work::Rendering& rendering,
                                    const http::HasLeft& has_left = {}) const;
 
-  /// What a stored mesh is (mesh_analysis.hpp), which is given as the job that it could be. Throws
+  /// What a stored mesh is, as JSON (Rendering::analysis); mesh: the job that it could be. Throws
   /// like render().
   [[nodiscard]] std::string analyse(const store::JobRecord& mesh,
                                     const http::HasLeft& has_left = {}) const;

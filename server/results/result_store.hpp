@@ -1,5 +1,5 @@
 #pragma once
-// The results of jobs as files, in the job's own format and, made when somebody asks, in others.
+// The results of jobs as files: in the job's own format, and in others made on request.
 
 #include <cstddef>
 #include <memory>
@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "core/asset/asset.hpp"
-#include "server/base/file_counts.hpp"
 #include "server/base/files.hpp"
+#include "server/base/metrics.hpp"
 #include "server/results/renderer.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
@@ -21,7 +21,7 @@ struct StoredResult {
   std::string sha256;                ///< becomes the ETag
 };
 
-/// A file of a job that is there and whole.
+/// A file of a job that exists and matches its digest.
 std::optional<StoredResult> find_whole(const store::BlobStore& blobs, const std::string& job,
                                        const std::string& file);
 /// A file that was made after the end of its job, kept where that takes nothing from others.

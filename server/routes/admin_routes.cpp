@@ -1,6 +1,6 @@
 #include "server/routes/admin_routes.hpp"
 
-#include "server/store/store_file.hpp"
+#include "server/store/data_directory.hpp"
 
 namespace unwrapd::server::routes {
 namespace {

@@ -22,12 +22,12 @@ std::optional<std::int64_t> parse_event_id(const std::string& text) {
   return id;
 }
 
-/// Where a reader is, and its place among the streams.
+/// The position of a reader, and its place among the streams.
 struct Reader {
   std::shared_ptr<const jobs::JobFeed> feed;
   std::int64_t after = 0;
   std::shared_ptr<void> place;
-  std::string greeting;  // comes first
+  std::string greeting;  // sent first
 };
 
 http::StreamPiece next_piece(Reader& reader) {
@@ -43,7 +43,7 @@ Watcher watcher_of(const http::Request& request) {
           .place = {}};
 }
 
-/// What is left to tell of a job whose events are no longer kept.
+/// The last frames of a job whose events are no longer kept.
 std::string last_frames(const store::JobRecord& job, std::int64_t seen) {
   std::string frames;
   if (seen + 1 < job.last_event)

@@ -1,6 +1,6 @@
 #pragma once
-// Server-sent events: a job's feed as the body of an answer, which one thread writes for all
-// readers (stream_writer.hpp).
+// Server-sent events: the feed of a job as the body of an answer. One thread writes the streams of
+// all readers (stream_writer.hpp).
 
 #include <memory>
 #include <optional>
@@ -13,10 +13,10 @@
 
 namespace unwrapd::server::routes {
 
-/// A reader, who may be let in before there is a job to watch.
+/// A reader of events. It may have a place before its job exists.
 struct Watcher {
   std::string owner;                 ///< id of the API key, empty without one
-  std::optional<std::int64_t> seen;  ///< the last event, by its own account
+  std::optional<std::int64_t> seen;  ///< Last-Event-ID
   std::shared_ptr<void> place;       ///< among the streams
 };
 
@@ -31,10 +31,10 @@ class EventStreams {
   /// RetryLater{too_many_streams}, Error{malformed_request}.
   http::Response open(const store::JobRecord& job, const http::Request& request);
 
-  /// Lets somebody in who is about to submit a job and will watch it. Throws like open().
+  /// Takes a place for a request that submits a job and then watches it. Throws like open().
   Watcher let_in(const http::Request& request);
-  /// The answer to that submission: the job, then its events. A job without a name of the sender's
-  /// is a new one, of which nothing was seen.
+  /// The answer to that submission: the job, then its events. Last-Event-ID is ignored unless the
+  /// request has a name of its own: else the job is new.
   http::Response open_accepted(const store::JobRecord& job, Watcher watcher);
 
   [[nodiscard]] int open_count() const { return places_.count(); }

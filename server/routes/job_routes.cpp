@@ -1,12 +1,13 @@
 #include "server/routes/job_routes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
-#include "server/base/retry_later.hpp"
+#include "server/base/clock.hpp"
+#include "server/base/errors.hpp"
 #include "server/http/media_types.hpp"
-#include "server/routes/job_link.hpp"
-#include "server/routes/job_list.hpp"
+#include "server/http/query.hpp"
 #include "server/routes/result_routes.hpp"
 #include "server/work/lambda_selection.hpp"
 
@@ -40,7 +41,7 @@ store::JobRecord stored_job(store::JobStore& store, const std::string& id) {
   return std::move(*job);
 }
 
-/// Who has no place among the streams is told so before anything is accepted.
+/// Refuses a client without a place among the streams before its job is accepted.
 http::Response post_watched(const JobServices& services, const http::Request& request) {
   Watcher watcher = services.streams.let_in(request);
   const std::string id = services.submissions.accept(request, false);
@@ -84,10 +85,10 @@ http::Response sync_response(const JobServices& services, const store::JobRecord
   return response;
 }
 
-/// Beyond the limit of a job that began at once: it is told that its time is over, and ends.
+/// For a job to end after it was stopped at its time limit.
 constexpr std::chrono::seconds kTimeToEnd{5};
 
-/// For who wants to wait and finds no place. It is told before the body is read.
+/// Refuses a request for which no place to wait is free, before its body is read.
 RetryLater too_many_wait() {
   return {ErrorCode::rate_limited,
           "Too many requests wait for their jobs; try again after Retry-After, or send the mesh to "
@@ -129,6 +130,78 @@ void add_files(std::vector<http::Route>& routes, const JobServices& services) {
         return get_file(services.blobs, job, work::map_file(store::kReportFile, map),
                         "application/json");
       });
+}
+
+constexpr int kMaxLimit = 200;
+
+void set_filter(store::JobFilter& filter, const std::string& name, const std::string& text) {
+  if (name == "state") {
+    filter.state = api::state_named(text);
+    if (!filter.state)
+      http::refuse_parameter(name, "There is no such state of jobs; see /openapi.yaml.");
+  } else if (name == "limit") {
+    filter.limit = static_cast<int>(http::positive_number(name, text, kMaxLimit));
+  } else if (name == "cursor") {
+    filter.before_seq = http::positive_number(name, text, std::int64_t{1} << 53);
+  } else {
+    http::refuse_unknown(name);
+  }
+}
+
+/// The caller's jobs, the newest first, in pages. Parameters: state, limit (1 to 200) and cursor
+/// (the `next` of the page before). Throws Error{invalid_option} for a parameter that is unknown,
+/// given twice or out of range.
+http::Response list_jobs(store::JobStore& store, const http::Request& request) {
+  store::JobFilter filter;
+  if (!request.caller.sees_all) filter.owner = request.caller.owner;
+  for (const auto& [name, text] : request.query) {
+    http::check_once(request, name);
+    set_filter(filter, name, text);
+  }
+  const int limit = filter.limit++;  // one more tells whether another page follows
+  std::vector<store::JobRecord> jobs = store.list(filter);
+  const bool more = jobs.size() > static_cast<std::size_t>(limit);
+  if (more) jobs.resize(static_cast<std::size_t>(limit));
+  api::Json page = {{"jobs", api::Json::array()}, {"next", nullptr}};
+  for (const store::JobRecord& job : jobs) page["jobs"].push_back(api::to_json(store::to_job(job)));
+  if (more) page["next"] = std::to_string(jobs.back().seq);
+  http::Response response = http::json_response(200, page.dump());
+  response.headers.emplace_back("Cache-Control", "no-store");
+  return response;
+}
+
+constexpr std::array<std::string_view, 5> kFiles = {"result", "report", "layout.svg", "layout.png",
+                                                    "preview.png"};
+constexpr std::int64_t kUsualSeconds = 3600;
+constexpr std::int64_t kMostSeconds = 7 * 24 * 3600;
+constexpr std::int64_t kMsPerSecond = 1000;
+
+/// A URL that opens one file of a job without an API key, for a time. Parameters: file (default
+/// result) and seconds (1 to 604800; default 3600). Throws Error{invalid_option}.
+http::Response get_link(const store::JobRecord& job, const access::LinkSigner& links,
+                        const http::Request& request) {
+  std::string file(kFiles.front());
+  std::int64_t seconds = kUsualSeconds;
+  for (const auto& [name, text] : request.query) {
+    http::check_once(request, name);
+    if (name == "file") {
+      file = text;
+    } else if (name == "seconds") {
+      seconds = http::positive_number(name, text, kMostSeconds);
+    } else {
+      http::refuse_unknown(name);
+    }
+  }
+  if (std::ranges::count(kFiles, file) == 0)
+    http::refuse_parameter("file", "A job has no such file; see /openapi.yaml.");
+  const std::int64_t expires_ms = now_ms() + seconds * kMsPerSecond;
+  const std::string path = api::job_path(job.id) + "/" + file;
+  const access::LinkKey key{.id = request.caller.owner, .sha256 = request.caller.key_sha256};
+  const api::Json link = {{"url", links.sign(path, expires_ms / kMsPerSecond, key)},
+                          {"expires", rfc3339(expires_ms)}};
+  http::Response response = http::json_response(200, link.dump());
+  response.headers.emplace_back("Cache-Control", "no-store");
+  return response;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "server/store/blob_files.hpp"
 
+#include <system_error>
 #include <vector>
 
 #include "server/base/files.hpp"
@@ -55,6 +56,24 @@ void note_first_version(const fs::path& blobs, const fs::path& done) {
     sync_directory(entry.path());
   }
   write_file(done, "Every folder of blobs/ has its file `digests`.\n");
+}
+
+void LeftFolders::remove(const std::filesystem::path& folder) noexcept {
+  std::error_code failed;
+  std::filesystem::remove_all(folder, failed);
+  if (!failed) return;
+  const std::lock_guard lock(mutex_);
+  folders_.insert(folder);
+}
+
+int LeftFolders::retry() noexcept {
+  std::set<std::filesystem::path> left;
+  {
+    const std::lock_guard lock(mutex_);
+    left.swap(folders_);
+  }
+  for (const std::filesystem::path& folder : left) remove(folder);
+  return static_cast<int>(left.size());
 }
 
 }  // namespace unwrapd::server::store

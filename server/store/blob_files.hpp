@@ -1,9 +1,11 @@
 #pragma once
-// The files in the folder of a job or mesh: what they are called, and how their digests are noted.
+// The folder of a job or mesh: the names of its files, their digests, and its removal.
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -35,5 +37,18 @@ void seal_files(const std::filesystem::path& folder,
 /// Once: version 0.1.0 noted no digests. Every later one begins a folder with some, so that one
 /// which has lost them is told from one that never had any.
 void note_first_version(const std::filesystem::path& blobs, const std::filesystem::path& done);
+
+/// Removes folders. One that could not be removed (it cannot be opened while no descriptor is left)
+/// is remembered and tried again. Thread-safe.
+class LeftFolders {
+ public:
+  void remove(const std::filesystem::path& folder) noexcept;
+  /// Tries again to remove the folders that are left. Returns their number before.
+  int retry() noexcept;
+
+ private:
+  std::mutex mutex_;
+  std::set<std::filesystem::path> folders_;
+};
 
 }  // namespace unwrapd::server::store

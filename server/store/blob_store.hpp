@@ -1,11 +1,11 @@
 #pragma once
 // The files of jobs: DIR/blobs/<job>/{document,buffer_N,options.json,digests,result.*,report.json*,
-// uv.bin*}; and of stored meshes, alike: DIR/blobs/<mesh>/{document,digests,analysis.json}. An
-// upload grows in DIR/incoming/<job>/ and is renamed as a whole; every later file is written under
-// another name and renamed, and synced before the job counts as done. What a crash leaves behind is
-// swept at the next start; what no row knows then is set aside (lost_folders.hpp). `digests` has
-// the SHA-256 of each file (digests.hpp): what is read is checked against it. DIR/digests-noted
-// says that all folders have one, which 0.1.0 did not write.
+// uv.bin*}; and of stored meshes: DIR/blobs/<mesh>/{document,digests,analysis.json}. An upload is
+// written to DIR/incoming/<job>/ and renamed as a whole. Each later file is written under another
+// name, synced and renamed before the job counts as done. What a crash leaves behind is removed at
+// the next start; a folder that no row names is set aside (lost_folders.hpp). `digests` has the
+// SHA-256 of each file (digests.hpp), against which reads are checked. DIR/digests-noted says that
+// all folders have one, which 0.1.0 did not write.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,30 +21,29 @@
 #include "server/store/checked_files.hpp"
 #include "server/store/digests.hpp"
 #include "server/store/disk_budget.hpp"
-#include "server/store/left_folders.hpp"
 #include "server/store/lost_folders.hpp"
 #include "server/store/shared_files.hpp"
 
 namespace unwrapd::server::store {
 
-/// What try_keep() asks and tells of.
+/// Callbacks of try_keep().
 struct Keeping {
-  /// So many bytes more, claimed for the job's owner while the caller keeps what is returned;
-  /// nothing where he may not have them.
+  /// Reserves bytes in the quota of the job's owner while the returned pointer lives; nullptr if
+  /// the quota does not allow them.
   std::function<std::shared_ptr<void>(const std::string& job, std::int64_t bytes)> reservation = {};
   /// The bytes of all the job's files now.
   std::function<void(std::string_view job, std::int64_t bytes)> kept = {};
 };
 
-/// Whose a folder of blobs/ is.
+/// What the rows say of a folder of blobs/.
 enum class FolderFate {
   kept,
-  gone,     ///< of a job whose files are not kept
-  unknown,  ///< nobody's
+  gone,     ///< of a job whose files are no longer kept
+  unknown,  ///< no row names it
 };
 using Fates = std::function<FolderFate(const std::string& name)>;
 
-/// What a sweep has done.
+/// The outcome of a sweep.
 struct Swept {
   int removed = 0;
   int returned = 0;               ///< from lost
@@ -94,7 +93,7 @@ class BlobStore {
   /// A file without a name, for what is handed out once. Throws Error: storage_full,
   /// storage_failed.
   [[nodiscard]] std::shared_ptr<const File> lend(std::string_view bytes) const;
-  /// Gives a job, which nobody else knows yet, the results of another; the bytes are shared, not
+  /// Gives a job that is not yet published the results of another; the bytes are shared, not
   /// copied. Every file is read and checked: false, and none is given, when one is not whole.
   bool adopt(std::string_view job, std::string_view from) noexcept;
 
@@ -112,7 +111,8 @@ class BlobStore {
   /// Folders of jobs and meshes.
   [[nodiscard]] int folder_count() const;
   /// At the start: removes unfinished uploads and files and the folders of jobs that are gone, and
-  /// sets aside in DIR/lost what nobody knows or is no folder. now_ms: of Moment::kept_ms().
+  /// sets aside in DIR/lost folders that no row names, and all that is no folder. now_ms: of
+  /// Moment::kept_ms().
   [[nodiscard]] Swept sweep(const Fates& fates, std::int64_t now_ms);
   /// Moves a job's folder to DIR/lost. False when there is none.
   bool set_aside(const std::string& job, std::int64_t now_ms);

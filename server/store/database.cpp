@@ -5,8 +5,8 @@
 #include <cerrno>
 
 #include "core/base/error.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/files.hpp"
-#include "server/base/inside_error.hpp"
 
 namespace unwrapd::server::store {
 namespace {

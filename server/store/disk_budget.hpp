@@ -1,7 +1,7 @@
 #pragma once
-// How much disk the jobs take, and how much they may. What has no room is refused before it is
-// written. Uploads may fill three quarters of it: the last is for the results of jobs that are
-// already accepted. Nothing is given up for an upload that would not find room after that either.
+// How much disk the jobs take, and how much they may take. A file without room is refused before it
+// is written. Uploads may fill three quarters of the room; the last quarter is for the results of
+// accepted jobs. Older results are removed for an upload only if it then has room.
 
 #include <cstdint>
 #include <filesystem>
@@ -10,8 +10,6 @@
 #include <mutex>
 #include <string>
 #include <string_view>
-
-#include "server/store/disk_reserve.hpp"
 
 namespace unwrapd::server::store {
 
@@ -25,6 +23,27 @@ struct DiskLimits {
 struct Evictions {
   std::function<bool()> evict;          ///< the files of one finished job; false when there is none
   std::function<std::int64_t()> bytes;  ///< of all that evict() would give up
+};
+
+/// Size of the reserve.
+inline constexpr std::int64_t kReserveBytes = std::int64_t{1} << 20;
+
+/// A file without content that keeps room on the disk. To remove a job, its row is written first;
+/// on a disk where nothing can be written, nothing could be removed. The file is removed at the
+/// start (opening the store takes room, too) and when a removal finds the disk full. It is made
+/// again once there is room. Thread-safe.
+class DiskReserve {
+ public:
+  explicit DiskReserve(std::filesystem::path file) : file_(std::move(file)) { give_up(); }
+
+  /// Makes the file if it is missing and as much stays free beside it. Fails silently.
+  void make() noexcept;
+  /// Removes the file. False when there was none.
+  bool give_up() noexcept;
+
+ private:
+  const std::filesystem::path file_;
+  std::mutex mutex_;
 };
 
 /// Thread-safe.

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "api/error_table.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/files.hpp"
-#include "server/base/queue_errors.hpp"
 
 namespace unwrapd::server::store {
 namespace {
@@ -103,7 +103,7 @@ void read_whole(Columns& next, const std::string& state, JobRecord& job) {
   });
 }
 
-/// A row that cannot be read is that of a failed job, so that one of them stops nobody.
+/// Reads an unreadable row as that of a failed job, so that it does not stop the reading of others.
 JobRecord record_of(const Statement& row) {
   Columns next(row);
   JobRecord job;

@@ -1,6 +1,6 @@
 #pragma once
-// The meshes table: who stores which mesh, since when. A mesh's bytes are the document in a folder
-// of its own (blob_store.hpp), under a name that nobody learns.
+// The table of meshes: which owner stores which mesh, and since when. The bytes of a mesh are the
+// document in its folder (blob_store.hpp); the name of the folder is never published.
 
 #include <cstdint>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "server/store/quota_reservations.hpp"
 
-#include "server/base/queue_errors.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::store {
 

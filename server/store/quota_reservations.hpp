@@ -1,7 +1,7 @@
 #pragma once
-// Bytes that an owner is about to have, and that the store does not count yet: of uploads that
-// come, of results that are made. They are claimed from his quota before they are written, so that
-// all that is under way at once does not add up to more than he may have.
+// Bytes that an owner is about to have and that the store does not count yet: of uploads, and of
+// results that are written. They are reserved in the quota before they are written, so that
+// concurrent uploads and jobs do not exceed it together.
 
 #include <cstdint>
 #include <map>
@@ -20,7 +20,7 @@ class QuotaReservations {
  private:
   friend class QuotaReservation;
 
-  /// Returns all bytes that the owner claims, with these.
+  /// Adds bytes. Returns all that the owner has reserved.
   std::int64_t add(const std::string& owner, std::int64_t bytes);
 
   JobStore& store_;
@@ -28,8 +28,8 @@ class QuotaReservations {
   std::map<std::string, std::int64_t> claimed_;  // by owner
 };
 
-/// Of one upload or job, until the store counts its bytes or they are gone. Not for use by two
-/// threads at once.
+/// The reservation of one upload or job, until the store counts its bytes or they are removed. Not
+/// for use by two threads at once.
 class QuotaReservation {
  public:
   QuotaReservation(QuotaReservations& reservations, std::string owner)
@@ -38,10 +38,10 @@ class QuotaReservation {
   QuotaReservation& operator=(const QuotaReservation&) = delete;
   ~QuotaReservation() { give_up(); }
 
-  /// Claims so many bytes in all, if a quota of `most` (0: none) leaves them. known_bytes: of what
-  /// is stored already, and takes nothing from the quota when it comes again, once at a time.
+  /// Sets the reservation to so many bytes if a quota of `most` (0: none) allows it. known_bytes:
+  /// of a file that is stored already; one upload of it at a time takes nothing from the quota.
   [[nodiscard]] bool try_set(std::int64_t bytes, std::int64_t most, std::int64_t known_bytes = 0);
-  /// Claims so many more. Throws Error{quota_exceeded}.
+  /// Adds so many bytes. Throws Error{quota_exceeded}.
   void add(std::int64_t bytes, std::int64_t most);
   void give_up() noexcept;
 

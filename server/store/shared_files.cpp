@@ -55,7 +55,7 @@ bool SharedFiles::has_others(const std::string& holder, Inode file) const {
 
 FolderBytes bytes_in(const std::filesystem::path& folder) {
   FolderBytes bytes;
-  std::error_code gone;  // what somebody removes meanwhile counts nothing
+  std::error_code gone;  // a file that is removed meanwhile counts nothing
   for (const std::filesystem::directory_entry& entry :
        std::filesystem::directory_iterator(folder, gone)) {
     struct stat file {};

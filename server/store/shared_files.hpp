@@ -1,9 +1,9 @@
 #pragma once
-// Files that several jobs and meshes have by hard links: the document of a stored mesh, results
-// that answer the same question again. Their bytes are on the disk once, and count once: for the
-// first of those that hold them, a mesh before all jobs, and when that goes for the next. Who holds
-// a file is told by a walk through the folders at the start; the file system's count of links says
-// only where to look, for a backup may have links, too.
+// Files that several jobs and meshes share by hard links: the document of a stored mesh, and
+// results that answer the same request again. Their bytes are on the disk once and count once: for
+// the first of their holders (a mesh before all jobs), and when it is removed, for the next. A walk
+// through the folders at the start finds the holders. The file system's count of links only tells
+// where to look, as a backup may have links, too.
 
 #include <cstdint>
 #include <filesystem>
@@ -32,13 +32,13 @@ class SharedFiles {
   std::map<std::string, std::set<Inode>> files_;
 };
 
-/// What a folder has on the disk.
+/// The bytes of a folder on the disk.
 struct FolderBytes {
   std::int64_t alone = 0;  ///< of files without a second name
   std::map<SharedFiles::Inode, std::int64_t> several;
 };
 
-/// Of all files but `digests`, which are ours, not the owner's.
+/// Counts all files but `digests`, which the server needs rather than the owner.
 FolderBytes bytes_in(const std::filesystem::path& folder);
 
 }  // namespace unwrapd::server::store

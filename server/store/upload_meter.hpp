@@ -1,5 +1,5 @@
 #pragma once
-// Where an upload goes, and where it counts what it writes.
+// Where an upload goes, and how its bytes are counted.
 
 #include <cstdint>
 #include <filesystem>
@@ -7,11 +7,11 @@
 
 namespace unwrapd::server::store {
 
-/// Where an upload counts what it writes.
+/// Counts the bytes of an upload.
 struct UploadMeter {
-  /// Told of bytes before they are written; throws Error: quota_exceeded, storage_full.
+  /// Called before bytes are written. Throws Error: quota_exceeded, storage_full.
   std::function<void(std::int64_t bytes)> take = [](std::int64_t) {};
-  /// Told of bytes that were written, and are gone again; does not throw.
+  /// Called for bytes that were written and removed again. Does not throw.
   std::function<void(std::int64_t bytes)> put_back = [](std::int64_t) {};
 };
 

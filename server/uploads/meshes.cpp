@@ -1,8 +1,8 @@
 #include "server/uploads/meshes.hpp"
 
 #include "api/error_table.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
-#include "server/base/queue_errors.hpp"
 #include "server/http/media_types.hpp"
 #include "server/results/result_store.hpp"
 #include "server/uploads/job_input.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "api/mesh.hpp"
-#include "server/base/file_counts.hpp"
+#include "server/base/metrics.hpp"
 #include "server/http/http.hpp"
 #include "server/results/renderer.hpp"
 #include "server/store/blob_store.hpp"

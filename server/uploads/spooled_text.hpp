@@ -1,6 +1,6 @@
 #pragma once
-// A text that comes slowly and may be long: in memory while it is short, then in a file, so that
-// many who send long ones at once take no memory.
+// A text that arrives slowly and may be long: in memory while it is short, then in a file, so that
+// many long uploads at once take no memory.
 
 #include <cstddef>
 #include <cstdint>

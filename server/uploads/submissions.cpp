@@ -1,12 +1,13 @@
 #include "server/uploads/submissions.hpp"
 
+#include <algorithm>
+
 #include "server/base/clock.hpp"
 #include "server/base/identity.hpp"
 #include "server/base/trace.hpp"
 #include "server/jobs/request_fingerprint.hpp"
-#include "server/store/spilled_options.hpp"
+#include "server/store/stored_input.hpp"
 #include "server/uploads/mesh_reference.hpp"
-#include "server/uploads/request_headers.hpp"
 
 namespace unwrapd::server::uploads {
 namespace {
@@ -18,6 +19,39 @@ api::Json options_of(const std::optional<std::string>& text, const http::Request
   throw Error(ErrorCode::invalid_option,
               "Options are in the query and in the body; give them in one place.",
               "/" + request.query.begin()->first);
+}
+
+constexpr std::size_t kLongestKey = 255;
+
+bool is_visible(char letter) { return letter > ' ' && letter < '\x7f'; }
+
+/// The value of Idempotency-Key, empty without it. The quotes of a structured field are removed.
+std::string idempotency_key(const http::Request& request) {
+  if (!request.headers.contains("Idempotency-Key")) return {};
+  std::string key = request.header("Idempotency-Key");
+  if (key.size() >= 2 && key.front() == '"' && key.back() == '"')
+    key = key.substr(1, key.size() - 2);
+  if (!key.empty() && key.size() <= kLongestKey && std::ranges::all_of(key, is_visible)) return key;
+  throw Error(ErrorCode::malformed_request,
+              "Idempotency-Key must have 1 to 255 visible ASCII characters; use a UUID.");
+}
+
+/// The u of Priority (RFC 9218): 0 is the most urgent, 7 the least. 3 without the field, and, as
+/// the standard asks, if the field cannot be read.
+int urgency(const http::Request& request) {
+  const std::string field = request.header("Priority");
+  const std::size_t at = field.find("u=");
+  const bool starts_item =
+      at == 0 || (at != std::string::npos && (field[at - 1] == ' ' || field[at - 1] == ','));
+  if (!starts_item || at + 2 >= field.size()) return store::kUsualUrgency;
+  const int value = field[at + 2] - '0';
+  const bool one_digit = at + 3 == field.size() || field[at + 3] == ',' || field[at + 3] == ' ';
+  return one_digit && value >= 0 && value <= store::kMaxUrgency ? value : store::kUsualUrgency;
+}
+
+/// Whether Cache-Control asks for a new run rather than a stored answer.
+bool wants_new_answer(const http::Request& request) {
+  return request.header("Cache-Control").find("no-cache") != std::string::npos;
 }
 
 /// By which the sender can send it again; empty when it has none.
@@ -52,6 +86,12 @@ UploadSize size_of(const http::Request& request, const std::optional<store::JobR
 }
 
 }  // namespace
+
+/// What a body says beside the mesh, and the turn to do something about it where that is much.
+struct Submissions::Sent {
+  std::unique_lock<std::mutex> turn;
+  std::optional<std::string> options;  // JSON text
+};
 
 std::string Submissions::accept(const http::Request& request, bool synchronous) {
   const std::string sender = sender_of(request);

@@ -40,11 +40,7 @@ class Submissions {
   std::string accept(const http::Request& request, bool synchronous);
 
  private:
-  /// What a body says beside the mesh, and the turn to do something about it where that is much.
-  struct Sent {
-    std::unique_lock<std::mutex> turn;
-    std::optional<std::string> options;  // JSON text
-  };
+  struct Sent;
 
   [[nodiscard]] std::optional<store::JobRecord> known_job(const http::Request& request);
   [[nodiscard]] store::JobRecord begin_job(const http::Request& request, const std::string& upload,

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "server/base/errors.hpp"
 #include "server/base/files.hpp"
-#include "server/base/queue_errors.hpp"
 
 namespace unwrapd::server::uploads {
 

@@ -1,21 +1,21 @@
 #pragma once
-// The room of an upload, taken as its bytes come: in its owner's quota, and on the disk. Room that
-// others' results must be given up for is taken only by an upload that, as far as can be told by
-// then, will be accepted: its owner may have that many bytes beside all that is his, and there is
-// room for all of them. Whatever becomes of uploads, an owner's never cost others more than his
-// quota at a time.
+// The room of an upload in its owner's quota and on the disk, taken as the bytes arrive. Room for
+// which others' results must be removed is taken only by an upload that will be accepted, as far as
+// is known by then: the quota of its owner allows its bytes, and there is room for all of them. So
+// the uploads of an owner, whatever becomes of them, never cost others more than the quota at a
+// time.
 
 #include <cstdint>
 #include <string>
 
-#include "server/http/caller.hpp"
+#include "server/http/http.hpp"
 #include "server/store/disk_budget.hpp"
 #include "server/store/quota_reservations.hpp"
 #include "server/store/upload_meter.hpp"
 
 namespace unwrapd::server::uploads {
 
-/// What all uploads share.
+/// Shared by all uploads.
 struct UploadRooms {
   store::QuotaReservations& reservations;
   store::DiskBudget& disk;
@@ -28,7 +28,7 @@ struct UploadSize {
   std::int64_t declared_bytes = 0;  ///< of the body, 0 when not told beforehand
 };
 
-/// Of one upload, until it is stored or dropped. Not for use by two threads at once.
+/// The budget of one upload, until it is stored or dropped. Not for use by two threads at once.
 class UploadBudget {
  public:
   UploadBudget(const UploadRooms& rooms, const http::Caller& caller, std::string upload,
@@ -43,9 +43,9 @@ class UploadBudget {
   void check_declared();
   /// Counts bytes that are about to be written. Throws Error: quota_exceeded, storage_full.
   void take(std::int64_t bytes);
-  /// Of them, some are gone again.
+  /// Counts bytes that were removed again.
   void put_back(std::int64_t bytes);
-  /// The same two, for who writes. Not beyond the life of this.
+  /// The same two functions, for the writer of the upload. Must not outlive this object.
   [[nodiscard]] store::UploadMeter counter();
 
  private:

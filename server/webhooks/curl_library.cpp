@@ -2,7 +2,7 @@
 
 #include <dlfcn.h>
 
-#include "server/base/inside_error.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::webhooks {
 namespace {

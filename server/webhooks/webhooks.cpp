@@ -7,8 +7,8 @@
 #include <map>
 
 #include "core/base/error.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
-#include "server/base/inside_error.hpp"
 #include "server/base/trace.hpp"
 #include "server/webhooks/curl_library.hpp"
 
@@ -43,6 +43,25 @@ std::string from_base64(std::string_view text) {
 }
 
 }  // namespace
+
+/// A call that is still to be answered.
+struct Webhooks::Delivery {
+  std::int64_t seq = 0;
+  std::string job;
+  std::string owner;  ///< of the job, which may be removed meanwhile
+  std::string trace;  ///< of the job
+  std::string url;
+  std::string body;
+  int tries = 0;
+};
+
+/// A call that is due.
+struct Webhooks::Due {
+  std::int64_t seq;
+  std::string owner;
+  std::string url;
+  int turn;  ///< calls of its owner that come before it
+};
 
 std::string webhook_secret(std::string_view server_secret, std::string_view owner) {
   const std::string bytes = hmac_sha256(server_secret, "webhooks of " + std::string(owner));
@@ -107,7 +126,7 @@ std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
   return found;
 }
 
-Delivery Webhooks::load(std::int64_t seq) {
+Webhooks::Delivery Webhooks::load(std::int64_t seq) {
   store::Statement statement(
       database_, "SELECT job, owner, trace, url, body, tries FROM deliveries WHERE seq = ?");
   statement.with(seq).step();

@@ -25,17 +25,6 @@
 
 namespace unwrapd::server::webhooks {
 
-/// A call that is still to be answered.
-struct Delivery {
-  std::int64_t seq = 0;
-  std::string job;
-  std::string owner;  ///< of the job, which may be removed meanwhile
-  std::string trace;  ///< of the job
-  std::string url;
-  std::string body;
-  int tries = 0;
-};
-
 /// The secret under which calls for this owner are signed: "whsec_" and Base64, derived from the
 /// server's own.
 std::string webhook_secret(std::string_view server_secret, std::string_view owner);
@@ -61,12 +50,8 @@ class Webhooks {
   void call_due();
 
  private:
-  struct Due {
-    std::int64_t seq;
-    std::string owner;
-    std::string url;
-    int turn;  ///< calls of its owner that come before it
-  };
+  struct Due;
+  struct Delivery;
 
   void put_forward();
   std::vector<Due> due(std::int64_t now_ms);

@@ -9,7 +9,7 @@
 
 #include "core/types/progress.hpp"
 #include "server/store/job_record.hpp"
-#include "server/work/job_output.hpp"
+#include "server/work/run_job.hpp"
 
 namespace unwrapd::server::work {
 

@@ -7,7 +7,7 @@
 
 #include "api/error_table.hpp"
 #include "server/base/byte_pack.hpp"
-#include "server/base/deadline.hpp"
+#include "server/base/threads.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/work/job_frames.hpp"
 #include "server/work/job_worker.hpp"

@@ -1,9 +1,8 @@
 #pragma once
-// --isolate: a job is read, unwrapped and written, and what is made of it later, in a process of
-// its own that has no files, no network and bounded memory (sandbox.hpp), so that a crash, whoever
-// brought it about, costs this job or request and nothing else. Rejected: a process kept for many
-// jobs (a crash would leave the next one a stranger's memory), fork without exec (of a program with
-// threads).
+// --isolate: a job, and each file made of it later, is processed in a process of its own without
+// files or network and with bounded memory (sandbox.hpp), so that a crash costs only this job or
+// request. Rejected: a process kept for many jobs (a crash, or a mesh that takes the process over,
+// would reach the next job), and fork without exec (of a program with threads).
 
 #include <chrono>
 #include <cstdint>
@@ -15,7 +14,6 @@
 
 #include "api/limits.hpp"
 #include "core/asset/asset.hpp"
-#include "server/work/job_output.hpp"
 #include "server/work/rendering.hpp"
 #include "server/work/run_job.hpp"
 #include "server/work/spare_workers.hpp"

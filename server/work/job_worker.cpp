@@ -26,7 +26,7 @@ constexpr int kSocket = STDIN_FILENO;
 constexpr std::int64_t kAnyBytes = std::int64_t{1} << 40;  // the server is trusted
 constexpr std::int64_t kCacheShare = 4;  // of the memory, for what the charts of a job share
 
-/// The server is, or has no job for us: nobody is left to be told.
+/// The server has gone, or has no job for this process: there is nothing to answer.
 [[noreturn]] void gone() { std::_Exit(EXIT_FAILURE); }
 
 void send_all(std::string_view bytes) {

@@ -2,12 +2,15 @@
 
 #include <vector>
 
+#include "api/error_table.hpp"
 #include "api/options.hpp"
+#include "api/report.hpp"
 #include "api/result.hpp"
+#include "core/base/shared_cache.hpp"
 #include "core/figure/layout_image.hpp"
 #include "core/figure/layout_svg.hpp"
 #include "core/figure/preview.hpp"
-#include "server/work/mesh_analysis.hpp"
+#include "core/pipeline/analyse.hpp"
 #include "server/work/png_file.hpp"
 #include "server/work/run_job.hpp"
 #include "server/work/uv_file.hpp"
@@ -29,6 +32,32 @@ std::string draw(const Picture& picture, const asset::Asset& asset, const Surfac
       return encode_png(figure::preview(asset.surfaces(), unwrapped, picture.size, stop));
   }
   return {};
+}
+
+api::Json analysis_json(const RenderingInput& mesh, std::size_t memory_bytes,
+                        const api::Limits& limits) {
+  const asset::Asset asset =
+      asset::read(mesh.asset, read_limits(mesh.record, limits, memory_bytes));
+  check_memory(pipeline::job_bytes(asset.surfaces()), memory_bytes);
+  const pipeline::InputAnalysis analysis = pipeline::analyse(asset.surfaces(), mesh.asset.stop);
+  api::Json json = {{"format", asset::format_name(asset.format())}};
+  json.update(api::to_json(analysis.input, analysis.repairs, asset.repairs()));
+  return json;
+}
+
+/// What a stored mesh is, as JSON: {"analysis": {...}}, or {"problem": {...}}, the error with which
+/// a job on this mesh with default options would begin. memory_bytes: what a job may take. Throws
+/// Error{cancelled}.
+std::string mesh_analysis(const RenderingInput& mesh, std::size_t memory_bytes,
+                          const api::Limits& limits) {
+  api::Json json;
+  try {
+    json = {{"analysis", analysis_json(mesh, memory_bytes, limits)}};
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::cancelled) throw;
+    json = {{"problem", api::problem(error)}};
+  }
+  return json.dump(-1, ' ', false, api::Json::error_handler_t::replace);
 }
 
 }  // namespace

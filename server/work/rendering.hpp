@@ -1,7 +1,7 @@
 #pragma once
-// What is made of a finished job when somebody asks: its result in a format, or a picture of one of
-// its maps; and of a stored mesh: its analysis. All begin with the mesh, so that all are work for a
-// worker process (--isolate).
+// Files made on request: of a finished job its result in a format, or a picture of one of its maps;
+// of a stored mesh its analysis. Each begins with the mesh, so each is work for a worker process
+// (--isolate).
 
 #include <cstddef>
 #include <optional>
@@ -31,7 +31,7 @@ struct Rendering {
   std::optional<std::size_t> analysis = {};
 };
 
-/// What a job keeps. Of its record only the options and whether somebody waited for it count.
+/// The stored files of a job. Of its record only the options and `synchronous` are used.
 struct RenderingInput {
   const store::JobRecord& record;
   asset::Input asset;

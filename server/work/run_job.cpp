@@ -74,7 +74,7 @@ api::Json report_json(const Made& made, const Unwrapped& map, api::ReportContext
   return api::to_json(map.report, context);
 }
 
-/// What every map of a job needs to be answered with: the rest is made when somebody asks.
+/// The files of each map of a job; all others are made on request.
 void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageTimer& clock,
                 bool with_vertex_maps) {
   const std::vector<Unwrapped>& maps = made.maps;

@@ -1,33 +1,52 @@
 #pragma once
-// What a worker does with one job, from the bytes of its mesh to the files of its answer.
+// One job, from the bytes of its mesh to the files of its answer.
 
 #include <stop_token>
 #include <string>
+#include <string_view>
 
 #include "api/limits.hpp"
 #include "core/asset/asset.hpp"
 #include "core/base/executor.hpp"
+#include "core/types/progress.hpp"
 #include "server/store/job_record.hpp"
-#include "server/work/job_output.hpp"
 #include "server/work/stage_timer.hpp"
 
 namespace unwrapd::server::work {
 
-/// A job at work. Of its record only the options, the notes, the input's digest and size, and
-/// whether somebody waits for it count.
+/// Takes the events and files of a running job: to its feed and its folder, or to the process that
+/// has both (job_process.hpp).
+class JobOutput {
+ public:
+  JobOutput() = default;
+  JobOutput(const JobOutput&) = delete;
+  JobOutput& operator=(const JobOutput&) = delete;
+  virtual ~JobOutput() = default;
+
+  virtual void stage(const StageEvent& event) = 0;
+  /// elapsed_ms: since the job began.
+  virtual void iteration(const IterationEvent& event, double elapsed_ms) = 0;
+  /// The answer's asset. format: glb, gltf or obj.
+  virtual void result(std::string_view format, std::string_view bytes) = 0;
+  /// A further file of the job's folder.
+  virtual void file(std::string_view name, std::string_view bytes) = 0;
+};
+
+/// A running job. Of its record only the options, the notes, the input's digest and size, and
+/// `synchronous` are used.
 struct JobTask {
   const store::JobRecord& record;
-  double queue_ms = 0;  ///< for which it has waited
+  double queue_ms = 0;  ///< spent in the queue
   StageTimer::TimePoint began;
   std::stop_token stop;
 };
 
-/// Reads, unwraps, writes to the output. Returns the result's format: glb, gltf or obj. Its files
-/// have all been handed over then. Throws Error, also {cancelled} when the stop token says so.
+/// Reads, unwraps, and writes to the output. Returns the format of the result (glb, gltf or obj)
+/// when all files have been handed over. Throws Error; {cancelled} once the stop token asks for it.
 std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& output,
                     const api::Limits& limits, Executor& executor);
 
-/// The most that may be read for a job: less for one that somebody waits for.
+/// Limits for reading the mesh of a job: lower for a synchronous one.
 asset::ReadLimits read_limits(const store::JobRecord& job, const api::Limits& limits,
                               std::size_t memory_bytes = asset::kNoByteLimit);
 

@@ -1,18 +1,32 @@
-// Nothing is made under the lock: a job that asks for what another is making waits for that alone.
+// Values are computed outside the lock: a job that asks for a value that another job computes waits
+// for this value alone.
 #include "server/work/solver_cache.hpp"
 
 #include <openssl/evp.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <utility>
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
-#include "server/work/available_memory.hpp"
 
 namespace unwrapd::server::work {
-
 namespace {
+
+/// Bytes of the machine, or of the container of this process if that has less.
+std::size_t memory_of_machine() {
+  std::size_t bytes = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
+                      static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  for (const char* path :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::ifstream limit(path);
+    std::size_t most = 0;
+    if (limit >> most) bytes = std::min(bytes, most);  // "max", or no such file: no limit
+  }
+  return bytes;
+}
 
 std::size_t share_of(const MemoryLimits& limits, int workers) {
   if (limits.job_bytes > 0) return static_cast<std::size_t>(limits.job_bytes);

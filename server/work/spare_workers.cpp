@@ -3,7 +3,7 @@
 #include <exception>
 #include <utility>
 
-#include "server/base/priority.hpp"
+#include "server/base/threads.hpp"
 
 namespace unwrapd::server::work {
 
@@ -35,7 +35,7 @@ void SpareWorkers::keep(const std::stop_token& stop) {
   }
 }
 
-/// Nobody waits for a spare: a job that finds none starts its own, and tells why that fails.
+/// Errors are dropped: a job that finds no spare starts its own process and reports why that fails.
 std::optional<StartedWorker> SpareWorkers::started() const {
   try {
     return start_();

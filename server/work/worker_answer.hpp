@@ -1,6 +1,6 @@
 #pragma once
-// What a worker process may answer: a stranger's mesh may have taken it over, so that its answer
-// can be no more than what some job could have answered.
+// Checks what a worker process answers. A hostile mesh may have taken the process over, so its
+// answer is limited to what some job could have answered.
 
 #include <cstddef>
 #include <set>

@@ -49,7 +49,7 @@ TEST_F(Start, AnAddressInUseIsThatOfItsOption) {
   const TempDir dir;
   config::Config other = config_;
   other.data = dir.path();
-  other.admin = Address{"127.0.0.1", taken};
+  other.admin = http::Address{"127.0.0.1", taken};
   const auto start_other = [&] { const Service service(other, log_); };
   EXPECT_THAT(error_of(start_other).what(), HasSubstr("another --admin-listen."));
   other.listen = {"127.0.0.1", taken};

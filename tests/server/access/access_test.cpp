@@ -9,7 +9,7 @@
 
 #include "core/base/error.hpp"
 #include "server/base/identity.hpp"
-#include "server/http/cors.hpp"
+#include "server/http/sites.hpp"
 #include "server/webhooks/webhooks.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"

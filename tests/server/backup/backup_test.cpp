@@ -7,8 +7,8 @@
 
 #include "server/access/key_store.hpp"
 #include "server/base/identity.hpp"
+#include "server/store/data_directory.hpp"
 #include "server/store/database.hpp"
-#include "server/store/store_file.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/running_server.hpp"
 

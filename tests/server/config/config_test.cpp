@@ -69,7 +69,7 @@ TEST(Config, FlagsSetEveryLimit) {
       parse({"--listen", "0.0.0.0:99", "--data", "d", "--workers", "3", "--max-queue", "7",
              "--max-body-bytes", "5000", "--keep-seconds", "60", "--log-level", "error"})
           .config;
-  EXPECT_EQ(config.listen, (Address{"0.0.0.0", 99}));
+  EXPECT_EQ(config.listen, (http::Address{"0.0.0.0", 99}));
   EXPECT_EQ(config.data, "d");
   EXPECT_EQ(config.workers, 3);
   EXPECT_EQ(config.limits.max_queue, 7);
@@ -90,10 +90,10 @@ TEST(Config, EveryMemberOfLimitsHasAFlag) {
 }
 
 TEST(Config, ProbesAreOnLoopbackBesideTheServiceWhereNothingElseIsSaid) {
-  EXPECT_EQ(parse({}).config.admin, (Address{"127.0.0.1", 8081}));
-  EXPECT_EQ(parse({"--listen", "0.0.0.0:90"}).config.admin, (Address{"127.0.0.1", 91}));
-  EXPECT_EQ(parse({"--listen", "[::1]:0"}).config.admin, (Address{"127.0.0.1", 0}));
-  EXPECT_EQ(parse({"--admin-listen", "[::]:7"}).config.admin, (Address{"::", 7}));
+  EXPECT_EQ(parse({}).config.admin, (http::Address{"127.0.0.1", 8081}));
+  EXPECT_EQ(parse({"--listen", "0.0.0.0:90"}).config.admin, (http::Address{"127.0.0.1", 91}));
+  EXPECT_EQ(parse({"--listen", "[::1]:0"}).config.admin, (http::Address{"127.0.0.1", 0}));
+  EXPECT_EQ(parse({"--admin-listen", "[::]:7"}).config.admin, (http::Address{"::", 7}));
   EXPECT_FALSE(parse({"--admin-listen", "off"}).config.admin);
   EXPECT_THAT(mistake({"--listen", "a:7", "--admin-listen", "a:7"}),
               HasSubstr("give each its own"));

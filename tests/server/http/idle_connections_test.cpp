@@ -14,7 +14,7 @@
 #include <string>
 #include <thread>
 
-#include "server/http/tls_handshake_pool.hpp"
+#include "server/http/tls.hpp"
 #include "tests/server/running_server.hpp"
 
 namespace unwrapd::server::http {

@@ -79,7 +79,7 @@ TEST_F(SitesOfAServer, WithoutKeysNoPageReadsByARebornNameOrSendsFromElsewhere) 
 }
 
 TEST_F(SitesOfAServer, NoPageReadsTheAdminPortByARebornName) {
-  config_.admin = Address{"127.0.0.1", 0};
+  config_.admin = http::Address{"127.0.0.1", 0};
   start();
   httplib::Client admin("127.0.0.1", *service_->admin_port());
   EXPECT_EQ(admin.Get("/metrics")->status, 200);

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "server/base/retry_later.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::jobs {
 namespace {

@@ -21,7 +21,7 @@ class Deaf : public RunningServer {
   Deaf() {
     config_.workers = 1;
     config_.grace_seconds = 0;
-    config_.admin = Address{"127.0.0.1", 0};
+    config_.admin = http::Address{"127.0.0.1", 0};
   }
   ~Deaf() override {
     let_go();

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/base/retry_later.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::results {
 namespace {

@@ -12,8 +12,8 @@
 #include "server/base/metrics.hpp"
 #include "server/base/trace.hpp"
 #include "server/http/http_probe.hpp"
+#include "server/store/data_directory.hpp"
 #include "server/store/database.hpp"
-#include "server/store/store_file.hpp"
 
 namespace unwrapd::server::routes {
 namespace {
@@ -82,7 +82,7 @@ TEST(Metrics, AHistogramIsCumulativeAndLabelsAreEscaped) {
 
 class Operations : public RunningServer {
  protected:
-  Operations() { config_.admin = Address{"127.0.0.1", 0}; }
+  Operations() { config_.admin = http::Address{"127.0.0.1", 0}; }
 
   [[nodiscard]] httplib::Client admin() const {
     return httplib::Client("127.0.0.1", *service_->admin_port());
@@ -134,7 +134,7 @@ TEST_F(Operations, TheServerIsNotReadyWithoutItsFiles) {
 
 TEST_F(Operations, TheHealthCheckOfTheProgramAsksTheAdminPort) {
   start();
-  const Address address{"0.0.0.0", *service_->admin_port()};
+  const http::Address address{"0.0.0.0", *service_->admin_port()};
   EXPECT_EQ(http::probe(address), 0);
   service_->drain();
   testing::internal::CaptureStderr();

@@ -4,9 +4,9 @@
 
 #include <fstream>
 
+#include "server/store/data_directory.hpp"
 #include "server/store/database.hpp"
 #include "server/store/job_store.hpp"
-#include "server/store/store_file.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/running_server.hpp"
 

@@ -13,7 +13,7 @@ class Repeats : public RunningServer {
   Repeats() {
     config_.workers = 1;
     config_.disk.min_free_bytes = 0;
-    config_.admin = Address{"127.0.0.1", 0};
+    config_.admin = http::Address{"127.0.0.1", 0};
   }
   [[nodiscard]] double stored_bytes() const {
     httplib::Client admin("127.0.0.1", *service_->admin_port());

@@ -1,6 +1,6 @@
 // Options of megabytes: they cost no memory while they come, and no row, event or list repeats
 // them.
-#include "server/store/spilled_options.hpp"
+#include "server/store/stored_input.hpp"
 
 #include <gmock/gmock.h>
 

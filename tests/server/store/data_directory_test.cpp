@@ -1,7 +1,7 @@
 // A data directory that has lost what it knows of its files.
 #include <gmock/gmock.h>
 
-#include "server/store/store_file.hpp"
+#include "server/store/data_directory.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/running_server.hpp"
 

@@ -1,4 +1,4 @@
-#include "server/base/queue_errors.hpp"
+#include "server/base/errors.hpp"
 
 #include "server/base/files.hpp"
 

@@ -1,9 +1,8 @@
 // A process that may have few files open: who gets them, and what happens when there are none.
-#include "server/config/descriptors.hpp"
 
 #include <gtest/gtest.h>
 
-#include "server/base/retry_later.hpp"
+#include "server/base/errors.hpp"
 #include "server/config/component_config.hpp"
 #include "server/http/listener.hpp"
 #include "server/store/blob_store.hpp"
@@ -17,7 +16,7 @@ namespace {
 
 TEST(Descriptors, AreKeptBackForAnswersJobsAndTheAdminPort) {
   Config config;
-  config.admin = Address{"127.0.0.1", 8081};
+  config.admin = http::Address{"127.0.0.1", 8081};
   config.workers = 4;
   EXPECT_EQ(connections_within(1'000'000, config), config.edge.max_connections);
   int before = 0;

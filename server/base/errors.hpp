@@ -1,0 +1,56 @@
+#pragma once
+// Errors of the server: those that tell a client when to come back, those that tell the operator
+// more than the client, and the answers of the queue.
+
+#include <cstdint>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "core/base/error.hpp"
+
+namespace unwrapd::server {
+
+/// A refusal that passes: the answer carries Retry-After.
+class RetryLater : public Error {
+ public:
+  RetryLater(ErrorCode code, const std::string& message, int seconds)
+      : Error(code, message), seconds_(seconds) {}
+  [[nodiscard]] int seconds() const { return seconds_; }
+
+ private:
+  int seconds_;
+};
+
+/// An error with two texts: one for the client, and the reason for the log of the operator, which
+/// may name files and quote libraries.
+class InsideError : public Error {
+ public:
+  InsideError(ErrorCode code, const std::string& told, std::string reason)
+      : Error(code, told), reason_(std::move(reason)) {}
+
+  [[nodiscard]] const std::string& reason() const noexcept { return reason_; }
+
+ private:
+  std::string reason_;
+};
+
+/// What the log says of an error.
+inline std::string reason_of(const std::exception& error) {
+  const auto* inside = dynamic_cast<const InsideError*>(&error);
+  return inside != nullptr ? inside->reason() : error.what();
+}
+
+// The queue refuses a job, or gives one up.
+RetryLater draining();
+RetryLater no_room(int seconds);
+RetryLater queue_full(int places, int seconds);
+RetryLater too_many_jobs(std::int64_t most, int seconds);
+Error quota_exceeded(std::int64_t most_bytes);
+Error unknown_job();
+Error another_question();
+Error cancelled_by_owner();
+Error unreadable_job();
+Error poison();
+
+}  // namespace unwrapd::server
