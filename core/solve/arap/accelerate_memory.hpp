@@ -1,5 +1,5 @@
 #pragma once
-// What L-BFGS remembers of the last steps, and the direction that follows from it.
+// The L-BFGS memory of the last steps, and the direction that it gives.
 
 #include <array>
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace unwrapd::solve::arap {
 
-/// The slope at a point of the descent: one entry a vertex each.
+/// The gradient at a point of the descent, one entry a vertex, and its preconditioned form.
 struct Slope {
   std::vector<Vec2> force;  ///< minus the gradient
-  std::vector<Vec2> plain;  ///< A^-1 force: the step of the plain iteration
+  std::vector<Vec2> plain;  ///< A^-1 force: the unaccelerated step
 };
 
 /// The last kDepth steps. Sums over vertices do not depend on the executor.
@@ -24,20 +24,20 @@ class StepMemory {
   /// executor must outlive the memory.
   explicit StepMemory(Executor& executor) : executor_(executor) {}
 
-  /// Takes in the step that led from before to now, and leaves another vector in its place. A step
-  /// along which the force does not fall tells nothing and is left out.
+  /// Stores the step from before to now, and swaps another vector into its place. A step along
+  /// which the force does not fall is left out.
   void learn(std::vector<Vec2>& step, const Slope& before, const Slope& now);
 
-  /// Writes the quasi-Newton direction at now, the point to which the last learnt step led (any
-  /// point while nothing is remembered: it is the plain step then). Returns its product with the
-  /// force there.
+  /// Writes the quasi-Newton direction at now, the point to which the last learnt step led. While
+  /// the memory is empty, now is any point and the direction is the unaccelerated step. Returns the
+  /// product of the direction with the force.
   double direct(const Slope& now, std::span<Vec2> direction) const;
 
   void forget() { order_.clear(); }
   [[nodiscard]] bool empty() const { return order_.empty(); }
 
  private:
-  /// y, how much the force fell along s, is not kept: only products with it are.
+  /// y, the fall of the force along s, is not stored; only products with it are.
   struct Pair {
     std::vector<Vec2> s, z;           // the step and A^-1 y
     double s_force = 0, z_force = 0;  // their products with the force at the point learnt last

@@ -26,20 +26,20 @@ double energy_after(const Descent& descent, int iterations) {
   return energy[std::min(static_cast<std::size_t>(iterations), energy.size() - 1)];
 }
 
-/// Whether the first descent, which paused or ended for this reason, has far to go.
+/// Whether the first descent, which paused or ended for this reason, is far from its minimum.
 bool wants_second(const Race& race, const Descent& first, StopReason reason) {
   if (reason != StopReason::max_iterations) return false;
   if (first.solution().iterations >= race.options.max_iterations) return false;
   return energy_after(first, kPatience - kLately) > (1 + kFast) * first.energy();
 }
 
-/// How much lower the second one's energy is after as many iterations, relative to the first one's.
+/// How much lower the second energy is after this many iterations, relative to the first one.
 double lead(const Descent& second, const Descent& first, int iterations) {
   return 1 - energy_after(second, iterations) / energy_after(first, iterations);
 }
 
-/// Runs the second descent as far as the first one has come, and both a little farther where that
-/// would change the answer: whether the second is to go on instead of the first.
+/// Runs the second descent for as many iterations as the first one, and both a little longer where
+/// that may change the answer. Returns whether the second shall replace the first.
 bool overtakes(const Race& race, Descent& second, Descent& first) {
   const LoopWatch silent{{}, race.watch.stop};
   run(second, {race.options.tolerance, kPatience}, silent);

@@ -1,5 +1,5 @@
 #pragma once
-// One descent, and a second from another start where the first will not come to rest soon.
+// One descent, and a second one from another start if the first converges slowly.
 
 #include <functional>
 
@@ -7,7 +7,7 @@
 
 namespace unwrapd::solve::arap {
 
-/// What both descents have in common. What it refers to must outlive the call.
+/// The input that both descents share. It must outlive the call.
 struct Race {
   const Assembly& assembly;
   Rigidity rigidity;
@@ -16,11 +16,11 @@ struct Race {
   Executor& executor;
 };
 
-/// Descends from the map first. Where it still falls fast after a while, the map that second()
-/// gives is descended from in silence for as many iterations, or fewer when it falls behind; the
-/// one of the lower energy goes on. Nothing of this where second() gives no map. The energies told
-/// are those of the first descent up to the change; they never rise. Throws Error{cancelled}, and
-/// what second() throws.
+/// Descends from the map first. If its energy still falls fast after a while, also descends from
+/// the map that second() returns, without reporting, for as many iterations or until it falls
+/// behind; the descent of lower energy then continues. Without a second map, the first continues.
+/// The reported energies are those of the first descent up to the change; they never rise. Throws
+/// Error{cancelled}, and what second() throws.
 Solution run_race(const Race& race, const UvMap& first,
                   const std::function<const UvMap*()>& second);
 

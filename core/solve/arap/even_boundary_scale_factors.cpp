@@ -24,8 +24,8 @@
 namespace unwrapd::solve::arap {
 namespace {
 
-constexpr double kRounding = 1e-10;   // as uneven as a level u may come out of a solve
-constexpr double kOfConstants = 0.5;  // what |d/ds| is taken to be of a loop's mean
+constexpr double kRounding = 1e-10;   // tolerated unevenness of a solve, relative
+constexpr double kOfConstants = 0.5;  // the eigenvalue used for a loop's mean, where |d/ds| has 0
 
 using linear::at;
 
@@ -77,7 +77,7 @@ class HalfLaplacian {
  private:
   struct Place {
     std::size_t corner;
-    double share;  ///< of the way to the next
+    double share;  ///< relative position between two samples
   };
   [[nodiscard]] Place place(std::size_t j) const {
     const std::size_t along = j * corners_;

@@ -1,6 +1,6 @@
 #pragma once
-// Log scale factors that flatten a disk and are level on its boundary, without a system of their
-// own.
+// Logarithmic scale factors that flatten a disk and are constant on its boundary, without factoring
+// a system of their own.
 
 #include <optional>
 #include <span>
@@ -11,12 +11,12 @@
 
 namespace unwrapd::solve::arap {
 
-/// How uneven u may stay on the boundary: to what even fluxes through it would make of it.
+/// The tolerated variation of u on the boundary, relative to the variation under even fluxes.
 inline constexpr double kLevel = 1.0 / 30;
 
-/// u, one a vertex, with L u = -curvature at inner vertices, as exactly as one solve finds it, and
-/// level on the boundary but for kLevel (its mean is of no consequence). Nothing where that takes
-/// more than `most` solves. global: that of the disk without holds. Throws Error{cancelled}.
+/// u, one a vertex: L u = -curvature at inner vertices, to the accuracy of one solve, and constant
+/// on the boundary up to kLevel (the mean is arbitrary). Empty if that takes more than `most`
+/// solves. global: the system of the disk without constraints. Throws Error{cancelled}.
 std::optional<std::vector<double>> even_boundary_scale_factors(const Disk& disk,
                                                                const GlobalStep& global,
                                                                std::span<const double> curvature,

@@ -15,7 +15,7 @@ constexpr Index kNone = -1;
 
 using linear::at;
 
-/// By the lowest rank of their corners, ties as they come.
+/// Faces sorted by the lowest rank of their corners; ties keep their order.
 std::vector<Index> sorted_faces(std::span<const Triangle> faces, std::span<const Index> rank,
                                 const std::stop_token& stop, std::vector<Index>& lowest) {
   lowest.reserve(faces.size());

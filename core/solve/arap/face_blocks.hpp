@@ -1,8 +1,8 @@
 #pragma once
-// The faces of a disk as the local step reads them: four side by side, and in blocks that reach few
-// vertices. In the order of elimination, which leaves a region of the disk before it goes on, the
-// faces around so many consecutive vertices reach about a fifth more: all that a block reads and
-// adds up lies in the second cache, and what it adds to another's vertices is little.
+// The faces of a disk in the layout of the local step: groups of four, in blocks that reach few
+// vertices. The order of elimination finishes a region of the disk before it goes on, so that the
+// faces around consecutive vertices reach only about a fifth more vertices. A block's data fits
+// into the second-level cache, and a block adds little to the vertices of others.
 
 #include <array>
 #include <span>
@@ -15,8 +15,8 @@ namespace unwrapd::solve::arap {
 
 inline constexpr std::size_t kFacesAbreast = 4;
 
-/// Four faces side by side. Each triangle lies with corner 0 at the origin and corner 1 on the x
-/// axis: [x^1 x^2]^-1 = [across shear; 0 up]. The last group of a block is filled up with copies of
+/// Four faces, one in each lane. Each triangle has corner 0 at the origin and corner 1 on the x
+/// axis: [x^1 x^2]^-1 = [across shear; 0 up]. The last group of a block is padded with copies of
 /// its last face, of area 0.
 struct FaceGroup {
   template <typename T>
@@ -26,9 +26,9 @@ struct FaceGroup {
   Each<double> across, shear, up, area;
 };
 
-/// Vertices go by ranks here. Those of a block are numbered: first its own, the ranks first ..
-/// first + own - 1, then the others that its faces reach, as listed in FaceBlocks::beyond from
-/// beyond_begin on.
+/// Vertices are given by ranks. A block numbers first its own vertices, the ranks first .. first +
+/// own - 1, then the others that its faces reach, listed in FaceBlocks::beyond from beyond_begin
+/// on.
 struct FaceBlock {
   Index first, own;
   std::size_t beyond_begin, beyond_end;
@@ -39,7 +39,7 @@ struct FaceBlock {
   }
 };
 
-/// A face is in the block that owns the lowest of its ranks.
+/// Each face belongs to the block that owns the lowest of its ranks.
 struct FaceBlocks {
   std::vector<FaceBlock> all;
   std::vector<FaceGroup> groups;

@@ -24,8 +24,8 @@
 namespace unwrapd::solve::arap {
 namespace {
 
-/// L with the rows and columns of the boundary those of the identity: the pattern of the global
-/// step's matrix, whose analysis then serves for both.
+/// L with boundary rows and columns of the identity. It has the pattern of the global step's
+/// matrix, so that one analysis serves both.
 linear::SparseMatrix with_held_boundary(const Disk& disk, std::span<const char> on_boundary) {
   linear::SparseMatrix lower = cotan_laplacian(disk, disk.rest);
   for (Index j = 0; j < static_cast<Index>(lower.cols()); ++j) {
@@ -38,8 +38,10 @@ linear::SparseMatrix with_held_boundary(const Disk& disk, std::span<const char> 
   return lower;
 }
 
-constexpr std::size_t kWorthLevelling = 8192;  // vertices: below, a factor takes few solves' time
-constexpr double kMostBoundary = 32;           // squared, to the vertices: beyond, steps are many
+constexpr std::size_t kWorthLevelling =
+    8192;  // vertices; a smaller factor takes the time of a few solves
+constexpr double kMostBoundary =
+    32;  // squared, relative to the vertices; longer boundaries take many steps
 constexpr int kMostSolves = 12;
 
 bool is_soon_level(const Disk& disk) {
@@ -49,7 +51,7 @@ bool is_soon_level(const Disk& disk) {
   return count >= kWorthLevelling && boundary * boundary <= kMostBoundary * double(count);
 }
 
-/// u, one a vertex: level on the boundary, or nearly so where that is had without a factor.
+/// u, one a vertex: constant on the boundary, or nearly so if that needs no factor.
 std::vector<double> log_scales(const Disk& disk, const GlobalStep& global) {
   const std::vector<char> on_boundary = boundary_vertices(disk);
   const std::vector<double> k = curvature(disk, disk.rest, global.executor());
@@ -76,7 +78,7 @@ linear::Complex rest_edge(const Disk& disk, Index h) {
   return {e.x(), e.y()};
 }
 
-/// The rotation of the face beyond half-edge h against that of the face of h, times some length.
+/// The rotation of the face across half-edge h relative to that of h's face, times some length.
 linear::Complex turn_across(const Disk& disk, std::span<const double> u, Index h, Index twin) {
   const double weight = (cotangent(disk, h) + cotangent(disk, twin)) / 2;
   const double rise = u[static_cast<std::size_t>(start_of(disk.faces, h))] -
@@ -84,8 +86,8 @@ linear::Complex turn_across(const Disk& disk, std::span<const double> u, Index h
   return -rest_edge(disk, h) * std::conj(rest_edge(disk, twin)) * std::polar(1.0, weight * rise);
 }
 
-/// The half-edge on the other side of h; where twins are not known found among those that start at
-/// its end: kNoTwin where there is none, or several.
+/// The opposite half-edge of h. Without a list of twins it is searched among those that start at
+/// the end of h: kNoTwin if there is none, or several.
 Index twin_of(const Disk& disk, Index h) {
   if (!disk.twin.empty()) return disk.twin[static_cast<std::size_t>(h)];
   const Index start = start_of(disk.faces, h);
@@ -100,7 +102,7 @@ Index twin_of(const Disk& disk, Index h) {
   return twin;
 }
 
-/// One a face, carried breadth first from face 0.
+/// One rotation a face, propagated breadth first from face 0.
 std::vector<linear::Complex> rotations(const Disk& disk, const GlobalStep& global) {
   const std::vector<double> u = log_scales(disk, global);
   std::vector<linear::Complex> rotation(disk.faces.size(), 0);

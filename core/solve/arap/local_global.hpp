@@ -1,5 +1,5 @@
 #pragma once
-// The local/global iteration of Secs. 4.4 and 5: fit every triangle, stitch, repeat.
+// The local/global iteration of Secs. 4.4 and 5: fit every triangle, solve for the map, repeat.
 
 #include "core/solve/arap/global_step.hpp"
 #include "core/solve/arap/objective.hpp"
@@ -7,7 +7,7 @@
 
 namespace unwrapd::solve::arap {
 
-/// A disk, its held vertices, and the system that was factored for both.
+/// A disk, its constraints, and the system that was factored for both.
 struct Assembly {
   const Disk& disk;
   const VertexConstraints& constraints;
@@ -19,10 +19,10 @@ struct LocalGlobalOptions {
   int iterations = 10;
 };
 
-/// Runs plain iterations from the map start, in which fixed vertices lie where they are held. The
-/// energy never rises. A step that would leave less than kMinAreaShare of the start's UV area is
-/// rejected and ends the run (collapse_guard).
-/// Throws Error{cancelled} within one iteration of a stop request.
+/// Runs unaccelerated iterations from the map start, in which hard constraints hold. The energy
+/// never rises. A step that would leave less than kMinAreaShare of the start's UV area is rejected
+/// and ends the run (collapse_guard). Throws Error{cancelled} within one iteration of a stop
+/// request.
 Solution local_global(const Assembly& assembly, const UvMap& start,
                       const LocalGlobalOptions& options, const LoopWatch& watch,
                       Executor& executor);

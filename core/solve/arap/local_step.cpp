@@ -19,7 +19,7 @@
 namespace unwrapd::solve::arap {
 namespace {
 
-/// The vertices of one block: where they lie, and the forces on them.
+/// The vertices of one block: their positions, and the forces on them.
 class BlockVertices {
  public:
   BlockVertices(const LocalStep& step, const FaceBlock& block)
@@ -33,7 +33,7 @@ class BlockVertices {
   [[nodiscard]] const double* uv() const { return uv_.front().data(); }
   [[nodiscard]] double* force() { return force_.front().data(); }
 
-  /// Writes the forces on its own vertices; those on others, which other blocks write, beside.
+  /// Adds the forces on the block's own vertices; forces on vertices of other blocks go to a list.
   void give_back() const {
     std::copy_n(force_.begin(), count(), step_.force.begin() + block_.first);
     std::copy_n(force_.begin() + block_.own, beyond().size(),
@@ -107,7 +107,7 @@ Similarity fit_similarity(const measure::Jacobian& j, double lambda) {
   assert(lambda >= 0);
   const double q = j.turn_scale();
   const double r = hybrid_scale(lambda, q);
-  if (!(q > 0)) return {r, 0};  // a collapsed image: all turns fit alike
+  if (!(q > 0)) return {r, 0};  // a collapsed image: all rotations fit equally
   return {r * j.e / q, -r * j.h / q};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The local step: each triangle takes the similarity that fits its image best (Secs. 4.1, 5).
+// The local step: fits a similarity to the image of each triangle (Secs. 4.1, 5).
 
 #include <limits>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace unwrapd::solve::arap {
 
-/// How strongly a triangle's fit is held to a rotation: the dimensionless lambda of
+/// The weight that pulls a triangle's fit towards a rotation: the dimensionless lambda of
 ///   E = sum A_t [ |J_t - L_t|^2 + lambda_t (a_t^2 + b_t^2 - 1)^2 ].
 /// Eq. (5) as printed has no area in its second term: there lambda_t = lambda / (2 A_t).
 struct Rigidity {
@@ -39,7 +39,7 @@ Similarity fit_similarity(const measure::Jacobian& j, double lambda);
 /// A_t |J - L|^2 + A_t lambda (a^2 + b^2 - 1)^2 for the fitted L.
 double fit_energy(const measure::Jacobian& j, const Similarity& fit, double area, double lambda);
 
-/// Of a map.
+/// Sums over all triangles of a map.
 struct LocalSums {
   double energy = 0;   ///< under the best fits
   double uv_area = 0;  ///< sum of A_t |det J_t|
@@ -56,7 +56,7 @@ struct LocalStep {
 
   LocalSums run(Executor& executor) const;
 
-  /// The same with the registers of the x86-64 baseline, whatever the processor has.
+  /// The same with the registers of the x86-64 baseline, for comparison.
   LocalSums run_on_baseline(Executor& executor) const;
 };
 

@@ -22,8 +22,8 @@ struct FourLanes {
   using Lanes = Quad;
 };
 
-/// Registers::Lanes: the vector of doubles of one register. Lanes do not meet but in sums() and in
-/// the forces on one vertex, in an order of their own: no result depends on their number.
+/// Registers::Lanes is the vector of doubles of one register. Lanes only meet in sums() and in the
+/// forces on one vertex, in a fixed order, so that no result depends on their number.
 template <typename Registers>
 class SimdLocalStep {
  public:
@@ -51,7 +51,7 @@ class SimdLocalStep {
   using Each = FaceGroup::Each<double>;
   static constexpr std::size_t kLanes = sizeof(Lanes) / sizeof(double);
 
-  /// Of one lane each: u^1 - u^0 or u^2 - u^0, then the force on corner 1 or 2.
+  /// One lane each: u^1 - u^0 or u^2 - u^0, later the force on corner 1 or 2.
   struct Ends {
     Lanes x, y;
   };
@@ -107,7 +107,7 @@ class SimdLocalStep {
     force += *(reinterpret_cast<const Duo*>(&forces) + half);
   }
 
-  /// Face after face: one vertex may be met by several lanes.
+  /// One face after the other, since lanes may share a vertex.
   [[gnu::always_inline]] void scatter(const FaceGroup& group, std::size_t k, Ends (&forces)[2]) {
     for (Ends& force : forces) transpose(force.x, force.y);
     const Lanes even = -(forces[0].x + forces[1].x), odd = -(forces[0].y + forces[1].y);
@@ -135,7 +135,7 @@ class SimdLocalStep {
     ends[1] = {weight * m.m01 * up, weight * m.m11 * up};
   }
 
-  /// J becomes J - L.
+  /// Subtracts the best fit from m.
   [[gnu::always_inline]] void subtract_fit(const FaceGroup& group, std::size_t k, Matrix& m) {
     const Lanes e = 0.5 * (m.m00 + m.m11), h = 0.5 * (m.m10 - m.m01);
     Each roots;
@@ -145,14 +145,14 @@ class SimdLocalStep {
     Lanes r = 1 - Lanes{};
     if (!std::isinf(rigidity_.lambda)) hold_scale(group, k, q, r);
     const Lanes scale = r / q;
-    const auto is_turned = q > 0;  // else a collapsed image: all turns fit alike
+    const auto is_turned = q > 0;  // else a collapsed image: all rotations fit equally
     const Lanes a = is_turned ? scale * e : r, b = is_turned ? scale * h : Lanes{};
     m.m00 -= a, m.m11 -= a;
     m.m01 += b, m.m10 -= b;
   }
 
-  /// r becomes the best scale, its own energy is added. Newton as in hybrid_scale(): a lane that
-  /// has arrived waits for the others.
+  /// Computes the best scale r and adds its energy. Newton as in hybrid_scale(); lanes that have
+  /// converged wait for the others.
   [[gnu::always_inline]] void hold_scale(const FaceGroup& group, std::size_t k, const Lanes& q,
                                          Lanes& r) {
     const Lanes& area = lanes(group.area, k);

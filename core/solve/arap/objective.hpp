@@ -1,6 +1,6 @@
 #pragma once
-// What the iterations of ARAP and Hybrid minimise: the energy of the method, each triangle's fit
-// being the best there is (min over L of Eq. 2, 5), plus that of the soft constraints (Sec. 7).
+// The energy that ARAP and Hybrid minimize: each triangle's energy under its best fit (min over L
+// of Eq. 2, 5), plus that of the soft constraints (Sec. 7).
 
 #include <memory>
 #include <span>
@@ -15,23 +15,23 @@ namespace unwrapd::solve::arap {
 
 class Objective {
  public:
-  /// executor must outlive the objective. rank: that of GlobalStep, or any permutation.
+  /// executor must outlive the objective. rank: GlobalStep::rank(), or any permutation.
   Objective(const Disk& disk, const Rigidity& rigidity, VertexConstraints constraints,
             std::span<const Index> rank, Executor& executor);
 
   /// Returns E(uv). force becomes -dE/du: zero at fixed vertices. For fixed fits the Hessian of E
-  /// is the matrix of GlobalStep, so that one plain iteration is uv += A^-1 force. Both spans have
-  /// one entry a vertex, by ranks. The same for any executor.
+  /// is the matrix of GlobalStep, so that one unaccelerated iteration is uv += A^-1 force. Both
+  /// spans have one entry a vertex, in rank order. The same for any executor.
   double evaluate(std::span<const Vec2> uv, std::span<Vec2> force);
 
-  /// The area that the images of the map evaluated last cover, counted with multiplicity.
+  /// The area of the images of the last evaluated map, counted with multiplicity.
   [[nodiscard]] double uv_area() const { return uv_area_; }
 
  private:
   double pull_soft_constraints(std::span<const Vec2> uv, std::span<Vec2> force) const;
 
   Rigidity rigidity_;
-  VertexConstraints holds_;  // by ranks
+  VertexConstraints holds_;  // in rank order
   Executor& executor_;
   std::shared_ptr<const FaceBlocks> blocks_;
   std::vector<Vec2> beyond_;  // scratch of the local step

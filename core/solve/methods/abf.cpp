@@ -21,13 +21,13 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kLeastCurvature = 0.25;  // of 1 / min(alpha, beta)^2
-constexpr double kMostOfTheWay = 0.9;     // to an angle of 0 or pi
-constexpr double kSlim = 0.1;             // of its target: below, an angle is held up
+constexpr double kMostOfTheWay = 0.9;     // of the distance to an angle of 0 or pi
+constexpr double kSlim = 0.1;             // of its target: a smaller angle costs extra
 constexpr double kTolerance = 1e-7;       // relative to an angle
 
 double square(double x) { return x * x; }
 
-/// The wheel multiplier of a corner's ring; 0 where it has none.
+/// The wheel multiplier of a corner's ring; 0 if the corner has no ring.
 double wheel(const Triangle& face, std::size_t corner, const AngleSystem& system) {
   const Index ring = system.rings().of.slot[static_cast<std::size_t>(face[corner])];
   return ring == linear::kFixed ? 0 : system.multipliers()[static_cast<std::size_t>(ring)][1];
@@ -67,13 +67,13 @@ class AngleNewton {
     const Triangle& face = disk_.faces[t];
     const double bend = wheel(face, (i + 1) % 3, system_) - wheel(face, (i + 2) % 3, system_);
     const double depth = std::min(0.0, std::log(alpha / (kSlim * beta)));
-    const double hold = depth < 0 ? (1 - depth) / square(alpha) : 0;  // of depth^2 / 2
+    const double hold = depth < 0 ? (1 - depth) / square(alpha) : 0;  // curvature of depth^2 / 2
     const double curvature = 1 / square(beta) + hold + bend / square(std::sin(alpha));
     model_.slope[t][i] = (alpha - beta) / square(beta) + depth / alpha;
     model_.curvature[t][i] = std::max(curvature, kLeastCurvature / square(std::min(alpha, beta)));
   }
 
-  /// At most 1; keeps all angles in (0, pi).
+  /// The longest step, at most 1, that keeps all angles in (0, pi).
   [[nodiscard]] double longest_step(const std::vector<FaceAngles>& change) const {
     double length = 1;
     for (std::size_t t = 0; t < angles_.size(); ++t)

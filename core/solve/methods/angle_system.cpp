@@ -15,7 +15,7 @@ namespace unwrapd::solve::methods {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
-constexpr double kLeastGap = 0.1;  // of an angle's distance from pi, which scaling may not use up
+constexpr double kLeastGap = 0.1;  // share of an angle's distance from pi that scaling must leave
 constexpr std::size_t kBlock = 2048;  // faces a block
 
 Index start_vertex(const Disk& disk, Index h) {
@@ -26,7 +26,7 @@ double dot(const FaceAngles& x, const FaceAngles& y) {
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
 
-/// body(ring, i) for every corner i that lies on a ring.
+/// Calls body(ring, i) for every corner i that lies on a ring.
 template <class Body>
 void for_ring_corners(const Triangle& face, const Rings& rings, Body body) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -83,21 +83,22 @@ double Misfit::largest() const {
   return most;
 }
 
-/// What a face gives to the reduced system: B_t, whose row 2i + c is the gradient of constraint c
-/// (planarity, wheel) of corner i's ring; P_t; and the change that it would make alone.
+/// The contribution of a face to the reduced system: B_t, whose row 2i + c is the gradient of
+/// constraint c (planarity, wheel) of corner i's ring; P_t; and the change that the face alone
+/// would make.
 struct AngleSystem::FaceBlock {
   std::array<FaceAngles, 6> gradient{};
   std::array<FaceAngles, 3> projection{};
   FaceAngles change{};
 
-  /// Of angles angle under the model of this face.
+  /// Sets the block for these angles and the model of this face.
   void set(const FaceAngles& angle, const FaceAngles& slope, const FaceAngles& curvature);
 
   /// B P B'
   [[nodiscard]] linear::PairElement element() const;
 };
 
-/// P = 1/D - (1/D) 1 1' (1/D) / (1' (1/D) 1), written without its cancellation.
+/// P = 1/D - (1/D) 1 1' (1/D) / (1' (1/D) 1), in a form without cancellation.
 void AngleSystem::FaceBlock::set(const FaceAngles& angle, const FaceAngles& slope,
                                  const FaceAngles& curvature) {
   const FaceAngles give{1 / curvature[0], 1 / curvature[1], 1 / curvature[2]};

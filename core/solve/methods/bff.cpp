@@ -26,10 +26,10 @@
 namespace unwrapd::solve::methods {
 namespace {
 
-/// Edges of the curve may shrink or grow by this share to close it; beyond, all its points move.
+/// Edges of the curve may shrink or grow by this share to close it. Beyond it, all points move.
 constexpr double kMostStretch = 0.9;
 
-/// The boundary as a chain of steps: vertex[i] and the edge from it to vertex[i + 1].
+/// The boundary as a closed chain of edges from vertex[i] to vertex[i + 1].
 struct Chain {
   std::vector<std::size_t> vertex;
   std::vector<double> length;
@@ -57,8 +57,8 @@ std::vector<Vec2> tangents(const Chain& chain, std::span<const double> turn) {
   return tangent;
 }
 
-/// The factors (1 - T_i . y) of the lengths that close the chain: of all that do, those of least
-/// sum of (l' - l)^2 / l. y solves (sum of l T T^t) y = sum of l T.
+/// The factors (1 - T_i . y) of the edge lengths that close the chain, with the least sum of (l' -
+/// l)^2 / l. y solves (sum of l T T^t) y = sum of l T.
 Vec2 closing(const Chain& chain, std::span<const Vec2> tangent) {
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
   Vec2 gap = Vec2::Zero();
@@ -84,8 +84,7 @@ std::vector<Vec2> curve(const Chain& chain, std::span<const Vec2> tangent) {
   return point;
 }
 
-/// The harmonic conjugates of the two coordinates, as which the curve is given: L y = -d x / d s on
-/// the boundary.
+/// The harmonic conjugates of the two coordinates of the curve: L y = -d x / d s on the boundary.
 UvMap conjugates(const Disk& disk, const linear::SparseMatrix& laplacian, const Chain& chain,
                  std::span<const Vec2> point) {
   std::vector<char> fixed(disk.positions.size(), 0);

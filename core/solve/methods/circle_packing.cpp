@@ -22,8 +22,8 @@ namespace {
 
 constexpr double kLeastLength = 1e-6;  // disk units: shorter edges count as this long
 constexpr int kFittingSteps = 100;
-constexpr double kDamping = 0.5;  // Jacobi: both ends of an edge move at once
-constexpr double kMostRefit = 8;  // times the start; a vertex of three faces would like to vanish
+constexpr double kDamping = 0.5;  // for Jacobi steps, in which both ends of an edge move at once
+constexpr double kMostRefit = 8;  // of the start; vertices of three faces would shrink to nothing
 constexpr double kLinkOfThree = 0.6, kLinkOfFour = 0.1;
 constexpr double kMostLogRatio = 130;  // of radii in one triangle: products stay in range
 
@@ -42,7 +42,8 @@ std::vector<EdgeLengths> lengths_of(const Disk& disk) {
   return length;
 }
 
-/// The mean distance of each vertex to where the incircles of its faces touch their sides.
+/// The mean distance of each vertex to the points where the incircles of its faces touch their
+/// sides.
 std::vector<double> mean_radii(const Disk& disk, std::span<const EdgeLengths> length) {
   std::vector<double> sum(disk.positions.size(), 0.0), count(sum.size(), 0.0);
   for (std::size_t t = 0; t < length.size(); ++t)
@@ -56,7 +57,8 @@ std::vector<double> mean_radii(const Disk& disk, std::span<const EdgeLengths> le
   return sum;
 }
 
-/// What an edge asks of the radius r at its end: the residual (l' - l) / l and its derivative.
+/// The residual (l' - l) / l of an edge as a function of the radius r at its end, and its
+/// derivative.
 struct Demand {
   double residual = 0, slope = 0;
 };
@@ -68,7 +70,8 @@ Demand demand(double r, double s, double length) {
   return {};
 }
 
-/// One damped Gauss-Newton step of all radii at once, none of which goes far from where it started.
+/// One damped Gauss-Newton step of all radii at once. It bounds the distance of each radius from
+/// its start.
 void fit(const Disk& disk, std::span<const EdgeLengths> length, std::span<const double> start,
          std::vector<double>& radius) {
   std::vector<double> pull(radius.size(), 0.0), stiffness(radius.size(), 0.0);
@@ -88,7 +91,7 @@ void fit(const Disk& disk, std::span<const EdgeLengths> length, std::span<const 
                              start[v] * kMostRefit);
 }
 
-/// The least crossing of each half-edge's edge, from the inner vertices that it is opposite to.
+/// The least cosine of crossing of each half-edge's edge, from the inner vertices opposite to it.
 std::vector<double> least_crossing(const Disk& disk) {
   const std::vector<char> on_boundary = boundary_vertices(disk);
   const auto side_count = static_cast<Index>(3 * disk.faces.size());
@@ -111,7 +114,8 @@ std::vector<double> least_crossing(const Disk& disk) {
   return least;
 }
 
-/// One triangle of circles. r: radii; c[i]: the crossing of those at corners i and i+1.
+/// One triangle of circles. r: radii; c[i]: the cosine of crossing of the circles at corners i and
+/// i+1.
 struct CircleTriangle {
   std::array<double, 3> r, c;
 

@@ -19,7 +19,7 @@
 namespace unwrapd::solve::methods {
 namespace {
 
-/// A triangle may lose this share of its height over its longest edge and not more.
+/// A triangle may lose at most this share of its height over its longest edge.
 constexpr double kMostThinning = 0.9;
 
 /// (1/l) times the integral of exp(u) along an edge on which u is linear between its ends' values.
@@ -35,7 +35,7 @@ double slenderness(const measure::RestTriangle& triangle) {
   return 2 * triangle.area / (longest * longest);
 }
 
-/// u: at the corners. Only the shape of the result counts.
+/// u: at the corners. The size of the result is arbitrary.
 measure::RestTriangle scaled(const measure::RestTriangle& triangle,
                              const std::array<double, 3>& u) {
   const double greatest = std::max({u[0], u[1], u[2]});  // against overflow

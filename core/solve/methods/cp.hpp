@@ -6,8 +6,8 @@
 
 namespace unwrapd::solve::methods {
 
-/// Ben-Chen, Gotsman, Bunin 2008, without inner cones and with the lengths of the longest boundary
-/// kept. energy: the greatest curvature left inside, radians, before and after the scaling.
+/// Ben-Chen, Gotsman, Bunin 2008, without inner cones; the longest boundary keeps its lengths.
+/// energy: the greatest curvature that is left inside, radians, before and after the scaling.
 /// Throws Error{solver_failed, cancelled}.
 Solution cp(const Disk& disk, const SolveWatch& watch);
 

@@ -23,9 +23,9 @@ constexpr double kFlat = 1e-9;  // radians
 constexpr int kMaxIterations = 50;
 constexpr int kMaxHalvings = 20;
 constexpr double kMostGrowth = 4;       // of a log radius in one step
-constexpr double kLeastWeight = 1e-14;  // of a side: circles a million times apart have none
+constexpr double kLeastWeight = 1e-14;  // of a side; circles a million times apart have less
 
-/// The circles of one disk on their way to a flat metric.
+/// Moves the circles of one disk towards a flat metric.
 class Flow {
  public:
   explicit Flow(const Disk& disk)
@@ -38,7 +38,8 @@ class Flow {
     return inner_curvature(disk_, packed_.curvature);
   }
 
-  /// One Newton step of u towards K = 0, halved until the sum of K^2 falls. False when it does not.
+  /// One Newton step of u towards K = 0, halved until the sum of K^2 falls. False if it does not
+  /// fall.
   bool step() {
     const std::vector<double> change = newton_direction();
     const double before = sum_of_squares(packed_);

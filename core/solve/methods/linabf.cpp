@@ -11,7 +11,7 @@
 namespace unwrapd::solve::methods {
 namespace {
 
-/// An angle may shrink to this share of its target, where the linear model has lost its meaning.
+/// Below this share of its target an angle is out of the range of the linear model.
 constexpr double kLeastShare = 0.1;
 
 AngleModel relative_errors(const std::vector<FaceAngles>& target) {
@@ -21,7 +21,7 @@ AngleModel relative_errors(const std::vector<FaceAngles>& target) {
   return model;
 }
 
-/// Angles that shrank too far are drawn back, and the others of the triangle make room.
+/// Raises angles that shrank too far; the others of the triangle make up for it.
 FaceAngles drawn_back(FaceAngles angle, const FaceAngles& target) {
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) sum += angle[i] = std::max(angle[i], kLeastShare * target[i]);

@@ -8,13 +8,13 @@
 
 namespace unwrapd::solve::methods {
 
-/// The angles that lie flat to first order and deviate least, relative to each, from the targets:
-/// one linear solve. Where a target is far from flat an angle may leave (0, pi).
-/// Throws Error{solver_failed}.
+/// The angles that fit together in the plane to first order, with the least relative deviation from
+/// the targets: one linear solve. An angle may leave (0, pi) if its target is far from flat. Throws
+/// Error{solver_failed}.
 std::vector<FaceAngles> linear_angles(const Disk& disk, Executor& executor);
 
-/// The map of linear_angles(), laid out. energy as in FlatAngles: of the targets, then of the
-/// angles. Throws Error{solver_failed, cancelled}.
+/// The map of linear_angles(). energy as in FlatAngles: first of the targets, then of the angles.
+/// Throws Error{solver_failed, cancelled}.
 Solution linabf(const Disk& disk, const SolveWatch& watch, Executor& executor);
 
 }  // namespace unwrapd::solve::methods

@@ -40,7 +40,7 @@ Start start_from(const Disk& disk, Map map, Executor& executor) {
     for (Vec2& u : uv) u *= scale;
     const double energy = symmetric_dirichlet_energy(disk, uv, executor);
     return {std::move(uv), energy};
-  } catch (const Error&) {  // no such map of this mesh: there are others
+  } catch (const Error&) {  // this map does not exist; try the others
     throw_if_cancelled(disk.stop);
     return {{}, std::numeric_limits<double>::infinity()};
   }
@@ -141,7 +141,7 @@ class Slim {
   std::vector<Vec2> step_;
 };
 
-/// Iterates, and tells why it ended.
+/// Iterates until convergence or a limit, and returns the reason.
 StopReason descend(Slim& slim, const Stop& stop, const LoopWatch& watch, Solution& solution) {
   const double tolerance = stop.iterations ? 0 : stop.tolerance;
   const int most = stop.iterations.value_or(stop.max_iterations);

@@ -13,7 +13,7 @@ namespace unwrapd::solve::methods {
 namespace {
 
 constexpr std::size_t kFacesOfBlock =
-    4096;  // faces or vertices a block: sums do not depend on threads
+    4096;  // faces or vertices a block; fixed, so that sums do not depend on threads
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class Body>

@@ -96,13 +96,13 @@ double share_of(const BarrierMesh& mesh, std::size_t t) {
   return mesh.share.empty() ? mesh.rest[t].area : mesh.share[t];
 }
 
-/// By the exact test; the determinant too, which the barrier divides by.
+/// By the exact test, and by the rounded determinant, since the barrier divides by it.
 bool is_positive(const measure::Jacobian& j, const Triangle& face, std::span<const Vec2> uv) {
   return (j.turn_scale() - j.deformation()) * j.sigma_max() > 0 &&
          measure::orientation(face, uv) > 0;
 }
 
-/// Where corner coordinate k (of 6) is among the unknowns; negative when the vertex is fixed.
+/// The index of corner coordinate k (of 6) among the unknowns; negative if the vertex is fixed.
 Index unknown(const BarrierMesh& mesh, std::size_t t, Index k) {
   const Index slot =
       mesh.free.slot[static_cast<std::size_t>(mesh.faces[t][static_cast<std::size_t>(k / 2)])];

@@ -1,6 +1,6 @@
 #pragma once
-// An energy that keeps triangles from flipping, or turns flipped ones back: the method's own, plus
-// a term that grows without bound as a triangle's area goes to zero.
+// An energy that prevents flips, or turns flipped triangles back: the method's own energy, plus a
+// term that grows without bound as a triangle's area goes to zero.
 
 #include <array>
 #include <limits>
@@ -19,32 +19,32 @@ namespace unwrapd::solve::repair {
 /// wall and SD, the symmetric Dirichlet energy, as in profile.hpp, and w |u_v - at|^2 for every
 /// soft constraint.
 struct Barrier {
-  arap::Rigidity rigidity;  ///< of OwnEnergy::fit
+  arap::Rigidity rigidity;  ///< for OwnEnergy::fit
   double weight = 1;
   double epsilon = 0;    ///< 0: infinite unless every triangle is positive
-  double dirichlet = 0;  ///< steeper than the wall; epsilon is 0
-  double steep = 0;      ///< bounds stretch, and hardly moves what is stretched less
+  double dirichlet = 0;  ///< weight of SD, which rises faster than the wall; then epsilon is 0
+  double steep = 0;      ///< bounds the stretch; nearly zero for small stretch
   OwnEnergy own = OwnEnergy::fit;
 };
 
-/// Bytes of a job: those that it takes anyhow, and those that it may take.
+/// Bytes of a job: those in use otherwise, and the limit.
 struct JobMemory {
   std::size_t taken = 0;
   std::size_t limit = std::numeric_limits<std::size_t>::max();
 };
 
-/// Triangles whose free vertices are to be moved. Vertices are numbered by faces.
+/// The triangles around the free vertices. Vertices are numbered locally.
 struct BarrierMesh {
   std::vector<Triangle> faces;
-  std::vector<measure::RestTriangle> rest;  ///< one a face: the shape and size that it should have
+  std::vector<measure::RestTriangle> rest;  ///< one a face: its target shape and size
   linear::FreeVertices free;                ///< one slot a vertex
   std::vector<SoftConstraint> soft = {};
-  std::stop_token stop = {};  ///< of the job: what goes over all faces looks at it (cancel.hpp)
+  std::stop_token stop = {};       ///< cancels loops over all faces (cancel.hpp)
   std::vector<double> share = {};  ///< A_t in the energy, one a face; empty: that of rest
-  JobMemory memory = {};           ///< that Newton's factor is looked at for
+  JobMemory memory = {};           ///< checked before Newton's factor is allocated
 };
 
-/// The same shape, larger or smaller: all that a barrier's target is looked at for.
+/// The same shape at another size. It has only the members that a barrier reads of its target.
 inline measure::RestTriangle scaled(measure::RestTriangle rest, double by) {
   for (Vec2& edge : rest.edge) edge *= by;
   rest.area *= by * by;
@@ -61,7 +61,7 @@ struct BarrierElement {
 BarrierElement barrier_element(const BarrierMesh& mesh, std::size_t t, std::span<const Vec2> uv,
                                const Barrier& barrier);
 
-/// Throws Error{cancelled}, as all below.
+/// Throws Error{cancelled}, as do all functions below.
 double barrier_energy(const BarrierMesh& mesh, std::span<const Vec2> uv, const Barrier& barrier);
 
 /// The least determinant of the triangles' Jacobians.
@@ -72,14 +72,14 @@ double least_determinant(const BarrierMesh& mesh, std::span<const Vec2> uv);
 struct Quadratic {
   Eigen::VectorXd gradient;
   linear::SparseMatrix hessian;
-  /// Where the lower triangle of each face's Hessian goes, by rows, among the values of hessian;
-  /// -1: nowhere.
+  /// Positions of the lower triangle of each face's Hessian, by rows, among the values of hessian;
+  /// -1: not stored.
   std::vector<std::array<Index, 21>> place;
 
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// All zeros, to be refilled as often as one likes: the pattern depends on the mesh alone.
+/// The pattern with zeros, which may be refilled any number of times. It depends on the mesh alone.
 Quadratic barrier_pattern(const BarrierMesh& mesh);
 
 /// model: from barrier_pattern() of the same mesh.

@@ -25,15 +25,15 @@
 namespace unwrapd::solve::repair {
 namespace {
 
-/// What a map shall be like: a disk with rest triangles, and what each of them weighs (empty: its
+/// A target for a map: a disk with rest triangles, and the weight of each in the energy (empty: its
 /// area).
 struct Target {
   Disk disk;
   std::vector<double> share;
 };
 
-/// The surface itself. For angles the method's own map, without flips: the new one then has the
-/// angles nearest to its, and its sizes where nothing presses.
+/// The surface itself; for methods of angles the method's own map without flips, whose angles the
+/// new map then approximates, and whose sizes it keeps if nothing presses.
 Target target_of(const Disk& disk, const MapIntent& intent, const UvMap& uv) {
   if (intent.own != OwnEnergy::mips || !measure::flipped_faces(disk.faces, uv, intent.stop).empty())
     return {disk, {}};
@@ -52,7 +52,7 @@ UvMap to_best_scale(const Disk& disk, UvMap uv) {
   return uv;
 }
 
-/// A map to begin with; none where double precision has none.
+/// An injective map to start from; empty if double precision gives none.
 template <class Map>
 std::optional<UvMap> start_from(const Disk& disk, Map map) {
   try {
@@ -61,7 +61,7 @@ std::optional<UvMap> start_from(const Disk& disk, Map map) {
     if (!measure::is_plainly_injective(disk.faces, disk.loops, uv)) return std::nullopt;
     uv = to_best_scale(disk, std::move(uv));
     if (measure::is_plainly_injective(disk.faces, disk.loops, uv)) return uv;
-  } catch (const Error&) {  // no such map of this mesh: there is another
+  } catch (const Error&) {  // this map does not exist; try the other one
     throw_if_cancelled(disk.stop);
   }
   return std::nullopt;
@@ -79,7 +79,7 @@ Vec2 middle_of(const UvMap& uv) {
   return sum / static_cast<double>(uv.size());
 }
 
-/// The map turned and moved to where the old one was.
+/// The map rotated and moved to where the old one was.
 UvMap laid_along(const UvMap& old, const UvMap& uv) {
   const Vec2 from = middle_of(uv), to = middle_of(old);
   double cosine = 0, sine = 0;
@@ -106,8 +106,8 @@ UvMap of_the_area_of(const UvMap& old, const Disk& disk, UvMap uv) {
   return uv;
 }
 
-/// The map moved to where its soft constraints pull it no further: nothing else feels where it
-/// lies.
+/// Moves the map to the mean of its soft constraints' residuals; no other energy depends on
+/// translation.
 UvMap moved_to_rest(UvMap uv, const std::vector<SoftConstraint>& soft) {
   Vec2 pull = Vec2::Zero();
   double weight = 0;
@@ -120,7 +120,7 @@ UvMap moved_to_rest(UvMap uv, const std::vector<SoftConstraint>& soft) {
   return uv;
 }
 
-/// Replaces uv by the map moved, unless moving has rounded it into an overlap.
+/// Replaces uv by the map moved, unless rounding made it overlap.
 void keep_apart(const Disk& disk, UvMap moved, UvMap& uv) {
   if (measure::is_plainly_injective(disk.faces, disk.loops, moved)) uv = std::move(moved);
 }

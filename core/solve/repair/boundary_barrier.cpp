@@ -1,5 +1,5 @@
-// Edges are entered into every cell of a grid that their box meets; a vertex looks into one cell.
-// The grid has about as many cells as there are edges, whatever their lengths.
+// A grid finds near pairs: an edge is entered into every cell that its box meets, and a vertex
+// looks into one cell. The grid has about as many cells as there are edges, whatever their lengths.
 #include "core/solve/repair/boundary_barrier.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 constexpr double kReach = 0.25;       // of the shortest boundary edge concerned
 constexpr double kLeastLength = 0.1;  // of the mean boundary edge: shorter ones count as this long
 
-/// Where a contact is, and how it changes: the distance's gradient is share[i] * normal at the
+/// The place of a contact, and its derivative: the distance's gradient is share[i] * normal at the
 /// vertex and at the two ends of the edge.
 struct Gap {
   double distance;
@@ -35,7 +35,7 @@ struct Entry {
   auto operator<=>(const Entry&) const = default;
 };
 
-/// The boxes of edges, enlarged, in the cells that they meet.
+/// A grid of the enlarged boxes of edges.
 class EdgeGrid {
  public:
   EdgeGrid(const Vec2& low, const Vec2& high, std::size_t edges)

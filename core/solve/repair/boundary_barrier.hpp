@@ -1,5 +1,5 @@
 #pragma once
-// What keeps the boundary of a map from running into itself: vertices push away the boundary edges
+// A barrier that keeps the boundary of a map from crossing itself: vertices repel boundary edges
 // that come near.
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace unwrapd::solve::repair {
 
-/// A boundary vertex and a boundary edge without it, which push each other apart where they are
-/// nearer than `reach`.
+/// A boundary vertex and a boundary edge without it, which repel each other when they are nearer
+/// than `reach`.
 struct Contact {
   Index vertex;
   std::array<Index, 2> edge;
@@ -31,8 +31,8 @@ class BoundaryBarrier {
  public:
   explicit BoundaryBarrier(const Disk& disk);
 
-  /// Those nearer than `ahead` times their reach, in an order that depends on the map alone. uv:
-  /// one a vertex of the disk, finite.
+  /// The contacts nearer than `ahead` times their reach, in an order that depends on the map alone.
+  /// uv: one a vertex of the disk, finite.
   [[nodiscard]] std::vector<Contact> contacts(std::span<const Vec2> uv, double ahead = 1) const;
 
  private:
@@ -52,12 +52,12 @@ class BoundaryBarrier {
 
 double contact_energy(std::span<const Contact> contacts, std::span<const Vec2> uv);
 
-/// Adds the gradient to what is there.
+/// Adds the gradient of the contacts to the given one.
 void add_contact_gradient(std::span<const Contact> contacts, std::span<const Vec2> uv,
                           std::span<Vec2> gradient);
 
-/// The curvature along the distance, the lower triangle by vertices_of(): it bounds the Hessian
-/// from above, but for how the distance itself bends.
+/// The second derivative along the distance, as a lower triangle by vertices_of(). It bounds the
+/// Hessian from above, except for the curvature of the distance itself.
 linear::PairElement contact_curvature(const Contact& contact, std::span<const Vec2> uv);
 
 }  // namespace unwrapd::solve::repair

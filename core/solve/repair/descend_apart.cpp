@@ -43,7 +43,7 @@ class ContactSystem {
  public:
   ContactSystem(const Disk& disk, const BarrierMesh& mesh) : disk_(disk), mesh_(mesh) {}
 
-  /// Makes room for those contacts that are near.
+  /// Makes room in the pattern for the contacts that are near.
   void prepare(const std::vector<Contact>& near, std::span<const Contact> acting) {
     const auto has_room = [&](const Contact& contact) {
       return std::binary_search(contact_.begin(), contact_.end(), vertices_of(contact));
@@ -77,7 +77,7 @@ class ContactSystem {
     system_->add(h / 3, element);
   }
 
-  /// The Newton step, one a vertex; none where the matrix is not positive definite.
+  /// The Newton step, one a vertex; empty if the matrix is not positive definite.
   std::optional<std::vector<Vec2>> step(const std::vector<Vec2>& gradient) {
     if (!system_->factor()) return std::nullopt;
     std::vector<Vec2> x(static_cast<std::size_t>(mesh_.free.count));
@@ -131,7 +131,7 @@ class Descending {
   }
 
  private:
-  /// The energy after it; none where no step lowers it.
+  /// The energy after the step; empty if no step lowers it.
   std::optional<double> step(bool is_far) {
     const std::vector<Vec2> gradient = fill_model(is_far && stage_->may_use_proxy);
     const std::optional<std::vector<Vec2>> step = system_.step(gradient);
@@ -142,8 +142,8 @@ class Descending {
     return injective_step(disk_, *step, slope, energy, uv_);
   }
 
-  /// Fills the matrix, far from the least energy with SLIM's proxy; returns the gradient, which
-  /// counts where vertices are free.
+  /// Fills the matrix, with SLIM's proxy if the energy is far from its least. Returns the gradient,
+  /// which is valid at free vertices.
   std::vector<Vec2> fill_model(bool is_far) {
     const std::vector<Contact> acting = contacts(uv_, 1);
     system_.prepare(contacts(uv_, kAhead), acting);

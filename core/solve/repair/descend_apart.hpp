@@ -1,5 +1,5 @@
 #pragma once
-// An injective map taken to less energy, and kept injective.
+// Lowers the energy of an injective map and keeps it injective.
 
 #include <span>
 
@@ -8,7 +8,7 @@
 
 namespace unwrapd::solve::repair {
 
-/// One stage of the way down.
+/// One stage of the descent.
 struct ApartStage {
   Barrier barrier;   ///< epsilon must be 0
   double contact;    ///< weight of the barrier between boundaries
@@ -17,10 +17,10 @@ struct ApartStage {
   bool may_use_proxy = false;  ///< of SLIM: the symmetric Dirichlet energy, faces weigh their areas
 };
 
-/// Lowers the energies of the stages, one after the other. All of them are 0 at their least, so
-/// that a share of one is a share of what may be to gain. mesh: the disk's faces with what they
-/// shall be; without soft constraints at least one vertex is fixed. uv must be injective by
-/// is_plainly_injective(), and still is afterwards. Throws Error{too_much_memory, cancelled}.
+/// Lowers the energies of the stages, one after the other. The least value of each is 0, so that a
+/// relative fall measures what is left to gain. mesh: the disk's faces with their targets; without
+/// soft constraints at least one vertex is fixed. uv must be injective by is_plainly_injective(),
+/// and remains so. Throws Error{too_much_memory, cancelled}.
 void descend_apart(const Disk& disk, const BarrierMesh& mesh, std::span<const ApartStage> stages,
                    UvMap& uv);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A step downhill after which an injective map is still injective.
+// A descent step that keeps an injective map injective.
 
 #include <algorithm>
 #include <optional>
@@ -11,17 +11,17 @@
 
 namespace unwrapd::solve::repair {
 
-/// What its line search goes by.
+/// The parameters of the line search.
 struct InjectiveStep {
   static constexpr double kShareOfFlip = 0.8;  ///< of the step at which the first triangle flips
   static constexpr double kArmijo = 1e-4;      ///< of the decrease that the gradient promises
   static constexpr int kMostHalvings = 40;
 };
 
-/// Takes the step, or the half of it, or a quarter, ..., but none that turns a triangle over: the
-/// first that lowers the energy by enough (Armijo) and leaves the map injective by the exact test.
-/// energy(uv): infinite where a triangle is flipped; slope: the gradient times the step. Returns
-/// the energy then; nothing, and uv as it was, where no step will do.
+/// Takes the step, or half of it, or a quarter, and so on, but no step that turns a triangle over:
+/// the first that lowers the energy by enough (Armijo) and leaves the map injective by the exact
+/// test. energy(uv): infinite if a triangle is flipped; slope: the gradient times the step. Returns
+/// the new energy; empty, with uv as it was, if no step succeeds.
 template <class Energy>
 std::optional<double> injective_step(const Disk& disk, std::span<const Vec2> step, double slope,
                                      const Energy& energy, UvMap& uv) {

@@ -1,5 +1,5 @@
 #pragma once
-// Projected Newton on a barrier energy, with a line search that never lets a triangle flip.
+// Projected Newton on a barrier energy, with a line search that never flips a triangle.
 
 #include <optional>
 
@@ -8,7 +8,7 @@
 
 namespace unwrapd::solve::repair {
 
-/// One mesh whose free vertices are moved downhill. The order of elimination is found once.
+/// Minimizes over the free vertices of one mesh. The order of elimination is found once.
 class Newton {
  public:
   /// mesh must outlive this, and so must the executor; null: the calling thread alone. The same

@@ -1,5 +1,5 @@
-// Vertices near the faces are let loose by a breadth-first walk; loose vertices that share a face
-// belong to one patch, so that no face is in two.
+// A breadth-first walk frees the vertices near the faces. Free vertices that share a face belong to
+// one patch, so that no face is in two patches.
 #include "core/solve/repair/patch.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace unwrapd::solve::repair {
 namespace {
 
-constexpr double kMost = 0.5;  // of the vertices: beyond that, all may as well be loose
+constexpr double kMost = 0.5;  // of the vertices; beyond it, all are free
 
 /// 1 for the vertices within `rings` rings of the faces.
 std::vector<char> near_vertices(const Disk& disk, std::span<const Index> faces, int rings) {
@@ -42,7 +42,7 @@ class Cutter {
         taken_(disk.faces.size(), 0),
         number_(disk.positions.size(), linear::kFixed) {}
 
-  /// Every patch of loose vertices, by their lowest vertex.
+  /// All patches of free vertices, ordered by their lowest vertex.
   std::vector<Patch> cut() {
     std::vector<Patch> patches;
     std::vector<char> open = loose_;
@@ -52,7 +52,7 @@ class Cutter {
   }
 
  private:
-  /// The faces at the loose vertices that hang together with `seed`, which are no longer open.
+  /// The faces at the free vertices connected with `seed`; marks these vertices as visited.
   std::vector<Index> faces_from(Index seed, std::vector<char>& open) {
     std::vector<Index> faces, inside{seed};
     open[seed] = 0;

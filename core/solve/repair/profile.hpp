@@ -1,11 +1,11 @@
 #pragma once
 // Energies of one triangle as functions of the two parts of its Jacobian
-// (core/measure/jacobian.hpp): Q, that of its similarity part, and R, that of the rest. All of them
-// are 0 at their least.
+// (core/measure/jacobian.hpp): Q, of its similarity part, and R, of the remainder. The least value
+// of each is 0.
 
 namespace unwrapd::solve::repair {
 
-/// What a method wants of a triangle: its fit by Eq. (5), or one of the others below.
+/// The energy that a method minimizes on a triangle: the fit of Eq. (5), or another one.
 enum class OwnEnergy { fit, symmetric_dirichlet, mips };
 
 /// A function of Q and R with its derivatives.

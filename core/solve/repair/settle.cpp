@@ -16,7 +16,7 @@
 namespace unwrapd::solve::repair {
 namespace {
 
-/// How the barrier fades; only its last minimum counts.
+/// One stage of the fading barrier; only the last one's minimum counts.
 struct Fading {
   double wall, dirichlet;  ///< weights, see Barrier
   double tolerance;        ///< relative fall of the energy in one step
@@ -24,17 +24,19 @@ struct Fading {
 constexpr double kFloor = 1e-3;  // of the symmetric Dirichlet energy
 constexpr std::array kFading{Fading{1e-1, 0, 1e-2}, Fading{0, 1e-2, 1e-3}, Fading{0, kFloor, 1e-4}};
 constexpr int kMostFading = 20;       // Newton steps for each weight
-constexpr int kMostFadingWhole = 60;  // where the way may be long
-constexpr int kMostFadingLarge = 15;  // of a whole beyond kLarge faces, where a step takes seconds
+constexpr int kMostFadingWhole = 60;  // for a whole disk, where the way may be long
+constexpr int kMostFadingLarge =
+    15;  // for a whole disk beyond kLarge faces, where a step takes seconds
 constexpr std::size_t kLarge = 200'000;
-constexpr double kWhole = 5;  // tolerances then: a step costs ten iterations of the solve
+constexpr double kWhole =
+    5;  // factor of the tolerance for a whole disk: a step costs ten iterations of the solve
 
 constexpr int kNeedleRings = 2;  // around a needle
 constexpr double kRaise = 4;     // of the floor, from one round to the next
 constexpr int kMostRaises = 4;
 
-/// Targets of the size that the map has there, for energies that do not care about size: the mean
-/// stretch of the triangles around each is kept.
+/// Sets targets to the sizes in the map, for energies that do not depend on size: the mean stretch
+/// of the triangles around each is kept.
 void follow_sizes(const UvMap& own, BarrierMesh& mesh) {
   const std::vector<double> size = sizes_around(mesh.faces, mesh.rest, own);
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) mesh.rest[t] = scaled(mesh.rest[t], size[t]);
@@ -59,7 +61,7 @@ int most_steps(const Patch& patch, bool is_whole) {
   return patch.face.size() > kLarge ? kMostFadingLarge : kMostFadingWhole;
 }
 
-/// From a map without flips to one of little energy without flips.
+/// Lowers the energy of a map without flips, and keeps it free of flips.
 void descend(const Disk& disk, const MapIntent& intent, std::span<const Fading> fadings,
              Patch& patch, UvMap& own) {
   const bool is_whole = patch.face.size() == disk.faces.size();

@@ -1,5 +1,5 @@
 #pragma once
-// Patches of a map without flips, taken to little energy and kept free of flips and needles.
+// Lowers the energy of patches that have no flips, and keeps them free of flips and needles.
 
 #include <span>
 
@@ -14,19 +14,18 @@ namespace unwrapd::solve::repair {
 /// map of the patch, by its own numbers. Throws Error{cancelled}.
 void settle(const Disk& disk, const MapIntent& intent, Patch& patch, UvMap& own);
 
-/// The same for patches of one map that share no triangle, side by side.
+/// The same for patches of one map that share no triangle, in parallel.
 void settle_all(const Disk& disk, const MapIntent& intent, std::span<Patch> patches, UvMap& uv);
 
-/// What a patch is worked on by: the executor where it is alone, else the calling thread.
+/// The intent for one of several patches: it uses the executor only if it is the only one.
 inline MapIntent intent_of_one(MapIntent intent, std::size_t patches) {
   if (patches > 1) intent.executor = nullptr;
   return intent;
 }
 
 /// Widens needles, triangles of a condition (sigma_max / sigma_min) beyond kMostCondition, among
-/// the faces for which is_candidate is not 0: what is around them settles again under a higher
-/// barrier, and again, until there are none or the barrier outweighs the energy. uv has no flips.
-/// Throws Error{cancelled}.
+/// the faces with is_candidate != 0. Their surroundings settle again under rising barriers, until
+/// no needle is left or the barrier outweighs the energy. uv has no flips. Throws Error{cancelled}.
 void widen_needles(const Disk& disk, const MapIntent& intent, std::span<const char> is_candidate,
                    UvMap& uv);
 

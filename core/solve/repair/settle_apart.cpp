@@ -23,7 +23,7 @@ constexpr ApartStage kIsometric{
     .tolerance = 1e-3,
     .most_steps = 100};
 
-/// Sizes are held by the wall alone.
+/// The wall alone determines sizes.
 constexpr ApartStage kAngles{.barrier = {.rigidity = {}, .weight = 1e-2, .own = OwnEnergy::mips},
                              .contact = 1e-3,
                              .tolerance = 1e-3,
@@ -43,7 +43,7 @@ ApartStage last_stage(const MapIntent& intent) {
   }
 }
 
-/// All vertices free, but for one where nothing else tells where the map lies.
+/// All vertices are free, but for one if nothing else determines the translation.
 BarrierMesh loose(const Disk& disk, const std::vector<double>& share,
                   const std::vector<SoftConstraint>& soft, const std::stop_token& stop) {
   std::vector<char> hard(disk.positions.size(), 0);

@@ -1,5 +1,5 @@
 #pragma once
-// The sizes that triangles have in a map: what energies that do not care about size shall keep.
+// The sizes of triangles in a map, which energies that do not depend on size shall keep.
 
 #include <span>
 #include <vector>
@@ -11,7 +11,7 @@ namespace unwrapd::solve::repair {
 /// Rigidities below this lambda (Rigidity) do not care about size.
 inline constexpr double kConformalBelow = 0.01;
 
-/// For each face, by how much the map stretches it and the faces around it: their geometric mean.
+/// The stretch of each face and the faces around it: their geometric mean.
 std::vector<double> sizes_around(std::span<const Triangle> faces,
                                  std::span<const measure::RestTriangle> rest,
                                  std::span<const Vec2> uv);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostTurning = 90;       // Newton steps under the regularised barrier
 constexpr int kPatience = 15;          // steps in which the flips must halve, after the first ones
-constexpr std::size_t kLarge = 4096;   // faces: beyond that, flips must be fewer by then
+constexpr std::size_t kLarge = 4096;   // faces; larger patches must show fewer flips by then
 constexpr double kWholeWall = 3;       // beside an energy; with 1 single flips stay, with 10 steps
 constexpr double kEpsilonShare = 0.2;  // of the worst determinant
 constexpr double kFirstEpsilon = 0.1;  // collapsed triangles open under a large one
@@ -37,7 +37,7 @@ BarrierMesh fitted(const BarrierMesh& mesh, const UvMap& uv) {
             measure::jacobian(mesh.rest[t], measure::uv_edges(mesh.faces[t], uv)).determinant();
   }
   BarrierMesh fit = mesh;
-  fit.soft.clear();  // they come when nothing is flipped
+  fit.soft.clear();  // soft constraints follow when nothing is flipped
   if (has_rim(mesh) && room > 0)
     for (measure::RestTriangle& rest : fit.rest) rest = scaled(rest, std::sqrt(room / wanted));
   return fit;
@@ -71,8 +71,8 @@ bool is_untangled(const BarrierMesh& mesh, std::span<const Vec2> uv) {
 void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t enough, UvMap& uv) {
   const BarrierMesh mesh = fitted(patch, uv);
   Newton newton(mesh, intent.executor);
-  // What no rim holds is kept near the map that it has by the method's own energy: else it takes
-  // several times as many steps to come back to it.
+  // Without a rim the patch is kept near its map by the method's own energy. Otherwise it takes
+  // several times as many steps to return to it.
   Barrier barrier{arap::Rigidity{0.0}, 1};
   if (!has_rim(mesh)) barrier = {intent.rigidity, kWholeWall};
   const std::size_t first = measure::flipped_faces(mesh.faces, uv, mesh.stop).size();

@@ -1,5 +1,5 @@
 #pragma once
-// Flipped triangles of a patch turned over by the regularised barrier.
+// Turns flipped triangles of a patch over by the regularized barrier.
 
 #include <cstddef>
 #include <span>
@@ -9,12 +9,12 @@
 
 namespace unwrapd::solve::repair {
 
-/// Turns the triangles of a patch over until none is flipped, or at most `enough` and a step no
-/// longer halves them. Gives up where they do not grow fewer. Throws Error{cancelled}.
+/// Turns the triangles of a patch over until none is flipped, or at most `enough` are and a step no
+/// longer halves them. Gives up if the flips do not become fewer. Throws Error{cancelled}.
 void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t enough, UvMap& uv);
 
-/// Another start for what turn_over() left flipped: each free vertex goes most of the way to the
-/// middle of its neighbours, a few times over. Throws Error{cancelled}.
+/// Another start for the flips that turn_over() left: moves each free vertex most of the way to the
+/// mean of its neighbours, several times. Throws Error{cancelled}.
 UvMap evened_out(const BarrierMesh& patch, UvMap uv);
 
 /// Whether every triangle is counter-clockwise by the exact test, with a positive determinant.

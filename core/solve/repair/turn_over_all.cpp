@@ -28,7 +28,7 @@ namespace {
 constexpr double kPenalty = 15;      // rho
 constexpr double kDirichlet = 1e-3;  // mu: that of the last maps of settle()
 constexpr double kAtRest = 1e-3;     // root mean square change of the Jacobians in a step
-constexpr int kUsualSteps = 30;      // by then, what is near rest will do
+constexpr int kUsualSteps = 30;      // after these, a map near rest is accepted
 constexpr double kNearRest = 1e-2;
 constexpr double kLeastTurn = 0.5;  // of a similarity part, to keep its direction at the start
 constexpr double kSlope = 1 + kDirichlet + kPenalty;
@@ -39,7 +39,7 @@ measure::Jacobian sum(const measure::Jacobian& a, double w, const measure::Jacob
   return {a.e + w * b.e, a.h + w * b.h, a.f + w * b.f, a.g + w * b.g};
 }
 
-/// Its similarity part and its rest, each times a number of its own.
+/// The similarity part and the remainder of j, each multiplied by a factor.
 measure::Jacobian weighted(const measure::Jacobian& j, double similarity, double rest) {
   return {similarity * j.e, similarity * j.h, rest * j.f, rest * j.g};
 }
@@ -72,7 +72,7 @@ VertexConstraints constraints_of(const MapIntent& intent, std::span<const Vec2> 
   return constraints;
 }
 
-/// The Jacobians of one map in the making.
+/// The Jacobians and multipliers of the iteration.
 class Splitting {
  public:
   Splitting(const Disk& disk, const MapIntent& intent, Executor& executor, std::span<const Vec2> uv)
@@ -114,7 +114,7 @@ class Splitting {
     });
   }
 
-  /// Of the similarity that fits a Jacobian best whose own is q.
+  /// The scale of the similarity that best fits a Jacobian with |similarity part| q.
   [[nodiscard]] double fitted_scale(std::size_t t, double q) const {
     return arap::hybrid_scale(intent_.rigidity.at(disk_.rest[t].area), q);
   }
@@ -136,7 +136,7 @@ class Splitting {
     const Eigen::Array2d value =
         size * singular_values({(q + r) / size, (q - r) / size}, scale / size);
     const double high = value[0], low = value[1];
-    if (!(q > 0)) return {(high + low) / 2, 0, z.f, z.g};  // all turns fit alike
+    if (!(q > 0)) return {(high + low) / 2, 0, z.f, z.g};  // all rotations fit equally
     return weighted(z, (high + low) / (2 * q), r > 0 ? (high - low) / (2 * r) : 0);
   }
 
@@ -180,7 +180,7 @@ class Splitting {
   const MapIntent& intent_;
   Executor& executor_;
   std::optional<arap::GlobalStep> own_;
-  std::vector<double> size_;               // empty: that of the surface
+  std::vector<double> size_;               // empty: the sizes of the surface
   std::vector<measure::Jacobian> excess_;  // U
   std::vector<Vec2> soft_excess_;
   std::vector<Vec2> pull_;  // on each corner

@@ -1,9 +1,9 @@
-// Around the flips, everything within a few rings of triangles is let loose; the rest of the map
-// holds the rim. First the regularised barrier turns the triangles over; then the method's own
-// energy is minimised under a barrier that fades, and triangles left as needles are widened. Where
-// that fails the patch grows, in the end to the whole chart, which at last starts anew from Tutte's
-// map. Where flips are many, patches hold each other's folds fast: there the whole comes first, at
-// many times the cost; of a large disk, by steps that need no factor of their own (turn_over_all).
+// Frees everything within a few rings of the flips; the rest of the map fixes the rim. First the
+// regularized barrier turns the triangles over. Then the method's own energy is minimized under a
+// barrier that fades, and needles are widened. If that fails the patch grows, in the end to the
+// whole chart, which at last starts again from Tutte's map. If flips are many, patches block each
+// other's folds: the whole chart is then repaired first, at many times the cost; a large disk by
+// steps that need no factor of their own (turn_over_all).
 #include "core/solve/repair/untangle.hpp"
 
 #include <algorithm>
@@ -30,12 +30,12 @@ namespace {
 
 constexpr int kMostRings = 64;
 constexpr int kMostRounds = 4;     // from small patches to large ones
-constexpr double kCrowded = 0.25;  // share of flips beyond which only the whole is worth a try
+constexpr double kCrowded = 0.25;  // share of flips beyond which only the whole is worth an attempt
 constexpr double kMany = 0.05;     // share of flips beyond which the whole comes first
 constexpr std::size_t kLargeDisk = 4096;  // faces; below, Newton steps on the whole take little
 constexpr double kManyOfLarge = 0.005;    // the same of a large disk, where the whole costs less
-constexpr double kFew = 0.02;             // of those flips, to be left to patches
-constexpr int kSettlingRings = 2;         // around what is rough
+constexpr double kFew = 0.02;             // of those flips, which patches may repair
+constexpr int kSettlingRings = 2;         // around rough faces
 bool may_move_all(const MapIntent& intent) {
   return !intent.in_place && std::none_of(intent.constrained.begin(), intent.constrained.end(),
                                           [](char h) { return h != 0; });
@@ -45,14 +45,14 @@ bool exceeds(std::size_t count, double share, std::size_t all) {
   return static_cast<double>(count) > share * static_cast<double>(all);
 }
 
-/// What became of a face.
+/// The state of a face.
 enum State : char { kUntouched, kRough, kSettled };  // rough: turned over, but not settled since
 
-/// What rounds of patches leave.
+/// The result of rounds of patches.
 struct Left {
   std::vector<Index> flipped;
   std::vector<char> state;           ///< of each face
-  bool has_tried_the_whole = false;  ///< at once; to repeat that would be in vain
+  bool has_tried_the_whole = false;  ///< a second attempt would fail likewise
 
   void mark(const Patch& patch, State now) {
     for (Index t : patch.face) state[t] = now;
@@ -65,15 +65,15 @@ struct Left {
   }
 };
 
-/// A patch after an attempt to mend it. Where that fails the map stays as it is, unless half of the
-/// flips are gone: then it has yet to settle.
+/// A patch after an attempt to repair it. If that fails the map stays as it is, unless half of the
+/// flips are gone: then the patch has yet to settle.
 struct Attempt {
   UvMap own;
   State state = kUntouched;
 };
 
-/// Where triangles that were turned over hold each other flat, tries again from a map that is even:
-/// a larger patch would hold the same knot.
+/// If triangles that were turned over block each other, tries again from an evened-out map. A
+/// larger patch would contain the same knot.
 void untie(const Patch& patch, const MapIntent& intent, const UvMap& uv, UvMap& own) {
   const bool has_rim = patch.mesh.free.count < static_cast<Index>(own.size());
   if (!has_rim || is_untangled(patch.mesh, own)) return;
@@ -98,7 +98,7 @@ Attempt mended(const Disk& disk, const MapIntent& intent, Patch& patch, const Uv
   return attempt;
 }
 
-/// Mends patches that share no triangle, side by side.
+/// Repairs patches that share no triangle, in parallel.
 void mend_all(const Disk& disk, const MapIntent& intent, std::span<Patch> patches, UvMap& uv,
               Left& left) {
   const MapIntent own_intent = intent_of_one(intent, patches.size());
@@ -120,7 +120,7 @@ Patch whole(const Disk& disk) {
   return std::move(patches_around(disk, all, 0, {}).front());
 }
 
-/// A new map at the surface's size or, where there are soft constraints, where they draw it.
+/// Places a new map at the surface's size or, if there are soft constraints, by them.
 UvMap at_its_place(const Disk& disk, const MapIntent& intent, UvMap uv) {
   const double area = measure::uv_area(disk.rest, disk.faces, uv);
   for (Vec2& u : uv) u /= std::sqrt(area);
@@ -133,9 +133,9 @@ UvMap tutte_without_holes(const Disk& disk) {
   return uv;
 }
 
-/// Turns over all of a large disk at once where flips are many; Newton steps on the whole would
-/// take several times as long as its solve, and four times the memory. False, and uv as it was,
-/// where that leaves many flips.
+/// Turns over a large disk as a whole if flips are many. Newton steps on the whole would take
+/// several times as long as its solve, and four times the memory. Returns false, with uv as it was,
+/// if many flips are left.
 bool thin_out_large(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
   const std::size_t before = left.flipped.size(), all = disk.faces.size();
   if (intent.in_place || all <= kLargeDisk || !exceeds(before, kManyOfLarge, all)) return false;
@@ -149,7 +149,7 @@ bool thin_out_large(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& 
   return true;
 }
 
-/// The same of any disk: a map that this does not help stays as it is.
+/// The same for any disk. A map that is not improved stays as it is.
 void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
   if (thin_out_large(disk, intent, uv, left)) return;
   const std::size_t before = left.flipped.size();
@@ -164,13 +164,13 @@ void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) 
   left.mark(patch, kRough);
 }
 
-/// Whether a patch holds more flips than there is hope for within its rim.
+/// Whether a patch has too many flips to be repaired within its rim.
 bool is_crowded(const Patch& patch, const UvMap& uv) {
   const std::size_t flips = measure::flipped_faces(patch.mesh.faces, map_of(patch, uv)).size();
   return exceeds(flips, kCrowded, patch.face.size());
 }
 
-/// Patches of growing size, in the end the whole.
+/// Repairs patches of growing size, in the end the whole.
 void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
   bool was_whole = false;
   for (int rings = intent.rings; !was_whole && !left.flipped.empty(); rings *= 2) {
@@ -185,7 +185,7 @@ void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& le
   }
 }
 
-/// Rounds of patches as long as each leaves half of the flips at most.
+/// Repeats rounds of patches as long as each leaves at most half of the flips.
 void mend_in_rounds(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
   for (int round = 0; round < kMostRounds && !left.flipped.empty(); ++round) {
     const std::size_t before = left.flipped.size();
@@ -194,7 +194,7 @@ void mend_in_rounds(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& 
   }
 }
 
-/// Other maps, which have no flips to begin with.
+/// Starts again from maps that have no flips.
 bool start_over(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   return may_move_all(intent) && (start_anew(disk, intent, virtual_boundary_map(disk, uv), uv) ||
                                   start_anew(disk, intent, tutte_without_holes(disk), uv));

@@ -32,7 +32,7 @@ struct Padded {
   std::size_t rim = 0;  ///< vertices from this one on are the rim
 };
 
-/// The rim's vertices on a circle, one for each of the loop, turned to lie near them.
+/// Places the rim's vertices on a circle, one for each of the loop, rotated to lie near them.
 void append_rim(const std::vector<Index>& loop, UvMap& uv) {
   Vec2 centre = Vec2::Zero();
   for (const Vec2& u : uv) centre += u / static_cast<double>(uv.size());

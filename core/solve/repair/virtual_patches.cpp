@@ -1,8 +1,7 @@
-// The virtual boundary's map is free of flips, but lies elsewhere: it moves the whole disk for one
-// of them. Its patch is laid on the rim that it has in the old map by the best similarity; what is
-// missing at the rim is spread over the patch as smoothly as a membrane bends (uniform Laplacian).
-// Nothing promises that this keeps triangles upright, above all where the surface's boundary runs
-// through the patch: those that turn over are turned back by the barrier.
+// The virtual boundary's map has no flips, but moves the whole disk to remove one of them. So a
+// patch of it is aligned with its rim in the old map by the best similarity, and the remaining
+// offset at the rim is spread over the patch smoothly (uniform Laplacian). This may flip triangles
+// again, above all where the surface's boundary crosses the patch; the barrier turns them back.
 #include "core/solve/repair/virtual_patches.hpp"
 
 #include "core/linear/dominant_lu.hpp"
@@ -20,7 +19,7 @@ Vec2 turned(const Vec2& by, const Vec2& u) {  // the product of complex numbers
   return {by.x() * u.x() - by.y() * u.y(), by.x() * u.y() + by.y() * u.x()};
 }
 
-/// One map laid on another by the similarity that fits best over the vertices that are not free.
+/// Aligns map with `to` by the similarity that fits best over the vertices that are not free.
 UvMap laid_on(const linear::FreeVertices& free, const UvMap& to, UvMap map) {
   Vec2 here = Vec2::Zero(), there = Vec2::Zero(), across = Vec2::Zero();
   double count = 0, spread = 0;
@@ -41,7 +40,7 @@ UvMap laid_on(const linear::FreeVertices& free, const UvMap& to, UvMap map) {
   return map;
 }
 
-/// The patch of `map`, bent so that its rim lies where it does in `to`.
+/// The patch of `map`, deformed so that its rim lies where it does in `to`.
 UvMap bent_into(const Patch& patch, const UvMap& to, UvMap map) {
   const std::vector<Index>& slot = patch.mesh.free.slot;
   map = laid_on(patch.mesh.free, to, std::move(map));
@@ -65,8 +64,8 @@ UvMap bent_into(const Patch& patch, const UvMap& to, UvMap map) {
   return map;
 }
 
-/// No farther than needed on the way from one map of a patch to another, with what is flipped there
-/// turned over; empty where that does not succeed.
+/// As short a way as possible from one map of a patch to another; flips on it are turned over.
+/// Empty if that fails.
 UvMap partway(const Patch& patch, const MapIntent& intent, const UvMap& from, const UvMap& to) {
   for (const double share : {0.25, 0.5, 1.0}) {
     UvMap own = from;

@@ -1,14 +1,14 @@
 #pragma once
-// Flips mended by the convex virtual boundary where they are, "without changing much else" (Sec.
-// 4.4, last paragraph).
+// Repairs flips locally by the convex virtual boundary, "without changing much else" (Sec. 4.4,
+// last paragraph).
 
 #include "core/solve/repair/untangle.hpp"
 
 namespace unwrapd::solve::repair {
 
-/// Takes patches around the flips from virtual_boundary_map(), which has none, bends them to fit
-/// into the rest of the map, and lets them settle. A patch that does not fit grows, in the end to
-/// the whole disk. Returns whether any was mended: other flips stay. Held vertices never move.
+/// Takes patches around the flips from virtual_boundary_map(), which has none, fits them into the
+/// rest of the map, and lets them settle. A patch that does not fit grows, in the end to the whole
+/// disk. Returns whether any flip was repaired; the others stay. Constrained vertices never move.
 /// Throws Error{cancelled}.
 bool mend_by_virtual_boundary(const Disk& disk, const MapIntent& intent, UvMap& uv);
 
