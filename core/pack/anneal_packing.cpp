@@ -1,10 +1,11 @@
-// The islands keep their scale and the page shrinks: so every island is turned into cells once, and
-// one placement of all yields a figure, the height that they take in a strip as wide as the page,
-// rather than a yes or no. Where the strip is higher than wide, small changes of order and turns
-// are tried, and kept when the height does not grow by more than a threshold that falls to none
-// (Dueck, Scheuer 1990); once it is a square, the strip gets narrower.
+// The islands keep their scale and the page shrinks. So every island is rasterized once, and one
+// placement of all yields a figure, the height that they take in a strip as wide as the page,
+// rather than a yes or no. If the strip is higher than wide, small changes of order and rotations
+// are tried, and kept if the height does not grow by more than a threshold that falls to zero
+// (Dueck, Scheuer 1990). Once the strip is a square, it gets narrower.
 //
-// Pages of a given size know only a yes or no: islands that found no place go to the front.
+// Pages of a given size only tell yes or no. There, islands without a place move to the front of
+// the order.
 #include "core/pack/anneal_packing.hpp"
 
 #include <algorithm>
@@ -19,16 +20,16 @@
 namespace unwrapd::pack {
 namespace {
 
-constexpr int kHeights = 4;     // a strip may be so many times as high as wide
-constexpr double kLift = 0.5;   // what islands' mean height counts beside the strip's
+constexpr int kHeights = 4;     // maximal height of a strip, in widths
+constexpr double kLift = 0.5;   // weight of the islands' mean height beside the strip's
 constexpr int kWidening = 16;   // share of a strip's width by which it widens until islands fit in
 constexpr int kBalancings = 4;  // steps towards a square
-constexpr int kRetries = 12;    // with the homeless to the front
+constexpr int kRetries = 12;    // with islands without a place moved to the front
 constexpr double kDense = 0.95,
                  kLoose = 0.3;   // shares of pages that islands fill, at most and least
-constexpr double kStep = 1.003;  // to which a page's side is found
+constexpr double kStep = 1.003;  // factor between page sides that are tried
 
-/// Numbers that are spread evenly: 1, 2, 3, ... scrambled.
+/// Evenly spread pseudo-random numbers: 1, 2, 3, ... hashed.
 class Sequence {
  public:
   std::size_t below(std::size_t bound) {
@@ -39,7 +40,7 @@ class Sequence {
   std::uint64_t state_ = 0;
 };
 
-/// A small change: two islands change places, one comes earlier, or one is turned.
+/// A small change: exchanges two islands, moves one to the front, or rotates one.
 void change(Arrangement& arrangement, int turns, Sequence& sequence) {
   const std::size_t n = arrangement.order.size();
   const std::size_t kind = sequence.below(10), a = sequence.below(n), b = sequence.below(n);
@@ -83,7 +84,7 @@ class AnnealedStrip {
   }
 
  private:
-  /// Takes the arrangement if the strip gets no higher by it than `rise`.
+  /// Accepts the arrangement if it raises the strip by at most `rise`.
   bool try_it(const Arrangement& arrangement, double rise) {
     const int limit = top_ > 0 ? static_cast<int>(height_ + rise) : kHeights * width_;
     const PlacedIslands laid = placer_.lay(arrangement, {width_, limit, 1}, budget_);
@@ -99,7 +100,7 @@ class AnnealedStrip {
     return true;
   }
 
-  /// Islands that are too wide as they are turned find another turn.
+  /// Chooses another rotation for islands that are too wide.
   bool lay_again(int width) {
     width_ = width;
     top_ = 0;
@@ -110,7 +111,7 @@ class AnnealedStrip {
     return try_it(next, 0);
   }
 
-  /// Towards the width at which what was found first is as high as wide.
+  /// Adjusts the width until the first packing is as high as wide.
   void balance() {
     for (int k = 0; k < kBalancings && best_.side > 0 && top_ != width_; ++k)
       if (!lay_again(std::max(least_, (width_ + top_ + 1) / 2))) break;
@@ -119,7 +120,7 @@ class AnnealedStrip {
     lay_again(std::max(least_, best_.side - 1));
   }
 
-  /// Less width as long as the strip is no higher than wide; false when there is none to take.
+  /// Narrows the strip as long as it is no higher than wide; false if it cannot be narrowed.
   bool narrow() {
     while (top_ > 0 && top_ <= width_) {
       if (width_ <= least_) return false;
@@ -132,13 +133,13 @@ class AnnealedStrip {
   Budget& budget_;
   Sequence& sequence_;
   int least_ = 1, width_ = 1;
-  int top_ = 0;        ///< of what is now in the strip; 0: nothing is
-  double height_ = 0;  ///< of the same: its top, and a little of how high its islands lie
+  int top_ = 0;        ///< of the strip as it is; 0: empty
+  double height_ = 0;  ///< its top, plus a small share of its islands' mean height
   Arrangement now_;
   Found best_;
 };
 
-/// The first island without a place comes first, and all are laid again.
+/// Places all again, with the first island that found no place at the front.
 Found with_retries(BottomLeftPlacer& placer, Arrangement arrangement, const PageCells& sheet,
                    Budget& budget) {
   for (int k = 0; k < kRetries; ++k) {

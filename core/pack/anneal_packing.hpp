@@ -1,5 +1,5 @@
 #pragma once
-// Which arrangement of islands needs the smallest pages.
+// Searches the arrangement of islands that needs the smallest pages, by threshold accepting.
 
 #include <vector>
 
@@ -9,23 +9,23 @@ namespace unwrapd::pack {
 
 /// Islands on square pages of `side` cells.
 struct Found {
-  Arrangement arrangement;  ///< every turn decided
+  Arrangement arrangement;  ///< all rotations are chosen
   std::vector<CellPlace> spots;
   int side = 0;  ///< 0: nothing was found
   int pages = 1;
 };
 
-/// Arrangements to begin with: the largest first, by several measures; every turn open.
+/// Initial arrangements: the largest island first, by several measures; all rotations open.
 std::vector<Arrangement> usual_arrangements(const BottomLeftPlacer& placer);
 
 struct AnnealRules {
   int width = 0;    ///< cells, to begin with
-  double heat = 0;  ///< share of the width by which a change may make things worse at first
-  int enough = 0;   ///< cells a side: a page no larger ends the search
+  double heat = 0;  ///< rise of the height that is accepted at first, in widths
+  int enough = 0;   ///< cells a side; a page no larger ends the search
 };
 
-/// Looks for the smallest page that holds all, within the budget. What was found from each start,
-/// the smallest first. The placer's scale stays what it is: the page shrinks.
+/// Searches the smallest page that holds all islands, within the budget. Returns the best packing
+/// from each start, the smallest first. The placer keeps its scale: the page shrinks.
 std::vector<Found> smallest_page(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
                                  const AnnealRules& rules, Budget& budget);
 
@@ -33,7 +33,8 @@ std::vector<Found> smallest_page(BottomLeftPlacer& placer, const std::vector<Arr
 Found smallest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
                      int page_count, Budget& budget);
 
-/// On pages of this side, as few as can be had of at most page_count; side 0 when they do not do.
+/// Searches for as few pages of this side as possible, at most page_count; side 0 if the islands do
+/// not fit.
 Found fewest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
                    const PageCells& sheet, Budget& budget);
 

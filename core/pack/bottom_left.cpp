@@ -1,7 +1,7 @@
 // Bottom-left placement (Baker, Coffman, Rivest 1980) of cell masks: the lowest row that has a free
-// place, in it the leftmost. Rows are looked at from below, so that holes are filled by whatever
-// fits into them; with many islands a size class begins where its last one lay, as those below have
-// refused its like already.
+// place, in it the leftmost. Rows are searched from below, so that islands fill holes that they fit
+// into. With many islands a size class starts at the row of its last island, since the rows below
+// had no place for one of that size.
 #include "core/pack/bottom_left.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace unwrapd::pack {
 namespace {
 
-constexpr std::size_t kFewIslands = 64;  // that look at every row
+constexpr std::size_t kFewIslands = 64;  // up to which every row is searched
 constexpr double kSpanning = 0.5;        // the square of an island's length that may span a page,
                                          // beside the area of all boxes
 
@@ -28,7 +28,7 @@ UvMap points_of(const charts::Outline& outline) {
 
 }  // namespace
 
-/// A page as it fills.
+/// A page and its free cells.
 struct BottomLeftPlacer::Page {
   Occupancy cells;
   PlacementHints lowest = {};

@@ -1,5 +1,5 @@
 #pragma once
-// Islands set down one after another on the cells of one or more pages.
+// Places islands one after another on the cells of one or more pages.
 
 #include <cstdint>
 #include <optional>
@@ -13,20 +13,20 @@ namespace unwrapd::pack {
 
 inline constexpr int kAnyTurn = -1;
 
-/// In which order islands are set down, and how each is turned: kAnyTurn takes the best of all.
+/// The order in which islands are placed, and the rotation of each: kAnyTurn takes the best of all.
 struct Arrangement {
   std::vector<Index> order;
   std::vector<int> turn;  ///< [island]
 };
 
-/// Where an island came to lie: its mask's lower left cell, its turn, its page.
+/// The position of an island: its mask's lower left cell, its rotation, its page.
 struct CellPlace {
   int x = 0, y = 0;
   int turn = 0;
   int page = 0;
 };
 
-/// The pages in cells. height: islands that would reach beyond it find no place.
+/// The pages in cells. height: an island that would reach beyond it has no place.
 struct PageCells {
   int width = 0;
   int height = 0;
@@ -34,33 +34,35 @@ struct PageCells {
 };
 
 struct PlacedIslands {
-  std::vector<CellPlace> spots;  ///< [island]; of those that found a place
+  std::vector<CellPlace> spots;  ///< [island]; valid if the island has a place
   bool is_complete = false;
-  int placed = 0;          ///< islands that found a place before one did not
+  int placed = 0;          ///< islands placed before the first that has no place
   int top = 0;             ///< cells, of the first page
-  int pages = 1;           ///< that islands lie on
-  double mean_height = 0;  ///< cells: of the islands' middles, by their cells
+  int pages = 1;           ///< number of pages that have islands
+  double mean_height = 0;  ///< cells: the mean height of the islands' centres, by area
 };
 
-/// What a search may cost: words of bitmaps looked at. A measure of time that is the same on every
+/// The budget of a search, in words of bitmaps that it reads. It measures time independently of the
 /// machine.
 struct Budget {
   std::int64_t words = 0;
   std::stop_token stop = {};
 };
 
-/// Islands at one scale as masks, each turn made when it is first asked for.
+/// Islands at one scale as masks. The mask of each rotation is made when it is first needed.
 class BottomLeftPlacer {
  public:
-  /// outlines must outlive this. turns: a full circle is divided into so many; the first puts an
-  /// island's right angles or its smallest box upright, or the squarest where it may span the page.
+  /// outlines must outlive this. turns: the number of rotations in a full circle. The first puts an
+  /// island's right angles or its smallest box upright, or its squarest box if it may span the
+  /// page.
   BottomLeftPlacer(std::span<const charts::Outline> outlines, int turns);
 
-  /// cells_per_unit: the islands' scale; padding: cells. Forgets masks of other figures.
+  /// cells_per_unit: the islands' scale; padding: cells. Drops masks of other values.
   void set_scale(double cells_per_unit, double padding);
 
-  /// Each island, in order, at the lowest free place of its turns, then the leftmost, on the first
-  /// page that has one. Stops at the first that finds none. Throws Error{cancelled}.
+  /// Places each island, in order, at the lowest free place over its rotations, then the leftmost,
+  /// on the first page that has one. Stops at the first island that has no place. Throws
+  /// Error{cancelled}.
   PlacedIslands lay(const Arrangement& arrangement, const PageCells& sheet, Budget& budget);
 
   [[nodiscard]] std::size_t size() const { return outlines_.size(); }
@@ -70,13 +72,12 @@ class BottomLeftPlacer {
   [[nodiscard]] Turn turn_of(std::size_t island, int turn) const;
   const Mask& mask_of(std::size_t island, int turn);
 
-  /// The least side of a page on which every island finds room for itself. Throws
-  /// Error{cancelled}.
+  /// The least side of a page on which every island fits alone. Throws Error{cancelled}.
   int least_side(const std::stop_token& stop);
 
  private:
   struct Page;
-  /// The lowest free place of one turn, if its top comes to lie below lowest_top.
+  /// The lowest free place of one rotation, if its top is below lowest_top.
   bool lower(std::size_t island, int turn, Page& page, CellPlace& spot, int& lowest_top);
   bool lay_one(std::size_t island, int turn, std::vector<Page>& pages, CellPlace& spot);
 

@@ -13,14 +13,14 @@ namespace unwrapd::pack {
 namespace {
 
 constexpr int kSquareAngles = 180;        // in a quarter turn
-constexpr double kSquareGain = 1 - 1e-6;  // a turn must be worth it
+constexpr double kSquareGain = 1 - 1e-6;  // least gain for which an island is rotated
 constexpr std::size_t kStraightTries = 16;
 constexpr double kMostlyStraight = 0.5;  // of the length of all sides
 constexpr double kStraight = 0.01;       // the product of sine and cosine, at most
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Appends one chain of the hull to `hull`, whose entries before `base` stay.
+/// Appends one chain of the hull to `hull`. Entries before `base` stay.
 template <class Iterator>
 void add_chain(Iterator first, Iterator last, std::size_t base, UvMap& hull) {
   for (Iterator p = first; p != last; ++p) {
@@ -32,7 +32,7 @@ void add_chain(Iterator first, Iterator last, std::size_t base, UvMap& hull) {
   hull.pop_back();  // the next chain begins with it
 }
 
-/// Where the points lie when they are turned so that `direction` (of unit length) points right.
+/// The box of the points after a rotation that takes `direction` (of unit length) to the right.
 Box box_along(std::span<const Vec2> points, const Vec2& direction) {
   Box box{direction.x(), -direction.y(), Vec2::Zero(), Vec2::Zero()};
   Vec2 low = Vec2::Constant(1e300), high = -low;

@@ -1,5 +1,5 @@
 #pragma once
-// The smallest rectangle around an island, at whatever angle.
+// The smallest rectangle around an island, at any angle.
 
 #include <array>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace unwrapd::pack {
 
-/// Turned by the angle whose cosine and sine these are, the points fill [low, low + size].
+/// After a rotation by the angle of this cosine and sine, the points fill [low, low + size].
 struct Box {
   double cosine = 1;
   double sine = 0;
@@ -21,19 +21,19 @@ struct Box {
   }
 };
 
-/// The corners of the convex hull, counter-clockwise from the leftmost; points on a side are left
-/// out. One or two points when that is all there is.
+/// The corners of the convex hull, counter-clockwise from the leftmost, without points inside a
+/// side. One or two points if there are no more.
 UvMap convex_hull(UvMap points);
 
 /// The bounding rectangle of least area; one side of it lies on a side of the hull.
 Box smallest_box(std::span<const Vec2> points);
 
-/// The bounding rectangle whose longer side is least, to half a degree of its angle: what a point
-/// set that has the page to itself should be turned to.
+/// The bounding rectangle whose longer side is least, to half a degree of its angle. A point set
+/// that has the page to itself is rotated to it.
 Box squarest_box(std::span<const Vec2> points);
 
-/// The bounding rectangle along or across most of the sides (segments), where half of their length
-/// or more lies so: shapes with right angles fit into each other that way. Nothing otherwise.
+/// The bounding rectangle along or across most of the sides (segments), if at least half of their
+/// length has these directions: shapes with right angles fit into each other that way. Else empty.
 std::optional<Box> straight_box(std::span<const std::array<Vec2, 2>> sides);
 
 }  // namespace unwrapd::pack

@@ -1,11 +1,11 @@
 // Guided local search on overlaps: Egeblad, Nielsen, Odgaard, "Fast neighborhood search for two-
 // and three-dimensional nesting problems", EJOR 2007, on cells.
 //
-// Setting islands down one after another cannot close the gaps that the last ones leave. Here all
-// lie on a page that is a little too small, and whatever overlaps moves, one island at a time, to
-// where it overlaps least. Pairs that keep overlapping weigh ever more, so the search leaves every
-// dead end in the long run. The weighted overlap of an island at any place is a sum over its runs
-// of differences in a table of the others' cells, summed up along rows.
+// Placing islands one after another cannot close the gaps that the last ones leave. Here all
+// islands lie on a page that is a little too small. Islands that overlap move, one at a time, to
+// the place of least overlap. The weight of a pair grows while it overlaps, so that the search
+// leaves local minima. The weighted overlap of an island at any place is a sum over its runs of
+// differences in a table of the others' cells, summed up along rows.
 #include "core/pack/compact.hpp"
 
 #include <algorithm>
@@ -23,19 +23,20 @@ namespace unwrapd::pack {
 namespace {
 
 constexpr int kLeastWeight = 16, kMostWeight = 1 << 14;
-constexpr int kSweeps = 60;         // over the islands that overlap, before a page is too small
-constexpr int kColumnsAcross = 12;  // of places that are looked at before the best is refined
-constexpr int kAside = 8;           // places below the best that are looked at then, and above
-constexpr int kOtherTurns = 3;      // that are tried for an island beside its own and the next ones
+constexpr int kSweeps =
+    60;  // passes over the overlapping islands, before a page counts as too small
+constexpr int kColumnsAcross = 12;  // columns that are searched before the best is refined
+constexpr int kAside = 8;           // columns searched on either side of the best
+constexpr int kOtherTurns = 3;      // rotations tried beside the present one and its neighbours
 constexpr int kWideningOfCompaction =
-    128;  // share of a page by which it grows until islands lie apart
+    128;  // share of a page by which it grows until islands do not overlap
 
 struct Place {
   CellPlace spot;
   std::int32_t overlap = RowPrefixSums::kTooMuch;  ///< weighted
 };
 
-/// All islands on one page of a given side, overlapping or not.
+/// All islands on one page of a given side, which may overlap.
 class Page {
  public:
   Page(BottomLeftPlacer& placer, Budget& budget, const CompactRules& rules)
@@ -46,7 +47,7 @@ class Page {
         weight_(count_ * count_, kLeastWeight),
         overlap_(count_ * count_, 0) {}
 
-  /// Moves the islands into the page of `side` cells and apart; false when that did not do.
+  /// Moves the islands into the page of `side` cells and apart; false if some still overlap.
   bool separate(std::vector<CellPlace>& spots, int side) {
     side_ = side;
     spots_ = spots;
@@ -66,8 +67,8 @@ class Page {
     return false;
   }
 
-  /// Two islands change places, large ones rather than small, and one is turned at random: which
-  /// may lead out of a dead end.
+  /// Exchanges two islands, preferably large ones, and rotates one at random, to leave a local
+  /// minimum.
   void exchange(std::vector<CellPlace>& spots) {
     std::vector<std::size_t> by_size(count_);
     std::iota(by_size.begin(), by_size.end(), 0);
@@ -101,7 +102,7 @@ class Page {
     return true;
   }
 
-  /// Cells of b that lie on a or nearer to it than the padding.
+  /// The number of cells of b on a or nearer to it than the padding.
   int overlap(std::size_t a, std::size_t b) {
     const Mask &own = mask(a), &other = mask(b);
     const CellPlace &at = spots_[a], &there = spots_[b];
@@ -118,7 +119,7 @@ class Page {
     return count;
   }
 
-  /// The islands that overlap others, in an order that changes.
+  /// The islands that overlap others, in an order that varies.
   std::vector<std::size_t> overlapping() {
     std::vector<char> moves(count_, 0);
     for (std::size_t a = 0; a < count_; ++a)
@@ -133,7 +134,7 @@ class Page {
     return order;
   }
 
-  /// Of the overlaps that the last sweep began with.
+  /// Raises the weights of pairs by the overlaps at the start of the last sweep.
   void weigh() {
     int most = 1;
     for (const int cells : overlap_) most = std::max(most, cells);
@@ -151,20 +152,20 @@ class Page {
       }
   }
 
-  /// Where the lower left cell of a mask may come to lie.
+  /// The possible positions of a mask's lower left cell.
   [[nodiscard]] CellWindow places(const Mask& mask, const CellPlace& from) const {
     const int reach = rules_.reach > 0 ? rules_.reach : side_;
     return {std::max(0, from.x - reach), std::min(side_ - mask.width, from.x + reach),
             std::max(0, from.y - reach), std::min(side_ - mask.touched.height(), from.y + reach)};
   }
 
-  /// At the places of a column from y_begin to y_last.
+  /// Searches the places of a column from y_begin to y_last.
   void look(const Mask& mask, int turn, int x, int y_begin, int y_last, Place& best) {
     const LeastOverlap own = table_.least(mask, x, y_begin, y_last, best.overlap);
     if (own.weight < best.overlap) best = {{x, own.y, turn, 0}, own.weight};
   }
 
-  /// The best place of one turn, roughly, then to the cell.
+  /// Searches the best place of one rotation, first coarsely, then to the cell.
   void look_around(std::size_t k, int turn, Place& best) {
     const Mask& mask = placer_.mask_of(k, turn);
     if (!has_room(mask)) return;
@@ -195,7 +196,7 @@ class Page {
     }
   }
 
-  /// What the others' cells weigh to island k.
+  /// Enters the weighted cells of the other islands into island k's table.
   void tabulate(std::size_t k) {
     table_.reset(window_of(k));
     for (std::size_t j = 0; j < count_; ++j)
@@ -248,12 +249,12 @@ class Page {
   std::size_t count_;
   int side_ = 0;
   std::vector<CellPlace> spots_;
-  std::vector<int> weight_, overlap_;  ///< of pairs
+  std::vector<int> weight_, overlap_;  ///< of pairs of islands
   RowPrefixSums table_;                ///< of all islands but the one that moves
   std::uint64_t state_ = 0;
 };
 
-/// Spots on a page of one side as they come to lie on one of another.
+/// Scales positions from a page of one side to a page of another.
 std::vector<CellPlace> stretched(std::vector<CellPlace> spots, double ratio) {
   for (CellPlace& spot : spots) {
     spot.x = static_cast<int>(std::lround(spot.x * ratio));

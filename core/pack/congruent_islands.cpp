@@ -1,6 +1,6 @@
-// Two outlines of the same length and number of corners are laid on each other by the best rotation
-// (Kabsch 1976, in the plane: the argument of a complex sum) for every corner at which the second
-// may begin. Islands are sorted by length first, so that only those are tried that may match.
+// Two outlines of equal length and number of corners are aligned by the best rotation (Kabsch 1976,
+// in the plane: the argument of a complex sum) for every first corner of the second outline.
+// Islands are sorted by length first, so that only similar ones are compared.
 #include "core/pack/congruent_islands.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using Loop = std::vector<Point>;
 constexpr double kTolerance = 1e-4;  // of the extent
 
 struct Shape {
-  std::vector<Loop> loops;  ///< each from where the outline begins it
+  std::vector<Loop> loops;  ///< each starts where the outline starts it
   double length = 0;
 };
 
@@ -45,7 +45,8 @@ struct Motion {
   Point operator()(const Point& p) const { return turn * p + move; }
 };
 
-/// The best motion of one loop onto the other, whose corner k + shift is the first's corner k.
+/// The best motion of one loop onto the other; corner k + shift of `to` corresponds to corner k of
+/// `from`.
 Motion motion_onto(const Loop& from, const Loop& to, std::size_t shift) {
   const Point a = middle(from), b = middle(to);
   Point sum = 0;
@@ -69,7 +70,7 @@ bool lies_on(const Loop& from, const Loop& to, const Motion& motion, double tole
   return false;
 }
 
-/// Fills motion and is true when all loops of `from` come to lie on those of `to`.
+/// Sets motion and returns true if it takes all loops of `from` to those of `to`.
 bool match(const Shape& from, const Shape& to, Motion& motion) {
   const double tolerance = kTolerance * to.length / 4;
   const auto equal_size = [](const Loop& a, const Loop& b) { return a.size() == b.size(); };
@@ -101,7 +102,7 @@ std::vector<CongruentIsland> congruent_islands(std::span<const charts::Outline> 
     return shapes[a].length < shapes[b].length;
   });
   std::vector<CongruentIsland> same(islands.size());
-  std::vector<std::size_t> firsts;  // of their shapes, by growing length
+  std::vector<std::size_t> firsts;  // of their shapes, in ascending length
   for (const std::size_t k : order) {
     throw_if_cancelled(stop);
     same[k].as = static_cast<Index>(k);

@@ -1,5 +1,5 @@
 #pragma once
-// Islands of the same shape.
+// Finds islands of the same shape.
 
 #include <span>
 #include <stop_token>
@@ -9,10 +9,10 @@
 
 namespace unwrapd::pack {
 
-/// How an island lies beside the first of its shape: cosine and sine turn it, offset moves it onto
-/// that one. No mirroring, no scaling.
+/// The motion of an island onto the first of its shape: a rotation by cosine and sine, then a
+/// translation by offset. It neither mirrors nor scales.
 struct CongruentIsland {
-  Index as = 0;  ///< the first of its shape; itself where nothing earlier is
+  Index as = 0;  ///< the first of its shape; the island itself if it is the first
   double cosine = 1;
   double sine = 0;
   Vec2 offset = Vec2::Zero();
@@ -22,8 +22,9 @@ struct CongruentIsland {
   }
 };
 
-/// Outlines are the same when their corners come to lie on each other, in their order around the
-/// island, to a ten-thousandth of its extent. One entry an island. Throws Error{cancelled}.
+/// Two outlines are congruent if a motion takes the corners of one to those of the other, in their
+/// order around the island, up to a ten-thousandth of its extent. One entry an island. Throws
+/// Error{cancelled}.
 std::vector<CongruentIsland> congruent_islands(std::span<const charts::Outline> islands,
                                                const std::stop_token& stop);
 

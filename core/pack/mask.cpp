@@ -14,7 +14,7 @@ struct Crossing {
   int winding = 0;
 };
 
-/// A row as it is gathered.
+/// One row while it is built.
 struct Row {
   std::vector<Run> runs;
   std::vector<Crossing> crossings;  ///< of the line through the cells' middles
@@ -52,7 +52,7 @@ void fill_inside(Row& row, int width) {
   }
 }
 
-/// Sorts and joins runs that touch or overlap, and appends them as the next row.
+/// Sorts runs, joins those that touch or overlap, and appends them as the next row.
 void append_row(std::vector<Run>& runs, Rows& rows) {
   std::stable_sort(runs.begin(), runs.end(),
                    [](const Run& a, const Run& b) { return a.begin < b.begin; });

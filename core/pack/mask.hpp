@@ -1,5 +1,6 @@
 #pragma once
-// An island as cells of a square grid: which it touches, and which are too near to it for others.
+// An island as cells of a square grid: the cells that it touches, and those too near to it for
+// others.
 
 #include <span>
 #include <vector>
@@ -27,7 +28,8 @@ struct Rows {
   }
 };
 
-/// How an island lies on the grid: uv_grid = scale * (rotation * uv), before it is moved to a cell.
+/// The rotation and scale of an island on the grid: uv_grid = scale * (rotation * uv), before the
+/// translation to a cell.
 struct Turn {
   double cosine = 1;
   double sine = 0;
@@ -39,21 +41,21 @@ struct Turn {
 };
 
 struct Mask {
-  Vec2 low = Vec2::Zero();  ///< the turned island's lower left corner: it comes to lie on (0, 0)
+  Vec2 low = Vec2::Zero();  ///< the rotated island's lower left corner, which goes to (0, 0)
   int width = 0;
   int margin = 0;    ///< cells by which grown reaches beyond touched on every side
-  double cells = 0;  ///< how many are touched
-  Rows touched;      ///< cells that the island's closure touches, holes left free
-  /// Touched cells and all that lie nearer than the padding to one; cell (x, y) of the island is
-  /// (x + margin, y + margin) here.
+  double cells = 0;  ///< number of touched cells
+  Rows touched;      ///< cells that the island's closure touches; holes stay free
+  /// Touched cells and all cells nearer than the padding to one; cell (x, y) of the island is (x +
+  /// margin, y + margin) here.
   Rows grown;
 };
 
 /// How far a padding (cells, >= 0) reaches, in whole cells.
 int margin_of(double padding);
 
-/// padding: cells, >= 0: two islands whose grown and touched cells share none are at least so far
-/// apart. Points whose winding number is not zero are inside.
+/// padding: cells, >= 0. Two islands are at least that far apart if the grown cells of one and the
+/// touched cells of the other are disjoint. Points whose winding number is not zero are inside.
 Mask make_mask(const charts::Outline& outline, const Turn& turn, double padding);
 
 }  // namespace unwrapd::pack

@@ -1,6 +1,6 @@
-// A run of n cells hits a taken one when either of two runs of 2^k <= n cells at its ends does. For
-// these the page keeps one bitmap for each k, so a run of any length costs two shifted ORs for 64
-// places at once.
+// A run of n cells hits a taken cell if either of two runs of 2^k <= n cells at its ends does. The
+// page keeps one bitmap for each k, so that a run of any length costs two shifted ORs for 64 places
+// at once.
 #include "core/pack/occupancy.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kWordBits = 64;
 constexpr std::size_t kWordsAtOnce = 4;
-constexpr std::size_t kRunWork = 4;  // what a run costs beside its words, in words
+constexpr std::size_t kRunWork = 4;  // cost of a run beside its words, in words
 
 std::size_t words_for(int bits) {
   return static_cast<std::size_t>((bits + kWordBits - 1) / kWordBits);
@@ -39,7 +39,7 @@ const Occupancy::Word* Occupancy::row(int level, int y) const {
   return const_cast<Occupancy*>(this)->row(level, y);
 }
 
-/// Marks the places at which a row of the grown mask hits a taken cell.
+/// Marks the places at which a row of the grown mask would hit a taken cell.
 template <std::size_t Words>
 void Occupancy::refuse(const Rows& grown, int mask_row, const Place& place,
                        std::span<Word> refused) {
@@ -51,7 +51,7 @@ void Occupancy::refuse(const Rows& grown, int mask_row, const Place& place,
     for (const int shift : {run.begin, run.end - (1 << level)}) {
       const Word* taken = row(level, place.y + mask_row) + place.word + shift / kWordBits;
       const int bit = shift % kWordBits;
-      for (std::size_t i = 0; i < Words; ++i)  // in two steps: a shift by 64 is none
+      for (std::size_t i = 0; i < Words; ++i)  // in two steps, since a shift by 64 is undefined
         refused[i] |= taken[i] >> bit | taken[i + 1] << 1 << (kWordBits - 1 - bit);
     }
   }
@@ -67,7 +67,8 @@ std::optional<int> Occupancy::first_free_in(const Mask& mask, const Place& place
   };
   const int height = mask.grown.height(), last = refusing_row_ - place.y;
   if (0 <= last && last < height && refuses_all(last)) return std::nullopt;
-  for (int k = 0; k < height; ++k) {  // from the middle outwards: the widest rows tell soonest
+  for (int k = 0; k < height;
+       ++k) {  // from the middle outwards: the widest rows are refused soonest
     const int j = height / 2 + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
     if (j == last || !refuses_all(j)) continue;
     refusing_row_ = place.y + j;
@@ -104,7 +105,7 @@ bool Occupancy::is_taken(int x, int y) const {
   return (row(0, y + margin_)[bit / kWordBits] >> (bit % kWordBits) & 1) != 0;
 }
 
-/// How many words there are is known while compiling, which makes it several times as fast.
+/// The number of words is a template argument, which is several times as fast.
 std::optional<int> Occupancy::search(const Mask& mask, const Place& place,
                                      std::span<Word> refused) {
   switch (refused.size()) {
@@ -119,7 +120,7 @@ std::optional<int> Occupancy::search(const Mask& mask, const Place& place,
   }
 }
 
-/// Brings the bitmaps of longer runs up to date after cells [begin, end) of a row have changed.
+/// Updates the bitmaps of longer runs after cells [begin, end) of a row have changed.
 void Occupancy::spread(int y, int begin, int end) {
   const auto last = static_cast<std::size_t>((end - 1) / kWordBits);
   for (int level = 1; level < levels_; ++level) {

@@ -1,6 +1,5 @@
 #pragma once
-// Which cells of a page are taken, in a form that answers "where in this row does it fit?" for all
-// places of the row at once.
+// The taken cells of a page, in a form that tests all places of a row at once.
 
 #include <cstdint>
 #include <optional>
@@ -13,27 +12,27 @@ namespace unwrapd::pack {
 
 class Occupancy {
  public:
-  /// width, height: cells of the free page; islands keep their margin from each other, not from its
-  /// edge. margin: of all masks; longest_run: of their grown rows, at most.
+  /// width, height: cells of the free page. Islands keep their margin from each other, not from the
+  /// edge of the page. margin: of all masks; longest_run: upper bound of their grown rows.
   Occupancy(int width, int height, int margin, int longest_run);
 
-  /// The leftmost x, from `from` on, at which the mask's lower left cell may lie on (x, y); touched
-  /// cells stay on the page. Nothing when the row has no such place.
+  /// The leftmost x >= from at which the mask's lower left cell may lie on (x, y), so that all
+  /// touched cells lie on the page. Empty if the row has no such place.
   [[nodiscard]] std::optional<int> first_free(const Mask& mask, int y, int from = 0);
 
-  /// Whether a cell is taken, as those beyond the page's sides and bottom are; above it none is.
+  /// Whether a cell is taken. Cells beyond the page's sides and bottom are; cells above it are not.
   [[nodiscard]] bool is_taken(int x, int y) const;
 
-  /// Takes the touched cells.
+  /// Marks the touched cells as taken.
   void stamp(const Mask& mask, int x, int y);
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
-  [[nodiscard]] std::int64_t work() const { return work_; }  ///< words looked at so far
+  [[nodiscard]] std::int64_t work() const { return work_; }  ///< words read so far
 
  private:
   using Word = std::uint64_t;
-  /// A row of the page and the first of its words that are looked at.
+  /// A row of the page and the first word to read in it.
   struct Place {
     int y = 0;
     std::size_t word = 0;
@@ -51,7 +50,8 @@ class Occupancy {
   int width_, height_, margin_, levels_ = 1;
   std::size_t words_;
   std::int64_t work_ = 0;
-  int refusing_row_ = 0;    // of the page: the last that left no place; it comes first next time
+  int refusing_row_ =
+      0;  // row of the page that refused the last place; it is tested first next time
   std::vector<Word> bits_;  // bit x of row(k, y): a cell of [x, x + 2^k) is taken
 };
 

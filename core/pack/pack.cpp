@@ -1,7 +1,7 @@
-// One page: few islands are squeezed together, many set down snugly. Several pages, or a given
-// density: on the cells of coarse grids first, where a search among orders and turns is cheap, then
-// with what was found on a fine one. Islands keep their scale and the page shrinks; the cells' size
-// in texels, and with it the padding in cells, follows from its side.
+// One page: few islands are compacted (pack_few), many are placed by touching perimeter
+// (pack_many). Several pages, or a given density: a search over orders and rotations on coarse
+// grids, where it is cheap, then placement on a fine one. Islands keep their scale and the page
+// shrinks; the cells' size in texels, and with it the padding in cells, follows from its side.
 #include "core/pack/pack.hpp"
 
 #include <algorithm>
@@ -21,18 +21,19 @@
 namespace unwrapd::pack {
 namespace {
 
-/// Grids on which several pages are searched, the coarse first.
+/// A grid on which several pages are searched; the coarse one first.
 struct Level {
-  int cells = 0;          ///< a side, at least
-  double per_island = 0;  ///< cells along a side, for each of as many islands
-  std::int64_t work = 0;  ///< words a share
+  int cells = 0;          ///< least cells a side
+  double per_island = 0;  ///< cells along a side for each island
+  std::int64_t work = 0;  ///< words for each share
 };
 constexpr std::array kLevels = {Level{96, 12, 18'000'000}, Level{160, 20, 6'000'000}};
-constexpr Level kRough = {96, 12, 350'000};  // for a glance
+constexpr Level kRough = {96, 12, 350'000};  // for rough_fill()
 constexpr double kRoughHeat = 0.1;
-constexpr std::int64_t kRoughSqueezeWork = 1'000'000, kFineWork = 1'000'000;  // words a share
-constexpr std::size_t kSearched = 400;    // islands at most that are searched on a coarse grid
-constexpr std::size_t kMostApart = 5000;  // islands: more lie in rows, on one page
+constexpr std::int64_t kRoughSqueezeWork = 1'000'000,
+                       kFineWork = 1'000'000;  // words for each share
+constexpr std::size_t kSearched = 400;         // islands; more are not searched on a coarse grid
+constexpr std::size_t kMostApart = 5000;       // islands; more are packed in rows, on one page
 
 int turns_for(std::size_t islands) {
   if (islands <= kFewOnAPage) return 48;
@@ -51,7 +52,7 @@ class Packer {
         executor_(executor),
         stop_(executor.stop()) {}
 
-  /// As large as fits on the pages that are allowed.
+  /// Packs the islands as large as they fit on the allowed pages.
   Packed largest() {
     if (page_.packing.max_pages > 1) return on_several();
     if (placer_.size() <= kFewOnAPage) {
@@ -61,15 +62,15 @@ class Packer {
     return {pack_many(placer_, grid_, executor_), 1, padding_, {}};
   }
 
-  /// The share of the page that is filled after a short search on coarse grids, which ends where it
-  /// is `enough`. area: of all islands.
+  /// The share of the page that a short search on coarse grids fills. The search ends when it
+  /// reaches `enough`. area: of all islands.
   double rough_fill(double area, double enough) {
     const std::size_t n = placer_.size();
     const int side = cells_for(n, kRough.per_island, kRough.cells);
     double scale = side * std::sqrt(kUsualFill / box_area(placer_));
     std::vector<Arrangement> starts = usual_arrangements(placer_);
     if (n > kSearched) starts.resize(1);
-    const double tightest = std::sqrt(area / enough);  // page, in the islands' units
+    const double tightest = std::sqrt(area / enough);  // page side, in the islands' units
     const AnnealRules strip{side, kRoughHeat, static_cast<int>(scale * tightest)};
     placer_.set_scale(scale, 0);
     Budget budget{work(kRough.work), stop_};
@@ -86,7 +87,7 @@ class Packer {
     return area * scale * scale / (double(found.side) * found.side);
   }
 
-  /// At the density that is asked for, on as few pages as can be had.
+  /// Packs at the given density, on as few pages as possible.
   Packed at_density(double texels_per_unit) {
     const int side = grid_.tight_side(fine_cells(placer_.size()));
     const double page_per_unit = texels_per_unit / page_.resolution;
@@ -110,8 +111,8 @@ class Packer {
     throw Error(ErrorCode::does_not_fit, message, "/texels_per_unit");
   }
 
-  /// Looked at before any island is turned into cells, which would be too many. A square of the
-  /// smallest box's shorter side lies in it; an island never fits where not even that does.
+  /// Tested before any island is rasterized, which would need too many cells. The smallest box
+  /// contains a square of its shorter side; an island cannot fit if that square does not.
   [[nodiscard]] bool is_too_large(double page_per_unit) const {
     for (std::size_t k = 0; k < placer_.size(); ++k) {
       const Vec2 size = page_per_unit * placer_.box(k).size;
@@ -143,7 +144,7 @@ class Packer {
     return placed(on_grid_exactly(starts, fine, fine * scale / side / kSpareSide));
   }
 
-  /// A search at this scale, with the padding of pages of `side` cells.
+  /// Searches at this scale, with the padding of pages of `side` cells.
   Found on_grid(const std::vector<Arrangement>& starts, int side, double cells_per_unit,
                 std::int64_t work) {
     placer_.set_scale(cells_per_unit, grid_.padding(side));
@@ -151,8 +152,8 @@ class Packer {
     return smallest_pages(placer_, starts, page_.packing.max_pages, budget);
   }
 
-  /// The same where the padding must be kept: should pages come out larger than `side`, the islands
-  /// shrink and all is done again.
+  /// The same with exact padding: if the pages come out larger than `side`, the islands shrink and
+  /// the search is repeated.
   Found on_grid_exactly(const std::vector<Arrangement>& starts, int side, double cells_per_unit) {
     for (;;) {
       Found found = on_grid(starts, side, cells_per_unit, work(kFineWork));

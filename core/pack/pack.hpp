@@ -1,5 +1,5 @@
 #pragma once
-// Islands side by side on square pages, at one texel density, never overlapping.
+// Packs islands on square pages, at one texel density, without overlaps.
 
 #include <span>
 #include <stop_token>
@@ -12,8 +12,8 @@
 
 namespace unwrapd::pack {
 
-/// Where an island goes: uv_page = scale * (rotation * uv) + offset. No mirroring: rotation is
-/// proper. scale is common to all islands. Page k is the square [k, k+1] x [0, 1].
+/// The position of an island: uv_page = scale * (rotation * uv) + offset. rotation is proper, so
+/// nothing is mirrored. scale is common to all islands. Page k is the square [k, k+1] x [0, 1].
 struct Placement {
   double cosine = 1;
   double sine = 0;
@@ -34,28 +34,27 @@ struct PageOptions {
 struct Packed {
   std::vector<Placement> placements;
   Index pages = 1;
-  double padding = 0;  ///< texels that are kept: fewer than asked for where islands crowd
-  std::vector<char> is_stacked = {};  ///< [island]: lies on another; empty: none does
+  double padding = 0;                 ///< texels; less than requested if there are many islands
+  std::vector<char> is_stacked = {};  ///< [island]: lies on another one; empty: none does
 };
 
-/// Places the islands (each a UV map at the density it shall keep relative to the others: UV area =
-/// 3D area; at least one point each) on the page, in true smallest rectangles, at least the padding
-/// apart and from the border. Deterministic; near-linear in the number of islands. Where so many
-/// islands come that padding would take more than half of the page's side, it is shrunk to that.
+/// Places the islands on the page in their smallest rectangles, at least the padding apart and from
+/// the border. Each is a UV map of at least one point, at its relative density (UV area = 3D area).
+/// Deterministic; near-linear in the number of islands. If the islands are so many that padding
+/// would take more than half of the page's side, the padding is reduced to that.
 std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOptions& page);
 
-/// The padding that so many islands leave, texels: see pack_in_rows().
+/// The padding that remains for this many islands, texels: see pack_in_rows().
 double kept_padding(const PageOptions& page, std::size_t island_count);
 
-/// The same by true outlines, into each other's hollows and holes: as large as fits, or at
-/// packing.texels_per_unit. Identical islands share a place where packing asks for it. The same
-/// bytes on every machine and for any number of threads: the search has a budget of work, not of
-/// time. Throws Error{does_not_fit} when a given density needs more pages than allowed;
-/// Error{cancelled}.
+/// Packs by true outlines, into each other's hollows and holes: as large as fits, or at
+/// packing.texels_per_unit. Congruent islands share a place if packing asks for it. The same bytes
+/// on every machine and for any number of threads: the search has a budget of work, not of time.
+/// Throws Error{does_not_fit} if a given density needs more pages than allowed; Error{cancelled}.
 Packed pack(std::span<const charts::Outline> islands, const PageOptions& page, Executor& executor);
 
-/// The share of a page that the islands would fill, at a glance and without padding; 1 where they
-/// have no extent. The search ends where it has come to `enough`. Throws Error{cancelled}.
+/// A quick estimate of the share of a page that the islands would fill, without padding; 1 if they
+/// have no extent. The search ends when it reaches `enough`. Throws Error{cancelled}.
 double rough_fill(std::span<const charts::Outline> islands, double enough = 1,
                   const std::stop_token& stop = {});
 

@@ -1,6 +1,6 @@
-// How well islands are squeezed together is partly luck: it depends on how they lie at first and on
-// which turns there are. So several starts are squeezed on a coarse grid without gaps, and the best
-// go on to fine grids, where the gaps come in.
+// The result of compaction depends on the first positions and on the rotations that are tried,
+// partly by chance. So several starts are compacted on a coarse grid without padding, and the best
+// continue on fine grids with padding.
 #include "core/pack/pack_few.hpp"
 
 #include <algorithm>
@@ -16,25 +16,25 @@ namespace unwrapd::pack {
 namespace {
 
 struct Try {
-  int turns = 0;  ///< that a full circle is divided into
+  int turns = 0;  ///< rotations in a full circle
   TouchingRules rules;
 };
 constexpr std::array kTries = {Try{72, {.2, .45}}, Try{48, {.1, .9}}, Try{96, {.2, .45}},
                                Try{60, {.2, .45}}, Try{72, {.4, .7}}, Try{48, {.4, .7}}};
-constexpr std::size_t kFinished = 2;  // of the tries
+constexpr std::size_t kFinished = 2;  // number of starts that continue on the fine grids
 
 struct Squeeze {
-  CompactRules rules;     ///< for 1024 cells a side; the first grid's side as it is
-  std::int64_t work = 0;  ///< words a share
+  CompactRules rules;     ///< for 1024 cells a side; the first grid's side is not scaled
+  std::int64_t work = 0;  ///< words for each share
 };
 constexpr Squeeze kFirst{kFirstCompaction, 20'000'000};
 constexpr std::array kGrids = {Squeeze{{512, 8, 2, 3}, 8'000'000},
                                Squeeze{{1024, 8, 1, 3}, 8'000'000}};
 constexpr double kMostShares = 12;
-constexpr double kSidesAShare = 30;  // of outlines: small shapes need no long search
-constexpr double kSmaller = 0.9;     // where islands did not fit in
+constexpr double kSidesAShare = 30;  // of outlines, for one share: small shapes need no long search
+constexpr double kSmaller = 0.9;     // scale factor after islands did not fit
 
-/// Islands on a page, and the placer whose masks these are.
+/// Islands on a page, and the placer that made their masks.
 struct Tried {
   std::optional<BottomLeftPlacer> placer = {};
   Found found = {};
@@ -69,7 +69,7 @@ class FewPacker {
     return tried;
   }
 
-  /// Twice: the second time at the scale at which the first suggests that the islands just fit.
+  /// Places twice, the second time at the scale at which the islands should just fit.
   Found start(BottomLeftPlacer& placer, const TouchingRules& rules) const {
     const int side = kFirst.rules.side;
     TouchingPage page;
@@ -98,8 +98,8 @@ class FewPacker {
     return tried;
   }
 
-  /// Pages must be no larger than those for which the padding was made: the islands shrink until
-  /// they are.
+  /// A page must not be larger than the one for which the padding was made; the islands shrink
+  /// until that holds.
   Found compact_on(const Squeeze& grid, Tried& tried, double scale) const {
     const bool has_gaps = grid.rules.reach > 0;
     for (;;) {

@@ -1,5 +1,5 @@
 #pragma once
-// Few islands on one page.
+// Packs few islands on one page.
 
 #include <optional>
 #include <span>
@@ -15,14 +15,15 @@ namespace unwrapd::pack {
 
 inline constexpr std::size_t kFewOnAPage = 40;  ///< at most
 
-/// How islands are squeezed first: on a coarse grid, from anywhere to anywhere.
+/// The first compaction: on a coarse grid, with moves to any place.
 inline constexpr CompactRules kFirstCompaction{128, 0, 1, 14};
 
-/// A measure of how much there is to try, 12 at most: islands, or less where they have few sides.
+/// The amount of work to spend, 12 at most: the number of islands, or less if they have few sides.
 double shares_of(std::span<const charts::Outline> islands);
 
-/// The islands as large as fits; nothing where they found no place apart. At least two, one of
-/// which has extent. The same for any number of threads. Throws Error{cancelled}.
+/// Packs the islands as large as they fit; empty if no packing without overlaps was found. There
+/// are at least two, one of which has extent. The same for any number of threads. Throws
+/// Error{cancelled}.
 std::optional<std::vector<Placement>> pack_few(std::span<const charts::Outline> islands,
                                                const PageGrid& grid, Executor& executor);
 

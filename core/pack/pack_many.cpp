@@ -1,6 +1,6 @@
-// Several rules are tried on a coarse grid, where one try shows how much of a page they fill; the
-// best go on with a fine one, at scales at which their islands should just fit. How high a strip
-// gets is partly chance, so scales are tried from both sides.
+// Several rules are tried on a coarse grid, where one attempt shows how much of a page they fill.
+// The best continue on a fine grid, at scales at which the islands should just fit. The height of a
+// strip is partly chance, so scales are tried from both sides.
 #include "core/pack/pack_many.hpp"
 
 #include <algorithm>
@@ -17,19 +17,19 @@ namespace {
 
 constexpr std::array kRules = {TouchingRules{.2, .45}, TouchingRules{.2, .3},
                                TouchingRules{.05, .3}, TouchingRules{.1, .6}};
-/// How much is tried.
+/// The extent of the search.
 struct HowMuch {
   std::size_t rules = 0;  ///< on the coarse grid
-  std::size_t fine = 0;   ///< rules that go on
-  int scales = 0;         ///< of each
-  double first = 1;       ///< of them, in shares of what the coarse grid suggests
+  std::size_t fine = 0;   ///< rules that continue
+  int scales = 0;         ///< for each rule
+  double first = 1;       ///< the first scale, relative to the one that the coarse grid suggests
 };
 constexpr HowMuch kUsualEffort{kRules.size(), 2, 3}, kOfVeryMany{1, 1, 1, 1.03};
 constexpr std::size_t kVeryMany = 1000;
 constexpr int kRoughCells = 512;
 constexpr double kRoughPerIsland = 15;
-constexpr double kSmallerTrial = 0.9;  // where islands did not fit in at all
-constexpr double kTrialStep = 1.002;   // of the scale, beyond what seems to fit
+constexpr double kSmallerTrial = 0.9;  // scale factor after islands did not fit at all
+constexpr double kTrialStep = 1.002;   // factor of the scale, beyond the one that seems to fit
 
 struct Rated {
   TouchingRules rules;
@@ -69,7 +69,7 @@ class SnugPacker {
     }
   }
 
-  /// On the fine grid: the largest scale of some at which the strip is no higher than wide.
+  /// On the fine grid: the largest scale tried at which the strip is no higher than wide.
   [[nodiscard]] std::vector<Placement> fitted(const Rated& rated) const {
     const int side = grid_.tight_side(fine_cells(placer_.size()));
     BottomLeftPlacer placer = placer_;

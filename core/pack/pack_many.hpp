@@ -1,5 +1,5 @@
 #pragma once
-// Many islands on one page.
+// Packs many islands on one page.
 
 #include <vector>
 
@@ -10,7 +10,7 @@
 
 namespace unwrapd::pack {
 
-/// The placer's islands as large as fits. The same for any number of threads. Throws
+/// Places the placer's islands as large as they fit. The same for any number of threads. Throws
 /// Error{cancelled}.
 std::vector<Placement> pack_many(const BottomLeftPlacer& placer, const PageGrid& grid,
                                  Executor& executor);

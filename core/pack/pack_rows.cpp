@@ -1,7 +1,7 @@
 // Packing by shelves: islands in their smallest rectangles, the highest first, row upon row.
 //
-// Padding is in texels and the islands' common scale is what we look for, so the page is tried at
-// ever smaller scales until all rows fit: a try is linear, and about a hundred are made. Rows waste
+// Padding is in texels and the islands' common scale is unknown, so the page is tried at ever
+// smaller scales until all rows fit. An attempt is linear, and about a hundred are made. Rows waste
 // more than a skyline does, but 100,000 islands take a fraction of a second.
 #include "core/pack/pack.hpp"
 
@@ -15,12 +15,12 @@
 namespace unwrapd::pack {
 namespace {
 
-constexpr double kLeastPadding = 1.0 / 256;  // texels: what rounding UVs to float may take away
-constexpr double kScaleStep = 0.99;          // between one try and the next
-constexpr int kRefinements = 12;             // bisections once a scale fits
-constexpr double kSlack = 1 - 1e-9;          // of the scale, against rounding
+constexpr double kLeastPadding = 1.0 / 256;  // texels; rounding UVs to float may take this much
+constexpr double kScaleStep = 0.99;          // between one attempt and the next
+constexpr int kRefinements = 12;             // bisections after a scale fits
+constexpr double kSlack = 1 - 1e-9;          // of the scale, for rounding
 
-/// A square in texels with the padding already taken from its left and lower border.
+/// A square in texels, without the padding at its left and lower border.
 struct Page {
   double side = 0;
   double padding = 0;
@@ -31,8 +31,8 @@ Page page_of(const PageOptions& options, std::size_t island_count) {
   return {options.resolution - padding, padding};
 }
 
-/// Calls place(island, lower left corner in texels) row by row; false when the page is full.
-/// order: islands by falling height.
+/// Calls place(island, lower left corner in texels) row by row; false if the page is full. order:
+/// islands by falling height.
 template <class Place>
 bool fill_rows(const std::vector<Box>& boxes, const std::vector<Index>& order, double scale,
                const Page& page, Place place) {
@@ -55,14 +55,14 @@ bool fill_rows(const std::vector<Box>& boxes, const std::vector<Index>& order, d
 struct Layout {
   std::vector<Box> boxes;
   std::vector<Index> order;
-  double scale = 0;  ///< texels for one unit of the islands
+  double scale = 0;  ///< texels a unit of the islands
 };
 
 bool fits(const Layout& layout, double scale, const Page& page) {
   return fill_rows(layout.boxes, layout.order, scale, page, [](Index, const Vec2&) {});
 }
 
-/// A scale that no page of this size can hold, or barely.
+/// A scale that this page can hold barely or not at all.
 double scale_bound(const std::vector<Box>& boxes, const Page& page) {
   double area = 0, longest = 0;
   for (const Box& box : boxes) {
@@ -96,7 +96,7 @@ Layout laid_out(std::vector<Box> boxes, const Page& page) {
   return layout;
 }
 
-/// All islands lying, or all standing.
+/// Rotates all boxes to lie flat, or to stand upright.
 std::vector<Box> oriented(std::vector<Box> boxes, bool standing) {
   for (Box& box : boxes)
     if ((box.size.y() > box.size.x()) != standing) box = box.turned_by_quarter();
@@ -105,7 +105,7 @@ std::vector<Box> oriented(std::vector<Box> boxes, bool standing) {
 
 }  // namespace
 
-/// Half of the page at most goes to padding: more would leave the islands no room.
+/// At most half of the page is padding; more would leave the islands no room.
 double kept_padding(const PageOptions& page, std::size_t island_count) {
   const double gaps = std::ceil(std::sqrt(static_cast<double>(island_count))) + 1;
   return std::min<double>(page.padding, page.resolution / (2 * gaps));

@@ -1,5 +1,5 @@
 #pragma once
-// Between islands and the cells of pages: what all ways of packing need.
+// Converts between islands and the cells of pages, for all ways of packing.
 
 #include <cstddef>
 #include <vector>
@@ -11,24 +11,25 @@
 
 namespace unwrapd::pack {
 
-inline constexpr double kUsualFill = 0.7;    ///< of a page: boxes, without padding
-inline constexpr double kSpareSide = 1.005;  ///< by which islands shrink beyond what seems to fit
+inline constexpr double kUsualFill = 0.7;  ///< of a page: boxes, without padding
+inline constexpr double kSpareSide =
+    1.005;  ///< by which islands shrink below the scale that seems to fit
 
-/// Of all islands' boxes, in their units.
+/// The area of all islands' boxes, in their units.
 double box_area(const BottomLeftPlacer& placer);
 
-/// Cells a side of a grid that gives each of so many islands about per_island of them, both ways;
-/// no fewer than `least`, and no more than 4096.
+/// Cells a side of a grid that gives each island about per_island cells along both axes; at least
+/// `least` and at most 4096.
 int cells_for(std::size_t islands, double per_island, int least);
 
-/// Cells a side of the grid that decides.
+/// Cells a side of the final grid.
 int fine_cells(std::size_t islands);
 
-/// Cells a unit at which islands, in their boxes and with padding, seem to fill a usual share of so
-/// many pages of `side` cells.
+/// Cells a unit at which the islands' boxes, with padding, fill a usual share of `pages` pages of
+/// `side` cells.
 double usual_scale(const BottomLeftPlacer& placer, const PageGrid& grid, int pages, double side);
 
-/// found: as it was made at the placer's scale.
+/// found: made at the placer's present scale.
 std::vector<Placement> placements_of(const Found& found, BottomLeftPlacer& placer,
                                      const PageGrid& grid);
 

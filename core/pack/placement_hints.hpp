@@ -1,5 +1,5 @@
 #pragma once
-// Where islands of one size were last found a place: those below have refused its like already.
+// Remembers where islands of one size last found a place: the rows below had none for that size.
 
 #include <algorithm>
 #include <array>

@@ -6,18 +6,17 @@
 namespace unwrapd::pack {
 namespace {
 
-constexpr int kPlaces = 16;               // that are looked at abreast
+constexpr int kPlaces = 16;               // that are computed side by side
 constexpr std::size_t kBlock = 128;       // entries of a column that are summed up together
 constexpr std::size_t kEntriesAStep = 4;  // see work()
 constexpr int kStepsOfALook = 8, kStepsOfARow = 3;
 
-/// So many places of a column.
+/// kPlaces places of a column.
 struct Places {
   std::array<std::int32_t, kPlaces> weight;
 };
 
-/// A mask over a table of which a column has so many entries: its lowest row and leftmost column at
-/// the first entry.
+/// A mask over a column of places; its lowest row and leftmost column start at the first entry.
 struct Look {
   const Rows& rows;
   const std::int32_t* table;
@@ -25,8 +24,8 @@ struct Look {
   std::int32_t most;
 };
 
-/// Adds up the mask's rows, from the middle outwards, until no place weighs less than most; how
-/// many these were.
+/// Adds up the mask's rows, from the middle outwards, until every place weighs at least `most`.
+/// Returns the number of rows.
 [[gnu::always_inline]] inline int weigh(const Look& look, Places& places) {
   const int height = look.rows.height();
   std::array<std::int32_t, kPlaces> sum = places.weight;
@@ -56,7 +55,7 @@ struct Columns {
   std::size_t size, count;
 };
 
-/// Steps become weights, weights become sums of all to the left.
+/// Turns differences into weights, and weights into sums over all cells to the left.
 [[gnu::always_inline]] inline void sum_up(const Columns& table) {
   for (std::size_t y = 0; y < table.size; y += kBlock) {
     const std::size_t count = std::min(kBlock, table.size - y);
@@ -72,7 +71,7 @@ struct Columns {
   }
 }
 
-/// Their results do not depend on how long registers are.
+/// The results do not depend on the length of registers.
 struct Kernels {
   int (*weigh)(const Look&, Places&);
   void (*sum_up)(const Columns&);

@@ -1,5 +1,5 @@
 #pragma once
-// How much of a mask lies on taken cells, for any place of it at once.
+// The weighted overlap of a mask with taken cells, for any of its places.
 
 #include <cstdint>
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace unwrapd::pack {
 
-/// How many cells lie in both rows; shift: added to those of b.
+/// The number of cells in both rows; shift is added to those of b.
 int common_cells(std::span<const Run> a, std::span<const Run> b, int shift);
 
 /// Cells [x_begin, x_end) x [y_begin, y_end).
@@ -32,23 +32,23 @@ class RowPrefixSums {
  public:
   static constexpr std::int32_t kTooMuch = 1 << 29;
 
-  /// Forgets what was taken.
+  /// Removes all cells.
   void reset(const CellWindow& window);
 
-  /// Cells of an island whose lower left one lies on (x, y) get heavier. What lies outside of the
-  /// window is left out.
+  /// Adds weight to the cells of an island whose lower left cell is (x, y). Cells outside of the
+  /// window are ignored.
   void take(const Rows& touched, int x, int y, std::int32_t weight);
 
-  /// To be called once between take() and overlap().
+  /// Must be called once between take() and overlap().
   void sum_up();
 
-  /// Where in the column x, from y_begin to y_last, the cells on or near to the mask weigh least,
-  /// the lowest of such places; kTooMuch where none weighs less than most (at most kTooMuch). All
-  /// of mask.grown lies in the window there.
+  /// The lowest place of least weight of the mask in column x, from y_begin to y_last. The weight
+  /// is kTooMuch if no place weighs less than most (at most kTooMuch). mask.grown must lie inside
+  /// the window at all these places.
   [[nodiscard]] LeastOverlap least(const Mask& mask, int x, int y_begin, int y_last,
                                    std::int32_t most);
 
-  [[nodiscard]] std::int64_t work() const { return work_; }  ///< in steps of about a nanosecond
+  [[nodiscard]] std::int64_t work() const { return work_; }  ///< in units of about a nanosecond
 
  private:
   [[nodiscard]] std::int32_t* column(int x) {

@@ -1,10 +1,10 @@
 // The touching perimeter rule of Lodi, Martello, Vigo ("Heuristic and metaheuristic approaches for
 // a class of two-dimensional bin packing problems", INFORMS Journal on Computing 11, 1999), for
-// cells, and with a choice among islands. Where the order is fixed, an island takes the first
-// hollow that it fits into, however badly; here a hollow gets what fills it.
+// cells, and with a choice among islands. With a fixed order, an island takes the first hollow that
+// it fits into, however badly; here each hollow gets the island that fills it best.
 //
-// An island's lowest place only ever moves up as the strip fills, and changes only where something
-// was set down beside it: places are kept from step to step.
+// An island's lowest place only moves up as the strip fills, and only changes if an island was
+// placed beside it. So places are cached from step to step.
 #include "core/pack/touching_perimeter.hpp"
 
 #include <algorithm>
@@ -20,11 +20,11 @@
 namespace unwrapd::pack {
 namespace {
 
-constexpr int kTouch = 3;  // cells beyond the padding: what lies nearer touches
-constexpr double kChoice = 100, kChoices = 40'000;  // islands to choose from; in all
-constexpr double kHighest = 1.5;                    // widths
+constexpr int kTouch = 3;  // cells beyond the padding: nearer islands touch
+constexpr double kChoice = 100, kChoices = 40'000;  // islands to choose from; choices in all
+constexpr double kHighest = 1.5;                    // in widths of the strip
 
-/// The cells around an island, from its lower left one, in which others touch it.
+/// The cells around an island, relative to its lower left one, in which others touch it.
 std::vector<Cell> feelers_of(const Mask& mask) {
   const int away = mask.margin + kTouch, height = mask.touched.height();
   const auto is_own = [&](int x, int y) {
@@ -45,11 +45,11 @@ std::vector<Cell> feelers_of(const Mask& mask) {
   return feelers;
 }
 
-/// An island in one turn, and where it would lie.
+/// An island with one rotation, and its place.
 struct Candidate {
   Cell at = {};
-  double contact = 0;     ///< share of the feelers
-  bool is_known = false;  ///< else `at` is below its place
+  double contact = 0;     ///< share of the cells around it that touch
+  bool is_known = false;  ///< false: `at` is only a lower bound of its place
   bool has_place = true;
   std::vector<Cell> feelers = {};
 };
@@ -97,7 +97,7 @@ class Snug {
     return static_cast<int>(std::min<double>(longest + 2, width)) + 2 * margin_;
   }
 
-  /// The islands, the largest first; and their mean.
+  /// The islands in descending size, and their mean size.
   std::vector<std::size_t> by_size() {
     std::vector<std::size_t> order(placer_.size());
     std::iota(order.begin(), order.end(), 0);
@@ -131,7 +131,7 @@ class Snug {
     return best;
   }
 
-  /// Its lowest free place, and what it touches there.
+  /// Finds the lowest free place, and the contact there.
   void look(std::size_t k) {
     Candidate& own = candidates_[k];
     const Mask& shape = mask(k);
@@ -165,7 +165,7 @@ class Snug {
     laid.height = std::max(laid.height, own.at.y + shape.touched.height());
   }
 
-  /// What touches the island that was set down, or would lie on it, is looked at again.
+  /// Invalidates the candidates that touch or overlap the placed island.
   void forget_around(std::size_t laid, std::span<const std::size_t> islands) {
     const int away = margin_ + kTouch;
     const Cell low = candidates_[laid].at;

@@ -1,5 +1,5 @@
 #pragma once
-// Islands set down one after another, each time the one that touches most of what lies there.
+// Places islands one after another, each time the one that touches most of those already placed.
 
 #include <stop_token>
 
@@ -7,21 +7,21 @@
 
 namespace unwrapd::pack {
 
-/// What a place is worth: the share of the island's outline that touches others or the page's
-/// sides, less by how high it lies, and more for large islands, which must come soon.
+/// The score of a place: the share of the island's outline that touches others or the page's sides,
+/// less a penalty for height, plus a bonus for large islands, which must be placed early.
 struct TouchingRules {
-  double low = 0;    ///< for each mean island's side that its middle lies higher
-  double large = 0;  ///< for each mean island's side that it measures itself
+  double low = 0;    ///< penalty per mean island side of height
+  double large = 0;  ///< bonus per mean island side of size
 };
 
 struct TouchingPage {
-  Found found = {};  ///< side 0: the islands do not fit in
-  int height = 0;    ///< cells, of the strip that they take
+  Found found = {};  ///< side 0: the islands do not fit
+  int height = 0;    ///< cells: height of the strip
 };
 
-/// In a strip of this width, cells, and at most half as high again. The next island is one of the
-/// 100 largest that are left (fewer where they are over 400) in any turn, each at its lowest free
-/// place. Throws Error{cancelled}.
+/// Places the islands in a strip of this width, cells, and at most half as high again. The next
+/// island is one of the 100 largest left (fewer if there are more than 400) with any rotation, each
+/// at its lowest free place. Throws Error{cancelled}.
 TouchingPage place_by_touching_perimeter(BottomLeftPlacer& placer, int width,
                                          const TouchingRules& rules, const std::stop_token& stop);
 
