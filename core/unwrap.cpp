@@ -17,7 +17,7 @@
 #include "core/pipeline/parameterize_chart.hpp"
 #include "core/pipeline/prepare_charts.hpp"
 #include "core/pipeline/repack.hpp"
-#include "core/segment/excess_steps.hpp"
+#include "core/segment/segment.hpp"
 #include "core/solve/constrain_chart.hpp"
 #include "core/solve/solve.hpp"
 

@@ -1,6 +1,6 @@
-// Merging glues two regions along all of their border, or along its longest stretch. Tips of
-// fingers, ears and mouths fit their surroundings neither way, for what lies around them is as
-// wide as they are, or curls. Hung on one edge they only need room beside it.
+// Merging glues two regions along their whole border, or along its longest stretch. The tips of
+// fingers, ears and mouths fit their surroundings in neither way, because these are as wide as the
+// tip, or curl. Attached by one edge, a tip needs only room beside it.
 #include "core/segment/attach_small_charts.hpp"
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/mesh/edges.hpp"
-#include "core/segment/destroy.hpp"
 #include "core/segment/labels.hpp"
 #include "core/segment/remap.hpp"
 
@@ -21,13 +20,14 @@ constexpr std::size_t kNeighbours = 2;  // that are asked
 /// Half-edges of the small region in a row, across which the other one lies.
 using Stretch = std::vector<Index>;
 
-class Hanging {
+class Attaching {
  public:
-  Hanging(const SegmentationMesh& surface, const MergeRules& rules, Partition& partition)
-      : surface_(surface),
-        rules_(rules),
+  Attaching(const MergeContext& context, const MergeSettings& settings, Partition& partition)
+      : context_(context),
+        surface_(context.surface),
+        settings_(settings),
         partition_(partition),
-        owner_(owners(surface, partition)) {
+        owner_(owners(surface_, partition)) {
     for (const MappedRegion& patch : partition.patches) total_ += patch.excess;
   }
 
@@ -37,7 +37,7 @@ class Hanging {
     std::ranges::stable_sort(order, std::less(),
                              [&](std::size_t k) { return rounded(partition_.patches[k].area); });
     for (const std::size_t k : order)
-      if (partition_.patches[k].area < kSmallRegion) hang(static_cast<Index>(k));
+      if (partition_.patches[k].area < kSmallRegion) attach(static_cast<Index>(k));
     std::erase_if(partition_.patches,
                   [](const MappedRegion& patch) { return patch.region.faces.empty(); });
   }
@@ -93,7 +93,7 @@ class Hanging {
     return rounded(sum);
   }
 
-  void hang(Index k) {
+  void attach(Index k) {
     const std::vector<Stretch> all = stretches(k);
     for (std::size_t s = 0; s < std::min(all.size(), kNeighbours); ++s) {
       const std::span<const Index> stretch = all[s];
@@ -118,7 +118,7 @@ class Hanging {
     for (const Index h : edges) open[h] = open[twin(h)] = 0;
     MappedRegion both{
         beside(surface_, other.region, own.region, edges), {}, own.area + other.area, true};
-    if (!remap(surface_, open, rules_, own.excess + other.excess, both, total_)) return false;
+    if (!remap(context_, settings_, open, own.excess + other.excess, both, total_)) return false;
     for (const Index t : own.region.faces) owner_[t] = into;
     partition_.open = std::move(open);
     other = std::move(both);
@@ -126,8 +126,9 @@ class Hanging {
     return true;
   }
 
+  const MergeContext& context_;
   const SegmentationMesh& surface_;
-  const MergeRules& rules_;
+  const MergeSettings& settings_;
   Partition& partition_;
   std::vector<Index> owner_;  ///< one a face
   ExcessDistortion total_;
@@ -135,9 +136,9 @@ class Hanging {
 
 }  // namespace
 
-void attach_small_charts(const SegmentationMesh& surface, const MergeRules& rules,
+void attach_small_charts(const MergeContext& context, const MergeSettings& settings,
                          Partition& partition) {
-  Hanging(surface, rules, partition).run();
+  Attaching(context, settings, partition).run();
 }
 
 }  // namespace unwrapd::segment

@@ -1,5 +1,5 @@
 #pragma once
-// Small regions hung on a neighbour by a piece of their common border.
+// Attaches small regions to a neighbour along a part of their common border.
 
 #include "core/segment/merge.hpp"
 
@@ -8,11 +8,11 @@ namespace unwrapd::segment {
 inline constexpr double kSmallRegion =
     0.01;  ///< of the surface's area: below that a region is small
 
-/// Each small region that no neighbour took as a whole becomes part of one where the two have a
-/// sound map with some of their common border glued, down to one edge; the rest of it stays a slit.
-/// Seams grow by nothing, and there are fewer charts. Excess: as merging bounds it.
+/// Each small region becomes part of a neighbour if the two have a sound map with some of their
+/// common border glued, down to one edge; the rest of the border stays a slit. Seams do not grow,
+/// and there are fewer charts. The excess keeps the bounds of merging.
 /// Throws Error{cancelled}.
-void attach_small_charts(const SegmentationMesh& surface, const MergeRules& rules,
+void attach_small_charts(const MergeContext& context, const MergeSettings& settings,
                          Partition& partition);
 
 }  // namespace unwrapd::segment

@@ -75,8 +75,9 @@ class Halving {
 
 }  // namespace
 
-std::optional<Partition> bisect(const SegmentationMesh& surface, const Partition& partition,
-                                std::size_t k, const MergeRules& rules) {
+std::optional<Partition> bisect(const MergeContext& context, const Partition& partition,
+                                std::size_t k) {
+  const SegmentationMesh& surface = context.surface;
   const Region& whole = partition.patches[k].region;
   const std::vector<char> half = Halving(surface, partition, whole).find();
   std::array<MappedRegion, 2> parts;
@@ -89,10 +90,10 @@ std::optional<Partition> bisect(const SegmentationMesh& surface, const Partition
   for (MappedRegion& part : parts) {
     if (part.region.faces.empty()) return std::nullopt;
     const TestRules trial{.most_excess = std::numeric_limits<double>::infinity(),
-                          .stop = rules.stop,
-                          .memory = rules.memory};
+                          .stop = context.stop,
+                          .memory = context.failures};
     const TestResult result = test_parameterization(surface, partition.open, trial, part.region);
-    if (rules.progress != nullptr) rules.progress->add(part.region.faces.size());
+    if (context.progress != nullptr) context.progress->add(part.region.faces.size());
     if (result.verdict != Verdict::sound) return std::nullopt;
     part.excess = result.excess;
     part.is_sound = true;

@@ -1,5 +1,5 @@
 #pragma once
-// A region cut across: the other way from merging.
+// Bisecting a region, the inverse of merging.
 
 #include <optional>
 
@@ -7,10 +7,10 @@
 
 namespace unwrapd::segment {
 
-/// The partition with region k as two: each face goes to the nearer of two that lie about as far
-/// apart as faces of the region can. Nothing where the halves have no sound maps. The second half
-/// comes last.
-std::optional<Partition> bisect(const SegmentationMesh& surface, const Partition& partition,
-                                std::size_t k, const MergeRules& rules);
+/// The partition with region k in two halves. Two faces that lie about as far apart as any in the
+/// region are the seeds; each face goes to the nearer one. Empty where a half has no sound map. The
+/// second half comes last.
+std::optional<Partition> bisect(const MergeContext& context, const Partition& partition,
+                                std::size_t k);
 
 }  // namespace unwrapd::segment

@@ -18,13 +18,17 @@ using Slit = std::vector<Index>;
 
 class Gluing {
  public:
-  Gluing(const SegmentationMesh& surface, const MergeRules& rules, Partition& partition)
-      : surface_(surface), rules_(rules), partition_(partition), owner_(surface.mesh.faces.size()) {
+  Gluing(const MergeContext& context, const MergeSettings& settings, Partition& partition)
+      : context_(context),
+        surface_(context.surface),
+        settings_(settings),
+        partition_(partition),
+        owner_(surface_.mesh.faces.size()) {
     for (std::size_t k = 0; k < partition.patches.size(); ++k) {
       total_ += partition.patches[k].excess;
       for (const Index t : partition.patches[k].region.faces) owner_[t] = static_cast<Index>(k);
     }
-    degree_.assign(surface.mesh.positions.size(), 0);
+    degree_.assign(surface_.mesh.positions.size(), 0);
     for (Index h = 0; h < count(); ++h) {
       if (!is_seam(h) || (twin(h) != kNoTwin && twin(h) < h)) continue;
       ++degree_[start(h)];
@@ -34,7 +38,7 @@ class Gluing {
 
   void run() {
     for (Slit& slit : find()) {
-      throw_if_cancelled(rules_.stop);
+      throw_if_cancelled(context_.stop);
       const bool has_tip = degree_[end(slit.back())] == 1 || degree_[start(slit.front())] == 1;
       if (degree_[start(slit.front())] != 1) {  // the tip first
         std::ranges::reverse(slit);
@@ -95,7 +99,7 @@ class Gluing {
     };
     set_open(0);
     MappedRegion now = old;
-    if (!remap(surface_, partition_.open, rules_, old.excess, now, total_)) {
+    if (!remap(context_, settings_, partition_.open, old.excess, now, total_)) {
       set_open(1);
       return false;
     }
@@ -103,8 +107,9 @@ class Gluing {
     return true;
   }
 
+  const MergeContext& context_;
   const SegmentationMesh& surface_;
-  const MergeRules& rules_;
+  const MergeSettings& settings_;
   Partition& partition_;
   std::vector<Index> owner_;  ///< one a face
   std::vector<int> degree_;   ///< seams that meet in a vertex
@@ -113,8 +118,8 @@ class Gluing {
 
 }  // namespace
 
-void close_slits(const SegmentationMesh& surface, const MergeRules& rules, Partition& partition) {
-  Gluing(surface, rules, partition).run();
+void close_slits(const MergeContext& context, const MergeSettings& settings, Partition& partition) {
+  Gluing(context, settings, partition).run();
 }
 
 }  // namespace unwrapd::segment

@@ -1,14 +1,14 @@
 #pragma once
-// Slits that a region no longer needs.
+// Closes slits that a region no longer needs.
 
 #include "core/segment/merge.hpp"
 
 namespace unwrapd::segment {
 
-/// Slits (seams with the same region on both sides) are glued as far as the region keeps a sound
-/// map: excess of it over its area at most cap (or what it had), of all regions at most budget. One
-/// that ends inside of the region is glued from there, all of it or a part. Throws
+/// Glues slits (seams with the same region on both sides) as far as the region keeps a sound map:
+/// its excess over its area is at most the cap, or what it was; that of all regions is at most the
+/// budget. A slit that ends inside the region is glued from that end, wholly or partly. Throws
 /// Error{cancelled}.
-void close_slits(const SegmentationMesh& surface, const MergeRules& rules, Partition& partition);
+void close_slits(const MergeContext& context, const MergeSettings& settings, Partition& partition);
 
 }  // namespace unwrapd::segment

@@ -7,8 +7,8 @@
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kMostLoose = 0.4;  // of the area, beyond which no neighbour joins in
-constexpr std::uint64_t kLots = 1'000'003;
+constexpr double kMostLoose = 0.4;  // of the area, all of them together
+constexpr std::uint64_t kSeedFactor = 1'000'003;
 
 /// The regions that touch `centre`, ascending.
 std::vector<Index> neighbours(const SegmentationMesh& surface, std::span<const Index> owner,
@@ -24,7 +24,7 @@ std::vector<Index> neighbours(const SegmentationMesh& surface, std::span<const I
   return around;
 }
 
-/// A region at random, the larger the likelier: small ones change little. lot: any number.
+/// A random region, drawn by area: small regions change little. seed: any number.
 std::size_t drawn_by_area(std::span<const MappedRegion> patches, std::uint64_t seed) {
   double all = 0;
   for (const MappedRegion& patch : patches) all += patch.area;
@@ -34,10 +34,10 @@ std::size_t drawn_by_area(std::span<const MappedRegion> patches, std::uint64_t s
   return k;
 }
 
-/// A region at random, and neighbours in random order as long as there is room for them.
+/// A random region, and neighbours in random order as long as there is room for them.
 std::vector<char> drawn_regions(const SegmentationMesh& surface, const Partition& merged,
                                 std::span<const Index> owner, std::uint64_t seed) {
-  std::uint64_t state = seed * kLots;
+  std::uint64_t state = seed * kSeedFactor;
   const auto below = [&](std::size_t bound) {
     return static_cast<std::size_t>(splitmix64(state += kGoldenStep) % bound);
   };
@@ -58,13 +58,6 @@ std::vector<char> drawn_regions(const SegmentationMesh& surface, const Partition
 }
 
 }  // namespace
-
-std::vector<Index> owners(const SegmentationMesh& surface, const Partition& partition) {
-  std::vector<Index> owner(surface.mesh.faces.size());
-  for (std::size_t k = 0; k < partition.patches.size(); ++k)
-    for (const Index t : partition.patches[k].region.faces) owner[t] = static_cast<Index>(k);
-  return owner;
-}
 
 Destroyed destroy(const SegmentationMesh& surface, const Partition& from, const Partition& merged,
                   std::uint64_t seed) {

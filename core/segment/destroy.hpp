@@ -1,5 +1,5 @@
 #pragma once
-// A part of a partition taken apart again.
+// The first half of large-neighbourhood search: a part of a partition falls apart again.
 
 #include <cstdint>
 
@@ -13,12 +13,9 @@ struct Destroyed {
   Index whole = 0;  ///< how many stayed whole
 };
 
-/// One region of `merged` and neighbours of it, up to some share of the area, fall back to the
-/// patches of `from` that they were merged from. lot: which; each is the same for everybody.
+/// A random region of `merged` and some of its neighbours, up to a share of the area, fall back to
+/// the regions of `from` that they were merged from. Equal seeds make the same choice.
 Destroyed destroy(const SegmentationMesh& surface, const Partition& from, const Partition& merged,
                   std::uint64_t seed);
-
-/// The region of each face.
-std::vector<Index> owners(const SegmentationMesh& surface, const Partition& partition);
 
 }  // namespace unwrapd::segment

@@ -15,7 +15,6 @@
 
 #include "core/segment/chart_excess.hpp"
 #include "core/segment/coarsen.hpp"
-#include "core/segment/excess_steps.hpp"
 #include "core/segment/region_charts.hpp"
 
 namespace unwrapd::segment {

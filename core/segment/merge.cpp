@@ -1,8 +1,8 @@
-// A queue of neighbours, the union that promises most first: much border gone, little distortion
-// added. A promise is what the two parts were worth when they were last tried; a union is tried
-// when it comes to the top (lazy greedy, Minoux 1978), some at a time so that threads have work,
-// always the same ones. Merging by normals alone stops far too early: what counts is whether ARAP
-// can lay the union flat, and only ARAP knows.
+// A queue of neighbours orders their unions by a forecast: much border removed, little distortion
+// added. The forecast is what was known of the parts when they were last tested. A union is tested
+// when it reaches the top (lazy greedy, Minoux 1978), several at a time so that threads have work;
+// the batches do not depend on the number of threads. Merging by normals alone stops far too early:
+// only a map by ARAP shows whether a union can be flattened.
 #include "core/segment/merge.hpp"
 
 #include <algorithm>
@@ -36,9 +36,9 @@ double area_within(const UvMap& hull) {
   return area;
 }
 
-/// What is known of a pair of neighbours.
-struct GuaranteeRules {
-  double rise = 0;  ///< excess that their union is thought to add
+/// What is expected of the union of two neighbours.
+struct Forecast {
+  double rise = 0;  ///< excess that the union may add
   bool was_flawed = false;
   bool is_impossible = false;
 };
@@ -55,11 +55,12 @@ struct Union {
 
 class Merging {
  public:
-  Merging(const Joiner& joiner, const SegmentationMesh& surface, Partition from,
-          const MergeRules& rules)
-      : joiner_(joiner),
-        surface_(surface),
-        rules_(rules),
+  Merging(const MergeContext& context, const Joiner& joiner, Partition from,
+          const MergeSettings& settings)
+      : context_(context),
+        joiner_(joiner),
+        surface_(context.surface),
+        settings_(settings),
         open_(std::move(from.open)),
         patches_(std::move(from.patches)) {
     alive_.assign(patches_.size(), 1);
@@ -72,8 +73,8 @@ class Merging {
     for (Index a = 0; a < static_cast<Index>(patches_.size()); ++a)
       for (const auto& [b, unused] : borders_[a])
         if (a < b) propose(a, b, {});
-    while (!queue_.empty() && count_ > static_cast<std::size_t>(rules_.enough)) {
-      throw_if_cancelled(rules_.stop);
+    while (!queue_.empty() && count_ > static_cast<std::size_t>(settings_.enough)) {
+      throw_if_cancelled(context_.stop);
       Union best = queue_.top();
       if (best.tried == nullptr) {
         try_batch(executor);
@@ -115,28 +116,28 @@ class Merging {
     const double narrow = std::min(perimeter_[a], perimeter_[b]);
     const double wide = std::max(perimeter_[a], perimeter_[b]);
     const double distortion_weight =
-        rules_.budget > 0 ? rules_.distortion_weight * rise / rules_.budget : 0;
+        settings_.budget > 0 ? settings_.distortion_weight * rise / settings_.budget : 0;
     const double worth = border / narrow + kWideShare * border / wide;
-    return rounded(distortion_weight - worth * (1 + rules_.noise * drawn(a, b)));
+    return rounded(distortion_weight - worth * (1 + settings_.noise * drawn(a, b)));
   }
 
-  /// A number in [0, 1) for this pair in this lot.
+  /// A random number in [0, 1) for this pair under the seed.
   [[nodiscard]] double drawn(Index a, Index b) const {
     const auto pair = std::minmax(a, b);
     const std::uint64_t both =
         static_cast<std::uint64_t>(pair.first) << 32 | static_cast<std::uint64_t>(pair.second);
-    const std::uint64_t seed = static_cast<std::uint64_t>(rules_.seed + 1) * kGoldenStep;
+    const std::uint64_t seed = static_cast<std::uint64_t>(settings_.seed + 1) * kGoldenStep;
     return static_cast<double>(splitmix64(both + seed) >> 11) * 0x1p-53;
   }
 
-  void propose(Index a, Index b, const GuaranteeRules& promise) {
-    if (std::max(a, b) < rules_.whole) return;
-    if (promise.is_impossible || !patches_[a].is_sound || !patches_[b].is_sound) return;
-    const double promised = promise.was_flawed ? kLast : key(a, b, promise.rise);
-    queue_.push({promised, std::min(a, b), std::max(a, b)});
+  void propose(Index a, Index b, const Forecast& forecast) {
+    if (std::max(a, b) < settings_.whole) return;
+    if (forecast.is_impossible || !patches_[a].is_sound || !patches_[b].is_sound) return;
+    const double forecast_key = forecast.was_flawed ? kLast : key(a, b, forecast.rise);
+    queue_.push({forecast_key, std::min(a, b), std::max(a, b)});
   }
 
-  /// Tries the best unions that were not tried yet.
+  /// Tests the best unions that were not tested yet.
   void try_batch(Executor& executor) {
     std::vector<Union> batch;
     while (!queue_.empty() && batch.size() < kBatch && queue_.top().tried == nullptr) {
@@ -145,31 +146,32 @@ class Merging {
     }
     executor.for_each_block(static_cast<int>(batch.size()), [&](int k) {
       Union& own = batch[static_cast<std::size_t>(k)];
-      own.tried =
-          std::make_shared<Joined>(joiner_.join(patches_[own.a], patches_[own.b], open_, rules_.cap,
-                                                {.stop = rules_.stop, .memory = rules_.memory}));
+      own.tried = std::make_shared<Joined>(
+          joiner_.join(patches_[own.a], patches_[own.b], open_, settings_.cap,
+                       {.stop = context_.stop, .memory = context_.failures}));
     });
-    throw_if_cancelled(rules_.stop);
+    throw_if_cancelled(context_.stop);
     for (Union& both : batch) {
-      if (rules_.progress != nullptr) rules_.progress->add(both.tried->patch.region.faces.size());
+      if (context_.progress != nullptr)
+        context_.progress->add(both.tried->patch.region.faces.size());
       judge(std::move(both));
     }
   }
 
-  /// Whether a page that holds the patch could not be filled as it shall.
+  /// Whether the shape of the patch would leave too much of a page empty.
   [[nodiscard]] bool is_awkward(const MappedRegion& patch) const {
-    if (rules_.least_fill <= 0 || patch.area < kLarge * rules_.page_area) return false;
+    if (settings_.least_fill <= 0 || patch.area < kLarge * settings_.page_area) return false;
     UvMap points;
     points.reserve(3 * patch.region.uv.size());
     for (const CornerUv& uv : patch.region.uv) points.insert(points.end(), uv.begin(), uv.end());
     points = pack::convex_hull(std::move(points));
     const double side = pack::squarest_box(points).size.maxCoeff();
-    return side * side * rules_.least_fill > rules_.page_area ||
-           rules_.least_solid * area_within(points) > patch.area;
+    return side * side * settings_.least_fill > settings_.page_area ||
+           settings_.least_solid * area_within(points) > patch.area;
   }
 
   void judge(Union both) {
-    GuaranteeRules& known = known_[{both.a, both.b}];
+    Forecast& known = known_[{both.a, both.b}];
     Joined& joined = *both.tried;
     if (joined.patch.is_sound && is_awkward(joined.patch)) joined.patch.is_sound = false;
     const ExcessDistortion rise =
@@ -184,7 +186,7 @@ class Merging {
   void accept(const Union& best) {
     const ExcessDistortion after =
         total_ + best.tried->patch.excess - patches_[best.a].excess - patches_[best.b].excess;
-    if (after.worst() > std::max(rules_.budget, total_.worst())) return;
+    if (after.worst() > std::max(settings_.budget, total_.worst())) return;
     total_ = after;
     const auto joined = static_cast<Index>(patches_.size());
     double slit = 0;
@@ -213,31 +215,32 @@ class Merging {
     return borders;
   }
 
-  /// other has a new neighbour, of which it knows what it knew of the parts.
+  /// Gives `other` its new neighbour, with the forecasts for the two parts.
   void meet(Index joined, Index other, double length, const Union& parts) {
-    GuaranteeRules promise;
+    Forecast forecast;
     for (const Index part : {parts.a, parts.b}) {
       borders_[other].erase(part);
       const auto known = known_.find(std::minmax(part, other));
       if (known == known_.end()) continue;
-      promise.rise = std::max(promise.rise, known->second.rise);
-      promise.was_flawed = promise.was_flawed || known->second.was_flawed;
-      promise.is_impossible = promise.is_impossible || known->second.is_impossible;
+      forecast.rise = std::max(forecast.rise, known->second.rise);
+      forecast.was_flawed = forecast.was_flawed || known->second.was_flawed;
+      forecast.is_impossible = forecast.is_impossible || known->second.is_impossible;
     }
     borders_[other][joined] = length;
-    known_[std::minmax(joined, other)] = promise;
-    propose(joined, other, promise);
+    known_[std::minmax(joined, other)] = forecast;
+    propose(joined, other, forecast);
   }
 
+  const MergeContext& context_;
   const Joiner& joiner_;
   const SegmentationMesh& surface_;
-  const MergeRules& rules_;
+  const MergeSettings& settings_;
   std::vector<char> open_;
   std::vector<MappedRegion> patches_;  ///< those that were merged are dead and empty
   std::vector<char> alive_;
   std::vector<std::map<Index, double>> borders_;  ///< lengths to each neighbour
   std::vector<double> perimeter_;
-  std::map<std::pair<Index, Index>, GuaranteeRules> known_;
+  std::map<std::pair<Index, Index>, Forecast> known_;
   std::priority_queue<Union, std::vector<Union>, std::greater<>> queue_;
   ExcessDistortion total_;
   std::size_t count_ = 0;
@@ -245,11 +248,18 @@ class Merging {
 
 }  // namespace
 
-Partition merge_patches(const Joiner& joiner, const SegmentationMesh& surface, Partition from,
-                        const MergeRules& rules, Executor& executor) {
-  Merging merging(joiner, surface, std::move(from), rules);
+Partition merge_patches(const MergeContext& context, const Joiner& joiner, Partition from,
+                        const MergeSettings& settings, Executor& executor) {
+  Merging merging(context, joiner, std::move(from), settings);
   merging.run(executor);
   return merging.take();
+}
+
+std::vector<Index> owners(const SegmentationMesh& surface, const Partition& partition) {
+  std::vector<Index> owner(surface.mesh.faces.size());
+  for (std::size_t k = 0; k < partition.patches.size(); ++k)
+    for (const Index t : partition.patches[k].region.faces) owner[t] = static_cast<Index>(k);
+  return owner;
 }
 
 }  // namespace unwrapd::segment

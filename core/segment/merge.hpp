@@ -1,5 +1,5 @@
 #pragma once
-// Neighbouring regions made one, greedily, as long as their maps stay good.
+// Greedy merging: neighbouring regions become one as long as their maps stay good.
 
 #include <stop_token>
 #include <vector>
@@ -10,30 +10,40 @@
 
 namespace unwrapd::segment {
 
-struct MergeRules {
-  double budget = 0;  ///< neither sum of the patches' excess rises above this
-  double cap = 0;     ///< excess of one patch over its area, at most, where a union adds some
-  double distortion_weight = 5;  ///< of all the budget, in borders of a whole patch
-  double page_area = 1;    ///< of all that comes onto the page: no union shall need more of it than
-  double least_fill = 0;   ///< this share allows; 0: as wide as it likes
+/// Which unions are allowed, and which come first.
+struct MergeSettings {
+  double budget = 0;  ///< neither sum of the regions' excess rises above this
+  double cap = 0;     ///< excess of one region over its area, at most, where a union adds some
+  double distortion_weight = 5;  ///< of the whole budget, in borders of a whole region
+  double page_area = 1;    ///< of all charts on the page: no union may need a larger page than this
+  double least_fill = 0;   ///< with this share of it covered; 0: a union may have any shape
   double least_solid = 0;  ///< share of its convex hull that a large union covers, at least
-  double noise = 0;        ///< share of borders' worth that is drawn by lot
-  int seed = 0;            ///< which of the draws; each is the same for everybody
-  Index whole = 0;         ///< so many patches at the front merge only by way of others
-  Index enough = 1;        ///< ends when there are no more patches than this
-  ProgressEstimate* progress = nullptr;  ///< told of the faces that are tried; null: nobody
-  FailedTrials* memory = nullptr;        ///< see TestRules; with an executor of one thread alone
+  double noise = 0;        ///< share of a border's worth that is random
+  int seed = 0;            ///< of the noise; equal seeds give equal noise
+  Index whole = 0;         ///< regions at the front that merge with no other one of these
+  Index enough = 1;        ///< merging ends at this number of regions
+};
+
+/// What a step of the search works on, reports to and stops at.
+struct MergeContext {
+  const SegmentationMesh& surface;
+  ProgressEstimate* progress = nullptr;  ///< counts the faces that are tested; null: not counted
+  FailedTrials* failures = nullptr;      ///< see TestRules; for one thread; null: none
   std::stop_token stop = {};
 };
 
-/// Regions, and the half-edges inside of them that are seams all the same.
+/// Regions, and the half-edges inside regions that are seams nevertheless.
 struct Partition {
   std::vector<MappedRegion> patches;
   std::vector<char> open;  ///< one a half-edge of the surface, 1: not glued
 };
 
-/// The same for any executor. Throws Error{cancelled}.
-Partition merge_patches(const Joiner& joiner, const SegmentationMesh& surface, Partition from,
-                        const MergeRules& rules, Executor& executor);
+/// Merges greedily until no allowed union is left. The same for any executor. Throws
+/// Error{cancelled}.
+Partition merge_patches(const MergeContext& context, const Joiner& joiner, Partition from,
+                        const MergeSettings& settings, Executor& executor);
+
+/// The region of each face.
+std::vector<Index> owners(const SegmentationMesh& surface, const Partition& partition);
 
 }  // namespace unwrapd::segment

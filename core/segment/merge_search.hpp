@@ -1,79 +1,94 @@
 #pragma once
-// The steps of the search for the best way to merge the patches of a surface.
+// The steps of the search for the best way to merge the patches of a surface, in the order of their
+// use by SurfaceSegmentation.
 
 #include <limits>
-#include <optional>
 #include <vector>
 
-#include "core/segment/candidate.hpp"
+#include "core/segment/failed_trials.hpp"
+#include "core/segment/partition_cost.hpp"
 
 namespace unwrapd::segment {
 
-/// Partitions of one surface that compete. Every step is the same for any executor and throws
-/// Error{cancelled}.
+/// A partition that competes with others.
+struct Candidate {
+  Partition partition = {};
+  PartitionCost cost = {};
+  double tried_faces = 0;      ///< faces tested on the way to it; see ProgressEstimate
+  FailedTrials failures = {};  ///< on the way to it
+};
+
+/// Every step is the same for any executor and throws Error{cancelled}.
 class MergeSearch {
  public:
-  /// steps: how often widen() is going to be called. surface, from and executor must outlive this.
-  MergeSearch(const SegmentationMesh& surface, const Partition& from, const MergeRules& rules,
+  /// steps: how often widen() is going to be called. What context and from refer to, and executor,
+  /// must outlive this; the context needs a progress estimate.
+  MergeSearch(const MergeContext& context, const Partition& from, const MergeSettings& settings,
               std::size_t steps, Executor& executor);
 
-  /// The cheapest of the tries, the best first.
-  std::vector<Candidate> greedy();
+  /// Greedy merges under several settings: the cheapest of the results, ascending.
+  std::vector<Candidate> merge_greedily();
 
-  /// Again and again a part of each is taken apart and merged anew; what is cheaper stays (large
-  /// neighbourhood search, Shaw 1998).
-  void mend(std::vector<Candidate>& best);
+  /// Large-neighbourhood search (Shaw 1998): a part of each candidate is destroyed and merged
+  /// again, many times; what is cheaper stays.
+  void search_neighbourhoods(std::vector<Candidate>& best);
 
-  /// The cheapest after borders were drawn straight; and after what then fits together was merged,
-  /// of any shape or not. Its borders may run through patches: it cannot be mended.
-  Candidate finished(std::vector<Candidate> all);
+  /// Shortens the borders of all. From here on borders may run through patches, so that
+  /// search_neighbourhoods() can no longer be used.
+  std::vector<Candidate> shorten_borders(std::vector<Candidate> all);
 
-  /// The region is cut across whose halves make the partition cheapest, again and again as long as
-  /// that helps: few charts that merged into rings and stars leave a page emptier than it need be.
-  /// Slits that are not needed then are glued. The cost is not that of the result: see priced().
-  [[nodiscard]] Candidate taken_apart(Candidate whole);
+  /// Adds to each what it comes to when the unions are merged that its short borders allow: of any
+  /// shape, and of shapes that fill a page well.
+  std::vector<Candidate> merge_again(std::vector<Candidate> all);
 
-  /// With its cost, which takes a rough packing.
+  /// Each distinct candidate with its slits closed and its small charts attached.
+  std::vector<Candidate> close_and_attach(std::vector<Candidate> all);
+
+  /// The cheapest candidate, with its cost.
+  [[nodiscard]] Candidate cheapest(std::vector<Candidate> all) const;
+
+  /// Bisects the region whose halves make the partition cheapest, as long as that helps: rings and
+  /// stars leave a page emptier than necessary. Then closes slits that are no longer needed. The
+  /// cost is not that of the result: see priced().
+  [[nodiscard]] Candidate bisect_regions(Candidate whole);
+
+  /// The candidate with its cost, which takes a rough packing.
   [[nodiscard]] Candidate priced(Candidate own) const;
 
-  /// From here on the excess of all may be as much as this budget, which is larger than before.
-  /// best: what was mended so far; some more tries compete with it, and the cheapest are mended.
+  /// Raises the budget. More greedy merges compete with `best`, which the search so far has led to,
+  /// and the cheapest go through search_neighbourhoods().
   void widen(double budget, std::vector<Candidate>& best);
 
-  /// Of what all of them and `best` come to when they are finished and taken apart, the cheapest
-  /// whose seams are shorter than those of `best`; that itself where none costs less.
-  Candidate with_shorter_seams(std::vector<Candidate> all, Candidate best);
+  /// Candidates with seams of this length or more cost infinitely much from here on.
+  void forbid_seams_from(double length) { longest_ = length; }
 
  private:
-  void begin(double tries);
-  void try_some(std::size_t first, std::size_t count, std::vector<Candidate>& best);
-  [[nodiscard]] MergeRules rules_of(std::size_t number) const;
+  void begin(double merges);
+  void merge_some(std::size_t first, std::size_t count, std::vector<Candidate>& best);
+  [[nodiscard]] MergeSettings settings_of(std::size_t number) const;
   void learn(std::vector<Candidate>& found);
-  template <class Work>
-  [[nodiscard]] Candidate noted(MergeRules rules, Work search) const;
-  [[nodiscard]] Candidate merged(Partition partition, const MergeRules& by) const;
-  [[nodiscard]] Candidate with_shortened_seams(Partition partition) const;
-  [[nodiscard]] Candidate completed(Partition partition) const;
-  [[nodiscard]] Candidate mended(const Candidate& best, std::size_t number) const;
-  [[nodiscard]] Candidate cut_across(const Candidate& whole, std::size_t k) const;
+  template <class Search>
+  [[nodiscard]] Candidate tracked(Search search) const;
+  [[nodiscard]] Candidate merged(Partition partition, const MergeSettings& settings) const;
+  [[nodiscard]] Candidate merged_again(const Partition& partition, double least_fill) const;
+  [[nodiscard]] Candidate remerged_in_part(const Candidate& best, std::size_t number) const;
+  [[nodiscard]] Candidate with_halves(const Candidate& whole, std::size_t k) const;
   [[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> all) const;
-  [[nodiscard]] Candidate cheapest(std::vector<Candidate> all) const;
-  [[nodiscard]] Candidate weighed(Candidate own, double limit, CostRules rules) const;
+  [[nodiscard]] Candidate priced(Candidate own, double limit, CostRules rules) const;
 
-  const SegmentationMesh& surface_;
+  const MergeContext context_;
   const Partition& from_;
-  MergeRules rules_;
+  MergeSettings settings_;
   Executor& executor_;
   Joiner joiner_;
   FailedTrials failures_;  ///< of all searches that have ended
-  std::size_t tries_ = 1, kept_ = 1;
-  std::size_t mends_ = 0;     ///< of each that is kept
-  std::size_t mended_ = 0;    ///< how often each was
-  std::size_t next_try_ = 0;  ///< of those that widen() makes
-  double longest_ =
-      std::numeric_limits<double>::infinity();  ///< seams that a candidate may not have
-  double weight_left_ = 1;                      ///< of the work, in tries
-  double try_faces_ = 0;  ///< that a try took, or the first ones are thought to take
+  std::size_t merges_ = 1, kept_ = 1;
+  std::size_t rounds_ = 0;  ///< of search_neighbourhoods()
+  std::size_t rounds_done_ = 0;
+  std::size_t next_merge_ = 0;                                ///< of those that widen() makes
+  double longest_ = std::numeric_limits<double>::infinity();  ///< see forbid_seams_from()
+  double work_left_ = 1;                                      ///< in greedy merges
+  double merge_faces_ = 0;  ///< faces that a greedy merge tests: a guess until the first is done
 };
 
 }  // namespace unwrapd::segment

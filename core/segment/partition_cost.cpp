@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "core/pack/pack.hpp"
-#include "core/segment/destroy.hpp"
 #include "core/segment/labels.hpp"
 
 namespace unwrapd::segment {

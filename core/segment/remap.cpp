@@ -7,16 +7,16 @@
 
 namespace unwrapd::segment {
 
-bool remap(const SegmentationMesh& surface, std::span<const char> open, const MergeRules& rules,
+bool remap(const MergeContext& context, const MergeSettings& settings, std::span<const char> open,
            const ExcessDistortion& before, MappedRegion& region, ExcessDistortion& total) {
-  throw_if_cancelled(rules.stop);
-  const TestRules trial{.most_excess = std::max(rules.cap * region.area, before.worst()),
-                        .stop = rules.stop,
-                        .memory = rules.memory};
-  const TestResult result = test_parameterization(surface, open, trial, region.region);
-  if (rules.progress != nullptr) rules.progress->add(region.region.faces.size());
+  throw_if_cancelled(context.stop);
+  const TestRules trial{.most_excess = std::max(settings.cap * region.area, before.worst()),
+                        .stop = context.stop,
+                        .memory = context.failures};
+  const TestResult result = test_parameterization(context.surface, open, trial, region.region);
+  if (context.progress != nullptr) context.progress->add(region.region.faces.size());
   const ExcessDistortion after = total + result.excess - before;
-  if (result.verdict != Verdict::sound || after.worst() > std::max(rules.budget, total.worst()))
+  if (result.verdict != Verdict::sound || after.worst() > std::max(settings.budget, total.worst()))
     return false;
   region.excess = result.excess;
   total = after;

@@ -1,5 +1,5 @@
 #pragma once
-// A region's map made anew, as far as merging would allow it.
+// A new map for a changed region, within the bounds of merging.
 
 #include <span>
 
@@ -7,11 +7,11 @@
 
 namespace unwrapd::segment {
 
-/// Tries a map of the region, glued but for `open`, in the place of those whose excess was
-/// `before`. Where it is sound and excess stays within the rules' bounds, or where it was, it is
-/// the region's, total (of all patches) says so, and the answer is true; else the region is of no
-/// use. Throws Error{cancelled}.
-bool remap(const SegmentationMesh& surface, std::span<const char> open, const MergeRules& rules,
+/// Tests a map of the region, glued except at `open`, that replaces maps of the excess `before`.
+/// The answer is true where the map is sound and the excess keeps the bounds of the settings, or
+/// does not grow; the map is then the region's and counted in total, which is of all regions. Else
+/// the region is unusable. Throws Error{cancelled}.
+bool remap(const MergeContext& context, const MergeSettings& settings, std::span<const char> open,
            const ExcessDistortion& before, MappedRegion& region, ExcessDistortion& total);
 
 }  // namespace unwrapd::segment

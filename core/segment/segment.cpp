@@ -1,138 +1,43 @@
-// Over-segment by normals, then merge with ARAP as the judge.
+// The search, step by step: over-segment by normals; merge greedily; large-neighbourhood search;
+// shorten borders; merge again; close slits and attach small charts; bisect. ARAP is the judge of
+// every union. See SurfaceSegmentation::first() and finished().
 //
-// The patches to begin with shall use but a part of the distortion that is allowed, so that merging
-// has something to spend: their flatness is tightened until they do. A patch that has no sound map
-// (a tube, a fold) is clustered again by itself, ever more tightly; single triangles always have
-// one, so this ends.
+// A looser bound starts from the result of the tighter one and accepts only shorter seams, so that
+// no bound costs more seam than a tighter one (ADR 0039). Rejected: a search of its own for every
+// bound: of twelve made surfaces one pair of bounds in twelve had longer seams at the looser one,
+// by up to a third.
 #include "core/segment/segment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
 
-#include "core/base/cancel.hpp"
-#include "core/segment/cluster.hpp"
-#include "core/segment/excess_steps.hpp"
-#include "core/segment/labels.hpp"
+#include "core/segment/over_segment.hpp"
 #include "core/segment/partition_cost.hpp"
 
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kFlatness = 0.06;  // mean 1 - cosine within a patch; half for each next round
-constexpr int kFlatnessRounds = 6;
-constexpr double kShareOfPatches = 0.3;  // of the budget, that patches may use before they merge
-constexpr double kRefinement = 0.3;      // of flatness, each time a patch has no sound map
-constexpr int kRefinements = 4;          // then the patch falls into its triangles
-constexpr int kSmoothingPasses = 3;
-constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
 constexpr double kMargin = 0.97;  // of what is allowed: solving on may shift some between the two
-constexpr double kAnyExcess = 1e6, kFarPrice = 10;  // beyond the bound, for a number of regions
-constexpr double kPatchesShare = 0.1, kFacesOfPatches = 6;  // of the work; for each face
-constexpr std::size_t kPatchesAtOnce = 16;                  // then progress is told
-constexpr double kFacesOfQuick = 20, kQuickPrice = 1;
+constexpr double kAnyExcess = 1e6, kFarWeight = 10;  // beyond the bound, for a number of regions
+constexpr double kFacesOfQuick = 20, kQuickWeight = 1;
 constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
+constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of excess, in each decade
+constexpr int kDecades = 4;
+constexpr double kSameBound = 1e-9;
 
-/// How the work is watched and done.
-struct Work {
-  const std::stop_token& stop;
-  ProgressEstimate& progress;
-  Executor& executor;
-};
-
-ExcessDistortion total_of(std::span<const MappedRegion> patches) {
-  ExcessDistortion total;
-  for (const MappedRegion& patch : patches) total += patch.excess;
-  return total;
-}
-
-/// The faces of each label with a map of their own, from their projection.
-std::vector<MappedRegion> map_patches(const SegmentationMesh& surface, std::vector<Index>& label,
-                                      const Work& work) {
-  std::vector<std::vector<Index>> faces = faces_by_label(label, renumber(label));
-  std::vector<MappedRegion> patches(faces.size());
-  const auto map = [&](std::size_t k) {
-    MappedRegion& patch = patches[k];
-    patch.region.faces = std::move(faces[k]);
-    patch.region.uv = projected(surface, patch.region.faces);
-    const TestRules rules{.most_excess = std::numeric_limits<double>::infinity(),
-                          .stop = work.stop};
-    const TestResult result = test_parameterization(surface, {}, rules, patch.region);
-    patch.excess = result.excess;
-    patch.is_sound = result.verdict == Verdict::sound;
-    for (const Index t : patch.region.faces) patch.area += surface.area(t);
-  };
-  for (std::size_t first = 0; first < patches.size(); first += kPatchesAtOnce) {
-    const std::size_t count = std::min(kPatchesAtOnce, patches.size() - first);
-    work.executor.for_each_block(static_cast<int>(count),
-                                 [&](int block) { map(first + static_cast<std::size_t>(block)); });
-    throw_if_cancelled(work.stop);
-    std::size_t mapped = 0;
-    for (std::size_t k = first; k < first + count; ++k) mapped += patches[k].region.faces.size();
-    work.progress.add(mapped);
-  }
-  return patches;
-}
-
-/// Patches without a sound map fall into smaller ones: those of `finer` labels.
-void split_unsound(const SegmentationMesh& surface, std::span<const MappedRegion> patches,
-                   std::span<const Index> finer, std::vector<Index>& label) {
-  const auto face_count = static_cast<Index>(label.size());
-  for (const MappedRegion& patch : patches) {
-    if (patch.is_sound) continue;
-    for (const Index t : patch.region.faces) label[t] = face_count + finer[t];
-  }
-  separate_labels(surface.halfedges, label);
-}
-
-std::vector<MappedRegion> sound_patches(const SegmentationMesh& surface, double flatness,
-                                        std::vector<Index> label, const Work& work) {
-  std::vector<MappedRegion> patches = map_patches(surface, label, work);
-  const auto is_sound = [](const MappedRegion& patch) { return patch.is_sound; };
-  for (int k = 0; k <= kRefinements && !std::ranges::all_of(patches, is_sound); ++k) {
-    flatness *= kRefinement;
-    std::vector<Index> finer(label.size());
-    std::iota(finer.begin(), finer.end(), 0);
-    if (k < kRefinements) finer = cluster_faces(surface, surface.normal, flatness, work.stop);
-    split_unsound(surface, patches, finer, label);
-    patches = map_patches(surface, label, work);
-  }
-  return patches;
-}
-
-std::vector<MappedRegion> over_segment(const SegmentationMesh& surface, double excess,
-                                       const Work& work) {
-  work.progress.begin(kPatchesShare, kFacesOfPatches * surface.face_count());
-  const double allowed = kShareOfPatches * excess;
-  double flatness = kFlatness;
-  for (int round = 1;; ++round, flatness /= 2) {
-    std::vector<Index> label = cluster_faces(surface, surface.normal, flatness, work.stop);
-    smooth_labels(surface, kSmoothingPasses, kSmoothCosine, label);
-    std::vector<MappedRegion> patches = sound_patches(surface, flatness, label, work);
-    if (round == kFlatnessRounds || total_of(patches).worst() <= allowed) return patches;
-  }
-}
-
-MergeRules merge_rules(const SegmentRules& rules, double excess, ProgressEstimate& progress) {
-  const double budget = kMargin * excess;
-  MergeRules merging{.budget = budget, .cap = kCapOfOnePatch * budget, .stop = rules.stop};
-  merging.page_area = rules.page_area;
-  merging.progress = &progress;
-  return merging;
-}
-
-/// Merged on however distorted, to so many patches where maps allow it.
-Partition limited(const SegmentationMesh& surface, Partition partition, const SegmentRules& rules,
+/// Merges further, whatever the distortion, to the allowed number of regions if maps allow it.
+Partition limited(const MergeContext& context, Partition partition, Index most_regions,
                   Executor& executor) {
-  if (partition.patches.size() <= static_cast<std::size_t>(rules.most_regions)) return partition;
-  const MergeRules merging{.budget = kAnyExcess,
-                           .cap = kAnyExcess,
-                           .distortion_weight = kFarPrice * kAnyExcess,
-                           .enough = rules.most_regions,
-                           .stop = rules.stop};
-  return merge_patches(Joiner(surface), surface, std::move(partition), merging, executor);
+  if (partition.patches.size() <= static_cast<std::size_t>(most_regions)) return partition;
+  const MergeSettings settings{.budget = kAnyExcess,
+                               .cap = kAnyExcess,
+                               .distortion_weight = kFarWeight * kAnyExcess,
+                               .enough = most_regions};
+  return merge_patches({context.surface, nullptr, nullptr, context.stop}, Joiner(context.surface),
+                       std::move(partition), settings, executor);
 }
 
 }  // namespace
@@ -143,34 +48,69 @@ SurfaceSegmentation::SurfaceSegmentation(const SegmentationMesh& surface, Segmen
       rules_(std::move(rules)),
       steps_(steps),
       executor_(executor),
-      effort_([this](double share) {
+      progress_([this](double share) {
         if (rules_.on_progress) rules_.on_progress(stage_, share);
-      }) {}
+      }),
+      context_{surface, &progress_, nullptr, rules_.stop} {}
 
 Segments SurfaceSegmentation::first(double excess) {
-  const Work work{rules_.stop, effort_, executor_};
-  patches_ = {over_segment(surface_, excess, work), std::vector<char>(surface_.length.size(), 0)};
+  patches_ = {over_segment(context_, excess, executor_),
+              std::vector<char>(surface_.length.size(), 0)};
   stage_ = Stage::merge;
-  MergeRules merging = merge_rules(rules_, excess, effort_);
-  if (rules_.is_quick) {
-    effort_.begin(1, kFacesOfQuick * surface_.face_count());
-    merging.distortion_weight = kQuickPrice;
-    return segments_of(
-        merge_patches(Joiner(surface_), surface_, std::move(patches_), merging, executor_));
-  }
-  return segments_of(merge_.emplace(surface_, patches_, merging, steps_, executor_).first());
+  const MergeSettings settings = settings_for(excess);
+  if (rules_.is_quick) return merged_quickly(settings);
+  MergeSearch& search = search_.emplace(context_, patches_, settings, steps_, executor_);
+  competing_ = search.merge_greedily();
+  search.search_neighbourhoods(competing_);
+  best_ = search.bisect_regions(finished(competing_));
+  return segments_of(best_.partition);
+}
+
+/// The cheapest result of all candidates.
+Candidate SurfaceSegmentation::finished(std::vector<Candidate> all) {
+  all = search_->shorten_borders(std::move(all));
+  all = search_->merge_again(std::move(all));
+  all = search_->close_and_attach(std::move(all));
+  return search_->cheapest(std::move(all));
 }
 
 std::optional<Segments> SurfaceSegmentation::loosened(double excess) {
-  if (!merge_->loosen(kMargin * excess)) return std::nullopt;
-  return segments_of(merge_->best());
+  MergeSearch& search = *search_;
+  if (!std::exchange(is_priced_, true)) best_ = search.priced(std::move(best_));
+  const double seam = best_.cost.seam;
+  if (seam <= 0) return std::nullopt;  // it needs no cut
+  search.widen(kMargin * excess, competing_);
+  std::vector<Candidate> all = competing_;
+  all.push_back(best_);
+  search.forbid_seams_from(seam);
+  Candidate next = finished(std::move(all));
+  if (next.cost.seam < seam) next = search.priced(search.bisect_regions(std::move(next)));
+  search.forbid_seams_from(std::numeric_limits<double>::infinity());
+  if (!(next.cost.seam < seam && next.cost.all < best_.cost.all)) return std::nullopt;
+  best_ = std::move(next);
+  return segments_of(best_.partition);
+}
+
+MergeSettings SurfaceSegmentation::settings_for(double excess) const {
+  const double budget = kMargin * excess;
+  MergeSettings settings{.budget = budget, .cap = kCapOfOnePatch * budget};
+  settings.page_area = rules_.page_area;
+  return settings;
+}
+
+Segments SurfaceSegmentation::merged_quickly(const MergeSettings& settings) {
+  progress_.begin(1, kFacesOfQuick * surface_.face_count());
+  MergeSettings quick = settings;
+  quick.distortion_weight = kQuickWeight;
+  return segments_of(
+      merge_patches(context_, Joiner(surface_), std::move(patches_), quick, executor_));
 }
 
 Segments SurfaceSegmentation::segments_of(Partition best) const {
-  best = limited(surface_, std::move(best), rules_, executor_);
+  best = limited(context_, std::move(best), rules_.most_regions, executor_);
   Segments segments{.regions = {},
                     .open = {},
-                    .excess = total_of(best.patches),
+                    .excess = total_excess(best.patches),
                     .seam_length = seam_length(surface_, best)};
   segments.open = std::move(best.open);
   for (MappedRegion& patch : best.patches) segments.regions.push_back(std::move(patch.region));
@@ -183,6 +123,21 @@ bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most)
   };
   if (beyond(one) != beyond(other)) return beyond(one) < beyond(other);
   return one.length < other.length;
+}
+
+std::vector<double> excess_steps(double max_distortion) {
+  std::vector<double> steps{std::min(max_distortion, kDefaultDistortion) - 2};
+  double decade = kDefaultDistortion - 2;
+  for (int k = 0; k < kDecades; ++k, decade *= 10)
+    for (const double step : kSteps)
+      if (2 + step * decade <= max_distortion + kSameBound) steps.push_back(step * decade);
+  return steps;
+}
+
+std::optional<double> tighter_bound(double max_distortion) {
+  const std::vector<double> steps = excess_steps(max_distortion);
+  if (steps.size() < 2) return std::nullopt;
+  return 2 + steps[steps.size() - 2];
 }
 
 Segments segment(const SegmentationMesh& surface, const SegmentRules& rules, Executor& executor) {

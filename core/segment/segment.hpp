@@ -1,5 +1,5 @@
 #pragma once
-// A surface of any genus taken apart into few regions that ARAP lays flat with little distortion.
+// Splits a surface of any genus into few regions that ARAP flattens with little distortion.
 
 #include <functional>
 #include <limits>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/executor.hpp"
-#include "core/segment/best_partition.hpp"
+#include "core/segment/merge_search.hpp"
 #include "core/segment/segmentation_mesh.hpp"
 #include "core/types/options.hpp"
 #include "core/types/progress.hpp"
@@ -31,7 +31,7 @@ struct Segments {
   double seam_length = 0;        ///< area of the surface: 1
 };
 
-/// What is compared where several steps lead to a bound.
+/// What is compared of the results of several bounds.
 struct SeamsOfCharts {
   std::size_t charts = 0;
   double length = 0;
@@ -40,10 +40,10 @@ struct SeamsOfCharts {
 /// Shorter seams are better; first of all, fewer of the charts beyond `most` are.
 bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most);
 
-/// A surface taken apart for one bound, and from there for looser ones. Every face of the surface
-/// is in exactly one region; each region is a disk (holes allowed) whose map has no flip and no
-/// overlap. Ends with single triangles in the worst case. The same for any executor, and for the
-/// surface of a mesh that was moved or scaled. All throw Error{cancelled}.
+/// A surface segmented for one bound, and from there for looser ones. Every face is in exactly one
+/// region; each region is a disk (holes allowed) whose map has no flip and no overlap. In the worst
+/// case regions are single triangles. The same for any executor, and for the surface of a mesh that
+/// was moved or scaled. All throw Error{cancelled}.
 class SurfaceSegmentation {
  public:
   /// steps: how often loosened() is going to be called. surface and executor must outlive this.
@@ -52,7 +52,7 @@ class SurfaceSegmentation {
   SurfaceSegmentation(const SurfaceSegmentation&) = delete;
   SurfaceSegmentation& operator=(const SurfaceSegmentation&) = delete;
 
-  /// The regions for this excess over 2, whatever the rules' bound. It comes first, once.
+  /// The regions for this excess over 2, whatever the rules' bound. Called first, and once.
   Segments first(double excess);
 
   /// Those for a larger excess than the last one; nothing where the same partition is the best.
@@ -61,6 +61,9 @@ class SurfaceSegmentation {
   std::optional<Segments> loosened(double excess);
 
  private:
+  [[nodiscard]] MergeSettings settings_for(double excess) const;
+  [[nodiscard]] Segments merged_quickly(const MergeSettings& settings);
+  [[nodiscard]] Candidate finished(std::vector<Candidate> all);
   [[nodiscard]] Segments segments_of(Partition best) const;
 
   const SegmentationMesh& surface_;
@@ -68,10 +71,22 @@ class SurfaceSegmentation {
   std::size_t steps_;
   Executor& executor_;
   Stage stage_ = Stage::segment;
-  ProgressEstimate effort_;
+  ProgressEstimate progress_;
+  MergeContext context_;
   Partition patches_;
-  std::optional<BestPartition> merge_;
+  std::optional<MergeSearch> search_;
+  std::vector<Candidate> competing_;  ///< after large-neighbourhood search
+  Candidate best_;
+  bool is_priced_ = false;  ///< best_ is
 };
+
+/// The excess over 2 of each bound on the way to max_distortion, ascending (ADR 0039). The search
+/// for the first starts anew, the others continue from the one before. A max_distortion below
+/// kDefaultDistortion is the only step; above it all bounds share their steps, as far as they go.
+std::vector<double> excess_steps(double max_distortion);
+
+/// The bound of the step before the last one; empty where there is only one.
+std::optional<double> tighter_bound(double max_distortion);
 
 /// The regions for the rules' bound: of those of all steps up to it (excess_steps()), the ones with
 /// the shortest seams. Throws Error{cancelled}.

@@ -24,11 +24,12 @@ using Chain = std::vector<Index>;
 
 class Straightening {
  public:
-  Straightening(const SegmentationMesh& surface, const MergeRules& rules, Partition& partition)
-      : surface_(surface),
-        rules_(rules),
+  Straightening(const MergeContext& context, const MergeSettings& settings, Partition& partition)
+      : context_(context),
+        surface_(context.surface),
+        settings_(settings),
         partition_(partition),
-        corners_(linear::vertex_corners(surface.mesh.faces, surface.mesh.vertex_count())) {
+        corners_(linear::vertex_corners(surface_.mesh.faces, surface_.mesh.vertex_count())) {
     for (const MappedRegion& patch : partition.patches) total_ += patch.excess;
     mark();
   }
@@ -36,7 +37,7 @@ class Straightening {
   void run() {
     const std::vector<Chain> chains = find_chains();
     for (const Chain& chain : chains) {
-      throw_if_cancelled(rules_.stop);
+      throw_if_cancelled(context_.stop);
       if (is_still_there(chain)) shorten(chain);
     }
   }
@@ -54,7 +55,7 @@ class Straightening {
     return twin(h) == kNoTwin || partition_.open[h] != 0 || is_border(h);
   }
 
-  /// Who owns each face, and how many seams meet in each vertex.
+  /// Finds the region of each face, and how many seams meet in each vertex.
   void mark() {
     owner_.assign(surface_.mesh.faces.size(), -1);
     for (std::size_t k = 0; k < partition_.patches.size(); ++k)
@@ -185,7 +186,7 @@ class Straightening {
     MappedRegion new_b = mapped(std::move(sides[1]), both, most);
     const ExcessDistortion after =
         total_ + new_a.excess + new_b.excess - old_a.excess - old_b.excess;
-    const bool fits = after.worst() <= std::max(rules_.budget, total_.worst());
+    const bool fits = after.worst() <= std::max(settings_.budget, total_.worst());
     if (!new_a.is_sound || !new_b.is_sound || !fits) return;
     total_ = after;
     old_a = std::move(new_a);
@@ -203,18 +204,19 @@ class Straightening {
       patch.area += surface_.area(t);
     }
     patch.region.faces = std::move(faces);
-    const TestRules rules{.most_excess = std::max(rules_.cap * patch.area, most),
-                          .stop = rules_.stop,
-                          .memory = rules_.memory};
+    const TestRules rules{.most_excess = std::max(settings_.cap * patch.area, most),
+                          .stop = context_.stop,
+                          .memory = context_.failures};
     const TestResult result = test_parameterization(surface_, partition_.open, rules, patch.region);
-    if (rules_.progress != nullptr) rules_.progress->add(patch.region.faces.size());
+    if (context_.progress != nullptr) context_.progress->add(patch.region.faces.size());
     patch.excess = result.excess;
     patch.is_sound = result.verdict == Verdict::sound;
     return patch;
   }
 
+  const MergeContext& context_;
   const SegmentationMesh& surface_;
-  const MergeRules& rules_;
+  const MergeSettings& settings_;
   Partition& partition_;
   linear::VertexCorners corners_;
   std::vector<Index> owner_;  ///< one a face
@@ -224,8 +226,9 @@ class Straightening {
 
 }  // namespace
 
-void shorten_seams(const SegmentationMesh& surface, const MergeRules& rules, Partition& partition) {
-  for (int round = 0; round < kRounds; ++round) Straightening(surface, rules, partition).run();
+void shorten_seams(const MergeContext& context, const MergeSettings& settings,
+                   Partition& partition) {
+  for (int round = 0; round < kRounds; ++round) Straightening(context, settings, partition).run();
 }
 
 }  // namespace unwrapd::segment

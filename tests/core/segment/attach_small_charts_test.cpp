@@ -69,7 +69,7 @@ struct Can {
   }
 };
 
-const MergeRules kRules{.budget = 0.02, .cap = 0.08}, kFlat{.budget = 1e-6, .cap = 0.08};
+const MergeSettings kRules{.budget = 0.02, .cap = 0.08}, kFlat{.budget = 1e-6, .cap = 0.08};
 
 /// Edges of the lid that are no seams.
 Index glued_edges(const Can& can) {
@@ -84,8 +84,9 @@ TEST(HangSmall, HangsALidOnOneEdgeWhereItFitsNoOtherWay) {
   for (const MappedRegion& part : can.parts.patches) ASSERT_TRUE(part.is_sound);
   SerialExecutor serial;
   ASSERT_EQ(
-      merge_patches(Joiner(can.surface), can.surface, can.parts, kFlat, serial).patches.size(), 2U);
-  attach_small_charts(can.surface, kFlat, can.parts);
+      merge_patches({can.surface}, Joiner(can.surface), can.parts, kFlat, serial).patches.size(),
+      2U);
+  attach_small_charts({can.surface}, kFlat, can.parts);
   ASSERT_EQ(can.parts.patches.size(), 1U);
   MappedRegion& whole = can.parts.patches[0];
   EXPECT_EQ(whole.region.faces.size(), can.surface.mesh.faces.size());
@@ -100,7 +101,7 @@ TEST(HangSmall, HangsALidOnOneEdgeWhereItFitsNoOtherWay) {
 
 TEST(HangSmall, GluesMoreOfTheBorderWhereDistortionMayBeSpent) {
   Can can(60);
-  attach_small_charts(can.surface, kRules, can.parts);
+  attach_small_charts({can.surface}, kRules, can.parts);
   ASSERT_EQ(can.parts.patches.size(), 1U);
   EXPECT_GT(glued_edges(can), 1);
   EXPECT_LE(can.parts.patches[0].excess.worst(), kRules.budget);
@@ -109,7 +110,7 @@ TEST(HangSmall, GluesMoreOfTheBorderWhereDistortionMayBeSpent) {
 TEST(HangSmall, LeavesALargeRegionAChart) {
   Can can(5);
   ASSERT_GT(can.parts.patches[1].area, kSmallRegion);
-  attach_small_charts(can.surface, kRules, can.parts);
+  attach_small_charts({can.surface}, kRules, can.parts);
   EXPECT_EQ(can.parts.patches.size(), 2U);
 }
 

@@ -35,7 +35,7 @@ Partition whole(const SegmentationMesh& surface) {
 
 TEST(Bisect, CutsARingAcrossWhereItIsFarthestFromItsEnds) {
   const SegmentationMesh surface = open_ring();
-  const auto cut = bisect(surface, whole(surface), 0, {});
+  const auto cut = bisect({surface}, whole(surface), 0);
   ASSERT_TRUE(cut);
   ASSERT_EQ(cut->patches.size(), 2U);
   for (const MappedRegion& half : cut->patches) {
@@ -57,7 +57,7 @@ TEST(Bisect, LeavesATriangleAlone) {
   const TriMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   const SegmentationMesh surface =
       make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
-  EXPECT_FALSE(bisect(surface, whole(surface), 0, {}));
+  EXPECT_FALSE(bisect({surface}, whole(surface), 0));
 }
 
 /// In two rings, a longer and a shorter one, it fills less than half of one.

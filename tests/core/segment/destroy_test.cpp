@@ -95,7 +95,7 @@ TEST(Merge, LeavesAloneWhatShallStayWhole) {
   const auto all = static_cast<Index>(from.patches.size());
   SerialExecutor serial;
   const auto merged = [&](Index whole) {
-    return merge_patches(Joiner(surface), surface, from, {.budget = 1, .cap = 1, .whole = whole},
+    return merge_patches({surface}, Joiner(surface), from, {.budget = 1, .cap = 1, .whole = whole},
                          serial);
   };
   EXPECT_EQ(merged(all).patches.size(), from.patches.size());

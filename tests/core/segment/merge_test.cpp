@@ -36,10 +36,11 @@ SegmentationMesh without_creases(const TriMesh& mesh) {
   return make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
 }
 
-std::size_t merged_count(const SegmentationMesh& surface, const Partition& from, MergeRules rules) {
+std::size_t merged_count(const SegmentationMesh& surface, const Partition& from,
+                         MergeSettings settings) {
   SerialExecutor serial;
-  rules.budget = rules.cap = 0.02;
-  return merge_patches(Joiner(surface), surface, from, rules, serial).patches.size();
+  settings.budget = settings.cap = 0.02;
+  return merge_patches({surface}, Joiner(surface), from, settings, serial).patches.size();
 }
 
 /// Halves of a strip 16 wide and 1 high, and of one 2 wide.
@@ -98,9 +99,10 @@ TEST(Merge, DrawsLotsWhereItHasAWhim) {
   const auto merged = [&](double noise, int seed) {
     SerialExecutor serial;
     std::vector<std::vector<Index>> faces;
-    const MergeRules rules{.budget = 0.02, .cap = 0.02, .noise = noise, .seed = seed, .enough = 6};
+    const MergeSettings settings{
+        .budget = 0.02, .cap = 0.02, .noise = noise, .seed = seed, .enough = 6};
     for (const MappedRegion& patch :
-         merge_patches(Joiner(surface), surface, squares, rules, serial).patches)
+         merge_patches({surface}, Joiner(surface), squares, settings, serial).patches)
       faces.push_back(patch.region.faces);
     return faces;
   };
@@ -120,7 +122,7 @@ TEST(Merge, TellsOfSlitsOnBothSides) {
     return 2 * int(axis) + (m[axis] > 0 ? 1 : 0);
   };
   SerialExecutor serial;
-  const Partition all = merge_patches(Joiner(surface), surface, parted(surface, side),
+  const Partition all = merge_patches({surface}, Joiner(surface), parted(surface, side),
                                       {.budget = 0.02, .cap = 0.08}, serial);
   double slit = 0;
   for (std::size_t h = 0; h < all.open.size(); ++h) {

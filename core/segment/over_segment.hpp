@@ -1,0 +1,18 @@
+#pragma once
+// Over-segmentation: a surface in many small, nearly flat patches, which merging starts from.
+
+#include <vector>
+
+#include "core/segment/merge.hpp"
+
+namespace unwrapd::segment {
+
+/// Patches whose maps are sound and together use only a part of the excess that is allowed, so that
+/// merging can spend the rest. The context needs a progress estimate. Throws Error{cancelled}.
+std::vector<MappedRegion> over_segment(const MergeContext& context, double excess,
+                                       Executor& executor);
+
+/// The excess of all regions.
+ExcessDistortion total_excess(std::span<const MappedRegion> regions);
+
+}  // namespace unwrapd::segment
