@@ -1,6 +1,6 @@
-// A surface taken apart: weld, set bad faces aside, pair half-edges, separate components, cut.
-// Once it is known which vertices are welded and which faces have no area, all but the order of
-// boundaries follows from numbers alone, and is kept for the next mesh of the same faces.
+// Prepares a surface: weld vertices, set bad faces aside, pair half-edges, separate components,
+// cut. The welding and the faces without area determine all the rest but the order of boundaries.
+// The rest is cached for other meshes of the same faces.
 #include "core/charts/charts.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ void require_two_sides(const SurfaceNumbers& surface, const Pieces& pieces) {
               std::string(surface.name));
 }
 
-/// The mesh whose vertices the twins imply; position(h) is where half-edge h starts.
+/// The mesh whose vertices the twins imply; position(h) is the start of half-edge h.
 template <class Position>
 TriMesh mesh_of(const Halfedges& halfedges, Position position) {
   CornerVertices corners = corner_vertices(halfedges);
@@ -45,18 +45,18 @@ TriMesh mesh_of(const Halfedges& halfedges, Position position) {
   return mesh;
 }
 
-/// Whether materials meet between two half-edges of one edge, or the input has other vertices on
-/// either side: of normals, or of texture coordinates.
+/// Whether two materials meet at the edge of these half-edges, or the input has separate vertices
+/// on its sides, for normals or texture coordinates.
 bool is_crease(const SurfaceNumbers& surface, Index g, Index h) {
   const std::span<const Triangle> faces = surface.faces;
   return surface.part[face_of(g)] != surface.part[face_of(h)] ||
          start_of(faces, g) != end_of(faces, h) || end_of(faces, g) != start_of(faces, h);
 }
 
-/// What a surface comes to wherever its vertices lie, as long as the same ones lie at one place and
-/// the same faces have no area.
+/// The components of a surface, which depend on its vertices' positions only through coinciding
+/// vertices and faces without area.
 struct Connected {
-  Charts charts;                                  ///< without positions, loops in any order
+  Charts charts;                                  ///< without positions; loops in any order
   std::vector<std::vector<Index>> vertex_source;  ///< of each chart: the surface's vertices
 };
 
@@ -72,8 +72,8 @@ std::size_t bytes_of(const Connected& connected) {
 
 /// The faces of one component.
 struct Members {
-  std::span<const Index> source;  ///< as numbers of pieces
-  std::span<const Index> rank;    ///< of each face of pieces: its place in source
+  std::span<const Index> source;  ///< face numbers in pieces
+  std::span<const Index> rank;    ///< rank[f]: the place in source of face f of pieces
 };
 
 void mark_creases(const SurfaceNumbers& surface, const Pieces& pieces, const Members& members,
@@ -89,8 +89,8 @@ void mark_creases(const SurfaceNumbers& surface, const Pieces& pieces, const Mem
   }
 }
 
-/// Numbers the chart's vertices by first use. number: of the vertices of pieces, kUnnumbered at
-/// first. vertex_source: left for each of the chart's vertices.
+/// Numbers the chart's vertices by first use. number: of the vertices of pieces, kUnnumbered before
+/// and after. vertex_source: set for each of the chart's vertices.
 void number_vertices(const SurfaceNumbers& surface, const Pieces& pieces, const Members& members,
                      std::vector<Index>& number, std::vector<Index>& vertex_source, Chart& chart) {
   chart.mesh.faces.resize(members.source.size());
@@ -199,8 +199,8 @@ Connected connect(const Inspected& in, const SeamRules& seams) {
   return connected;
 }
 
-/// Of a surface whose vertices and faces that lie at one place, or have no area, are known.
-/// areas: what inspect_areas() says of each face; duplicates are found here.
+/// Computes the components of a surface. areas: the result of inspect_areas() for each face;
+/// duplicates are found here.
 Connected connected(const solve::Making&, const SurfaceNumbers& surface,
                     std::span<const Index> first_at, const std::vector<FaceState>& areas,
                     const SeamRules& seams) {
@@ -226,7 +226,7 @@ Charts placed(const Connected& connected, const TriMesh& mesh, const std::stop_t
 }  // namespace
 
 bool is_disk(const Chart& component) {
-  std::size_t sides = 0;  // on the boundary
+  std::size_t sides = 0;  // number of boundary half-edges
   for (const BoundaryLoop& loop : component.loops) sides += loop.size();
   const Index faces = component.mesh.face_count();
   const Index edges = (3 * faces + static_cast<Index>(sides)) / 2;
@@ -255,7 +255,7 @@ Charts make_charts(const Surface& surface, SeamMode seams) {
   return charts;
 }
 
-/// Of paths those that are of the surface count, wherever it stands among others.
+/// Only the paths on this surface count, and not its number among others.
 void describe(CacheKey& key, const SeamRules& seams) {
   const auto& [mode, paths, surface, stop, core] = seams;
   static_cast<void>(stop), static_cast<void>(core);

@@ -1,5 +1,5 @@
-// Constraints are looked up in their order, then sorted by chart and vertex: what holds one vertex
-// is merged, and what cannot be is refused before anything is solved.
+// Constraints are located in their order, then sorted by chart and vertex. Those of one vertex are
+// merged, and contradictions are refused before anything is solved.
 #include "core/charts/constraints.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace unwrapd::charts {
 namespace {
 
-/// A constraint where it was found.
+/// A constraint and the vertex that it applies to.
 struct Pin {
   Index vertex = 0;      ///< of the chart
   Index constraint = 0;  ///< its number
@@ -112,7 +112,7 @@ const Pin* hard_pin(std::span<const Pin> pins) {
   return hard;
 }
 
-/// Soft constraints of one vertex, as one: sum w |u - p|^2 is W |u - sum w p / W|^2 and a constant.
+/// Merges soft constraints of one vertex: sum w |u - p|^2 is W |u - sum w p / W|^2 plus a constant.
 solve::SoftConstraint merged(std::span<const Pin> pins) {
   solve::SoftConstraint soft_constraint{pins.front().vertex, Vec2::Zero(), 0};
   for (const Pin& pin : pins) soft_constraint.weight += pin.weight;

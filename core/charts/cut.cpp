@@ -24,9 +24,9 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// Vertices, those of one hole merged, and the inner half-edges that leave each.
+/// Vertices, with those of one hole merged, and the inner half-edges that leave each.
 struct Graph {
-  std::vector<Index> node_of;   ///< one a vertex; a node is called by one of its vertices
+  std::vector<Index> node_of;   ///< one a vertex; one of a node's vertices gives it its number
   std::vector<Index> arcs;      ///< half-edges with a twin, by the node they start at
   std::vector<Index> first;     ///< arcs[first[n]] .. arcs[first[n + 1]] start at node n
   std::vector<double> length;   ///< one a half-edge
@@ -89,7 +89,7 @@ Paths shortest_paths(const Graph& graph, Index root) {
   return paths;
 }
 
-/// The vertex that lies farthest along the longest side of the bounding box.
+/// The farthest vertex along the longest side of the bounding box.
 Index extreme_vertex(const TriMesh& mesh) {
   Vec3 low = mesh.positions.front(), high = low;
   for (const Vec3& p : mesh.positions) {
@@ -142,7 +142,7 @@ std::vector<Index> generators(const Graph& graph, const Halfedges& halfedges, co
   return left;
 }
 
-/// The generators' loops: a half-edge of each of their edges.
+/// A half-edge of each edge of the generators' loops.
 std::vector<Index> loop_edges(const Graph& graph, const Halfedges& halfedges, Index root) {
   const Paths paths = shortest_paths(graph, root);
   std::vector<bool> is_cut(halfedges.twin.size(), false);
@@ -159,7 +159,7 @@ std::vector<Index> loop_edges(const Graph& graph, const Halfedges& halfedges, In
       for (; end != root && !is_cut[paths.via[end]]; end = graph.from[paths.via[end]])
         add(paths.via[end]);
   }
-  // Every end of a path lies on a loop but one: a branch may dangle at the root.
+  // Both ends of a path lie on a loop, except that one branch may end at the root.
   for (Index node = root; degree[node] == 1;) {
     const auto first = graph.arcs.begin() + graph.first[node];
     const Index h = *std::find_if(first, graph.arcs.end(), [&](Index g) { return is_cut[g]; });

@@ -9,10 +9,10 @@
 
 namespace unwrapd::charts {
 
-/// Closed loops of directed segments. Points that they wind around are inside.
+/// Closed loops of directed segments. A point is inside if its winding number is not zero.
 using Outline = std::vector<std::array<Vec2, 2>>;
 
-/// The chart's boundary loops, and the sides of flipped triangles, which may stick out of them.
+/// The chart's boundary loops, and the sides of flipped triangles, which may reach beyond them.
 Outline outline_of(const Chart& chart, std::span<const Vec2> uv);
 
 }  // namespace unwrapd::charts

@@ -1,7 +1,7 @@
-// SeamMode::automatic keeps the surface's own cuts when they make it a few disks: that is what
-// someone did who opened a model on purpose. A flat-shaded export or a triangle soup is hundreds of
-// tiny "disks", and a model with the seams of an old atlas is many more than it has components;
-// both are welded. The bounds below part the two by a wide margin.
+// SeamMode::automatic keeps the surface's own cuts if they make it a few disks, since somebody then
+// opened the model on purpose. A flat-shaded export or a triangle soup is hundreds of tiny "disks",
+// and a model with the seams of an old atlas has many more disks than components; both are welded.
+// The bounds below separate the two cases by a wide margin.
 #include "core/charts/pieces.hpp"
 
 #include <algorithm>
@@ -109,7 +109,7 @@ Pieces kept_pieces(const Inspected& in, Pairing pairing, const SeamRules& seams)
 std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_place,
                                       const SeamRules& seams) {
   const bool nothing_to_weld = std::ranges::equal(in.welded, in.surface.faces);
-  const bool is_plain = nothing_to_weld && !spans_parts(in.surface);  // seams by no rule at all
+  const bool is_plain = nothing_to_weld && !spans_parts(in.surface);  // no rule opens a seam
   const auto kept = [&] {
     Pieces pieces = kept_pieces(
         in, is_plain ? by_place : pair_keeping_seams(in.surface, in.welded, in.states, seams.stop),

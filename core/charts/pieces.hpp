@@ -1,5 +1,5 @@
 #pragma once
-// The sound faces of a surface, paired as its seams ask for: what charts are made of.
+// The sound faces of a surface, paired as its seams require. Charts are made from them.
 
 #include <array>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace unwrapd::charts {
 
-/// The sound faces of a surface and how they hang together.
+/// The sound faces of a surface and their connectivity.
 struct Pieces {
   std::vector<Index> source;  ///< face -> face of the surface
   Halfedges halfedges;
@@ -24,7 +24,7 @@ struct Pieces {
   bool may_crease = true;  ///< false: twins have the same vertices and the same material
 };
 
-/// A surface with what weld() and inspect_faces() say of it: not where its vertices lie.
+/// A surface with the results of weld() and inspect_faces(), without positions.
 struct Inspected {
   SurfaceNumbers surface;
   std::span<const Index> first_at;
@@ -32,8 +32,8 @@ struct Inspected {
   const FaceStates& states;
 };
 
-/// The pieces that the mode asks for, and whether vertices were welded for them. by_place: what
-/// pair_welded() says. Throws Error{invalid_option}, see components_of().
+/// The pieces that the mode requires, and whether vertices were welded for them. by_place: the
+/// result of pair_welded(). Throws Error{invalid_option}, see components_of().
 std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_place,
                                       const SeamRules& seams);
 

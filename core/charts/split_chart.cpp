@@ -1,7 +1,7 @@
-// Each face belongs to the seeds from which a walk across the sides of triangles reaches it first
-// (Dijkstra over the dual graph, from both at once): the cut runs half way between what has to be
-// apart. Regions grown this way are connected, and a connected region of a disk is a disk again,
-// with holes perhaps; where it touches itself in a vertex, that vertex is doubled.
+// Each face belongs to the seeds that reach it first by a walk across the sides of triangles
+// (Dijkstra on the dual graph, from both at once), so that the cut runs half way between the seeds.
+// Regions grown this way are connected, and a connected region of a disk is a disk, perhaps with
+// holes. If it touches itself in a vertex, that vertex is duplicated.
 #include "core/charts/split_chart.hpp"
 
 #include <limits>
@@ -19,7 +19,7 @@ Vec3 middle(const TriMesh& mesh, Index t) {
   return (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3;
 }
 
-/// side[t]: 0 or 1, whose seeds are nearer.
+/// side[t]: 0 or 1, the seeds that are nearer.
 std::vector<int> nearer_seeds(const Chart& chart, const std::array<std::vector<Index>, 2>& seeds,
                               const std::stop_token& stop) {
   using Reached = std::pair<double, Index>;
@@ -50,7 +50,7 @@ std::vector<int> nearer_seeds(const Chart& chart, const std::array<std::vector<I
   return side;
 }
 
-/// The faces listed, as a chart of its own; rank[t]: the place of t in the list.
+/// The listed faces as a chart; rank[t]: the place of t in the list.
 ChartPart part_of(const Chart& chart, const Halfedges& cut, const std::vector<Index>& faces,
                   const std::vector<Index>& rank, const std::stop_token& stop) {
   ChartPart part;

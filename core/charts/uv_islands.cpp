@@ -1,6 +1,6 @@
-// Corners are sorted by position and place, so equal ones are neighbours; islands are the sets that
-// faces join them to (union-find, Tarjan 1975). Faces that lie on top of each other stay where they
-// are beside each other: an artist who mirrored half a face meant it.
+// Corners are sorted by position and UV, so that equal ones are neighbours. Islands are the sets
+// that faces join them to (union-find, Tarjan 1975). Faces on top of each other stay there, since
+// an artist who mirrored half a model meant it.
 #include "core/charts/uv_islands.hpp"
 
 #include <algorithm>
@@ -20,9 +20,9 @@ bool has_uvs(const CornerUv& uv) {
   return std::all_of(uv.begin(), uv.end(), [](const Vec2& u) { return u.allFinite(); });
 }
 
-/// Places of the plane: each a position and a UV, numbered in the order of their first corners.
+/// Pairs of a position and a UV, numbered in the order of their first corners.
 struct Places {
-  std::vector<Triangle> of_corner;  ///< [face]; kNone where it has no UVs
+  std::vector<Triangle> of_corner;  ///< [face]; kNone if it has no UVs
   UvMap uv;
   std::vector<Vec3> position;
 };
@@ -86,7 +86,7 @@ double signed_area(const Triangle& face, const UvMap& uv) {
 
 using Side = std::array<Index, 2>;
 
-/// The sides that have no other to go back along them, if each vertex has at most one of them.
+/// The sides without an opposite side, if each vertex is the start of at most one of them.
 std::vector<Side> border_of(const std::vector<Triangle>& faces) {
   std::vector<Side> sides;
   for (const Triangle& face : faces)
@@ -117,7 +117,7 @@ Outline loops_of(const std::vector<Side>& border, const UvMap& uv) {
   return outline;
 }
 
-/// The border where all faces lie on one side; else every face, the right way round.
+/// The border if all faces have the same orientation; else every face, counter-clockwise.
 Outline cover_of(const std::vector<Triangle>& faces, const UvMap& uv) {
   const auto is_up = [&](const Triangle& face) { return signed_area(face, uv) > 0; };
   const auto up = std::count_if(faces.begin(), faces.end(), is_up);

@@ -1,5 +1,5 @@
 #pragma once
-// The islands of the texture coordinates that a surface came with.
+// The islands of the texture coordinates of the input.
 
 #include <vector>
 
@@ -9,15 +9,16 @@
 namespace unwrapd::charts {
 
 struct UvIslands {
-  /// One an island, in the order of their lowest faces: mesh (a vertex for each place of the plane)
-  /// and face_source alone are filled. Faces without UVs are set aside.
+  /// One an island, ordered by their lowest faces. Only mesh (a vertex for each place of the plane)
+  /// and face_source are set. Faces without UVs are in set_aside.
   Charts charts;
-  std::vector<UvMap> maps;        ///< one an island
-  std::vector<Outline> outlines;  ///< one an island: what its faces cover, whichever side is up
+  std::vector<UvMap> maps;  ///< one an island
+  std::vector<Outline>
+      outlines;  ///< one an island: the area of its faces, whatever their orientation
 };
 
-/// Faces belong together where they share a corner: a position with a place in the plane. Empty for
-/// a surface without corner_uv.
+/// Faces belong to one island if they share a corner: a position with a UV. Empty for a surface
+/// without corner_uv.
 UvIslands uv_islands(const Surface& surface);
 
 }  // namespace unwrapd::charts

@@ -1,5 +1,5 @@
-// Corners are sorted by the surface's vertices by counting: a vertex is looked up at once, however
-// many copies of it the charts have.
+// Corners are sorted by the surface's vertices with a counting sort, so that a vertex is looked up
+// in time of its corners.
 #include "core/charts/vertex_finder.hpp"
 
 #include <algorithm>

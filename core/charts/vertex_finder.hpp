@@ -11,25 +11,25 @@
 
 namespace unwrapd::charts {
 
-/// A vertex of a chart, and the lowest corner 3t + i of the surface that shows it for the vertex
-/// that was looked for.
+/// A vertex of a chart, and the lowest corner 3t + i of the surface at which the chart uses it for
+/// the vertex that was looked for.
 struct ChartVertex {
   Index chart = 0;
   Index vertex = 0;
   Index corner = 0;
 };
 
-/// The vertices of one surface that its charts show.
+/// Finds the vertices of charts that come from a vertex of their surface.
 class VertexFinder {
  public:
   /// surface must outlive the finder.
   VertexFinder(const Surface& surface, const Charts& charts);
 
-  /// One vertex of each chart in which the surface's vertex occurs, charts ascending; none when no
-  /// chart shows it. vertex is in range.
+  /// One vertex of each chart in which the surface's vertex occurs, in the order of charts; empty
+  /// if no chart uses it. vertex is in range.
   [[nodiscard]] std::vector<ChartVertex> of_vertex(Index vertex) const;
 
-  /// The vertex nearest to a point, the lowest of equally near ones; nothing without charts.
+  /// The vertex nearest to a point, the lowest of equally near ones; empty without charts.
   [[nodiscard]] std::optional<Index> nearest(const Vec3& point) const;
 
   /// As of_vertex(), for all vertices at exactly this vertex's position.
@@ -41,7 +41,7 @@ class VertexFinder {
   const Surface& surface_;
   std::vector<Index> begin_;          // of each vertex's corners; one entry more than vertices
   std::vector<ChartVertex> corners_;  // by vertex, then by corner
-  std::optional<PointTree> places_;   // of the vertices that charts show
+  std::optional<PointTree> places_;   // of the vertices that charts use
 };
 
 }  // namespace unwrapd::charts

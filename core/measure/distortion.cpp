@@ -12,14 +12,14 @@
 namespace unwrapd::measure {
 namespace {
 
-/// The height over the longest side is that side's length over the sum of the cotangents at its
-/// ends, the two greatest.
+/// The height over the longest side is that side's length divided by the sum of the cotangents at
+/// its ends, which are the two greatest.
 bool is_degenerate(const RestTriangle& rest) {
   const auto& [a, b, c] = rest.cot;
   return (a + b + c - std::min({a, b, c})) * kMeasurable >= 1;
 }
 
-/// A part of the faces, and the map of all.
+/// A range of the faces, and the map of all.
 struct Faces {
   std::span<const RestTriangle> rest;
   std::span<const Triangle> corners;
@@ -33,7 +33,8 @@ struct Faces {
   }
 };
 
-/// The sums of a block as if no singular value were below the floor, and what tells whether.
+/// The sums of a block without the floor of singular values, and the data to tell whether that is
+/// valid.
 struct Block {
   DistortionSums sums;
   double least_determinant = std::numeric_limits<double>::infinity(), greatest_norm = 0;
@@ -70,7 +71,7 @@ Block sum_up(const Faces& faces) {
   return block;
 }
 
-/// The same of a block where something is flipped or below the floor.
+/// The same for a block in which a triangle is flipped or below the floor.
 void add_floored(const Faces& faces, double floor, DistortionSums& sums) {
   for (std::size_t t = 0; t < faces.rest.size(); ++t) {
     const Jacobian j = faces.jacobian_of(t);

@@ -1,5 +1,5 @@
 #pragma once
-// Distortion metrics of Sec. 6, on |sigma|, with flips beside them.
+// The distortion metrics of Sec. 6 on |sigma|, and the number of flips.
 
 #include <span>
 #include <stop_token>
@@ -10,30 +10,31 @@
 
 namespace unwrapd::measure {
 
-/// Sums over triangles that Distortion is made from; those of several charts add up.
+/// Sums over triangles from which Distortion is computed. Those of several charts add up.
 struct DistortionSums {
-  double area = 0;                       ///< sum of A_t
-  double uv_area = 0;                    ///< sum of A_t |sigma_max sigma_min|
-  double measured = 0, measured_uv = 0;  ///< the same of triangles that are not degenerate; so are:
-  double angle = 0;      ///< sum of A_t (sigma_max / |sigma_min| + |sigma_min| / sigma_max)
-  double inverse = 0;    ///< sum of A_t / |sigma_max sigma_min|
-  double stretch = 0;    ///< sum of A_t (1 / sigma_max^2 + 1 / sigma_min^2) / 2
-  Index flipped = 0;     ///< triangles with sigma_min <= 0
-  Index degenerate = 0;  ///< triangles thinner than kMeasurable
+  double area = 0;     ///< sum of A_t
+  double uv_area = 0;  ///< sum of A_t |sigma_max sigma_min|
+  double measured = 0,
+         measured_uv = 0;  ///< the same sums over triangles that are not degenerate, as all below
+  double angle = 0;        ///< sum of A_t (sigma_max / |sigma_min| + |sigma_min| / sigma_max)
+  double inverse = 0;      ///< sum of A_t / |sigma_max sigma_min|
+  double stretch = 0;      ///< sum of A_t (1 / sigma_max^2 + 1 / sigma_min^2) / 2
+  Index flipped = 0;       ///< triangles with sigma_min <= 0
+  Index degenerate = 0;    ///< triangles thinner than kMeasurable
 
   DistortionSums& operator+=(const DistortionSums& other);
 };
 
-/// Of a triangle's longest side, the height that it has at least where D is taken of it. Thinner
-/// ones have the shape that rounding gave them (of float coordinates, say), and one of them may be
-/// drawn out a million times: they are counted, and have no part in any mean.
+/// The least height, relative to a triangle's longest side, with which it counts in D. The shape of
+/// thinner triangles is rounding error (of float coordinates, say), and one of them may be
+/// stretched a million times. They are counted as degenerate and belong to no mean.
 inline constexpr double kMeasurable = 1e-5;
 
-/// A collapsed image has no finite D: |sigma_min| counts as at least this share of the mean
+/// A collapsed image has no finite D. |sigma_min| counts as at least this share of the mean
 /// stretch, and so does sigma_max. A chart that reaches the floor shows D in the thousands.
 inline constexpr double kMinSingularValue = 1e-6;
 
-/// faces index uv; rest has one entry a face. The same bits by any executor. Throws
+/// faces index uv; rest has one entry a face. The same bits for any executor. Throws
 /// Error{cancelled}.
 DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                                std::span<const Vec2> uv, Executor& executor);
@@ -47,7 +48,7 @@ DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<con
 Distortion distortion(const DistortionSums& sums);
 
 /// Sum of A_t |det J|: the area that the images cover, counted with multiplicity, mesh units^2. The
-/// same bits by any executor.
+/// same bits for any executor.
 double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                std::span<const Vec2> uv, Executor& executor);
 double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> faces,

@@ -1,5 +1,5 @@
 // Energies as closed formulas of the singular values (App. A). The solver gets its energy from the
-// local step; these are the second way to the same figures.
+// local step; these are a second way to compute the same values.
 #include "core/measure/energy.hpp"
 
 #include <cassert>

@@ -1,9 +1,9 @@
 #pragma once
-// The Jacobian of the map from a rest triangle to its image, split into the part that turns and
+// The Jacobian of the map from a rest triangle to its image, split into the part that rotates and
 // scales and the part that deforms. Every energy and metric of the paper is a function of the two.
 //   J = [e -h; h e] + [f g; g -f],  Q = |(e, h)|,  R = |(f, g)|
 //   sigma_max = Q + R,  sigma_min = Q - R (signed),  |J|^2 = 2 Q^2 + 2 R^2,  det J = Q^2 - R^2
-// No SVD, no cancellation in R where the map is conformal.
+// This needs no SVD, and R has no cancellation where the map is conformal.
 
 #include <array>
 #include <cmath>
@@ -16,8 +16,8 @@ namespace unwrapd::measure {
 using UvEdges = std::array<Vec2, 3>;  ///< u^i - u^{i+1} of one face
 
 struct Jacobian {
-  double e = 0, h = 0;  ///< similarity part: Q (cos, sin) of the anticlockwise turn
-  double f = 0, g = 0;  ///< the rest: zero where the map is conformal
+  double e = 0, h = 0;  ///< similarity part: Q (cos, sin) of the anticlockwise rotation
+  double f = 0, g = 0;  ///< the remainder: zero where the map is conformal
 
   [[nodiscard]] double turn_scale() const { return std::sqrt(e * e + h * h); }   ///< Q
   [[nodiscard]] double deformation() const { return std::sqrt(f * f + g * g); }  ///< R

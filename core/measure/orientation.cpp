@@ -19,7 +19,7 @@ namespace {
 constexpr double kHalfUlp = 0x1p-53;
 constexpr double kFilter = (3 + 16 * kHalfUlp) * kHalfUlp;  // Shewchuk's bound for orient2d
 
-/// A value and what rounding took from it: value + error is exact.
+/// A rounded value and its rounding error: value + error is exact.
 struct Rounded {
   double value = 0;
   double error = 0;
@@ -87,7 +87,7 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double doubt = kFilter * (std::abs(left) + std::abs(right));
   if (determinant > doubt) return 1;
   if (determinant < -doubt) return -1;
-  if (doubt == 0) return 0;  // both products are: corners that triangles share come here most often
+  if (doubt == 0) return 0;  // both products are zero: most often at corners that triangles share
   return exact_orientation(a, b, c);
 }
 

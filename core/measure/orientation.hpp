@@ -1,5 +1,5 @@
 #pragma once
-// On which side of a line a point lies, without a doubt.
+// Exact orientation tests in the plane.
 
 #include <span>
 #include <stop_token>

@@ -1,8 +1,9 @@
-// Two triangles are apart exactly when the line along a side of one of them has the other on its
+// Two triangles are disjoint exactly if the line along a side of one of them has the other on its
 // far side (separating axes). Candidates come from a tree of boxes over the items in the order of a
-// Z curve: no cell size to choose, and slivers across the page cost what they meet, no more.
+// Z curve. It needs no cell size, and slivers across the page only cost the boxes that they meet.
 //
-// A sweep line would need exact orders of crossing points; a grid suffers where sizes differ.
+// Rejected: a sweep line, which needs exact orders of crossing points; a grid, which suffers from
+// varying sizes.
 #include "core/measure/overlaps.hpp"
 
 #include <algorithm>
@@ -68,7 +69,7 @@ class BoxTree {
     }
   }
 
-  /// visit(item) for all whose bounds meet `bounds`, borders included.
+  /// Calls visit(item) for all items whose bounds meet `bounds`, borders included.
   template <class Visit>
   void query(const Bounds& bounds, Visit visit) const {
     std::array<std::size_t, 128> open{1};
@@ -102,7 +103,8 @@ std::array<Vec2, 3> corners(const Triangle& face, std::span<const Vec2> uv) {
   return {at(0), at(1), at(2)};
 }
 
-/// Whether all of b is on the right of a side of the counter-clockwise triangle a, or on its line.
+/// Whether all of b lies on the right of, or on, the line along a side of the counter-clockwise
+/// triangle a.
 bool a_side_separates(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec2 &from = a[i], &to = a[(i + 1) % 3];
@@ -132,7 +134,7 @@ bool touch(const Side& s, const Side& t) {
          (c == 0 && in_box(t, s.from)) || (d == 0 && in_box(t, s.to));
 }
 
-/// For sides that share the vertex where s ends and t starts: whether t turns back onto s.
+/// For sides that share the vertex where s ends and t starts: whether t runs back along s.
 bool fold_back(const Side& s, const Side& t) {
   return orientation(s.from, s.to, t.to) == 0 && (s.from - s.to).dot(t.to - t.from) > 0;
 }
@@ -159,7 +161,7 @@ bool no_sides_clash(const std::vector<Side>& sides) {
   return apart;
 }
 
-/// The orientation of a simple polygon: the turn at its lowest of leftmost corners.
+/// The orientation of a simple polygon: that of the lowest of its leftmost corners.
 int turn_of(const std::vector<Side>& loop) {
   std::size_t first = 0;
   for (std::size_t k = 1; k < loop.size(); ++k) {
@@ -170,7 +172,7 @@ int turn_of(const std::vector<Side>& loop) {
   return orientation(before.from, loop[first].from, loop[first].to);
 }
 
-/// Pairs of which both are among these, which ascend.
+/// The overlapping pairs within `among`, which ascends.
 std::vector<std::array<Index, 2>> pairs_among(const std::vector<Index>& among,
                                               std::span<const Triangle> faces,
                                               std::span<const Vec2> uv, std::size_t most,

@@ -1,5 +1,5 @@
 #pragma once
-// Where a map covers the plane twice, exactly.
+// Finds exactly where a map covers the plane more than once.
 
 #include <array>
 #include <span>
@@ -11,13 +11,13 @@
 namespace unwrapd::measure {
 
 /// Whether the interiors of two triangles of the plane meet. Exact (see orientation()). A triangle
-/// of no area has no interior; one that is clockwise counts as its mirror image.
+/// without area has no interior; a clockwise one counts as its mirror image.
 bool overlap(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b);
 
-/// A proof that no two triangles overlap, in time of the boundary alone: no face is flipped, every
-/// boundary loop is simple and none touches another, and one of them is counter-clockwise. Then
-/// each point has as many preimages as loops wind around it, and that is one or none. False means
-/// only that this is no proof.
+/// A sufficient test that no two triangles overlap, whose time depends on the boundary alone: no
+/// face is flipped, every boundary loop is simple and touches no other, and one of them is
+/// counter-clockwise. Then each point has as many preimages as loops wind around it, which is one
+/// or none. False does not mean that there is an overlap.
 bool is_plainly_injective(std::span<const Triangle> faces, std::span<const BoundaryLoop> loops,
                           std::span<const Vec2> uv, const std::stop_token& stop = {});
 
@@ -27,8 +27,8 @@ std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> fa
                                                     std::span<const Vec2> uv, std::size_t most,
                                                     const std::stop_token& stop = {});
 
-/// The same; loops: all boundary loops of the faces. Where no face is flipped only those are
-/// compared that the boundary comes near, or winds around more than once (winding.hpp).
+/// The same; loops: all boundary loops of the faces. If no face is flipped, only faces near the
+/// boundary, or around which it winds more than once, are compared (winding.hpp).
 std::vector<std::array<Index, 2>> overlapping_pairs(std::span<const Triangle> faces,
                                                     std::span<const BoundaryLoop> loops,
                                                     std::span<const Vec2> uv, std::size_t most,

@@ -1,4 +1,4 @@
-// A triangle is laid on its longest edge: that edge becomes the x axis and the third corner keeps
+// A triangle is laid on its longest edge: that edge becomes the x axis, and the third corner keeps
 // its foot and height. The base never vanishes, so needles and caps lose no digits.
 #include "core/measure/rest_triangle.hpp"
 
@@ -71,7 +71,8 @@ std::vector<RestTriangle> flatten(const TriMesh& mesh, const std::stop_token& st
   return flatten(mesh.positions, mesh.faces, job);
 }
 
-double face_area(const TriMesh& mesh, const Triangle& face) {  // corners copied: five times slower
+double face_area(const TriMesh& mesh,
+                 const Triangle& face) {  // a copy of the corners would be five times slower
   const auto at = [&](int i) -> const Vec3& {
     return mesh.positions[static_cast<std::size_t>(face[static_cast<std::size_t>(i)])];
   };

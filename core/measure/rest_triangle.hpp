@@ -1,5 +1,5 @@
 #pragma once
-// The reference of every measure: each 3D triangle laid flat, isometrically (Sec. 4, Fig. 2).
+// The reference of every measure: each 3D triangle in the plane, isometrically (Sec. 4, Fig. 2).
 
 #include <array>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace unwrapd::measure {
 
-/// x_t, laid flat counter-clockwise. Corners are numbered as in the face.
+/// x_t, counter-clockwise in the plane. Corners are numbered as in the face.
 struct RestTriangle {
   std::array<Vec2, 3> edge;   ///< edge[i] = x^i - x^{i+1}
   std::array<double, 3> cot;  ///< cotangent of the angle that faces edge[i], at corner i+2
@@ -28,10 +28,10 @@ std::vector<RestTriangle> flatten(std::span<const Vec3> positions, std::span<con
                                   Executor& executor);
 std::vector<RestTriangle> flatten(const TriMesh& mesh, const std::stop_token& stop = {});
 
-/// 3D area of one face, unfloored.
+/// 3D area of one face, without the height floor.
 double face_area(const TriMesh& mesh, const Triangle& face);
 
-/// Sum of face_area() over all faces. The same bits by any executor.
+/// Sum of face_area() over all faces. The same bits for any executor.
 double surface_area(const TriMesh& mesh, Executor& executor);
 double surface_area(const TriMesh& mesh);
 

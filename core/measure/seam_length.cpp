@@ -9,22 +9,22 @@
 namespace unwrapd::measure {
 namespace {
 
-/// Whether two corners, given by the half-edges that start there, lie apart on the page.
+/// Whether two corners, given by the half-edges that start there, have different UVs.
 bool is_apart(const UnwrappedSurface& unwrapped, Index g, Index h) {
   const auto a = static_cast<std::size_t>(start_of(unwrapped.faces, g));
   const auto b = static_cast<std::size_t>(start_of(unwrapped.faces, h));
   return a != b && unwrapped.uv[a] != unwrapped.uv[b];
 }
 
-/// Whether the face of a half-edge has corners at one point of the page.
+/// Whether the face of a half-edge has corners of equal UV.
 bool is_collapsed(const UnwrappedSurface& unwrapped, Index h) {
   const Index next = next_halfedge(h), previous = previous_halfedge(h);
   return !is_apart(unwrapped, h, next) || !is_apart(unwrapped, next, previous) ||
          !is_apart(unwrapped, previous, h);
 }
 
-/// Whether the two sides of an edge lie apart on the page, and both are there: a face without area
-/// is laid on some edge, and says nothing of its others.
+/// Whether the two sides of an edge have different UVs and both faces have area on the page. A face
+/// without area lies on one of its edges, and its other edges are no seams.
 bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
   const bool is_open =
       is_apart(unwrapped, h, next_halfedge(twin)) || is_apart(unwrapped, next_halfedge(h), twin);

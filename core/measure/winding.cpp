@@ -1,10 +1,10 @@
-// A grid over the map. In a cell that no boundary side comes near, the winding number is one and
-// the same: it is that of the cell to the left plus the sides that cross the row in between. Which
-// row and column a coordinate is in never falls as it grows, so a side lies within the cells that
-// its ends span, however coordinates are rounded: the numbers are exact.
+// A grid over the map. A cell that no boundary side comes near has one winding number: that of the
+// cell to the left plus the sides that cross the row in between. Row and column are monotone
+// functions of the coordinates, so that a side lies within the cells that its ends span, however
+// coordinates are rounded: the numbers are exact.
 //
-// Rejected: faces flooded from one of known number, whose floods must not cross the boundary either
-// and are many where the boundary is ragged.
+// Rejected: a flood from faces of known number. Floods must not cross the boundary either, and are
+// many if the boundary is ragged.
 #include "core/measure/winding.hpp"
 
 #include <algorithm>
@@ -23,10 +23,10 @@ constexpr double kMostCells = 2048;  // a side
 using Cell = std::array<int, 2>;
 
 struct CellBox {
-  Cell low, high;  ///< high: the last
+  Cell low, high;  ///< high: inclusive
 };
 
-/// A number a cell, and one row and one column more.
+/// A number for each cell, and for one more row and column.
 class CellSums {
  public:
   explicit CellSums(int side)
@@ -40,7 +40,7 @@ class CellSums {
     return number_[static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column)];
   }
 
-  /// Each becomes the sum over all to its left and below, itself included.
+  /// Replaces each by the sum over all cells to its left and below, itself included.
   void sum_up() {
     const auto side = static_cast<int>(stride_);
     for (int row = 0; row < side; ++row)
@@ -50,12 +50,12 @@ class CellSums {
       }
   }
 
-  /// So that sums over many cells stay small.
+  /// Replaces positive entries by 1, so that sums over many cells stay small.
   void mark_positive() {
     for (int& number : number_) number = number > 0 ? 1 : 0;
   }
 
-  /// After sum_up().
+  /// Valid after sum_up().
   [[nodiscard]] int sum_in(const CellBox& box) const {
     return get(box.high[0], box.high[1]) - get(box.low[0] - 1, box.high[1]) -
            get(box.high[0], box.low[1] - 1) + get(box.low[0] - 1, box.low[1] - 1);
@@ -90,7 +90,7 @@ class WindingGrid {
     winding_.at(box.low[0], box.high[1] + 1) -= turn;
   }
 
-  /// After the last side, before the first question.
+  /// Must be called once, after the last side and before the first query.
   void sum_up() {
     near_.sum_up();
     near_.mark_positive();
@@ -123,8 +123,8 @@ class WindingGrid {
 
   int side_;
   Vec2 low_, cells_per_unit_;
-  CellSums near_;     ///< cells that sides come near
-  CellSums winding_;  ///< as differences to the left and below, until summed up
+  CellSums near_;     ///< cells near a boundary side
+  CellSums winding_;  ///< differences to the left and below, until sum_up()
 };
 
 }  // namespace

@@ -1,8 +1,7 @@
 #pragma once
-// Which of n things belong together, as they are joined one pair after another: a forest with a
-// root for each set (Galler and Fischer, 1964), its paths halved while they are walked (van Leeuwen
-// and Tarjan, 1984). No ranks: the root that is named second stays, which the callers' order rests
-// on.
+// A union-find structure over n elements: a forest with a root for each set (Galler and Fischer,
+// 1964) and path halving (van Leeuwen and Tarjan, 1984). There are no ranks: the root of the second
+// argument stays, which callers rely on.
 
 #include <cstddef>
 #include <numeric>
@@ -14,19 +13,18 @@ namespace unwrapd {
 
 class DisjointSets {
  public:
-  /// n sets of one thing each.
+  /// n sets of one element each.
   explicit DisjointSets(std::size_t n) : parent_(n) {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
-  /// The thing that stands for the set of k, in [0, n).
+  /// The root of the set of k, in [0, n).
   Index root(Index k) {
     while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
     return k;
   }
 
-  /// Puts the set of `from` to that of `to`, whose root stays.
-  /// \return whether they were two.
+  /// Joins the set of `from` to that of `to`, whose root stays. \return whether they were two sets.
   bool join(Index from, Index to) {
     const Index a = root(from), b = root(to);
     parent_[a] = b;

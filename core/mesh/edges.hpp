@@ -1,6 +1,6 @@
 #pragma once
-// Half-edges brought together by the edge they lie on, and the one rule by which two of them
-// become twins. build_halfedges() and the seam modes are made of these two.
+// Half-edges sorted by edge, and the one rule by which two of them become twins. build_halfedges()
+// and the seam modes use both.
 
 #include <algorithm>
 #include <span>
@@ -52,10 +52,10 @@ std::vector<EdgeSide> edge_sides(std::span<const Triangle> faces, Wanted wanted,
 void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count,
                   const std::stop_token& stop = {});
 
-/// The twins that all sides of one edge make, as [first, last) of a sorted list.
-/// Two half-edges can be twins when they run in opposite directions and their faces are not one
-/// triangle seen from both sides (double-sided geometry: each side is a sheet of its own). They
-/// become twins when neither could be the twin of any other. Returns how many pairs were made.
+/// Pairs the sides of one edge, given as [first, last) of a sorted list. Two half-edges can be
+/// twins if they run in opposite directions and their faces are not one triangle with both
+/// orientations (in double-sided geometry each side is a sheet). They become twins if neither could
+/// be the twin of any other. Returns the number of pairs.
 int pair_edge(std::span<const Triangle> faces, std::span<const EdgeSide> sides, Halfedges& out);
 
 inline bool on_one_edge(const EdgeSide& a, const EdgeSide& b) {

@@ -23,7 +23,7 @@ bool can_be_twins(std::span<const Triangle> faces, Index g, Index h) {
   return start_of(faces, g) == end_of(faces, h) && apex_of(faces, g) != apex_of(faces, h);
 }
 
-/// What pair_edge() comes to on most edges.
+/// The fast path of pair_edge() for an edge of two sides.
 int pair_two(std::span<const Triangle> faces, Index g, Index h, Halfedges& out) {
   if (!can_be_twins(faces, g, h)) return 0;
   out.twin[g] = h;
@@ -31,7 +31,7 @@ int pair_two(std::span<const Triangle> faces, Index g, Index h, Halfedges& out) 
   return 1;
 }
 
-/// The only half-edge among sides that h can be twinned with, kNoTwin when none or several.
+/// The only half-edge among sides that h can be paired with; kNoTwin if there is none, or several.
 Index only_partner(std::span<const Triangle> faces, std::span<const EdgeSide> sides, Index h) {
   Index partner = kNoTwin;
   for (const EdgeSide& side : sides) {
@@ -42,14 +42,14 @@ Index only_partner(std::span<const Triangle> faces, std::span<const EdgeSide> si
   return partner;
 }
 
-/// The boundary half-edge that follows h: turn about h's end until the fan is over.
+/// The boundary half-edge after h: rotates about h's end to the end of the fan.
 Index next_on_boundary(const Halfedges& halfedges, Index h) {
   Index g = next_halfedge(h);
   while (halfedges.twin[g] != kNoTwin) g = next_halfedge(halfedges.twin[g]);
   return g;
 }
 
-/// Stable. A vertex has about three sides of which it is the low end; one may have all there are.
+/// Stable. Usually a vertex is the lower end of about three sides, but it may be that of all.
 void sort_by_high(std::span<EdgeSide> sides) {
   const auto is_lower = [](const EdgeSide& a, const EdgeSide& b) { return a.high < b.high; };
   if (sides.size() > kFew) {

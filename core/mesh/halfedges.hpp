@@ -1,8 +1,8 @@
 #pragma once
 // Connectivity as one array. Half-edge h = 3t + i is the directed side of face t from its corner i
-// to corner i+1; twin[h] is the half-edge on the other side, or kNoTwin on a boundary or seam.
-// Everything that changes topology (splitting a non-manifold edge, keeping a seam, cutting to a
-// disk) only removes twins; vertices then are the classes of corners that twins hold together.
+// to corner i+1. twin[h] is the half-edge on the other side, or kNoTwin on a boundary or seam. All
+// changes of topology (splitting a non-manifold edge, keeping a seam, cutting to a disk) only
+// remove twins. Vertices are the classes of corners that twins connect.
 
 #include <span>
 #include <stop_token>
@@ -22,24 +22,24 @@ struct Halfedges {
   std::vector<Index> twin;  ///< 3 * face_count entries
 };
 
-/// Pairs the half-edges (i,j) and (j,i) of the faces. An edge where more than two half-edges meet,
-/// or two of the same direction, stays without twins. Linear time (radix or counting sort).
+/// Pairs the half-edges (i,j) and (j,i) of the faces. An edge with more than two half-edges, or
+/// with two of the same direction, gets no twins. Linear time (radix or counting sort).
 Halfedges build_halfedges(std::span<const Triangle> faces, Index vertex_count,
                           const std::stop_token& stop = {});
 
-/// A closed chain of twinless half-edges, in the order in which the surface's boundary is walked
-/// (the surface to the left). Each half-edge of the chain starts where the one before ends.
+/// A closed chain of twinless half-edges, in the order of a walk along the boundary with the
+/// surface to the left. Each half-edge starts at the end of the one before.
 using BoundaryLoop = std::vector<Index>;
 
 /// All boundary loops, by their lowest half-edge.
 std::vector<BoundaryLoop> boundary_loops(const Halfedges& halfedges,
                                          const std::stop_token& stop = {});
 
-/// The one of greatest 3D length first; those of one length keep their order.
+/// Sorts by descending 3D length; loops of equal length keep their order.
 void sort_by_length(const TriMesh& mesh, std::vector<BoundaryLoop>& loops);
 
-/// All boundary loops, the one of greatest 3D length first (ties: the lowest half-edge).
-/// Needs manifold vertices, as Chart's are: each vertex has one fan.
+/// All boundary loops in descending 3D length (ties: the lowest half-edge). Needs manifold
+/// vertices, as in a Chart: each vertex has one fan.
 std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const Halfedges& halfedges,
                                          const std::stop_token& stop = {});
 

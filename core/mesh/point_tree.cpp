@@ -1,8 +1,7 @@
-// A range of the array is a subtree: its middle element parts it along the widest axis, what is
-// lower comes before, and equal points are ordered by number. Depth is log2 of the size whatever
-// the points. A subtree is left out when its box is too far, not only its parting plane: for a
-// place far from a surface, planes alone leave out almost nothing, as does a list sorted along one
-// axis.
+// A range of the array is a subtree. Its middle element divides it along the widest axis, lower
+// elements come first, and equal points are ordered by number, so that the depth is log2 of the
+// size for all inputs. A subtree is skipped if its box is too far away, not only its dividing
+// plane: for a place far from a surface, planes alone skip almost nothing.
 #include "core/mesh/point_tree.hpp"
 
 #include <algorithm>
@@ -68,7 +67,7 @@ void PointTree::collect(Range range, const Vec3& place, std::vector<Index>& foun
 
 std::optional<Index> PointTree::nearest(const Vec3& place) const {
   if (of_.empty()) return std::nullopt;
-  Nearest best{.point = of_.front()};  // should every distance overflow
+  Nearest best{.point = of_.front()};  // if every distance overflows
   search({0, of_.size()}, place, best);
   return best.point;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Points in space, to be found by place.
+// A search tree for points in space.
 
 #include <limits>
 #include <optional>
@@ -13,10 +13,10 @@ namespace unwrapd {
 /// A k-d tree (Bentley 1975) over some of the points of a list.
 class PointTree {
  public:
-  /// points must outlive the tree; of: which of them, ascending. Positions are finite.
+  /// points must outlive the tree; of: the indices of its points, ascending. Positions are finite.
   PointTree(std::span<const Vec3> points, std::vector<Index> of);
 
-  /// The point nearest to a place, the lowest of equally near ones; nothing when there are none.
+  /// The point nearest to a place, the lowest of equally near ones; empty if there is none.
   [[nodiscard]] std::optional<Index> nearest(const Vec3& place) const;
 
   /// All points at exactly this place, ascending.
@@ -45,8 +45,8 @@ class PointTree {
   void collect(Range range, const Vec3& place, std::vector<Index>& found) const;
 
   std::span<const Vec3> points_;
-  std::vector<Index> of_;  // the middle of a range parts it
-  std::vector<Box> box_;   // of the range that is parted there
+  std::vector<Index> of_;  // the middle of a range divides it
+  std::vector<Box> box_;   // of the range that the point divides
 };
 
 }  // namespace unwrapd

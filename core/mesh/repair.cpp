@@ -1,11 +1,11 @@
 // Degenerate and duplicate faces.
 //
-// A face is flat when its height over its longest edge is below what its coordinates can hold.
-// Coordinates are rounded to half a unit in the last place, 2^-53 of their size; three points that
-// were on one line end up a few such units off it, and no more. So the bound is 2^-50 of the
-// largest coordinate (and of the longest edge): it follows the mesh when that is scaled or moved,
-// and a sliver of any real height, say 1e-12 of its length, stays in. Flat, too, is a face less
-// than 2^-300 as long as the mesh reaches: its area underflows where that of others does not.
+// A face is flat if its height over its longest edge is below the precision of its coordinates.
+// Coordinates are rounded to half a unit in the last place, 2^-53 of their size, so that three
+// points of one line end up a few such units off it. The bound is 2^-50 of the largest coordinate
+// (and of the longest edge): it scales and moves with the mesh, and a sliver of any real height,
+// say 1e-12 of its length, is not flat. A face shorter than 2^-300 of the mesh's extent is also
+// flat: its area underflows.
 #include "core/mesh/repair.hpp"
 
 #include <Eigen/Geometry>
@@ -20,7 +20,8 @@ namespace unwrapd {
 namespace {
 
 constexpr double kRounding = 0x1p-50;
-constexpr double kLeastLength = 0x1p-300;  // of a face, to the largest coordinate of the mesh
+constexpr double kLeastLength =
+    0x1p-300;  // of a face, relative to the largest coordinate of the mesh
 
 double greatest(const Vec3& v) { return v.lpNorm<Eigen::Infinity>(); }
 

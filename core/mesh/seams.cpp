@@ -1,8 +1,8 @@
-// Pairing by position and pairing that keeps seams, and the test for one-sided surfaces.
+// Pairing by position, pairing that keeps seams, and the test for one-sided surfaces.
 //
-// A collapsed face (two corners at one position) is an edge seen twice: when it goes, the two
-// faces beside it meet. By position this needs no code, their half-edges lie on one edge. By
-// vertex number they do not, so there the collapsed face is paired first and then taken out.
+// A collapsed face (two corners at one position) is an edge with two sides: without it, the two
+// neighbouring faces meet. Pairing by position needs no code for this, since their half-edges lie
+// on one edge. Pairing by vertex number pairs the collapsed face first and then removes it.
 #include "core/mesh/seams.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ void open_edge(Halfedges& halfedges, Index h) {
   halfedges.twin[other] = kNoTwin;
 }
 
-/// Pairs the sides of every edge; counts what cannot be paired.
+/// Pairs the sides of every edge and counts the edges that cannot be paired.
 void pair_all(std::span<const Triangle> faces, const std::vector<EdgeSide>& sides,
               const std::stop_token& stop, Pairing& out) {
   const auto pair = [&](const EdgeSide* first, const EdgeSide* last) {
@@ -40,7 +40,7 @@ void pair_all(std::span<const Triangle> faces, const std::vector<EdgeSide>& side
   for_each_run(sides, on_one_edge, pair, stop);
 }
 
-/// Takes a collapsed face out: the neighbours across its two long sides become twins.
+/// Removes a collapsed face: the neighbours across its two long sides become twins.
 void take_out(std::span<const Triangle> welded, Index face, Halfedges& halfedges) {
   std::array<Index, 3> outside{};
   for (Index i = 0; i < 3; ++i) outside[i] = std::exchange(halfedges.twin[3 * face + i], kNoTwin);
@@ -56,7 +56,8 @@ void take_out(std::span<const Triangle> welded, Index face, Halfedges& halfedges
   }
 }
 
-/// Pairs by position what is still open between exactly two half-edges of different primitives.
+/// Pairs by position the two half-edges of different primitives that are alone and unpaired on an
+/// edge.
 void glue_parts(const SurfaceNumbers& surface, std::span<const Triangle> welded,
                 const FaceStates& states, Pairing& out) {
   auto sides = edge_sides(welded, [&](Index h) {
@@ -72,14 +73,14 @@ void glue_parts(const SurfaceNumbers& surface, std::span<const Triangle> welded,
   });
 }
 
-/// Components joined into groups, each with the side it lies on relative to the group's root.
+/// Groups of components, each component with its orientation relative to the group's root.
 class Sides {
  public:
   explicit Sides(std::size_t count) : parent_(count), turned_(count, false) {
     for (std::size_t k = 0; k < count; ++k) parent_[k] = static_cast<Index>(k);
   }
 
-  /// Puts a and b on opposite sides; false when they are bound to lie on the same one.
+  /// Gives a and b opposite orientations; false if they are already known to have the same.
   bool set_opposite(Index a, Index b) {
     const auto [root_a, turned_a] = find(a);
     const auto [root_b, turned_b] = find(b);
@@ -94,7 +95,7 @@ class Sides {
     bool turned = false;
     while (parent_[k] != k) {
       const Index up = parent_[k];  // halve the path: point at the grandparent
-      turned_[k] = bool(turned_[k]) != bool(turned_[up]);  // a root is not turned
+      turned_[k] = bool(turned_[k]) != bool(turned_[up]);  // a root is not reversed
       parent_[k] = parent_[up];
       turned = turned != turned_[k];
       k = parent_[k];

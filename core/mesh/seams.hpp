@@ -1,6 +1,6 @@
 #pragma once
-// Which half-edges of a surface belong together: by position alone, or so that the cuts that its
-// vertex numbers make stay open.
+// Pairs the half-edges of a surface: by position alone, or so that the cuts of its vertex numbers
+// stay open.
 
 #include <array>
 #include <optional>
@@ -18,40 +18,41 @@ namespace unwrapd {
 /// Twins over all faces of a surface; faces that are set aside have none.
 struct Pairing {
   Halfedges halfedges;
-  Index split_edges = 0;                      ///< non-manifold edges left without twins
-  std::vector<std::array<Index, 2>> clashes;  ///< two half-edges alone on an edge, one direction
+  Index split_edges = 0;  ///< non-manifold edges left without twins
+  std::vector<std::array<Index, 2>>
+      clashes;  ///< pairs of half-edges alone on an edge, with the same direction
 };
 
-/// By position: welded are the surface's faces over welded vertices.
+/// Pairs by position. welded: the surface's faces over welded vertices.
 Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states,
                     const std::stop_token& stop = {});
 
-/// By the surface's own vertex numbers; what is left open between two different primitives is
-/// paired by position where just two half-edges meet. A cut inside a primitive stays open.
+/// Pairs by the surface's own vertex numbers. Unpaired half-edges of different primitives are then
+/// paired by position if they are alone on an edge. A cut inside a primitive stays open.
 Pairing pair_keeping_seams(const SurfaceNumbers& surface, std::span<const Triangle> welded,
                            const FaceStates& states, const std::stop_token& stop = {});
 
-/// Whether its faces come from several primitives.
+/// Whether the surface's faces come from several primitives.
 bool spans_parts(const SurfaceNumbers& surface);
 
 /// An edge by its ends, the lower first.
 using EdgeEnds = std::array<Index, 2>;
 
-/// Opens the edges listed, ends being welded vertices; they must be in ascending order. Returns the
-/// first of them that no face has, or nothing.
+/// Cuts the listed edges, whose ends are welded vertices, in ascending order. Returns the first
+/// edge that no face has, or nothing.
 std::optional<EdgeEnds> cut_edges(std::span<const Triangle> welded, std::span<const EdgeEnds> edges,
                                   Halfedges& halfedges);
 
-/// Opens the edges at which the UVs that the surface came with differ from one side to the other.
-/// Two corners without UVs do not differ.
+/// Cuts the edges at which the UVs of the input differ between the two sides. Two corners without
+/// UVs are equal.
 void cut_at_uv_seams(const SurfaceNumbers& surface, Halfedges& halfedges);
 
-/// Twins the two half-edges of every boundary loop that has no more than two: the slit that a
-/// non-manifold edge leaves when it is split inside one sheet, of no use to anyone.
+/// Pairs the two half-edges of every boundary loop that has no more than two. Splitting a
+/// non-manifold edge inside one sheet leaves such slits, which have no use.
 void close_slits(Halfedges& halfedges, const std::stop_token& stop = {});
 
-/// The component of a one-sided surface (a Moebius strip): one that clashes with itself however
-/// components are turned over. components are those of pairing.halfedges, one a face.
+/// The component of a one-sided surface (a Moebius strip): one that clashes with itself whatever
+/// orientations components get. components are those of pairing.halfedges, one a face.
 std::optional<Index> one_sided_component(std::span<const std::array<Index, 2>> clashes,
                                          const Topology& topology);
 

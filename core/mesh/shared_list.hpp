@@ -1,6 +1,6 @@
 #pragma once
-// Lists of which copies are the same list, and views of lists, that know the digest of what they
-// hold. A list that takes another's place brings its own digest, or none.
+// Lists whose copies share memory, and views of lists, with the digest of their contents. A list
+// that is assigned over another brings its own digest, or none.
 
 #include <cstddef>
 #include <memory>
@@ -13,8 +13,7 @@
 
 namespace unwrapd {
 
-/// Made once and read by many: copies take no memory. Thread-safe, as nobody changes it. Moving is
-/// copying.
+/// An immutable list; copies share memory. Thread-safe. Moving is copying.
 template <typename T>
 class SharedList {
  public:
@@ -32,10 +31,10 @@ class SharedList {
   [[nodiscard]] const T* begin() const { return items_.data(); }
   [[nodiscard]] const T* end() const { return items_.data() + items_.size(); }
 
-  /// Of the items, or of all that they follow from; nothing where nobody has told it.
+  /// The digest of the items, or of all that they are computed from; empty if it was not set.
   [[nodiscard]] const std::optional<Digest>& digest() const { return digest_; }
 
-  /// The same list, which has this digest.
+  /// The same list with this digest.
   [[nodiscard]] SharedList known_as(const Digest& digest) const {
     SharedList known = *this;
     known.digest_ = digest;
@@ -48,7 +47,7 @@ class SharedList {
   std::optional<Digest> digest_;
 };
 
-/// A view of a list that does not change while it is looked at.
+/// A view of a list, which must not change while the view is in use.
 template <typename T>
 class ListView : public std::span<const T> {
  public:
@@ -58,7 +57,7 @@ class ListView : public std::span<const T> {
   ListView(const std::vector<T>& items)  // NOLINT(google-explicit-constructor)
       : std::span<const T>(items) {}
 
-  /// As of a SharedList.
+  /// As SharedList::digest().
   [[nodiscard]] const std::optional<Digest>& digest() const { return digest_; }
   [[nodiscard]] ListView known_as(const Digest& digest) const {
     ListView known = *this;

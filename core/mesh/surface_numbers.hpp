@@ -1,5 +1,5 @@
 #pragma once
-// What topology is read from: a surface without the places of its vertices.
+// The input of topology: a surface without the positions of its vertices.
 
 #include <span>
 #include <string_view>

@@ -1,4 +1,5 @@
-// Components by a flood over twins; Euler characteristic and boundaries counted per component.
+// Components are found by a flood over twins; Euler characteristic and boundaries are counted per
+// component.
 #include "core/mesh/topology.hpp"
 
 #include <algorithm>

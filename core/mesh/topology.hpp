@@ -1,5 +1,5 @@
 #pragma once
-// What a surface is, topologically: components, Euler characteristic, boundaries, genus.
+// The topology of a surface: components, Euler characteristic, boundaries, genus.
 
 #include <stop_token>
 #include <vector>
@@ -16,7 +16,7 @@ struct Component {
   Index boundaries = 0;  ///< boundary loops
   Index genus = 0;       ///< (2 - boundaries - euler) / 2
 
-  /// A disk, holes allowed: what the solver takes.
+  /// A disk, holes allowed: the input of the solver.
   [[nodiscard]] bool is_disk() const { return boundaries >= 1 && genus == 0; }
 };
 
@@ -29,8 +29,8 @@ struct Topology {
 Topology topology(std::span<const Triangle> faces, const Halfedges& halfedges,
                   const std::stop_token& stop = {});
 
-/// The vertices that the twins imply: one for each class of corners that twins hold together, so
-/// bow-ties come apart. Returns faces over new vertices 0..count-1, numbered by first use.
+/// The vertices that the twins imply: one for each class of corners that twins connect, so that
+/// bow-ties are separated. The faces index new vertices 0..count-1, numbered by first use.
 struct CornerVertices {
   std::vector<Triangle> faces;
   Index count = 0;

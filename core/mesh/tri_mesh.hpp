@@ -1,5 +1,5 @@
 #pragma once
-// The plain types that every part of the project speaks: points, triangles, surfaces.
+// The plain types of meshes that all rooms use: points, triangles, surfaces.
 
 #include <Eigen/Core>
 
@@ -26,21 +26,22 @@ struct TriMesh {
   [[nodiscard]] Index face_count() const { return static_cast<Index>(faces.size()); }
 };
 
-/// One mesh of an asset, as read: what is unwrapped together and shares texture coordinates.
-/// Invariants kept by asset::read: every index is in range, every position is finite. Faces may
-/// still be degenerate, duplicate, non-manifold: core repairs those.
+/// One mesh of an asset as it was read, which is unwrapped as a whole and shares texture
+/// coordinates. asset::read ensures that every index is in range and every position is finite.
+/// Faces may be degenerate, duplicate or non-manifold; core repairs those.
 struct Surface {
   TriMesh mesh;
-  std::vector<Index> part;  ///< part[t]: the primitive (material) that face t came from
+  std::vector<Index> part;  ///< part[t]: the primitive (material) of face t
   std::string name;         ///< JSON pointer of the mesh ("/meshes/0") or the OBJ's "obj"
-  std::vector<CornerUv> corner_uv = {};  ///< one a face: the UVs that came in, V pointing up; empty
-                                         ///< unless asked for and there. Corners without are NaN
+  std::vector<CornerUv> corner_uv =
+      {};  ///< one a face: the UVs of the input, V pointing up; empty
+           ///< unless requested and present. NaN for corners without UVs
 };
 
-/// A surface's answer. Faces keep their number and order; a vertex that lies on a seam is split.
+/// The result for a surface. Faces keep their number and order; a vertex on a seam is split.
 /// source[v] is the input vertex that vertex v copies; the first n entries (n = input vertices) are
 /// 0..n-1, split copies follow. uv[v] is in [0,1]^2, V pointing up, unless position constraints put
-/// it elsewhere; vertices that no face uses have uv (0,0).
+/// it elsewhere; vertices of no face have uv (0,0).
 struct UnwrappedSurface {
   std::vector<Triangle> faces;
   std::vector<Index> source;

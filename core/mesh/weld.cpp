@@ -1,6 +1,6 @@
 // Exact welding by sorting: positions are ordered by 32 bits of a hash with three counting sorts,
-// then the few that share a hash by their coordinates. A hash table would be as fast, but a mesh
-// made to collide would make it quadratic; here such a mesh only costs an ordinary sort.
+// then the few of equal hash by their coordinates. A hash table would be as fast, but a mesh that
+// was made to collide would take quadratic time; here it only costs an ordinary sort.
 #include "core/mesh/weld.hpp"
 
 #include <algorithm>
@@ -21,7 +21,8 @@ struct Entry {
   Index vertex = 0;
 };
 
-std::uint64_t mixed(std::uint64_t x) {  // an odd multiplier and a fold: every bit reaches the top
+std::uint64_t mixed(
+    std::uint64_t x) {  // an odd multiplier and a fold, so that every bit affects the top
   x *= 0x9E3779B97F4A7C15U;
   return x ^ (x >> 32U);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Vertices at one position taken for one. Only topology uses this: the asset keeps its vertices.
+// Merges vertices at one position. Only topology uses this: the asset keeps its vertices.
 
 #include <span>
 #include <stop_token>
