@@ -1,5 +1,5 @@
 // Pairs of unknowns are ordered as one, since they are coupled with the same others: the order of
-// their vertices, its tree and its supernodes, each column taken twice.
+// their vertices, its tree and its supernodes, with each column taken twice.
 #include "core/linear/analysis.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace unwrapd::linear {
 namespace {
 
-/// The matrix's entries by new columns.
+/// Lists the matrix's entries by reordered columns.
 void list_entries(const SparsePattern& lower, const std::stop_token& stop, Analysis& analysis) {
   const std::vector<Index>& position = analysis.nodes.position;
   const auto for_each_entry = [&](auto visit) {
@@ -54,7 +54,7 @@ Graph graph_of_pairs(const SparsePattern& lower, const std::stop_token& stop) {
   return graph_of_lower(begin, row, stop);
 }
 
-/// Two numbers for each: 2i and 2i + 1.
+/// Replaces each number i by 2i and 2i + 1.
 std::vector<Index> with_twins(std::span<const Index> numbers) {
   std::vector<Index> both;
   both.reserve(2 * numbers.size());
@@ -101,7 +101,7 @@ void describe(CacheKey& key, const SparsePattern& pattern) {
   key.add(begin).add(row);
 }
 
-/// Updates pile up: a supernode takes those of its children off the pile and puts its own there.
+/// The stack of updates: a supernode pops those of its children and pushes its own.
 std::size_t most_pending(const Supernodes& nodes, Branch branch) {
   std::vector<std::size_t> pile;
   std::size_t size = 0, most = 0;

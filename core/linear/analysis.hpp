@@ -1,6 +1,6 @@
 #pragma once
-// What depends on the pattern of a symmetric matrix alone: its order of elimination, where its
-// factor's numbers go, how much memory they take.
+// All that depends only on the pattern of a symmetric matrix: its order of elimination, the layout
+// of its factor, and the memory that it takes.
 
 #include <memory>
 #include <span>
@@ -18,16 +18,16 @@ namespace unwrapd::linear {
 /// Immutable: threads may share it.
 struct Analysis {
   Supernodes nodes;
-  Branches branches;  ///< of the supernodes, by the sizes of their panels
+  Branches branches;  ///< of the supernodes, balanced by the sizes of their panels
   /// Column k of the reordered matrix: entry_begin[k] .. entry_begin[k+1]-1 of the two lists.
   std::vector<Index> entry_begin;
   std::vector<Index> entry_row;          ///< in the new order, not above the diagonal
-  std::vector<Index> entry_source;       ///< where among the matrix's values
-  std::vector<std::size_t> panel_begin;  ///< of each supernode, and the end of the last
-  std::size_t pending_size = 0;          ///< the most that updates ever occupy at once
+  std::vector<Index> entry_source;       ///< index among the matrix's values
+  std::vector<std::size_t> panel_begin;  ///< of each supernode, then the end of the last
+  std::size_t pending_size = 0;          ///< the most numbers that updates ever occupy at once
 
-  /// Bytes that this takes; that a factor's panels take; that finding their numbers takes beside
-  /// them, for the largest front and the updates that wait; and all of these.
+  /// Bytes of this object; of a factor's panels; of the largest front and the waiting updates while
+  /// a factor is computed; and of all of these.
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] std::size_t panel_bytes() const { return sizeof(double) * panel_begin.back(); }
   [[nodiscard]] std::size_t scratch_bytes() const;
@@ -38,18 +38,18 @@ struct Analysis {
   }
 };
 
-/// Numbers of an update of n rows: its lower triangle.
+/// The size of an update of n rows: its lower triangle.
 constexpr std::size_t packed_size(std::size_t n) { return n * (n + 1) / 2; }
 
 /// The most numbers that the updates of a subtree ever occupy at once.
 std::size_t most_pending(const Supernodes& nodes, Branch branch);
 
-/// Where a matrix has entries: all that an analysis reads of it.
+/// The positions of a matrix's entries: the input of an analysis.
 struct SparsePattern {
   /// matrix: compressed; it must outlive the pattern.
   SparsePattern(const SparseMatrix& matrix);  // NOLINT(google-explicit-constructor): it is its own
 
-  std::span<const Index> begin;  ///< of each column among row, and the end of the last
+  std::span<const Index> begin;  ///< of each column in row, then the end of the last
   std::span<const Index> row;
 
   [[nodiscard]] Index columns() const { return static_cast<Index>(begin.size()) - 1; }
@@ -60,14 +60,13 @@ void describe(CacheKey& key, const SparsePattern& pattern);
 std::shared_ptr<const Analysis> analyse(const SparsePattern& lower,
                                         const std::stop_token& stop = {});
 
-/// The same, of a matrix whose rows are numbered in a good order of elimination: none is looked
-/// for.
+/// The same for a matrix whose rows are already in a good order of elimination, which is kept.
 std::shared_ptr<const Analysis> analyse_in_order(const SparsePattern& lower,
                                                  const std::stop_token& stop = {});
 
-/// As analyse(), of a matrix with two unknowns a vertex, rows 2v and 2v+1, whose entries come in
-/// whole blocks of two by two (of the diagonal ones the lower triangle): ordered by vertices, a
-/// quarter of the graph. Values are those of the given, not the halved, matrix.
+/// As analyse(), for a matrix with two unknowns a vertex, rows 2v and 2v+1, whose entries come in
+/// whole blocks of two by two (on the diagonal the lower triangle of each). It orders vertices,
+/// with a quarter of the graph. Values are those of the given matrix.
 std::shared_ptr<const Analysis> analyse_pairs(const SparsePattern& lower,
                                               const std::stop_token& stop = {});
 

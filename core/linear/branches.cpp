@@ -1,7 +1,8 @@
-// A subtree is a branch when it is a twelfth of the work at most and its parent's is more. The
-// bounds do not depend on the number of threads, nor do sums, which branches keep apart until all
-// are done: the same bits come out of any. Rejected: a branch for each thread, which leaves threads
-// idle where the tree is uneven; dynamic tasks for all supernodes, whose sums would need an order.
+// A subtree is a branch if it has at most a twelfth of the work and its parent's subtree has more.
+// The bounds do not depend on the number of threads, and sums of branches stay separate until all
+// are done, so that any number of threads gives the same bits. Rejected: a branch for each thread,
+// which leaves threads idle if the tree is uneven; dynamic tasks for all supernodes, whose sums
+// would need an order.
 #include "core/linear/branches.hpp"
 
 #include <numeric>
@@ -11,9 +12,10 @@
 namespace unwrapd::linear {
 namespace {
 
-constexpr std::size_t kMostOfWork = 12;    // a branch is at most one in so many parts
-constexpr std::size_t kLeastOfWork = 512;  // and at least
-constexpr std::size_t kWorthTasks = std::size_t{1} << 18;  // weight below which all is trunk
+constexpr std::size_t kMostOfWork = 12;    // a branch has at most this fraction of the work
+constexpr std::size_t kLeastOfWork = 512;  // and at least this one
+constexpr std::size_t kWorthTasks = std::size_t{1}
+                                    << 18;  // weight below which there are no branches
 
 constexpr std::size_t kNone = ~std::size_t{0};
 

@@ -1,5 +1,5 @@
 #pragma once
-// Subtrees of the elimination tree that threads work on at the same time.
+// Subtrees of the elimination tree that threads process in parallel.
 
 #include <vector>
 
@@ -14,16 +14,16 @@ struct Branch {
   [[nodiscard]] std::size_t root() const { return end - 1; }
 };
 
-/// Branches are disjoint, ascending, and the same whatever the number of threads. What is in none
-/// is the trunk: the rest of the tree above them, and subtrees too small to be worth a task.
+/// Branches are disjoint, ascending, and independent of the number of threads. All other supernodes
+/// are the trunk: the tree above the branches, and subtrees too small for a task.
 struct Branches {
   std::vector<Branch> all;
-  /// Of each column: which of the columns it is that lie above some branch; kOwnColumn: of none.
+  /// The number of each column among those above some branch; kOwnColumn for all others.
   std::vector<Index> shared;
   std::size_t shared_count = 0;
 
   /// Calls visit(s) for the supernodes of the trunk, in ascending order, and enter(b) where branch
-  /// b is passed.
+  /// b lies between them.
   template <typename Visit, typename Enter>
   void for_each_of_trunk(std::size_t count, Visit visit, Enter enter) const {
     std::size_t s = 0;
@@ -38,7 +38,7 @@ struct Branches {
 
 inline constexpr Index kOwnColumn = -1;
 
-/// weight: of each supernode, what work it is.
+/// weight: the work of each supernode.
 Branches branches_of(const Supernodes& nodes, const std::vector<std::size_t>& weight);
 
 }  // namespace unwrapd::linear

@@ -1,9 +1,9 @@
-// Multifrontal L U over the order and the supernodes of a Cholesky factor: with a symmetric
-// pattern, row k of U and column k of L have the rows of its column k. A front is a full square
-// here, the pivots first, with the right-hand side as two more columns: what is taken off them on
-// the way down is L^-1 b, so that L is never kept and one sweep up is all that is left. Rejected:
-// row after row along the elimination tree's reach, entry by entry (four times slower); Eigen's
-// SparseLU, which orders and stores for partial pivoting (docs/adr/0009).
+// Multifrontal LU over the order and the supernodes of a Cholesky factor: with a symmetric pattern,
+// row k of U and column k of L have the pattern of its column k. A front is a full square here, the
+// pivots first, with the right-hand side as two more columns. The elimination turns these into L^-1
+// b, so that L is not stored and only one backward sweep remains. Rejected: row after row along the
+// elimination tree's reach, entry by entry (four times slower); Eigen's SparseLU, which orders and
+// stores for partial pivoting (docs/adr/0009).
 #include "core/linear/dominant_lu.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace unwrapd::linear {
 namespace {
 
 constexpr std::size_t kRhs = 2;      // columns of a right-hand side
-constexpr std::size_t kAbreast = 4;  // pivots that are taken off the other rows at once
+constexpr std::size_t kAbreast = 4;  // pivots that are subtracted from other rows at once
 
 Graph graph_of(const SparseMatrix& matrix) {
   std::vector<Index> begin{0}, row;
@@ -31,7 +31,7 @@ Graph graph_of(const SparseMatrix& matrix) {
   return graph_of_lower(begin, row);
 }
 
-/// Rows one after the other: `pivots` to eliminate, then those left to the parent.
+/// Rows one after the other: `pivots` to eliminate, then those passed to the parent.
 struct SquareFront {
   double* numbers;
   std::size_t pivots, size, stride;
@@ -39,7 +39,7 @@ struct SquareFront {
   [[nodiscard]] double* row(std::size_t i) const { return numbers + i * stride; }
 };
 
-/// Takes `count` pivots from k on off row i, which becomes a row of U, or waits for more.
+/// Subtracts `count` pivots from k on from row i.
 [[gnu::always_inline]] inline void reduce_row(const SquareFront& front, std::size_t k,
                                               std::size_t count, std::size_t i) {
   double* own = front.row(i);
@@ -72,16 +72,16 @@ bool reduce_on_baseline(const SquareFront& front) { return reduce_front(front); 
 
 [[gnu::target("avx2")]] bool reduce_avx2(const SquareFront& front) { return reduce_front(front); }
 
-/// Eliminates the pivots of a front; false when one vanishes.
+/// Eliminates the pivots of a front; false if one vanishes.
 using Reduce = bool (*)(const SquareFront& front);
 
-/// An entry of the matrix, by places in the order of elimination.
+/// An entry of the matrix, by positions in the order of elimination.
 struct Entry {
   Index row, column;
   double value;
 };
 
-/// By the first of their two places.
+/// Sorted by the first of their two positions.
 std::vector<Entry> sorted_entries(const SparseMatrix& matrix, std::span<const Index> position,
                                   std::vector<std::size_t>& begin) {
   begin.assign(position.size() + 1, 0);
@@ -108,7 +108,7 @@ class DominantLu {
         entries_(sorted_entries(matrix, nodes.position, entry_begin_)),
         local_(nodes.order.size()) {}
 
-  /// x by places: b becomes the solution.
+  /// Solves in place: x is the right-hand side, by positions, and becomes the solution.
   void solve(std::span<Vec2> x, const std::stop_token& stop) {
     std::vector<std::vector<double>> upper;  // of each supernode: its pivots' rows
     upper.reserve(nodes_.count());
@@ -123,7 +123,7 @@ class DominantLu {
   }
 
  private:
-  /// What a supernode leaves to its parent: rows of as many numbers as there are, and kRhs.
+  /// The update of a supernode to its parent: square, with kRhs more columns.
   struct Update {
     std::size_t supernode;
     std::vector<double> numbers;
@@ -164,7 +164,7 @@ class DominantLu {
     for (Index c = 0; c < nodes_.child_count[s]; ++c) add_update(front);
   }
 
-  /// Of the last supernode that waits.
+  /// Adds the update of the last waiting supernode.
   void add_update(const SquareFront& front) {
     const Update update = std::move(waiting_.back());
     waiting_.pop_back();
@@ -195,7 +195,7 @@ class DominantLu {
   Reduce reduce_;
   std::vector<std::size_t> entry_begin_;
   std::vector<Entry> entries_;
-  std::vector<Index> local_;  ///< where in the front a row is
+  std::vector<Index> local_;  ///< position of each row in the front
   std::vector<double> numbers_;
   std::vector<Update> waiting_;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Fixed vertices taken out of a symmetric or Hermitian system: their columns, times their values,
-// go to the right-hand side; rows and columns of the others stay.
+// Eliminates fixed vertices from a symmetric or Hermitian system: their columns, times their
+// values, go to the right-hand side; the rows and columns of the others stay.
 
 #include <complex>
 #include <span>
@@ -29,16 +29,16 @@ inline FreeVertices number_free(std::span<const char> fixed) {
   return free;
 }
 
-/// The reduced system. Matrix: Eigen column-major, of real or complex scalars; Value: what a vertex
-/// has (Vec2 or Complex).
+/// The reduced system. Matrix: Eigen column-major, of real or complex scalars; Value: the values of
+/// a vertex (Vec2 or Complex).
 template <typename Matrix, typename Value>
 struct Reduced {
   Matrix lower;
   std::vector<Value> rhs;
 };
 
-/// lower: the lower triangle of the full matrix A with A u = 0 wanted at the free vertices;
-/// value[v]: the values of the fixed ones (others are not read). Throws Error{cancelled}.
+/// lower: the lower triangle of the full matrix A of A u = 0 at the free vertices; value[v]: the
+/// values of the fixed ones (others are not read). Throws Error{cancelled}.
 template <typename Matrix, typename Value>
 Reduced<Matrix, Value> eliminate(const Matrix& lower, const FreeVertices& free,
                                  std::span<const Value> value, const std::stop_token& stop = {}) {

@@ -38,7 +38,7 @@ std::vector<Index> parents(const Graph& graph, std::span<const Index> order,
   return parent;
 }
 
-/// Of each column: its first child, and the next child of its parent; both ascending.
+/// The first child of each column, and the next child of its parent; both ascending.
 struct Children {
   std::vector<Index> first, next;
 };
@@ -52,7 +52,7 @@ Children children_of(std::span<const Index> parent) {
   return children;
 }
 
-/// Appends the descendants of a root, and it, each after its own descendants; uses up the children.
+/// Appends the subtree of a root in postorder. Consumes the lists of children.
 void append_subtree(Index root, Children& children, std::vector<Index>& order) {
   std::vector<Index> path{root};
   while (!path.empty()) {
@@ -77,7 +77,7 @@ std::vector<Index> postorder(std::span<const Index> parent) {
   return order;
 }
 
-/// The tree renumbered in postorder, its counts still missing.
+/// The tree in postorder, without counts.
 EliminationTree in_postorder(std::span<const Index> order, std::span<const Index> parent) {
   const std::vector<Index> old = postorder(parent);
   const std::vector<Index> renumbered = inverse(old);
@@ -91,7 +91,7 @@ EliminationTree in_postorder(std::span<const Index> order, std::span<const Index
   return tree;
 }
 
-/// Finds which entries of the matrix are leaves of row subtrees, columns taken in postorder.
+/// Finds the entries of the matrix that are leaves of row subtrees; columns come in postorder.
 class RowSubtrees {
  public:
   explicit RowSubtrees(std::span<const Index> parent)
@@ -110,12 +110,12 @@ class RowSubtrees {
 
   [[nodiscard]] bool is_tree_leaf(Index k) const { return first_[at(k)] == k; }
 
-  /// Nothing else of column j will be asked for.
+  /// Must be called after the last query for column j.
   void finish(Index j) {
     if (parent_[at(j)] != kNoParent) ancestor_[at(j)] = parent_[at(j)];
   }
 
-  /// Is column j a leaf of the subtree of row i > j?
+  /// Whether column j is a leaf of the subtree of row i > j.
   bool is_leaf(Index i, Index j) {
     if (first_[at(j)] <= last_first_[at(i)]) return false;
     last_first_[at(i)] = first_[at(j)];
@@ -123,8 +123,8 @@ class RowSubtrees {
     return true;
   }
 
-  /// Where the path of the leaf just found meets that of the leaf before it; kNoParent: no such
-  /// leaf.
+  /// The column where the paths of the last leaf and of the leaf before it meet; kNoParent if there
+  /// is no leaf before it.
   Index meeting() {
     if (previous_ == kNoParent) return kNoParent;
     Index top = previous_;
@@ -136,14 +136,14 @@ class RowSubtrees {
  private:
   std::span<const Index> parent_;
   std::vector<Index> first_;       ///< the first descendant of each column
-  std::vector<Index> last_first_;  ///< of each row: that of the last leaf
+  std::vector<Index> last_first_;  ///< of each row: the first descendant of its last leaf
   std::vector<Index> last_leaf_;   ///< of each row
   std::vector<Index> ancestor_;    ///< a forest of the finished columns, paths compressed
   Index previous_ = kNoParent;
 };
 
 /// Each leaf of a row subtree adds one to the counts on its path to the root; the node where two
-/// paths meet takes one off again.
+/// paths meet subtracts one.
 void count_leaves(const Graph& graph, const EliminationTree& tree, Index j, RowSubtrees& subtrees,
                   std::span<Index> count) {
   for (Index v : graph.of(tree.order[at(j)])) {
@@ -154,7 +154,8 @@ void count_leaves(const Graph& graph, const EliminationTree& tree, Index j, RowS
   }
 }
 
-/// As differences first: a column has what its children have, but for their diagonal entries.
+/// Sums differences along the tree: a column has the entries of its children without their
+/// diagonals.
 std::vector<Index> column_counts(const Graph& graph, const EliminationTree& tree,
                                  const std::stop_token& stop) {
   RowSubtrees subtrees(tree.parent);

@@ -1,6 +1,5 @@
 #pragma once
-// What a Cholesky factor looks like before any number is known: which column updates which, and how
-// many entries each has.
+// The structure of a Cholesky factor: which column updates which, and how many entries each has.
 
 #include <vector>
 
@@ -19,8 +18,8 @@ struct EliminationTree {
   std::vector<Index> count;     ///< entries of column k of the factor, the diagonal included
 };
 
-/// order: any order of elimination. The tree's own differs from it, but its fill is the same.
-/// Throws Error{cancelled}.
+/// order: any order of elimination. The tree has an equivalent one, with the same fill. Throws
+/// Error{cancelled}.
 EliminationTree elimination_tree(const Graph& graph, std::vector<Index> order,
                                  const std::stop_token& stop = {});
 

@@ -1,6 +1,5 @@
 #pragma once
-// Our own engine behind the interface of factor.hpp: a supernodal Cholesky factor, found by the
-// multifrontal method.
+// A supernodal Cholesky factor by the multifrontal method, behind the interface of factor.hpp.
 
 #include <memory>
 #include <vector>
@@ -14,32 +13,33 @@ namespace unwrapd::linear {
 
 class Factor final : public RealSystem {
  public:
-  /// A factor without numbers: refill() comes first.
+  /// A factor without numbers: call refill() first.
   explicit Factor(std::shared_ptr<const Analysis> analysis);
 
-  /// Factors the matrix, of the pattern analysed, in the memory of the one before. False when it is
-  /// not positive definite in double precision: nothing may be solved then until the next one is.
+  /// Factors a matrix of the analysed pattern, in the memory of the previous factor. Returns false
+  /// if it is not positive definite in double precision; then solve() must not be called until a
+  /// refill succeeds.
   [[nodiscard]] bool refill(const SparseMatrix& lower, Executor& executor);
   [[nodiscard]] bool refill(const SparseMatrix& lower);
 
-  /// The same bits for any executor. Thread-safe, but for an executor that is not.
+  /// The same bits for any executor. As thread-safe as the executor.
   void solve(std::span<Vec2> b, Executor& executor) const;
   void solve(std::span<Vec2> b, const std::stop_token& stop = {}) const override;
 
   /// As solve(), of unknowns listed in the order of elimination (analysis()->nodes.order).
   void solve_in_order(std::span<Vec2> b, Executor& executor) const;
 
-  /// The halves of solve_in_order(), one after the other; of those supernodes only that are among
-  /// `over` (supernodes_over()), or of all where it is empty: see descend_panels().
+  /// The two halves of solve_in_order(). They only visit the supernodes in `over`
+  /// (supernodes_over()), or all if it is empty: see descend_panels().
   void descend_in_order(std::span<Vec2> b, std::span<const char> over, Executor& executor) const;
   void ascend_in_order(std::span<Vec2> b, std::span<const char> over, Executor& executor) const;
 
   [[nodiscard]] const std::shared_ptr<const Analysis>& analysis() const { return analysis_; }
 
-  /// While it is refilled, its analysis included.
+  /// Bytes during a refill, analysis included.
   [[nodiscard]] std::size_t job_bytes() const { return analysis_->job_bytes(); }
 
-  /// That this takes, its analysis included.
+  /// Bytes of the factor, analysis included.
   [[nodiscard]] std::size_t bytes() const { return analysis_->bytes() + analysis_->panel_bytes(); }
 
   /// One right-hand side of a matrix of pairs (analyse_pairs()): b[v] has the unknowns 2v, 2v + 1.
@@ -51,7 +51,7 @@ class Factor final : public RealSystem {
   LargeArray panels_;
 };
 
-/// Nothing when the matrix, of the pattern analysed, is not positive definite in double precision.
+/// Empty if the matrix, of the analysed pattern, is not positive definite in double precision.
 std::unique_ptr<Factor> try_factor(std::shared_ptr<const Analysis> analysis,
                                    const SparseMatrix& lower, Executor& executor);
 std::unique_ptr<Factor> try_factor(std::shared_ptr<const Analysis> analysis,

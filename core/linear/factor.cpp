@@ -1,6 +1,6 @@
-// All systems go to our own engine (engine.hpp), Hermitian ones as real ones of twice the size:
-// twice the memory and the arithmetic of complex fronts, but several times faster than Eigen's
-// simplicial factor, and no second set of kernels.
+// All systems use our own engine (engine.hpp); Hermitian ones are real ones of twice the size. This
+// takes twice the memory and arithmetic of complex fronts, but is several times faster than Eigen's
+// simplicial factor, and needs no second set of kernels.
 #include "core/linear/factor.hpp"
 
 #include <utility>

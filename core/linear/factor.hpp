@@ -14,7 +14,7 @@ namespace unwrapd::linear {
 using Complex = std::complex<double>;
 using ComplexMatrix = Eigen::SparseMatrix<Complex, Eigen::ColMajor, Index>;
 
-/// The small interface behind which engines differ.
+/// The interface of a factored system.
 template <typename Rhs>
 class PrefactoredSystem {
  public:
@@ -23,8 +23,8 @@ class PrefactoredSystem {
   PrefactoredSystem& operator=(const PrefactoredSystem&) = delete;
   virtual ~PrefactoredSystem() = default;
 
-  /// Replaces b by the solution of A x = b. Thread-safe. Throws Error{cancelled}: b is then of no
-  /// use.
+  /// Replaces b by the solution of A x = b. Thread-safe. Throws Error{cancelled}; b is then
+  /// undefined.
   virtual void solve(std::span<Rhs> b, const std::stop_token& stop = {}) const = 0;
 };
 
@@ -32,23 +32,22 @@ class PrefactoredSystem {
 using RealSystem = PrefactoredSystem<Vec2>;
 using HermitianSystem = PrefactoredSystem<Complex>;
 
-/// Factors the matrix whose lower triangle is given.
-/// Throws Error{solver_failed} when it is not positive definite in double precision, and
-/// Error{cancelled}.
+/// Factors the matrix with this lower triangle. Throws Error{solver_failed} if it is not positive
+/// definite in double precision, and Error{cancelled}.
 std::unique_ptr<RealSystem> factor(const SparseMatrix& lower, const std::stop_token& stop = {});
 std::unique_ptr<HermitianSystem> factor(const ComplexMatrix& lower);
 
-/// Told how many bytes a factor will take before they are taken; may throw.
+/// Called with the bytes of a factor before they are allocated; may throw.
 using MemoryCheck = std::function<void(std::size_t bytes)>;
 
-/// As factor(), but nothing where that throws.
+/// As factor(), but returns null if the matrix is not positive definite.
 std::unique_ptr<HermitianSystem> try_factor(const ComplexMatrix& lower,
                                             const MemoryCheck& check = {},
                                             const std::stop_token& stop = {});
 
 [[noreturn]] void refuse_indefinite();
 
-/// Throws Error{solver_failed} when there is no system: its matrix is not positive definite.
+/// Throws Error{solver_failed} if the system is null.
 template <typename System>
 System definite(System system) {
   if (!system) refuse_indefinite();
@@ -56,8 +55,7 @@ System definite(System system) {
 }
 
 /// The real matrix of the real and imaginary parts, rows 2v and 2v + 1: a block [a -b; b a] for
-/// each entry a + b i; the lower triangle of what lower is the lower triangle of. Throws
-/// Error{cancelled}.
+/// each entry a + b i. Both argument and result are lower triangles. Throws Error{cancelled}.
 SparseMatrix as_pairs(const ComplexMatrix& lower, const std::stop_token& stop = {});
 
 }  // namespace unwrapd::linear

@@ -54,11 +54,11 @@ struct FrontPhases {
 constexpr FrontPhases kBaselinePhases{finish_baseline, update_baseline, write_baseline};
 constexpr FrontPhases kAvx2Phases{finish_avx2, update_avx2, write_avx2};
 
-constexpr std::size_t kPart = 32;         // columns that one thread takes at once
-constexpr std::size_t kWorthParts = 192;  // rows of a front below which threads would wait longer
+constexpr std::size_t kPart = 32;         // columns for one task
+constexpr std::size_t kWorthParts = 192;  // rows of a front below which threads do not pay
 
-/// Calls work(part, columns) for columns in parts that may run at the same time, if there are
-/// enough to be worth it. No part depends on another, nor any sum on where they are cut.
+/// Calls work(part, columns) for parts of the columns in parallel, if there are enough. The results
+/// do not depend on where the parts are divided.
 template <typename Work>
 void in_parts(const FrontView& front, Columns all, Executor& executor, Work work) {
   if (front.size() < kWorthParts) return work(0, all);

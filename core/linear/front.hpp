@@ -1,6 +1,6 @@
 #pragma once
-// One dense front of the multifrontal method: the pivot columns of a supernode, with what its
-// children and the matrix add to them, and the update that it leaves to its parent.
+// One dense front of the multifrontal method: the pivot columns of a supernode, plus the
+// contributions of its children and the matrix, and the update that it passes to its parent.
 
 #include <cstddef>
 
@@ -13,7 +13,7 @@ namespace unwrapd::linear {
 /// Memory that grows and is never cleared.
 class Scratch {
  public:
-  /// Room for n numbers; what was there before is lost.
+  /// Memory for n numbers; earlier contents are lost.
   double* room(std::size_t n) {
     if (n > size_) memory_ = large_array(size_ = n + n / 2);
     return memory_.get();
@@ -24,12 +24,12 @@ class Scratch {
   std::size_t size_ = 0;
 };
 
-/// Where a front's numbers are. The rows below the pivots start at a whole pack, update_begin();
+/// The memory layout of a front. The rows below the pivots start at a whole pack, update_begin();
 /// rows between are zero.
 struct FrontView {
   PanelShape shape{};
   std::size_t stride = 0;     ///< rows of a column, padded
-  double* columns = nullptr;  ///< of the symmetric matrix, of which only the lower triangle counts
+  double* columns = nullptr;  ///< lower triangle of the symmetric matrix
   double* strips = nullptr;   ///< a copy of the pivot columns, see front_kernels.hpp
   double* inverse = nullptr;  ///< kPack columns of L11^-1, by rows
 
@@ -39,23 +39,22 @@ struct FrontView {
 
 class Front {
  public:
-  /// Starts anew, with zeros.
+  /// Sets all numbers to zero.
   void reset(PanelShape shape);
 
-  /// Row j of column j; the rows below it follow.
+  /// The address of row j of column j; the rows below it follow.
   [[nodiscard]] double* diagonal(std::size_t j) { return view_.columns + j * (view_.stride + 1); }
   [[nodiscard]] std::size_t update_begin() const { return view_.update_begin(); }
 
-  /// Turns the pivot columns into those of the Cholesky factor, takes their products from the rest,
-  /// which is then the update, and writes the panel (shape.size() numbers). False when a pivot is
-  /// not positive and finite. The same bits on any processor.
+  /// Turns the pivot columns into those of the Cholesky factor, subtracts their products from the
+  /// rest, which is then the update, and writes the panel (shape.size() numbers). Returns false if
+  /// a pivot is not positive and finite. The same bits on any processor.
   [[nodiscard]] bool factor(double* panel) const;
 
-  /// The same bits by any executor: large fronts are split among its threads. Throws
-  /// Error{cancelled} when its job was told to stop.
+  /// The same bits for any executor, whose threads share large fronts. Throws Error{cancelled}.
   [[nodiscard]] bool factor(double* panel, Executor& executor) const;
 
-  /// The same with the registers of the x86-64 baseline, whatever the processor has.
+  /// The same with the registers of the x86-64 baseline, for comparison.
   [[nodiscard]] bool factor_on_baseline(double* panel) const;
 
  private:

@@ -23,21 +23,21 @@ struct Columns {
 };
 
 /// Lanes: the vector of doubles of one register. Everything is inlined into the one function that
-/// is compiled for the processor which has such registers. No result depends on their length.
+/// is compiled for the processor with such registers. No result depends on their length.
 template <typename Lanes>
 class FrontKernels {
  public:
   [[gnu::always_inline]] explicit FrontKernels(const FrontView& front) : f_(front) {}
 
-  /// Columns begin .. end-1 become those of the factor. False on a bad pivot.
+  /// Factors columns begin .. end-1. False on a bad pivot.
   [[gnu::always_inline]] bool finish(Columns own) const {
     if (!factor_block(own.begin, own.end)) return false;
     pack(own.begin, own.end);
     return true;
   }
 
-  /// Takes the products of finished columns from others, which start at a pack. What lands above
-  /// the diagonal is never read.
+  /// Subtracts the products of finished columns from others, which start at a pack. Values above
+  /// the diagonal are never read.
   [[gnu::always_inline]] void update(Columns finished, Columns others) const {
     Tile<kStrip> tile;
     for (std::size_t j = others.begin; j < others.end; j += kPack) {
@@ -52,7 +52,7 @@ class FrontKernels {
     }
   }
 
-  /// What the panel has of these columns, which start at a pack.
+  /// Writes the panel's part of these columns, which start at a pack.
   [[gnu::always_inline]] void write_panel(Columns own, double* panel) const {
     for (std::size_t column = own.begin; column < own.end; column += kPack) {
       invert(column);
@@ -107,7 +107,7 @@ class FrontKernels {
     }
   }
 
-  /// Columns begin .. end-1, all rows.
+  /// Factors columns begin .. end-1, all rows.
   [[gnu::always_inline]] bool factor_block(std::size_t begin, std::size_t end) const {
     for (std::size_t k = begin; k < end; k += kPack) {
       const std::size_t next = std::min(k + kPack, end);
@@ -118,7 +118,7 @@ class FrontKernels {
     return true;
   }
 
-  /// Column k, and its products off the columns k+1 .. end-1.
+  /// Factors column k and subtracts its products from the columns k+1 .. end-1.
   [[gnu::always_inline]] bool factor_column(std::size_t k, std::size_t end) const {
     double* own = f_.columns + k * f_.stride;
     const double pivot = own[k];
@@ -135,7 +135,7 @@ class FrontKernels {
     return true;
   }
 
-  /// The products of columns k .. k+3 off column j.
+  /// Subtracts the products of columns k .. k+3 from column j.
   [[gnu::always_inline]] void subtract_four(std::size_t k, std::size_t j) const {
     const double* a = f_.columns + k * f_.stride;
     const double *b = a + f_.stride, *c = b + f_.stride, *d = c + f_.stride;

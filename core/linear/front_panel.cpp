@@ -1,9 +1,9 @@
-// Panels are read once in each direction, and reading them is what a solve costs: blocks of four
+// Panels are read once in each direction, and memory bandwidth limits a solve. So blocks of four
 // columns share every load and store of the vectors, and a register of four numbers holds two rows
-// of both right-hand sides. The way up reads every number before the one read last, from the end of
-// the last panel to the start of the first: processors foresee a walk backwards as well as one
-// forwards, but not panels read forwards one before the other (up to 2.5 times slower, and asking
-// for them ahead by instructions did not help).
+// of both right-hand sides. The backward sweep reads memory in strictly descending order, from the
+// end of the last panel to the start of the first: processors prefetch such a sequence as well as
+// an ascending one, but not ascending panels in descending order (up to 2.5 times slower; prefetch
+// instructions did not help).
 #include "core/linear/front_panel.hpp"
 
 namespace unwrapd::linear {
@@ -13,7 +13,7 @@ namespace {
 using Duo = double __attribute__((vector_size(16), aligned(8), may_alias));
 using Quad = double __attribute__((vector_size(32), aligned(8), may_alias));
 
-/// Two numbers of a panel, for each right-hand side.
+/// Loads two numbers of a panel, for each right-hand side.
 [[gnu::always_inline]] inline void spread(const double* from, Duo& to) {
   to = *reinterpret_cast<const Duo*>(from);
 }
@@ -73,14 +73,14 @@ class PanelLoops {
     for (std::size_t p = 0; p < kParts; ++p) weight[p] = lanes(both + p * kLanes);
   }
 
-  /// What two rows have summed up before.
+  /// The sums of two rows so far.
   template <bool kIsFirst>
   [[gnu::always_inline]] static void begin_rows(const double* sum, Lanes (&total)[kParts]) {
     for (std::size_t p = 0; p < kParts; ++p)
       total[p] = kIsFirst ? Lanes{} : lanes(sum + p * kLanes);
   }
 
-  /// A block of kWidth columns of `length` rows each; the first finds no sums there yet.
+  /// A block of kWidth columns of `length` rows each; the first block initializes the sums.
   template <std::size_t kWidth, bool kIsFirst>
   [[gnu::always_inline]] static void add_block(const double* block, std::size_t length,
                                                const Vec2* x, PanelRows sum) {

@@ -1,5 +1,5 @@
 #pragma once
-// The finished columns of a supernode, as the solves read them.
+// The finished columns of a supernode, in the layout of the solves.
 
 #include <algorithm>
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace unwrapd::linear {
 
-inline constexpr std::size_t kPack = 4;  ///< columns that are worked on at once
-inline constexpr std::size_t kDuo = 2;   ///< rows that are worked on at once
+inline constexpr std::size_t kPack = 4;  ///< columns that are processed at once
+inline constexpr std::size_t kDuo = 2;   ///< rows that are processed at once
 
 constexpr std::size_t padded(std::size_t n, std::size_t to) { return (n + to - 1) / to * to; }
 
@@ -23,14 +23,14 @@ struct PanelShape {
 
   [[nodiscard]] std::size_t height() const { return padded(pivots + below, kDuo); }
 
-  /// Where the block starts whose first column is k, a multiple of kPack.
+  /// The start of the block whose first column is k, a multiple of kPack.
   [[nodiscard]] std::size_t block_begin(std::size_t k) const {
     return k * height() - k * (k - kPack) / 2;
   }
-  /// Columns of that block.
+  /// The number of columns of that block.
   [[nodiscard]] std::size_t width(std::size_t k) const { return std::min(kPack, pivots - k); }
 
-  /// Row r of column k + c, in the block that starts with column k.
+  /// The position of row r of column k + c, in the block that starts with column k.
   [[nodiscard]] std::size_t entry(std::size_t r, std::size_t k, std::size_t c) const {
     return block_begin(k) + ((r - k) / kDuo * width(k) + c) * kDuo + r % kDuo;
   }
@@ -45,7 +45,7 @@ struct PanelShape {
 /// rows u of both and then v of both.
 using PanelRows = double*;
 
-/// Where u of row r is; v is kDuo after it.
+/// The position of u of row r; v is kDuo after it.
 constexpr std::size_t row_entry(std::size_t r) { return 2 * (r / kDuo * kDuo) + r % kDuo; }
 
 /// Products of a panel with two right-hand sides. The same bits on any processor.
@@ -56,7 +56,7 @@ struct PanelKernels {
   void (*multiply_transposed)(const double* panel, PanelShape shape, const double* y, Vec2* x);
 };
 
-/// With the registers of this processor; with those of the x86-64 baseline.
+/// The kernels for the registers of this processor; those for the x86-64 baseline.
 PanelKernels panel_kernels();
 PanelKernels baseline_panel_kernels();
 

@@ -1,7 +1,7 @@
 #pragma once
-// Room for many numbers, in pages of 2 MB where the system lends them: panels are walked from end
-// to end in every solve, and with pages of 4 KB a tenth of a first job went into taking them one by
-// one, a fifth of a solve into looking them up. Elsewhere the advice is without effect.
+// Memory for many numbers, in pages of 2 MB if the system has them. Every solve reads panels from
+// end to end; with pages of 4 KB, a tenth of a first job was spent on page faults and a fifth of a
+// solve on address translation. On other systems the advice has no effect.
 
 #include <sys/mman.h>
 
@@ -20,7 +20,7 @@ inline constexpr std::size_t kWorthHugePages = 2 * kHugePage;
 
 using LargeArray = std::unique_ptr<double[], FreeNumbers>;
 
-/// count numbers of no particular value. Throws std::bad_alloc.
+/// `count` uninitialized numbers. Throws std::bad_alloc.
 inline LargeArray large_array(std::size_t count) {
   const std::size_t bytes = sizeof(double) * count;
   const std::size_t page = bytes >= kWorthHugePages ? kHugePage : kCacheLine;

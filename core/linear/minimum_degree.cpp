@@ -1,9 +1,10 @@
 // Amestoy, Davis, Duff, "An approximate minimum degree ordering algorithm", 1996: the quotient
 // graph, in which an eliminated vertex stands for the clique that it leaves behind; degrees bounded
-// by |A_i| + |L_k \ i| + sum |L_e \ L_k| (their Eq. 4.2); vertices of equal lists taken as one;
-// elements that lie in a new one dropped. Vertices with more than 10 sqrt(n) neighbours come last.
-// Ours, since a library's cannot be told to stop: .35 s for a million faces. Rejected: lists moved
-// together when memory runs out, which saves less than the factor takes many times over.
+// by |A_i| + |L_k \ i| + sum |L_e \ L_k| (their Eq. 4.2); vertices of equal lists merged; elements
+// inside a new one dropped. Vertices with more than 10 sqrt(n) neighbours come last. This is our
+// own implementation, since a library's cannot be cancelled; it takes .35 s for a million faces.
+// Rejected: compacting the lists when memory runs out, which saves less than the factor takes many
+// times over.
 #include "core/linear/minimum_degree.hpp"
 
 #include <algorithm>
@@ -62,14 +63,14 @@ void MinimumDegree::unlink(Index i) {
     head_[static_cast<std::size_t>(node.degree)] = node.next;
 }
 
-/// Of least degree; kNoNode when all are eliminated.
+/// A vertex of least degree; kNoNode if all are eliminated.
 Index MinimumDegree::pick() {
   const auto count = static_cast<Index>(head_.size());
   while (least_ < count && head_[static_cast<std::size_t>(least_)] == kNoNode) ++least_;
   return least_ < count ? head_[static_cast<std::size_t>(least_)] : kNoNode;
 }
 
-/// j goes with i from now on.
+/// Merges j into i.
 void MinimumDegree::join(Index i, Index j) {
   at(at(i).last).following = j;
   at(i).last = at(j).last;
@@ -102,7 +103,7 @@ void MinimumDegree::eliminate(Index k) {
   close_element(k);
 }
 
-/// The vertices that k is coupled with, directly or through elements, which it takes the place of.
+/// Collects the neighbours of k, directly or through elements, which the new element replaces.
 void MinimumDegree::form_element(Index k) {
   unlink(k);
   left_ -= at(k).weight;
@@ -133,7 +134,8 @@ void MinimumDegree::collect(Index first, Index end, Index& degree) {
   }
 }
 
-/// Stamps every element near the new one with mark_ and the weight of what it has beyond that.
+/// Stamps every element near the new one with mark_ plus the weight of its vertices outside of the
+/// new one.
 void MinimumDegree::weigh_others(const Node& element) {
   for (Index q = element.begin; q < element.begin + element.length; ++q) {
     const Node& node = at(entry(q));
@@ -147,8 +149,8 @@ void MinimumDegree::weigh_others(const Node& element) {
   }
 }
 
-/// In the lists of its vertices the new element replaces what it covers. What it covers wholly is
-/// eliminated with k; the others are sorted by sums of their lists, to find those alike.
+/// Replaces covered elements by the new one in the lists of its vertices. Vertices that it covers
+/// wholly are eliminated with k; the others are sorted by sums of their lists, to find equal ones.
 void MinimumDegree::update_lists(Index k) {
   for (Index q = at(k).begin; q < at(k).begin + at(k).length; ++q) {
     const Index i = entry(q);
@@ -166,7 +168,7 @@ void MinimumDegree::update_lists(Index k) {
   }
 }
 
-/// Returns the list's sum, less than the number of nodes; kNoNode where it is k alone.
+/// Returns the list's sum modulo the number of nodes; kNoNode if only k is left.
 Index MinimumDegree::update_list(Index k, Index i) {
   Node& node = at(i);
   Index write = node.begin, degree = 0;
@@ -193,7 +195,7 @@ Index MinimumDegree::update_list(Index k, Index i) {
   }
   if (degree == 0) return kNoNode;
   node.degree = std::min(node.degree, degree);
-  entry(write) = entry(vertices);  // at least one entry went, k or what it covers
+  entry(write) = entry(vertices);  // at least one entry was removed, k or an element that it covers
   entry(vertices) = entry(node.begin);
   entry(node.begin) = k;
   node.elements = vertices - node.begin + 1;
@@ -221,7 +223,7 @@ void MinimumDegree::take_alike_as_one(const Node& element) {
   }
 }
 
-/// Both begin with the new element.
+/// Both lists begin with the new element.
 bool MinimumDegree::is_alike(const Node& marked, const Node& other) {
   if (marked.length != other.length || marked.elements != other.elements) return false;
   for (Index p = other.begin + 1; p < other.begin + other.length; ++p)
@@ -229,7 +231,7 @@ bool MinimumDegree::is_alike(const Node& marked, const Node& other) {
   return true;
 }
 
-/// Sorts its vertices by their new degrees, leaves out those taken as one with another.
+/// Sorts its vertices by their new degrees, without those that were merged into another.
 void MinimumDegree::close_element(Index k) {
   Node& element = at(k);
   Index write = element.begin;

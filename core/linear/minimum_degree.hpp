@@ -1,5 +1,5 @@
 #pragma once
-// Approximate minimum degree: whoever is coupled with the fewest is eliminated first.
+// Approximate minimum degree: eliminates a vertex with the fewest neighbours first.
 
 #include <cstdint>
 #include <stop_token>
@@ -14,22 +14,22 @@ class MinimumDegree {
  public:
   explicit MinimumDegree(const Graph& graph);
 
-  /// order[k]: the vertex to eliminate k-th. Once only. Looks for the stop every few thousand
+  /// order[k]: the vertex to eliminate k-th. May be called once. Checks the stop every few thousand
   /// eliminations: throws Error{cancelled}.
   std::vector<Index> run(const std::stop_token& stop);
 
  private:
-  /// A vertex (or several alike, taken as one), and once eliminated an element: the clique of those
-  /// that it was coupled with. The list of a vertex is elements first, then vertices; that of an
-  /// element is vertices.
+  /// A vertex (or several merged ones), and after its elimination an element: the clique of its
+  /// neighbours. The list of a vertex has elements first, then vertices; that of an element has
+  /// vertices.
   struct Node {
-    Index begin, length;   ///< of its list
-    Index elements = 0;    ///< that the list begins with
-    Index weight = 1;      ///< vertices that it is; 0: part of another; negated: in the new element
-    Index degree;          ///< a bound for the weight of all coupled with it
-    Index next, previous;  ///< of those with the same degree, or alike in their lists' sums
-    Index last, following;   ///< of the vertices taken as one with it; the next after it among them
-    std::int64_t stamp = 1;  ///< 0: an element that lies in another
+    Index begin, length;  ///< of its list
+    Index elements = 0;   ///< at the start of the list
+    Index weight = 1;  ///< number of vertices; 0: merged into another; negative: in the new element
+    Index degree;      ///< bound of the weight of all neighbours
+    Index next, previous;    ///< of those with the same degree, or with the same sum of lists
+    Index last, following;   ///< of the vertices merged into it; the next after it among them
+    std::int64_t stamp = 1;  ///< 0: an element inside another
   };
 
   Node& at(Index i) { return nodes_[static_cast<std::size_t>(i)]; }
@@ -51,13 +51,13 @@ class MinimumDegree {
   void close_element(Index k);
 
   std::vector<Node> nodes_;
-  std::vector<Index> store_;  ///< all lists, those of new elements at its end
+  std::vector<Index> store_;  ///< all lists; those of new elements at the end
   std::vector<Index> head_;   ///< of the vertices of each degree
-  std::vector<Index> alike_;  ///< the last seen by the sums of lists
-  Index least_ = 0;           ///< no degree is below it
-  Index left_;                ///< vertices not eliminated
-  Index largest_ = 0;         ///< degree of an element so far
-  std::int64_t mark_ = 2;     ///< stamps below it are old
+  std::vector<Index> alike_;  ///< the last node seen for each sum of lists
+  Index least_ = 0;           ///< lower bound of all degrees
+  Index left_;                ///< vertices that are not eliminated yet
+  Index largest_ = 0;         ///< greatest degree of an element so far
+  std::int64_t mark_ = 2;     ///< smaller stamps are old
 };
 
 }  // namespace unwrapd::linear

@@ -15,11 +15,11 @@
 namespace unwrapd::linear {
 namespace {
 
-/// What a supernode leaves to its parent.
+/// The update that a supernode passes to its parent.
 struct Update {
   std::size_t supernode;
   const double* numbers;
-  bool is_on_pile;  ///< of the factorisation that is at it
+  bool is_on_pile;  ///< whether it is on the stack of this factorization
 };
 
 class Factorisation {
@@ -31,7 +31,7 @@ class Factorisation {
         panels_(panels),
         local_row_(std::make_unique_for_overwrite<Index[]>(nodes_.order.size())) {}
 
-  /// Room for what waits at any time.
+  /// Reserves memory for the updates that wait at any time.
   void reserve(std::size_t numbers) { pile_ = large_array(numbers); }
 
   /// False on a bad pivot.
@@ -45,10 +45,10 @@ class Factorisation {
     return true;
   }
 
-  /// As if supernode s had been eliminated here.
+  /// Takes the update of supernode s, which was eliminated elsewhere.
   void take(std::size_t s, const double* update) { pending_.push_back({s, update, false}); }
 
-  /// A copy of what the last supernode left.
+  /// A copy of the last supernode's update.
   [[nodiscard]] std::vector<double> leave() const {
     const double* const end = pile_.get() + top_;
     return {pending_.back().numbers, end};
@@ -72,7 +72,7 @@ class Factorisation {
     }
   }
 
-  /// Adds the update on top of the pile to the front.
+  /// Adds the top update of the stack to the front.
   void add_update() {
     const Update update = pending_.back();
     const std::span<const Index> rows = nodes_.below(update.supernode);
@@ -102,14 +102,14 @@ class Factorisation {
   const double* values_;
   double* panels_;
   Front front_;
-  std::unique_ptr<Index[]> local_row_;  ///< where in the front a row is
-  std::vector<Index> rows_in_front_;    ///< of the update being added
+  std::unique_ptr<Index[]> local_row_;  ///< position of each row in the front
+  std::vector<Index> rows_in_front_;    ///< of the update that is being added
   std::vector<Update> pending_;         ///< in the order in which parents take them, last first
   LargeArray pile_;
   std::size_t top_ = 0;
 };
 
-/// A subtree, factored by itself: what its root leaves.
+/// The result of a separately factored subtree: the update of its root.
 struct Grown {
   std::vector<double> update;
   bool is_definite = false;
@@ -141,7 +141,7 @@ class Tree {
       if (is_cancelled(stop) || !work.eliminate(s, serial)) return;
     grown.update = work.leave();
     grown.is_definite = true;
-  } catch (const std::bad_alloc&) {  // tasks do not throw
+  } catch (const std::bad_alloc&) {  // tasks must not throw
     grown.has_memory = false;
   }
 

@@ -1,5 +1,5 @@
 #pragma once
-// In which order to eliminate the vertices of a symmetric matrix, so that its factor stays sparse.
+// An order of elimination that keeps the factor of a symmetric matrix sparse.
 
 #include <span>
 #include <stop_token>
@@ -9,8 +9,8 @@
 
 namespace unwrapd::linear {
 
-/// Who is coupled with whom: the neighbours of vertex v are neighbour[begin[v]] ..
-/// neighbour[begin[v+1]-1], v itself not among them; every pair is listed from both sides.
+/// An adjacency list: the neighbours of vertex v are neighbour[begin[v]] ..
+/// neighbour[begin[v+1]-1], without v; every pair is listed from both sides.
 struct Graph {
   std::vector<Index> begin;
   std::vector<Index> neighbour;

@@ -12,8 +12,7 @@ namespace {
 constexpr Index kNowhere = -1;
 constexpr std::array kRaises{1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2};  // of the diagonal
 
-/// Which slots lie below which others: of column s the rows row[begin[s]] .. row[end[s] - 1],
-/// ascending.
+/// The adjacency of slots: column s has the rows row[begin[s]] .. row[end[s] - 1], ascending.
 struct SlotGraph {
   std::vector<Index> begin, end, row;
 };

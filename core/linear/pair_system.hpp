@@ -1,7 +1,7 @@
 #pragma once
-// A symmetric positive definite matrix with two unknowns a vertex and the pattern of a mesh:
-// assembled from one 6-by-6 element a face, its order analysed once, refilled and refactored for
-// every new set of elements. Rejected: triplets and a fresh matrix each time, as slow as the
+// A symmetric positive definite matrix with two unknowns a vertex and the pattern of a mesh. It is
+// assembled from one 6-by-6 element a face, analysed once, and refilled and refactored for every
+// new set of elements. Rejected: triplets and a new matrix each time, which is as slow as the
 // factor.
 
 #include <array>
@@ -19,13 +19,13 @@ namespace unwrapd::linear {
 /// Row and column 2i + c belong to unknown c of corner i. Only the lower triangle is read.
 using PairElement = std::array<std::array<double, 6>, 6>;
 
-/// The lower triangle, all zeros, of such a matrix: row 2s + c for unknown c of slot s, blocks
-/// whole. Vertices may share a slot; those whose slot is kFixed are not in it. Throws
+/// The lower triangle of such a matrix, all zeros: row 2s + c for unknown c of slot s, in whole
+/// blocks. Vertices may share a slot; those whose slot is kFixed are left out. Throws
 /// Error{cancelled}.
 SparseMatrix pair_pattern(std::span<const Triangle> faces, const FreeVertices& slots,
                           const std::stop_token& stop = {});
 
-/// Where (a, b) or (b, a), which the pattern has, lies among the values.
+/// The index among the values of entry (a, b) or (b, a), which must be in the pattern.
 Index entry_of(const SparseMatrix& lower, Index a, Index b);
 
 class PairSystem {
@@ -35,24 +35,25 @@ class PairSystem {
   /// count > 0. Throws Error{cancelled}, as factor() does.
   PairSystem(std::span<const Triangle> faces, const FreeVertices& slots, std::stop_token stop = {});
 
-  /// That factoring takes, pattern and targets included.
+  /// Bytes during factoring, pattern and targets included.
   [[nodiscard]] std::size_t bytes() const;
 
   void clear();
 
-  /// Adds the element of face t. Throws Error{cancelled} now and then.
+  /// Adds the element of face t. May throw Error{cancelled}.
   void add(std::size_t t, const PairElement& element);
 
-  /// Factors what was added since clear(). Where that is not positive definite in double precision
-  /// the diagonal is raised, by a hundredth of it at most: false when that does not help either.
+  /// Factors the sum of the elements added since clear(). If it is not positive definite in double
+  /// precision the diagonal is raised, by a hundredth of it at most. Returns false if that does not
+  /// help.
   [[nodiscard]] bool factor();
 
   /// Replaces b, one pair a slot, by the solution. Throws Error{cancelled}.
   void solve(std::vector<Vec2>& b) const;
 
  private:
-  /// Where an entry of an element goes: into lower_'s values, or nowhere (-1). An entry off the
-  /// element's diagonal that lands on that of the matrix counts twice, for both triangles.
+  /// The position of an element's entry in lower_'s values, or -1: not stored. An entry off the
+  /// element's diagonal that is added to the matrix's diagonal counts twice, for both triangles.
   struct Target {
     Index at;
     bool is_twice;

@@ -1,6 +1,7 @@
-// All panels are read twice, each time in the order in which they lie: once down the columns, once
-// up. Branches go down at the same time: what one adds to columns above it, which others add to as
-// well, is kept apart until all are done. Up they only read those columns.
+// All panels are read twice, in memory order: once in the forward sweep, once in the backward
+// sweep. Branches run in parallel. In the forward sweep, the contributions of a branch to columns
+// above it stay separate until all branches are done. In the backward sweep they only read those
+// columns.
 #include "core/linear/solve_panels.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace unwrapd::linear {
 namespace {
 
-/// Both right-hand sides over one panel's rows, reused from panel to panel.
+/// Both right-hand sides over one panel's rows; its memory is reused for each panel.
 class Workspace {
  public:
   explicit Workspace(std::size_t height) : rows_(2 * height) {}
@@ -143,8 +144,8 @@ class Sweep {
   const double* panels_;
   const PanelKernels kernels_ = panel_kernels();
   std::span<Vec2> x_;
-  std::span<const char> over_;  ///< which supernodes are visited; empty: all
-  std::vector<Vec2> sums_;      ///< of each branch: what it subtracts from the columns above
+  std::span<const char> over_;  ///< the supernodes to visit; empty: all
+  std::vector<Vec2> sums_;      ///< of each branch: its contributions to the columns above
 };
 
 }  // namespace

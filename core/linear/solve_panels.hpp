@@ -10,17 +10,16 @@
 
 namespace unwrapd::linear {
 
-/// x, in the order of elimination: b becomes the solution of L L^T x = b. The same bits for any
-/// executor.
+/// Solves L L^T x = b in place; x is in the order of elimination. The same bits for any executor.
 void solve_panels(const Analysis& analysis, const double* panels, std::span<Vec2> x,
                   Executor& executor);
 
-/// Which supernodes own one of these columns or lie above one that does: one entry a supernode.
+/// One entry a supernode: 1 if it owns one of these columns or lies above one that does.
 std::vector<char> supernodes_over(const Analysis& analysis, std::span<const Index> columns);
 
-/// Its halves: x becomes L^-1 x, and L^-T x. Supernodes that are not among `over` are passed by:
-/// down they must have nothing but zeros to give, up their own rows are left as they were. Empty:
-/// all are visited.
+/// The two halves: x becomes L^-1 x, and L^-T x. Supernodes outside of `over` are skipped: in the
+/// first half their entries must be zero, in the second their rows stay as they were. Empty: all
+/// are visited.
 void descend_panels(const Analysis& analysis, const double* panels, std::span<Vec2> x,
                     std::span<const char> over, Executor& executor);
 void ascend_panels(const Analysis& analysis, const double* panels, std::span<Vec2> x,

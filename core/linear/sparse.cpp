@@ -1,6 +1,6 @@
-// Assembly by counting: the columns' lengths are bounded from the faces, entries are dropped into
-// their column, and each column, a handful of entries, is sorted and merged in place. No triplets,
-// no hash maps.
+// Assembly by counting: the faces bound the lengths of columns, entries are appended to their
+// column, and each column, a handful of entries, is sorted and merged in place. It needs no
+// triplets and no hash maps.
 #include "core/linear/sparse.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace unwrapd::linear {
 namespace {
 
-constexpr std::size_t kFew = 16;  // entries that are sorted by insertion: no buffer to ask for
+constexpr std::size_t kFew = 16;  // entries that are sorted by insertion, without a buffer
 
 struct Entry {
   Index row;
@@ -53,7 +53,7 @@ Columns scatter(std::span<const Triangle> faces, Index vertex_count, std::span<c
   return c;
 }
 
-/// By row, entries of one row as they come. A column has about six; one may have all there are.
+/// Stable, by row. A column usually has about six entries; one may have all.
 void sort_by_row(std::span<Entry> column) {
   const auto is_lower = [](const Entry& a, const Entry& b) { return a.row < b.row; };
   if (column.size() > kFew) {

@@ -13,7 +13,7 @@
 
 namespace unwrapd::linear {
 
-/// An index as one of the standard library.
+/// The index as a std::size_t.
 inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;

@@ -74,8 +74,8 @@ std::vector<Index> supernode_of_columns(std::span<const Index> first) {
   return supernode;
 }
 
-/// Collects the rows of supernodes: row i belongs to every one on the way up from those of its
-/// entries to its own.
+/// Collects the rows of supernodes: row i belongs to every supernode on the path from those of its
+/// entries up to its own.
 class RowLists {
  public:
   RowLists(const std::vector<std::size_t>& begin, std::span<const Index> parent)
@@ -97,7 +97,7 @@ class RowLists {
 
  private:
   std::span<const Index> parent_;
-  std::vector<Index> reached_;  ///< of each supernode: the last row that came by
+  std::vector<Index> reached_;  ///< of each supernode: the last row that reached it
   std::vector<std::size_t> next_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Columns of a Cholesky factor with (nearly) the same rows, taken together: dense blocks instead of
-// lists of entries.
+// Groups of columns of a Cholesky factor with (nearly) the same rows: dense blocks instead of lists
+// of entries.
 
 #include <span>
 #include <vector>
@@ -28,11 +28,10 @@ struct Supernodes {
   }
 };
 
-/// Everything about the factor but its numbers, from the pattern of the matrix alone. Throws
-/// Error{cancelled}.
+/// The structure of the factor, from the pattern of the matrix alone. Throws Error{cancelled}.
 Supernodes analyse(const Graph& graph, const std::stop_token& stop = {});
 
-/// The same of vertices to be eliminated in this order.
+/// The same for a given order of elimination.
 Supernodes analyse(const Graph& graph, std::vector<Index> order, const std::stop_token& stop);
 
 }  // namespace unwrapd::linear
