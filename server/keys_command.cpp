@@ -31,7 +31,7 @@ void add_key(const Asked& asked) {
   std::fprintf(stderr, "This is the key. It is not stored and cannot be shown again.\n");
 }
 
-/// Of a data directory that there is: a misspelt one is not made.
+/// Opens the keys of an existing data directory: a misspelt one is not created.
 access::KeyStore opened(const Asked& asked) {
   const std::filesystem::path file = std::filesystem::path(asked.data) / access::kKeysFile;
   if (std::filesystem::exists(file)) return access::KeyStore(asked.data);

@@ -32,8 +32,8 @@ constexpr mode_t kNotOfOthers = 0027;                           // meshes, resul
 constexpr rlim_t kManyFiles = 1'000'000'000;                    // as good as no limit
 constexpr timespec kLook{.tv_sec = 0, .tv_nsec = 200'000'000};  // for a second signal
 
-/// As many files as the kernel lets us have: the default is less than --max-connections. Returns
-/// the configuration with as many connections as those leave room for.
+/// Raises the limit of open files as far as the kernel allows, as the default is less than --max-
+/// connections. Returns the configuration with as many connections as that leaves room for.
 config::Config with_open_files(config::Config config, const Log& log) {
   rlimit files{};
   ::getrlimit(RLIMIT_NOFILE, &files);
@@ -66,7 +66,7 @@ sigset_t block_end_signals() {
   return signals;
 }
 
-/// A second signal leaves the jobs at work no more time.
+/// At a second signal, running jobs get no more time.
 std::jthread stop_waiting_at_next(const sigset_t& signals, Service& service, const Log& log) {
   return std::jthread([signals, &service, &log](const std::stop_token& stop) {
     while (!stop.stop_requested()) {

@@ -117,7 +117,7 @@ struct Service::Parts {
                                  " --name NAME --scopes submit,read"}});
   }
 
-  /// Of an owner's quota; 0: none.
+  /// The quota of an owner in bytes; 0: none.
   std::int64_t most_bytes(const std::string& owner) {
     const std::optional<access::ApiKey> key = keys.with_id(owner);
     return key ? key->quota.max_bytes : 0;
@@ -206,7 +206,7 @@ struct Service::Parts {
     tell_files("analysis", meshes.counts());
   }
 
-  /// The probes answer until the last request is.
+  /// Stops the edge, then the admin port: probes answer until the last request is answered.
   void stop() {
     http.stop();
     serving.join();

@@ -88,7 +88,7 @@ void Access::admit(http::Request& request, std::string_view route) {
   request.caller = caller_of(request, cost);
 }
 
-/// What is opened by a link is asked for by its key.
+/// A request by a signed link acts for the key of that link.
 void Access::open_link(http::Request& request, double cost) {
   const std::string id = LinkSigner::key_of(request);
   const std::optional<ApiKey> key = id.empty() ? std::nullopt : keys_.with_id(id);

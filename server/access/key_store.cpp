@@ -71,7 +71,7 @@ std::string read_given(const std::filesystem::path& file) {
   }
 }
 
-/// What the file holds, when that can be a key (the characters of RFC 6750) and none to be guessed.
+/// The key in the file, if it has the characters of RFC 6750 and is too long to be guessed.
 std::string key_in(const std::filesystem::path& file) {
   const std::string given = read_given(file);
   const std::string text(without_space(given));

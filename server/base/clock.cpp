@@ -22,7 +22,7 @@ std::int64_t elapsed_ms() {
 
 namespace {
 
-/// Linux makes a random one at every boot; empty where it cannot be read.
+/// The random id that Linux makes at every boot; empty where it cannot be read.
 std::string read_boot() {
   std::ifstream file("/proc/sys/kernel/random/boot_id");
   std::string boot;

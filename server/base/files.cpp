@@ -22,7 +22,7 @@ constexpr std::size_t kSyncsAtOnce = 4;
 constexpr int kBusyRetrySeconds = 5;
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
-/// Throws with the text of errno; the path stays out of it, since users read it.
+/// Throws with the text of errno, but without the path, since users read it.
 [[noreturn]] void fail(std::string_view doing) {
   const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
   if (full) throw Error(ErrorCode::storage_full, std::string(kStorageFull));

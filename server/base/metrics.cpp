@@ -88,7 +88,7 @@ prometheus::Family<T>& add(prometheus::detail::Builder<T> builder, const FamilyR
   return builder.Name(row.name).Help(row.help).Register(registry);
 }
 
-/// A series of the value that was asked for.
+/// The series of a value that is asked for.
 prometheus::ClientMetric series(Type type, const prometheus::Labels& labels, double value) {
   prometheus::ClientMetric series;
   for (const auto& [name, text] : labels) series.label.push_back({name, text});

@@ -25,7 +25,7 @@ bool is_zero(std::string_view text) {
   return text.find_first_not_of('0') == std::string_view::npos;
 }
 
-/// Of version 00; what a later version appends to it is passed over, as the standard asks.
+/// Version 00; additions of a later version are skipped, as the standard asks.
 bool is_traceparent(std::string_view text) {
   if (text.size() < kLength || (text.size() > kLength && text[kLength] != '-')) return false;
   const std::string_view version = text.substr(0, 2);

@@ -13,7 +13,7 @@ unsigned byte_at(std::string_view text, std::size_t at) {
 
 bool continues(unsigned byte) { return (byte & 0xC0U) == 0x80U; }
 
-/// Bytes of the character that begins so; 0 where none does.
+/// The length of a character with this first byte; 0 for an invalid one.
 std::size_t character_length(unsigned first) {
   if (first < 0x80U) return 1;
   if (first >= 0xC2U && first <= 0xDFU) return 2;  // C0 and C1 begin no shortest form

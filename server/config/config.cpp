@@ -117,7 +117,7 @@ const ConfigRow& Reading::find(std::string_view key, const std::string& path) co
   return *found;
 }
 
-/// A value of the file as a flag would give it.
+/// Converts a value of the file to the text of a flag.
 std::string text_of(const toml::node& node, const std::string& where) {
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* number = node.as_integer()) return std::to_string(number->get());
@@ -157,7 +157,7 @@ void Reading::read_environment() {
   });
 }
 
-/// A variable of ours that there is not is a mistake, as an unknown key of the file is.
+/// An unknown variable with our prefix is an error, like an unknown key of the file.
 void Reading::check_environment() const {
   std::vector<std::string> known = {"UNWRAPD_CONFIG"};
   each_row([&](const ConfigGroup&, const ConfigRow& row) {

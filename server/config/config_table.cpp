@@ -1,4 +1,4 @@
-// The one place where options of the server are declared: name, range and sentence of each.
+// The table of all options of the server: the name, range and sentence of each.
 #include <algorithm>
 #include <limits>
 

@@ -7,12 +7,12 @@ namespace unwrapd::server::config {
 namespace {
 
 constexpr std::string_view kPrefix = "UNWRAPD_";
-/// Of the command `unwrap`, of ./dev, of the tests and of the container's script.
+/// Variables of the command `unwrap`, of ./dev, of the tests and of the script of the container.
 constexpr std::array<std::string_view, 8> kOthers = {
     "UNWRAPD_SERVER", "UNWRAPD_BIN",   "UNWRAPD_COMMIT", "UNWRAPD_DEBIAN",
     "UNWRAPD_ENGINE", "UNWRAPD_IMAGE", "UNWRAPD_JOBS",   "UNWRAPD_TEST_DATA"};
 
-/// Kubernetes and Docker tell of a service "unwrapd" by UNWRAPD_SERVICE_HOST, UNWRAPD_PORT
+/// Kubernetes and Docker describe a service "unwrapd" by UNWRAPD_SERVICE_HOST, UNWRAPD_PORT
 /// ("tcp://10.0.0.1:8080") and UNWRAPD_PORT_8080_TCP.
 bool tells_of_a_service(std::string_view name, std::string_view value) {
   name.remove_prefix(kPrefix.size());

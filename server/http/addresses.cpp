@@ -16,7 +16,7 @@ constexpr int kV4Bits = 96;  // of an IPv6 address before an IPv4 one in it
 constexpr int kAllBits = 128;
 constexpr std::size_t kNetworkBytes = 8;
 
-/// As IPv6; an IPv4 address as one mapped into it.
+/// The bytes of an IPv6 address, or of an IPv4 address mapped into IPv6.
 std::optional<Bytes> parse(std::string_view text) {
   const std::string address(text);
   Bytes bytes{};
@@ -38,7 +38,7 @@ bool same_start(const Bytes& left, const Bytes& right, int bits) {
   return rest == 0 || ((left[whole] ^ right[whole]) >> (8 - rest)) == 0;
 }
 
-/// The bits of "/24", all when there is none; nothing when it is no number.
+/// The bits of "/24"; `most` for an empty text; std::nullopt for anything else.
 std::optional<int> prefix_bits(std::string_view text, int most) {
   if (text.empty()) return most;
   int bits = 0;
@@ -55,8 +55,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(space) - first + 1);
 }
 
-/// The address of "10.0.0.1", "10.0.0.1:80", "::1", "[::1]" and "[::1]:80": some proxies tell
-/// ports.
+/// The address of "10.0.0.1", "10.0.0.1:80", "::1", "[::1]" and "[::1]:80": some proxies add ports.
 std::string_view without_port(std::string_view text) {
   const std::size_t bracket = text.find(']');
   if (text.starts_with('[') && bracket != std::string_view::npos)

@@ -24,8 +24,7 @@ constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
 constexpr std::chrono::seconds kLingerTime{10};
 constexpr milliseconds kLingerSilence{2'000};
 
-/// The ready events of descriptor, 0 when none came in time or stop (>= 0)
-/// became readable.
+/// The ready events of a descriptor; 0 when none came in time, or stop (>= 0) became readable.
 short wait_for(int descriptor, short events, int stop, milliseconds patience) {
   std::array<pollfd, 2> polled = {pollfd{descriptor, events, 0}, pollfd{stop, POLLIN, 0}};
   const Clock::time_point until = Clock::now() + patience;
@@ -38,14 +37,14 @@ short wait_for(int descriptor, short events, int stop, milliseconds patience) {
   }
 }
 
-/// Bytes that the kernel has taken and the client has not.
+/// Bytes that wait in the kernel for the client.
 int unsent_bytes(int socket) {
   int bytes = 0;
   return ::ioctl(socket, SIOCOUTQ, &bytes) == 0 ? bytes : 0;
 }
 
-/// Nothing, or what follows a semicolon, without the control characters that
-/// others may take for the end of the line.
+/// Checks a chunk extension: it is empty, or begins with a semicolon and has no control characters,
+/// which others may take for the end of the line.
 bool is_chunk_extension(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return text.empty();
@@ -166,8 +165,7 @@ void Connection::count_body(std::int64_t bytes) {
   if (!framing_.chunked && left_ == 0) body_done_ = true;
 }
 
-/// Reads up to the first byte of the next chunk. False at the end of the body,
-/// or on failure.
+/// Reads up to the first byte of the next chunk. False at the end of the body, or on failure.
 bool Connection::begin_chunk() {
   if (chunk_open_ && read_line() != "") {
     fail(ErrorCode::malformed_request, "A chunk is longer than its stated size; check the client.");
@@ -188,7 +186,7 @@ bool Connection::begin_chunk() {
   return size > 0 || end_trailers();
 }
 
-/// Passes over the trailers; always false, for the body ends here.
+/// Skips the trailers. Always false, as the body ends here.
 bool Connection::end_trailers() {
   for (int i = 0; i <= kMaxTrailers; ++i) {
     const std::optional<std::string> line = read_line();
@@ -247,9 +245,8 @@ std::int64_t Connection::fail(ErrorCode code, const std::string& message) {
   return -1;
 }
 
-/// The ready ones of these events; 0 when the client takes nothing in time, or all in all too
-/// slowly: a byte now and then must not hold a thread. An event stream is not slow while there are
-/// no events.
+/// Those of the events that are ready. 0 when the client takes nothing in time, or is too slow on
+/// average: single bytes must not hold a thread. An event stream without events is not slow.
 short Connection::wait_to_send(short events) {
   const double expected = kept_waiting_.count() * static_cast<double>(limits_.min_bytes_per_second);
   if (kept_waiting_ > limits_.rate_grace && static_cast<double>(sent_bytes_) < expected) return 0;

@@ -33,7 +33,7 @@ void skip_blanks(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
 }
 
-/// The text up to the first of these characters, which stays; text loses it.
+/// Removes and returns the text before the first of these characters.
 std::string_view take_until(std::string_view& text, std::string_view ends) {
   const std::string_view taken = text.substr(0, text.find_first_of(ends));
   text.remove_prefix(taken.size());
@@ -69,7 +69,7 @@ void put_once(std::optional<std::string>& place, const std::string& value) {
   place = value;
 }
 
-/// One `key=value`, with which text begins and which it loses.
+/// Removes one `key=value` from the beginning of the text.
 void take_parameter(std::string_view& text, Names& names) {
   const std::string_view key = take_until(text, "= \t;\"");
   if (key.empty() || !text.starts_with('=')) wrong_disposition();
@@ -79,7 +79,8 @@ void take_parameter(std::string_view& text, Names& names) {
   if (same_word(key, "filename")) put_once(names.filename, value);
 }
 
-/// The one Content-Disposition among the fields of a part's head, each of which follows a line end.
+/// The only Content-Disposition among the fields of a part's head, each of which follows a line
+/// end.
 std::string_view disposition_in(std::string_view head) {
   std::optional<std::string_view> found;
   while (!head.empty()) {
@@ -154,7 +155,7 @@ bool FormParser::step() {
   return false;
 }
 
-/// What may be the beginning of a delimiter stays.
+/// Keeps bytes that may begin a delimiter.
 bool FormParser::pass_to_delimiter() {
   const std::size_t found = held_.find(delimiter_);
   if (found != std::string::npos) {
@@ -174,7 +175,7 @@ void FormParser::hand_out(std::size_t count) {
   held_.erase(0, count);
 }
 
-/// After the last delimiter come two dashes, after any other blanks and a line end.
+/// The last delimiter is followed by two dashes, the others by blanks and a line end.
 bool FormParser::choose_after_delimiter() {
   if (held_.size() < 2) return false;
   if (held_.starts_with(kDashes)) {

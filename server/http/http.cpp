@@ -17,7 +17,7 @@ char lower(char letter) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
 }
 
-/// A name that a request brings may be as long as the request.
+/// A name from a request may be as long as the request.
 std::string bounded(const std::string& text) {
   if (text.size() <= kMaxProblemText) return text;
   return std::string(within_bytes(text, kMaxProblemText)) + "...";

@@ -43,7 +43,7 @@ class ConnectionStream final : public httplib::Stream {
   Connection& connection_;
 };
 
-/// The body as the connection has it: httplib does not see it.
+/// The body from the connection: httplib does not read it.
 class ConnectionBody final : public BodyReader {
  public:
   ConnectionBody(Connection& connection, std::string boundary)
@@ -92,7 +92,7 @@ Request to_request(const httplib::Request& from, const Framing& framing) {
   return request;
 }
 
-/// The values of all X-Forwarded-For, as if they were one field.
+/// The values of all X-Forwarded-For, joined as if they were one field.
 std::string forwarded_for(const Request& request) {
   std::string all;
   const auto [first, last] = request.headers.equal_range("X-Forwarded-For");
@@ -112,7 +112,7 @@ void set_file(const FileBody& file, const std::string& type, httplib::Response& 
       });
 }
 
-/// Leaves off where httplib would begin with the body.
+/// Ends before httplib would read the body.
 void set_stream(const StreamBody& stream, const std::string& type, std::optional<StreamBody>& begun,
                 httplib::Response& out) {
   out.set_chunked_content_provider(type, [stream, &begun](size_t, httplib::DataSink&) {
@@ -121,7 +121,7 @@ void set_stream(const StreamBody& stream, const std::string& type, std::optional
   });
 }
 
-/// begun: gets the body of a stream once its head is out.
+/// begun: receives the body of a stream once the head is sent.
 void put(const Response& response, std::optional<StreamBody>& begun, httplib::Response& out) {
   out.status = response.status;
   for (const auto& [name, value] : response.headers) out.set_header(name.c_str(), value);

@@ -44,7 +44,7 @@ bool same(std::string_view left, std::string_view right) {
   return !IgnoreCase()(left, right) && !IgnoreCase()(right, left);
 }
 
-/// Whether text is of letters, digits and these symbols.
+/// Whether the text consists of letters, digits and these symbols.
 bool is_made_of(std::string_view text, std::string_view symbols) {
   return std::ranges::all_of(text, [&](char c) {
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -69,7 +69,7 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-/// Whether a list, whose items are parted by commas, has this word.
+/// Whether a comma-separated list has this word.
 bool lists(std::string_view list, std::string_view word) {
   while (true) {
     const std::size_t comma = list.find(',');
@@ -94,8 +94,8 @@ bool needs_length(std::string_view method) {
   return std::ranges::find(with_body, method) != with_body.end();
 }
 
-/// Bytes of "http://host:80" before the path of an absolute target, 0 of any other. The host is
-/// under the rules of the Host header, which it stands for.
+/// Length of "http://host:80" before the path of an absolute target; 0 for other targets. The host
+/// must obey the rules of the Host header, which it replaces.
 std::size_t authority_of(std::string_view target) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (!same(target.substr(0, scheme.size()), scheme)) continue;

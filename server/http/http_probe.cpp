@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::chrono::seconds kPatience{2};
 
-/// Where an address that listens everywhere is reached from here.
+/// The address under which a server that listens on all interfaces is reached from here.
 std::string reachable(const std::string& host) {
   if (host == "0.0.0.0") return "127.0.0.1";
   return host == "::" ? "::1" : host;

@@ -112,7 +112,7 @@ std::optional<Client> HttpServer::let_in() {
   return client;
 }
 
-/// Says why, as far as that goes without waiting, and without TLS.
+/// Sends the reason, if that needs neither waiting nor TLS.
 void HttpServer::turn_away(Client& client, const Error& error) const {
   const std::string text = plain_refusal(error);
   const bool said = !tls_ || !client.received.empty();
@@ -121,8 +121,8 @@ void HttpServer::turn_away(Client& client, const Error& error) const {
   observe_refusal(client.address, error, std::max<std::int64_t>(sent, 0));
 }
 
-/// For the thread that became idle last, whose stack and memory are warm; a new one if there is
-/// none. Rejected: to wake any, which goes round all of them and made each keep its own memory.
+/// Wakes the thread that became idle last, whose stack and memory are warm, or starts a new one.
+/// Rejected: waking any thread, which goes round all of them and made each keep its own memory.
 void HttpServer::make_ready(Client client) {
   const std::lock_guard lock(mutex_);
   ready_.push_back(std::move(client));
@@ -206,7 +206,7 @@ void HttpServer::serve_client(Client client, Exchange& exchange) {
   forget(connection.socket());
 }
 
-/// Of one that may send another request, or whose stream has ended.
+/// Handles a client that may send another request, or whose stream has ended.
 void HttpServer::let_go(Client client, bool again) {
   forget(client.transport->socket());
   if (again && !stopping_) return idle_connections_.park(std::move(client));

@@ -102,7 +102,7 @@ void IdleConnections::drive_out_next_late() {
   remove(std::ranges::min_element(lot_, {}, until));
 }
 
-/// Reads what is there. False when the client has left.
+/// Reads the bytes that are there. False when the client has left.
 bool IdleConnections::receive(IdleConnection& parked) {
   std::string& received = parked.client.received;
   std::array<char, kReadBytes> piece;

@@ -30,7 +30,7 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
-/// An address that cannot be had, and the option that asks for it.
+/// The wanted address, and the option that sets it.
 struct Wanted {
   std::string host;
   int port = 0;
@@ -59,7 +59,7 @@ void set(int socket, int level, int option) {
   ::setsockopt(socket, level, option, &on, sizeof on);
 }
 
-/// An IPv4 address that came in over IPv6 is told as the former.
+/// Returns an IPv4 address that is mapped into IPv6 as IPv4.
 std::string numeric_host(const sockaddr_storage& address, socklen_t size) {
   std::array<char, NI_MAXHOST> host{};
   const int failed = ::getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host.data(),
@@ -70,7 +70,7 @@ std::string numeric_host(const sockaddr_storage& address, socklen_t size) {
   return std::string(text.starts_with(mapped) ? text.substr(mapped.size()) : text);
 }
 
-/// A socket that listens on this address, -1 when that fails.
+/// A socket that listens on this address; -1 on failure.
 int listen_on(const addrinfo& address) {
   const int socket = ::socket(address.ai_family, address.ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK,
                               address.ai_protocol);
@@ -84,7 +84,7 @@ int listen_on(const addrinfo& address) {
   return -1;
 }
 
-/// For Listener::shut_out(); -1 when there is none.
+/// A descriptor for Listener::shut_out(); -1 when there is none.
 int open_spare() { return ::open("/dev/null", O_RDONLY | O_CLOEXEC); }
 
 }  // namespace

@@ -87,14 +87,14 @@ std::vector<MediaRange> media_ranges(std::string_view accept) {
   return ranges;
 }
 
-/// How much a type is liked, and how exactly it was named.
+/// The weight of a type, and how exactly it was named.
 struct Liking {
   double quality = 0;
   int closeness = 0;
   auto operator<=>(const Liking&) const = default;
 };
 
-/// What the closest range says of a type.
+/// The weight that the closest range gives a type.
 Liking liking(const std::vector<MediaRange>& ranges, std::string_view type) {
   Liking found;
   for (const MediaRange& range : ranges) {

@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kIdSegment = "{id}";
 constexpr std::string_view kDigestSegment = "{sha256}";
 
-/// The first segment of a path, which loses it.
+/// Removes and returns the first segment of a path.
 std::string_view take_segment(std::string_view& path) {
   const std::size_t end = path.find('/', 1);
   const std::string_view segment = path.substr(0, end);
@@ -21,7 +21,7 @@ std::string_view take_segment(std::string_view& path) {
   return segment.substr(1);
 }
 
-/// What the segments of a path that have no fixed text say.
+/// The values of the variable segments of a path.
 struct PathNames {
   std::string id;
   std::string sha256;
@@ -45,12 +45,12 @@ std::optional<PathNames> match(std::string_view route, std::string_view path) {
   return names;
 }
 
-/// Whether an operator should know of it; that a key has used up its quota is its owner's matter.
+/// Whether the operator should see an error. An exhausted quota concerns only the owner of the key.
 bool is_ours(ErrorCode code) {
   return api::error_row(code).status >= 500 && code != ErrorCode::quota_exceeded;
 }
 
-/// The answer to OPTIONS, and to what is not allowed.
+/// The answer to OPTIONS, and to methods that are not allowed.
 Response tell_allowed(const Request& request, const std::string& allowed) {
   Response response;
   response.status = 204;

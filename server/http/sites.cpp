@@ -27,7 +27,7 @@ std::string_view host_name(std::string_view host) {
   return host.substr(0, colon);
 }
 
-/// In the notations that every browser sends: no name can be one.
+/// Whether the host is an address in a notation that all browsers send: no name can be one.
 bool is_numeric_host(const std::string& host) {
   std::array<std::uint8_t, 16> bytes{};
   if (!host.starts_with('[')) return inet_pton(AF_INET, host.c_str(), bytes.data()) == 1;

@@ -16,7 +16,7 @@ constexpr int kLookMs = 250;       // how late a ping may be, or a slow client b
 constexpr int kPiecesInARow = 16;  // for one client, before the others get theirs
 constexpr std::string_view kLastChunk = "0\r\n\r\n";
 
-/// As a chunk of chunked transfer coding (RFC 9112, section 7.1) where the stream has it.
+/// Frames bytes as a chunk (RFC 9112, section 7.1) if the stream is chunked.
 std::string framed(std::string_view bytes, const OpenStream& open) {
   if (!open.chunked) return std::string(bytes);
   std::array<char, 16> size{};
@@ -118,7 +118,7 @@ void StreamWriter::go_on(Streams::iterator at) {
   more_ = true;
 }
 
-/// What is left, or else the body's next piece.
+/// The unsent bytes, or else the next piece of the body.
 StreamWriter::Progress StreamWriter::send_next(Stream& stream) const {
   try {
     if (stream.unsent.empty()) fetch(stream);
@@ -136,7 +136,7 @@ void StreamWriter::fetch(Stream& stream) {
   stream.ended = piece.end;
 }
 
-/// As far as the client takes it now. False when it has gone.
+/// Sends as much as the client takes now. False when it has gone.
 bool StreamWriter::send_unsent(Stream& stream) const {
   std::string_view left = stream.unsent;
   while (!left.empty()) {
@@ -169,7 +169,8 @@ void StreamWriter::look_after(Clock::time_point now) {
   }
 }
 
-/// Takes nothing in time, or all in all too slowly: a byte now and then must not hold a place.
+/// Whether a client takes nothing in time, or is too slow on average: single bytes must not hold a
+/// place.
 bool StreamWriter::is_too_slow(const Stream& stream, Clock::time_point now) const {
   const std::chrono::duration<double> this_time = now - *stream.waiting_since;
   const std::chrono::duration<double> in_all = stream.kept_waiting + this_time;

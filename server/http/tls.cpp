@@ -132,8 +132,8 @@ BIO_METHOD* TlsTransport::bio_method() {
   return method;
 }
 
-/// Says after a while that there is nothing now, so that a client that never stops is one among
-/// many, and fails for one that sends too much that is no data.
+/// Returns kAgain after a while, so that a client that never stops is only one among many. Fails
+/// for a client that sends too many records without data.
 int TlsTransport::bio_read(BIO* bio, char* data, int size) {
   auto& self = *static_cast<TlsTransport*>(BIO_get_data(bio));
   BIO_clear_retry_flags(bio);

@@ -98,7 +98,8 @@ void JobQueue::enqueue(store::JobRecord& job, const Submission& submission, cons
   if (!answer || !answer_from_store(job, *answer)) wait_again(job);
 }
 
-/// If its files are whole: they become this job's, too, and count as such. Reads all of them.
+/// Shares the files of the answer with this job if all of them match their digests, and counts
+/// them. Reads all of them.
 JobQueue::Answer JobQueue::find_answer(store::JobRecord& job) {
   Answer same = store_.find_same(job.owner, job.content_key);
   if (same && (!same->unreadable.empty() || !blobs_.adopt(job.id, same->id))) same.reset();
@@ -162,7 +163,7 @@ std::shared_ptr<RunningJob> JobQueue::begin(store::JobRecord record) {
   return job;
 }
 
-/// Whether the job, whose results found no room, waits until there is some.
+/// Whether a job whose results found no room waits until there is some.
 bool JobQueue::wait_for_room(const RunningJob& job, const store::JobOutcome& outcome) {
   const bool full = outcome.state == JobState::failed &&
                     api::error_from_problem(outcome.problem).code() == ErrorCode::storage_full;

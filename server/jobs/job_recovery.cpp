@@ -47,7 +47,7 @@ void JobQueue::take_up_left() {
   }
 }
 
-/// A job that does not stop is held against it as a death of the server would be.
+/// Whether a job is to blame for deaths of the server. That it did not stop counts as one.
 bool JobQueue::is_poison(const store::JobRecord& job, Found found) const {
   if (found == Found::lapsed) return false;
   return job.crashes + 1 >= (tried_apart_ ? kMaxCrashesApart : kMaxCrashes);
@@ -71,7 +71,7 @@ void JobQueue::take_up(const store::JobRecord& job, Found found) {
   }
 }
 
-/// A running job that goes back to the queue, unless its owner has cancelled it meanwhile.
+/// Puts a running job back into the queue, unless its owner has cancelled it meanwhile.
 void JobQueue::wait_or_end(const store::JobRecord& job) {
   const std::optional<store::JobRecord> stored = store_.find(job.id);
   if (stored && stored->cancel_requested) return give_up(job, cancelled_by_owner());
@@ -101,7 +101,7 @@ void JobQueue::set_aside(const store::JobRecord& unreadable) {
                                                        {"files", has_files ? "lost" : "none"}});
 }
 
-/// A few at a time: the queue is locked meanwhile, and a bound that was lowered is met by and by.
+/// Removes a few at a time, as the queue is locked meanwhile. A lowered bound is met step by step.
 void JobQueue::give_up_excess() {
   if (config_.max_stored == 0) return;
   const auto live = share_.waiting() + static_cast<std::int64_t>(running_.size() + left_.size());

@@ -28,15 +28,15 @@ class Moving {
   explicit Moving(const QueueForecast& line)
       : line_(line), inside_(line.waiting), next_(line.first) {}
 
-  /// Comes in `seconds` from now, and not before those who came in already. False when there is
-  /// no place then, were the line a little slow.
+  /// Adds a client `seconds` from now, and not before the earlier ones. False when there is no slot
+  /// then, if the queue is a little slow.
   bool come_in(double seconds) {
     move_to(std::max(0.0, seconds - margin()));
     ++came_;
     return ++inside_ <= line_.places;
   }
 
-  /// When, in seconds from now, one more finds a place, were the line a little slow.
+  /// Seconds until one more client finds a slot, if the queue is a little slow.
   [[nodiscard]] double next_place() const {
     const auto too_many = static_cast<double>(inside_ - line_.places);
     return too_many < 0 ? 0 : next_ + too_many * line_.interval + margin();
@@ -48,7 +48,8 @@ class Moving {
     if (inside_ == 0) next_ = std::max(next_, seconds);
   }
 
-  /// By how long the place of one more may become free late: deviations add up in squares.
+  /// Seconds by which the slot of one more client may become free late: the squares of deviations
+  /// add up.
   [[nodiscard]] double margin() const {
     const auto to_leave = static_cast<double>(line_.waiting + came_ + 1 - line_.places);
     return kMargin * line_.spread * std::sqrt(std::max(0.0, to_leave));

@@ -29,7 +29,8 @@ constexpr std::chrono::seconds kPauseAfterFailure{1};
 constexpr int kMaxProcessEnds = 3;
 constexpr std::chrono::seconds kTimeToKill{10};  // a process, and to reap it
 
-/// A stop is a failure when time ran out; else the owner, or the server's end, has stopped the job.
+/// A job stopped by its time limit has failed; one stopped by its owner, or by the end of the
+/// server, was cancelled.
 store::JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_seconds) {
   if (error.code() != ErrorCode::cancelled)
     return store::ended(JobState::failed, error, job.record.id);
@@ -59,7 +60,7 @@ class Watchdog {
     std::function<void()> overdue;  ///< when the job still runs at the end of its grace
   };
 
-  /// stop: of the job, whoever asks for it.
+  /// stop: the token of the job; others may ask for the stop, too.
   Watchdog(const std::stop_token& stop, Limits limits)
       : stop_(stop),
         watch_(
@@ -93,7 +94,7 @@ class Watchdog {
 
 }  // namespace
 
-/// What a job is run with.
+/// The resources of a run.
 struct WorkerPool::Means {
   Executor& executor;
   store::QuotaReservation& reservation;
@@ -123,7 +124,7 @@ bool WorkerPool::are_left() const {
   return lost_ < config_.workers + replaced_;
 }
 
-/// With the mutex held.
+/// Requires the mutex.
 void WorkerPool::begin_thread() {
   threads_.emplace_back([this] { work(); });
 }

@@ -25,7 +25,8 @@ std::string file_name(std::size_t map, const work::Picture& picture) {
 
 constexpr int kLargeSize = 1024;  // pixels; larger ones take up to seconds
 
-/// The pixels and, while they are written, the file; a legend makes the picture an eighth higher.
+/// Memory for the pixels and for the file while it is written; a legend makes the picture an eighth
+/// higher.
 std::size_t bytes_of(const work::Picture& picture) {
   if (picture.kind == work::PictureKind::layout_svg) return 0;
   const auto side = static_cast<std::size_t>(picture.size);

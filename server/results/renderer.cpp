@@ -15,8 +15,8 @@
 namespace unwrapd::server::results {
 namespace {
 
-/// Memory that a file takes while it is made, to what the job keeps on disk of its mesh and map:
-/// measured 5 to 8 for an OBJ of 80,000 faces.
+/// Memory for making a file, per byte of the stored mesh and map: measured 5 to 8 for an OBJ of
+/// 80,000 faces.
 constexpr std::uintmax_t kBytesAByte = 8;
 
 }  // namespace
@@ -59,7 +59,7 @@ std::string Renderer::analyse(const store::JobRecord& mesh, const http::HasLeft&
               has_left);
 }
 
-/// The thread that asks waits, and looks whether there is anybody to wait for.
+/// The calling thread waits, and checks whether the client is still connected.
 std::string Renderer::make(const work::Rendering& rendering, work::RenderingInput input,
                            const http::HasLeft& has_left) const {
   std::stop_source stop;

@@ -9,7 +9,8 @@
 namespace unwrapd::server::routes {
 namespace {
 
-/// Nothing comes from elsewhere, whatever should get into a page; the contract's runs nothing.
+/// Pages load nothing from other sites, whatever is injected into them; the page of the contract
+/// runs no scripts.
 constexpr std::string_view kDocsPolicy =
     "default-src 'none'; style-src 'self'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'";

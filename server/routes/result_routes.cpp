@@ -6,7 +6,7 @@
 namespace unwrapd::server::routes {
 namespace {
 
-/// Range counts when there is no If-Range, or when that is the tag of what would be sent.
+/// Range is used without If-Range, or if that is the tag of the current file.
 bool range_counts(const http::Request& request, const std::string& etag) {
   const std::string condition = request.header("If-Range");
   return request.method == "GET" && (condition.empty() || condition == etag);

@@ -66,7 +66,7 @@ void BlobStore::keep_upload(std::string_view upload, std::string_view job, const
   count(std::string(job));
 }
 
-/// Counts what is in a folder now, and what others have of it, and returns its bytes.
+/// Counts the files of a folder and those that it shares, and returns its bytes.
 std::int64_t BlobStore::count(const std::string& name) {
   const FolderBytes bytes = bytes_in(blobs_ / name);
   std::set<SharedFiles::Inode> several;

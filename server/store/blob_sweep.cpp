@@ -1,4 +1,4 @@
-// Of blob_store.hpp: what becomes of the folders that the last server has left.
+// The part of blob_store.hpp that sweeps the folders left by the last server.
 #include <algorithm>
 #include <functional>
 

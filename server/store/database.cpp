@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kBusyTimeoutMs = 10'000;
 
-/// Whether there is no room: SQLite knows ENOSPC alone.
+/// Whether the disk is full: SQLite knows only ENOSPC.
 bool is_full(sqlite3* handle, int code) {
   if (code != SQLITE_IOERR) return code == SQLITE_FULL;
   const int reason = sqlite3_system_errno(handle);
@@ -22,7 +22,7 @@ bool is_full(sqlite3* handle, int code) {
 
 bool is_damage(int code) { return code == SQLITE_NOTADB || code == SQLITE_CORRUPT; }
 
-/// What an operator can do.
+/// The advice for the operator.
 std::string_view advice(int code) {
   if (is_damage(code)) return "restore a complete copy of it";
   if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY || code == SQLITE_PERM)

@@ -51,7 +51,7 @@ void DiskBudget::check_upload(std::int64_t bytes) const {
   if (bytes > upload_limit()) full();
 }
 
-/// Of the room, all is taken that neither this upload has nor anything that can be given up.
+/// Throws if there is no room even after all removable files are removed.
 void DiskBudget::check_evictions(std::string_view job, std::int64_t whole) const {
   const std::int64_t evictable = evictions_.bytes ? evictions_.bytes() : 0;
   const std::lock_guard lock(mutex_);

@@ -30,12 +30,12 @@ std::vector<StoredBuffer> buffers_of(const api::Json& json) {
   return buffers;
 }
 
-/// Columns of a row, from the first on.
+/// Reads the columns of a row in order.
 class Columns {
  public:
   explicit Columns(const Statement& row) : row_(row) {}
   std::int64_t number() { return row_.number(column_++); }
-  /// What an int cannot hold is told by is_whole() afterwards.
+  /// Call is_whole() afterwards: it is false if a number did not fit.
   int integer() {
     const std::int64_t value = number();
     is_whole_ = is_whole_ && std::in_range<int>(value);
@@ -51,7 +51,7 @@ class Columns {
   bool is_whole_ = true;
 };
 
-/// The first columns, none of which is JSON. Returns the state as it is written.
+/// Reads the first columns, none of which is JSON. Returns the state as it is written.
 std::string read_plain(Columns& next, JobRecord& job) {
   job.seq = next.number();
   job.id = next.text();

@@ -26,8 +26,8 @@ std::string insert_statement() {
          "seq";
 }
 
-/// One for each case, so that an index serves it in its order: what is kept of others, or in other
-/// states, is not looked at.
+/// One statement for each filter, so that an index serves it in its order without looking at rows
+/// of other owners or states.
 std::string list_statement(const JobFilter& filter) {
   std::string where = "WHERE ";
   if (filter.owner) where += "owner = ?1 AND ";

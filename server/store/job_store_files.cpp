@@ -1,4 +1,4 @@
-// Of job_store.hpp: what the rows say of the jobs' files, and of the bytes that they take.
+// The part of job_store.hpp about the files of jobs and the bytes that they take.
 #include <string>
 
 #include "server/store/job_store.hpp"

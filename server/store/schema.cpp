@@ -7,7 +7,7 @@
 namespace unwrapd::server::store {
 namespace {
 
-/// Step k makes version k + 1 out of version k. Steps that were released are never edited.
+/// Step k turns version k into version k + 1. Released steps are never edited.
 constexpr std::array<const char*, 10> kSteps = {
     R"sql(
 CREATE TABLE jobs (

@@ -13,7 +13,7 @@ constexpr int kSweepsInTime = 8;  // while a result is kept, at least
 constexpr std::size_t kNamesTold = 20;
 constexpr auto kAnyTime = std::numeric_limits<std::int64_t>::max();
 
-/// The row first: what has none is swept, should the rest of it not come about.
+/// Removes the row first: files without a row are swept if the rest fails.
 void remove(const MeshRecord& mesh, MeshStore& meshes, BlobStore& blobs) {
   blobs.room().free_by([&] { meshes.remove(mesh.id); });
   blobs.remove(mesh.id);
@@ -85,7 +85,7 @@ std::chrono::milliseconds Sweeper::pause() const {
                                              kLongestPause);
 }
 
-/// On a full disk a later sweep, or the next start, finds the same.
+/// On a full disk, a later sweep or the next start tries again.
 void Sweeper::note_time() {
   try {
     if (const std::int64_t by_ms = store_.note_time(); by_ms != 0)

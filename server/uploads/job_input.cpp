@@ -16,7 +16,7 @@ constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
 constexpr std::size_t kMaxBuffers = 1000;
 constexpr std::string_view kSentOptionsFile = "options.sent";  // until they are read
 
-/// A file that grows in pieces worth a system call each.
+/// A file that is written in large pieces.
 class GrowingFile {
  public:
   GrowingFile(const std::filesystem::path& path, const store::UploadMeter& room)
@@ -48,7 +48,7 @@ class GrowingFile {
   throw Error(ErrorCode::malformed_request, what);
 }
 
-/// The parts of a form, each to its place.
+/// Writes the parts of a form, each to its file.
 class PartWriter {
  public:
   explicit PartWriter(const store::UploadFolder& folder) : folder_(folder) {}

@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kAnalysisFile = "analysis.json";
 constexpr std::string_view kMeshMember = "/mesh";  // of the request that makes a job of one
 
-/// Throws Error{unsupported_media_type} for what is no asset.
+/// Throws Error{unsupported_media_type} unless the type is that of an asset.
 std::string media_type_of(const http::Request& request) {
   const std::string type = request.header("Content-Type");
   if (http::body_kind(type) != http::BodyKind::asset) {
@@ -47,7 +47,7 @@ Error no_mesh(const std::string& where) {
           "No mesh with this SHA-256 is stored; send it by PUT /v1/meshes/{sha256}.", where};
 }
 
-/// What a renderer needs to know of a mesh, as if it were a job with the usual options.
+/// The mesh as a job with default options, for the renderer.
 store::JobRecord as_job(const store::MeshRecord& mesh) {
   store::JobRecord job;
   job.id = mesh.id;
@@ -86,7 +86,7 @@ SentMesh Meshes::receive(const http::Request& request, const std::string& sha256
   }
 }
 
-/// What is there whole stays, for jobs may share it; a damaged one is replaced.
+/// A stored mesh that is whole stays, as jobs may share its files; a damaged one is replaced.
 SentMesh Meshes::settle(const http::Request& request, store::MeshRecord mesh,
                         const std::string& upload) {
   const std::lock_guard lock(settling_);

@@ -12,7 +12,7 @@
 namespace unwrapd::server::uploads {
 namespace {
 
-/// The options that are asked for, in the body or in the query.
+/// The options in the body or in the query.
 api::Json options_of(const std::optional<std::string>& text, const http::Request& request) {
   if (!text) return api::options_object(request.query);
   if (request.query.empty()) return api::parse_json(*text, {.max_bytes = api::kMaxOptionsBytes});
@@ -54,12 +54,12 @@ bool wants_new_answer(const http::Request& request) {
   return request.header("Cache-Control").find("no-cache") != std::string::npos;
 }
 
-/// By which the sender can send it again; empty when it has none.
+/// The name by which a request can be sent again; empty if it has none.
 std::string request_name(const http::Request& request) {
   return request.id.empty() ? idempotency_key(request) : request.id;
 }
 
-/// What tells a request from others before its body is read: the same when it is sent again.
+/// Identifies a request before its body is read: the same value if it is sent again.
 std::string sender_of(const http::Request& request) {
   Sha256 hash;
   const auto add = [&](const std::string& text) { hash.add(text + '\0'); };
@@ -75,8 +75,9 @@ std::string sender_of(const http::Request& request) {
   return hash.finish();
 }
 
-/// What the request brings; the same may come again when its sender has no bytes left, and its
-/// options in many more. A form is more than its files: what it declares tells nothing then.
+/// The size of the upload. A request that is sent again may bring its known bytes even when the
+/// quota is used up, and its options in a longer form. A form has more than files, so that its
+/// declared size is not used.
 UploadSize size_of(const http::Request& request, const std::optional<store::JobRecord>& known) {
   if (!known) return {.known_bytes = 0, .declared_bytes = request.declared_bytes};
   if (http::body_kind(request.header("Content-Type")) == http::BodyKind::asset)
@@ -87,7 +88,7 @@ UploadSize size_of(const http::Request& request, const std::optional<store::JobR
 
 }  // namespace
 
-/// What a body says beside the mesh, and the turn to do something about it where that is much.
+/// The options in a body, and, if they are long, the turn to process them.
 struct Submissions::Sent {
   std::unique_lock<std::mutex> turn;
   std::optional<std::string> options;  // JSON text
@@ -114,13 +115,13 @@ std::string Submissions::accept(const http::Request& request, bool synchronous) 
   }
 }
 
-/// The job that this request has made, should it be sent again: it needs no place, then.
+/// The job that an earlier copy of this request has made: it needs no slot.
 std::optional<store::JobRecord> Submissions::known_job(const http::Request& request) {
   const std::string name = request_name(request);
   return name.empty() ? std::nullopt : store_.find_request(request.caller.owner, name);
 }
 
-/// What the head of the request says of it.
+/// Begins a job from the head of the request.
 store::JobRecord Submissions::begin_job(const http::Request& request, const std::string& upload,
                                         bool synchronous) const {
   store::JobRecord job;
@@ -136,7 +137,7 @@ store::JobRecord Submissions::begin_job(const http::Request& request, const std:
   return job;
 }
 
-/// JSON in memory is many times its text: long ones are read, and put away, one at a time.
+/// JSON in memory takes many times the size of its text: long texts are processed one at a time.
 Submissions::Sent Submissions::read_whole(SpooledText& text) {
   Sent sent;
   if (text.is_long()) sent.turn = std::unique_lock(reading_);

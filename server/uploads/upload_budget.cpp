@@ -7,8 +7,8 @@
 
 namespace unwrapd::server::uploads {
 
-/// False where what comes again finds no quota: then nothing is given up for it. Throws
-/// Error{quota_exceeded} for anything else.
+/// False for a repeated upload without quota, for which no other result is removed. Throws
+/// Error{quota_exceeded} for any other upload without quota.
 bool UploadBudget::reservation(std::int64_t bytes) {
   if (reservation_.try_set(bytes, quota_, size_.known_bytes)) return true;
   if (bytes > size_.known_bytes) throw quota_exceeded(quota_);
@@ -20,8 +20,8 @@ void UploadBudget::check_declared() {
   disk_.check_upload(size_.declared_bytes);
 }
 
-/// Of a body of unknown length twice what has come is claimed where there is so much, so that the
-/// store is not asked for each piece.
+/// Reserves twice the bytes received of a body of unknown length, if the quota allows it, so that
+/// the store is not asked for each piece.
 void UploadBudget::claim_ahead(std::int64_t all) {
   if (all <= reservation_.bytes()) return;
   if (!reservation_.try_set(2 * all, quota_)) static_cast<void>(reservation(all));

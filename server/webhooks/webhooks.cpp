@@ -96,7 +96,7 @@ Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret
   }
 }
 
-/// Whoever set the clock back while no server ran did not mean to put calls off.
+/// Makes calls due that were put off when the clock was set back while no server ran.
 void Webhooks::put_forward() {
   const std::string latest = "?1 + MIN(?2 << MAX(tries - 1, 0), ?3)";
   store::Statement(database_,
@@ -105,7 +105,7 @@ void Webhooks::put_forward() {
       .run();
 }
 
-/// Without those that are being made; in the order of their turns.
+/// The calls that are due and not being made, in the order of their turns.
 std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
   store::Statement statement(
       database_, "SELECT seq, owner, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
@@ -180,8 +180,8 @@ void Webhooks::settle(const Delivery& delivery, const WebhookAnswer& answer, std
   }
 }
 
-/// True when it was answered. What cannot be settled is called again: once too often rather than
-/// never.
+/// True when the receiver has answered. A call whose outcome cannot be stored is made again: once
+/// too often rather than never.
 bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
   const TraceScope trace(delivery.trace);
   const WebhookAnswer answer = call(delivery, stop);

@@ -40,7 +40,7 @@ FrameHead head_of(const std::string& bytes) {
   return head;
 }
 
-/// Takes memory only as the bytes come. False at the end.
+/// Takes memory only as the bytes arrive. False at the end.
 bool receive_text(const ReceiveAll& receive, std::uint64_t size, std::string& text) {
   text.clear();
   while (text.size() < size) {
@@ -51,7 +51,7 @@ bool receive_text(const ReceiveAll& receive, std::uint64_t size, std::string& te
   return true;
 }
 
-/// Of a job that is done: in [0, 1], whatever a worker says.
+/// A progress in [0, 1], whatever a worker sends.
 double next_fraction(ByteUnpacker& from) {
   const auto fraction = from.next<double>();
   return fraction >= 0 ? std::min(fraction, 1.0) : 0;  // nor is it NaN

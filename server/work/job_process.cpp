@@ -39,15 +39,14 @@ SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolati
 
 [[noreturn]] void misbehaved() { throw WorkerCrashed("its answer is invalid"); }
 
-/// The text of an error, which may quote a mesh: what is no UTF-8 in it is replaced, and what
-/// nobody would read is cut off.
+/// The text of an error, which may quote a mesh: invalid UTF-8 is replaced, and a long text is cut.
 std::string readable(std::string_view text) {
   constexpr auto replace = api::Json::error_handler_t::replace;
   const std::string json = api::Json(text.substr(0, kMaxErrorText)).dump(-1, ' ', false, replace);
   return api::Json::parse(json).get<std::string>();
 }
 
-/// What reading what a worker has sent gives. What cannot be read is no error of the job's.
+/// Parses a message of a worker. A message that cannot be parsed is no error of the job.
 template <class Read>
 auto believed(Read read) {
   try {
@@ -57,7 +56,7 @@ auto believed(Read read) {
   }
 }
 
-/// The error that a worker tells of, if it is one that it can know of.
+/// The error that a worker reports, if work on a mesh can end with it.
 Error error_told(const Frame& frame) {
   return believed([&] {
     ByteUnpacker from(frame.bytes);
@@ -69,13 +68,13 @@ Error error_told(const Frame& frame) {
   });
 }
 
-/// The totals become a field of an answer's head.
+/// Whether the totals can become a header field of an answer.
 bool is_totals(std::string_view bytes) {
   return bytes.size() <= kMaxTotals && api::Json::accept(bytes) &&
          bytes.find_first_of("\r\n") == std::string_view::npos;
 }
 
-/// The events of a frame, for an output that may fail for reasons of its own.
+/// Keeps the event of a frame, for an output that may fail for reasons of its own.
 class EventCopy final : public JobOutput {
  public:
   void stage(const StageEvent& event) override { stage_ = event; }
@@ -100,7 +99,7 @@ class EventCopy final : public JobOutput {
 /// One conversation with a worker.
 class Conversation {
  public:
-  /// maps: that the answer has.
+  /// maps: the number of maps of the job.
   Conversation(WorkerProcess& worker, JobOutput& output, std::int64_t max_bytes,
                std::size_t maps = 0)
       : worker_(worker), output_(output), left_(max_bytes), files_(maps) {}
@@ -113,7 +112,7 @@ class Conversation {
     if (next().kind != FrameKind::ready) misbehaved();
   }
 
-  /// Hands over what comes, until the end. Returns the format of the result.
+  /// Hands over all frames until the end. Returns the format of the result.
   std::string listen() {
     while (true) {
       const Frame frame = next();
@@ -122,7 +121,7 @@ class Conversation {
     }
   }
 
-  /// The one file that comes, or none.
+  /// The only file of an answer, if there is one.
   std::string listen_for_file() {
     Frame frame = next();
     if (frame.kind != FrameKind::rendered) misbehaved();
@@ -130,7 +129,7 @@ class Conversation {
   }
 
  private:
-  /// What comes next. Throws the error that the worker ends with.
+  /// The next frame. Throws the error that the worker ends with.
   Frame next() {
     Frame frame;
     const auto receive = [&](char* data, std::size_t size) { return worker_.receive(data, size); };
@@ -178,9 +177,8 @@ class NoOutput final : public JobOutput {
   void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
 };
 
-/// A worker process that tell() has told all of a job: one that has waited for it or else a new
-/// one. That a process ends before it has all of a job is not that job's doing; it may have ended
-/// while it waited.
+/// A worker process that has received the whole job by tell(): a spare one, or else a new one. A
+/// process that ends before that, maybe while it waited, does not count against the job.
 template <class Tell>
 std::unique_ptr<WorkerProcess> worker_on(const Isolation& isolation, const api::Limits& limits,
                                          const Stopping& stopping, const Tell& tell) {
@@ -232,7 +230,7 @@ void check_isolation(const Isolation& isolation) {
   });
 }
 
-/// Does a whole job: the calls that the C library makes differ between machines.
+/// Runs a whole job: the calls that the C library makes differ between machines.
 std::string why_not(const Isolation& isolation) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   static_cast<void>(isolation);

@@ -49,7 +49,7 @@ bool receive_all(char* data, std::size_t size) {
   return true;
 }
 
-/// Everything of a job goes to the server.
+/// Sends all output of a job to the server.
 class SocketOutput final : public JobOutput {
  public:
   void stage(const StageEvent& event) override {
@@ -66,7 +66,7 @@ class SocketOutput final : public JobOutput {
   }
 };
 
-/// A job as it has come over the socket.
+/// A job as received over the socket.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct ReceivedJob {
   WorkerTask task;
@@ -93,7 +93,7 @@ void unpack_task(std::string_view bytes, ReceivedJob& job) {
   while (!from.empty()) job.record.notes.emplace_back(from.next_text());
 }
 
-/// Keeps what a frame has brought. False when that was all.
+/// Stores the content of a frame. False after the last one.
 bool keep(Frame& frame, ReceivedJob& job) {
   switch (frame.kind) {
     case FrameKind::task:
@@ -117,7 +117,7 @@ bool keep(Frame& frame, ReceivedJob& job) {
   return frame.kind != FrameKind::begin;
 }
 
-/// A process that is told to stop before its job has begun ends, so that it is no job that does.
+/// Ends a process that is told to stop before its job has begun, so that no job runs.
 ReceivedJob receive_job(const std::stop_token& stop) {
   const std::stop_callback end_at_stop(stop, gone);
   ReceivedJob job;
@@ -200,7 +200,7 @@ void work(Crew& crew, const WorkerFunctions& functions) {
   run(job, crew, functions);
 }
 
-/// They come before anything else: nothing may be read without them.
+/// The limits are the first message: nothing may be read without them.
 SandboxLimits sandbox_limits() {
   SandboxLimits limits;
   if (!receive_all(reinterpret_cast<char*>(&limits), sizeof limits)) gone();

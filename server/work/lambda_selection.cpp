@@ -14,7 +14,7 @@ namespace {
   throw Error(ErrorCode::invalid_option, what, "/" + api::pointer_token(name));
 }
 
-/// Of the job's maps, in their order; empty when its method has no lambda.
+/// The lambdas of the job's maps, in their order; empty when its method has no lambda.
 std::vector<double> lambdas_of(const store::JobRecord& job) {
   const api::Json lambda = job.options.value("lambda", api::Json());
   if (lambda.is_array()) return lambda.get<std::vector<double>>();

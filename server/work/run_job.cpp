@@ -56,7 +56,7 @@ api::ReportContext context_of(const JobTask& task, StageTimer& clock) {
           .notes = task.record.notes};
 }
 
-/// What a job has made.
+/// The results of a job.
 struct Made {
   const asset::Asset& asset;
   asset::Format format;

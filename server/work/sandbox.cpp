@@ -22,7 +22,7 @@ namespace {
 constexpr int kKeptDescriptors = 3;
 constexpr std::string_view kFirstToGo = "1000";  // the most that proc(5) allows
 
-/// What malloc, threads, signals, clocks and open descriptors need.
+/// The calls that malloc, threads, signals, clocks and open descriptors need.
 constexpr std::array kAllowed = {SCMP_SYS(read),
                                  SCMP_SYS(write),
                                  SCMP_SYS(readv),
@@ -63,7 +63,7 @@ constexpr std::array kAllowed = {SCMP_SYS(read),
                                  SCMP_SYS(restart_syscall),
                                  SCMP_SYS(set_tid_address)};
 
-/// What the C library tries and does well without.
+/// Calls that the C library tries and does not need.
 constexpr std::array kRefused = {SCMP_SYS(openat), SCMP_SYS(open),     SCMP_SYS(newfstatat),
                                  SCMP_SYS(access), SCMP_SYS(ioctl),    SCMP_SYS(readlink),
                                  SCMP_SYS(prctl),  SCMP_SYS(prlimit64)};
@@ -85,14 +85,14 @@ void allow(const Filter& filter, int call) {
     cannot("filter its system calls");
 }
 
-/// Only with none of these flags in an argument.
+/// Allows a call only with none of these flags in an argument.
 void allow_without(const Filter& filter, int call, unsigned argument, std::uint64_t flags) {
   const scmp_arg_cmp none{argument, SCMP_CMP_MASKED_EQ, flags, 0};
   if (seccomp_rule_add_array(filter.get(), SCMP_ACT_ALLOW, call, 1, &none) != 0)
     cannot("filter its system calls");
 }
 
-/// Only of this process, which the first argument names.
+/// Allows a call only for this process, which the first argument names.
 void allow_of_process(const Filter& filter, int call, pid_t process) {
   const scmp_arg_cmp same{0, SCMP_CMP_EQ, static_cast<scmp_datum_t>(process), 0};
   if (seccomp_rule_add_array(filter.get(), SCMP_ACT_ALLOW, call, 1, &same) != 0)

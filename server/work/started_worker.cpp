@@ -16,10 +16,11 @@
 namespace unwrapd::server::work {
 namespace {
 
-/// A server's heap has its pages, those of a new process come one fault after another: they were
-/// most of what isolation cost a job of 20,000 faces (ADR 0037). So its heap grows by huge pages,
-/// many at a time, and gives nothing back before its end. Where the kernel has none to give, or a C
-/// library does not know of these, nothing is lost.
+/// The environment of the heap. A server's heap has its pages, but those of a new process are added
+/// one fault after another: they were most of the cost of isolation for a job of 20,000 faces (ADR
+/// 0037). So the heap grows by huge pages, many at a time, and returns nothing before the process
+/// ends. A kernel without huge pages, or a C library that does not know these settings, ignores
+/// them.
 constexpr const char* kHeap =
     "GLIBC_TUNABLES=glibc.malloc.hugetlb=1:glibc.malloc.top_pad=67108864:"
     "glibc.malloc.mmap_threshold=33554432:glibc.malloc.trim_threshold=2147483647";
@@ -29,8 +30,8 @@ constexpr const char* kHeap =
               "A worker process cannot be started; check the limits of processes and files.");
 }
 
-/// What a new process begins with: the socket as its input, silence as its output, SIGTERM blocked
-/// (its thread waits for it), a group of its own so that Ctrl-C reaches the server alone.
+/// The state of a new process: the socket as its input, no output, SIGTERM blocked (its thread
+/// waits for it), a process group of its own so that Ctrl-C reaches only the server.
 class SpawnPlan {
  public:
   explicit SpawnPlan(int socket) {

@@ -21,7 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// How a process ended, in words.
+/// Describes how a process ended.
 std::string end_of(int status) {
   if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
   return "exit code " + std::to_string(WEXITSTATUS(status));
@@ -56,15 +56,15 @@ void WorkerProcess::kill_when_due() {
   if (stopping_.on_kill) stopping_.on_kill();
 }
 
-/// What poll() waits at most: for ever, but between SIGTERM and SIGKILL.
+/// The timeout of poll(): none, except between SIGTERM and SIGKILL.
 int WorkerProcess::patience_ms() const {
   if (!kill_at_ || killed_) return -1;
   const auto left = std::chrono::ceil<milliseconds>(*kill_at_ - Clock::now()).count();
   return static_cast<int>(std::max<std::int64_t>(left, 0));
 }
 
-/// Waits until the socket is ready. The stop comes first: a worker whose socket is always ready
-/// does not put it off.
+/// Waits until the socket is ready. A stop comes first: a worker whose socket is always ready does
+/// not delay it.
 void WorkerProcess::await(short events) {
   while (true) {
     std::array<pollfd, 2> polled = {pollfd{worker_.socket(), events, 0},
