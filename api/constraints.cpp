@@ -17,7 +17,7 @@ constexpr double kMaxIndex = std::numeric_limits<Index>::max();
   throw Error(ErrorCode::invalid_option, message, pointer);
 }
 
-/// One constraint while it is read.
+/// One constraint of the request.
 struct Source {
   const Json& object;
   const std::string& pointer;
@@ -50,7 +50,7 @@ Index index_of(const Source& source, const char* name, const Json& value) {
   return static_cast<Index>(index);
 }
 
-/// Finite: the parser lets no other number in.
+/// Finite, since the parser refuses other numbers.
 template <class Vector>
 Vector vector_of(const Source& source, const char* name, const Json& value) {
   Vector vector;

@@ -1,8 +1,8 @@
 #pragma once
-// Positions that vertices shall have, to and from JSON:
+// Position constraints of vertices, to and from JSON:
 //   {"vertex": 17 | "at": [x, y, z], "uv": [u, v], "weight": 2.5, "mesh": 0}
-// vertex counts within its mesh; at takes the vertices nearest to a point instead. Without a weight
-// (or with null) the position holds exactly. mesh, 0 when not said, counts the asset's meshes.
+// vertex is an index within its mesh; at selects the vertices nearest to a point. Without a weight
+// (or with null) the constraint is hard. mesh is an index among the asset's meshes, 0 by default.
 
 #include <string>
 #include <vector>
@@ -12,12 +12,12 @@
 
 namespace unwrapd::api {
 
-/// Throws Error{invalid_option} with the pointer, below `pointer`, of what is wrong first.
+/// Throws Error{invalid_option} with the pointer of the first fault, below `pointer`.
 std::vector<PositionConstraint> constraints_from_json(const Json& json, int most,
                                                       const std::string& pointer);
 
-/// Every member is there but the one of vertex and at that was not given; the weight of a position
-/// that holds exactly is null.
+/// Has every member except the unused one of vertex and at. The weight of a hard constraint is
+/// null.
 Json to_json(const std::vector<PositionConstraint>& constraints);
 
 }  // namespace unwrapd::api

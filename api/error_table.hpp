@@ -1,6 +1,6 @@
 #pragma once
-// The one table of errors: code, wire name, HTTP status and title; and the problem document
-// (RFC 9457) that is made from it. openapi.yaml lists the same names, and a test compares them.
+// The one table of errors: code, wire name, HTTP status and title; and the problem document (RFC
+// 9457) made from it. openapi.yaml lists the same names, and a test compares them.
 
 #include <optional>
 #include <span>
@@ -14,7 +14,7 @@ namespace unwrapd::api {
 struct ErrorRow {
   ErrorCode code;
   std::string_view name;   ///< on the wire; never changes
-  int status;              ///< HTTP
+  int status;              ///< HTTP status
   std::string_view title;  ///< the same for every occurrence
 };
 
@@ -23,15 +23,15 @@ std::span<const ErrorRow> error_table();
 
 const ErrorRow& error_row(ErrorCode code);
 
-/// The code of a wire name; empty when there is none of this name.
+/// The code of a wire name; empty if no code has this name.
 std::optional<ErrorCode> code_named(std::string_view name);
 
-/// The problem document of an error: type, title, status, detail, code; pointer when the error
-/// says where; job when job_id is not empty.
+/// The problem document of an error: type, title, status, detail, code; pointer if the error has a
+/// location; job if job_id is not empty.
 Json problem(const Error& error, std::string_view job_id = {});
 
-/// The error that a problem document tells of, for the client. A document that is none of ours
-/// becomes ErrorCode::internal with what text it has.
+/// The error that a problem document describes, for the client. Any other document becomes
+/// ErrorCode::internal with the text that it has.
 Error error_from_problem(const Json& problem);
 
 }  // namespace unwrapd::api

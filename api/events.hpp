@@ -1,7 +1,7 @@
 #pragma once
-// The events of a job, as frames of a text/event-stream. A job tells: queued, started, stage and
-// iteration (many), then exactly one of succeeded, failed, cancelled. Who submits it and watches in
-// one request is told first that it was accepted.
+// The events of a job, as frames of a text/event-stream: queued, started, stage and iteration
+// (many), then exactly one of succeeded, failed, cancelled. A client that submits and watches in
+// one request first receives the event accepted.
 
 #include <cstdint>
 #include <string>
@@ -14,8 +14,8 @@
 namespace unwrapd::api {
 
 struct Event {
-  /// Counts up within a job; the frame's id, for Last-Event-ID. 0: of no place in the story, and
-  /// without an id.
+  /// Counts up within a job; the frame's id, for Last-Event-ID. 0: the event has no place in the
+  /// order and no id.
   std::int64_t seq = 0;
   std::string name;
   Json data = Json::object();
@@ -23,29 +23,29 @@ struct Event {
 
 inline constexpr std::string_view kPing = ": ping\n\n";  ///< keeps an idle connection open
 
-/// To who has submitted the job; its data is the job.
+/// The first event for a client that submits and watches; its data is the job.
 Event accepted_event(const Job& job);
 
-/// Stage and iteration events of a curve say which lambda they are of. position: how many jobs are
-/// ahead.
+/// Stage and iteration events of a curve name their lambda. position: number of jobs ahead.
 Event queued_event(std::int64_t seq, std::int64_t position);
 Event started_event(std::int64_t seq, int attempt);
 Event stage_event(std::int64_t seq, const StageEvent& stage);
 
-/// ms: since the job was started.
+/// ms: since the start of the job.
 Event iteration_event(std::int64_t seq, const IterationEvent& iteration, double ms);
 
-/// Named by the job's state, which is final; its data is the job.
+/// Its name is the job's final state; its data is the job.
 Event final_event(std::int64_t seq, const Job& job);
 
-/// Events first..last are no longer kept. Its own id is last, so a reader goes on after them.
+/// Tells that events first..last are no longer stored. Its own id is last, so that a reader
+/// continues after them.
 Event gap_event(std::int64_t first, std::int64_t last);
 
 /// Whether the stream ends with this event.
 bool is_last(const Event& event);
 
 /// One frame: id (if any), event and data lines and the empty line that ends it. The data is one
-/// line of JSON, in which line breaks of any text are escaped.
+/// line of JSON, whose texts have escaped line breaks.
 std::string sse_frame(const Event& event);
 
 }  // namespace unwrapd::api

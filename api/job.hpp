@@ -15,13 +15,13 @@ enum class JobState { queued, running, succeeded, failed, cancelled };
 std::string_view state_name(JobState state);
 std::optional<JobState> state_named(std::string_view name);
 
-/// succeeded, failed or cancelled: nothing will change any more.
+/// succeeded, failed or cancelled: the job does not change any more.
 bool is_final(JobState state);
 
 std::string_view stage_name(Stage stage);
 std::optional<Stage> stage_named(std::string_view name);
 
-/// How far a running job is.
+/// The progress of a running job.
 struct JobProgress {
   Stage stage = Stage::read;
   double fraction = 0;  ///< of the whole job, [0, 1]
@@ -34,20 +34,20 @@ struct Job {
   std::string id = {};
   JobState state = JobState::queued;
   std::string created = {};  ///< RFC 3339, UTC
-  int attempt = 0;           ///< how often a worker has begun it
+  int attempt = 0;           ///< number of times that a worker has started it
   Json options = Json::object();
-  std::optional<JobProgress> progress = {};  ///< once it runs
+  std::optional<JobProgress> progress = {};  ///< set while it runs
   Json problem = nullptr;                    ///< null unless failed or cancelled
 };
 
 /// The path of a job: "/v1/jobs/" + id.
 std::string job_path(std::string_view id);
 
-/// With links{self, events, result, report, layout}; progress and problem only where there are any.
+/// With links{self, events, result, report, layout}; with progress and problem if they are set.
 Json to_json(const Job& job);
 
-/// The job that to_json() wrote; members that this version does not know are passed over. Throws
-/// Error{malformed_request} when a member is missing or of another type.
+/// Reads the output of to_json(). Members that this version does not know are ignored. Throws
+/// Error{malformed_request} if a member is missing or of another type.
 Job job_from_json(const Json& json);
 
 }  // namespace unwrapd::api

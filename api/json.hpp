@@ -1,6 +1,6 @@
 #pragma once
-// The JSON of the wire: members keep the order in which they are written, numbers are finite, and
-// what comes from outside is read strictly (one value, no duplicate member, bounded depth).
+// The JSON of the API. Members keep their order, numbers are finite, and input is parsed strictly
+// (one value, no duplicate member, bounded depth).
 
 #include <nlohmann/json.hpp>
 
@@ -15,20 +15,21 @@ using Json = nlohmann::ordered_json;
 struct JsonLimits {
   std::size_t max_bytes = 65'536;
   int max_depth = 16;
-  std::size_t max_values = 2'000'000;  ///< and names of members: some 80 bytes of memory each
-  std::size_t max_members = 1'000;     ///< of one object: making it costs their square
+  std::size_t max_values =
+      2'000'000;                    ///< values and names of members; some 80 bytes of memory each
+  std::size_t max_members = 1'000;  ///< of one object; building it takes quadratic time
 };
 
 /// Parses one JSON value. Throws Error: malformed_request (syntax, depth, size, counts),
-/// invalid_option with its JSON pointer (a member given twice, a number beyond the range of a
+/// invalid_option with its JSON pointer (a duplicate member, a number beyond the range of a
 /// double).
 Json parse_json(std::string_view text, const JsonLimits& limits = {});
 
-/// value as JSON can hold it: an infinite or undefined figure becomes the largest double of its
-/// sign, since JSON has no name for it.
+/// Replaces an infinite or undefined value by the largest double of its sign, since JSON cannot
+/// express it.
 double finite(double value);
 
-/// text as a member of a JSON pointer (RFC 6901): "~" and "/" are escaped.
+/// Escapes text ("~" and "/") as a token of a JSON pointer (RFC 6901).
 std::string pointer_token(std::string_view text);
 
 }  // namespace unwrapd::api

@@ -1,5 +1,5 @@
 #pragma once
-// What one server accepts. Every limit is a flag of unwrapd and is told by GET /v1/limits.
+// The limits of one server. Every limit is a flag of unwrapd and a member of GET /v1/limits.
 
 #include <cstdint>
 
@@ -14,8 +14,8 @@ struct Limits {
   std::int64_t max_sync_faces = 50'000;  ///< POST /v1/unwrap; larger meshes go to /v1/jobs
   int max_iterations = 10'000;           ///< of the options stop.iterations and stop.max_iterations
   int max_constraints = 100'000;         ///< entries of the option constraints
-  int max_job_seconds = 600;             ///< of work, the queue not counted
-  int max_wait_seconds = 60;             ///< the longest Prefer: wait that is honoured
+  int max_job_seconds = 600;             ///< of work, without the time in the queue
+  int max_wait_seconds = 60;             ///< the longest accepted Prefer: wait
   int max_queue = 256;                   ///< jobs waiting for a worker
   int max_streams = 256;                 ///< event streams open at once
 };

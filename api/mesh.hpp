@@ -10,11 +10,11 @@
 namespace unwrapd::api {
 
 struct Mesh {
-  std::string sha256 = {};  ///< of its bytes, lowercase hex: its name
+  std::string sha256 = {};  ///< SHA-256 of its bytes in lowercase hex, which is its name
   std::int64_t bytes = 0;
-  std::string media_type = {};  ///< as it was sent
+  std::string media_type = {};  ///< as it was uploaded
   std::string created = {};     ///< RFC 3339, UTC
-  std::string expires = {};     ///< the same; when it goes unless it is used before
+  std::string expires = {};     ///< RFC 3339, UTC: when it is removed unless it is used before
 };
 
 /// The path of a mesh: "/v1/meshes/" + sha256.

@@ -1,6 +1,6 @@
 #pragma once
-// Rows of the option table for options that are a plain field: made from the field's address, so
-// that a row cannot read one field and write another.
+// Rows of the option table for options that are a plain field. A row is made from the field's
+// address, so that it cannot read one field and write another.
 
 #include <algorithm>
 #include <optional>
@@ -13,8 +13,8 @@
 
 namespace unwrapd::api {
 
-/// The field of the options that a member pointer names: of UnwrapOptions, its Stop or
-/// Packing, of AssetOptions, or of JobOptions.
+/// The field that a member pointer names: of UnwrapOptions, its Stop or Packing, of AssetOptions,
+/// or of JobOptions.
 template <auto kField>
 auto& field(auto& options) {
   if constexpr (std::is_invocable_v<decltype(kField), UnwrapOptions&>) {
@@ -56,7 +56,7 @@ constexpr OptionRow choice(std::string_view name, std::span<const Method> method
           .set = set_choice<kField, kNames>};
 }
 
-/// What a field holds: T of std::optional<T>, which is null in JSON where it is empty.
+/// The type of a field's value: T for std::optional<T>, which is null in JSON if it is empty.
 template <class T>
 T held(const std::optional<T>& field);
 template <class T>
@@ -104,7 +104,7 @@ constexpr OptionRow figure(std::string_view name, Range range, std::span<const M
           .set = set_plain<kField>};
 }
 
-/// Of type flag or names.
+/// For fields of type flag or names.
 template <auto kField>
 constexpr OptionRow plain(std::string_view name, OptionType type, std::span<const Method> methods,
                           std::string_view description) {

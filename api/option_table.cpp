@@ -1,5 +1,5 @@
-// The table of options. A row knows how to read and write its own field, so nothing else in the
-// project lists the options by name: to add one is to add its field and one row.
+// The table of options. A row reads and writes its own field, and nothing else in the project lists
+// the options by name: a new option needs its field and one row.
 #include <array>
 #include <cstddef>
 #include <limits>

@@ -13,7 +13,7 @@
 namespace unwrapd::api {
 namespace {
 
-/// The text as a number, whole to its last character; else as the string that it is.
+/// The text as a number if all of it is one; else as a string.
 template <class Number>
 Json number_of(std::string_view text) {
   Number value{};
@@ -35,7 +35,7 @@ Json numbers_of(std::string_view text) {
   return list.size() == 1 ? list[0] : list;
 }
 
-/// Text that is no JSON stays the string that it is.
+/// Parses JSON; other text becomes a string.
 Json json_of(const std::string& text) {
   try {
     return parse_json(text, {.max_bytes = kMaxOptionsBytes});
@@ -45,7 +45,7 @@ Json json_of(const std::string& text) {
   }
 }
 
-/// "a,b" as ["a", "b"]; names with commas in them come as JSON.
+/// "a,b" as ["a", "b"]; names that contain commas must be given as JSON.
 Json names_of(const std::string& text) {
   if (text.starts_with('[')) return json_of(text);
   Json list = Json::array();
@@ -70,7 +70,7 @@ std::string listed(std::span<const std::string_view> names) {
   return text;
 }
 
-/// What a value of this option must be: "an integer between 1 and 10000".
+/// The allowed values of this option: "an integer between 1 and 10000".
 std::string allowed(const OptionRow& row, const Limits& limits) {
   if (row.type == OptionType::choice) return "one of " + listed(row.choices);
   if (row.type == OptionType::flag) return "true or false";
@@ -85,7 +85,7 @@ std::string allowed(const OptionRow& row, const Limits& limits) {
   return text;
 }
 
-/// JSON as a number in the row's range; 10.0 is an integer, as JSON Schema has it.
+/// Whether value is a number in the row's range; 10.0 is an integer, as in JSON Schema.
 bool is_number_of(const OptionRow& row, const Json& value, const Limits& limits) {
   if (!value.is_number()) return false;
   const double figure = value.get<double>();
@@ -108,7 +108,7 @@ bool is_name_list(const Json& value) {
   return value.is_array() && value.size() <= kMaxNames && std::ranges::all_of(value, is_name);
 }
 
-/// Throws what is wrong first, with its pointer.
+/// Throws the first fault, with its pointer.
 void check_objects(const OptionRow& row, const Json& value, const Limits& limits) {
   const auto most = static_cast<std::size_t>(limits.*row.limit);
   if (value.is_array() && value.size() > most)

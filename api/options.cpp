@@ -1,5 +1,5 @@
-// A query becomes the JSON object that says the same; every option of an object is then found in
-// the table, checked against its row and set. core's validate() checks what concerns more than one.
+// A query is converted to a JSON object. Every member of an object is then found in the table,
+// checked against its row and set. core's validate() checks rules that concern several options.
 #include "api/options.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace unwrapd::api {
 namespace {
 
 constexpr std::size_t kMaxEchoed = 40;      // characters of a user's text in a message
-constexpr std::size_t kMaxMisspelling = 2;  // edits between a name and what was meant
+constexpr std::size_t kMaxMisspelling = 2;  // edits between a name and the suggested one
 
 [[noreturn]] void refuse(std::string_view name, const std::string& message) {
   throw Error(ErrorCode::invalid_option, message, option_pointer(name));
@@ -52,7 +52,7 @@ std::string_view last_part(std::string_view name) { return name.substr(name.rfin
   refuse(name, "There is no option of this name: " + advice);
 }
 
-/// Whether options share this name as their group, as stop does.
+/// Whether this is the name of a group of options, such as stop.
 bool is_group(std::string_view name) {
   return std::ranges::any_of(option_table(), [&](const OptionRow& row) {
     return row.name.size() > name.size() && row.name.starts_with(name) &&
@@ -60,14 +60,14 @@ bool is_group(std::string_view name) {
   });
 }
 
-/// The place of an option in an object, made where it is missing.
+/// The member of an option in an object, which is added if it is missing.
 Json& member(Json& object, std::string_view name) {
   const std::size_t dot = name.find('.');
   if (dot == std::string_view::npos) return object[std::string(name)];
   return object[std::string(name.substr(0, dot))][std::string(name.substr(dot + 1))];
 }
 
-/// Options as they are gathered: the values so far and which were given.
+/// The options so far, and the rows that were given.
 struct Gathering {
   explicit Gathering(const Limits& server) : limits(server) {
     Stop& stop = options.unwrap.stop;
@@ -81,7 +81,7 @@ struct Gathering {
   void add(const std::string& name, const Json& value) {
     const OptionRow* row = find_option(name);
     if (row == nullptr) refuse_unknown(name);
-    if (value.is_null() && row->nullable) return;  // as in resolved options
+    if (value.is_null() && row->nullable) return;  // allowed, since resolved options have null
     check_value(*row, value, limits);
     row->set(options, value);
     given.push_back(row);
@@ -163,7 +163,7 @@ JobOptions parse_options(const Json& object, const Limits& limits) {
 }
 
 JobOptions parse_stored_options(Json object) {
-  const auto plain_iterations = object.find("iterations");  // of 0.1.0
+  const auto plain_iterations = object.find("iterations");  // resolved options of version 0.1.0
   if (plain_iterations != object.end()) {
     object["stop"]["iterations"] = *plain_iterations;
     object.erase("iterations");

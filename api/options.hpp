@@ -1,6 +1,6 @@
 #pragma once
-// Options on the wire. One table says everything about an option; parsing (query and JSON), the
-// answer of GET /v1/methods, the resolved options of a job and the client's flags all come from it.
+// Options of the API. One table describes every option; parsing (query and JSON), the answer of GET
+// /v1/methods, the resolved options of a job and the client's flags all use it.
 
 #include <map>
 #include <optional>
@@ -22,8 +22,8 @@ struct JobOptions {
   UnwrapOptions unwrap;
   AssetOptions asset;
   OutputFormat output = OutputFormat::automatic;
-  /// Sentences for the report: options that were given but have no effect with this method. They
-  /// are no part of the resolved options: whoever keeps a job keeps them beside its options.
+  /// Notes for the report about options that were given but have no effect with this method. They
+  /// are not part of the resolved options; a stored job stores them separately.
   std::vector<std::string> notes;
 };
 
@@ -33,8 +33,8 @@ enum class OptionType {
   number,
   integer,
   numbers,  ///< a number, or a list of different ones: "1,2" in a query
-  names,    ///< a list of strings: in a query parted by commas, or their JSON
-  objects,  ///< a list of objects (constraints.hpp, seam_paths.hpp): their JSON in a query
+  names,    ///< a list of strings: in a query separated by commas, or as JSON
+  objects,  ///< a list of objects (constraints.hpp, seam_paths.hpp): in a query as JSON
 };
 
 inline constexpr std::size_t kMaxNumbers = 32;  ///< entries of an option of type numbers
@@ -46,63 +46,63 @@ struct OptionRow {
   std::span<const std::string_view> choices = {};  ///< of a choice, in the order of its enumerators
   double minimum = 0;                              ///< of a number
   std::optional<double> maximum = {};              ///< of a number; empty: none, or the server's
-  int Limits::*limit = nullptr;  ///< the server's own maximum, of a number or of a list's entries
-  bool nullable = false;         ///< null counts as not given
-  std::string_view description;  ///< what each value does, and when to choose it
-  std::span<const Method> methods;  ///< with which it has an effect
+  int Limits::*limit = nullptr;     ///< the server's own maximum of a number or of a list's length
+  bool nullable = false;            ///< null means not given
+  std::string_view description;     ///< what each value does, and when to choose it
+  std::span<const Method> methods;  ///< methods with which it has an effect
 
-  /// The option as JSON, from and to the options; set() takes what check_value() lets pass.
+  /// Read and write the option as JSON; set() expects a value that passed check_value().
   Json (*get)(const JobOptions&);
   void (*set)(JobOptions&, const Json&);
 };
 
 std::span<const OptionRow> option_table();
 
-/// The row of this name, or nullptr.
+/// The row of this name, or null.
 const OptionRow* find_option(std::string_view name);
 
-/// Where an option stands in JSON: "/stop/iterations" for "stop.iterations".
+/// The JSON pointer of an option: "/stop/iterations" for "stop.iterations".
 std::string option_pointer(std::string_view name);
 
-/// The row that a pointer leads to or into ("/constraints/2/uv"), or nullptr.
+/// The row that a pointer leads to or into ("/constraints/2/uv"), or null.
 const OptionRow* option_at(std::string_view pointer);
 
-/// What an option is when it is not given, on a server of these limits.
+/// The default of an option on a server with these limits.
 Json option_default(const OptionRow& row, const Limits& limits);
 
-/// The highest number allowed, where there is one.
+/// The highest allowed number, if there is one.
 std::optional<double> option_maximum(const OptionRow& row, const Limits& limits);
 
-/// Whether the option changes anything with this method.
+/// Whether the option has an effect with this method.
 bool has_effect(const OptionRow& row, Method method);
 
 std::string_view method_name(Method method);
 
 using Query = std::multimap<std::string, std::string>;  ///< a decoded query string
 
-/// A query as the JSON object that says the same. Text that is none of its option's type stays a
-/// string. Throws Error{invalid_option} for an option that is unknown or given twice.
+/// Converts a query to a JSON object. Text that does not fit its option's type stays a string.
+/// Throws Error{invalid_option} for an option that is unknown or given twice.
 Json options_object(const Query& query);
 
-/// Options of a query string; those not named keep their default. Throws Error{invalid_option}
-/// with the pointer "/name" of the first option that is unknown, given twice, of the wrong type or
-/// out of range.
+/// The options of a query; options that are not given have their default. Throws
+/// Error{invalid_option} with the pointer "/name" of the first option that is unknown, given twice,
+/// of the wrong type or out of range.
 JobOptions parse_options(const Query& query, const Limits& limits);
 
-/// The same from a JSON object; null counts as not given where an option can be null in resolved
-/// options, so that these can be sent again.
+/// The same from a JSON object. null means not given for options that can be null in resolved
+/// options, so that resolved options can be sent again.
 JobOptions parse_options(const Json& object, const Limits& limits);
 
-/// The same from JSON text, strictly: also throws malformed_request for what is no JSON.
+/// The same from JSON text, strictly: also throws malformed_request if it is not JSON.
 JobOptions parse_options_text(std::string_view text, const Limits& limits);
 
-/// Resolved options that were accepted once: by a server of any limits, by any version since 0.1.0.
+/// Reads resolved options that any server of any version since 0.1.0 accepted, whatever its limits.
 JobOptions parse_stored_options(Json object);
 
-/// The longest JSON text of options that is read: room for as many constraints as may be given.
+/// The longest JSON text of options that is read; enough for the maximal number of constraints.
 inline constexpr std::size_t kMaxOptionsBytes = std::size_t{16} * 1024 * 1024;
 
-/// The resolved options, every default filled in; lambda is null unless the method is hybrid.
+/// The resolved options, with all defaults; lambda is null unless the method is hybrid.
 Json to_json(const JobOptions& options);
 
 /// The body of GET /v1/methods: the methods, and every option with type, range and default.

@@ -1,4 +1,4 @@
-// What the table tells others: rows by name or pointer, defaults, and the body of GET /v1/methods.
+// Reads the table for others: rows by name or pointer, defaults, and the body of GET /v1/methods.
 #include <algorithm>
 #include <array>
 
@@ -59,7 +59,7 @@ Json bound(const OptionRow& row, double value) {
   return value;
 }
 
-/// The most entries of a list, where the option can be one.
+/// The maximal length of a list, if the option can be a list.
 std::optional<std::size_t> most_items(const OptionRow& row, const Limits& limits) {
   if (row.type == OptionType::numbers) return kMaxNumbers;
   if (row.type == OptionType::names) return kMaxNames;

@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 5> kFileRepairKinds = {
     "line_ends_replaced", "empty_indices_ignored", "normals_replaced", "chunks_padded",
     "shared_nodes_kept"};
 
-/// The stages of timings_ms, in the order in which a job goes through them.
+/// The stages of timings_ms, in the order of a job.
 constexpr std::array kTimings = {"queue", "read",     "setup",   "segment", "merge", "factor",
                                  "solve", "untangle", "measure", "pack",    "write", "total"};
 
@@ -47,7 +47,7 @@ Json to_json(const Repair& repair) {
           {"count", repair.count}};
 }
 
-/// Of the file as a whole: the surface is 0.
+/// Concerns the whole file, so that the surface is 0.
 Json to_json(const FileRepair& repair) {
   return {{"kind", kFileRepairKinds[static_cast<std::size_t>(repair.kind)]},
           {"surface", 0},

@@ -1,5 +1,5 @@
 #pragma once
-// The report of a job as JSON: what came in, what was repaired, how good every chart is.
+// The report of a job as JSON: the input, its repairs, and the quality of every chart.
 
 #include <cstdint>
 #include <map>
@@ -15,7 +15,7 @@
 
 namespace unwrapd::api {
 
-/// What core does not know of a job.
+/// The parts of a report that core does not know.
 struct ReportContext {
   std::string sha256 = {};   ///< of the request's mesh document, lowercase hex
   std::int64_t bytes = 0;    ///< of the mesh document and its buffers
@@ -23,20 +23,20 @@ struct ReportContext {
   /// Milliseconds by stage: queue, read, setup, factor, solve, untangle, measure, pack, write,
   /// total.
   std::map<std::string, double> timings_ms = {};
-  std::vector<FileRepair> file_repairs = {};  ///< before core's own
-  std::vector<std::string> notes = {};        ///< beside core's own (see JobOptions::notes)
-  std::optional<std::vector<VertexMap>> vertex_maps = {};  ///< where the report shall have them
+  std::vector<FileRepair> file_repairs = {};  ///< listed before core's own
+  std::vector<std::string> notes = {};        ///< listed beside core's own (see JobOptions::notes)
+  std::optional<std::vector<VertexMap>> vertex_maps = {};  ///< set if the report shall have them
 };
 
-/// The report, every figure finite: an infinite one is given as the largest double.
+/// The report with finite numbers; an infinite one becomes the largest double.
 Json to_json(const Report& report, const ReportContext& context);
 
-/// What came in and what would be repaired, of a mesh that is only looked at: the counts of a
-/// report's `input`, and `repairs`.
+/// The analysis of a mesh without a job: the counts of a report's `input`, and the `repairs` that a
+/// job would make.
 Json to_json(const InputReport& input, const std::vector<Repair>& repairs,
              std::span<const FileRepair> file_repairs = {});
 
-/// The totals alone, for a header: charts, distortion, seam_length, fill, texel_density.
+/// Only the totals, for a header: charts, distortion, seam_length, fill, texel_density.
 Json totals_json(const Report& report);
 
 }  // namespace unwrapd::api

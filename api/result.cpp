@@ -1,5 +1,5 @@
-// The arrays are written with to_chars straight into the text. A tree of JSON values first would
-// take 2.5 times as long (100k faces: 119 ms against 47) and hold every number twice.
+// Arrays are written with to_chars straight into the text. A tree of JSON values would take 2.5
+// times as long (100k faces: 119 ms against 47) and hold every number twice.
 #include "api/result.hpp"
 
 #include <array>
@@ -23,7 +23,7 @@ void append(std::string& text, Number value) {
   text.append(room.data(), end);
 }
 
-/// A member whose value is the flat array of all the numbers that each(item, put) puts.
+/// A member whose value is the flat array of the numbers that each(item, put) writes.
 template <class Items, class Each>
 void append_array(std::string& text, std::string_view name, const Items& items, const Each& each) {
   text += ",\"";

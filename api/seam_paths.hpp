@@ -1,6 +1,6 @@
 #pragma once
-// Edges to be cut open, to and from JSON: {"vertices": [3, 4, 9], "mesh": 0} cuts the edges 3-4 and
-// 4-9. vertices count within their mesh; mesh, 0 when not said, counts the asset's meshes.
+// Edges to cut, to and from JSON: {"vertices": [3, 4, 9], "mesh": 0} cuts the edges 3-4 and 4-9.
+// vertices are indices within their mesh; mesh is an index among the asset's meshes, 0 by default.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace unwrapd::api {
 
-/// Throws Error{invalid_option} with the pointer, below `pointer`, of what is wrong first.
+/// Throws Error{invalid_option} with the pointer of the first fault, below `pointer`.
 std::vector<SeamPath> seam_paths_from_json(const Json& json, const std::string& pointer);
 
 Json to_json(const std::vector<SeamPath>& paths);

@@ -71,7 +71,7 @@ std::string range_text(const api::OptionRow& row) {
   return kind + " in [" + figure(row.minimum) + ", " + figure(*row.maximum) + "]";
 }
 
-/// One flag for every row of the API's table; what is given lands in options.
+/// Adds one flag for every row of the API's table; their values go to options.
 void add_option_flags(CLI::App& app, OptionTexts& options) {
   for (const api::OptionRow& row : api::option_table()) {
     const std::string name(row.name);
@@ -95,7 +95,7 @@ void add_option_flags(CLI::App& app, OptionTexts& options) {
   }
 }
 
-/// The values that the command line's flags are read into, before they are checked.
+/// The raw values of the command line's flags.
 struct Raw {
   Arguments arguments;
   std::string server = "http://127.0.0.1:8080";
@@ -143,7 +143,7 @@ void add_flags(CLI::App& app, Raw& raw) {
   app.set_version_flag("--version", "unwrap " UNWRAPD_VERSION);
 }
 
-/// The format that a file name asks for: "glb", "gltf", "obj", or "auto" for any other.
+/// The format of a file name: "glb", "gltf", "obj", or "auto" for any other.
 std::string format_of(const fs::path& path) {
   const std::string extension = path.extension().string();
   if (extension == ".glb" || extension == ".gltf" || extension == ".obj")
@@ -151,7 +151,7 @@ std::string format_of(const fs::path& path) {
   return "auto";
 }
 
-/// The options must make sense by themselves; what this server allows beyond is its own affair.
+/// Checks the options without a server's limits, which the server checks itself.
 void check_options(const OptionTexts& options) {
   api::Limits limits;
   limits.max_iterations = limits.max_constraints = std::numeric_limits<int>::max();
@@ -168,7 +168,7 @@ void check_options(const OptionTexts& options) {
   }
 }
 
-/// The lambdas of a list, in its order, when the method makes a map for each.
+/// The entries of a list of lambdas, in its order, if the method makes a map for each.
 std::vector<std::string> lambdas_of(const OptionTexts& options) {
   const auto method = options.find("method");
   const auto lambda = options.find("lambda");
@@ -177,7 +177,7 @@ std::vector<std::string> lambdas_of(const OptionTexts& options) {
   return CLI::detail::split(lambda->second, ',');
 }
 
-/// Checks what the parser cannot, and fills in what follows from the rest.
+/// Checks what the parser cannot, and derives the remaining values.
 Arguments complete(Raw raw) {
   Arguments& arguments = raw.arguments;
   if (!arguments.sample.empty()) return std::move(arguments);

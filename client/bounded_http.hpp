@@ -1,7 +1,7 @@
 #pragma once
-// A connection without TLS that takes no answer's head without end. The HTTP library reads lines
-// as long as they come, and matches status lines against a regular expression that recurses for
-// every byte: 30 kB of one overflow the stack.
+// A connection without TLS that bounds the head of an answer. The HTTP library reads lines of any
+// length, and matches status lines with a recursive regular expression: 30 kB of one overflow the
+// stack.
 
 #include <httplib.h>
 
@@ -12,10 +12,10 @@
 
 namespace unwrapd::client {
 
-/// Sees an answer's bytes as they come in, up to the body.
+/// Checks an answer's bytes as they arrive, up to the body.
 class AnswerHead {
  public:
-  /// False once a line or the whole head is too long. Interim answers (100) count for the head.
+  /// False if a line or the whole head is too long. Interim answers (100) count as head.
   bool takes(std::string_view bytes);
 
  private:

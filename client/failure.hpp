@@ -1,6 +1,6 @@
 #pragma once
-// Why the command ends without a result, as an exit code and a sentence. Thrown where the cause is
-// known, caught in main() alone.
+// The reason why the command ends without a result: an exit code and a sentence. It is thrown where
+// the cause is known, and caught in main() alone.
 
 #include <stdexcept>
 #include <string>
@@ -10,8 +10,8 @@ namespace unwrapd::client {
 enum class ExitCode {
   ok = 0,
   job_failed = 1,   ///< the server refused or failed the job; its problem is printed
-  usage = 2,        ///< the command line makes no sense
-  unreachable = 3,  ///< no server, no answer in time, or an answer that is not unwrapd's
+  usage = 2,        ///< the command line is invalid
+  unreachable = 3,  ///< no server, no answer in time, or an answer that is not from unwrapd
   file = 4,         ///< a file that cannot be read or written
   interrupted = 130,
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Files read whole, and files written so that a reader never sees half of one.
+// Reads whole files, and writes files so that a reader never sees a part of one.
 
 #include <filesystem>
 #include <fstream>
@@ -11,14 +11,14 @@ namespace unwrapd::client {
 /// Throws Failure{file}.
 std::string read_file(const std::filesystem::path& path);
 
-/// Throws Failure{file} when path is not a readable regular file.
+/// Throws Failure{file} unless path is a readable regular file.
 std::uintmax_t file_bytes(const std::filesystem::path& path);
 
-/// Collects bytes under a temporary name beside path; commit() gives the file its name. Without
-/// commit() nothing is left behind and an older file of that name stays as it was.
+/// Collects bytes under a temporary name beside path; commit() renames it. Without commit() the
+/// temporary file is removed and an older file of that name stays.
 class NewFile {
  public:
-  /// Throws Failure{file} when the folder cannot be written.
+  /// Throws Failure{file} if the folder is not writable.
   explicit NewFile(std::filesystem::path path);
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -35,7 +35,7 @@ class NewFile {
   std::ofstream stream_;
 };
 
-/// The whole file at once, as NewFile does it.
+/// Writes the whole file by NewFile.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace unwrapd::client

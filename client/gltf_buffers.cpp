@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// RFC 3986: %20 and its like. A lone percent sign stands for itself.
+/// Decodes %20 and its like (RFC 3986). A lone percent sign stays.
 std::string percent_decoded(std::string_view text) {
   std::string decoded;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -42,7 +42,7 @@ ExternalBuffer locate(const std::string& uri, const fs::path& folder) {
   return buffer;
 }
 
-/// uri of buffers[k], or empty: every step of the way may be of the wrong type.
+/// uri of a buffer; empty if it is missing or of another type.
 std::string uri_of(const nlohmann::json& buffer) {
   if (!buffer.is_object()) return {};
   const auto uri = buffer.find("uri");

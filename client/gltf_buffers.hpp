@@ -1,5 +1,5 @@
 #pragma once
-// The files that a .gltf keeps its numbers in: found beside it, so that they can travel with it.
+// Finds the external buffers of a .gltf, so that they can be uploaded with it.
 
 #include <filesystem>
 #include <string>
@@ -7,16 +7,16 @@
 
 namespace unwrapd::client {
 
-/// uri: as the document writes it, which is the name that the server looks for.
+/// uri: as in the document, which is the name that the server looks for.
 struct ExternalBuffer {
   std::string uri;
   std::filesystem::path file;
 };
 
 /// The external buffers of a .gltf, each once, in the document's order. Data URIs and a GLB's own
-/// buffer need none. A document that is no JSON has none: the server says what is wrong with it.
+/// buffer are not external. A document that is not JSON has none; the server reports the error.
 /// Throws Failure{file} for a URI that leads out of the document's folder (absolute, with a scheme
-/// or with ".."), and for a buffer that is not there.
+/// or with ".."), and for a missing buffer.
 std::vector<ExternalBuffer> external_buffers(const std::filesystem::path& document);
 
 }  // namespace unwrapd::client

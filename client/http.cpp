@@ -1,4 +1,4 @@
-// The one file of the client that knows the HTTP library. A stop request shuts the socket down from
+// The only file of the client that uses the HTTP library. A stop request shuts the socket down from
 // the requesting thread, so that a read that waits for the next event returns at once.
 #include "client/http.hpp"
 
@@ -18,7 +18,8 @@ namespace {
 constexpr int kConnectSeconds = 5;
 constexpr int kSilenceSeconds = 60;  // event streams send a heartbeat every 15 s
 constexpr std::size_t kBlockBytes = 65'536;
-constexpr std::size_t kMostText = std::size_t{64} << 20;  // of an answer that is kept in memory
+constexpr std::size_t kMostText = std::size_t{64}
+                                  << 20;  // of an answer that is collected in memory
 constexpr std::string_view kPlain = "http://";
 
 template <class Client>
@@ -27,7 +28,7 @@ void prepare(Client& client) {
   client.set_read_timeout(kSilenceSeconds);
   client.set_write_timeout(kSilenceSeconds);
   client.set_tcp_nodelay(true);
-  // From the environment alone: a command line is seen by everybody on the machine.
+  // Only from the environment, since all users of the machine can see a command line.
   if (const char* key = std::getenv("UNWRAP_API_KEY")) client.set_bearer_token_auth(key);
 }
 
@@ -54,7 +55,7 @@ Headers lower_case(const httplib::Headers& headers) {
   return lowered;
 }
 
-/// Runs a callback for the library, which knows no exceptions: keeps what was thrown for later.
+/// Runs a callback of the library, which cannot pass exceptions on: stores the exception for later.
 class Guard {
  public:
   template <class Callback>
@@ -91,7 +92,7 @@ httplib::Result perform(Client&& client, const ServerUrl& server, const std::sto
   return result;
 }
 
-/// Sends one request with the stop token watching it; guard is that of its callbacks.
+/// Sends one request, which the stop token can end; guard belongs to its callbacks.
 template <class Send>
 httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, const Guard& guard,
                         Send&& send) {
@@ -102,14 +103,15 @@ httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, co
   return perform(BoundedHttp(host, port), server, stop, guard, send);
 }
 
-/// Hands the library the next block of an upload.
+/// Gives the library the next block of an upload.
 void send_block(UploadReader& reader, std::size_t length, httplib::DataSink& sink) {
   std::array<char, kBlockBytes> block;
   const std::size_t count = reader.read(block.data(), std::min(length, block.size()));
   sink.write(block.data(), count);
 }
 
-/// Where the body of an answer goes: to the caller's sink when it is a success, else into text.
+/// Receives the body of an answer: into the caller's sink if the answer is a success, else into
+/// text.
 struct Receiver {
   const BytesSink& sink;
   bool to_sink = false;

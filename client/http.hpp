@@ -1,5 +1,5 @@
 #pragma once
-// HTTP as the client needs it, behind plain types: the HTTP library is seen by http.cpp alone.
+// HTTP calls with plain types; only http.cpp includes the HTTP library.
 
 #include <functional>
 #include <map>
@@ -21,16 +21,16 @@ struct Reply {
   std::string body;
 
   [[nodiscard]] bool ok() const { return status >= 200 && status < 300; }
-  /// Empty when there is no such header. name in lower case.
+  /// Empty if there is no such header. name: in lower case.
   [[nodiscard]] std::string header(const std::string& name) const;
 };
 
-/// Takes a body as it arrives.
+/// Called with each part of a body.
 using BytesSink = std::function<void(std::string_view)>;
 
-/// Every call opens a connection of its own, and throws Failure{unreachable} when the server cannot
-/// be reached or falls silent, Failure{interrupted} when a stop is requested, and what its sink or
-/// its upload's files throw. A refusal (status 4xx, 5xx) is a Reply.
+/// Every call opens a connection of its own. It throws Failure{unreachable} if the server cannot be
+/// reached or falls silent, Failure{interrupted} if a stop is requested, and what its sink or its
+/// upload's files throw. A refusal (status 4xx, 5xx) is a Reply.
 class Http {
  public:
   Http(ServerUrl server, std::stop_token stop);
@@ -38,7 +38,7 @@ class Http {
   [[nodiscard]] Reply post(const std::string& path, const Upload& upload,
                            const Headers& headers) const;
 
-  /// The body of a 2xx answer goes to sink when there is one; any other into the Reply.
+  /// The body of a 2xx answer goes to sink, if given; any other body to the Reply.
   [[nodiscard]] Reply get(const std::string& path, const Headers& headers = {},
                           const BytesSink& sink = {}) const;
 

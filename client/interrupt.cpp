@@ -1,5 +1,5 @@
-// A signal handler could only set a global flag that a blocked read never sees. Instead the signals
-// are blocked and read from a descriptor by a thread of their own, which may do anything.
+// A signal handler could only set a global flag, which a blocked read does not see. Instead the
+// signals are blocked, and a thread reads them from a descriptor; it may call any function.
 #include "client/interrupt.hpp"
 
 #include <poll.h>
@@ -36,7 +36,7 @@ void Interrupt::watch(std::chrono::milliseconds time_limit) {
   const int timeout_ms = time_limit.count() > 0 ? static_cast<int>(time_limit.count()) : -1;
   const int ready = poll(sources.data(), sources.size(), timeout_ms);
   if (sources[1].revents != 0) return;
-  signalfd_siginfo taken{};  // read, or the signal would stay pending for the next reader
+  signalfd_siginfo taken{};  // must be read, else the signal stays pending
   if (sources[0].revents != 0) std::ignore = read(signals_, &taken, sizeof taken);
   timed_out_ = ready == 0;
   source_.request_stop();

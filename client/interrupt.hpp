@@ -1,5 +1,5 @@
 #pragma once
-// Ctrl-C and the time limit, both as one stop token: whatever waits, waits for it too.
+// Ctrl-C and the time limit as one stop token.
 
 #include <atomic>
 #include <chrono>
@@ -8,11 +8,11 @@
 
 namespace unwrapd::client {
 
-/// From its construction on, SIGINT and SIGTERM no longer end the process: they request a stop, as
-/// does the passing of the time limit. Make it before any other thread.
+/// After its construction, SIGINT, SIGTERM and the end of the time limit request a stop instead of
+/// ending the process. Construct it before any other thread.
 class Interrupt {
  public:
-  /// time_limit zero: none.
+  /// time_limit zero: no limit.
   explicit Interrupt(std::chrono::milliseconds time_limit);
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;

@@ -46,7 +46,7 @@ milliseconds retry_after(const Reply& reply) {
   return std::chrono::seconds(std::clamp(seconds, 1L, kLongestRetryAfterSeconds));
 }
 
-/// JSON of an answer; null when it is none.
+/// JSON of an answer; null if it is not JSON.
 api::Json json_of(const std::string& body) {
   api::Json json = api::Json::parse(body, nullptr, false);
   return json.is_discarded() ? api::Json() : json;
@@ -125,7 +125,7 @@ void JobClient::read_events(const std::string& job_id, Following& following,
                                 [&](std::string_view bytes) { parser.feed(bytes, take); });
   if (following.job) return;
   if (!reply.ok() && !is_busy(reply)) refuse(reply);
-  const api::Job now = state_of(job_id);  // no stream to be had, or it ended early
+  const api::Job now = state_of(job_id);  // no stream is available, or it ended early
   following.lost = 0;
   if (api::is_final(now.state)) following.job = now;
 }
@@ -155,7 +155,7 @@ api::Job JobClient::state_of(const std::string& job_id) {
 void JobClient::pause(milliseconds duration) {
   std::mutex mutex;
   std::unique_lock lock(mutex);
-  std::condition_variable_any never_notified;  // but by the stop token
+  std::condition_variable_any never_notified;  // only the stop token ends the wait
   never_notified.wait_for(lock, stop_, duration, [] { return false; });
   if (stop_.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
 }

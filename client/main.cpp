@@ -19,7 +19,7 @@ ProgressStyle style_for(const Arguments& arguments) {
   return isatty(STDERR_FILENO) != 0 ? ProgressStyle::bar : ProgressStyle::lines;
 }
 
-/// One column is left free: a full line makes some terminals wrap.
+/// One column less than the terminal has, since a full line makes some terminals wrap.
 std::size_t terminal_width() {
   winsize size{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
@@ -43,7 +43,9 @@ ExitCode perform(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // a server that hangs up is an error to report, not our end
+  std::signal(
+      SIGPIPE,
+      SIG_IGN);  // a server that closes the connection is an error, not the end of this process
   const auto parsed = parse_arguments(argc, argv);
   if (const auto* message = std::get_if<Message>(&parsed)) {
     (message->code == ExitCode::ok ? std::cout : std::cerr) << message->text << std::flush;

@@ -1,6 +1,6 @@
 #pragma once
-// The files that a command writes: of every map of the job the result and its pictures, and one
-// report. A job with a list of lambdas has a map for each; their files carry it in their names.
+// The files that a command writes: the result and the pictures of every map, and one report. A job
+// with a list of lambdas has a map for each, whose file names contain it.
 
 #include <filesystem>
 #include <list>
@@ -13,16 +13,16 @@
 
 namespace unwrapd::client {
 
-/// "folder/bust.glb" and "0.1" become "folder/bust.0.1.glb"; without a lambda nothing changes.
+/// "folder/bust.glb" and "0.1" become "folder/bust.0.1.glb"; without a lambda the path stays.
 std::filesystem::path map_path(const std::filesystem::path& path, const std::string& lambda);
 
-/// What there is to tell of one map.
+/// The output of one map, for the summary.
 struct WrittenMap {
   std::string result;  ///< where the asset was written
   std::string report;  ///< JSON text
 };
 
-/// The files are opened before anything is sent: what cannot be written is known at once.
+/// Opens the files before anything is sent, so that an unwritable file is reported at once.
 class Outputs {
  public:
   explicit Outputs(const Arguments& arguments);

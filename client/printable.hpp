@@ -1,12 +1,12 @@
 #pragma once
-// What a server says, as it may be written to a terminal.
+// Makes a server's text safe for a terminal.
 
 #include <string>
 
 namespace unwrapd::client {
 
-/// Control characters (C0, DEL and C1), by which a text would move the cursor or give commands,
-/// become "?".
+/// Replaces control characters (C0, DEL and C1), which could move the cursor or give commands, by
+/// "?".
 std::string printable(std::string text);
 
 }  // namespace unwrapd::client

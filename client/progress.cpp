@@ -46,7 +46,7 @@ std::string figures(const ProgressState& state) {
   return text + " flips " + std::to_string(state.flipped);
 }
 
-/// " [====>   ]", width characters with the space and the brackets; nothing when too narrow.
+/// " [====>   ]", width characters with the space and the brackets; empty if that is too narrow.
 std::string bar(double fraction, std::size_t width) {
   if (width < kNarrowestBar + 3) return {};
   const std::size_t cells = std::min(width - 3, kWidestBar);

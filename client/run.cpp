@@ -15,7 +15,7 @@
 namespace unwrapd::client {
 namespace {
 
-/// Options travel in the query as long as they are short; lists of objects and buffers need parts.
+/// Short options go into the query; lists of objects, and buffers, need a multipart request.
 api::Job submit(JobClient& client, const Arguments& arguments) {
   const auto buffers = external_buffers(arguments.file);
   const bool is_long = std::ranges::any_of(arguments.options, [](const auto& option) {
@@ -37,7 +37,7 @@ api::Job follow(JobClient& client, const std::string& job_id, const Console& con
   });
 }
 
-/// What became of a job whose client is stopped. The stopped client can send nothing any more.
+/// Cancels the job of a stopped client, by another client, and returns the outcome as text.
 std::string cancel(const Arguments& arguments, const std::string& job_id) {
   try {
     JobClient(arguments.server, {}).cancel(job_id);
@@ -47,7 +47,7 @@ std::string cancel(const Arguments& arguments, const std::string& job_id) {
   }
 }
 
-/// Follows the job to its end. Whatever ends the waiting before, the job is not left behind.
+/// Follows the job to its end, or cancels it if the wait ends before.
 void finish_job(JobClient& client, const Arguments& arguments, const std::string& job_id,
                 const Console& console) {
   try {
@@ -75,7 +75,7 @@ std::string summary(const std::string& name, const api::Json& report) {
   return name + text.data();
 }
 
-/// A line for each map, then the notes, which are the same for all.
+/// Prints a line for each map, then the notes, which are the same for all.
 void tell_maps(const std::vector<WrittenMap>& maps, const Console& console) {
   try {
     for (const WrittenMap& map : maps)

@@ -1,5 +1,5 @@
 #pragma once
-// The command as a whole: from arguments to files.
+// Runs the whole command, from arguments to files.
 
 #include <iosfwd>
 #include <stop_token>
@@ -9,7 +9,7 @@
 
 namespace unwrapd::client {
 
-/// Where the command speaks: results on out, progress and notes on err.
+/// The output streams: results go to out, progress and notes to err.
 struct Console {
   std::ostream& out;
   std::ostream& err;

@@ -1,13 +1,13 @@
 #pragma once
-// A mesh to try the service with, made from a formula: a ruffled shell, open at its rim and with a
-// round hole off its middle.
+// A sample mesh, made from a formula: a ruffled shell, open at its rim and with a round hole off
+// its middle.
 
 #include <string>
 
 namespace unwrapd::client {
 
-/// As a GLB with positions and normals, without UVs. Faces: 2 * rings * segments (20,164 as it
-/// stands). The same bytes on every call.
+/// A GLB with positions and normals, without UVs. It has 2 * rings * segments faces (20,164 at
+/// present). The same bytes on every call.
 std::string sample_glb();
 
 }  // namespace unwrapd::client

@@ -1,5 +1,5 @@
 #pragma once
-// Server-sent events, read: bytes in as they come from the network, whole events out.
+// Parses server-sent events: takes bytes as they arrive, and returns whole events.
 
 #include <functional>
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace unwrapd::client {
 
-/// name is "message" when the stream gives none. id is the last one seen, as the format asks.
+/// name is "message" if the stream names none. id is the last one seen, as the standard says.
 struct SseEvent {
   std::string id;
   std::string name;
@@ -18,7 +18,8 @@ class SseParser {
  public:
   using Sink = std::function<void(const SseEvent&)>;
 
-  /// Takes the next bytes of the stream, cut anywhere, and hands on each event that they complete.
+  /// Takes the next bytes of the stream, divided anywhere, and passes on each event that they
+  /// complete.
   void feed(std::string_view bytes, const Sink& sink);
 
  private:

@@ -19,10 +19,10 @@ Piece text_piece(std::string text) {
 
 Piece file_piece(const fs::path& path) { return {{}, path, file_bytes(path)}; }
 
-/// A line that no part holds: long enough that no mesh contains it by chance.
+/// The boundary line, long enough that no mesh contains it by chance.
 constexpr const char* kBoundary = "unwrapd-5f1c9e27a84b4d0e9b3a6d7c2e8f0a14";
 
-/// Names in a part's header: quotes and line ends are escaped as browsers do it.
+/// Escapes quotes and line ends in the names of a part's header, as browsers do.
 std::string quoted(const std::string& name) {
   std::string text = "\"";
   for (const char c : name) {

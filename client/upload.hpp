@@ -1,5 +1,5 @@
 #pragma once
-// The body of a request, told as pieces: text, and files that are read only while they are sent.
+// The body of a request as a list of pieces: text, and files that are read while they are sent.
 
 #include <cstddef>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace unwrapd::client {
 /// Either text, or the bytes of a file.
 struct Piece {
   std::string text;
-  std::filesystem::path file;  ///< empty: the piece is text
+  std::filesystem::path file;  ///< empty if the piece is text
   std::size_t bytes = 0;
 };
 
@@ -25,7 +25,7 @@ struct Upload {
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// The document alone, as the media type of its extension.
+/// The document alone, with the media type of its extension.
 Upload raw_upload(const std::filesystem::path& document);
 
 /// multipart/form-data with the parts options (JSON), mesh and one a buffer, named by its URI.
@@ -40,8 +40,8 @@ class UploadReader {
  public:
   explicit UploadReader(const Upload& upload) : upload_(upload) {}
 
-  /// Fills buffer with the next bytes and returns how many there were; 0 at the end.
-  /// Throws Failure{file} when a file has become shorter since its size was taken.
+  /// Fills buffer with the next bytes and returns their number; 0 at the end. Throws Failure{file}
+  /// if a file has become shorter since its size was taken.
   std::size_t read(char* buffer, std::size_t capacity);
 
  private:

@@ -89,8 +89,8 @@ void mark_creases(const SurfaceNumbers& surface, const Pieces& pieces, const Mem
   }
 }
 
-/// Numbers the chart's vertices by first use. number: of the vertices of pieces, kUnnumbered before
-/// and after. vertex_source: set for each of the chart's vertices.
+/// Numbers the chart's vertices by first use. number: of the vertices of pieces, kUnnumbered if
+/// not numbered yet. vertex_source: set for each of the chart's vertices.
 void number_vertices(const SurfaceNumbers& surface, const Pieces& pieces, const Members& members,
                      std::vector<Index>& number, std::vector<Index>& vertex_source, Chart& chart) {
   chart.mesh.faces.resize(members.source.size());
