@@ -1,5 +1,5 @@
-// Buffer views and accessors: every range is proved to lie within what it refers to, by divisions
-// that cannot overflow, before anything of its size exists.
+// Buffer views and accessors. Every range is checked against the data that it refers to, by
+// divisions that cannot overflow, before anything of its size is allocated.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -32,7 +32,7 @@ std::size_t component_type(const Node& type) {
   return number;
 }
 
-/// `count` elements of `bytes` each, `stride` apart, from `offset` on: do they lie in `length`?
+/// Whether `count` elements of `bytes` each, `stride` apart, from `offset` on, lie within `length`.
 bool fits(std::size_t length, std::size_t offset, std::size_t count, std::size_t bytes,
           std::size_t stride) {
   if (count == 0) return offset <= length;
@@ -45,7 +45,7 @@ bool fits(std::size_t length, std::size_t offset, std::size_t count, std::size_t
        "it reaches beyond the end of its " + std::string(container) + "; export the asset again");
 }
 
-/// Ours to read: tinygltf refuses what is no multiple of 4.
+/// Not read by tinygltf, which refuses strides that are no multiple of 4.
 std::size_t stride_of(const Node& view) {
   const auto stride = view.find("byteStride");
   if (!stride) return 0;
@@ -156,15 +156,15 @@ void check_accessor_range(const Gltf& gltf, const Accessor& accessor, const Plac
     out_of_range(place, "buffer view");
 }
 
-/// Entries lie in the file side by side, so that there are no more of them than bytes; many
-/// accessors over the same bytes would only make us count for hours.
+/// Entries are consecutive in the file, so that a document cannot have more of them than bytes. The
+/// budget bounds the work for many accessors over the same bytes.
 std::size_t sparse_budget(const Gltf& gltf) {
   std::size_t bytes = 0;
   for (const std::string& buffer : gltf.buffers) bytes += buffer.size();
   return bytes;
 }
 
-/// Checks the indices of a sparse accessor, if the budget allows.
+/// Checks the indices of a sparse accessor, and deducts them from the budget.
 void spend(std::size_t& budget, const Gltf& gltf, std::size_t accessor) {
   const Sparse& sparse = *gltf.accessors[accessor].sparse;
   const Place place = accessor_place(accessor).at("sparse");

@@ -1,5 +1,5 @@
 #pragma once
-// Mesh indices are 32-bit and signed, the sizes of containers neither: the one conversion.
+// Converts mesh indices, which are 32-bit and signed, to sizes of containers.
 
 #include <cstddef>
 

@@ -1,6 +1,6 @@
-// A patched document becomes a file. All buffers become one: of each, the runs of bytes that some
-// view still uses are kept, in order and at the same alignment. A buffer that carries more than
-// bytes (extras, extensions) stays a buffer of its own, and then nothing is moved.
+// Turns a patched document into a file. All buffers become one. It keeps the runs of bytes that a
+// view still uses, in order and at the same alignment. A buffer that has more than bytes (extras,
+// extensions) stays a buffer of its own, and then nothing is moved.
 #include <algorithm>
 #include <vector>
 
@@ -34,7 +34,7 @@ std::vector<char> used_views(const Json& document, std::size_t count) {
   return used;
 }
 
-/// Takes out the accessors that only what was replaced had used, and renumbers the others.
+/// Removes the accessors that only replaced parts had used, and renumbers the others.
 void drop_dead_accessors(const Gltf& gltf, Json& document) {
   const auto list = document.find("accessors");
   if (list == document.end()) return;
@@ -53,7 +53,7 @@ void drop_dead_accessors(const Gltf& gltf, Json& document) {
   });
 }
 
-/// Takes out the views that only what was replaced had used, and renumbers the others.
+/// Removes the views that only replaced parts had used, and renumbers the others.
 void drop_dead_views(const Gltf& gltf, Json& document) {
   const std::size_t count = view_count(document);
   std::vector<char> used_before = used_views(gltf.json, count);
@@ -100,7 +100,7 @@ void move_views(Json& document, const std::vector<Run>& runs) {
   }
 }
 
-/// A buffer after the first may disappear into it when there is nothing to it but bytes.
+/// A later buffer can be joined with the first if it has nothing but bytes.
 bool can_join(const Json& buffers) {
   const auto is_plain = [](const Json& buffer) {
     return !buffer.contains("extensions") && !buffer.contains("extras");

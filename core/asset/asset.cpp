@@ -59,14 +59,14 @@ void check_for_obj(const AssetOptions& options) {
     refuse("/primitives", "an OBJ has no primitives; leave them out, or send a glTF");
 }
 
-/// What a compressed document is made of and how.
+/// An uncompressed document.
 struct Plain {
   std::string glb;
-  const Aside* aside = nullptr;  ///< of the document, and not in the GLB
+  const Aside* aside = nullptr;  ///< members of the document outside of json
   std::stop_token stop;
 };
 
-/// Draco and, of an OBJ, meshopt need the document as it will be.
+/// Draco, and meshopt for an OBJ, first need the finished document.
 std::string compressed(Plain plain, Format output, Compression compression, bool with_fallback) {
   std::vector<Surface> surfaces;
   const Gltf again = read_gltf({plain.glb, {}, plain.stop}, Format::glb, kNoLimits, {}, surfaces);
@@ -89,7 +89,7 @@ std::string write_from_gltf(const Gltf& gltf, std::span<const UnwrappedSurface> 
   const bool with_fallback = is_kept && gltf.came_with_fallback;
   PatchedDocument patched = patch(gltf, unwrapped, output);
   if (compression == Compression::draco) {
-    patched.aside = nullptr;  // so that what nothing reads is not read again
+    patched.aside = nullptr;  // so that unread members are not read again
     return compressed({assemble(gltf, std::move(patched), Format::glb), &gltf.aside, gltf.stop},
                       output, compression, with_fallback);
   }

@@ -8,8 +8,8 @@
 
 namespace unwrapd::asset {
 
-/// Empty when text is not base64: a foreign character, padding elsewhere than at the end.
-/// Missing padding is accepted. Throws Error{cancelled}, as append_base64() does.
+/// Empty if text is not base64: a foreign character, or padding anywhere but at the end. Missing
+/// padding is accepted. Throws Error{cancelled}, as append_base64() does.
 std::optional<std::string> base64_decoded(std::string_view text, const std::stop_token& stop = {});
 
 void append_base64(std::string& text, std::string_view bytes, const std::stop_token& stop = {});

@@ -1,5 +1,5 @@
-// A document's buffers. Nothing is ever opened or fetched: bytes come from the GLB's chunk, from
-// data URIs and from the parts of the request, and every other URI is refused.
+// The buffers of a document. Bytes come from the GLB's chunk, from data URIs and from the parts of
+// the request; every other URI is refused, and nothing is ever opened.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -68,7 +68,7 @@ std::string data_uri_bytes(const Node& uri, const std::stop_token& stop) {
   return std::move(*bytes);
 }
 
-/// The part of the request that a URI names; end() when there is none.
+/// The part of the request that a URI names; end() if there is none.
 auto part_of(const std::string& uri, const Input& input) {
   const auto part = input.buffers.find(uri);
   return part != input.buffers.end() ? part : input.buffers.find(percent_decoded(uri));
@@ -91,8 +91,8 @@ std::string external_bytes(const Node& uri, const Input& input) {
 constexpr std::array<std::string_view, 2> kMeshopt = {"EXT_meshopt_compression",
                                                       "KHR_meshopt_compression"};
 
-/// A buffer that only stands for what meshopt's views decode to: marked so, or without any source
-/// in a document that uses meshopt. Its bytes are never needed.
+/// Whether a buffer is only the fallback of meshopt's views: it is marked so, or has no source in a
+/// document that uses meshopt. Its bytes are not needed.
 bool is_meshopt_fallback(const Node& buffer, bool has_source, bool uses_meshopt) {
   if (const auto extensions = buffer.find("extensions"))
     for (const std::string_view name : kMeshopt)

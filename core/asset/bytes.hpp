@@ -1,5 +1,5 @@
 #pragma once
-// Little-endian numbers in a file's bytes, wherever they lie.
+// Little-endian numbers in a file's bytes, at any alignment.
 
 #include <bit>
 #include <cstdint>

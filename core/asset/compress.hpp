@@ -1,5 +1,5 @@
 #pragma once
-// Geometry of a document that is about to be written, compressed without loss.
+// Compresses the geometry of a document before it is written, without loss.
 
 #include <string>
 
@@ -8,14 +8,15 @@
 
 namespace unwrapd::asset {
 
-/// KHR_draco_mesh_compression for every primitive of indexed or plain triangles: sequential, so
-/// that vertices and faces keep their order, and without quantisation. gltf: a plain document.
-/// with_fallback: readers without Draco still find the geometry; none is required.
+/// Compresses every primitive of indexed or plain triangles by KHR_draco_mesh_compression:
+/// sequentially, so that vertices and faces keep their order, and without quantisation. gltf: an
+/// uncompressed document. with_fallback: readers without Draco still find the geometry, and the
+/// extension is not required.
 PatchedDocument draco_compressed(const Gltf& gltf, bool with_fallback);
 
-/// EXT_meshopt_compression, or KHR_ as style says, for every buffer view that holds nothing but
-/// vertices or indices. bytes are those of buffer 0, the only one; they become the compressed ones.
-/// Triangles may be turned: their corners keep their cyclic order only. Throws Error{cancelled}.
+/// Compresses every buffer view that has only vertices or indices by EXT_meshopt_compression, or by
+/// KHR_ as style says. bytes are those of buffer 0, the only one, and become the compressed ones.
+/// The corners of a triangle may be rotated, but keep their cyclic order. Throws Error{cancelled}.
 void compress_views(Json& document, std::string& bytes, const MeshoptStyle& style,
                     const std::stop_token& stop);
 

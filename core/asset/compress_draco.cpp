@@ -87,7 +87,7 @@ std::vector<Index> corners_of(const Gltf& gltf, const Primitive& primitive) {
   return corners;
 }
 
-/// A bitstream, or nothing where Draco cannot say what the primitive says.
+/// A bitstream, or nothing if Draco cannot express the primitive.
 std::string bitstream_of(const Gltf& gltf, const Primitive& primitive) {
   draco::Mesh mesh;
   mesh.set_num_points(static_cast<std::uint32_t>(gltf.accessors[primitive.position].count));
@@ -163,10 +163,10 @@ class DracoPacker {
     for (const auto& [semantic, accessor] : primitive.attributes)
       if (!is_plain(gltf_.accessors[accessor])) return false;
     const std::size_t vertices = gltf_.accessors[primitive.position].count;
-    return corners % 3 == 0 && vertices > 0 && vertices <= corners;  // more are refused by readers
+    return corners % 3 == 0 && vertices > 0 && vertices <= corners;  // readers refuse more
   }
 
-  /// The accessor of the indices; Draco always has some.
+  /// The accessor of the indices; Draco always needs one.
   std::size_t indices_of(const Primitive& primitive) {
     if (primitive.indices) return *primitive.indices;
     Json accessor = {{"componentType", ComponentType::u32},
@@ -189,7 +189,7 @@ class DracoPacker {
   bool with_fallback_;
   PatchedDocument patched_;
   NewViews views_;
-  std::vector<std::size_t> left_;  ///< references to accessors that are not packed
+  std::vector<std::size_t> left_;  ///< references by accessors that are not compressed
   std::map<Key, Done> done_;
 };
 

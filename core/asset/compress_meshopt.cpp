@@ -26,7 +26,7 @@ constexpr std::size_t kMaxStride = 256;
 
 enum class Use { none, vertices, indices, triangles, mixed };
 
-/// What the accessors over a view are.
+/// The accessors over a view, by their kind.
 struct ViewUse {
   Use use = Use::none;
   std::size_t element_bytes = 0;
@@ -166,8 +166,8 @@ void list_extension(Json& document, const MeshoptStyle& style) {
   if (!style.with_fallback) document["extensionsRequired"].push_back(style.name);
 }
 
-/// The buffer that the compressed views lie in when they are not: without bytes of its own unless
-/// readers without the extension shall read it.
+/// The buffer of the uncompressed views. It has bytes only if readers without the extension shall
+/// read it.
 Json fallback_buffer(const std::string& plain, const MeshoptStyle& style,
                      const std::stop_token& stop) {
   Json buffer = {{"byteLength", plain.size()},
@@ -176,13 +176,13 @@ Json fallback_buffer(const std::string& plain, const MeshoptStyle& style,
   return buffer;
 }
 
-/// Views of one and the same range; no view of another range reaches into it.
+/// The views of one range; no view of another range overlaps it.
 struct Range {
   std::size_t begin = 0, end = 0;
   std::vector<std::size_t> views;
 };
 
-/// The ranges that are no part of others.
+/// The ranges that are not contained in others.
 std::vector<Range> separate_ranges(const Json& views) {
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> by_range;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -201,7 +201,7 @@ std::vector<Range> separate_ranges(const Json& views) {
   return separate;
 }
 
-/// What the views of a range agree to be.
+/// The kind of all views of a range.
 ViewUse common_use(const Uses& uses, const Json& views, const Range& range) {
   const std::size_t first = range.views.front();
   for (const std::size_t i : range.views)
@@ -217,7 +217,7 @@ class Packer {
   Packer(Json& document, std::string_view bytes, const MeshoptStyle& style)
       : views_(document["bufferViews"]), bytes_(bytes), style_(style), uses_(document) {}
 
-  /// The compressed bytes, with what stays plain.
+  /// The compressed bytes, and those of views that stay uncompressed.
   std::string pack(const std::stop_token& stop) {
     std::vector<char> is_packed(views_.size(), 0);
     for (const Range& range : separate_ranges(views_)) {
@@ -253,7 +253,8 @@ class Packer {
     unpacked_ += plain;
   }
 
-  /// The views that are not packed, at the same places relative to each other where they overlap.
+  /// Copies the views that are not compressed, in the same positions relative to each other if they
+  /// overlap.
   void keep_plain(const std::vector<char>& is_packed) {
     std::vector<Run> runs;
     for (std::size_t i = 0; i < is_packed.size(); ++i) {

@@ -40,7 +40,7 @@ Chunk chunk_at(std::string_view file, std::size_t offset) {
   return {type, file.substr(begin, length), begin + length};
 }
 
-/// The file as far as it says it goes; padding of the transport after that is let go.
+/// The file up to its stated length; padding after that is ignored.
 std::string_view checked(std::string_view file) {
   if (word(file, 0) != kMagic) refuse("the GLB does not begin with \"glTF\"", 0);
   if (word(file, 4) != 2) refuse("only version 2 of the GLB container can be read", 4);
@@ -53,7 +53,7 @@ std::string_view checked(std::string_view file) {
 
 bool is_aligned(const Chunk& chunk) { return chunk.bytes.size() % 4 == 0; }
 
-/// Where the chunk after this one starts, or the file ends.
+/// The start of the next chunk, or the end of the file.
 std::size_t next_chunk(std::string_view file, const Chunk& chunk) {
   const std::size_t padded = chunk.end + (4 - chunk.bytes.size() % 4) % 4;
   const auto is_start = [&](std::size_t offset) {

@@ -9,17 +9,17 @@ namespace unwrapd::asset {
 /// Views into the file.
 struct GlbChunks {
   std::string_view json;
-  std::string_view bin = {};  ///< empty when there is no such chunk
-  std::string others = {};    ///< all later chunks, as a file has them
-  int unaligned = 0;          ///< chunks whose length was no multiple of 4
+  std::string_view bin = {};  ///< empty if there is no such chunk
+  std::string others = {};    ///< all later chunks, in the format of a file
+  int unaligned = 0;          ///< chunks whose length is not a multiple of 4
 };
 
 /// Throws Error{malformed_glb} unless version, lengths and chunk order are right. A chunk's length
-/// should be a multiple of 4: where it is not, the next chunk follows at once or after padding, and
-/// is looked for in this order. Bytes after the length that the file states are ignored.
+/// should be a multiple of 4. If it is not, the next chunk is searched at once and after padding,
+/// in this order. Bytes after the stated length are ignored.
 GlbChunks split_glb(std::string_view bytes);
 
-/// Throws Error{body_too_large} when the file would pass the container's 4 GiB.
+/// Throws Error{body_too_large} if the file exceeds the container's 4 GiB.
 std::string join_glb(std::string_view json, std::string_view bin, std::string_view others);
 
 }  // namespace unwrapd::asset

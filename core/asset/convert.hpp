@@ -1,5 +1,5 @@
 #pragma once
-// From one format into the other: geometry, normals and UVs; OBJ has no place for the rest.
+// Converts between the formats: geometry, normals and UVs, since OBJ has nothing else.
 
 #include <span>
 #include <string>
@@ -13,7 +13,7 @@ namespace unwrapd::asset {
 std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
                         Format output);
 
-/// For each vertex of that glTF, which of the OBJ's it copies.
+/// The vertex of the OBJ that each vertex of that glTF copies.
 std::vector<Index> sources_in_gltf(const Obj& obj, const Surface& surface,
                                    const UnwrappedSurface& unwrapped);
 

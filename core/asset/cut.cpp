@@ -19,7 +19,7 @@ std::optional<std::size_t> normals_of(const Primitive& primitive) {
 }
 
 /// The pool's vertices and faces after the cut, and new tangents for them. A vertex whose corners
-/// have different ones gets copies: mirrored halves that meet without a seam do that.
+/// have different tangents gets copies, for example between mirrored halves without a seam.
 class TangentMaker {
  public:
   TangentMaker(const Gltf& gltf, const Primitive& primitive, Split& split)
@@ -68,7 +68,7 @@ class TangentMaker {
       normal = normal.allFinite() ? normal.stableNormalized().eval() : Vec3::Zero().eval();
   }
 
-  /// Where the primitive has no normals: those of the triangles, by their areas.
+  /// Sets the area-weighted normals of the triangles, for a primitive without normals.
   void add_face_normals() {
     for (const Triangle& face : mesh_.faces) {
       const Vec3& p = mesh_.positions[as_size(face[0])];
@@ -78,7 +78,7 @@ class TangentMaker {
     }
   }
 
-  /// The vertex or that copy of it that has this tangent; a new copy where none has.
+  /// The vertex, or its copy, with this tangent; a new copy if there is none.
   Index with_tangent(Index vertex, const Tangent& tangent) {
     while (has_tangent_[as_size(vertex)] != 0 && tangents_[as_size(vertex)] != tangent) {
       if (next_[as_size(vertex)] == kNone) next_[as_size(vertex)] = copy_of(vertex);

@@ -1,6 +1,5 @@
 #pragma once
-// What the seams make of a pool of vertices: the copies that texture coordinates ask for, then
-// those that tangents do.
+// Splits the vertices of a pool at seams: copies for texture coordinates first, then for tangents.
 
 #include <span>
 #include <vector>
@@ -12,18 +11,18 @@
 
 namespace unwrapd::asset {
 
-/// The primitives that share a pool's vertices, and which pieces are theirs, in order of first use.
+/// The primitives that share a pool's vertices, and their pieces in order of first use.
 struct Pool {
   std::vector<std::size_t> primitives;
   std::vector<std::size_t> pieces;
 };
 
-/// Those that have primitives to unwrap.
+/// The pools that have primitives to unwrap.
 std::vector<Pool> pools_of(const Gltf& gltf);
 
 struct Cut {
   Split split;
-  std::vector<Tangent> tangents;  ///< [vertex], where a primitive of the pool loses its own
+  std::vector<Tangent> tangents;  ///< [vertex]; set if a primitive of the pool needs new tangents
 };
 
 /// Cuts pools one after another.

@@ -1,5 +1,5 @@
 #pragma once
-// What an Asset holds: the surfaces that it hands out, and the document that write() patches.
+// The contents of an Asset: its surfaces, and the document that write() patches.
 
 #include <variant>
 #include <vector>

@@ -1,7 +1,7 @@
-// KHR_draco_mesh_compression. The decoder is Draco's own with two doors in it: sizes are read ahead
-// and judged before Draco takes memory for them. A face costs at least a fraction of a byte of the
-// bitstream, a point belongs to some face, and an attribute has few components: what claims more
-// was made to exhaust us.
+// KHR_draco_mesh_compression. The decoder is Draco's own with two checks in it: sizes are read
+// ahead and judged before Draco allocates memory for them. A face takes at least a fraction of a
+// byte of the bitstream, a point belongs to some face, and an attribute has few components. A
+// bitstream that claims more is an attack on memory.
 #include "core/asset/draco.hpp"
 
 #include <draco/attributes/point_attribute.h>
@@ -18,8 +18,8 @@ namespace unwrapd::asset {
 namespace {
 
 constexpr std::uint64_t kFacesPerByte = 8;    // good encodings reach 2
-constexpr std::uint64_t kFreeFaces = 20'000;  // that any bitstream may have
-constexpr std::uint64_t kFreePoints = 1'000;  // beyond three to a face
+constexpr std::uint64_t kFreeFaces = 20'000;  // allowed in any bitstream
+constexpr std::uint64_t kFreePoints = 1'000;  // beyond three points a face
 constexpr int kMaxAttributeData = 32;         // seams of their own
 constexpr int kMaxComponents = 64;            // of all attributes together
 constexpr std::uint16_t kVarintCounts = DRACO_BITSTREAM_VERSION(2, 2);
@@ -32,7 +32,7 @@ bool read_count(draco::DecoderBuffer& buffer, bool varint, std::uint64_t& count)
   return good;
 }
 
-/// What the connectivity's first bytes claim.
+/// The sizes that the first bytes of the connectivity claim.
 struct Claim {
   std::uint64_t faces = 0;
   std::uint64_t points = 0;
@@ -62,7 +62,7 @@ bool is_plausible(const Claim& claim, std::uint64_t bytes, const ReadLimits& lim
          claim.points <= static_cast<std::uint64_t>(limits.max_vertices);
 }
 
-/// Draco's decoder of one method, with the checks at its two doors.
+/// Draco's decoder of one method, with the two checks.
 template <class Base>
 class GuardedDecoder : public Base {
  public:
@@ -111,8 +111,8 @@ bool decode(std::string_view bytes, const ReadLimits& limits, draco::Mesh& mesh)
              : false;
 }
 
-/// Every point has a value, and the values lie in the attribute's memory. glTF has no booleans,
-/// whose bytes Draco takes for ones whatever they are.
+/// Whether every point has a value, and the values lie in the attribute's memory. glTF has no
+/// booleans, which Draco copies from the file unchecked.
 bool is_sound(const draco::PointAttribute& attribute, std::uint32_t points) {
   if (attribute.data_type() == draco::DT_BOOL) return false;
   const auto bytes = static_cast<std::uint64_t>(attribute.byte_stride()) * attribute.size();

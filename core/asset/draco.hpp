@@ -1,5 +1,5 @@
 #pragma once
-// One Draco bitstream, decoded.
+// Decodes one Draco bitstream.
 
 #include <memory>
 #include <string>
@@ -17,7 +17,7 @@ namespace unwrapd::asset {
 
 class DracoMesh {
  public:
-  /// Throws Error{malformed_draco} at the place when the bitstream is damaged, is no mesh, or
+  /// Throws Error{malformed_draco} with the place if the bitstream is damaged, is not a mesh, or
   /// claims more than its bytes or the limits allow.
   DracoMesh(std::string_view bytes, const ReadLimits& limits, const Place& place);
   ~DracoMesh();
@@ -27,8 +27,8 @@ class DracoMesh {
   [[nodiscard]] std::size_t point_count() const;
   [[nodiscard]] std::vector<Index> corners() const;  ///< three to a face, in range
 
-  /// The attribute as elements of the accessor's type, each padded to 4 bytes.
-  /// Throws Error{malformed_draco} when there is no such attribute.
+  /// The attribute as elements of the accessor's type, each padded to 4 bytes. Throws
+  /// Error{malformed_draco} if there is no such attribute.
   [[nodiscard]] std::string elements(std::size_t id, const Accessor& accessor) const;
 
  private:

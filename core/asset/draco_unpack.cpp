@@ -1,6 +1,6 @@
-// Draco primitives become plain ones: what a bitstream holds is written into the accessors that the
-// primitive names. An accessor that already has data (a fallback for readers without Draco, or the
-// result of another bitstream) is left as it is, and the primitive gets one of its own.
+// Draco primitives become plain ones: the contents of a bitstream are written to the accessors that
+// the primitive names. An accessor that already has data (a fallback for readers without Draco, or
+// the result of another bitstream) stays as it is, and the primitive gets a new one.
 #include <map>
 #include <optional>
 #include <set>
@@ -17,11 +17,11 @@ namespace {
 
 constexpr const char* kExtension = "KHR_draco_mesh_compression";
 
-/// The primitives whose geometry lies in the same bitstream.
+/// The primitives that share a bitstream.
 using Sharers = std::vector<const DracoSource*>;
 
-/// What a bitstream holds, as it has been written into the document. Each part is written once, for
-/// all accessors that name it.
+/// The parts of a bitstream that were written to the document. Each part is written once, for all
+/// accessors that name it.
 class Unpacked {
  public:
   Unpacked(const Gltf& gltf, const DracoMesh& mesh, NewViews& views)
@@ -167,16 +167,16 @@ class Unpacker {
   }
 
   const Gltf& gltf_;
-  ReadLimits left_;  ///< what all bitstreams together may still hold
+  ReadLimits left_;  ///< what all later bitstreams together may still contain
   PatchedDocument patched_;
   NewViews views_;
-  /// Of the bitstream at hand: which accessor the old one and the attribute have become.
+  /// Of the present bitstream: the new accessor for each old one and attribute.
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> attributes_;
   std::map<std::optional<std::size_t>, std::size_t> indices_;
   std::set<std::size_t> filled_;
 };
 
-/// The sources of each run of bytes together, in the order of their first.
+/// The sources grouped by their run of bytes, in the order of their first.
 std::vector<Sharers> by_bitstream(const Gltf& gltf, const std::vector<DracoSource>& sources) {
   std::vector<Sharers> bitstreams;
   std::map<std::tuple<std::size_t, std::size_t, std::size_t>, std::size_t> number_of;

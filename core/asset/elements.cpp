@@ -7,7 +7,7 @@
 namespace unwrapd::asset {
 namespace {
 
-/// What a normalised integer stands for (glTF 2.0, section 3.11).
+/// The value of a normalised integer (glTF 2.0, section 3.11).
 double normalized(double value, ComponentType type) {
   switch (type) {
     case ComponentType::i8:

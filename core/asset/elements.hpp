@@ -1,5 +1,5 @@
 #pragma once
-// Elements of one accessor, whatever its encoding: dense, sparse, quantised, or all zero.
+// The elements of one accessor in any encoding: dense, sparse, quantised, or all zero.
 
 #include <unordered_map>
 
@@ -14,7 +14,7 @@ class Elements {
  public:
   Elements(const Gltf& gltf, std::size_t accessor);  ///< both must outlive this
 
-  /// The bytes of an element; null stands for zeros.
+  /// The bytes of an element; null means zeros.
   [[nodiscard]] const char* at(std::size_t element) const;
 
   [[nodiscard]] std::size_t unsigned_at(std::size_t element) const;  ///< of an unsigned scalar

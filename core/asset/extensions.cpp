@@ -1,6 +1,6 @@
-// Which extensions may be required of a reader: those that leave geometry alone, and the
-// compressions that asset undoes. Others are welcome as long as they are not required; only what
-// they might point at is then kept where it was.
+// The extensions that a document may require: those that do not affect geometry, and the
+// compressions that asset undoes. Others are accepted if they are not required, and whatever they
+// might refer to stays in its place.
 #include <algorithm>
 #include <array>
 

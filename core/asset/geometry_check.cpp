@@ -1,6 +1,6 @@
-// What a triangle primitive must be before its geometry is decoded, and how much of it there may
-// be. Bounds are taken over distinct geometries: what is shared counts once. Primitives that use
-// the same vertex accessors form a pool, whose vertices are split together.
+// Checks each triangle primitive before its geometry is decoded, and bounds the amount of geometry.
+// The bounds count shared geometry once. Primitives that use the same vertex accessors form a pool,
+// whose vertices are split together.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -12,9 +12,9 @@
 namespace unwrapd::asset {
 namespace {
 
-constexpr std::size_t kMaxZeroElements = 500'000;  // that exist in no file, only as a count
+constexpr std::size_t kMaxZeroElements = 500'000;  // that exist only as a count, not in the file
 constexpr std::size_t kMaxSharing = 64;            // bytes of attributes over bytes of buffers
-constexpr std::size_t kBytesPerFace = 40;          // of memory, that reading it takes
+constexpr std::size_t kBytesPerFace = 40;          // of memory for reading
 constexpr std::size_t kFreeAttributeBytes = std::size_t{16} << 20;  // that may share any bytes
 
 void check_position(const Accessor& accessor, bool quantized, const Place& place) {
@@ -63,7 +63,7 @@ std::vector<std::size_t> vertex_accessors(const Gltf& gltf, const Primitive& pri
   return accessors;
 }
 
-/// Adds up what the document asks for, and refuses when a sum passes its bound.
+/// Adds up the document's demands, and throws when a sum exceeds its bound.
 class Account {
  public:
   Account(const Gltf& gltf, const ReadLimits& limits) : gltf_(gltf), limits_(limits) {

@@ -1,7 +1,7 @@
 #pragma once
-// A glTF document in the form that the rest of asset works on: the author's JSON beside a checked
-// model of what lies in it. Whoever holds a Gltf may index without looking: views lie in their
-// buffers, accessors in their views, and every reference names something that exists.
+// A glTF document in the form that the rest of asset uses: the author's JSON and a checked model of
+// its contents. A Gltf can be indexed without checks: views lie within their buffers, accessors
+// within their views, and every reference is valid.
 
 #include <cstdint>
 #include <map>
@@ -31,7 +31,7 @@ struct View {
   std::size_t stride = 0;  ///< bytes, 0: elements are tight
 };
 
-/// A few elements that replace those of the dense part. Indices are ascending and in range.
+/// A few elements that replace those of the dense part. Indices ascend and are in range.
 struct Sparse {
   std::size_t count = 0;
   std::size_t index_view = 0;
@@ -62,10 +62,10 @@ struct Primitive {
   std::optional<std::size_t> indices;
   std::size_t position = 0;  ///< accessor of POSITION, when has_triangles
   Mode mode = Mode::triangles;
-  bool has_triangles = false;  ///< a triangle mode, POSITION is there, and it is selected
+  bool has_triangles = false;  ///< a selected primitive with a triangle mode and POSITION
   std::optional<std::size_t> material;
-  std::size_t piece = 0;  ///< when has_triangles: where its faces are
-  std::size_t pool = 0;   ///< when has_triangles: the vertices that it shares with others
+  std::size_t piece = 0;  ///< if has_triangles: the piece of its faces
+  std::size_t pool = 0;   ///< if has_triangles: the vertices that it shares with others
 };
 
 /// The faces of one or more primitives of the same geometry: a run of one surface's faces.
@@ -77,15 +77,16 @@ struct Piece {
 
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct Gltf {
-  Json json;                            ///< once read: as far as writing may change it
-  Aside aside;                          ///< the rest of the root
+  Json json;                            ///< after reading: the part that writing may change
+  Aside aside;                          ///< the other members of the root
   std::string texcoord = "TEXCOORD_0";  ///< the attribute that is replaced
   Compression came_as = Compression::none;
-  bool came_with_fallback = false;  ///< readers that cannot undo came_as found plain data, too
+  bool came_with_fallback =
+      false;  ///< uncompressed data was in the input too, for readers without came_as
   std::string meshopt_name = "EXT_meshopt_compression";  ///< or KHR_, as it came in
   std::vector<std::string> buffers;  ///< one for each of the document's, cut to its byteLength
-  bool came_as_text = false;         ///< a .gltf, whose images may lie in files beside it
-  std::map<std::size_t, std::string> sent_images;  ///< [image]: its bytes, where it was sent along
+  bool came_as_text = false;         ///< a .gltf, whose images may be in files beside it
+  std::map<std::size_t, std::string> sent_images;  ///< [image]: its bytes, if it was sent
   std::string other_chunks;                        ///< of a GLB, as they came, after JSON and BIN
   std::vector<View> views;
   std::vector<Accessor> accessors;
@@ -93,9 +94,9 @@ struct Gltf {
   std::vector<Piece> pieces;
   std::vector<std::vector<Index>> vertices;  ///< [surface][vertex]: its number in the accessor
   std::size_t pool_count = 0;
-  std::vector<std::size_t> spent_views;  ///< held compressed data that has been decoded
-  bool has_dead_bytes = false;           ///< buffers hold more than what views refer to
-  bool has_foreign_references = false;   ///< an extension may point to views or accessors unseen
+  std::vector<std::size_t> spent_views;  ///< views of compressed data that has been decoded
+  bool has_dead_bytes = false;           ///< buffers have bytes that no view refers to
+  bool has_foreign_references = false;   ///< an extension may refer to views or accessors
   std::vector<FileRepair> repairs;
   std::stop_token stop;  ///< of the job, for reading and writing
 };
@@ -107,7 +108,7 @@ Place primitive_place(const Primitive& primitive);
 /// The bytes of an element of the dense part; requires accessor.view and element < count.
 const char* dense_element(const Gltf& gltf, const Accessor& accessor, std::size_t element);
 
-/// Entry k of a sparse accessor: which element it replaces, and with what bytes.
+/// Entry k of a sparse accessor: the element that it replaces, and the new bytes.
 std::size_t sparse_index(const Gltf& gltf, const Sparse& sparse, std::size_t k);
 const char* sparse_value(const Gltf& gltf, const Accessor& accessor, std::size_t k);
 

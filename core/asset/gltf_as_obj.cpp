@@ -1,5 +1,5 @@
-// OBJ holds geometry, UVs and normals; of a glTF only these are written. Normals are written corner
-// by corner: the pieces of a surface may have different ones at the same vertex.
+// Writes geometry, UVs and normals of a glTF; OBJ has no more. Normals are written corner by
+// corner, since the pieces of a surface may have different ones at the same vertex.
 #include <optional>
 #include <string_view>
 
@@ -13,7 +13,7 @@
 namespace unwrapd::asset {
 namespace {
 
-/// The accessor of the normals that go with a piece: those of the first primitive that shows it.
+/// The accessor of a piece's normals: that of the first primitive that uses the piece.
 std::vector<std::optional<std::size_t>> normals_of_pieces(const Gltf& gltf) {
   std::vector<std::optional<std::size_t>> normals(gltf.pieces.size());
   for (const Primitive& primitive : gltf.primitives)

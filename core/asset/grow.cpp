@@ -31,8 +31,8 @@ std::string dense_bytes(const Gltf& gltf, const Accessor& accessor,
   return bytes;
 }
 
-/// A copy of a replaced element is replaced likewise. Copies are numbered upwards, so that the
-/// indices go on ascending.
+/// A copy of a replaced element is replaced likewise. Copies have rising numbers, so that the
+/// indices still ascend.
 Json grown_sparse(const Gltf& gltf, const Accessor& accessor, Json sparse,
                   const std::vector<Index>& copies, NewViews& views) {
   std::unordered_map<std::size_t, std::size_t> entry_of;
@@ -70,14 +70,14 @@ std::string packed(const std::vector<Index>& corners, ComponentType type) {
   return bytes;
 }
 
-/// The type's largest value restarts a primitive and is no index.
+/// The largest value of a type restarts a primitive, so that it is not an index.
 ComponentType index_type(std::size_t largest, bool may_be_u8) {
   if (may_be_u8 && largest < std::numeric_limits<std::uint8_t>::max()) return ComponentType::u8;
   if (largest < std::numeric_limits<std::uint16_t>::max()) return ComponentType::u16;
   return ComponentType::u32;
 }
 
-/// What an accessor over new bytes keeps of the one before it.
+/// The members that an accessor over new bytes takes from the old one.
 Json renewed(const Gltf& gltf, std::optional<std::size_t> old) {
   Json accessor = old ? gltf.json.at("accessors").at(*old) : Json::object();
   for (const char* stale : {"byteOffset", "normalized", "sparse", "min", "max"})

@@ -1,6 +1,6 @@
 #pragma once
-// New accessors over new bytes. Each function gives the accessor's JSON: that of the accessor it
-// takes the place of, with its name and extras, where there is one.
+// Makes new accessors over new bytes. Each function returns the accessor's JSON, with the name and
+// extras of the accessor that it replaces, if any.
 
 #include <array>
 #include <optional>
@@ -17,7 +17,7 @@ class NewViews {
  public:
   NewViews(PatchedDocument& document, std::size_t buffer) : document_(&document), buffer_(buffer) {}
 
-  /// stride 0: tight. target 0: neither vertices nor indices. Gives the number of the view.
+  /// stride 0: tight. target 0: neither vertices nor indices. Returns the number of the view.
   std::size_t add(std::string_view bytes, std::size_t stride, int target);
 
  private:
@@ -25,18 +25,18 @@ class NewViews {
   std::size_t buffer_;
 };
 
-/// The accessor's elements, followed by copies of some of them; sparse stays sparse.
+/// The accessor's elements, followed by copies of some of them; a sparse accessor stays sparse.
 Json grown_accessor(const Gltf& gltf, std::size_t accessor, const std::vector<Index>& copies,
                     NewViews& views);
 
-/// Triangle corners in the smallest type that holds them, but 8 bits only where `old` had them.
+/// Triangle corners in the smallest type that holds them; 8 bits only if `old` had them.
 Json index_accessor(const Gltf& gltf, std::optional<std::size_t> old,
                     const std::vector<Index>& corners, NewViews& views);
 
-/// What is kept of an accessor, over the bytes of another one.
+/// An accessor with the name and extras of `old`, over the bytes of another one.
 Json accessor_like(const Gltf& gltf, std::optional<std::size_t> old, const Json& other);
 
-/// min and max over elements of `components` each, `stride` bytes apart, as they are stored.
+/// Sets min and max over elements of `components` each, `stride` bytes apart, as they are stored.
 void set_bounds(Json& accessor, std::string_view bytes, std::size_t stride, std::size_t components);
 
 Json texcoord_accessor(const Gltf& gltf, std::optional<std::size_t> old,

@@ -20,7 +20,7 @@ constexpr std::array<Kind, 5> kKinds = {{{0, "\x89PNG\r\n", "image/png"},
                                          {4, "ftypavif", "image/avif"},
                                          {0, "\xabKTX 20\xbb", "image/ktx2"}}};
 
-/// By its first bytes; empty when it is of no kind that a buffer view may hold.
+/// The type by the first bytes; empty for a type that a buffer view must not have.
 std::string_view media_type(std::string_view image) {
   for (const Kind& kind : kKinds)
     if (image.size() >= kind.offset && image.substr(kind.offset).starts_with(kind.magic))

@@ -1,5 +1,5 @@
-// KHR_texture_transform moves texture coordinates between the mesh and the texture. New ones lie on
-// the page as they shall be read, so the transforms of their set go; all else of a material stays.
+// KHR_texture_transform moves texture coordinates between the mesh and the texture. New coordinates
+// are final, so the transforms of their set are removed; the rest of a material stays.
 #include "core/asset/materials.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kTransform = "KHR_texture_transform";
 
-/// Json or const Json, whichever the texture is.
+/// Value is Json or const Json.
 template <class Value>
 Value* transform_of(Value& texture) {
   const auto extensions = texture.find("extensions");
@@ -29,7 +29,7 @@ std::size_t whole_number(const Json& object, const char* key, std::size_t otherw
                                                               : otherwise;
 }
 
-/// The set that a textureInfo reads: an override by KHR_texture_transform counts.
+/// The set that a textureInfo reads, with an override by KHR_texture_transform.
 std::size_t texcoord_of(const Json& texture) {
   const Json* transform = transform_of(texture);
   const std::size_t own = whole_number(texture, "texCoord", 0);
@@ -55,7 +55,7 @@ void for_each_texture(Value& material, Pace& pace, const Visit& visit) {
   }
 }
 
-/// Whether a transform does anything to coordinates; an override of the set alone does not.
+/// Whether a transform changes coordinates; an override of the set alone does not.
 bool moves(const Json& transform) {
   return transform.contains("offset") || transform.contains("rotation") ||
          transform.contains("scale");
@@ -70,7 +70,7 @@ std::optional<Vec2> scale_of(const Json& transform) {
   return Vec2((*given)[0].get<double>(), (*given)[1].get<double>());
 }
 
-/// Textures that are read in tangent space, the one first whose set counts.
+/// Textures in tangent space, in descending precedence of their sets.
 constexpr std::array<std::string_view, 3> kTangentTextures = {
     "normalTexture", "clearcoatNormalTexture", "anisotropyTexture"};
 

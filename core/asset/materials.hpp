@@ -1,5 +1,5 @@
 #pragma once
-// What materials do with texture coordinates.
+// The use of texture coordinates by materials.
 
 #include <string_view>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace unwrapd::asset {
 
-/// What a material makes of the texture coordinates gltf.texcoord.
+/// The use of the texture coordinates gltf.texcoord by one material.
 struct MaterialUse {
   bool moves_texcoord = false;  ///< by the KHR_texture_transform of some texture
   Vec2 scale{1, 1};             ///< of the first texture that reads them; changes shapes, unlike
@@ -17,7 +17,7 @@ struct MaterialUse {
   std::size_t tangent_set = 0;  ///< TEXCOORD_n that tangents belong to
 };
 
-/// The materials of a document, each looked at once.
+/// The materials of a document; each is analysed once.
 class Materials {
  public:
   explicit Materials(const Gltf& gltf);
@@ -27,7 +27,7 @@ class Materials {
   /// Whether the primitive has tangents that belong to gltf.texcoord.
   [[nodiscard]] bool loses_tangents(const Primitive& primitive) const;
 
-  /// Those that move gltf.texcoord by KHR_texture_transform, though all that they are on is
+  /// The materials that move gltf.texcoord by KHR_texture_transform, if all their primitives are
   /// unwrapped.
   [[nodiscard]] std::vector<std::size_t> to_reset() const;
 
@@ -36,7 +36,7 @@ class Materials {
   std::vector<MaterialUse> uses_;
 };
 
-/// Takes the transforms of gltf.texcoord out of a material; an override of the set stays.
+/// Removes the transforms of gltf.texcoord from a material; an override of the set stays.
 void reset_transforms(Json& material, std::string_view texcoord, Pace& pace);
 
 }  // namespace unwrapd::asset

@@ -1,6 +1,6 @@
-// Meshes and nodes of the document: what refers to what. Nodes are only checked (a mesh is
-// unwrapped once, however many nodes show it), by counting, without walking the graph recursively.
-// A node with two parents is passed over: whoever reads the file shows it at both places.
+// The references of meshes and nodes. A mesh is unwrapped once, however many nodes show it, so that
+// nodes are only checked, by counting, without recursion. A node with two parents is accepted;
+// readers show it at both places.
 #include <algorithm>
 #include <tuple>
 
@@ -44,7 +44,7 @@ std::size_t checked_mode(const Node& node) {
        "a mode is from 0 to 6; export the asset again");
 }
 
-/// All of it but what Draco adds. tinygltf refuses indices without a buffer view: they stay ours.
+/// All members but Draco's. tinygltf refuses indices without a buffer view, so that we read them.
 Members checked_primitive(const Gltf& gltf, const Node& node) {
   Members primitive;
   std::size_t names = 0;
@@ -59,8 +59,8 @@ Members checked_primitive(const Gltf& gltf, const Node& node) {
   return primitive;
 }
 
-/// Fills in what tinygltf did not get. Attributes come by name: they go back to their author's
-/// order, in which they are written.
+/// Sets the members that tinygltf did not get. tinygltf sorts attributes by name; here they return
+/// to the author's order, in which they are written.
 void complete(Primitive& primitive, const Node& node) {
   const auto by_name = [](const auto& attribute, const std::string& name) {
     return attribute.first < name;
@@ -111,8 +111,8 @@ struct Children {
   std::vector<std::size_t> first = {0};
 };
 
-/// Nodes are taken away, parents before their children, until none is left (Kahn 1962). Linear
-/// however many parents a node has: no path is walked twice.
+/// Removes nodes, parents before their children, until none is left (Kahn 1962). Linear however
+/// many parents a node has.
 void check_no_cycle(const Children& children, std::vector<std::size_t> parent_counts) {
   const std::size_t count = parent_counts.size();
   std::vector<std::size_t> free;

@@ -88,7 +88,7 @@ void check_names(const Stream& stream) {
   if (!attributes || !known) refuse_stream(stream.place, "the filter does not go with the mode");
 }
 
-/// The low half of the first byte is the version: 0 of vertices, 0 or 1 of indices.
+/// The low half of the first byte is the version: 0 for vertices, 0 or 1 for indices.
 void check_version(const Stream& stream) {
   if (stream.bytes.empty()) refuse_stream(stream.place, "the compressed data is empty");
   const int version = stream.bytes.front() & 0x0f;
@@ -120,7 +120,7 @@ std::string decoded(const Stream& stream) {
   return bytes;
 }
 
-/// The view's extension and its name; none when the view is not compressed.
+/// The view's extension and its name; empty if the view is not compressed.
 std::optional<std::pair<Node, std::string_view>> compression_of(const Node& view) {
   const std::optional<Node> extensions = view.find("extensions");
   if (!extensions) return std::nullopt;
@@ -129,7 +129,7 @@ std::optional<std::pair<Node, std::string_view>> compression_of(const Node& view
   return std::nullopt;
 }
 
-/// The stream of a view, checked against all that may go wrong before it is decoded.
+/// The stream of a view, fully checked before it is decoded.
 Stream checked_stream(const Gltf& gltf, const Node& extension, std::size_t length) {
   Stream stream = read_stream(gltf, extension);
   check_names(stream);
@@ -144,7 +144,7 @@ Stream checked_stream(const Gltf& gltf, const Node& extension, std::size_t lengt
   return stream;
 }
 
-/// The bytes that all views decode to, one after another. Views of the same stream share theirs.
+/// The decoded bytes of all views, one after another. Views of the same stream share them.
 class Decoded {
  public:
   explicit Decoded(const Gltf& gltf) {
@@ -153,7 +153,7 @@ class Decoded {
     most_ = std::min(kMaxDecodedBytes, kFreeDecodedBytes + kMaxDocumentRatio * bytes);
   }
 
-  /// Where the decoded stream begins.
+  /// The start of the decoded stream.
   std::size_t offset_of(const Stream& stream) {
     const auto [found, is_new] = offsets_.try_emplace(
         {stream.bytes.data(), stream.bytes.size(), stream.stride, stream.mode, stream.filter});

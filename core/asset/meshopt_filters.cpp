@@ -10,7 +10,7 @@
 namespace unwrapd::asset {
 namespace {
 
-/// value in [-1, 1] as a normalised integer.
+/// The normalised integer of a value in [-1, 1].
 template <class Integer>
 Integer quantised(double value) {
   return static_cast<Integer>(std::round(value * std::numeric_limits<Integer>::max()));
@@ -21,7 +21,8 @@ template <class Integer>
 void decode_octahedral_element(char* bytes) {
   std::array<Integer, 4> code;
   std::memcpy(code.data(), bytes, sizeof code);
-  const double one = std::max(1.0, std::abs(static_cast<double>(code[2])));  // never 0 when sound
+  const double one =
+      std::max(1.0, std::abs(static_cast<double>(code[2])));  // 0 only in damaged data
   double x = code[0] / one, y = code[1] / one;
   const double z = 1 - std::abs(x) - std::abs(y);
   const double folded = std::max(-z, 0.0);  // the lower half lies outside the square

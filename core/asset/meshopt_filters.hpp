@@ -1,7 +1,7 @@
 #pragma once
 // The filters of EXT_meshopt_compression that turn compact codes into unit vectors and quaternions.
-// Evaluated in double precision and rounded once, as the specification's formulas say: vectorised
-// code with approximate square roots is a unit off here and there.
+// Computed in double precision and rounded once, by the specification's formulas; vectorised code
+// with approximate square roots is sometimes one unit off.
 
 #include <cstddef>
 #include <span>
@@ -12,8 +12,8 @@ namespace unwrapd::asset {
 /// bytes: whole elements.
 void decode_octahedral(std::span<char> bytes, std::size_t stride);
 
-/// The three smallest components of each quaternion, and which one is left out, become all four.
-/// bytes: whole elements of 8 bytes.
+/// Restores all four components of each quaternion from the three smallest and the number of the
+/// fourth. bytes: whole elements of 8 bytes.
 void decode_quaternions(std::span<char> bytes);
 
 }  // namespace unwrapd::asset

@@ -1,5 +1,5 @@
 #pragma once
-// Wavefront OBJ: a text that stays as its author wrote it, but for texture coordinates and faces.
+// Wavefront OBJ: the author's text is kept, except for texture coordinates and faces.
 
 #include <array>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace unwrapd::asset {
 
-/// A statement whose corners are written anew: a face (keyword 'f') or a polyline ('l').
+/// A statement whose corners are rewritten: a face (keyword 'f') or a polyline ('l').
 struct ObjElement {
   char keyword = 'f';
   std::size_t begin = 0;  ///< bytes of the statement in the text, without comment and line end
@@ -32,14 +32,15 @@ inline constexpr Index kNoNormal = -1, kNoTexcoord = -1;
 struct ObjCorner {
   Index vertex = 0;
   Index normal = kNoNormal;
-  Index texcoord = kNoTexcoord;  ///< as given: may name a vt that does not exist
+  Index texcoord = kNoTexcoord;  ///< as in the file; may name a vt that does not exist
 };
 
 struct Obj {
   std::string text;
   std::vector<ObjElement> elements;  ///< in the order of the text
   std::vector<ObjCorner> corners;
-  std::vector<std::array<Index, 3>> face_corners;  ///< [face]: which corners of its element
+  std::vector<std::array<Index, 3>>
+      face_corners;  ///< [face]: the corners of its element that it uses
   std::vector<std::pair<std::size_t, std::size_t>> texcoord_lines;  ///< their bytes, in order
   std::vector<Vec3> normals;
   std::vector<FileRepair> repairs;
@@ -50,11 +51,11 @@ struct Obj {
 /// Error{cancelled}.
 Obj read_obj(const Input& input, const ReadLimits& limits, Surface& surface);
 
-/// The text with its vt statements replaced, its faces given as v/vt[/vn]. A polygon stays one
-/// where polygon_fate() lets it.
+/// The text with new vt statements, and faces as v/vt[/vn]. A polygon stays one if polygon_fate()
+/// allows it.
 std::string write_obj(const Obj& obj, const UnwrappedSurface& unwrapped);
 
-/// Cuts a polygon of at least 3 corners into corner_count - 2 triangles: ears where it is not
+/// Cuts a polygon of at least 3 corners into corner_count - 2 triangles, by ears if it is not
 /// convex. Appends corner numbers. Throws Error{cancelled}.
 void triangulate(std::span<const Vec3> polygon, std::vector<std::array<Index, 3>>& triangles,
                  Pace& pace);

@@ -1,5 +1,5 @@
-// A glTF vertex is a position, a UV and a normal together; an OBJ's corners combine them freely, so
-// each combination that occurs becomes a vertex.
+// A glTF vertex is a position, a UV and a normal together. An OBJ's corners combine them freely, so
+// that each combination becomes a vertex.
 #include <algorithm>
 #include <array>
 #include <limits>

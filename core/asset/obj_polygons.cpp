@@ -1,5 +1,6 @@
-// Readers cut polygons into triangles as they like. Of a convex polygon every triangle of its
-// corners has the polygon's orientation, so it is kept; any other is written as our own triangles.
+// Readers cut polygons into triangles in their own ways. If a polygon is convex, every triangle of
+// its corners has the polygon's orientation, so it is kept; any other is written as our own
+// triangles.
 #include "core/asset/obj_polygons.hpp"
 
 #include <algorithm>
@@ -16,8 +17,8 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Whether all corners turn the same way, once around. Corners at one point count as one: triangles
-/// without area, which lie on an edge or a point, fold nothing.
+/// Whether all corners turn the same way, once around. Corners at one point count as one, since
+/// triangles without area cannot flip.
 bool is_convex(UvMap polygon) {
   polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
   while (polygon.size() > 1 && polygon.front() == polygon.back()) polygon.pop_back();

@@ -1,5 +1,5 @@
 #pragma once
-// Which polygons of an OBJ can stay polygons once they have texture coordinates.
+// Decides which polygons of an OBJ can stay polygons with their texture coordinates.
 
 #include <vector>
 
@@ -10,16 +10,16 @@ namespace unwrapd::asset {
 enum class PolygonFate {
   kept,
   cut,     ///< a seam runs through it: a corner has two texture coordinates
-  folded,  ///< not convex on the page: a reader with other diagonals than ours would see flips
+  folded,  ///< not convex on the page: a reader with other diagonals would see flips
 };
 
-inline constexpr Index kUnset = -1;  ///< of a corner's texture coordinates
+inline constexpr Index kUnset = -1;  ///< texture coordinates of a corner that has none yet
 
-/// What becomes of a face element. texcoords: those of its corners, where it is kept.
+/// The fate of a face element. texcoords: those of its corners, if it is kept.
 PolygonFate polygon_fate(const Obj& obj, const ObjElement& element,
                          const UnwrappedSurface& unwrapped, std::vector<Index>& texcoords);
 
-/// A sentence on the polygons that write_obj() writes as triangles, and why; none where all stay.
+/// A note on the polygons that write_obj() writes as triangles, with the reason; empty if all stay.
 std::vector<std::string> note_on_polygons(const Obj& obj, const UnwrappedSurface& unwrapped);
 
 }  // namespace unwrapd::asset

@@ -1,5 +1,5 @@
-// One pass over the text: vertices, normals and faces are taken, everything else is only kept.
-// Indices are checked at the end, since a face may stand before its vertices.
+// One pass over the text reads vertices, normals and faces; all else is only kept. Indices are
+// checked at the end, since a face may precede its vertices.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -90,7 +90,7 @@ class ObjReader {
     return {x, y, read_number(words.next())};
   }
 
-  /// No UV depends on a normal, so none is refused: exporters write nan for faces without area.
+  /// No UV depends on a normal, so all are accepted: exporters write nan for faces without area.
   Vec3 read_normal(Words& words) {
     Vec3 normal;
     for (double& x : normal) {
@@ -153,7 +153,7 @@ class ObjReader {
     return corner;
   }
 
-  /// From 1 upwards, or backwards from the latest with -1.
+  /// An index from 1 upwards, or a negative one that counts backwards from the latest.
   Index read_index(std::string_view& rest, std::size_t count) const {
     Index number = 0;
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);

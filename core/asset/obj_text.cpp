@@ -26,9 +26,9 @@ void append_obj_corner(std::string& out, Index vertex, Index texcoord, Index nor
   append_number(out, normal + 1);
 }
 
-/// UVs have the precision of a float, as in every other format. The text is that of the same number
-/// as a double: the shortest text of a float is another number to a reader of doubles, and flips
-/// triangles a few steps high.
+/// UVs have the precision of a float, as in every other format. The text is that of the value as a
+/// double, since a reader of doubles gets another value from the shortest text of a float, which
+/// flips triangles a few steps high.
 void append_vt(std::string& out, const Vec2& uv) {
   out += "vt ";
   append_number(out, static_cast<double>(static_cast<float>(uv.x())));

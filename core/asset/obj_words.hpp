@@ -8,15 +8,15 @@
 
 namespace unwrapd::asset {
 
-/// Bytes of a statement. Comment and line end are not part of it.
+/// The bytes of a statement, without comment and line end.
 struct Statement {
   std::size_t begin = 0;
   std::size_t end = 0;
-  std::size_t next = 0;  ///< where the next line begins
+  std::size_t next = 0;  ///< the start of the next line
 };
 
-/// The statement that begins at this byte. A backslash before a line's end joins it with the next,
-/// but not in a comment, which may well end in the path of a folder.
+/// The statement that starts at this byte. A backslash before a line's end joins it with the next,
+/// but not in a comment, which may end in a path with a backslash.
 Statement statement_at(std::string_view text, std::size_t begin);
 
 /// The words of a statement; the backslash and the line end of a continuation are spaces.
@@ -32,10 +32,10 @@ class Words {
   std::string_view rest_;
 };
 
-/// The number that the whole word is, infinite or NaN where it says so.
+/// The value of the whole word, which may be infinite or NaN; empty if it is no number.
 std::optional<double> number_in(std::string_view word);
 
-/// Line ends of old Macs, CR alone, become LF; CR before LF stays. Returns how many there were.
+/// Replaces line ends of old Macs, CR alone, by LF; CR before LF stays. Returns their number.
 std::int64_t replace_lone_returns(std::string& text);
 
 }  // namespace unwrapd::asset

@@ -1,4 +1,5 @@
-// The text is copied statement by statement: vt lines go, the new ones stand before the first face.
+// The text is copied statement by statement, without its vt lines; the new ones precede the first
+// face.
 #include "core/asset/as_size.hpp"
 #include "core/asset/obj_polygons.hpp"
 #include "core/asset/obj_text.hpp"
@@ -38,7 +39,7 @@ class ObjWriter {
     at_ = end;
   }
 
-  /// Before the first face, so that every reader has seen them by then.
+  /// Called before the first face, since readers need the coordinates first.
   void append_all_texcoords() {
     for (const Vec2& uv : unwrapped_.uv) {
       pace_.add(4);

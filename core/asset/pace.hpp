@@ -1,5 +1,5 @@
 #pragma once
-// How work whose steps cost unequally looks whether its job was told to stop.
+// Checks a stop token at regular intervals in work whose steps have unequal cost.
 
 #include <cstddef>
 #include <stop_token>
@@ -9,8 +9,8 @@
 
 namespace unwrapd::asset {
 
-/// Adds up work in units of some 10 to 100 ns; the start is a look, and so are every so many of
-/// them. Throws Error{cancelled}.
+/// Adds up work in units of some 10 to 100 ns, and checks the stop at the start and after a fixed
+/// amount. Throws Error{cancelled}.
 class Pace {
  public:
   explicit Pace(std::stop_token stop) : stop_(std::move(stop)) { throw_if_cancelled(stop_); }

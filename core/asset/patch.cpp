@@ -1,6 +1,6 @@
-// The pools of a document, one by one: where the cut asks for it their vertices grow by copies,
-// their faces are indexed anew, and all of them get their texture coordinates. An accessor that
-// nothing else uses is changed in place, so that the numbers in the document stay what they were.
+// Patches the pools of a document one by one: vertices get copies at the cut, faces get new
+// indices, and all of them get their texture coordinates. An accessor that nothing else uses is
+// changed in place, so that the numbers in the document stay valid.
 #include "core/asset/patch.hpp"
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kMostUri = 80;  // characters of a URI that a note repeats
 
-/// The lower sets of texture coordinates that the primitive lacks: a document must not skip any.
+/// The lower sets of texture coordinates that the primitive lacks, since a document must not skip
+/// any.
 std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primitive) {
   std::vector<std::string> missing;
   for (int n = 0; n <= kMaxTexcoord; ++n) {
@@ -64,7 +65,7 @@ class Patcher {
     return patched_.json["meshes"][p.mesh]["primitives"][p.number];
   }
 
-  /// Puts the accessor in the old one's place if `uses` are all that refer to it, else at the end.
+  /// Replaces the old accessor if `uses` are all its references, else appends the new one.
   std::size_t put_accessor(std::size_t old, std::size_t uses, Json accessor) {
     Json& accessors = patched_.json["accessors"];
     if (references_[old] == uses && !gltf_.has_foreign_references) {
@@ -81,7 +82,7 @@ class Patcher {
     return accessors.size() - 1;
   }
 
-  /// Whether an attribute is carried over, not replaced.
+  /// Whether an attribute is copied, not replaced.
   [[nodiscard]] bool is_kept(const Primitive& primitive, const std::string& semantic) const {
     return semantic != gltf_.texcoord &&
            !(semantic == "TANGENT" && materials_.loses_tangents(primitive));
@@ -120,7 +121,7 @@ class Patcher {
       std::for_each(primitive["targets"].begin(), primitive["targets"].end(), update);
   }
 
-  /// The pool's primitives by the piece that they show, as far as its faces have changed.
+  /// The pool's primitives by their piece, for pieces whose faces have changed.
   std::map<std::size_t, std::vector<std::size_t>> users_of(const Pool& pool,
                                                            const Split& split) const {
     std::map<std::size_t, std::vector<std::size_t>> users;
@@ -141,7 +142,7 @@ class Patcher {
     }
   }
 
-  /// How often the pool uses each accessor as the texture coordinates that are replaced.
+  /// How often the pool uses each accessor as the replaced texture coordinates.
   Uses texcoord_uses(const Pool& pool) const {
     Uses uses;
     for (const std::size_t i : pool.primitives)
@@ -164,7 +165,7 @@ class Patcher {
     }
   }
 
-  /// Those that a primitive's tangents lie in, if they belong to what is replaced.
+  /// The accessor of a primitive's tangents, if they belong to the replaced coordinates.
   [[nodiscard]] std::optional<std::size_t> stale_tangents(std::size_t primitive) const {
     const Primitive& p = gltf_.primitives[primitive];
     if (!materials_.loses_tangents(p)) return std::nullopt;
@@ -199,7 +200,7 @@ std::string counted(std::size_t count, const char* thing) {
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
-/// Long names are not repeated, nor cut in the middle of a character.
+/// The URI for a note; a long one is shortened, but not inside a character.
 std::string named(const std::string& uri) {
   return uri.size() > kMostUri ? std::string() : ", as " + uri + ",";
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Putting the new texture coordinates into a copy of the document.
+// Writes the new texture coordinates into a copy of the document.
 
 #include <optional>
 #include <span>
@@ -9,34 +9,35 @@
 
 namespace unwrapd::asset {
 
-/// A document that refers to one more buffer than it came with: the last one, `added`.
+/// A document with one more buffer than its input: the last one, `added`.
 struct PatchedDocument {
   Json json;
   std::string added;
-  const Aside* aside = nullptr;  ///< what goes beside json into the file
+  const Aside* aside = nullptr;  ///< members that are written in addition to json
 };
 
-/// gltf.texcoord for every primitive with triangles. Vertices on seams get copies in every
-/// attribute; accessors that something else uses as well stay as they are, and new ones take their
-/// part. output: a GLB takes the images of a .gltf along that were sent with it.
+/// Sets gltf.texcoord of every primitive with triangles. Vertices on seams get copies in every
+/// attribute. Accessors with other users stay as they are and are replaced by new ones. output: a
+/// GLB includes the images that were sent with a .gltf.
 PatchedDocument patch(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped, Format output);
 
-/// For vertex_maps(), where the result is a glTF.
+/// The result of vertex_maps() for a glTF.
 std::vector<VertexMap> vertex_maps_of_patch(const Gltf& gltf,
                                             std::span<const UnwrappedSurface> unwrapped);
 
-/// Sentences for side_effects().
+/// Notes for side_effects().
 std::vector<std::string> side_effects_of_patch(const Gltf& gltf, Format output);
 
-/// How meshopt's compression is written into a document.
+/// The form of meshopt's compression in a document.
 struct MeshoptStyle {
   std::string name = "EXT_meshopt_compression";
-  bool with_fallback = false;  ///< the plain bytes go along, and no reader needs the extension
+  bool with_fallback =
+      false;  ///< includes the uncompressed bytes, and no reader needs the extension
 };
 
-/// The whole file. Where nothing unseen can point into them, bytes that only the replaced parts
-/// used are left out. meshopt: see compress_views(); it takes a document of one buffer.
-/// Throws Error{invalid_option} where buffers cannot become one.
+/// The whole file. Bytes that only the replaced parts used are left out, unless an unknown
+/// extension may refer to them. meshopt: see compress_views(); it takes a document of one buffer.
+/// Throws Error{invalid_option} if the buffers cannot be joined.
 std::string assemble(const Gltf& gltf, PatchedDocument document, Format format,
                      const std::optional<MeshoptStyle>& meshopt = {});
 

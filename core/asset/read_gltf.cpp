@@ -9,7 +9,7 @@
 namespace unwrapd::asset {
 namespace {
 
-/// Whether readers without Draco find all of the geometry, too.
+/// Whether readers without Draco find all of the geometry as well.
 bool has_fallback(const Gltf& gltf, const std::vector<DracoSource>& sources) {
   return !requires_extension(gltf.json, "KHR_draco_mesh_compression") &&
          std::all_of(sources.begin(), sources.end(), [&](const DracoSource& source) {
@@ -26,7 +26,8 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
   const GlbChunks chunks =
       format == Format::glb ? split_glb(input.document) : GlbChunks{input.document, {}, {}};
   gltf.stop = input.stop;
-  gltf.json = parse_json(chunks.json, gltf.stop, limits.max_bytes / 2);  // kept and patched
+  gltf.json =
+      parse_json(chunks.json, gltf.stop, limits.max_bytes / 2);  // it is stored and later patched
   gltf.aside.take_unread(gltf.json);
   gltf.other_chunks = chunks.others;
   if (chunks.unaligned > 0)

@@ -1,5 +1,5 @@
 #pragma once
-// From the bytes of a GLB or .gltf to a checked document and its surfaces.
+// Reads the bytes of a GLB or .gltf into a checked document and its surfaces.
 
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace unwrapd::asset {
 
-/// Reads a GLB or .gltf and the geometry that the options select. The document comes out
-/// uncompressed.
+/// Reads a GLB or .gltf and the geometry that the options select. The document is uncompressed
+/// afterwards.
 Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
                const AssetOptions& options, std::vector<Surface>& surfaces);
 

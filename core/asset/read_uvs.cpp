@@ -1,5 +1,5 @@
-// The texture coordinates that an asset came with, corner by corner: primitives that share a
-// surface's vertices need not share these, and an OBJ's vertices have no coordinates of their own.
+// Reads the texture coordinates of the input, corner by corner: primitives that share a surface's
+// vertices need not share these, and an OBJ's vertices have no coordinates of their own.
 #include <charconv>
 #include <limits>
 
@@ -16,7 +16,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 const CornerUv kNoUv = {Vec2(kNone, kNone), Vec2(kNone, kNone), Vec2(kNone, kNone)};
 
-/// The accessor of the primitive's texture coordinates, where they are of a kind that glTF knows.
+/// The accessor of the primitive's texture coordinates, if it has a type that glTF allows.
 std::optional<std::size_t> uv_accessor(const Gltf& gltf, const Primitive& primitive) {
   for (const auto& [semantic, accessor] : primitive.attributes)
     if (semantic == gltf.texcoord && gltf.accessors[accessor].components == 2) return accessor;
@@ -39,7 +39,7 @@ void read_piece(const Gltf& gltf, const Primitive& primitive, const Vec2& scale,
   }
 }
 
-/// A vt statement's two numbers; none where they are not to be read.
+/// The two numbers of a vt statement; NaN if they cannot be read.
 Vec2 read_vt(std::string_view line) {
   Vec2 uv(kNone, 0);
   std::size_t at = line.find("vt") + 2;

@@ -15,7 +15,8 @@ constexpr std::string_view kSpaces = " \t\r\n";
 constexpr std::array<std::string_view, 6> kOtherGeometry = {"vt", "vn", "vp", "f", "l", "p"};
 constexpr std::string_view kStartsOfNumbers = "+-.0123456789";
 constexpr std::size_t kBlock = 1 << 16;
-constexpr std::size_t kMaxStatements = kBlock;  // bytes of other statements before geometry
+constexpr std::size_t kMaxStatements =
+    kBlock;  // bytes of other statements that may precede geometry
 
 struct Refusal {
   std::string_view magic;
@@ -33,7 +34,7 @@ constexpr std::array<Refusal, 9> kRefusals = {
      {"\xff\xfe", "UTF-16 text is not accepted; save the file as UTF-8"},
      {"\xfe\xff", "UTF-16 text is not accepted; save the file as UTF-8"}}};
 
-/// Where the text goes on after spaces and empty lines, its size at the end.
+/// The position after spaces and empty lines; the text's size at its end.
 std::size_t skip_spaces(std::string_view text, std::size_t at, Pace& pace) {
   while (at < text.size()) {
     const std::size_t found = text.substr(at, kBlock).find_first_not_of(kSpaces);
@@ -44,7 +45,7 @@ std::size_t skip_spaces(std::string_view text, std::size_t at, Pace& pace) {
   return text.size();
 }
 
-/// Whether a line gives a vertex, or an index or number of another statement of geometry.
+/// Whether a line is a vertex, or another statement of geometry with its indices or numbers.
 bool is_geometry(std::string_view line) {
   Words words(line);
   const std::string_view keyword = words.next();
@@ -54,7 +55,7 @@ bool is_geometry(std::string_view line) {
          kStartsOfNumbers.find(value.front()) != std::string_view::npos;
 }
 
-/// A line of geometry, after any number of comments and empty lines and some other statements.
+/// Whether a line of geometry follows comments, empty lines and some other statements.
 bool looks_like_obj(std::string_view file, Pace& pace) {
   if (file.substr(0, kBlock).find('\0') != std::string_view::npos) return false;
   std::size_t statements = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// What a file is, by its content: names and media types lie.
+// Recognises the format of a file by its content, since names and media types may be wrong.
 
 #include <stop_token>
 #include <string_view>
@@ -8,9 +8,9 @@
 
 namespace unwrapd::asset {
 
-/// GLB by its magic number, glTF by a brace. OBJ by a line of geometry: comments and empty lines
-/// before it may be of any length, other statements 64 KiB. Throws Error{unknown_format}, with a
-/// message of its own where the bytes are those of a known other format, and Error{cancelled}.
+/// GLB by its magic number, glTF by a brace, OBJ by a line of geometry. Comments and empty lines
+/// before that line may be of any length, other statements 64 KiB. Throws Error{unknown_format},
+/// with a specific message if the bytes are of another known format, and Error{cancelled}.
 Format recognise(std::string_view file, const std::stop_token& stop);
 
 }  // namespace unwrapd::asset

@@ -3,7 +3,7 @@
 namespace unwrapd::asset {
 namespace {
 
-/// A member of an object; null for what is no object or has no such member.
+/// A member of an object; null if it is not an object or has no such member.
 template <class Value>
 Value* member(Value& object, std::string_view name) {
   if (!object.is_object()) return nullptr;

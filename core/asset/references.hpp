@@ -1,6 +1,6 @@
 #pragma once
-// Where a document refers to accessors and to buffer views, in the core of glTF 2.0. By the time
-// this is used the compressions that hold references of their own have been undone.
+// Finds the references to accessors and buffer views in a document of core glTF 2.0. The
+// compressions, which have references of their own, have been undone before.
 
 #include <functional>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace unwrapd::asset {
 
-/// How often each of `count` accessors is referred to: attributes, morph targets, indices,
-/// animations, skins. References out of range are passed over.
+/// The number of references to each of `count` accessors: attributes, morph targets, indices,
+/// animations, skins. References out of range are ignored.
 std::vector<std::size_t> count_accessor_references(const Json& document, std::size_t count);
 
 /// Calls visit with every number that names an accessor.
@@ -21,7 +21,7 @@ void for_each_accessor_reference(Json& document, const std::function<void(Json&)
 void for_each_view_reference(Json& document, const std::function<void(Json&)>& visit);
 void for_each_view_reference(const Json& document, const std::function<void(const Json&)>& visit);
 
-/// Those of images and Draco's bitstreams alone.
+/// Only the references of images and Draco's bitstreams.
 void for_each_other_view_reference(const Json& document,
                                    const std::function<void(const Json&)>& visit);
 

@@ -18,9 +18,9 @@ constexpr std::array<std::string_view, 13> kRead = {
     "meshes",  "materials",      "images",
     "skins",   "animations",     "nodes",
     "scenes"};
-constexpr std::array<std::string_view, 2> kUnwritten = {"nodes", "scenes"};  // of these
+constexpr std::array<std::string_view, 2> kUnwritten = {"nodes", "scenes"};  // subset of these
 
-/// Takes a text in pieces, and looks at each whether the job was told to stop.
+/// Writes a text in pieces, and checks the stop at each.
 class WatchedSink final : public std::streambuf {
  public:
   WatchedSink(std::string& text, const std::stop_token& stop) : text_(text), stop_(stop) {
@@ -48,7 +48,7 @@ class WatchedSink final : public std::streambuf {
 class RootWriter {
  public:
   RootWriter(std::string& text, const std::stop_token& stop) : sink_(text, stop), out_(&sink_) {
-    out_.exceptions(std::ios::badbit);  // a stop comes out of the sink
+    out_.exceptions(std::ios::badbit);  // the sink throws on a stop
     out_ << '{';
   }
 
@@ -100,7 +100,7 @@ std::string Aside::text_with(const Json& root, const std::stop_token& stop) cons
   std::unordered_set<std::string_view> written;
   for (const auto& [name, value] : members_) {
     const auto found = value ? root.end() : root.find(name);
-    if (!value && found == root.end()) continue;  // writing took it out
+    if (!value && found == root.end()) continue;  // removed by writing
     writer.write(name, value ? *value : *found);
     if (!value) written.insert(name);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Runs of bytes that go into a file: what several views share is taken once.
+// Runs of bytes of a file: bytes that several views share are included once.
 
 #include <cstddef>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace unwrapd::asset {
 
-/// A run of bytes of a buffer, and where it lies in the file.
+/// A run of bytes of a buffer, and its position in the file.
 struct Run {
   std::size_t buffer = 0;
   std::size_t begin = 0;
@@ -16,14 +16,14 @@ struct Run {
   std::size_t target = 0;
 };
 
-/// Those that touch or overlap become one; in order.
+/// Joins runs that touch or overlap; in order.
 std::vector<Run> merged(std::vector<Run> runs);
 
-/// Appends the bytes of the runs, each at the alignment that it had, and notes where.
+/// Appends the bytes of the runs, each at the alignment that it had, and sets their positions.
 void append_runs(std::string& bytes, const std::vector<std::string_view>& buffers,
                  std::vector<Run>& runs);
 
-/// The run that holds the byte; there is one.
+/// The run that contains the byte; it exists.
 const Run& run_of(const std::vector<Run>& runs, std::size_t buffer, std::size_t offset);
 
 }  // namespace unwrapd::asset

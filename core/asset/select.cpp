@@ -1,5 +1,5 @@
-// Which primitives are unwrapped. The others are left alone altogether: they make no surface, and
-// what they share with a selected one is copied rather than changed.
+// Selects the primitives to unwrap. The others do not change: they are in no surface, and data that
+// they share with a selected one is copied.
 #include <unordered_map>
 
 #include "core/asset/gltf_steps.hpp"
@@ -13,8 +13,8 @@ namespace {
 
 using PrimitivesByName = std::unordered_map<std::string, std::vector<std::size_t>>;
 
-/// The primitives that have a material of this name. Each name is looked at once, however long it
-/// is and however many primitives have it.
+/// The primitives that have a material of this name. Each name is read once, however long it is and
+/// however many primitives have it.
 PrimitivesByName by_material(const Gltf& gltf) {
   const auto list = gltf.json.find("materials");
   if (list == gltf.json.end()) return {};
@@ -40,7 +40,8 @@ PrimitivesByName by_pointer(const Gltf& gltf) {
   return names;
 }
 
-/// Marks what these names have. What a name has had is forgotten: giving it again marks nothing.
+/// Marks the primitives of these names. A name is then removed from the map, so that repeating it
+/// marks nothing.
 void mark(std::string_view option, const std::vector<std::string>& wanted, PrimitivesByName names,
           std::vector<char>& marked) {
   for (std::size_t k = 0; k < wanted.size(); ++k) {

@@ -1,5 +1,5 @@
-// Which vertices a seam splits follows from the faces alone: walk them, and give every new vertex
-// of a surface the pool's own vertex when it is the first to ask for it, else a copy.
+// The vertices to split follow from the faces alone: each new vertex of a surface gets the pool's
+// own vertex if it is the first for it, else a copy.
 #include "core/asset/split.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ Splitter::Splitter(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped
   assert(unwrapped.size() == gltf.vertices.size());
 }
 
-/// The first vertex of a surface that asks for a pool's vertex has it; others get copies.
+/// The first vertex of a surface for a pool's vertex gets it; others get copies.
 Index Splitter::place_corner(const Piece& piece, Index corner, Split& split) {
   Index& number = placed_[piece.surface][as_size(corner)];
   if (number != kNotPlaced) return number;

@@ -1,5 +1,5 @@
 #pragma once
-// Seams cut a pool of vertices: which of its vertices need copies, and what the faces then index.
+// Splits a pool of vertices at seams: which vertices need copies, and the new indices of faces.
 
 #include <array>
 #include <map>
@@ -13,20 +13,19 @@ namespace unwrapd::asset {
 
 /// The vertices of a pool after the cut: its own, then copies.
 struct Split {
-  std::vector<Index> copies;             ///< vertex n + k is a copy of copies[k]
-  std::vector<std::array<float, 2>> uv;  ///< of each vertex, glTF's V pointing down
-  std::map<std::size_t, std::vector<Index>>
-      corners;                    ///< of each piece, as far as they are asked for
-  std::set<std::size_t> changed;  ///< pieces whose faces have other corners now
+  std::vector<Index> copies;                          ///< vertex n + k is a copy of copies[k]
+  std::vector<std::array<float, 2>> uv;               ///< of each vertex, glTF's V pointing down
+  std::map<std::size_t, std::vector<Index>> corners;  ///< [piece]: its corners, if requested
+  std::set<std::size_t> changed;                      ///< pieces whose faces have new corners
 };
 
-/// Splits pools one after another; what it keeps between them is scratch.
+/// Splits pools one after another; its members are reused.
 class Splitter {
  public:
   Splitter(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped);
 
-  /// pieces: those of the pool, each once. vertex_count: of the pool. all: the corners of every
-  /// piece are wanted, not only of those that have changed.
+  /// pieces: those of the pool, each once. vertex_count: of the pool. all: return the corners of
+  /// every piece, not only of changed ones.
   Split split(const std::vector<std::size_t>& pieces, std::size_t vertex_count, bool all);
 
  private:
@@ -35,8 +34,8 @@ class Splitter {
 
   const Gltf& gltf_;
   std::span<const UnwrappedSurface> unwrapped_;
-  std::vector<std::vector<Index>> placed_;  ///< [surface][its vertex]: number in the pool, or -1
-  std::vector<char> taken_;                 ///< [vertex of the pool]: has its UV
+  std::vector<std::vector<Index>> placed_;  ///< [surface][its vertex]: index in the pool, or -1
+  std::vector<char> taken_;                 ///< [vertex of the pool]: whether it has its UV
 };
 
 }  // namespace unwrapd::asset

@@ -1,6 +1,6 @@
 // The triangles of a document become surfaces, one for each mesh. A geometry that several
-// primitives share is taken once, and a surface holds only the vertices that its faces use: neither
-// many primitives over one accessor nor many meshes over one buffer multiply the work.
+// primitives share is read once, and a surface only has the vertices that its faces use, so that
+// neither many primitives over one accessor nor many meshes over one buffer multiply the work.
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr Index kUnused = -1;
 
-/// Vertex numbers of a primitive, in the order in which its mode takes them.
+/// Vertex numbers of a primitive, in the order of its mode.
 std::vector<Index> read_corners(const Gltf& gltf, const Primitive& primitive) {
   const std::size_t vertex_count = gltf.accessors[primitive.position].count;
   const std::size_t count =
@@ -42,7 +42,7 @@ bool has_repeat(const Triangle& face) {
   return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
 }
 
-/// Strips and fans repeat a vertex to jump: those triangles are no faces. Lists keep all of theirs.
+/// Strips and fans repeat a vertex to jump; such triangles are no faces. Lists keep all of theirs.
 std::vector<Triangle> triangles_of(Mode mode, const std::vector<Index>& corners) {
   std::vector<Triangle> faces;
   const std::size_t n = corners.size();
@@ -67,7 +67,7 @@ class SurfaceBuilder {
  public:
   SurfaceBuilder(Gltf& gltf, const ReadLimits& limits) : gltf_(gltf), limits_(limits) {}
 
-  /// The primitive's faces, which have no faces of another primitive's geometry among them.
+  /// Adds the primitive's faces, as one run.
   Piece add(const Primitive& primitive) {
     const std::vector<Triangle> faces =
         triangles_of(primitive.mode, read_corners(gltf_, primitive));
@@ -95,7 +95,7 @@ class SurfaceBuilder {
     gltf_.vertices.emplace_back();
   }
 
-  /// Numbers the vertices that the faces use and that the surface does not have yet, in order.
+  /// Numbers the vertices of the faces that the surface does not have yet, in order.
   void add_vertices(std::size_t accessor, const std::vector<Triangle>& faces) {
     std::vector<Index>& number = numbers_[accessor];
     if (number.empty()) number.assign(gltf_.accessors[accessor].count, kUnused);
@@ -136,10 +136,10 @@ class SurfaceBuilder {
   std::int64_t vertex_total_ = 0;
   std::unordered_map<std::size_t, Elements> elements_;           ///< of position accessors
   std::unordered_map<std::size_t, std::vector<Index>> numbers_;  ///< [accessor][its vertex]
-  std::vector<std::pair<std::size_t, Index>> touched_;           ///< what this mesh numbered
+  std::vector<std::pair<std::size_t, Index>> touched_;           ///< entries that this mesh has set
 };
 
-/// Primitives that agree in these have the same triangles.
+/// Primitives with equal keys have the same triangles.
 using GeometryKey = std::tuple<std::size_t, std::size_t, Mode>;
 
 GeometryKey geometry_key(const Gltf& gltf, const Primitive& primitive) {

@@ -27,7 +27,7 @@ struct VertexHash {
   }
 };
 
-/// [vertex]: the first one that agrees with it in all.
+/// [vertex]: the first vertex that equals it.
 std::vector<Index> welded(const TangentMesh& mesh, Pace& pace) {
   std::unordered_map<VertexKey, Index, VertexHash> first;
   std::vector<Index> number(mesh.positions.size());
@@ -40,7 +40,7 @@ std::vector<Index> welded(const TangentMesh& mesh, Pace& pace) {
   return number;
 }
 
-/// How a triangle lies in the plane of texture coordinates.
+/// The derivative of a triangle's position by texture coordinates.
 struct FaceTangent {
   Vec3 along_u = Vec3::Zero();  ///< of unit length
   bool is_mirrored = false;
@@ -100,7 +100,7 @@ class TangentSpace {
     return welded_[as_size(mesh_.faces[face][corner])];
   }
 
-  /// Two triangles that have an edge in opposite directions are neighbours; each edge has one.
+  /// Two triangles with an edge in opposite directions are neighbours; each edge has one neighbour.
   void join_edges() {
     neighbours_.assign(faces_.size(), {kNoIndex, kNoIndex, kNoIndex});
     std::unordered_map<std::uint64_t, std::vector<Corner>> open;  // [from, to]
@@ -120,7 +120,7 @@ class TangentSpace {
       }
   }
 
-  /// The triangles around a vertex that are reached across edges there without a mirror between.
+  /// Collects the triangles around a vertex, across edges without a mirror between them.
   void gather(std::size_t face, int corner) {
     const auto group = static_cast<Index>(groups_.size());
     const Index center = vertex(face, corner);

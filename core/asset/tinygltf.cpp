@@ -9,7 +9,7 @@
 
 #include <fstream>
 
-#include <tiny_gltf.h>  // needs <fstream> even so
+#include <tiny_gltf.h>  // needs <fstream> in any case
 
 #include <utility>
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kSliceBytes = 65'536;
 
-/// Of a document with one list, which begins and ends so around the slice.
+/// The model of a document with one list: `begin` and `end` enclose the slice.
 tinygltf::Model model_of(const char* begin, const std::string& slice, const char* end) {
   const std::string document = std::string(R"({"asset":{"version":"2.0"},)") + begin + slice + end;
   tinygltf::Model model;

@@ -1,8 +1,8 @@
 #pragma once
-// The door to tinygltf, which reads glTF here and never writes it. It takes a number of another
-// kind for 0, one beyond an int for what its low bits say, holds ten times what it reads and cannot
-// be told to stop. So it gets a document's lists slice by slice, and in a slice nothing but what
-// reading needs, each value looked at before.
+// The interface to tinygltf, which reads glTF here and never writes it. It reads a number of
+// another kind as 0 and one beyond an int by its low bits, takes ten times the memory of its input,
+// and cannot be cancelled. So it gets a document's lists slice by slice, with only the members that
+// reading needs, and each value is checked before.
 
 #include <cstddef>
 #include <functional>
@@ -16,7 +16,7 @@
 
 namespace unwrapd::asset {
 
-/// The text of an object for tinygltf. The caller has looked at what is added.
+/// The text of an object for tinygltf. The caller has checked the values.
 class Members {
  public:
   void add(std::string_view name, std::size_t value);
@@ -34,20 +34,20 @@ class Members {
   std::string members_;
 };
 
-/// Collects the elements of a list, and hands them over whenever they are enough for a slice.
+/// Collects the elements of a list, and passes them on in slices.
 class Slices {
  public:
   using Check = std::function<Members()>;
   using Take = std::function<void(const std::string& slice)>;
 
-  /// take: gets slices, one of the functions below reads them. stop must outlive this.
+  /// take: receives slices; one of the functions below reads them. stop must outlive this.
   Slices(Take take, const std::stop_token& stop) : take_(std::move(take)), stop_(stop) {}
 
-  /// check: looks at an element and gives what tinygltf shall read of it. The fault that it finds
-  /// is thrown once all before it have been taken, so that of two faults the first is told.
+  /// check: checks an element and returns the text for tinygltf. If it throws, the elements before
+  /// it are processed first, so that the first of two faults is reported.
   void add(const Check& check);
 
-  /// After the last element.
+  /// Must be called after the last element.
   void end();
 
  private:
