@@ -21,7 +21,8 @@ class ConcurrencyLimit {
   using Share = std::function<int(int places, int others)>;
   enum class Refusal { none, full, share };
 
-  /// An owner without a name is not held to a share: it stands for all who cannot be told apart.
+  /// An owner without a name is not held to a share: it stands for callers that cannot be told
+  /// apart.
   ConcurrencyLimit(int places, Share share);
 
   /// A place, or nullptr and the reason: `full` when all are taken, `share` when this owner holds

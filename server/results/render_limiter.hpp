@@ -34,7 +34,7 @@ Error client_left();
 /// A file that is to be made.
 struct RenderRequest {
   std::string file;       ///< its name, unlike all others
-  std::string holder;     ///< for whom; not empty
+  std::string holder;     ///< of its share; not empty
   std::size_t bytes = 0;  ///< of memory that it may take
   bool is_costly = false;
 };

@@ -106,8 +106,8 @@ class JobStore {
   /// A running job waits again; crashed: because the server died, or could not stop it.
   void requeue(std::string_view id, bool crashed);
 
-  /// The job's files are kept while it is not final, or has succeeded and not expired; they are
-  /// nobody's when there is no row of it that can be read.
+  /// The files of a job are kept while it is not final, or has succeeded and not expired. Their
+  /// fate is `unknown` when the job has no row, or one that cannot be read.
   FolderFate fate_of(std::string_view id);
   /// Final jobs that ended before this time (of Moment::kept_ms(), like all below) and still have
   /// their files, the oldest first.

@@ -45,8 +45,8 @@ class Webhooks {
   Webhooks(const std::filesystem::path& store, std::string server_secret, WebhookConfig config,
            const Log& log, std::function<Moment()> now);
 
-  /// Begins the calls that are due as far as there is room: of the owner who has the fewest first,
-  /// and of its calls the one that was due first. The others follow when there is room.
+  /// Begins the calls that are due as far as there is room. The owner with the fewest calls comes
+  /// first, and of its calls the one that was due first. The others follow when there is room.
   void call_due();
 
  private:
