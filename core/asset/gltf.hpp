@@ -105,6 +105,12 @@ std::size_t component_bytes(ComponentType type);
 Place accessor_place(std::size_t accessor);
 Place primitive_place(const Primitive& primitive);
 
+/// A primitive of the document `json`, which is Json or const Json.
+template <class Value>
+Value& json_of(Value& json, const Primitive& primitive) {
+  return json.at("meshes").at(primitive.mesh).at("primitives").at(primitive.number);
+}
+
 /// The bytes of an element of the dense part; requires accessor.view and element < count.
 const char* dense_element(const Gltf& gltf, const Accessor& accessor, std::size_t element);
 

@@ -114,14 +114,20 @@ bool Materials::loses_tangents(const Primitive& primitive) const {
          gltf_.texcoord == set_name(of(primitive).tangent_set);
 }
 
-std::vector<std::size_t> Materials::to_reset() const {
+MaterialsToReset Materials::to_reset() const {
   std::vector<char> is_on(uses_.size(), 0), is_kept(uses_.size(), 0);
+  Pace pace(gltf_.stop);
   for (const Primitive& primitive : gltf_.primitives)
-    if (primitive.material) (primitive.has_triangles ? is_on : is_kept)[*primitive.material] = 1;
-  std::vector<std::size_t> materials;
+    for_each_material(json_of(gltf_.json, primitive), [&](const Json& number) {
+      pace.add(1);
+      const auto material = number.get<std::size_t>();
+      if (material < uses_.size()) (primitive.has_triangles ? is_on : is_kept)[material] = 1;
+    });
+  MaterialsToReset to_reset;
   for (std::size_t i = 0; i < uses_.size(); ++i)
-    if (is_on[i] != 0 && is_kept[i] == 0 && uses_[i].moves_texcoord) materials.push_back(i);
-  return materials;
+    if (is_on[i] != 0 && uses_[i].moves_texcoord)
+      (is_kept[i] == 0 ? to_reset.in_place : to_reset.copied).push_back(i);
+  return to_reset;
 }
 
 void reset_transforms(Json& material, std::string_view texcoord, Pace& pace) {

@@ -17,7 +17,13 @@ struct MaterialUse {
   std::size_t tangent_set = 0;  ///< TEXCOORD_n that tangents belong to
 };
 
-/// The materials of a document; each is analysed once.
+/// Materials by their number.
+struct MaterialsToReset {
+  std::vector<std::size_t> in_place;  ///< all that they are on is unwrapped
+  std::vector<std::size_t> copied;    ///< they are on other primitives, too, which stay as they are
+};
+
+/// The materials of a document, each is analysed once.
 class Materials {
  public:
   explicit Materials(const Gltf& gltf);
@@ -27,14 +33,32 @@ class Materials {
   /// Whether the primitive has tangents that belong to gltf.texcoord.
   [[nodiscard]] bool loses_tangents(const Primitive& primitive) const;
 
-  /// The materials that move gltf.texcoord by KHR_texture_transform, if all their primitives are
-  /// unwrapped.
-  [[nodiscard]] std::vector<std::size_t> to_reset() const;
+  /// Those on unwrapped primitives that move gltf.texcoord by KHR_texture_transform.
+  [[nodiscard]] MaterialsToReset to_reset() const;
 
  private:
   const Gltf& gltf_;
   std::vector<MaterialUse> uses_;
 };
+
+/// Calls visit with the number of each material that a primitive can have: its own, and those of
+/// KHR_materials_variants. Value: Json or const Json.
+template <class Value, class Visit>
+void for_each_material(Value& primitive, const Visit& visit) {
+  const auto visit_in = [&](Value& object) {
+    const auto found = object.find("material");
+    if (found != object.end() && found->is_number_unsigned()) visit(*found);
+  };
+  visit_in(primitive);
+  const auto extensions = primitive.find("extensions");
+  if (extensions == primitive.end() || !extensions->is_object()) return;
+  const auto variants = extensions->find("KHR_materials_variants");
+  if (variants == extensions->end() || !variants->is_object()) return;
+  const auto mappings = variants->find("mappings");
+  if (mappings == variants->end() || !mappings->is_array()) return;
+  for (auto& mapping : *mappings)
+    if (mapping.is_object()) visit_in(mapping);
+}
 
 /// Removes the transforms of gltf.texcoord from a material; an override of the set stays.
 void reset_transforms(Json& material, std::string_view texcoord, Pace& pace);

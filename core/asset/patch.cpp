@@ -9,26 +9,11 @@
 #include "core/asset/cut.hpp"
 #include "core/asset/grow.hpp"
 #include "core/asset/images.hpp"
+#include "core/asset/materials.hpp"
 #include "core/asset/references.hpp"
 
 namespace unwrapd::asset {
 namespace {
-
-constexpr std::size_t kMostUri = 80;  // characters of a URI that a note repeats
-
-/// The lower sets of texture coordinates that the primitive lacks, since a document must not skip
-/// any.
-std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primitive) {
-  std::vector<std::string> missing;
-  for (int n = 0; n <= kMaxTexcoord; ++n) {
-    const std::string set = "TEXCOORD_" + std::to_string(n);
-    if (set == gltf.texcoord) break;
-    const auto is_set = [&](const auto& item) { return item.first == set; };
-    if (std::none_of(primitive.attributes.begin(), primitive.attributes.end(), is_set))
-      missing.push_back(set);
-  }
-  return missing;
-}
 
 class Patcher {
  public:
@@ -51,9 +36,7 @@ class Patcher {
   void take_images() { embed_images(gltf_, patched_.json, views_); }
 
   PatchedDocument finish() {
-    Pace pace(gltf_.stop);
-    for (const std::size_t material : materials_.to_reset())
-      reset_transforms(patched_.json["materials"][material], gltf_.texcoord, pace);
+    reset_materials();
     return std::move(patched_);
   }
 
@@ -61,8 +44,43 @@ class Patcher {
   using Uses = std::map<std::size_t, std::size_t>;  // accessor, how often
 
   Json& json_of(std::size_t primitive) {
-    const Primitive& p = gltf_.primitives[primitive];
-    return patched_.json["meshes"][p.mesh]["primitives"][p.number];
+    return asset::json_of(patched_.json, gltf_.primitives[primitive]);
+  }
+
+  /// Unwrapped primitives get copies of materials that others have, too.
+  void reset_materials() {
+    const MaterialsToReset to_reset = materials_.to_reset();
+    Pace pace(gltf_.stop);
+    for (const std::size_t material : to_reset.in_place)
+      reset_transforms(patched_.json["materials"][material], gltf_.texcoord, pace);
+    std::map<std::size_t, std::size_t> copies;
+    for (const std::size_t material : to_reset.copied) {
+      Json copy = patched_.json["materials"][material];
+      reset_transforms(copy, gltf_.texcoord, pace);
+      copies[material] = patched_.json["materials"].size();
+      patched_.json["materials"].push_back(std::move(copy));
+    }
+    for (std::size_t i = 0; !copies.empty() && i < gltf_.primitives.size(); ++i)
+      if (gltf_.primitives[i].has_triangles)
+        for_each_material(json_of(i), [&](Json& number) {
+          const auto copy = copies.find(number.get<std::size_t>());
+          if (copy != copies.end()) number = copy->second;
+        });
+  }
+
+  /// Takes an attribute out of a primitive's morph targets. A target with nothing else keeps zeros,
+  /// since glTF allows no empty one.
+  void drop_from_targets(std::size_t primitive, const std::string& semantic, const char* type,
+                         std::size_t vertices) {
+    const auto targets = json_of(primitive).find("targets");
+    if (targets == json_of(primitive).end()) return;
+    for (Json& target : *targets) {
+      if (target.size() > 1)
+        target.erase(semantic);
+      else if (target.contains(semantic))
+        target[semantic] =
+            add_accessor({{"componentType", 5126}, {"count", vertices}, {"type", type}});
+    }
   }
 
   /// Replaces the old accessor if `uses` are all its references, else appends the new one.
@@ -162,6 +180,7 @@ class Patcher {
       Json& attributes = json_of(i)["attributes"];
       attributes[gltf_.texcoord] = now;
       for (const std::string& set : missing_sets(gltf_, gltf_.primitives[i])) attributes[set] = now;
+      drop_from_targets(i, gltf_.texcoord, "VEC2", split.uv.size());
     }
   }
 
@@ -184,8 +203,7 @@ class Patcher {
     const std::size_t now = put_accessor(old, uses, tangent_accessor(gltf_, old, tangents, views_));
     for (const std::size_t i : users) {
       json_of(i)["attributes"]["TANGENT"] = now;
-      if (!json_of(i).contains("targets")) continue;
-      for (Json& target : json_of(i)["targets"]) target.erase("TANGENT");
+      drop_from_targets(i, "TANGENT", "VEC3", tangents.size());
     }
   }
 
@@ -196,60 +214,7 @@ class Patcher {
   std::vector<std::size_t> references_;
 };
 
-std::string counted(std::size_t count, const char* thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
-
-/// The URI for a note; a long one is shortened, but not inside a character.
-std::string named(const std::string& uri) {
-  return uri.size() > kMostUri ? std::string() : ", as " + uri + ",";
-}
-
-bool has_morphed_tangents(const Gltf& gltf, const Primitive& primitive) {
-  const Json& json =
-      gltf.json.at("meshes").at(primitive.mesh).at("primitives").at(primitive.number);
-  const auto targets = json.find("targets");
-  return targets != json.end() &&
-         std::any_of(targets->begin(), targets->end(),
-                     [](const Json& target) { return target.contains("TANGENT"); });
-}
-
 }  // namespace
-
-std::vector<std::string> side_effects_of_patch(const Gltf& gltf, Format output) {
-  const Materials materials(gltf);
-  std::size_t with_tangents = 0, with_morphs = 0, with_lower_sets = 0;
-  for (const Primitive& primitive : gltf.primitives) {
-    if (!primitive.has_triangles) continue;
-    if (materials.loses_tangents(primitive)) {
-      ++with_tangents;
-      with_morphs += has_morphed_tangents(gltf, primitive) ? 1 : 0;
-    }
-    with_lower_sets += missing_sets(gltf, primitive).empty() ? 0 : 1;
-  }
-  const std::size_t reset = materials.to_reset().size();
-  std::vector<std::string> notes;
-  if (with_tangents > 0)
-    notes.push_back(
-        "The tangents of " + counted(with_tangents, "primitive") +
-        " belonged to the replaced texture coordinates; they are computed again by MikkTSpace.");
-  if (with_morphs > 0)
-    notes.push_back(
-        "The morph targets of " + counted(with_morphs, "primitive") +
-        " had tangents for the replaced texture coordinates; the result leaves these out.");
-  if (reset > 0)
-    notes.push_back("The KHR_texture_transform of " + counted(reset, "material") +
-                    " is reset for " + gltf.texcoord + "; its new coordinates need no transform.");
-  if (with_lower_sets > 0)
-    notes.push_back(counted(with_lower_sets, "primitive") + " lacked texture coordinates below " +
-                    gltf.texcoord + "; glTF allows no gap, so these sets are the same.");
-  const FilesBeside files = images_beside(gltf);
-  if (gltf.came_as_text && output == Format::glb && files.count > 0)
-    notes.push_back(
-        counted(files.count, "image") + " of the asset" + named(files.first) +
-        " remain in separate files; keep them beside the GLB, or send them with the request.");
-  return notes;
-}
 
 std::vector<VertexMap> vertex_maps_of_patch(const Gltf& gltf,
                                             std::span<const UnwrappedSurface> unwrapped) {

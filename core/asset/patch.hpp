@@ -25,6 +25,9 @@ PatchedDocument patch(const Gltf& gltf, std::span<const UnwrappedSurface> unwrap
 std::vector<VertexMap> vertex_maps_of_patch(const Gltf& gltf,
                                             std::span<const UnwrappedSurface> unwrapped);
 
+/// The lower sets of texture coordinates that the primitive lacks: a document must not skip any.
+std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primitive);
+
 /// Notes for side_effects().
 std::vector<std::string> side_effects_of_patch(const Gltf& gltf, Format output);
 

@@ -68,6 +68,60 @@ TEST(Texcoord, MakesTangentsAnewAndTakesTransformsOfReplacedUvsAway) {
   EXPECT_EQ(json_of(file)["accessors"].size(), 4U);  // of the old tangents nothing is left
 }
 
+const Json kPlainTexture = {{"index", 0}};
+
+const Json& colour_of(const Json& document, std::size_t material) {
+  return document.at("materials").at(material).at("pbrMetallicRoughness").at("baseColorTexture");
+}
+
+TEST(Texcoord, CopiesAMaterialThatAPrimitiveWhichStaysHasToo) {
+  Builder b = painted();
+  b.json["meshes"][0]["primitives"].push_back(b.json["meshes"][0]["primitives"][0]);
+  AssetOptions first = kPlain;
+  first.primitives = {"/meshes/0/primitives/0"};
+  const Json after = json_of(answer(b.glb(), first));
+  const Json& primitives = after["meshes"][0]["primitives"];
+  EXPECT_EQ(primitives[1]["material"], 0);
+  EXPECT_EQ(after["materials"][0], b.json["materials"][0]);
+  EXPECT_EQ(primitives[0]["material"], 1);
+  EXPECT_EQ(colour_of(after, 1), kPlainTexture);
+  EXPECT_EQ(after["materials"].size(), 2U);
+}
+
+TEST(Texcoord, TakesTransformsAwayFromTheMaterialsOfVariants) {
+  Builder b = painted();
+  b.json["materials"].push_back(b.json["materials"][0]);
+  b.json["materials"].push_back(b.json["materials"][0]);  // no primitive has this one
+  b.json["extensionsUsed"].push_back("KHR_materials_variants");
+  b.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "other"}}};
+  b.json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
+      {{"material", 1}, {"variants", {0}}}};
+  const Json after = json_of(answer(b.glb(), kPlain));
+  EXPECT_EQ(colour_of(after, 0), kPlainTexture);
+  EXPECT_EQ(colour_of(after, 1), kPlainTexture);
+  EXPECT_EQ(after["materials"][2], b.json["materials"][2]);
+}
+
+TEST(Texcoord, IsNoLongerMovedByMorphTargets) {
+  Builder b = painted();
+  const std::size_t moves = b.add("VEC2", 5126, numbers(32));
+  const std::size_t place = b.add("VEC3", 5126, numbers(48));
+  b.json["meshes"][0]["primitives"][0]["targets"] = {{{"TEXCOORD_0", moves}, {"POSITION", place}},
+                                                     {{"TEXCOORD_0", moves}}};
+  const Asset asset = read_file(b.glb(), kPlain);
+  const Json after = json_of(write(asset, split_everywhere(asset), Format::glb));
+  const Json& primitive = after["meshes"][0]["primitives"][0];
+  const Json& targets = primitive["targets"];
+  ASSERT_EQ(targets.size(), 2U);
+  EXPECT_FALSE(targets[0].contains("TEXCOORD_0"));
+  EXPECT_TRUE(targets[0].contains("POSITION"));
+  const auto accessor = [&](const Json& number) { return after["accessors"][number.get<int>()]; };
+  const Json zeros = accessor(targets[1]["TEXCOORD_0"]);
+  EXPECT_FALSE(zeros.contains("bufferView"));
+  EXPECT_EQ(zeros["count"], accessor(primitive["attributes"]["POSITION"])["count"]);
+  EXPECT_EQ(side_effects(asset, split_nowhere(asset), Format::glb).size(), 3U);
+}
+
 TEST(Texcoord, ReadsUvsAsTheTextureShowsThem) {
   Asset asset = read_file(painted().glb());
   read_uvs(asset);

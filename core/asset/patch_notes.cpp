@@ -1,0 +1,99 @@
+// What a patch changes beside the texture coordinates, said in sentences.
+#include <algorithm>
+
+#include "core/asset/images.hpp"
+#include "core/asset/materials.hpp"
+#include "core/asset/patch.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+constexpr std::size_t kMostUri = 80;  // characters of a URI that a note repeats
+
+std::string counted(std::size_t count, const char* thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+/// The URI for a note; empty if it is long.
+std::string named(const std::string& uri) {
+  return uri.size() > kMostUri ? std::string() : ", as " + uri + ",";
+}
+
+bool is_morphed(const Gltf& gltf, const Primitive& primitive, const std::string& semantic) {
+  const Json& json = json_of(gltf.json, primitive);
+  const auto targets = json.find("targets");
+  return targets != json.end() &&
+         std::any_of(targets->begin(), targets->end(),
+                     [&](const Json& target) { return target.contains(semantic); });
+}
+
+/// How many unwrapped primitives lose something, or get more than they had.
+struct Changed {
+  std::size_t tangents = 0, morphed_tangents = 0, morphed_texcoords = 0, lower_sets = 0;
+};
+
+Changed changed_primitives(const Gltf& gltf, const Materials& materials) {
+  Changed changed;
+  for (const Primitive& primitive : gltf.primitives) {
+    if (!primitive.has_triangles) continue;
+    if (materials.loses_tangents(primitive)) {
+      ++changed.tangents;
+      changed.morphed_tangents += is_morphed(gltf, primitive, "TANGENT") ? 1 : 0;
+    }
+    changed.morphed_texcoords += is_morphed(gltf, primitive, gltf.texcoord) ? 1 : 0;
+    changed.lower_sets += missing_sets(gltf, primitive).empty() ? 0 : 1;
+  }
+  return changed;
+}
+
+}  // namespace
+
+std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primitive) {
+  std::vector<std::string> missing;
+  for (int n = 0; n <= kMaxTexcoord; ++n) {
+    const std::string set = "TEXCOORD_" + std::to_string(n);
+    if (set == gltf.texcoord) break;
+    const auto is_set = [&](const auto& item) { return item.first == set; };
+    if (std::none_of(primitive.attributes.begin(), primitive.attributes.end(), is_set))
+      missing.push_back(set);
+  }
+  return missing;
+}
+
+std::vector<std::string> side_effects_of_patch(const Gltf& gltf, Format output) {
+  const Materials materials(gltf);
+  const Changed changed = changed_primitives(gltf, materials);
+  const MaterialsToReset to_reset = materials.to_reset();
+  const std::size_t reset = to_reset.in_place.size() + to_reset.copied.size();
+  std::vector<std::string> notes;
+  if (changed.tangents > 0)
+    notes.push_back(
+        "The tangents of " + counted(changed.tangents, "primitive") +
+        " belonged to the replaced texture coordinates; they are computed again by MikkTSpace.");
+  if (changed.morphed_tangents > 0)
+    notes.push_back(
+        "The morph targets of " + counted(changed.morphed_tangents, "primitive") +
+        " had tangents for the replaced texture coordinates; the result leaves these out.");
+  if (reset > 0)
+    notes.push_back("The KHR_texture_transform of " + counted(reset, "material") +
+                    " is reset for " + gltf.texcoord + "; its new coordinates need no transform.");
+  if (!to_reset.copied.empty())
+    notes.push_back(counted(to_reset.copied.size(), "material") +
+                    " of these are also on primitives that are not unwrapped; the unwrapped ones "
+                    "have copies.");
+  if (changed.morphed_texcoords > 0)
+    notes.push_back("The morph targets of " + counted(changed.morphed_texcoords, "primitive") +
+                    " moved the replaced texture coordinates; the result leaves this out.");
+  if (changed.lower_sets > 0)
+    notes.push_back(counted(changed.lower_sets, "primitive") +
+                    " lacked texture coordinates below " + gltf.texcoord +
+                    "; glTF allows no gap, so these sets are the same.");
+  const FilesBeside files = images_beside(gltf);
+  if (gltf.came_as_text && output == Format::glb && files.count > 0)
+    notes.push_back(
+        counted(files.count, "image") + " of the asset" + named(files.first) +
+        " remain in separate files; keep them beside the GLB, or send them with the request.");
+  return notes;
+}
+
+}  // namespace unwrapd::asset
