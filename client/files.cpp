@@ -27,7 +27,39 @@ std::string read_file(const fs::path& path) {
   return bytes;
 }
 
-NewFile::NewFile(fs::path path) : path_(std::move(path)), temporary_(path_) {
+namespace {
+
+bool is_below(const fs::path& path, const char* folder) {
+  return path.string().starts_with(folder);
+}
+
+/// Whether path is a pipe, a device, or a name for an open file, as /dev/stdout is one: no new file
+/// may take its place.
+bool is_stream(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (!fs::exists(status) || fs::is_directory(status)) return false;
+  return !fs::is_regular_file(status) ||
+         (fs::is_symlink(path, ignored) && (is_below(path, "/dev/") || is_below(path, "/proc/")));
+}
+
+/// The file that path leads to, through symbolic links.
+fs::path target_of(fs::path path) {
+  constexpr int kMostLinks = 40;  // Linux follows no more
+  std::error_code ignored;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(path, ignored); ++links)
+    path = path.parent_path() / fs::read_symlink(path, ignored);
+  return path;
+}
+
+}  // namespace
+
+NewFile::NewFile(fs::path path) : path_(std::move(path)) {
+  std::error_code ignored;
+  if (fs::is_directory(path_, ignored)) fail();
+  if (is_stream(path_)) return;
+  target_ = target_of(path_);
+  temporary_ = target_;
   temporary_ += ".part" + std::to_string(getpid());
   stream_.open(temporary_, std::ios::binary | std::ios::trunc);
   if (!stream_) fail();
@@ -35,10 +67,11 @@ NewFile::NewFile(fs::path path) : path_(std::move(path)), temporary_(path_) {
 
 NewFile::~NewFile() {
   std::error_code ignored;  // after commit() there is nothing left to remove
-  fs::remove(temporary_, ignored);
+  if (!temporary_.empty()) fs::remove(temporary_, ignored);
 }
 
 void NewFile::append(std::string_view bytes) {
+  if (!stream_.is_open()) stream_.open(path_, std::ios::binary | std::ios::app);
   stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!stream_) fail();
 }
@@ -46,8 +79,9 @@ void NewFile::append(std::string_view bytes) {
 void NewFile::commit() {
   stream_.close();
   if (!stream_) fail();
+  if (temporary_.empty()) return;
   std::error_code error;
-  fs::rename(temporary_, path_, error);
+  fs::rename(temporary_, target_, error);
   if (error) fail();
 }
 

@@ -15,10 +15,11 @@ std::string read_file(const std::filesystem::path& path);
 std::uintmax_t file_bytes(const std::filesystem::path& path);
 
 /// Collects bytes under a temporary name beside path; commit() renames it. Without commit() the
-/// temporary file is removed and an older file of that name stays.
+/// temporary file is removed and an older file of that name stays. A symbolic link stays: the file
+/// that it leads to is replaced. A pipe or a device gets the bytes as they come.
 class NewFile {
  public:
-  /// Throws Failure{file} if the folder is not writable.
+  /// Throws Failure{file} if the folder is not writable, or path is a folder.
   explicit NewFile(std::filesystem::path path);
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -31,7 +32,7 @@ class NewFile {
   [[noreturn]] void fail() const;
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path target_, temporary_;  ///< empty for a pipe or a device
   std::ofstream stream_;
 };
 

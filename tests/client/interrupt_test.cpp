@@ -17,11 +17,27 @@ void await(const std::stop_token& token) {
 }
 
 TEST(Interrupt, ASignalRequestsAStop) {
-  const Interrupt interrupt(std::chrono::milliseconds(0));
-  EXPECT_FALSE(interrupt.token().stop_requested());
-  kill(getpid(), SIGINT);
-  await(interrupt.token());
-  EXPECT_FALSE(interrupt.timed_out());
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const Interrupt interrupt(std::chrono::milliseconds(0));
+    EXPECT_FALSE(interrupt.token().stop_requested());
+    kill(getpid(), signal);
+    await(interrupt.token());
+    EXPECT_FALSE(interrupt.timed_out());
+  }
+}
+
+TEST(Interrupt, LeavesASignalAloneThatIsIgnored) {  // by nohup
+  sigset_t hangup, blocked;
+  sigemptyset(&hangup);
+  sigaddset(&hangup, SIGHUP);
+  pthread_sigmask(SIG_UNBLOCK, &hangup, nullptr);
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  {
+    const Interrupt interrupt(std::chrono::milliseconds(0));
+    pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
+    EXPECT_FALSE(sigismember(&blocked, SIGHUP));
+  }
+  std::signal(SIGHUP, before);
 }
 
 TEST(Interrupt, TheTimeLimitRequestsAStop) {
