@@ -1,23 +1,20 @@
 #pragma once
-// The JSON of a glTF document: parsed without recursion, kept in the order of its author, and read
-// through Node, which knows the JSON pointer of every value so that each error can name its place.
-// Integers keep all 64 bits and floats their value; only an integer beyond 64 bits turns into the
-// nearest double.
+// The JSON of a glTF document: read by core/json, and looked at through Node, which knows the JSON
+// pointer of every value so that each error can name its place.
 
 #include <array>
-#include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
 
 #include "core/base/error.hpp"
+#include "core/json/json.hpp"
 
 namespace unwrapd::asset {
 
-using Json = nlohmann::ordered_json;
+using json::Json;
 
 /// Throws Error{malformed_json} with the byte of the fault: bad syntax or UTF-8, a number that no
 /// double holds, a name that occurs twice in one object, more than 128 levels. Throws
@@ -26,9 +23,6 @@ using Json = nlohmann::ordered_json;
 /// document is held up to three times while it is written.
 Json parse_json(std::string_view text, const std::stop_token& stop,
                 std::size_t max_bytes = std::numeric_limits<std::size_t>::max());
-
-/// An upper bound of the memory that the text's tree will take, by counting its marks.
-std::size_t tree_bytes(std::string_view text, const std::stop_token& stop);
 
 /// A JSON pointer (RFC 6901) as it grows; a value, cheap to copy, turned into text only on error.
 class Place {

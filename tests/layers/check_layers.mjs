@@ -10,7 +10,7 @@ import { HOUSES, ROOMS, namespaceOf, roomOf, table, upward } from "./rooms.mjs";
 /** A header (or the start of its name) -> where alone it may be included. */
 const ONLY_IN = [
   { header: /^httplib\.h$/, files: /^(server|client)\/([a-z]+\/)?[a-z_]*http[a-z_]*\.(cpp|hpp)$|^tests\// },
-  { header: /^nlohmann\//, files: /^(core\/asset|api|server|client|tests)\// },
+  { header: /^nlohmann\//, files: /^(core\/json|core\/asset|api|server|client|tests)\// },
   { header: /^(thread|chrono|iostream|mutex|atomic|future)$/, files: /^(?!core\/)/ },
   { header: /^spdlog\//, files: /^server\// },
   { header: /^toml\+\+\//, files: /^server\/config\/config\.cpp$/ },

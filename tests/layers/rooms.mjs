@@ -10,6 +10,7 @@ const STORED = ["core/base", "api", "server/base", "server/store"];
 /** Folder, duty, the rooms that it may include. */
 export const ROOMS = [
   ["core/base", "errors, cancelling, executors, the cache that jobs share", []],
+  ["core/json", "reads JSON from outside, strictly and within bounds", ["core/base"]],
   ["core/mesh", "triangles, half-edges, topology, welding, repair", ["core/base"]],
   ["core/types", "plain types: options, progress, report, cache keys", ["core/base", "core/mesh"]],
   ["core/linear", "sparse systems, factored once, solved often", TERMS],
@@ -27,9 +28,9 @@ export const ROOMS = [
   ["core/pipeline", "the steps of unwrapping", [...SOLVING, "core/charts", "core/guarantee", "core/pack", "core/segment", "core/solve"]],
   ["core", "the front door: unwrap(), the list of its steps", [...TERMS, "core/charts", "core/guarantee", "core/pipeline", "core/segment", "core/solve"]],
   ["core/figure", "layouts and previews as SVG and pixels", [...TERMS, "core/measure"]],
-  ["core/asset", "reads and writes glTF, Draco, meshopt and OBJ; a separate library", TERMS],
+  ["core/asset", "reads and writes glTF, Draco, meshopt and OBJ; a separate library", [...TERMS, "core/json"]],
   ["api/contract", "`openapi.yaml` as JSON and as a page", []],
-  ["api", "the contract; the tables of options and of errors", TERMS],
+  ["api", "the contract; the tables of options and of errors", [...TERMS, "core/json"]],
   ["client/web", "the page at `/`, embedded in the program", []],
   ["client", "the program `unwrap`: uploads, follows, downloads", ["api"]],
   ["server/base", "files, clocks, log, metrics, waiting", ["core/base", "api"]],

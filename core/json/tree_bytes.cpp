@@ -2,10 +2,10 @@
 // bytes.
 #include <algorithm>
 
-#include "core/asset/json.hpp"
 #include "core/base/cancel.hpp"
+#include "core/json/json.hpp"
 
-namespace unwrapd::asset {
+namespace unwrapd::json {
 namespace {
 
 /// What is counted in a text to tell the size of its tree.
@@ -58,4 +58,4 @@ std::size_t tree_bytes(std::string_view text, const std::stop_token& stop) {
          48 * (marks.strings - std::min(marks.strings, marks.members)) + marks.long_text;
 }
 
-}  // namespace unwrapd::asset
+}  // namespace unwrapd::json
