@@ -1,7 +1,7 @@
 #pragma once
-// A connection without TLS that bounds the head of an answer. The HTTP library reads lines of any
-// length, and matches status lines with a recursive regular expression: 30 kB of one overflow the
-// stack.
+// Connections, with and without TLS, that bound the head of an answer. The HTTP library reads lines
+// of any length, and matches status lines with a recursive regular expression: 30 kB of one
+// overflow the stack.
 
 #include <httplib.h>
 
@@ -30,6 +30,15 @@ class AnswerHead {
 class BoundedHttp : public httplib::ClientImpl {
  public:
   using httplib::ClientImpl::ClientImpl;
+
+ private:
+  bool process_socket(const Socket& socket,
+                      std::function<bool(httplib::Stream&)> callback) override;
+};
+
+class BoundedHttps : public httplib::SSLClient {
+ public:
+  using httplib::SSLClient::SSLClient;
 
  private:
   bool process_socket(const Socket& socket,

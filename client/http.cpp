@@ -20,7 +20,7 @@ constexpr int kSilenceSeconds = 60;  // event streams send a heartbeat every 15 
 constexpr std::size_t kBlockBytes = 65'536;
 constexpr std::size_t kMostText = std::size_t{64}
                                   << 20;  // of an answer that is collected in memory
-constexpr std::string_view kPlain = "http://";
+constexpr std::string_view kPlain = "http://", kTls = "https://";
 
 template <class Client>
 void prepare(Client& client) {
@@ -32,13 +32,14 @@ void prepare(Client& client) {
   if (const char* key = std::getenv("UNWRAP_API_KEY")) client.set_bearer_token_auth(key);
 }
 
-/// "host:port", the host in brackets or not.
-std::pair<std::string, int> host_and_port(std::string_view authority) {
+/// "host:port", the host in brackets or not, the port given or not.
+std::pair<std::string, int> host_and_port(std::string_view authority, const char* usual_port) {
   const std::size_t end = authority.starts_with('[') ? authority.find(']') : authority.find(':');
   const std::size_t colon = authority.find(':', std::min(end, authority.size()));
   std::string host(authority.substr(0, colon));
   if (host.starts_with('[')) host = host.substr(1, host.size() - 2);
-  const std::string port(colon == std::string_view::npos ? "80" : authority.substr(colon + 1));
+  const std::string port(colon == std::string_view::npos ? usual_port
+                                                         : authority.substr(colon + 1));
   return {host, std::stoi(port)};
 }
 
@@ -97,10 +98,12 @@ template <class Send>
 httplib::Result perform(const ServerUrl& server, const std::stop_token& stop, const Guard& guard,
                         Send&& send) {
   const std::string_view origin = server.origin;
-  if (!origin.starts_with(kPlain))
-    return perform(httplib::Client(server.origin), server, stop, guard, send);
-  const auto [host, port] = host_and_port(origin.substr(kPlain.size()));
-  return perform(BoundedHttp(host, port), server, stop, guard, send);
+  if (origin.starts_with(kPlain)) {
+    const auto [host, port] = host_and_port(origin.substr(kPlain.size()), "80");
+    return perform(BoundedHttp(host, port), server, stop, guard, send);
+  }
+  const auto [host, port] = host_and_port(origin.substr(kTls.size()), "443");
+  return perform(BoundedHttps(host, port), server, stop, guard, send);
 }
 
 /// Gives the library the next block of an upload.
