@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/samples/test_data.hpp"
+
 namespace unwrapd::asset::test {
 namespace {
 
@@ -210,9 +212,8 @@ std::vector<UnwrappedSurface> split_nowhere(const Asset& asset) {
 }
 
 std::optional<std::filesystem::path> test_data() {
-  const char* given = std::getenv("UNWRAPD_TEST_DATA");
-  const std::filesystem::path folder = given != nullptr ? given : UNWRAPD_DEFAULT_TEST_DATA;
-  if (!std::filesystem::is_directory(folder)) return std::nullopt;
+  const std::filesystem::path folder = unwrapd::test_data();
+  if (folder.empty()) return std::nullopt;
   return folder;
 }
 

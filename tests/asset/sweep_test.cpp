@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "tests/asset/support.hpp"
+#include "tests/server/temp_dir.hpp"
 
 namespace unwrapd::asset::test {
 namespace {
@@ -148,8 +149,8 @@ TEST(Sweep, AnswersPassTheKhronosValidator) {
   if (!data) GTEST_SKIP() << "no test data";
   if (!std::filesystem::exists(tests / "node_modules/gltf-validator"))
     GTEST_SKIP() << "no gltf-validator: run npm ci in tests";
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "unwrapd_asset";
-  std::filesystem::create_directories(folder);
+  const server::TempDir own;
+  const std::filesystem::path& folder = own.path();
   std::ofstream list(folder / "list");
   int number = 0;
   std::vector<std::filesystem::path> files = assets(*data);
@@ -169,7 +170,6 @@ TEST(Sweep, AnswersPassTheKhronosValidator) {
   const std::string command =
       "node '" + (tests / "asset/validate.mjs").string() + "' '" + (folder / "list").string() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

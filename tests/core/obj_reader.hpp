@@ -2,6 +2,7 @@
 // A reader for the tests' own use: `v` and `f` of an OBJ file, polygons cut into fans. Product code
 // reads OBJ with core/asset; this one depends on nothing, so that core's tests need core alone.
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -10,18 +11,9 @@
 #include <vector>
 
 #include "core/mesh/tri_mesh.hpp"
+#include "tests/samples/test_data.hpp"
 
 namespace unwrapd {
-
-/// The folder of real meshes (UNWRAPD_TEST_DATA or beside the checkout); empty when absent.
-inline std::filesystem::path test_data() {
-  const char* given = std::getenv("UNWRAPD_TEST_DATA");
-  const std::filesystem::path path =
-      given != nullptr ? std::filesystem::path(given)
-                       : std::filesystem::path(__FILE__).parent_path() / "../../../shared/data";
-  return std::filesystem::is_directory(path) ? std::filesystem::canonical(path)
-                                             : std::filesystem::path();
-}
 
 namespace obj_detail {
 

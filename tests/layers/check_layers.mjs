@@ -35,6 +35,9 @@ const MAX_LINES = [
 /** Words that have no place in the project: left-overs, and paths of a developer's machine. */
 const FORBIDDEN = [/\bTODO\b/, /\bFIXME\b/, /\bXXX\b/, /\/(home|Users|mnt)\/\w/, /"resolved":/];
 
+/** Fixed names in a temporary folder, which two runs of the tests share. */
+const SHARED_NAMES = /\bTempDir\(\) *[/+]|testing::TempDir\(\)|["'`]\/(tmp|var\/tmp|dev\/shm)\/\w/;
+
 const SOURCE = /\.(cpp|hpp|mjs|js|ts|py|md|txt|json|yaml|yml|sh|cmake)$|(^|\/)(dev|run)$/;
 const SKIPPED = new Set([".git", "build", "out", "data", "node_modules"]);
 
@@ -83,6 +86,8 @@ export function check(path, text) {
     const found = include ? includeBreaches(path, include[2], include[1] === '"') : [];
     const words = path.startsWith("tests/layers/") ? [] : FORBIDDEN.filter((word) => word.test(line));
     const spaces = isCode ? namespaceBreaches(path, line) : [];
+    if (path.startsWith("tests/") && !path.startsWith("tests/layers/") && SHARED_NAMES.test(line))
+      found.push("a fixed temporary name; take a fresh folder (mkdtemp)");
     for (const breach of [...found, ...spaces, ...words.map((word) => `forbidden: ${word.source}`)])
       breaches.push(`${path}:${number + 1}: ${breach}`);
   });

@@ -127,3 +127,11 @@ test("guides name files that exist", () => {
   assert.equal(dead("docs/api.md", "[here](SECURITY.md)"), 1);
   assert.equal(dead("docs/adr/0001-a.md", "`core/gone.cpp`"), 0);
 });
+
+test("tests share no fixed temporary name", () => {
+  const tells = (line) => check("tests/asset/a_test.cpp", `${line}\n`).length;
+  assert.equal(tells('const auto folder = std::filesystem::path(testing::TempDir()) / "unwrapd_asset";'), 1);
+  assert.equal(tells('std::ofstream file("/tmp/unwrapd.obj");'), 1);
+  assert.equal(tells("const server::TempDir own;"), 0);
+  assert.equal(tells('mistake({"--config", "/tmp"});'), 0);
+});
