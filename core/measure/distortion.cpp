@@ -37,6 +37,7 @@ struct Faces {
 /// valid.
 struct Block {
   DistortionSums sums;
+  double squares = 0;  ///< sum of A_t |J|^2 of measured triangles
   double least_determinant = std::numeric_limits<double>::infinity(), greatest_norm = 0;
 
   /// sigma_min >= det J / |J|
@@ -62,6 +63,7 @@ Block sum_up(const Faces& faces) {
     }
     sums.measured += a;
     sums.measured_uv += a * std::abs(determinant);
+    block.squares += a * norm;
     sums.angle += a * shape;
     sums.inverse += a * inverse;
     sums.stretch += a * (shape * inverse) / 2;
@@ -79,10 +81,19 @@ void add_floored(const Faces& faces, double floor, DistortionSums& sums) {
     if (!(sigma_min > 0)) ++sums.flipped;
     if (is_degenerate(faces.rest[t])) continue;
     const double s1 = std::max(j.sigma_max(), floor), s2 = std::max(std::abs(sigma_min), floor);
+    sums.measured_uv += a * s1 * s2;
     sums.angle += a * (s1 / s2 + s2 / s1);
     sums.inverse += a / (s1 * s2);
     sums.stretch += a * (1 / (s1 * s1) + 1 / (s2 * s2)) / 2;
   }
+}
+
+/// What kMinSingularValue comes to. The mean stretch is the root mean square of the singular
+/// values, which a map onto a line has, too: its UV area is 0. A map onto a point has none.
+double floor_of(const std::vector<Block>& blocks) {
+  double squares = 0, measured = 0;
+  for (const Block& block : blocks) squares += block.squares, measured += block.sums.measured;
+  return squares > 0 ? kMinSingularValue * std::sqrt(squares / (2 * measured)) : 1;
 }
 
 }  // namespace
@@ -124,16 +135,13 @@ DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<con
   for_each_part(faces.size(), executor, [&](std::size_t k, std::size_t begin, std::size_t end) {
     blocks[k] = sum_up(all.part(begin, end));
   });
-  DistortionSums areas;
-  for (const Block& block : blocks)
-    areas.area += block.sums.area, areas.uv_area += block.sums.uv_area;
-  const double floor = std::max(kMinSingularValue * std::sqrt(areas.uv_area / areas.area), 1e-150);
+  const double floor = floor_of(blocks);
   const auto is_above = [&](const Block& block) { return block.is_above(floor); };
   if (!std::ranges::all_of(blocks, is_above))
     for_each_part(faces.size(), executor, [&](std::size_t k, std::size_t begin, std::size_t end) {
       if (is_above(blocks[k])) return;
       DistortionSums& sums = blocks[k].sums;
-      sums.angle = sums.inverse = sums.stretch = 0, sums.flipped = 0;
+      sums.measured_uv = sums.angle = sums.inverse = sums.stretch = 0, sums.flipped = 0;
       add_floored(all.part(begin, end), floor, blocks[k].sums);
     });
   DistortionSums sums;

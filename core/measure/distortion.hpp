@@ -30,8 +30,9 @@ struct DistortionSums {
 /// stretched a million times. They are counted as degenerate and belong to no mean.
 inline constexpr double kMeasurable = 1e-5;
 
-/// A collapsed image has no finite D. |sigma_min| counts as at least this share of the mean
-/// stretch, and so does sigma_max. A chart that reaches the floor shows D in the thousands.
+/// A collapsed image has no finite D: each singular value counts as at least this share of the root
+/// mean square of all. So D_angle stays below 1.5e6, D_area below 1e12 + 1, stretch below 1e6; a
+/// chart that reaches the floor shows D_angle in the thousands.
 inline constexpr double kMinSingularValue = 1e-6;
 
 /// faces index uv; rest has one entry a face. The same bits for any executor. Throws

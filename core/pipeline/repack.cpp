@@ -36,13 +36,15 @@ std::vector<charts::UvIslands> find_islands(std::span<const Surface> surfaces,
   return all;
 }
 
-/// Of faces whose corners are not all at one point: others have no metric.
+/// Faces without area have no metric: they are counted, as degenerate.
 measure::DistortionSums sums_of(const charts::Chart& chart, const UvMap& uv) {
   TriMesh mesh{chart.mesh.positions, {}};
   for (const Triangle& face : chart.mesh.faces)
     if (measure::face_area(chart.mesh, face) > 0) mesh.faces.push_back(face);
-  if (mesh.faces.empty()) return {};
-  return measure::distortion_sums(measure::flatten(mesh), mesh.faces, uv);
+  measure::DistortionSums sums;
+  if (!mesh.faces.empty()) sums = measure::distortion_sums(measure::flatten(mesh), mesh.faces, uv);
+  sums.degenerate += chart.mesh.face_count() - mesh.face_count();
+  return sums;
 }
 
 /// Each island at the size at which its UV area is its area in space.
@@ -78,7 +80,7 @@ ChartReport report_of(const charts::Chart& chart, const measure::DistortionSums&
                      .faces = chart.mesh.face_count(),
                      .vertices = chart.mesh.vertex_count()};
   report.area = sums.area;
-  if (sums.area > 0) report.distortion = measure::distortion(sums);
+  report.distortion = measure::distortion(sums);
   report.stop_reason = StopReason::direct;
   return report;
 }
@@ -115,8 +117,8 @@ void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIsla
     }
   }
   report.area = total.area;
-  if (!(total.area > 0)) return;
   report.distortion = measure::distortion(total);
+  if (!(total.area > 0)) return;
   report.seam_ratio = report.seam_length / std::sqrt(total.area);
   report.texel_density = std::sqrt(total.uv_area / total.area) * options.resolution;
 }

@@ -170,6 +170,7 @@ DistortionSums sums_by_svd(const TriMesh& mesh, const UvMap& uv) {
   const std::vector<RestTriangle> rest = flatten(mesh);
   std::vector<Eigen::Vector2d> sigma;
   DistortionSums sums;
+  double squares = 0;
   for (std::size_t t = 0; t < rest.size(); ++t) {
     const UvEdges u = uv_edges(mesh.faces[t], uv);
     Eigen::Matrix2d from, to;
@@ -180,8 +181,9 @@ DistortionSums sums_by_svd(const TriMesh& mesh, const UvMap& uv) {
     sums.area += rest[t].area;
     sums.uv_area += rest[t].area * sigma.back().prod();
     sums.flipped += dense.determinant() <= 0 ? 1 : 0;
+    squares += rest[t].area * sigma.back().squaredNorm();
   }
-  const double floor = kMinSingularValue * std::sqrt(sums.uv_area / sums.area);
+  const double floor = kMinSingularValue * std::sqrt(squares / (2 * sums.area));
   for (std::size_t t = 0; t < rest.size(); ++t) {
     const double a = rest[t].area, s1 = std::max(sigma[t][0], floor),
                  s2 = std::max(sigma[t][1], floor);
