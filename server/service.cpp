@@ -282,11 +282,11 @@ Service::~Service() {
 }
 
 int Service::port() const { return parts_->http.port(); }
-
 std::optional<int> Service::admin_port() const {
   return parts_->admin ? std::optional(parts_->admin->port()) : std::nullopt;
 }
 
+const std::vector<http::Route>& Service::routes() const { return parts_->router.routes(); }
 void Service::stop_waiting() { parts_->queue.stop_waiting(); }
 
 bool Service::drain() {

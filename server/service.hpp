@@ -4,9 +4,11 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "server/base/log.hpp"
 #include "server/config/config.hpp"
+#include "server/http/router.hpp"
 #include "server/work/job_worker.hpp"
 
 namespace unwrapd::server {
@@ -24,6 +26,8 @@ class Service {
   [[nodiscard]] int port() const;
   /// Nothing without an admin port.
   [[nodiscard]] std::optional<int> admin_port() const;
+  /// Those of the main port: openapi.yaml describes each.
+  [[nodiscard]] const std::vector<http::Route>& routes() const;
   /// New jobs are refused, running ones get drain_seconds, then their place in the queue; event
   /// streams end; then nothing is served any more. Call once. False when a job does not stop: the
   /// next start runs it again, but this would not be destroyed before it ends.

@@ -29,6 +29,7 @@ class Router {
 
   /// Never throws. HEAD is answered like GET; the caller omits the body.
   [[nodiscard]] Response answer(Request request) const noexcept;
+  [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
 
  private:
   [[nodiscard]] Response guarded(Request& request, std::string_view& route) const noexcept;
