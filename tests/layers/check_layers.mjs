@@ -99,7 +99,7 @@ export function check(path, text) {
 }
 
 /** The types that a header defines, with their namespaces: "unwrapd::asset::Document". */
-function typesOf(text) {
+export function typesOf(text) {
   let space = "";
   const types = [];
   for (const line of text.split("\n")) {

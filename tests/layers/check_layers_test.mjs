@@ -4,6 +4,7 @@ import test from "node:test";
 
 import { check, deadMentions, deadPaths, strangers, twins } from "./check_layers.mjs";
 import { ROOMS, upward } from "./rooms.mjs";
+import { circlesOf, roomGraph, structure } from "./structure.mjs";
 
 const including = (path, header) => check(path, `#include ${header}\n`);
 const refuses = (path, header) => assert.notDeepEqual(including(path, header), [], `${path} ${header}`);
@@ -60,6 +61,18 @@ test("a table that goes both ways is refused", () => {
   assert.equal(upward([upstairs, downstairs]).length, 1);
   assert.equal(upward([{ folder: "a", includes: ["unknown"] }]).length, 1);
   assert.deepEqual(upward(ROOMS), []);
+});
+
+test("the figures of the structure tell circles and includes that go up", () => {
+  const file = (path, ...headers) => ({ path, text: headers.map((header) => `#include "${header}"\n`).join("") });
+  const oneWay = [file("core/a/x.hpp"), file("core/b/y.hpp", "core/a/x.hpp"), file("core/c/z.cpp", "core/b/y.hpp")];
+  const round = [...oneWay, file("core/a/x.cpp", "core/c/z.hpp", "core/c/w.hpp")];
+  assert.deepEqual(circlesOf(roomGraph(oneWay)), { circles: [], up: 0 });
+  assert.deepEqual(circlesOf(roomGraph(round)), { circles: ["core/a, core/b, core/c"], up: 4 });
+  const figures = new Map(structure([...round, { path: "core/a/t.hpp", text: "struct A {\nstruct B;\n" }]));
+  assert.equal(figures.get("rooms (folders with sources)"), 3);
+  assert.equal(figures.get("types in headers"), 1);
+  assert.equal(figures.get("longest file, lines"), 2);
 });
 
 test("nobody reaches past the layer below", () => {
