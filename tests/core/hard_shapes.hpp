@@ -87,8 +87,8 @@ inline std::vector<NamedMesh> broken_surfaces() {
           {"faces twice", doubled},
           {"three faces at an edge", three_faces_at_an_edge()},
           {"a bow tie", bow_tie()},
-          {"a closed sphere", sphere(2)},
-          {"a torus", torus(12, 8)}};
+          {"a closed sphere", sphere(1)},
+          {"a torus", torus(8, 5)}};
 }
 
 /// Every vertex moved along x, y and z by up to `most`, by a hash of its number.
