@@ -27,7 +27,7 @@ test("rooms include the rooms before them only", () => {
   accepts("core/figure/preview.cpp", '"core/measure/jacobian.hpp"');
   accepts("core/solve/arap/global_step.cpp", '"core/linear/cholesky.hpp"');
   accepts("core/charts/charts.cpp", '"core/types/options.hpp"');
-  accepts("core/unwrap.cpp", '"core/pack/pack.hpp"');
+  accepts("core/unwrap.cpp", '"core/guarantee/keep_guarantee.hpp"');
   accepts("server/jobs/job_queue.cpp", '"server/store/job_store.hpp"');
 });
 
