@@ -19,6 +19,8 @@ bool is_port(std::string_view digits) {
   return error == std::errc() && end == digits.data() + digits.size() && port > 0 && port < 65536;
 }
 
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 bool is_host_character(char c) {
   const bool alphanumeric =
       (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -48,10 +50,11 @@ void check_authority(std::string_view authority, std::string_view text) {
 }  // namespace
 
 ServerUrl parse_server_url(std::string_view text) {
-  std::string_view scheme = "http";
+  std::string scheme = "http";
   std::string_view rest = text;
   if (const std::size_t colon = text.find("://"); colon != std::string_view::npos) {
     scheme = text.substr(0, colon);
+    std::ranges::transform(scheme, scheme.begin(), lower);  // RFC 3986, 3.1
     rest = text.substr(colon + 3);
   }
   if (scheme != "http" && scheme != "https") refuse(text, "has a scheme that is not http or https");
@@ -62,7 +65,7 @@ ServerUrl parse_server_url(std::string_view text) {
   check_authority(authority, text);
   std::string prefix(slash == std::string_view::npos ? std::string_view() : rest.substr(slash));
   while (prefix.ends_with('/')) prefix.pop_back();
-  return {std::string(scheme) + "://" + std::string(authority), std::move(prefix)};
+  return {scheme + "://" + std::string(authority), std::move(prefix)};
 }
 
 }  // namespace unwrapd::client

@@ -128,7 +128,7 @@ class Builder : public nlohmann::json_sax<Json> {
       const std::size_t names = innermost ? names_.size() : frames_[i + 1].first_name;
       if (frames_[i].is_array)
         text += "/" + std::to_string(values - frames_[i].first_value);
-      else if (names > frames_[i].first_name && !names_[names - 1].empty())
+      else if (names > frames_[i].first_name)
         text += "/" + pointer_token(names_[names - 1]);
     }
     return text;

@@ -13,6 +13,7 @@
 #include "server/base/utf8.hpp"
 #include "server/http/form.hpp"
 #include "server/http/media_types.hpp"
+#include "server/http/query.hpp"
 
 namespace unwrapd::server::http {
 namespace {
@@ -80,7 +81,7 @@ Request to_request(const httplib::Request& from, const Framing& framing) {
   Request request;
   request.method = from.method;
   request.path = from.path;
-  request.query.insert(from.params.begin(), from.params.end());
+  request.query = parse_query(framing.query);
   request.headers.insert(framing.fields.begin(), framing.fields.end());
   if (framing.brings_body) request.headers.erase("Range");  // RFC 9110, 14.2
   request.host = framing.host;

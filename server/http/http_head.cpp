@@ -108,6 +108,13 @@ std::size_t authority_of(std::string_view target) {
   return 0;
 }
 
+/// What stands between "?" and "#".
+std::string_view query_of(std::string_view target) {
+  target = target.substr(0, target.find('#'));
+  const std::size_t mark = target.find('?');
+  return mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
+}
+
 /// Returns the method.
 std::string_view vet_request_line(std::string_view line, Framing& framing) {
   const std::size_t first = line.find(' ');
@@ -118,6 +125,7 @@ std::string_view vet_request_line(std::string_view line, Framing& framing) {
   const std::string_view target = line.substr(first + 1, last - first - 1);
   const std::string_view version = line.substr(last + 1);
   framing.target = first + 1;
+  framing.query = query_of(target);
   framing.authority = authority_of(target);
   if (framing.authority == 0 && !target.starts_with('/')) no_request_line();
   const std::string_view authority = target.substr(0, framing.authority);
@@ -202,6 +210,13 @@ void to_origin_form(std::string& head, const Framing& framing) {
   head.replace(framing.target, framing.authority, next == '/' ? "" : "/");  // no path is the root
 }
 
+/// With the fragment, which is not the server's business.
+void drop_query(std::string& head, std::size_t target) {
+  const std::size_t end = head.find(' ', target);
+  const std::size_t begin = std::min(head.find_first_of("?#", target), end);
+  head.erase(begin, end - begin);
+}
+
 void drop_ranges(std::string& head) {
   std::size_t line = head.find(kLineEnd) + kLineEnd.size();
   for (std::size_t end = head.find(kLineEnd, line); end != line; end = head.find(kLineEnd, line)) {
@@ -257,6 +272,7 @@ std::ptrdiff_t simplify(std::string& head, const Framing& framing) {
   const std::ptrdiff_t before = std::ssize(head);
   drop_ranges(head);
   if (framing.authority > 0) to_origin_form(head, framing);
+  drop_query(head, framing.target);
   return before - std::ssize(head);
 }
 

@@ -25,6 +25,7 @@ struct Framing {
   bool awaits_continue = false;     ///< the sender waits for 100 before it sends the body
   std::size_t target = 0;           ///< where the request line's target begins
   std::size_t authority = 0;        ///< bytes of scheme and host before its path
+  std::string query;                ///< of the target, percent-encoded
   std::string host;                 ///< of the target, else of the Host header; may be empty
   bool brings_body = false;         ///< by its method
   bool version_1_0 = false;         ///< knows no chunks
@@ -47,9 +48,10 @@ Framing vet_head(std::string_view head);
 /// and none that tells where a request ends or whose it is.
 bool is_trailer(std::string_view line);
 
-/// Makes "GET http://host/path" "GET /path" in a head that was vetted (RFC 9112, 3.2.2), and leaves
-/// out every Range, which httplib would match against a regular expression. Returns by how many
-/// bytes the head, which more may follow, is shorter.
+/// Makes "GET http://host/path?query" "GET /path" in a head that was vetted (RFC 9112, 3.2.2),
+/// since httplib reads queries otherwise than parse_query(), and leaves out every Range, which
+/// httplib would match against a regular expression. Returns by how many bytes the head, which more
+/// may follow, is shorter.
 std::ptrdiff_t simplify(std::string& head, const Framing& framing);
 
 }  // namespace unwrapd::server::http

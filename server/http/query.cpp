@@ -1,11 +1,45 @@
 #include "server/http/query.hpp"
 
+#include <algorithm>
 #include <charconv>
 
+#include "api/json.hpp"
+
 namespace unwrapd::server::http {
+namespace {
+
+std::string decoded(std::string_view text) {
+  constexpr std::size_t digits = 2;
+  std::string plain;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    plain += text[at] == '+' ? ' ' : text[at];
+    if (text[at] != '%' || text.size() - at <= digits) continue;
+    unsigned char byte = 0;
+    const char* first = text.data() + at + 1;
+    if (std::from_chars(first, first + digits, byte, 16).ptr != first + digits) continue;
+    plain.back() = static_cast<char>(byte);
+    at += digits;
+  }
+  return plain;
+}
+
+}  // namespace
+
+std::multimap<std::string, std::string> parse_query(std::string_view text) {
+  std::multimap<std::string, std::string> query;
+  while (!text.empty()) {
+    const std::string_view parameter = text.substr(0, text.find('&'));
+    text.remove_prefix(std::min(parameter.size() + 1, text.size()));
+    if (parameter.empty()) continue;
+    const std::string_view name = parameter.substr(0, parameter.find('='));
+    query.emplace(decoded(name),
+                  decoded(parameter.substr(std::min(name.size() + 1, parameter.size()))));
+  }
+  return query;
+}
 
 void refuse_parameter(const std::string& name, const std::string& what) {
-  throw Error(ErrorCode::invalid_option, what, "/" + name);
+  throw Error(ErrorCode::invalid_option, what, "/" + api::pointer_token(name));
 }
 
 void refuse_unknown(const std::string& name) {

@@ -1,13 +1,20 @@
 #pragma once
-// Parameters of a query: each once, each known, numbers in their range. What is wrong is
-// Error{invalid_option} whose place is the parameter's name.
+// The parameters of a query. Calls check theirs here: each once, each known, numbers in their
+// range. What is wrong is Error{invalid_option} whose place is the parameter's name.
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <string_view>
 
 #include "server/http/http.hpp"
 
 namespace unwrapd::server::http {
+
+/// "a=b&c" as names and values, percent-decoded (application/x-www-form-urlencoded in the URL
+/// standard, 5.1): "+" is a space, the first "=" ends a name, "&&" holds no parameter, and a name
+/// may be empty. A percent sign without two digits stays.
+std::multimap<std::string, std::string> parse_query(std::string_view text);
 
 [[noreturn]] void refuse_parameter(const std::string& name, const std::string& what);
 [[noreturn]] void refuse_unknown(const std::string& name);

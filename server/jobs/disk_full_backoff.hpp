@@ -19,6 +19,8 @@ class DiskFullBackoff {
     const std::chrono::seconds pause(std::int64_t{1} << std::min(full_in_a_row_ - 1, kMostDoubled));
     until_ = Clock::now() + std::min(pause, kLongest);
   }
+  /// Whether the last job to end found it full.
+  [[nodiscard]] bool is_full() const { return full_in_a_row_ > 0; }
   [[nodiscard]] Clock::time_point until() const { return until_; }
   /// Until then, rounded up; 0 when it is over.
   [[nodiscard]] int seconds_left() const {

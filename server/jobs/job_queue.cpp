@@ -39,6 +39,12 @@ void JobQueue::check_open() const {
   if (const int seconds = pause_.seconds_left(); seconds > 0) throw no_room(seconds);
 }
 
+std::optional<RetryLater> JobQueue::shortage() const {
+  const std::lock_guard lock(mutex_);
+  if (left_.empty() && !(pause_.is_full() && share_.waiting() > 0)) return std::nullopt;
+  return no_room(std::max(1, pause_.seconds_left()));
+}
+
 std::vector<AtWork> JobQueue::at_work() const {
   std::vector<AtWork> all;
   for (const auto& [id, job] : running_) all.push_back({job->record.owner, job->seconds()});

@@ -130,6 +130,8 @@ class JobQueue {
   /// Takes all patience from drain().
   void stop_waiting();
   [[nodiscard]] bool draining() const { return closed_; }
+  /// The answer while jobs wait for room on the disk: the last job to end found none.
+  [[nodiscard]] std::optional<RetryLater> shortage() const;
 
  private:
   void check_open() const;

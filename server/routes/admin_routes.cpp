@@ -1,5 +1,8 @@
 #include "server/routes/admin_routes.hpp"
 
+#include <optional>
+
+#include "server/base/errors.hpp"
 #include "server/store/data_directory.hpp"
 
 namespace unwrapd::server::routes {
@@ -8,11 +11,12 @@ namespace {
 constexpr std::string_view kOk = R"({"status":"ok"})";
 
 /// Whether the server takes jobs: not while it drains, nor while they cannot be stored or worked
-/// on. A full queue or disk passes by itself.
+/// on, nor while accepted jobs wait for room on the disk. A full queue passes by itself.
 http::Response answer(const Readiness& readiness) {
   if (readiness.queue.draining())
     throw RetryLater(ErrorCode::draining, "The server is shutting down; use another server.", 1);
   readiness.store.check_writable();
+  if (const std::optional<RetryLater> shortage = readiness.queue.shortage()) throw *shortage;
   if (!readiness.has_workers())
     throw Error(ErrorCode::internal, "Jobs that do not stop hold every worker.");
   if (!std::filesystem::exists(readiness.data / store::kStoreFile) ||

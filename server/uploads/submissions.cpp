@@ -18,7 +18,17 @@ api::Json options_of(const std::optional<std::string>& text, const http::Request
   if (request.query.empty()) return api::parse_json(*text, {.max_bytes = api::kMaxOptionsBytes});
   throw Error(ErrorCode::invalid_option,
               "Options are in the query and in the body; give them in one place.",
-              "/" + request.query.begin()->first);
+              api::option_pointer(request.query.begin()->first));
+}
+
+/// Throws what parse_options() does, with the place in the document that was sent.
+api::JobOptions read_options(const api::Json& asked, const api::Limits& limits,
+                             std::string_view place) {
+  try {
+    return api::parse_options(asked, limits);
+  } catch (const Error& error) {
+    throw Error(error.code(), error.what(), std::string(place) + error.where());
+  }
 }
 
 constexpr std::size_t kLongestKey = 255;
@@ -92,6 +102,7 @@ UploadSize size_of(const http::Request& request, const std::optional<store::JobR
 struct Submissions::Sent {
   std::unique_lock<std::mutex> turn;
   std::optional<std::string> options;  // JSON text
+  std::string place = {};              // of the options in the body's document, a JSON pointer
 };
 
 std::string Submissions::accept(const http::Request& request, bool synchronous) {
@@ -165,6 +176,7 @@ Submissions::Sent Submissions::bring_reference(const http::Request& request,
   MeshReference named = parse_mesh_reference(*sent.options);
   job.input = meshes_.share(request.caller.owner, named.sha256, folder.path.filename());
   sent.options = std::move(named.options);
+  sent.place = "/options";
   return sent;
 }
 
@@ -176,7 +188,7 @@ void Submissions::receive(const http::Request& request, store::JobRecord& job, U
   const store::UploadFolder folder{.path = blobs_.begin_upload(upload), .room = room.counter()};
   const Sent sent = bring(request, folder, job);
   const api::Json asked = options_of(sent.options, request);
-  if (sent.options) options = api::parse_options(asked, limits_);
+  if (sent.options) options = read_options(asked, limits_, sent.place);
   job.created_ms = now_ms();
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);

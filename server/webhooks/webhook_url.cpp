@@ -73,11 +73,15 @@ bool is_address(const std::string& host) {
 
 bool is_printable(char letter) { return letter > ' ' && letter < '\x7f'; }
 
-/// Takes the scheme off a URL and says whether it is https.
+char lower(char letter) {
+  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+}
+
+/// Removes the scheme, in any letters (RFC 3986, 3.1), from a URL and says whether it is https.
 bool take_scheme(std::string_view& rest) {
   for (const auto& [scheme, is_https] : {std::pair{std::string_view("https://"), true},
                                          std::pair{std::string_view("http://"), false}}) {
-    if (!rest.starts_with(scheme)) continue;
+    if (!std::ranges::equal(rest.substr(0, scheme.size()), scheme, {}, lower)) continue;
     rest.remove_prefix(scheme.size());
     return is_https;
   }
@@ -109,9 +113,7 @@ void read_authority(std::string_view authority, WebhookUrl& url) {
   if (authority.starts_with('[') && authority.ends_with(']'))
     authority = authority.substr(1, authority.size() - 2);
   url.host = authority;
-  std::ranges::transform(url.host, url.host.begin(), [](char letter) {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-  });
+  std::ranges::transform(url.host, url.host.begin(), lower);
   if (url.host.empty() || !std::ranges::all_of(url.host, is_host_letter))
     refuse("The host of the webhook's address is not one; correct it.");
 }

@@ -12,6 +12,11 @@ TEST(ServerUrl, KeepsSchemeHostAndPort) {
   EXPECT_EQ(parse_server_url("http://[::1]").origin, "http://[::1]");
 }
 
+TEST(ServerUrl, ReadsASchemeInAnyLetters) {  // RFC 3986, 3.1
+  EXPECT_EQ(parse_server_url("HTTP://127.0.0.1:8080").origin, "http://127.0.0.1:8080");
+  EXPECT_EQ(parse_server_url("Https://uv.example/a").origin, "https://uv.example");
+}
+
 TEST(ServerUrl, TakesHttpWhereNoSchemeIsGiven) {
   EXPECT_EQ(parse_server_url("localhost:8080").origin, "http://localhost:8080");
 }

@@ -56,6 +56,41 @@ TEST_F(Answers, WhatIsNoTextIsAnsweredAsAMistake) {
       << "an empty name is none";
 }
 
+TEST_F(Answers, EveryParameterOfAQueryIsReadAsItStands) {
+  start();
+  const auto pointer = [&](const std::string& query) {
+    const std::string mesh = grid_obj(2);
+    const std::string answer =
+        exchange("POST /v1/jobs?" + query + " HTTP/1.1\r\nHost: x\r\nContent-Type: model/obj\r\n" +
+                 "Content-Length: " + std::to_string(mesh.size()) + "\r\n\r\n" + mesh);
+    EXPECT_THAT(answer, StartsWith("HTTP/1.1 422")) << query;
+    const std::size_t body = answer.find("\r\n\r\n") + 4;
+    return api::Json::parse(answer.substr(body, answer.rfind('}') + 1 - body)).value("pointer", "");
+  };
+  for (const char* nameless : {"=", "=x", "method=asap&=", "=method", "&=asap&", "==method"})
+    EXPECT_EQ(pointer(nameless), "/") << nameless;
+  EXPECT_EQ(pointer("a"), "/a");
+  EXPECT_EQ(pointer("a/b~c"), "/a~1b~0c");
+  EXPECT_EQ(pointer("m%00=x"), std::string("/m\0", 3));
+  EXPECT_EQ(pointer("+a%20=x"), "/ a ");
+  EXPECT_EQ(pointer("method"), "/method") << "it has no value";
+  EXPECT_EQ(pointer("method=asap&method=asap"), "/method");
+  EXPECT_EQ(pointer("method=asap&%6dethod=arap"), "/method");
+  EXPECT_EQ(pointer("method=asap=abf"), "/method");
+}
+
+TEST_F(Answers, AParameterWithoutTextAndSignsInItsValueAreTaken) {
+  start();
+  for (const char* query : {"?", "?&", "?&&method=asap&", "?method=as%61p"})
+    EXPECT_EQ(client().Post("/v1/jobs" + std::string(query), grid_obj(2), "model/obj")->status, 202)
+        << query;
+  const auto job = client().Post("/v1/jobs?materials=a=b?,c%2Bd%3D", grid_obj(2), "model/obj");
+  ASSERT_EQ(job->status, 202) << job->body;
+  EXPECT_EQ(api::Json::parse(job->body).at("options").at("materials"), (api::Json{"a=b?", "c+d="}));
+  expect_problem(client().Get("/v1/jobs?a/b=1"), 422, "invalid_option");
+  EXPECT_EQ(api::Json::parse(client().Get("/v1/jobs?a/b=1")->body).at("pointer"), "/a~1b");
+}
+
 TEST_F(Answers, AnErrorSaysNoMoreThanItMust) {
   start();
   const std::string name(5000, 'n');

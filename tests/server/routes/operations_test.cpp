@@ -121,6 +121,22 @@ TEST_F(Operations, TheServerIsNotReadyWhileNothingCanBeStored) {
   await_state(submit(), "succeeded");
 }
 
+/// What is stored may take so much that the mesh fits and its result does not.
+TEST_F(Operations, TheServerIsNotReadyWhileJobsWaitForRoomOnTheDisk) {
+  config_.workers = 1;
+  config_.disk.max_bytes = static_cast<std::int64_t>(grid_obj(4).size()) * 3 / 2;
+  start();
+  EXPECT_EQ(client().Get("/readyz")->status, 200);
+  const std::string waiting = submit();
+  await([&] { return client().Get("/readyz")->status != 200; });
+  const auto refused = admin().Get("/readyz");
+  expect_problem(refused, 507, "storage_full");
+  EXPECT_GT(std::stoi(refused->get_header_value("Retry-After")), 0);
+  EXPECT_EQ(admin().Get("/healthz")->status, 200);
+  EXPECT_EQ(client().Delete("/v1/jobs/" + waiting)->status, 202);
+  await([&] { return admin().Get("/readyz")->status == 200; });
+}
+
 TEST_F(Operations, TheServerIsNotReadyWithoutItsFiles) {
   start();
   for (const char* name : {"blobs", store::kStoreFile}) {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "api/options.hpp"
 #include "server/base/identity.hpp"
 #include "server/work/rendering.hpp"
 #include "tests/server/running_server.hpp"
@@ -179,9 +180,57 @@ TEST_F(StoredMeshes, ThatAreNotThereAreNamedByAPointer) {
   expect_problem(post(R"({"mesh": )"), 400, "malformed_request");
   put(grid_obj(4));
   const std::string known = sha256(grid_obj(4));
-  EXPECT_EQ(pointer(R"({"mesh": ")" + known + R"(", "options": {"method": "none"}})"), "/method");
+  EXPECT_EQ(pointer(R"({"mesh": ")" + known + R"(", "options": {"method": "none"}})"),
+            "/options/method");
   EXPECT_EQ(pointer(R"({"mesh": ")" + known + R"(", "options": {}})", "?method=asap"), "/method");
   EXPECT_TRUE(fs::is_empty(dir_.path() / "incoming"));
+}
+
+TEST_F(StoredMeshes, APointerLeadsToTheOptionInTheDocumentThatWasSent) {
+  start();
+  put(grid_obj(2));
+  const auto pointer = [](const httplib::Result& answer) {
+    expect_problem(answer, 422, "invalid_option");
+    return api::Json::parse(answer->body).value("pointer", "none");
+  };
+  const auto leads_to = [](const api::Json& document, const std::string& place) {
+    const api::Json::json_pointer at(place);
+    return document.contains(at) ? document.at(at) : api::Json("nothing");
+  };
+  const api::Json bad = {{"a", 1}};
+  for (const api::OptionRow& row : api::option_table()) {
+    api::Json options;
+    options[api::Json::json_pointer(api::option_pointer(row.name))] = bad;
+    const api::Json named = {{"mesh", sha256(grid_obj(2))}, {"options", options}};
+    EXPECT_EQ(leads_to(named, pointer(post(named.dump()))), bad) << row.name;
+    const httplib::MultipartFormDataItems form = {
+        {.name = "options", .content = options.dump(), .filename = "", .content_type = ""},
+        {.name = "mesh", .content = grid_obj(2), .filename = "", .content_type = ""}};
+    EXPECT_EQ(leads_to(options, pointer(client().Post("/v1/jobs", form))), bad) << row.name;
+    const auto asked =
+        client().Post("/v1/jobs?" + std::string(row.name) + "=[[1]]", grid_obj(2), "model/obj");
+    EXPECT_EQ(api::option_at(pointer(asked)), &row) << row.name;
+  }
+}
+
+TEST_F(StoredMeshes, APointerIntoAnOptionLeadsThereToo) {
+  start();
+  put(grid_obj(2));
+  const std::string digest = sha256(grid_obj(2));
+  const auto pointer = [&](const std::string& options) {
+    const auto answer = post(R"({"mesh": ")" + digest + R"(", "options": )" + options + "}");
+    EXPECT_EQ(answer->status, 422) << answer->body;
+    return api::Json::parse(answer->body).value("pointer", "none");
+  };
+  EXPECT_EQ(pointer(R"({"constraints": [{"vertex": 0, "uv": [0, "x"]}]})"),
+            "/options/constraints/0/uv");
+  EXPECT_EQ(pointer(R"({"stop": {"iteration": 1}})"), "/options/stop/iteration");
+  EXPECT_EQ(pointer(R"({"a/b": 1})"), "/options/a~1b");
+  EXPECT_EQ(pointer(R"({"": 1})"), "/options/");
+  EXPECT_EQ(pointer(R"({"": 1, "": 2})"), "/options/");
+  EXPECT_EQ(pointer(R"({"pins": "spectral", "pins": "spectral"})"), "/options/pins");
+  EXPECT_EQ(pointer(R"({"resolution": 16, "padding": 5})"), "/options/padding");
+  EXPECT_EQ(pointer("[]"), "/options");
 }
 
 TEST_F(StoredMeshes, ShareTheirBytesWithTheirJobsAndStayAsLongAsThey) {

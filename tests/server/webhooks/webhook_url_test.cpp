@@ -62,6 +62,8 @@ TEST(Webhook, AddressesAreTakenApart) {
   EXPECT_EQ(url.port, 8443);
   EXPECT_EQ(url.target, "/a/b?c=d");
   EXPECT_EQ(parse_webhook("http://a.b", any).port, 80);
+  EXPECT_EQ(parse_webhook("HTTP://a.b", any).port, 80);  // RFC 3986, 3.1
+  EXPECT_TRUE(parse_webhook("HttpS://a.b", any).is_https);
   EXPECT_EQ(parse_webhook("http://a.b?x", any).target, "/?x");
   EXPECT_EQ(parse_webhook("http://[2606:4700:4700::1111]:8080/", any).host, "2606:4700:4700::1111");
   for (const char* text : {"", "ftp://a.b/", "https://", "https://user@a.b/", "https://a.b:0/",
