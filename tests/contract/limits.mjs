@@ -146,7 +146,7 @@ export function timeLimit(run, binary) {
       query: kSlow, headers: kGlb, body: kSlowMesh, status: 422,
     });
     run.expectEqual('a mesh that takes too long', ended.code, 'time_limit');
-    for (let i = 0; i < 8; ++i) await slowJob(run, base, 202);
+    await Promise.all(Array.from({length: 8}, () => slowJob(run, base, 202)));
     await run.call(base, 'unwrap', {headers: kGlb, body: meshes.glb(), status: 409});
   });
 }

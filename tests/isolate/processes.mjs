@@ -7,8 +7,14 @@ const kWorked = 10;  // hundredths of a second of processor time: several times 
 
 /** The processes that a process has started and that have not been waited for. */
 export function children(pid) {
-  return readdirSync(`/proc/${pid}/task`).flatMap((thread) =>
-    readFileSync(`/proc/${pid}/task/${thread}/children`, 'utf8').split(' ').filter(Boolean));
+  return readdirSync(`/proc/${pid}/task`).flatMap((thread) => {
+    try {
+      return readFileSync(`/proc/${pid}/task/${thread}/children`, 'utf8').split(' ').filter(Boolean);
+    } catch (error) {
+      if (error.code === 'ENOENT' || error.code === 'ESRCH') return [];  // the thread has ended
+      throw error;
+    }
+  });
 }
 
 /** What follows the name in /proc/PID/stat: the state first, which is "Z" also where there is no process. */
