@@ -78,9 +78,13 @@ TEST(HttpHead, RefusesWhatIsNoRequestLine) {
 }
 
 TEST(HttpHead, TakesTheQueryFromTheParser) {
-  for (const auto& [target, path, query] :
-       {std::tuple{"/a?b=c", "/a", "b=c"}, {"/a?b=?&=", "/a", "b=?&="}, {"http://h?b", "/", "b"},
-        {"/a?", "/a", ""}, {"/a?b#c?d", "/a", "b"}, {"/a#b?c", "/a", ""}, {"/a", "/a", ""}}) {
+  for (const auto& [target, path, query] : {std::tuple{"/a?b=c", "/a", "b=c"},
+                                            {"/a?b=?&=", "/a", "b=?&="},
+                                            {"http://h?b", "/", "b"},
+                                            {"/a?", "/a", ""},
+                                            {"/a?b#c?d", "/a", "b"},
+                                            {"/a#b?c", "/a", ""},
+                                            {"/a", "/a", ""}}) {
     std::string text = head("GET " + std::string(target) + " HTTP/1.1", "X: ?y\r\n");
     const Framing framing = vet_head(text);
     const std::ptrdiff_t shorter = simplify(text, framing);
