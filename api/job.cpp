@@ -15,7 +15,8 @@ constexpr std::array<std::string_view, 10> kStages = {
     "read", "setup", "segment", "merge", "factor", "solve", "untangle", "measure", "pack", "write"};
 
 template <class Enum>
-std::optional<Enum> named(std::span<const std::string_view> names, std::string_view name) {
+std::optional<Enum> find_enumerator(std::span<const std::string_view> names,
+                                    std::string_view name) {
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) return std::nullopt;
   return static_cast<Enum>(found - names.begin());
@@ -41,14 +42,14 @@ Json to_json(const JobProgress& progress) {
 }
 
 template <class T>
-T known(const std::optional<T>& value) {
+T require_known(const std::optional<T>& value) {
   if (!value)
     throw Error(ErrorCode::malformed_request, "The state of the job is unknown to this version.");
   return *value;
 }
 
 JobProgress progress_from_json(const Json& json) {
-  return {.stage = known(stage_named(json.at("stage").get<std::string>())),
+  return {.stage = require_known(stage_named(json.at("stage").get<std::string>())),
           .fraction = json.at("fraction").get<double>(),
           .chart = json.at("chart").get<Index>(),
           .iteration = json.at("iteration").get<int>(),
@@ -57,7 +58,7 @@ JobProgress progress_from_json(const Json& json) {
 
 Job read_job(const Json& json) {
   Job job{.id = json.at("id").get<std::string>(),
-          .state = known(state_named(json.at("state").get<std::string>())),
+          .state = require_known(state_named(json.at("state").get<std::string>())),
           .created = json.at("created").get<std::string>(),
           .attempt = json.at("attempt").get<int>(),
           .options = json.at("options"),
@@ -73,14 +74,16 @@ Job read_job(const Json& json) {
 std::string_view state_name(JobState state) { return kStates[static_cast<std::size_t>(state)]; }
 
 std::optional<JobState> state_named(std::string_view name) {
-  return named<JobState>(kStates, name);
+  return find_enumerator<JobState>(kStates, name);
 }
 
 bool is_final(JobState state) { return state != JobState::queued && state != JobState::running; }
 
 std::string_view stage_name(Stage stage) { return kStages[static_cast<std::size_t>(stage)]; }
 
-std::optional<Stage> stage_named(std::string_view name) { return named<Stage>(kStages, name); }
+std::optional<Stage> stage_named(std::string_view name) {
+  return find_enumerator<Stage>(kStages, name);
+}
 
 std::string job_path(std::string_view id) { return "/v1/jobs/" + std::string(id); }
 

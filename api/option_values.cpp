@@ -64,15 +64,15 @@ std::string plain(double value) {
   return {text.data(), end};
 }
 
-std::string listed(std::span<const std::string_view> names) {
+std::string join_names(std::span<const std::string_view> names) {
   std::string text;
   for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
   return text;
 }
 
 /// The allowed values of this option: "an integer between 1 and 10000".
-std::string allowed(const OptionRow& row, const Limits& limits) {
-  if (row.type == OptionType::choice) return "one of " + listed(row.choices);
+std::string allowed_values(const OptionRow& row, const Limits& limits) {
+  if (row.type == OptionType::choice) return "one of " + join_names(row.choices);
   if (row.type == OptionType::flag) return "true or false";
   if (row.type == OptionType::names)
     return "a list of at most " + std::to_string(kMaxNames) + " strings";
@@ -166,7 +166,7 @@ Json value_of_text(const OptionRow& row, const std::string& text) {
 void check_value(const OptionRow& row, const Json& value, const Limits& limits) {
   if (fits(row, value, limits)) return;
   throw Error(ErrorCode::invalid_option,
-              std::string(row.name) + " must be " + allowed(row, limits) + ".",
+              std::string(row.name) + " must be " + allowed_values(row, limits) + ".",
               option_pointer(row.name));
 }
 

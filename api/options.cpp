@@ -68,8 +68,8 @@ Json& member(Json& object, std::string_view name) {
 }
 
 /// The options so far, and the rows that were given.
-struct Gathering {
-  explicit Gathering(const Limits& server) : limits(server) {
+struct PartialOptions {
+  explicit PartialOptions(const Limits& server) : limits(server) {
     Stop& stop = options.unwrap.stop;
     stop.max_iterations = std::min(stop.max_iterations, limits.max_iterations);
   }
@@ -157,7 +157,7 @@ JobOptions parse_options(const Json& object, const Limits& limits) {
   if (!object.is_object()) {
     throw Error(ErrorCode::invalid_option, "The options must be a JSON object.");
   }
-  Gathering gathering(limits);
+  PartialOptions gathering(limits);
   gathering.add_all(object);
   return gathering.finish();
 }

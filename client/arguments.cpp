@@ -96,7 +96,7 @@ void add_option_flags(CLI::App& app, OptionTexts& options) {
 }
 
 /// The raw values of the command line's flags.
-struct Raw {
+struct RawArguments {
   Arguments arguments;
   std::string server = "http://127.0.0.1:8080";
   double timeout_seconds = 0;
@@ -116,7 +116,7 @@ void add_picture_flags(CLI::App& app, Arguments& arguments) {
       ->type_name("PATH");
 }
 
-void add_flags(CLI::App& app, Raw& raw) {
+void add_flags(CLI::App& app, RawArguments& raw) {
   Arguments& arguments = raw.arguments;
   app.add_option("FILE", arguments.file, "The mesh: .glb, .gltf or .obj")->type_name("");
   app.add_option("-o,--out", arguments.out,
@@ -178,7 +178,7 @@ std::vector<std::string> lambdas_of(const OptionTexts& options) {
 }
 
 /// Checks what the parser cannot, and derives the remaining values.
-Arguments complete(Raw raw) {
+Arguments complete(RawArguments raw) {
   Arguments& arguments = raw.arguments;
   if (!arguments.sample.empty()) return std::move(arguments);
   if (!(raw.timeout_seconds >= 0 && raw.timeout_seconds <= kMaxTimeoutSeconds))
@@ -211,7 +211,7 @@ fs::path default_out(const fs::path& file, const std::string& output) {
 std::variant<Arguments, Message> parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kAbout, "unwrap");
   app.footer(kFooter);
-  Raw raw;
+  RawArguments raw;
   add_flags(app, raw);
   add_option_flags(app, raw.arguments.options);
   try {

@@ -92,7 +92,7 @@ api::Job JobClient::submit(const Upload& upload, const OptionTexts& options) {
 }
 
 api::Job JobClient::follow(const std::string& job_id, const EventSink& on_event) {
-  Following following{.last_id = {}, .job = {}, .wait = patience_.first_pause};
+  FollowState following{.last_id = {}, .job = {}, .wait = patience_.first_pause};
   while (true) {
     try {
       read_events(job_id, following, on_event);
@@ -105,11 +105,11 @@ api::Job JobClient::follow(const std::string& job_id, const EventSink& on_event)
   }
 }
 
-bool JobClient::may_reconnect(const Failure& failure, Following& following) const {
+bool JobClient::may_reconnect(const Failure& failure, FollowState& following) const {
   return failure.code() == ExitCode::unreachable && ++following.lost < patience_.lost_connections;
 }
 
-void JobClient::read_events(const std::string& job_id, Following& following,
+void JobClient::read_events(const std::string& job_id, FollowState& following,
                             const EventSink& on_event) {
   const auto take = [&](const SseEvent& event) {
     following.last_id = event.id;

@@ -52,7 +52,7 @@ class JobClient {
 
  private:
   /// The state of following a job across connections.
-  struct Following {
+  struct FollowState {
     std::string last_id;
     std::optional<api::Job> job;  ///< set once it is final
     std::chrono::milliseconds wait;
@@ -60,8 +60,8 @@ class JobClient {
   };
 
   /// Reads the events of one connection; without a stream, the job's state.
-  void read_events(const std::string& job_id, Following& following, const EventSink& on_event);
-  bool may_reconnect(const Failure& failure, Following& following) const;
+  void read_events(const std::string& job_id, FollowState& following, const EventSink& on_event);
+  bool may_reconnect(const Failure& failure, FollowState& following) const;
   api::Job state_of(const std::string& job_id);
   void pause(std::chrono::milliseconds duration);
 

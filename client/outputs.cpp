@@ -13,7 +13,7 @@ std::string lambda_query(const std::string& lambda) {
   return query;
 }
 
-std::string joined(const std::string& path, const std::string& query) {
+std::string append_query(const std::string& path, const std::string& query) {
   if (query.empty()) return path;
   return path + (path.find('?') == std::string::npos ? "?" : "&") + query;
 }
@@ -43,11 +43,11 @@ Outputs::Map::Map(const Arguments& arguments, const std::string& lambda)
 }
 
 std::string Outputs::Map::fetch(JobClient& client, const std::string& job_id) {
-  client.fetch(job_id, joined("/result", query),
+  client.fetch(job_id, append_query("/result", query),
                [&](std::string_view bytes) { result.append(bytes); });
-  if (layout) layout->append(client.fetch(job_id, joined(layout_path, query)));
-  if (preview) preview->append(client.fetch(job_id, joined("/preview.png", query)));
-  return client.fetch(job_id, joined("/report", query));
+  if (layout) layout->append(client.fetch(job_id, append_query(layout_path, query)));
+  if (preview) preview->append(client.fetch(job_id, append_query("/preview.png", query)));
+  return client.fetch(job_id, append_query("/report", query));
 }
 
 void Outputs::Map::commit() {

@@ -22,7 +22,7 @@ void take(const api::Json& data, const char* name, T& value) {
   if (member != data.end() && member->is_number()) value = member->get<T>();
 }
 
-std::string formatted(const char* format, double value) {
+std::string format_number(const char* format, double value) {
   std::array<char, 32> text;
   const int length = std::snprintf(text.data(), text.size(), format, value);
   return {text.data(), static_cast<std::size_t>(std::clamp(length, 0, 31))};
@@ -30,19 +30,19 @@ std::string formatted(const char* format, double value) {
 
 std::string heading(const ProgressState& state) {
   std::string text = state.stage;
-  if (state.lambda) text += " lambda " + formatted("%.6g", *state.lambda);
+  if (state.lambda) text += " lambda " + format_number("%.6g", *state.lambda);
   if (state.charts > 0)
     text += " chart " + std::to_string(state.chart + 1) + "/" + std::to_string(state.charts);
   return text;
 }
 
 std::string figures(const ProgressState& state) {
-  std::string text = formatted("%3.0f%%", 100 * state.fraction);
+  std::string text = format_number("%3.0f%%", 100 * state.fraction);
   if (state.iteration == 0) return text;
   text += " iteration " + std::to_string(state.iteration);
-  text += " E " + formatted("%.4g", state.energy);
-  text += " D_angle " + formatted("%.3f", state.angle);
-  text += " D_area " + formatted("%.3f", state.area);
+  text += " E " + format_number("%.4g", state.energy);
+  text += " D_angle " + format_number("%.3f", state.angle);
+  text += " D_area " + format_number("%.3f", state.area);
   return text + " flips " + std::to_string(state.flipped);
 }
 

@@ -55,12 +55,12 @@ bool is_crease(const SurfaceNumbers& surface, Index g, Index h) {
 
 /// The components of a surface, which depend on its vertices' positions only through coinciding
 /// vertices and faces without area.
-struct Connected {
+struct ConnectedSurface {
   Charts charts;                                  ///< without positions; loops in any order
   std::vector<std::vector<Index>> vertex_source;  ///< of each chart: the surface's vertices
 };
 
-std::size_t bytes_of(const Connected& connected) {
+std::size_t bytes_of(const ConnectedSurface& connected) {
   using unwrapd::solve::bytes_of;
   const Charts& charts = connected.charts;
   std::size_t bytes = solve::bytes_of(charts.set_aside) + solve::bytes_of(charts.repeats);
@@ -129,7 +129,7 @@ Chart chart_of(const SurfaceNumbers& surface, const Pieces& pieces, const Member
 }
 
 void separate(const SurfaceNumbers& surface, const Pieces& pieces, const std::stop_token& stop,
-              Connected& out) {
+              ConnectedSurface& out) {
   const auto& components = pieces.topology.components;
   const auto& of = pieces.topology.component_of;
   std::vector<Index> order(pieces.source.size());
@@ -176,13 +176,13 @@ std::vector<Repair> repairs_of(const FaceStates& states, const Pieces& pieces) {
   return repairs;
 }
 
-Connected connect(const Inspected& in, const SeamRules& seams) {
+ConnectedSurface connect(const InspectedSurface& in, const SeamRules& seams) {
   const SurfaceNumbers& surface = in.surface;
   Pairing by_place = pair_welded(in.welded, in.states, seams.stop);
   const auto [pieces, was_welded] = choose_pieces(in, by_place, seams);
   require_two_sides(surface, pieces);
   throw_if_cancelled(seams.stop);
-  Connected connected;
+  ConnectedSurface connected;
   Charts& charts = connected.charts;
   separate(surface, pieces, seams.stop, connected);
   for (std::size_t t = 0; t < in.states.of.size(); ++t) {
@@ -201,16 +201,16 @@ Connected connect(const Inspected& in, const SeamRules& seams) {
 
 /// Computes the components of a surface. areas: the result of inspect_areas() for each face;
 /// duplicates are found here.
-Connected connected(const solve::Making&, const SurfaceNumbers& surface,
-                    std::span<const Index> first_at, const std::vector<FaceState>& areas,
-                    const SeamRules& seams) {
-  const std::vector<Triangle> welded = renumbered(surface.faces, first_at);
+ConnectedSurface connect_surface(const solve::CacheContext&, const SurfaceNumbers& surface,
+                                 std::span<const Index> first_at,
+                                 const std::vector<FaceState>& areas, const SeamRules& seams) {
+  const std::vector<Triangle> welded = renumber(surface.faces, first_at);
   FaceStates states{areas, std::vector<Index>(areas.size(), kNoFace)};
   find_duplicates(welded, surface.vertex_count, seams.stop, states);
   return connect({surface, first_at, welded, states}, seams);
 }
 
-Charts placed(const Connected& connected, const TriMesh& mesh, const std::stop_token& stop) {
+Charts placed(const ConnectedSurface& connected, const TriMesh& mesh, const std::stop_token& stop) {
   Charts charts = connected.charts;
   for (std::size_t k = 0; k < charts.charts.size(); ++k) {
     throw_if_cancelled(stop);
@@ -268,11 +268,12 @@ Charts components_of(const Surface& surface, const SeamRules& seams) {
   assert(surface.part.size() == surface.mesh.faces.size());
   const std::vector<Index> first_at = weld(surface.mesh.positions, seams.stop);
   throw_if_cancelled(seams.stop);
-  const std::vector<Triangle> welded = renumbered(surface.mesh.faces, first_at);
+  const std::vector<Triangle> welded = renumber(surface.mesh.faces, first_at);
   const FaceStates states = inspect_areas(surface.mesh, welded, seams.stop);
   throw_if_cancelled(seams.stop);
-  const auto pieces = solve::cached<connected>(solve::Making{seams.core, seams.stop},
-                                               SurfaceNumbers(surface), first_at, states.of, seams);
+  const auto pieces =
+      solve::cached<connect_surface>(solve::CacheContext{seams.core, seams.stop},
+                                     SurfaceNumbers(surface), first_at, states.of, seams);
   return placed(*pieces, surface.mesh, seams.stop);
 }
 

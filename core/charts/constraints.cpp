@@ -42,7 +42,7 @@ std::string text(const Vec2& uv) {
 
 std::string number(Index constraint) { return "constraint " + std::to_string(constraint); }
 
-Eigen::Vector2f written(const Vec2& uv) { return uv.cast<float>(); }
+Eigen::Vector2f to_float(const Vec2& uv) { return uv.cast<float>(); }
 
 void check_range(const PositionConstraint& c, std::span<const Surface> surfaces, std::size_t i) {
   const auto count = static_cast<Index>(surfaces.size());
@@ -58,7 +58,7 @@ void check_range(const PositionConstraint& c, std::span<const Surface> surfaces,
   if (!std::isinf(c.weight) &&
       !(c.weight >= kMinConstraintWeight && c.weight <= kMaxConstraintWeight))
     refuse("weight must lie between 1e-9 and 1e9; leave it out to fix the vertex exactly", i);
-  if (!written(c.uv).allFinite())
+  if (!to_float(c.uv).allFinite())
     refuse("uv is too large for a 32-bit float; give a position on or near the page, [0,1]", i);
 }
 
@@ -104,7 +104,7 @@ const Pin* hard_pin(std::span<const Pin> pins) {
   for (const Pin& pin : pins) {
     if (!pin.is_hard()) continue;
     if (hard == nullptr) hard = &pin;
-    if (written(pin.at) != written(hard->at))
+    if (to_float(pin.at) != to_float(hard->at))
       refuse(number(hard->constraint) + " places the same vertex at " + text(hard->at) +
                  "; remove one of the two, or give both a finite weight",
              static_cast<std::size_t>(pin.constraint));
@@ -113,7 +113,7 @@ const Pin* hard_pin(std::span<const Pin> pins) {
 }
 
 /// Merges soft constraints of one vertex: sum w |u - p|^2 is W |u - sum w p / W|^2 plus a constant.
-solve::SoftConstraint merged(std::span<const Pin> pins) {
+solve::SoftConstraint merge_soft(std::span<const Pin> pins) {
   solve::SoftConstraint soft_constraint{pins.front().vertex, Vec2::Zero(), 0};
   for (const Pin& pin : pins) soft_constraint.weight += pin.weight;
   for (const Pin& pin : pins) soft_constraint.at += pin.weight / soft_constraint.weight * pin.at;
@@ -123,7 +123,7 @@ solve::SoftConstraint merged(std::span<const Pin> pins) {
 /// pins: the hard ones of a chart, one a vertex.
 void check_apart(ChartPins pins) {
   const auto before = [](const Pin& a, const Pin& b) {
-    const Eigen::Vector2f p = written(a.at), q = written(b.at);
+    const Eigen::Vector2f p = to_float(a.at), q = to_float(b.at);
     return p.x() != q.x() ? p.x() < q.x() : p.y() < q.y();
   };
   std::stable_sort(pins.begin(), pins.end(), before);
@@ -140,9 +140,9 @@ void check_spread(const solve::VertexConstraints& holds, const ChartPins& pins) 
   Vec2 first = holds.hard.empty() ? holds.soft.front().at : holds.hard.front().at;
   bool apart = holds.count() == 1;
   for (const solve::HardConstraint& p : holds.hard)
-    apart = apart || written(p.at) != written(first);
+    apart = apart || to_float(p.at) != to_float(first);
   for (const solve::SoftConstraint& s : holds.soft)
-    apart = apart || written(s.at) != written(first);
+    apart = apart || to_float(s.at) != to_float(first);
   if (!apart)
     refuse("all constraints of this chart have the position " + text(first) +
                ", so they do not determine its size; give one of them another position, or keep "
@@ -161,7 +161,7 @@ solve::VertexConstraints merge(const ChartPins& pins, Index vertex_count) {
         if (const Pin* hard = hard_pin({first, last}))
           hard_pins.push_back(*hard);
         else
-          holds.soft.push_back(merged({first, last}));
+          holds.soft.push_back(merge_soft({first, last}));
       });
   for (const Pin& pin : hard_pins) holds.hard.push_back({pin.vertex, pin.at});
   check_apart(std::move(hard_pins));

@@ -66,7 +66,8 @@ std::string text(const EdgeEnds& edge) {
 }
 
 /// The edges of one path, in ascending order, over welded vertices.
-std::vector<EdgeEnds> edges_of(const Inspected& in, const SeamPath& path, std::size_t number) {
+std::vector<EdgeEnds> edges_of(const InspectedSurface& in, const SeamPath& path,
+                               std::size_t number) {
   const auto count = static_cast<Index>(in.first_at.size());
   std::vector<EdgeEnds> edges;
   for (std::size_t k = 0; k < path.vertices.size(); ++k) {
@@ -82,7 +83,7 @@ std::vector<EdgeEnds> edges_of(const Inspected& in, const SeamPath& path, std::s
   return edges;
 }
 
-void cut_paths(const Inspected& in, const SeamRules& seams, Halfedges& halfedges) {
+void cut_paths(const InspectedSurface& in, const SeamRules& seams, Halfedges& halfedges) {
   for (std::size_t k = 0; k < seams.paths.size(); ++k) {
     if (seams.paths[k].surface != seams.surface) continue;
     const std::vector<EdgeEnds> edges = edges_of(in, seams.paths[k], k);
@@ -92,21 +93,21 @@ void cut_paths(const Inspected& in, const SeamRules& seams, Halfedges& halfedges
   }
 }
 
-Pieces welded_pieces(const Inspected& in, Pairing pairing, const SeamRules& seams) {
+Pieces welded_pieces(const InspectedSurface& in, Pairing pairing, const SeamRules& seams) {
   if (seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty())
     cut_at_uv_seams(in.surface, pairing.halfedges);
   cut_paths(in, seams, pairing.halfedges);
   return pieces_of(pairing, in.states, seams.stop);
 }
 
-Pieces kept_pieces(const Inspected& in, Pairing pairing, const SeamRules& seams) {
+Pieces kept_pieces(const InspectedSurface& in, Pairing pairing, const SeamRules& seams) {
   cut_paths(in, seams, pairing.halfedges);
   return pieces_of(pairing, in.states, seams.stop);
 }
 
 }  // namespace
 
-std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_place,
+std::pair<Pieces, bool> choose_pieces(const InspectedSurface& in, const Pairing& by_place,
                                       const SeamRules& seams) {
   const bool nothing_to_weld = std::ranges::equal(in.welded, in.surface.faces);
   const bool is_plain = nothing_to_weld && !spans_parts(in.surface);  // no rule opens a seam

@@ -25,7 +25,7 @@ struct Pieces {
 };
 
 /// A surface with the results of weld() and inspect_faces(), without positions.
-struct Inspected {
+struct InspectedSurface {
   SurfaceNumbers surface;
   std::span<const Index> first_at;
   std::span<const Triangle> welded;
@@ -34,7 +34,7 @@ struct Inspected {
 
 /// The pieces that the mode requires, and whether vertices were welded for them. by_place: the
 /// result of pair_welded(). Throws Error{invalid_option}, see components_of().
-std::pair<Pieces, bool> choose_pieces(const Inspected& in, const Pairing& by_place,
+std::pair<Pieces, bool> choose_pieces(const InspectedSurface& in, const Pairing& by_place,
                                       const SeamRules& seams);
 
 }  // namespace unwrapd::charts

@@ -76,7 +76,7 @@ std::vector<std::vector<std::uint8_t>> painted_faces(std::span<const Surface> su
 std::vector<Edge> outline(const UnwrappedSurface& surface) {
   std::vector<Vec3> places(surface.uv.size());
   for (std::size_t v = 0; v < places.size(); ++v) places[v] << surface.uv[v], 0;
-  const std::vector<Triangle> faces = renumbered(surface.faces, weld(places));
+  const std::vector<Triangle> faces = renumber(surface.faces, weld(places));
   auto sides = edge_sides(faces, [&](Index h) { return !repeats_vertex(faces[face_of(h)]); });
   sort_by_edge(sides, static_cast<Index>(places.size()));
   std::vector<Edge> edges;

@@ -62,7 +62,7 @@ std::vector<Index> with_twins(std::span<const Index> numbers) {
   return both;
 }
 
-Supernodes doubled(Supernodes nodes) {
+Supernodes duplicate_columns(Supernodes nodes) {
   nodes.order = with_twins(nodes.order);
   nodes.position = with_twins(nodes.position);
   nodes.row = with_twins(nodes.row);
@@ -144,7 +144,7 @@ std::shared_ptr<const Analysis> analyse_in_order(const SparsePattern& lower,
 
 std::shared_ptr<const Analysis> analyse_pairs(const SparsePattern& lower,
                                               const std::stop_token& stop) {
-  return complete(doubled(analyse(graph_of_pairs(lower, stop), stop)), lower, stop);
+  return complete(duplicate_columns(analyse(graph_of_pairs(lower, stop), stop)), lower, stop);
 }
 
 }  // namespace unwrapd::linear

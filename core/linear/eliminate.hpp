@@ -32,7 +32,7 @@ inline FreeVertices number_free(std::span<const char> fixed) {
 /// The reduced system. Matrix: Eigen column-major, of real or complex scalars; Value: the values of
 /// a vertex (Vec2 or Complex).
 template <typename Matrix, typename Value>
-struct Reduced {
+struct ReducedSystem {
   Matrix lower;
   std::vector<Value> rhs;
 };
@@ -40,9 +40,10 @@ struct Reduced {
 /// lower: the lower triangle of the full matrix A of A u = 0 at the free vertices; value[v]: the
 /// values of the fixed ones (others are not read). Throws Error{cancelled}.
 template <typename Matrix, typename Value>
-Reduced<Matrix, Value> eliminate(const Matrix& lower, const FreeVertices& free,
-                                 std::span<const Value> value, const std::stop_token& stop = {}) {
-  Reduced<Matrix, Value> r;
+ReducedSystem<Matrix, Value> eliminate(const Matrix& lower, const FreeVertices& free,
+                                       std::span<const Value> value,
+                                       const std::stop_token& stop = {}) {
+  ReducedSystem<Matrix, Value> r;
   r.lower.resize(free.count, free.count);
   r.rhs.assign(static_cast<std::size_t>(free.count), Value(value[0] * 0.0));
   r.lower.reserve(lower.nonZeros());

@@ -110,7 +110,7 @@ class Factorisation {
 };
 
 /// The result of a separately factored subtree: the update of its root.
-struct Grown {
+struct BranchUpdate {
   std::vector<double> update;
   bool is_definite = false;
   bool has_memory = true;
@@ -127,13 +127,13 @@ class Tree {
     executor.for_each_block(static_cast<int>(all.size()),
                             [&](int b) { grow(all[at(b)], executor.stop(), grown_[at(b)]); });
     throw_if_cancelled(executor.stop());
-    for (const Grown& grown : grown_)
+    for (const BranchUpdate& grown : grown_)
       if (!grown.has_memory) throw std::bad_alloc();
-    return std::ranges::all_of(grown_, &Grown::is_definite) && factor_trunk(executor);
+    return std::ranges::all_of(grown_, &BranchUpdate::is_definite) && factor_trunk(executor);
   }
 
  private:
-  void grow(const Branch& branch, const std::stop_token& stop, Grown& grown) const try {
+  void grow(const Branch& branch, const std::stop_token& stop, BranchUpdate& grown) const try {
     Factorisation work(analysis_, values_, panels_);
     work.reserve(most_pending(analysis_.nodes, branch));
     SerialExecutor serial;
@@ -164,7 +164,7 @@ class Tree {
   const Analysis& analysis_;
   const double* values_;
   double* panels_;
-  std::vector<Grown> grown_;
+  std::vector<BranchUpdate> grown_;
 };
 
 }  // namespace

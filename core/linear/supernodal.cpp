@@ -24,7 +24,7 @@ struct Block {
   }
 };
 
-Block merged(const Block& child, const Block& parent) {
+Block merge_blocks(const Block& child, const Block& parent) {
   const double missing = child.columns * (child.columns + parent.rows - child.rows);
   return {child.columns + parent.columns, child.columns + parent.rows,
           child.zeros + parent.zeros + missing};
@@ -55,7 +55,7 @@ std::vector<Index> relaxed_supernodes(const EliminationTree& tree) {
   for (std::size_t s = first.size() - 1; s-- > 0;) {
     const Index last = first[s + 1] - 1;
     const Block own{double(first[s + 1] - first[s]), double(tree.count[at(first[s])]), 0};
-    const Block both = merged(own, parent);
+    const Block both = merge_blocks(own, parent);
     if (tree.parent[at(last)] == first[s + 1] && is_worth_merging(both)) {
       kept.back() = first[s];
       parent = both;

@@ -20,18 +20,18 @@ constexpr double kHalfUlp = 0x1p-53;
 constexpr double kFilter = (3 + 16 * kHalfUlp) * kHalfUlp;  // Shewchuk's bound for orient2d
 
 /// A rounded value and its rounding error: value + error is exact.
-struct Rounded {
+struct RoundedValue {
   double value = 0;
   double error = 0;
 };
 
-Rounded sum(double a, double b) {
+RoundedValue sum(double a, double b) {
   const double s = a + b;
   const double b_seen = s - a;
   return {s, (a - (s - b_seen)) + (b - b_seen)};
 }
 
-Rounded product(double a, double b) {
+RoundedValue product(double a, double b) {
   const double p = a * b;
   return {p, std::fma(a, b, -p)};
 }
@@ -41,7 +41,7 @@ class Expansion {
  public:
   void add(double x) {
     for (std::size_t k = 0; k < size_; ++k) {
-      const Rounded r = sum(x, part_[k]);
+      const RoundedValue r = sum(x, part_[k]);
       part_[k] = r.error;
       x = r.value;
     }
@@ -49,10 +49,10 @@ class Expansion {
   }
 
   /// Adds a * b.
-  void add_product(const Rounded& a, const Rounded& b) {
+  void add_product(const RoundedValue& a, const RoundedValue& b) {
     for (double x : {a.error, a.value})
       for (double y : {b.error, b.value}) {
-        const Rounded p = product(x, y);
+        const RoundedValue p = product(x, y);
         add(p.error);
         add(p.value);
       }
@@ -70,8 +70,8 @@ class Expansion {
 };
 
 int exact_orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
-  const Rounded acx = sum(a.x(), -c.x()), acy = sum(a.y(), -c.y());
-  const Rounded bcx = sum(b.x(), -c.x()), bcy = sum(b.y(), -c.y());
+  const RoundedValue acx = sum(a.x(), -c.x()), acy = sum(a.y(), -c.y());
+  const RoundedValue bcx = sum(b.x(), -c.x()), bcy = sum(b.y(), -c.y());
   Expansion determinant;
   determinant.add_product(acx, bcy);
   determinant.add_product({-acy.value, -acy.error}, bcx);

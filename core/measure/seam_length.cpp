@@ -34,7 +34,7 @@ bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
 }  // namespace
 
 Halfedges halfedges_by_position(const TriMesh& mesh, const std::stop_token& stop) {
-  const std::vector<Triangle> welded = renumbered(mesh.faces, weld(mesh.positions, stop));
+  const std::vector<Triangle> welded = renumber(mesh.faces, weld(mesh.positions, stop));
   return build_halfedges(welded, mesh.vertex_count(), stop);
 }
 

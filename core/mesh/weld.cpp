@@ -21,7 +21,7 @@ struct Entry {
   Index vertex = 0;
 };
 
-std::uint64_t mixed(
+std::uint64_t mix(
     std::uint64_t x) {  // an odd multiplier and a fold, so that every bit affects the top
   x *= 0x9E3779B97F4A7C15U;
   return x ^ (x >> 32U);
@@ -29,8 +29,8 @@ std::uint64_t mixed(
 
 std::uint32_t hash_of(const Vec3& p) {
   std::uint64_t h = 0;
-  for (double x : p) h = mixed(h ^ std::bit_cast<std::uint64_t>(x + 0.0));  // -0.0 + 0.0 is +0.0
-  return static_cast<std::uint32_t>(mixed(h) >> 32U);
+  for (double x : p) h = mix(h ^ std::bit_cast<std::uint64_t>(x + 0.0));  // -0.0 + 0.0 is +0.0
+  return static_cast<std::uint32_t>(mix(h) >> 32U);
 }
 
 void sort_by_hash(std::vector<Entry>& entries, const std::stop_token& stop) {
@@ -74,7 +74,7 @@ std::vector<Index> weld(std::span<const Vec3> positions, const std::stop_token& 
   return first_at;
 }
 
-std::vector<Triangle> renumbered(std::span<const Triangle> faces, std::span<const Index> of) {
+std::vector<Triangle> renumber(std::span<const Triangle> faces, std::span<const Index> of) {
   std::vector<Triangle> result(faces.begin(), faces.end());
   for (Triangle& face : result)
     for (Index& v : face) v = of[v];

@@ -14,6 +14,6 @@ namespace unwrapd {
 std::vector<Index> weld(std::span<const Vec3> positions, const std::stop_token& stop = {});
 
 /// The faces with every vertex replaced by `of[vertex]`.
-std::vector<Triangle> renumbered(std::span<const Triangle> faces, std::span<const Index> of);
+std::vector<Triangle> renumber(std::span<const Triangle> faces, std::span<const Index> of);
 
 }  // namespace unwrapd

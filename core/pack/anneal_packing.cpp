@@ -67,7 +67,7 @@ class AnnealedStrip {
   AnnealedStrip(BottomLeftPlacer& placer, Budget& budget, Sequence& sequence)
       : placer_(placer), budget_(budget), sequence_(sequence) {}
 
-  Found search(const Arrangement& start, const AnnealRules& rules) {
+  CellPacking search(const Arrangement& start, const AnnealRules& rules) {
     least_ = placer_.least_side(budget_.stop);
     width_ = std::max(rules.width, least_);
     const auto words = static_cast<double>(budget_.words);
@@ -136,12 +136,12 @@ class AnnealedStrip {
   int top_ = 0;        ///< of the strip as it is; 0: empty
   double height_ = 0;  ///< its top, plus a small share of its islands' mean height
   Arrangement now_;
-  Found best_;
+  CellPacking best_;
 };
 
 /// Places all again, with the first island that found no place at the front.
-Found with_retries(BottomLeftPlacer& placer, Arrangement arrangement, const PageCells& sheet,
-                   Budget& budget) {
+CellPacking with_retries(BottomLeftPlacer& placer, Arrangement arrangement, const PageCells& sheet,
+                         Budget& budget) {
   for (int k = 0; k < kRetries; ++k) {
     const PlacedIslands laid = placer.lay(arrangement, sheet, budget);
     if (laid.is_complete) {
@@ -189,9 +189,10 @@ std::vector<Arrangement> usual_arrangements(const BottomLeftPlacer& placer) {
   return all;
 }
 
-std::vector<Found> smallest_page(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
-                                 const AnnealRules& rules, Budget& budget) {
-  std::vector<Found> all;
+std::vector<CellPacking> smallest_page(BottomLeftPlacer& placer,
+                                       const std::vector<Arrangement>& starts,
+                                       const AnnealRules& rules, Budget& budget) {
+  std::vector<CellPacking> all;
   Sequence sequence;
   for (std::size_t k = 0; k < starts.size(); ++k) {
     Budget own{budget.words / static_cast<std::int64_t>(starts.size() - k), budget.stop};
@@ -200,33 +201,33 @@ std::vector<Found> smallest_page(BottomLeftPlacer& placer, const std::vector<Arr
     budget.words += std::min<std::int64_t>(own.words, 0);
     if (all.back().side <= rules.enough) break;
   }
-  std::ranges::stable_sort(all, std::less(), &Found::side);
+  std::ranges::stable_sort(all, std::less(), &CellPacking::side);
   return all;
 }
 
-Found smallest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
-                     int page_count, Budget& budget) {
+CellPacking smallest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
+                           int page_count, Budget& budget) {
   const double area = area_in_cells(placer) / page_count;
   const double least =
       std::max<double>(placer.least_side(budget.stop), std::sqrt(kLoose * area / kDense));
-  Found best;
+  CellPacking best;
   double low = least, high = std::max(least, std::sqrt(area / kLoose)) + 1;
   for (double side = high; best.side == 0; side *= 2)
     best = fewest_pages(placer, starts, {int(side), int(side), page_count}, budget);
   for (high = best.side; high > low * kStep && high - low > 1;) {
     const int side = static_cast<int>((low + high) / 2);
-    Found found = fewest_pages(placer, starts, {side, side, page_count}, budget);
+    CellPacking found = fewest_pages(placer, starts, {side, side, page_count}, budget);
     (found.side > 0 ? high : low) = side;
     if (found.side > 0) best = std::move(found);
   }
   return best;
 }
 
-Found fewest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
-                   const PageCells& sheet, Budget& budget) {
-  Found best;
+CellPacking fewest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
+                         const PageCells& sheet, Budget& budget) {
+  CellPacking best;
   for (const Arrangement& start : starts) {
-    Found found = with_retries(placer, start, sheet, budget);
+    CellPacking found = with_retries(placer, start, sheet, budget);
     if (found.side == 0) continue;
     if (best.side == 0 || found.pages < best.pages) best = std::move(found);
     if (best.pages == 1 || budget.words <= 0) break;

@@ -8,7 +8,7 @@
 namespace unwrapd::pack {
 
 /// Islands on square pages of `side` cells.
-struct Found {
+struct CellPacking {
   Arrangement arrangement;  ///< all rotations are chosen
   std::vector<CellPlace> spots;
   int side = 0;  ///< 0: nothing was found
@@ -26,16 +26,17 @@ struct AnnealRules {
 
 /// Searches the smallest page that holds all islands, within the budget. Returns the best packing
 /// from each start, the smallest first. The placer keeps its scale: the page shrinks.
-std::vector<Found> smallest_page(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
-                                 const AnnealRules& rules, Budget& budget);
+std::vector<CellPacking> smallest_page(BottomLeftPlacer& placer,
+                                       const std::vector<Arrangement>& starts,
+                                       const AnnealRules& rules, Budget& budget);
 
 /// The same for several pages of one side.
-Found smallest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
-                     int page_count, Budget& budget);
+CellPacking smallest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
+                           int page_count, Budget& budget);
 
 /// Searches for as few pages of this side as possible, at most page_count; side 0 if the islands do
 /// not fit.
-Found fewest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
-                   const PageCells& sheet, Budget& budget);
+CellPacking fewest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
+                         const PageCells& sheet, Budget& budget);
 
 }  // namespace unwrapd::pack

@@ -255,7 +255,7 @@ class Page {
 };
 
 /// Scales positions from a page of one side to a page of another.
-std::vector<CellPlace> stretched(std::vector<CellPlace> spots, double ratio) {
+std::vector<CellPlace> scale_places(std::vector<CellPlace> spots, double ratio) {
   for (CellPlace& spot : spots) {
     spot.x = static_cast<int>(std::lround(spot.x * ratio));
     spot.y = static_cast<int>(std::lround(spot.y * ratio));
@@ -265,17 +265,17 @@ std::vector<CellPlace> stretched(std::vector<CellPlace> spots, double ratio) {
 
 }  // namespace
 
-Found compact(BottomLeftPlacer& placer, const Found& from, const CompactRules& rules,
-              Budget& budget) {
+CellPacking compact(BottomLeftPlacer& placer, const CellPacking& from, const CompactRules& rules,
+                    Budget& budget) {
   Page page(placer, budget, rules);
   int side = rules.side;
-  std::vector<CellPlace> spots = stretched(from.spots, double(side) / from.side);
+  std::vector<CellPlace> spots = scale_places(from.spots, double(side) / from.side);
   while (!page.separate(spots, side)) {
     if (budget.words <= 0) return {};
     side += 1 + side / kWideningOfCompaction;
-    spots = stretched(from.spots, double(side) / from.side);
+    spots = scale_places(from.spots, double(side) / from.side);
   }
-  Found best{from.arrangement, spots, side, 1};
+  CellPacking best{from.arrangement, spots, side, 1};
   for (int failures = 0;
        failures < rules.failures && budget.words > 0 && best.side > rules.enough;) {
     side = best.side - (failures == 0 ? rules.step : 1);

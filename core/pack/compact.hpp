@@ -17,7 +17,7 @@ struct CompactRules {
 /// from: one page of any side. It is scaled to the first page, and enlarged until the islands do
 /// not overlap. Returns the smallest page that was found; side 0 if the budget ended before any
 /// was. The placer keeps its scale. Throws Error{cancelled}.
-Found compact(BottomLeftPlacer& placer, const Found& from, const CompactRules& rules,
-              Budget& budget);
+CellPacking compact(BottomLeftPlacer& placer, const CellPacking& from, const CompactRules& rules,
+                    Budget& budget);
 
 }  // namespace unwrapd::pack

@@ -53,7 +53,7 @@ class Packer {
         stop_(executor.stop()) {}
 
   /// Packs the islands as large as they fit on the allowed pages.
-  Packed largest() {
+  PackResult largest() {
     if (page_.packing.max_pages > 1) return on_several();
     if (placer_.size() <= kFewOnAPage) {
       auto few = pack_few(outlines_, grid_, executor_);
@@ -74,21 +74,21 @@ class Packer {
     const AnnealRules strip{side, kRoughHeat, static_cast<int>(scale * tightest)};
     placer_.set_scale(scale, 0);
     Budget budget{work(kRough.work), stop_};
-    Found found = smallest_page(placer_, starts, strip, budget).front();
+    CellPacking found = smallest_page(placer_, starts, strip, budget).front();
     if (n <= kFewOnAPage && found.side > strip.enough) {
       CompactRules rules = kFirstCompaction;
       const double ratio = double(rules.side) / found.side;
       rules.enough = static_cast<int>(scale * ratio * tightest);
       placer_.set_scale(scale * ratio, 0);
       budget = {work(kRoughSqueezeWork), stop_};
-      const Found tight = compact(placer_, found, rules, budget);
+      const CellPacking tight = compact(placer_, found, rules, budget);
       if (tight.side > 0) scale *= ratio, found = tight;
     }
     return area * scale * scale / (double(found.side) * found.side);
   }
 
   /// Packs at the given density, on as few pages as possible.
-  Packed at_density(double texels_per_unit) {
+  PackResult at_density(double texels_per_unit) {
     const int side = grid_.tight_side(fine_cells(placer_.size()));
     const double page_per_unit = texels_per_unit / page_.resolution;
     if (is_too_large(page_per_unit))
@@ -97,13 +97,13 @@ class Packer {
           "resolution.");
     placer_.set_scale(page_per_unit / grid_.cell(side), grid_.padding(side));
     Budget budget{work(kFineWork), stop_};
-    const Found found = fewest_pages(placer_, usual_arrangements(placer_),
-                                     {side, side, page_.packing.max_pages}, budget);
+    const CellPacking found = fewest_pages(placer_, usual_arrangements(placer_),
+                                           {side, side, page_.packing.max_pages}, budget);
     if (found.side == 0)
       refuse(
           "The islands at this density do not fit on the pages; raise max_pages or resolution, or "
           "lower texels_per_unit.");
-    return placed(found);
+    return to_result(found);
   }
 
  private:
@@ -125,7 +125,7 @@ class Packer {
     return static_cast<std::int64_t>(shares_ * static_cast<double>(a_share));
   }
 
-  Packed on_several() {
+  PackResult on_several() {
     std::vector<Arrangement> starts = usual_arrangements(placer_);
     const std::size_t n = placer_.size();
     double side = fine_cells(n);
@@ -135,18 +135,18 @@ class Packer {
       if (n > kSearched) break;
       const int cells = cells_for(n, level.per_island, level.cells);
       const double loose = scale / side * cells;
-      const Found found = on_grid(starts, cells, loose, work(level.work));
+      const CellPacking found = on_grid(starts, cells, loose, work(level.work));
       starts = {found.arrangement};
       scale = loose;
       side = found.side;
     }
     const int fine = grid_.tight_side(fine_cells(n));
-    return placed(on_grid_exactly(starts, fine, fine * scale / side / kSpareSide));
+    return to_result(on_grid_exactly(starts, fine, fine * scale / side / kSpareSide));
   }
 
   /// Searches at this scale, with the padding of pages of `side` cells.
-  Found on_grid(const std::vector<Arrangement>& starts, int side, double cells_per_unit,
-                std::int64_t work) {
+  CellPacking on_grid(const std::vector<Arrangement>& starts, int side, double cells_per_unit,
+                      std::int64_t work) {
     placer_.set_scale(cells_per_unit, grid_.padding(side));
     Budget budget{work, stop_};
     return smallest_pages(placer_, starts, page_.packing.max_pages, budget);
@@ -154,15 +154,16 @@ class Packer {
 
   /// The same with exact padding: if the pages come out larger than `side`, the islands shrink and
   /// the search is repeated.
-  Found on_grid_exactly(const std::vector<Arrangement>& starts, int side, double cells_per_unit) {
+  CellPacking on_grid_exactly(const std::vector<Arrangement>& starts, int side,
+                              double cells_per_unit) {
     for (;;) {
-      Found found = on_grid(starts, side, cells_per_unit, work(kFineWork));
+      CellPacking found = on_grid(starts, side, cells_per_unit, work(kFineWork));
       if (found.side <= side) return found;
       cells_per_unit *= double(side) / found.side / kSpareSide;
     }
   }
 
-  Packed placed(const Found& found) {
+  PackResult to_result(const CellPacking& found) {
     return {placements_of(found, placer_, grid_), static_cast<Index>(found.pages), padding_, {}};
   }
 
@@ -188,15 +189,15 @@ bool has_extent(std::span<const UvMap> points) {
                      [](const UvMap& own) { return smallest_box(own).size.prod() > 0; });
 }
 
-Packed pack_apart(std::span<const charts::Outline> islands, const PageOptions& page,
-                  Executor& executor) {
+PackResult pack_apart(std::span<const charts::Outline> islands, const PageOptions& page,
+                      Executor& executor) {
   if (page.packing.texels_per_unit)
     return Packer(islands, page, executor).at_density(*page.packing.texels_per_unit);
   const std::vector<UvMap> points = points_of(islands);
-  Packed rows{pack_in_rows(points, page), 1, kept_padding(page, islands.size()), {}};
+  PackResult rows{pack_in_rows(points, page), 1, kept_padding(page, islands.size()), {}};
   const bool are_too_many = islands.size() > kMostApart && page.packing.max_pages == 1;
   if (islands.size() < 2 || are_too_many || !has_extent(points)) return rows;
-  Packed tight = Packer(islands, page, executor).largest();
+  PackResult tight = Packer(islands, page, executor).largest();
   return tight.placements.front().scale > rows.placements.front().scale ? tight : rows;
 }
 
@@ -218,7 +219,8 @@ double rough_fill(std::span<const charts::Outline> islands, double enough,
   return Packer(islands, {.padding = 0}, executor).rough_fill(area, enough);
 }
 
-Packed pack(std::span<const charts::Outline> islands, const PageOptions& page, Executor& executor) {
+PackResult pack(std::span<const charts::Outline> islands, const PageOptions& page,
+                Executor& executor) {
   if (islands.empty()) return {};
   const auto apart = [&](std::span<const charts::Outline> each) {
     return pack_apart(each, page, executor);

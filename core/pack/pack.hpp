@@ -31,7 +31,7 @@ struct PageOptions {
   Packing packing = {};
 };
 
-struct Packed {
+struct PackResult {
   std::vector<Placement> placements;
   Index pages = 1;
   double padding = 0;                 ///< texels; less than requested if there are many islands
@@ -51,7 +51,8 @@ double kept_padding(const PageOptions& page, std::size_t island_count);
 /// packing.texels_per_unit. Congruent islands share a place if packing asks for it. The same bytes
 /// on every machine and for any number of threads: the search has a budget of work, not of time.
 /// Throws Error{does_not_fit} if a given density needs more pages than allowed; Error{cancelled}.
-Packed pack(std::span<const charts::Outline> islands, const PageOptions& page, Executor& executor);
+PackResult pack(std::span<const charts::Outline> islands, const PageOptions& page,
+                Executor& executor);
 
 /// A quick estimate of the share of a page that the islands would fill, without padding; 1 if they
 /// have no extent. The search ends when it reaches `enough`. Throws Error{cancelled}.

@@ -35,9 +35,9 @@ constexpr double kSidesAShare = 30;  // of outlines, for one share: small shapes
 constexpr double kSmaller = 0.9;     // scale factor after islands did not fit
 
 /// Islands on a page, and the placer that made their masks.
-struct Tried {
+struct Attempt {
   std::optional<BottomLeftPlacer> placer = {};
-  Found found = {};
+  CellPacking found = {};
   [[nodiscard]] double density() const {  ///< pages a unit
     return found.side > 0 ? placer->scale() / found.side : 0;
   }
@@ -49,20 +49,20 @@ class FewPacker {
       : islands_(islands), grid_(grid), executor_(executor), shares_(shares_of(islands)) {}
 
   std::optional<std::vector<Placement>> packed() {
-    auto tried = solve::parallel_map<Tried>(kTries.size(), executor_,
-                                            [&](std::size_t k) { return compact_from(kTries[k]); });
-    std::ranges::stable_sort(tried, std::greater(), &Tried::density);
+    auto tried = solve::parallel_map<Attempt>(
+        kTries.size(), executor_, [&](std::size_t k) { return compact_from(kTries[k]); });
+    std::ranges::stable_sort(tried, std::greater(), &Attempt::density);
     tried.resize(kFinished);
-    tried = solve::parallel_map<Tried>(
-        kFinished, executor_, [&](std::size_t k) { return finished(std::move(tried[k])); });
-    Tried& best = *std::ranges::max_element(tried, {}, &Tried::density);
+    tried = solve::parallel_map<Attempt>(
+        kFinished, executor_, [&](std::size_t k) { return finish(std::move(tried[k])); });
+    Attempt& best = *std::ranges::max_element(tried, {}, &Attempt::density);
     if (best.found.side == 0) return std::nullopt;
     return placements_of(best.found, *best.placer, grid_);
   }
 
  private:
-  Tried compact_from(const Try& own) const {
-    Tried tried{BottomLeftPlacer(islands_, own.turns)};
+  Attempt compact_from(const Try& own) const {
+    Attempt tried{BottomLeftPlacer(islands_, own.turns)};
     tried.found = start(*tried.placer, own.rules);
     const double scale = tried.placer->scale() * kFirst.rules.side / tried.found.side;
     tried.found = compact_on(kFirst, tried, scale);
@@ -70,7 +70,7 @@ class FewPacker {
   }
 
   /// Places twice, the second time at the scale at which the islands should just fit.
-  Found start(BottomLeftPlacer& placer, const TouchingRules& rules) const {
+  CellPacking start(BottomLeftPlacer& placer, const TouchingRules& rules) const {
     const int side = kFirst.rules.side;
     TouchingPage page;
     double scale = side * std::sqrt(kUsualFill / box_area(placer));
@@ -87,7 +87,7 @@ class FewPacker {
     return page.found;
   }
 
-  Tried finished(Tried tried) const {
+  Attempt finish(Attempt tried) const {
     for (const Squeeze& grid : kGrids) {
       if (tried.found.side == 0) return tried;
       Squeeze own = grid;
@@ -100,13 +100,13 @@ class FewPacker {
 
   /// A page must not be larger than the one for which the padding was made; the islands shrink
   /// until that holds.
-  Found compact_on(const Squeeze& grid, Tried& tried, double scale) const {
+  CellPacking compact_on(const Squeeze& grid, Attempt& tried, double scale) const {
     const bool has_gaps = grid.rules.reach > 0;
     for (;;) {
       tried.placer->set_scale(scale, has_gaps ? grid_.padding(grid.rules.side) : 0);
       Budget budget{static_cast<std::int64_t>(shares_ * static_cast<double>(grid.work)),
                     executor_.stop()};
-      Found found = compact(*tried.placer, tried.found, grid.rules, budget);
+      CellPacking found = compact(*tried.placer, tried.found, grid.rules, budget);
       if (!has_gaps || found.side <= grid.rules.side) return found;
       scale *= double(grid.rules.side) / found.side / kSpareSide;
     }

@@ -18,20 +18,20 @@ namespace {
 constexpr std::array kRules = {TouchingRules{.2, .45}, TouchingRules{.2, .3},
                                TouchingRules{.05, .3}, TouchingRules{.1, .6}};
 /// The extent of the search.
-struct HowMuch {
+struct SearchExtent {
   std::size_t rules = 0;  ///< on the coarse grid
   std::size_t fine = 0;   ///< rules that continue
   int scales = 0;         ///< for each rule
   double first = 1;       ///< the first scale, relative to the one that the coarse grid suggests
 };
-constexpr HowMuch kUsualEffort{kRules.size(), 2, 3}, kOfVeryMany{1, 1, 1, 1.03};
+constexpr SearchExtent kUsualEffort{kRules.size(), 2, 3}, kOfVeryMany{1, 1, 1, 1.03};
 constexpr std::size_t kVeryMany = 1000;
 constexpr int kRoughCells = 512;
 constexpr double kRoughPerIsland = 15;
 constexpr double kSmallerTrial = 0.9;  // scale factor after islands did not fit at all
 constexpr double kTrialStep = 1.002;   // factor of the scale, beyond the one that seems to fit
 
-struct Rated {
+struct RatedRules {
   TouchingRules rules;
   double scale = 0;  ///< page sides a unit at which they should just fit
 };
@@ -45,11 +45,11 @@ class SnugPacker {
         effort_(placer.size() > kVeryMany ? kOfVeryMany : kUsualEffort) {}
 
   std::vector<Placement> packed() {
-    auto rated = solve::parallel_map<Rated>(effort_.rules, executor_,
-                                            [&](std::size_t k) { return rate(kRules[k]); });
-    std::ranges::stable_sort(rated, std::greater(), &Rated::scale);
+    auto rated = solve::parallel_map<RatedRules>(effort_.rules, executor_,
+                                                 [&](std::size_t k) { return rate(kRules[k]); });
+    std::ranges::stable_sort(rated, std::greater(), &RatedRules::scale);
     auto found = solve::parallel_map<std::vector<Placement>>(
-        effort_.fine, executor_, [&](std::size_t k) { return fitted(rated[k]); });
+        effort_.fine, executor_, [&](std::size_t k) { return largest_fit(rated[k]); });
     return std::move(
         *std::ranges::max_element(found, {}, [](const auto& own) { return own.front().scale; }));
   }
@@ -59,7 +59,7 @@ class SnugPacker {
     return grid_.tight_side(cells_for(placer_.size(), kRoughPerIsland, kRoughCells));
   }
 
-  [[nodiscard]] Rated rate(const TouchingRules& rules) const {
+  [[nodiscard]] RatedRules rate(const TouchingRules& rules) const {
     const int side = rough_side();
     BottomLeftPlacer placer = placer_;
     for (double scale = usual_scale(placer, grid_, 1, side);; scale *= kSmallerTrial) {
@@ -70,7 +70,7 @@ class SnugPacker {
   }
 
   /// On the fine grid: the largest scale tried at which the strip is no higher than wide.
-  [[nodiscard]] std::vector<Placement> fitted(const Rated& rated) const {
+  [[nodiscard]] std::vector<Placement> largest_fit(const RatedRules& rated) const {
     const int side = grid_.tight_side(fine_cells(placer_.size()));
     BottomLeftPlacer placer = placer_;
     std::vector<Placement> best;
@@ -96,7 +96,7 @@ class SnugPacker {
   const BottomLeftPlacer& placer_;
   const PageGrid& grid_;
   Executor& executor_;
-  HowMuch effort_;
+  SearchExtent effort_;
 };
 
 }  // namespace

@@ -75,7 +75,7 @@ double scale_bound(const std::vector<Box>& boxes, const Page& page) {
 }
 
 /// The largest scale at which the rows fit, among those tried.
-Layout laid_out(std::vector<Box> boxes, const Page& page) {
+Layout lay_rows(std::vector<Box> boxes, const Page& page) {
   Layout layout{std::move(boxes), {}, 0};
   layout.order.resize(layout.boxes.size());
   std::iota(layout.order.begin(), layout.order.end(), 0);
@@ -97,7 +97,7 @@ Layout laid_out(std::vector<Box> boxes, const Page& page) {
 }
 
 /// Rotates all boxes to lie flat, or to stand upright.
-std::vector<Box> oriented(std::vector<Box> boxes, bool standing) {
+std::vector<Box> orient(std::vector<Box> boxes, bool standing) {
   for (Box& box : boxes)
     if ((box.size.y() > box.size.x()) != standing) box = box.turned_by_quarter();
   return boxes;
@@ -119,8 +119,8 @@ std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOp
     return islands.size() == 1 ? squarest_box(island) : smallest_box(island);
   });
   const Page page = page_of(options, islands.size());
-  const Layout lying = laid_out(oriented(boxes, false), page);
-  const Layout standing = laid_out(oriented(boxes, true), page);
+  const Layout lying = lay_rows(orient(boxes, false), page);
+  const Layout standing = lay_rows(orient(boxes, true), page);
   const Layout& best = standing.scale > lying.scale ? standing : lying;
   std::vector<Placement> placements(islands.size());
   const double scale = best.scale * kSlack / options.resolution;

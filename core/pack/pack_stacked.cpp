@@ -14,9 +14,10 @@ Placement on_top(const Placement& first, const CongruentIsland& same) {
 
 }  // namespace
 
-Packed pack_stacked(std::span<const charts::Outline> islands,
-                    const std::function<Packed(std::span<const charts::Outline>)>& pack_shapes,
-                    const std::stop_token& stop) {
+PackResult pack_stacked(
+    std::span<const charts::Outline> islands,
+    const std::function<PackResult(std::span<const charts::Outline>)>& pack_shapes,
+    const std::stop_token& stop) {
   const std::vector<CongruentIsland> same = congruent_islands(islands, stop);
   std::vector<charts::Outline> shapes;
   std::vector<std::size_t> shape_of(islands.size());
@@ -31,7 +32,7 @@ Packed pack_stacked(std::span<const charts::Outline> islands,
     shape_of[k] = shape_of[first];
     for (const auto& [a, b] : islands[k]) shapes[shape_of[k]].push_back({same[k](a), same[k](b)});
   }
-  Packed packed = pack_shapes(shapes);
+  PackResult packed = pack_shapes(shapes);
   std::vector<Placement> placements(islands.size());
   packed.is_stacked.assign(islands.size(), 0);
   for (std::size_t k = 0; k < islands.size(); ++k) {

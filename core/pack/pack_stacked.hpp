@@ -9,8 +9,9 @@ namespace unwrapd::pack {
 
 /// pack_shapes packs one island of each shape, with the outlines of all that are stacked on it.
 /// Throws Error{cancelled}, and what pack_shapes throws.
-Packed pack_stacked(std::span<const charts::Outline> islands,
-                    const std::function<Packed(std::span<const charts::Outline>)>& pack_shapes,
-                    const std::stop_token& stop);
+PackResult pack_stacked(
+    std::span<const charts::Outline> islands,
+    const std::function<PackResult(std::span<const charts::Outline>)>& pack_shapes,
+    const std::stop_token& stop);
 
 }  // namespace unwrapd::pack

@@ -34,7 +34,7 @@ double usual_scale(const BottomLeftPlacer& placer, const PageGrid& grid, int pag
   return (std::sqrt(half * half + area * std::max(room, 0.2 * side * side)) - half) / area;
 }
 
-std::vector<Placement> placements_of(const Found& found, BottomLeftPlacer& placer,
+std::vector<Placement> placements_of(const CellPacking& found, BottomLeftPlacer& placer,
                                      const PageGrid& grid) {
   const double cell = grid.cell(found.side);
   std::vector<Placement> placements;

@@ -30,7 +30,7 @@ int fine_cells(std::size_t islands);
 double usual_scale(const BottomLeftPlacer& placer, const PageGrid& grid, int pages, double side);
 
 /// found: made at the placer's present scale.
-std::vector<Placement> placements_of(const Found& found, BottomLeftPlacer& placer,
+std::vector<Placement> placements_of(const CellPacking& found, BottomLeftPlacer& placer,
                                      const PageGrid& grid);
 
 }  // namespace unwrapd::pack

@@ -17,7 +17,7 @@ struct Places {
 };
 
 /// A mask over a column of places; its lowest row and leftmost column start at the first entry.
-struct Look {
+struct OverlapQuery {
   const Rows& rows;
   const std::int32_t* table;
   std::size_t stride;
@@ -26,7 +26,7 @@ struct Look {
 
 /// Adds up the mask's rows, from the middle outwards, until every place weighs at least `most`.
 /// Returns the number of rows.
-[[gnu::always_inline]] inline int weigh(const Look& look, Places& places) {
+[[gnu::always_inline]] inline int weigh(const OverlapQuery& look, Places& places) {
   const int height = look.rows.height();
   std::array<std::int32_t, kPlaces> sum = places.weight;
   int k = 0;
@@ -73,12 +73,12 @@ struct Columns {
 
 /// The results do not depend on the length of registers.
 struct Kernels {
-  int (*weigh)(const Look&, Places&);
+  int (*weigh)(const OverlapQuery&, Places&);
   void (*sum_up)(const Columns&);
 };
 
-int weigh_on_baseline(const Look& look, Places& places) { return weigh(look, places); }
-[[gnu::target("avx2")]] int weigh_avx2(const Look& look, Places& places) {
+int weigh_on_baseline(const OverlapQuery& look, Places& places) { return weigh(look, places); }
+[[gnu::target("avx2")]] int weigh_avx2(const OverlapQuery& look, Places& places) {
   return weigh(look, places);
 }
 
@@ -136,8 +136,9 @@ LeastOverlap RowPrefixSums::least(const Mask& mask, int x, int y_begin, int y_la
                                   std::int32_t most) {
   LeastOverlap best{y_begin, most};
   for (int y = y_begin; y <= y_last && best.weight > 0; y += kPlaces) {
-    const Look look{mask.grown, column(x - mask.margin) + (y - mask.margin - window_.y_begin),
-                    stride_, best.weight};
+    const OverlapQuery look{mask.grown,
+                            column(x - mask.margin) + (y - mask.margin - window_.y_begin), stride_,
+                            best.weight};
     Places places;
     for (int i = 0; i < kPlaces; ++i)
       places.weight[static_cast<std::size_t>(i)] = y + i <= y_last ? 0 : best.weight;

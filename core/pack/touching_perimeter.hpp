@@ -15,8 +15,8 @@ struct TouchingRules {
 };
 
 struct TouchingPage {
-  Found found = {};  ///< side 0: the islands do not fit
-  int height = 0;    ///< cells: height of the strip
+  CellPacking found = {};  ///< side 0: the islands do not fit
+  int height = 0;          ///< cells: height of the strip
 };
 
 /// Places the islands in a strip of this width, cells, and at most half as high again. The next

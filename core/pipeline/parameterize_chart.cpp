@@ -23,7 +23,7 @@ std::size_t bytes_of(const Run& run) {
 }
 
 /// What a run of the solver needs beside its arguments.
-struct Running : solve::Making {
+struct Running : solve::CacheContext {
   const ChartJob& job;
   const Stop& stop_rule;
   const ChartProgress& progress;

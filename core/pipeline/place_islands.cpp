@@ -16,7 +16,7 @@ double area_of(const charts::Outline& outline) {
   return std::abs(twice) / 2;
 }
 
-void note_padding(const pack::Packed& packed, int asked, Report& report) {
+void note_padding(const pack::PackResult& packed, int asked, Report& report) {
   if (packed.padding >= asked) return;
   report.notes.push_back(
       "Padding for so many islands would fill most of the page. The padding is " +
@@ -24,7 +24,7 @@ void note_padding(const pack::Packed& packed, int asked, Report& report) {
       "; raise resolution for the full padding.");
 }
 
-void note_stacks(const pack::Packed& packed, Report& report) {
+void note_stacks(const pack::PackResult& packed, Report& report) {
   std::size_t stacked = 0;
   for (const char is_stacked : packed.is_stacked) stacked += is_stacked != 0 ? 1 : 0;
   if (stacked > 0)
@@ -37,7 +37,7 @@ void note_stacks(const pack::Packed& packed, Report& report) {
 
 void place_islands(std::span<const charts::Outline> outlines, const UnwrapOptions& options,
                    Executor& executor, std::span<UvMap* const> maps, Report& report) {
-  const pack::Packed packed =
+  const pack::PackResult packed =
       pack::pack(outlines, {options.resolution, options.padding, options.packing}, executor);
   double covered = 0;
   for (std::size_t k = 0; k < maps.size(); ++k) {

@@ -49,7 +49,7 @@ void describe(CacheKey& key, const TakingApart& rules) {
 }
 
 /// How surfaces are taken apart: watched.
-struct Preparing : solve::Making {
+struct Preparing : solve::CacheContext {
   const segment::SegmentWatch& watch;
 };
 

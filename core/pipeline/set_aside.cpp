@@ -132,7 +132,7 @@ void place_set_aside(const Surface& surface, const charts::Charts& whole,
     const std::vector<Index> first_at = weld(mesh.positions, stop);
     EdgeBorrower borrower(mesh, degenerate, at);
     borrower.borrow(mesh.faces, stop);
-    borrower.borrow(renumbered(mesh.faces, first_at), stop);
+    borrower.borrow(renumber(mesh.faces, first_at), stop);
     lay_on_points(mesh, degenerate, first_at, at);
   }
   for (std::size_t k = 0; k < whole.set_aside.size(); ++k)

@@ -47,9 +47,9 @@ inline charts::Outline net(double a, double b, double angle) {
 }
 
 /// On this thread alone.
-inline pack::Packed pack_alone(std::span<const charts::Outline> islands,
-                               const pack::PageOptions& page = {},
-                               const std::stop_token& stop = {}) {
+inline pack::PackResult pack_alone(std::span<const charts::Outline> islands,
+                                   const pack::PageOptions& page = {},
+                                   const std::stop_token& stop = {}) {
   SerialExecutor serial;
   JobExecutor job(serial, stop);
   return pack::pack(islands, page, job);

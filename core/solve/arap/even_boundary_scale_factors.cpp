@@ -137,7 +137,7 @@ class Boundary {
   }
 
   /// Fluxes that would nearly make up for this unevenness; they add up to zero.
-  [[nodiscard]] std::vector<double> preconditioned(std::vector<double> values) {
+  [[nodiscard]] std::vector<double> precondition(std::vector<double> values) {
     std::size_t begin = 0;
     for (std::size_t l = 0; l < loops_.size(); begin = ends_[l++])
       loops_[l].apply(std::span(values).subspan(begin, ends_[l] - begin));
@@ -178,7 +178,7 @@ std::optional<std::vector<double>> even_boundary_scale_factors(const Disk& disk,
   change = u;
   global.ascend_by_rank(change, over);
   std::vector<double> left = boundary.unevenness(change), all(left.size(), 0.0);
-  std::vector<double> way = boundary.preconditioned(left);
+  std::vector<double> way = boundary.precondition(left);
   double slope = dot(left, way);
   const double enough = std::max(kLevel * kLevel * dot(left, left),
                                  kRounding * kRounding * static_cast<double>(boundary.size()));
@@ -196,7 +196,7 @@ std::optional<std::vector<double>> even_boundary_scale_factors(const Disk& disk,
     const double length = slope / dot(way, answer);
     add(length, way, all);
     add(-length, answer, left);
-    std::vector<double> next = boundary.preconditioned(left);
+    std::vector<double> next = boundary.precondition(left);
     const double slope_before = std::exchange(slope, dot(left, next));
     add(slope / slope_before, way, next);
     way.swap(next);

@@ -43,17 +43,17 @@ linear::SparseMatrix free_matrix(const Disk& disk, const ConstraintPattern& cons
       .lower;
 }
 
-std::shared_ptr<const linear::Analysis> analysed(const Making& by,
-                                                 const linear::SparsePattern& lower,
-                                                 bool is_ordered) {
+std::shared_ptr<const linear::Analysis> make_analysis(const CacheContext& by,
+                                                      const linear::SparsePattern& lower,
+                                                      bool is_ordered) {
   return is_ordered ? linear::analyse_in_order(lower, by.stop) : linear::analyse(lower, by.stop);
 }
 
-std::shared_ptr<const linear::Factor> factored(const Making& by, const Disk& disk,
-                                               const ConstraintPattern& constrained) {
+std::shared_ptr<const linear::Factor> make_factor(const CacheContext& by, const Disk& disk,
+                                                  const ConstraintPattern& constrained) {
   const linear::SparseMatrix lower = free_matrix(disk, constrained, *by.executor);
   throw_if_cancelled(by.executor->stop());
-  const auto analysis = cached<analysed>(by, linear::SparsePattern(lower), disk.is_ordered);
+  const auto analysis = cached<make_analysis>(by, linear::SparsePattern(lower), disk.is_ordered);
   throw_if_cancelled(by.executor->stop());
   check_memory(disk, analysis->job_bytes());
   return linear::definite(linear::try_factor(analysis, lower, *by.executor));
@@ -104,12 +104,12 @@ std::vector<Vec2> by_vertex(std::span<const Vec2> by_rank, std::span<const Index
 
 GlobalStep::GlobalStep(const Disk& disk, const VertexConstraints& constraints, Executor* executor)
     : held_(disk.positions.size(), constraints), executor_(executor) {
-  if (disk.core != nullptr) made_of_ = key_of<factored>(*disk.core, disk, held_);
+  if (disk.core != nullptr) made_of_ = key_of<make_factor>(*disk.core, disk, held_);
   if (held_.free.count == 0) {
     rank_ = ranks(held_.free, {});
     return;
   }
-  system_ = cached<factored>(Making{disk.core, disk.stop, &this->executor()}, disk, held_);
+  system_ = cached<make_factor>(CacheContext{disk.core, disk.stop, &this->executor()}, disk, held_);
   rank_ = ranks(held_.free, system_->analysis()->nodes.position);
 }
 

@@ -11,14 +11,14 @@ namespace {
 
 using linear::at;
 
-VertexConstraints renumbered(VertexConstraints constraints, std::span<const Index> rank) {
+VertexConstraints constraints_by_rank(VertexConstraints constraints, std::span<const Index> rank) {
   for (HardConstraint& point : constraints.hard) point.vertex = rank[at(point.vertex)];
   for (SoftConstraint& soft_constraint : constraints.soft)
     soft_constraint.vertex = rank[at(soft_constraint.vertex)];
   return constraints;
 }
 
-FaceBlocks blocks_of(const Making& by, const SharedList<measure::RestTriangle>& rest,
+FaceBlocks blocks_of(const CacheContext& by, const SharedList<measure::RestTriangle>& rest,
                      ListView<Triangle> faces, std::span<const Index> rank) {
   return face_blocks(rest, faces, rank, by.stop);
 }
@@ -28,9 +28,9 @@ FaceBlocks blocks_of(const Making& by, const SharedList<measure::RestTriangle>& 
 Objective::Objective(const Disk& disk, const Rigidity& rigidity, VertexConstraints constraints,
                      std::span<const Index> rank, Executor& executor)
     : rigidity_(rigidity),
-      holds_(renumbered(std::move(constraints), rank)),
+      holds_(constraints_by_rank(std::move(constraints), rank)),
       executor_(executor),
-      blocks_(cached<blocks_of>(Making{disk.core, disk.stop}, disk.rest, disk.faces, rank)),
+      blocks_(cached<blocks_of>(CacheContext{disk.core, disk.stop}, disk.rest, disk.faces, rank)),
       beyond_(blocks_->beyond.size()) {}
 
 double Objective::pull_soft_constraints(std::span<const Vec2> uv, std::span<Vec2> force) const {

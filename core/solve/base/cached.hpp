@@ -25,7 +25,7 @@ inline std::size_t bytes_of(const linear::Analysis& analysis) { return analysis.
 inline std::size_t bytes_of(const linear::Factor& factor) { return factor.bytes(); }
 
 /// How to make a value. No member, of this type or of a derived one, may change the value.
-struct Making {
+struct CacheContext {
   SharedCache* core = nullptr;  ///< null: nothing is shared
   std::stop_token stop = {};
   Executor* executor = nullptr;  ///< null: the calling thread
@@ -54,11 +54,11 @@ std::shared_ptr<const T> shared(T made) {
 
 /// Returns kMake(by, inputs...), or an equal value that another job made. The result is a
 /// std::shared_ptr<const T>, whether kMake returns one or a T. kMake is a function, or a lambda
-/// without captures: the key contains all that it can read except `by`, which is a Making or
+/// without captures: the key contains all that it can read except `by`, which is a CacheContext or
 /// derived from it. Throws Error{cancelled}, and what kMake throws.
 template <auto kMake, class By, class... Inputs>
 auto cached(const By& by, Inputs&&... inputs) {
-  static_assert(std::is_base_of_v<Making, By>);
+  static_assert(std::is_base_of_v<CacheContext, By>);
   using Pointer = decltype(shared(kMake(by, inputs...)));
   if (by.core == nullptr) return shared(kMake(by, inputs...));
   const auto make = [&]() -> SharedCache::Made {
@@ -72,10 +72,10 @@ auto cached(const By& by, Inputs&&... inputs) {
 /// A copy of kMake(disk, inputs...), memoized. The present state of the disk is part of the key.
 template <auto kMake, class... Inputs>
 auto cached_of_disk(const Disk& disk, const Inputs&... inputs) {
-  constexpr auto kOfDisk = [](const Making&, const auto&... all) { return kMake(all...); };
+  constexpr auto kOfDisk = [](const CacheContext&, const auto&... all) { return kMake(all...); };
   if (disk.core == nullptr) return kMake(disk, inputs...);
   return decltype(kMake(disk, inputs...))(
-      *cached<kOfDisk>(Making{disk.core, disk.stop}, disk, inputs...));
+      *cached<kOfDisk>(CacheContext{disk.core, disk.stop}, disk, inputs...));
 }
 
 /// Throws Error{too_much_memory} if a job on this disk that allocates `bytes` exceeds its limit.

@@ -11,8 +11,8 @@ namespace unwrapd::solve {
 namespace {
 
 /// Positions relative to the centroid, in multiples of unit.
-std::vector<Vec3> normalised(std::span<const Vec3> positions, double unit,
-                             const std::stop_token& stop) {
+std::vector<Vec3> normalise(std::span<const Vec3> positions, double unit,
+                            const std::stop_token& stop) {
   Vec3 centroid = Vec3::Zero();
   for (const Vec3& p : positions) centroid += p / static_cast<double>(positions.size());
   throw_if_cancelled(stop);
@@ -23,12 +23,14 @@ std::vector<Vec3> normalised(std::span<const Vec3> positions, double unit,
   return moved;
 }
 
-std::vector<measure::RestTriangle> rest_of(const Making& by, const SharedList<Vec3>& positions,
+std::vector<measure::RestTriangle> rest_of(const CacheContext& by,
+                                           const SharedList<Vec3>& positions,
                                            ListView<Triangle> faces) {
   return measure::flatten(positions, faces, *by.executor);
 }
 
-linear::VertexCorners corners_of(const Making& by, ListView<Triangle> faces, Index vertex_count) {
+linear::VertexCorners corners_of(const CacheContext& by, ListView<Triangle> faces,
+                                 Index vertex_count) {
   return linear::vertex_corners(faces, vertex_count, by.stop);
 }
 
@@ -67,8 +69,8 @@ Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, Executo
             .unit = std::sqrt(area),
             .core = executor.shared_cache(),
             .stop = stop};
-  const Making by{disk.core, stop, &executor};
-  disk.positions = normalised(mesh.positions, disk.unit, stop);
+  const CacheContext by{disk.core, stop, &executor};
+  disk.positions = normalise(mesh.positions, disk.unit, stop);
   disk.rest = rest_of(by, disk.positions, disk.faces);
   disk.corners = corners_of(by, disk.faces, disk.vertex_count());
   if (disk.core != nullptr) tell_digests(*disk.core, disk);

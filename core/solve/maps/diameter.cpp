@@ -34,7 +34,7 @@ Pair farthest_of_farthest(std::span<const Vec3> p, Index start) {
   }
 }
 
-struct Ranked {
+struct PointAtDistance {
   double radius;
   Index vertex;
 };
@@ -42,13 +42,14 @@ struct Ranked {
 }  // namespace
 
 std::array<Index, 2> diameter(std::span<const Vec3> positions) {
-  std::vector<Ranked> ranked(positions.size());
+  std::vector<PointAtDistance> ranked(positions.size());
   Vec3 centre = Vec3::Zero();
   for (const Vec3& p : positions) centre += p / static_cast<double>(positions.size());
   for (std::size_t v = 0; v < ranked.size(); ++v)
     ranked[v] = {(positions[v] - centre).norm(), static_cast<Index>(v)};
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Ranked& x, const Ranked& y) { return x.radius > y.radius; });
+  std::stable_sort(
+      ranked.begin(), ranked.end(),
+      [](const PointAtDistance& x, const PointAtDistance& y) { return x.radius > y.radius; });
 
   Pair best = farthest_of_farthest(positions, ranked.front().vertex);
   std::int64_t pairs = 0;

@@ -36,8 +36,8 @@ double slenderness(const measure::RestTriangle& triangle) {
 }
 
 /// u: at the corners. The size of the result is arbitrary.
-measure::RestTriangle scaled(const measure::RestTriangle& triangle,
-                             const std::array<double, 3>& u) {
+measure::RestTriangle scale_metric(const measure::RestTriangle& triangle,
+                                   const std::array<double, 3>& u) {
   const double greatest = std::max({u[0], u[1], u[2]});  // against overflow
   EdgeLengths l = edge_lengths(triangle);
   for (std::size_t i = 0; i < 3; ++i)
@@ -46,12 +46,12 @@ measure::RestTriangle scaled(const measure::RestTriangle& triangle,
   return slenderness(flat) < (1 - kMostThinning) * slenderness(triangle) ? triangle : flat;
 }
 
-std::vector<measure::RestTriangle> scaled(const Disk& disk, std::span<const double> u) {
+std::vector<measure::RestTriangle> scale_metric(const Disk& disk, std::span<const double> u) {
   std::vector<measure::RestTriangle> flat;
   flat.reserve(disk.rest.size());
   for (std::size_t t = 0; t < disk.rest.size(); ++t) {
     const auto at = [&](std::size_t i) { return u[static_cast<std::size_t>(disk.faces[t][i])]; };
-    flat.push_back(scaled(disk.rest[t], {at(0), at(1), at(2)}));
+    flat.push_back(scale_metric(disk.rest[t], {at(0), at(1), at(2)}));
   }
   return flat;
 }
@@ -67,7 +67,7 @@ Solution cp(const Disk& disk, const SolveWatch& watch) {
   const std::vector<double> u = flat_scales(filled.disk, inner, bent);
   throw_if_cancelled(watch.loop.stop);
   if (watch.on_stage) watch.on_stage(Stage::solve);
-  std::vector<measure::RestTriangle> flat = scaled(filled.disk, u);
+  std::vector<measure::RestTriangle> flat = scale_metric(filled.disk, u);
   const std::vector<double> left = curvature(filled.disk, flat);
   Solution solution{.uv = maps::lay_out(filled.disk, std::move(flat)),
                     .energy = {inner_curvature(filled.disk, bent)},

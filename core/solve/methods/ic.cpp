@@ -90,7 +90,7 @@ class Flow {
   PackedAngles packed_;
 };
 
-UvMap drawn(const Disk& disk, const maps::FilledDisk& filled, const Flow& flow) {
+UvMap lay_out_circles(const Disk& disk, const maps::FilledDisk& filled, const Flow& flow) {
   UvMap uv = maps::lay_out(filled.disk, flow.triangles());
   uv.resize(disk.positions.size());
   maps::scale_to_area(disk, uv);
@@ -112,11 +112,11 @@ Solution ic(const Disk& disk, const SolveWatch& watch) {
     ++solution.iterations;
     solution.energy.push_back(flow.greatest_curvature());
     if (!watch.loop.on_iteration) continue;
-    solution.uv = drawn(disk, filled, flow);
+    solution.uv = lay_out_circles(disk, filled, flow);
     watch.loop.on_iteration(solution);
   }
   if (solution.energy.back() <= kFlat) solution.stop_reason = StopReason::converged;
-  solution.uv = drawn(disk, filled, flow);
+  solution.uv = lay_out_circles(disk, filled, flow);
   return solution;
 }
 

@@ -22,7 +22,7 @@ AngleModel relative_errors(const std::vector<FaceAngles>& target) {
 }
 
 /// Raises angles that shrank too far; the others of the triangle make up for it.
-FaceAngles drawn_back(FaceAngles angle, const FaceAngles& target) {
+FaceAngles raise_small_angles(FaceAngles angle, const FaceAngles& target) {
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) sum += angle[i] = std::max(angle[i], kLeastShare * target[i]);
   for (double& x : angle) x *= std::numbers::pi / sum;
@@ -41,7 +41,7 @@ LinearAngles solve(const Disk& disk, Executor& executor) {
   const std::vector<FaceAngles> change = system.step(target, relative_errors(target));
   for (std::size_t t = 0; t < target.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) linear.angles[t][i] += change[t][i];
-    linear.angles[t] = drawn_back(linear.angles[t], target[t]);
+    linear.angles[t] = raise_small_angles(linear.angles[t], target[t]);
   }
   linear.energy.push_back(angle_energy(system, linear.angles, target));
   return linear;

@@ -80,7 +80,7 @@ Vec2 middle_of(const UvMap& uv) {
 }
 
 /// The map rotated and moved to where the old one was.
-UvMap laid_along(const UvMap& old, const UvMap& uv) {
+UvMap align_with(const UvMap& old, const UvMap& uv) {
   const Vec2 from = middle_of(uv), to = middle_of(old);
   double cosine = 0, sine = 0;
   for (std::size_t v = 0; v < uv.size(); ++v) {
@@ -108,7 +108,7 @@ UvMap of_the_area_of(const UvMap& old, const Disk& disk, UvMap uv) {
 
 /// Moves the map to the mean of its soft constraints' residuals; no other energy depends on
 /// translation.
-UvMap moved_to_rest(UvMap uv, const std::vector<SoftConstraint>& soft) {
+UvMap translate_to_rest(UvMap uv, const std::vector<SoftConstraint>& soft) {
   Vec2 pull = Vec2::Zero();
   double weight = 0;
   for (const SoftConstraint& soft_constraint : soft) {
@@ -144,7 +144,7 @@ bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   if (is_drawn) keep_apart(disk, constrained_start(settled, {{}, intent.soft}), settled);
   settle_apart(target.disk, intent, settled, target.share);
   throw_if_cancelled(intent.stop);
-  keep_apart(disk, is_drawn ? moved_to_rest(settled, intent.soft) : laid_along(uv, settled),
+  keep_apart(disk, is_drawn ? translate_to_rest(settled, intent.soft) : align_with(uv, settled),
              settled);
   uv = std::move(settled);
   return true;

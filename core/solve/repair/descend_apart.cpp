@@ -28,7 +28,7 @@ constexpr double kAhead = 2;      // reaches, within which a contact has room in
 constexpr double kFarAbove = 10;  // of the energy's mean over the surface
 constexpr double kShift = 1e-10;  // of the mean of a face's diagonal: turns cost nothing
 
-linear::PairElement shifted(const BarrierElement& e) {
+linear::PairElement shift_diagonal(const BarrierElement& e) {
   linear::PairElement element{};
   const double shift = kShift * e.hessian.trace() / 6;
   for (std::size_t i = 0; i < 6; ++i)
@@ -156,7 +156,7 @@ class Descending {
                         disk_.rest[t],
                         measure::jacobian(disk_.rest[t], measure::uv_edges(disk_.faces[t], uv_))));
       else
-        system_.add(t, shifted(e));
+        system_.add(t, shift_diagonal(e));
       for (std::size_t i = 0; i < 3; ++i)
         gradient[static_cast<std::size_t>(mesh_.faces[t][i])] +=
             e.gradient.segment<2>(2 * static_cast<Eigen::Index>(i));

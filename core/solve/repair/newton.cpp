@@ -48,7 +48,7 @@ double collapse_length(const BarrierMesh& mesh, const UvMap& uv, const UvMap& mo
 }
 
 /// x: one entry an unknown, in its first coordinate.
-UvMap spread(const linear::FreeVertices& free, std::span<const Vec2> x) {
+UvMap scatter(const linear::FreeVertices& free, std::span<const Vec2> x) {
   UvMap move(free.slot.size(), Vec2::Zero());
   for (std::size_t v = 0; v < move.size(); ++v)
     if (free.slot[v] != linear::kFixed)
@@ -56,7 +56,7 @@ UvMap spread(const linear::FreeVertices& free, std::span<const Vec2> x) {
   return move;
 }
 
-UvMap moved(const UvMap& uv, const UvMap& move, double length) {
+UvMap move_along(const UvMap& uv, const UvMap& move, double length) {
   UvMap to(uv.size());
   for (std::size_t v = 0; v < uv.size(); ++v) to[v] = uv[v] + length * move[v];
   return to;
@@ -102,7 +102,7 @@ double Newton::step(UvMap& uv, const Barrier& barrier) {
   for (std::size_t k = 0; k < x.size(); ++k)
     slope += model_.gradient[static_cast<Index>(k)] * x[k].x();
   if (!(slope < 0)) return 0;
-  return search(spread(mesh_.free, x), slope, barrier, uv);
+  return search(scatter(mesh_.free, x), slope, barrier, uv);
 }
 
 double Newton::search(const UvMap& move, double slope, const Barrier& barrier, UvMap& uv) const {
@@ -110,7 +110,7 @@ double Newton::search(const UvMap& move, double slope, const Barrier& barrier, U
   const double most =
       barrier.epsilon == 0 ? kOfTheWayToCollapse * collapse_length(mesh_, uv, move) : 1;
   const auto at_length = [&](double length) {
-    Trial trial{length, moved(uv, move, length), 0};
+    Trial trial{length, move_along(uv, move, length), 0};
     trial.energy = barrier_energy(mesh_, trial.uv, barrier);
     return trial;
   };

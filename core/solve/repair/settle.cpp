@@ -17,12 +17,13 @@ namespace unwrapd::solve::repair {
 namespace {
 
 /// One stage of the fading barrier; only the last one's minimum counts.
-struct Fading {
+struct FadingStage {
   double wall, dirichlet;  ///< weights, see Barrier
   double tolerance;        ///< relative fall of the energy in one step
 };
 constexpr double kFloor = 1e-3;  // of the symmetric Dirichlet energy
-constexpr std::array kFading{Fading{1e-1, 0, 1e-2}, Fading{0, 1e-2, 1e-3}, Fading{0, kFloor, 1e-4}};
+constexpr std::array kFading{FadingStage{1e-1, 0, 1e-2}, FadingStage{0, 1e-2, 1e-3},
+                             FadingStage{0, kFloor, 1e-4}};
 constexpr int kMostFading = 20;       // Newton steps for each weight
 constexpr int kMostFadingWhole = 60;  // for a whole disk, where the way may be long
 constexpr int kMostFadingLarge =
@@ -62,13 +63,13 @@ int most_steps(const Patch& patch, bool is_whole) {
 }
 
 /// Lowers the energy of a map without flips, and keeps it free of flips.
-void descend(const Disk& disk, const MapIntent& intent, std::span<const Fading> fadings,
+void descend(const Disk& disk, const MapIntent& intent, std::span<const FadingStage> fadings,
              Patch& patch, UvMap& own) {
   const bool is_whole = patch.face.size() == disk.faces.size();
   if (intent.rigidity.lambda < kConformalBelow) follow_sizes(own, patch.mesh);
   patch.mesh.soft = soft_constraints_at(patch, intent.soft);
   Newton newton(patch.mesh, intent.executor);
-  for (const Fading& fading : fadings) {
+  for (const FadingStage& fading : fadings) {
     const double tolerance = is_whole ? kWhole * fading.tolerance : fading.tolerance;
     const Barrier barrier{intent.rigidity, fading.wall, 0, fading.dirichlet};
     for (int k = 0; k < most_steps(patch, is_whole); ++k) {
@@ -79,7 +80,7 @@ void descend(const Disk& disk, const MapIntent& intent, std::span<const Fading> 
   }
 }
 
-void descend_all(const Disk& disk, const MapIntent& intent, std::span<const Fading> fadings,
+void descend_all(const Disk& disk, const MapIntent& intent, std::span<const FadingStage> fadings,
                  std::span<Patch> patches, UvMap& uv) {
   const MapIntent own_intent = intent_of_one(intent, patches.size());
   SerialExecutor serial;
@@ -116,7 +117,7 @@ void settle_all(const Disk& disk, const MapIntent& intent, std::span<Patch> patc
 
 void widen_needles(const Disk& disk, const MapIntent& intent, std::span<const char> is_candidate,
                    UvMap& uv) {
-  Fading fading = kFading.back();
+  FadingStage fading = kFading.back();
   for (int k = 0; k < kMostRaises; ++k) {
     const std::vector<Index> found = needles(disk, is_candidate, uv);
     if (found.empty()) return;

@@ -29,7 +29,7 @@ bool has_rim(const BarrierMesh& mesh) {
 
 /// The patch with targets that fit into its rim, which encloses the same area however the triangles
 /// lie: else the best of maps has tiny determinants, and nothing tells them from flips.
-BarrierMesh fitted(const BarrierMesh& mesh, const UvMap& uv) {
+BarrierMesh fit_targets(const BarrierMesh& mesh, const UvMap& uv) {
   double room = 0, wanted = 0;
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
     wanted += mesh.rest[t].area;
@@ -45,7 +45,7 @@ BarrierMesh fitted(const BarrierMesh& mesh, const UvMap& uv) {
 
 }  // namespace
 
-UvMap evened_out(const BarrierMesh& patch, UvMap uv) {
+UvMap even_out(const BarrierMesh& patch, UvMap uv) {
   std::vector<Vec2> sum(uv.size());
   std::vector<double> count(uv.size());
   for (int k = 0; k < kSweeps; ++k) {
@@ -69,7 +69,7 @@ bool is_untangled(const BarrierMesh& mesh, std::span<const Vec2> uv) {
 }
 
 void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t enough, UvMap& uv) {
-  const BarrierMesh mesh = fitted(patch, uv);
+  const BarrierMesh mesh = fit_targets(patch, uv);
   Newton newton(mesh, intent.executor);
   // Without a rim the patch is kept near its map by the method's own energy. Otherwise it takes
   // several times as many steps to return to it.

@@ -15,7 +15,7 @@ void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t en
 
 /// Another start for the flips that turn_over() left: moves each free vertex most of the way to the
 /// mean of its neighbours, several times. Throws Error{cancelled}.
-UvMap evened_out(const BarrierMesh& patch, UvMap uv);
+UvMap even_out(const BarrierMesh& patch, UvMap uv);
 
 /// Whether every triangle is counter-clockwise by the exact test, with a positive determinant.
 bool is_untangled(const BarrierMesh& mesh, std::span<const Vec2> uv);

@@ -40,7 +40,7 @@ measure::Jacobian sum(const measure::Jacobian& a, double w, const measure::Jacob
 }
 
 /// The similarity part and the remainder of j, each multiplied by a factor.
-measure::Jacobian weighted(const measure::Jacobian& j, double similarity, double rest) {
+measure::Jacobian scale_parts(const measure::Jacobian& j, double similarity, double rest) {
   return {similarity * j.e, similarity * j.h, rest * j.f, rest * j.g};
 }
 
@@ -125,7 +125,7 @@ class Splitting {
         measure::jacobian(disk_.rest[t], measure::uv_edges(disk_.faces[t], uv));
     const double q = j.turn_scale();
     const double misfit = q > 0 ? 1 - fitted_scale(t, q) / q : 0;
-    return weighted(j, std::max(misfit / kPenalty, -kLeastTurn), 1 / kPenalty);
+    return scale_parts(j, std::max(misfit / kPenalty, -kLeastTurn), 1 / kPenalty);
   }
 
   /// Y for z = J + U and a fit of this scale.
@@ -137,7 +137,7 @@ class Splitting {
         size * singular_values({(q + r) / size, (q - r) / size}, scale / size);
     const double high = value[0], low = value[1];
     if (!(q > 0)) return {(high + low) / 2, 0, z.f, z.g};  // all rotations fit equally
-    return weighted(z, (high + low) / (2 * q), r > 0 ? (high - low) / (2 * r) : 0);
+    return scale_parts(z, (high + low) / (2 * q), r > 0 ? (high - low) / (2 * r) : 0);
   }
 
   /// The new Y and U of a face, and the forces on its corners towards Y - U.

@@ -49,7 +49,7 @@ bool exceeds(std::size_t count, double share, std::size_t all) {
 enum State : char { kUntouched, kRough, kSettled };  // rough: turned over, but not settled since
 
 /// The result of rounds of patches.
-struct Left {
+struct RepairState {
   std::vector<Index> flipped;
   std::vector<char> state;           ///< of each face
   bool has_tried_the_whole = false;  ///< a second attempt would fail likewise
@@ -77,12 +77,12 @@ struct Attempt {
 void untie(const Patch& patch, const MapIntent& intent, const UvMap& uv, UvMap& own) {
   const bool has_rim = patch.mesh.free.count < static_cast<Index>(own.size());
   if (!has_rim || is_untangled(patch.mesh, own)) return;
-  UvMap even = evened_out(patch.mesh, map_of(patch, uv));
+  UvMap even = even_out(patch.mesh, map_of(patch, uv));
   turn_over(patch.mesh, intent, 0, even);
   if (is_untangled(patch.mesh, even)) own = std::move(even);
 }
 
-Attempt mended(const Disk& disk, const MapIntent& intent, Patch& patch, const UvMap& uv) {
+Attempt repair_patch(const Disk& disk, const MapIntent& intent, Patch& patch, const UvMap& uv) {
   Attempt attempt{map_of(patch, uv)};
   const std::size_t before =
       measure::flipped_faces(patch.mesh.faces, attempt.own, disk.stop).size();
@@ -100,12 +100,12 @@ Attempt mended(const Disk& disk, const MapIntent& intent, Patch& patch, const Uv
 
 /// Repairs patches that share no triangle, in parallel.
 void mend_all(const Disk& disk, const MapIntent& intent, std::span<Patch> patches, UvMap& uv,
-              Left& left) {
+              RepairState& left) {
   const MapIntent own_intent = intent_of_one(intent, patches.size());
   SerialExecutor serial;
   Executor& executor = intent.executor != nullptr ? *intent.executor : serial;
   const auto attempts = parallel_map<Attempt>(patches.size(), executor, [&](std::size_t k) {
-    return mended(disk, own_intent, patches[k], uv);
+    return repair_patch(disk, own_intent, patches[k], uv);
   });
   for (std::size_t k = 0; k < patches.size(); ++k) {
     if (attempts[k].state == kUntouched) continue;
@@ -136,7 +136,7 @@ UvMap tutte_without_holes(const Disk& disk) {
 /// Turns over a large disk as a whole if flips are many. Newton steps on the whole would take
 /// several times as long as its solve, and four times the memory. Returns false, with uv as it was,
 /// if many flips are left.
-bool thin_out_large(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+bool thin_out_large(const Disk& disk, const MapIntent& intent, UvMap& uv, RepairState& left) {
   const std::size_t before = left.flipped.size(), all = disk.faces.size();
   if (intent.in_place || all <= kLargeDisk || !exceeds(before, kManyOfLarge, all)) return false;
   UvMap own = uv;
@@ -150,7 +150,7 @@ bool thin_out_large(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& 
 }
 
 /// The same for any disk. A map that is not improved stays as it is.
-void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+void thin_out(const Disk& disk, const MapIntent& intent, UvMap& uv, RepairState& left) {
   if (thin_out_large(disk, intent, uv, left)) return;
   const std::size_t before = left.flipped.size();
   if (!may_move_all(intent) || !exceeds(before, kMany, disk.faces.size())) return;
@@ -171,7 +171,7 @@ bool is_crowded(const Patch& patch, const UvMap& uv) {
 }
 
 /// Repairs patches of growing size, in the end the whole.
-void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, RepairState& left) {
   bool was_whole = false;
   for (int rings = intent.rings; !was_whole && !left.flipped.empty(); rings *= 2) {
     std::vector<Patch> patches = patches_around(disk, left.flipped, rings, intent.constrained);
@@ -186,7 +186,7 @@ void mend_patches(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& le
 }
 
 /// Repeats rounds of patches as long as each leaves at most half of the flips.
-void mend_in_rounds(const Disk& disk, const MapIntent& intent, UvMap& uv, Left& left) {
+void mend_in_rounds(const Disk& disk, const MapIntent& intent, UvMap& uv, RepairState& left) {
   for (int round = 0; round < kMostRounds && !left.flipped.empty(); ++round) {
     const std::size_t before = left.flipped.size();
     mend_patches(disk, intent, uv, left);
@@ -214,8 +214,8 @@ bool start_anew(const Disk& disk, const MapIntent& intent, UvMap start, UvMap& u
 
 Index untangle(const Disk& disk, const MapIntent& intent, UvMap& uv) {
   assert(intent.rings >= 1);
-  Left left{measure::flipped_faces(disk.faces, uv, disk.stop),
-            std::vector<char>(disk.faces.size(), kUntouched)};
+  RepairState left{measure::flipped_faces(disk.faces, uv, disk.stop),
+                   std::vector<char>(disk.faces.size(), kUntouched)};
   thin_out(disk, intent, uv, left);
   if (exceeds(left.flipped.size(), kMany, disk.faces.size()) && start_over(disk, intent, uv))
     return 0;

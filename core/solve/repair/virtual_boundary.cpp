@@ -26,7 +26,7 @@ constexpr double kBalanced = 1e-13;  // of the neighbours' mean distance
 constexpr double kLeastWeight = 1e-9;
 
 /// The disk without holes, inside a ring of virtual triangles.
-struct Padded {
+struct PaddedDisk {
   std::vector<Triangle> faces;
   UvMap uv;
   std::size_t rim = 0;  ///< vertices from this one on are the rim
@@ -54,9 +54,9 @@ void append_rim(const std::vector<Index>& loop, UvMap& uv) {
   }
 }
 
-Padded padded(const Disk& disk, const UvMap& map) {
+PaddedDisk pad(const Disk& disk, const UvMap& map) {
   const maps::FilledDisk filled = maps::fill_holes(disk);
-  Padded p{filled.faces, map, 0};
+  PaddedDisk p{filled.faces, map, 0};
   std::vector<Vec2> sum(filled.disk.positions.size(), Vec2::Zero());
   std::vector<int> count(sum.size(), 0);
   for (const Triangle& face : filled.faces)  // the middle of each hole, of its own loop
@@ -110,7 +110,7 @@ std::vector<double> balancing_weights(const std::vector<Vec2>& offset) {
 }
 
 /// Neighbours of each vertex inside the rim: the ends of its half-edges, counter-clockwise or not.
-std::vector<std::vector<Index>> neighbours_of(const Padded& p) {
+std::vector<std::vector<Index>> neighbours_of(const PaddedDisk& p) {
   std::vector<std::vector<Index>> neighbours(p.rim);
   for (const Triangle& face : p.faces)
     for (std::size_t i = 0; i < 3; ++i)
@@ -119,7 +119,8 @@ std::vector<std::vector<Index>> neighbours_of(const Padded& p) {
   return neighbours;
 }
 
-std::vector<double> weights_at(const Padded& p, std::size_t v, const std::vector<Index>& around) {
+std::vector<double> weights_at(const PaddedDisk& p, std::size_t v,
+                               const std::vector<Index>& around) {
   std::vector<Vec2> offset;
   for (Index w : around) offset.emplace_back(p.uv[w] - p.uv[v]);
   std::vector<double> weight = balancing_weights(offset);
@@ -131,7 +132,7 @@ std::vector<double> weights_at(const Padded& p, std::size_t v, const std::vector
 }  // namespace
 
 UvMap virtual_boundary_map(const Disk& disk, const UvMap& uv) {
-  const Padded p = padded(disk, uv);
+  const PaddedDisk p = pad(disk, uv);
   const auto neighbours = neighbours_of(p);
   std::vector<Eigen::Triplet<double, Index>> entries;
   std::vector<Vec2> x(p.rim, Vec2::Zero());

@@ -15,12 +15,12 @@ namespace {
 
 constexpr int kMostPatchRings = 64;
 
-Vec2 turned(const Vec2& by, const Vec2& u) {  // the product of complex numbers
+Vec2 complex_product(const Vec2& by, const Vec2& u) {
   return {by.x() * u.x() - by.y() * u.y(), by.x() * u.y() + by.y() * u.x()};
 }
 
 /// Aligns map with `to` by the similarity that fits best over the vertices that are not free.
-UvMap laid_on(const linear::FreeVertices& free, const UvMap& to, UvMap map) {
+UvMap align_onto(const linear::FreeVertices& free, const UvMap& to, UvMap map) {
   Vec2 here = Vec2::Zero(), there = Vec2::Zero(), across = Vec2::Zero();
   double count = 0, spread = 0;
   const auto for_rim = [&](const auto& visit) {
@@ -32,18 +32,18 @@ UvMap laid_on(const linear::FreeVertices& free, const UvMap& to, UvMap map) {
   here /= count, there /= count;
   for_rim([&](std::size_t v) {
     const Vec2 d = map[v] - here;
-    across += turned({d.x(), -d.y()}, to[v] - there);
+    across += complex_product({d.x(), -d.y()}, to[v] - there);
     spread += d.squaredNorm();
   });
   if (!(spread > 0)) return map;
-  for (Vec2& u : map) u = there + turned(across / spread, u - here);
+  for (Vec2& u : map) u = there + complex_product(across / spread, u - here);
   return map;
 }
 
 /// The patch of `map`, deformed so that its rim lies where it does in `to`.
-UvMap bent_into(const Patch& patch, const UvMap& to, UvMap map) {
+UvMap bend_into(const Patch& patch, const UvMap& to, UvMap map) {
   const std::vector<Index>& slot = patch.mesh.free.slot;
-  map = laid_on(patch.mesh.free, to, std::move(map));
+  map = align_onto(patch.mesh.free, to, std::move(map));
   std::vector<Eigen::Triplet<double, Index>> entries;
   std::vector<Vec2> shift(static_cast<std::size_t>(patch.mesh.free.count), Vec2::Zero());
   for (const Triangle& face : patch.mesh.faces)
@@ -92,7 +92,7 @@ bool mend_by_virtual_boundary(const Disk& disk, const MapIntent& intent, UvMap& 
     for (Patch& patch : patches_around(disk, flipped, rings, intent.constrained)) {
       if (is_whole(disk, patch)) return start_anew(disk, intent, upright, uv) || has_mended;
       const UvMap old = map_of(patch, uv);
-      UvMap own = partway(patch, intent, old, bent_into(patch, old, map_of(patch, upright)));
+      UvMap own = partway(patch, intent, old, bend_into(patch, old, map_of(patch, upright)));
       if (own.empty()) continue;
       settle(disk, intent, patch, own);
       put_back(patch, own, uv);

@@ -12,7 +12,7 @@ namespace unwrapd {
 namespace {
 
 FaceStates inspected(const TriMesh& mesh) {
-  return inspect_faces(mesh, renumbered(mesh.faces, weld(mesh.positions)));
+  return inspect_faces(mesh, renumber(mesh.faces, weld(mesh.positions)));
 }
 
 FaceState state_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -22,7 +22,7 @@ struct Prepared {
 
 Prepared prepared(Surface surface) {
   Prepared p{std::move(surface), {}, {}};
-  p.welded = renumbered(p.surface.mesh.faces, weld(p.surface.mesh.positions));
+  p.welded = renumber(p.surface.mesh.faces, weld(p.surface.mesh.positions));
   p.states = inspect_faces(p.surface.mesh, p.welded);
   return p;
 }

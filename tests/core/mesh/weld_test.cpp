@@ -46,7 +46,7 @@ TEST(Weld, ManyVerticesAtOnePlaceAreOne) {
 
 TEST(Weld, GivesASoupItsSurfaceBack) {
   const TriMesh mesh = shapes::sphere(2), apart = shapes::soup(mesh);
-  const auto faces = renumbered(apart.faces, weld(apart.positions));
+  const auto faces = renumber(apart.faces, weld(apart.positions));
   std::map<Index, Index> to;
   for (std::size_t t = 0; t < faces.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i)

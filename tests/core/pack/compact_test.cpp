@@ -86,11 +86,11 @@ struct Squeezing {
   }
 
   BottomLeftPlacer placer;
-  Found at_one_place;
+  CellPacking at_one_place;
 };
 
 /// How often each cell of the page is taken; others' cells near to an island's count as its own.
-int clashes(BottomLeftPlacer& placer, const Found& found) {
+int clashes(BottomLeftPlacer& placer, const CellPacking& found) {
   int count = 0;
   for (std::size_t a = 0; a < found.spots.size(); ++a) {
     std::set<std::pair<int, int>> near;
@@ -117,8 +117,8 @@ TEST(Compact, PartsWhatLiesOnOnePlaceAndStaysOnThePage) {
   for (const int reach : {0, 5}) {
     Squeezing squeezing(islands);
     Budget budget{100'000'000, {}};
-    const Found found = compact(squeezing.placer, squeezing.at_one_place,
-                                {.side = 70, .reach = reach, .failures = 3}, budget);
+    const CellPacking found = compact(squeezing.placer, squeezing.at_one_place,
+                                      {.side = 70, .reach = reach, .failures = 3}, budget);
     ASSERT_GT(found.side, 60);  // cells of all islands
     EXPECT_LT(found.side, 90) << reach;
     EXPECT_EQ(clashes(squeezing.placer, found), 0);

@@ -123,7 +123,7 @@ TEST(PackOutlines, GivesTheSamePlacementsForAnyNumberOfThreads) {
 TEST(PackOutlines, TakesIslandsWithoutExtentAndCrowdedPages) {
   expect_apart({polygon({{0, 0}, {1, 0}}), polygon({{2, 2}, {2, 3}}), polygon({{5, 5}, {6, 6}})},
                {});
-  const Packed crowded = pack_alone(stars(120, 6), {.resolution = 64, .padding = 8});
+  const PackResult crowded = pack_alone(stars(120, 6), {.resolution = 64, .padding = 8});
   EXPECT_GT(crowded.placements.front().scale, 0);
   EXPECT_LT(crowded.padding, 8);
   EXPECT_TRUE(pack_alone({}, {}).placements.empty());

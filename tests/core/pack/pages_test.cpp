@@ -33,7 +33,7 @@ int page_of(const charts::Outline& island, const Placement& placement) {
 
 TEST(Pages, EveryIslandHasTheDensityThatIsAskedFor) {
   const std::vector<charts::Outline> islands{square(1), square(2), flag(1, 0.3, {7, 7})};
-  const Packed packed = pack_alone(
+  const PackResult packed = pack_alone(
       islands, {.resolution = 1024, .padding = 4, .packing = {.texels_per_unit = 100.0}});
   EXPECT_EQ(packed.pages, 1);
   for (const Placement& placement : packed.placements)
@@ -44,7 +44,7 @@ TEST(Pages, WhatDoesNotFitOnOnePageGoesToTheNextAndNeverAcrossTheBorder) {
   const std::vector<charts::Outline> islands(7, square(1));
   const PageOptions page{
       .resolution = 256, .padding = 2, .packing = {.texels_per_unit = 100.0, .max_pages = 4}};
-  const Packed packed = pack_alone(islands, page);
+  const PackResult packed = pack_alone(islands, page);
   EXPECT_EQ(packed.pages, 2);  // four squares of 100 texels on a page of 256
   for (std::size_t k = 0; k < islands.size(); ++k) {
     const int own = page_of(islands[k], packed.placements[k]);
@@ -74,8 +74,8 @@ TEST(Pages, SaysClearlyThatADensityDoesNotFit) {
 TEST(Pages, MorePagesGiveMoreTexels) {
   std::vector<charts::Outline> islands;
   for (int k = 0; k < 20; ++k) islands.push_back(flag(1 + 0.03 * k, 0.1 * k, {0, 0}));
-  const Packed one = pack_alone(islands, {}),
-               four = pack_alone(islands, {.packing = {.max_pages = 4}});
+  const PackResult one = pack_alone(islands, {}),
+                   four = pack_alone(islands, {.packing = {.max_pages = 4}});
   EXPECT_EQ(one.pages, 1);
   EXPECT_EQ(four.pages, 4);
   EXPECT_GT(four.placements[0].scale, 1.7 * one.placements[0].scale);  // 2 is all
@@ -86,7 +86,7 @@ TEST(CongruentIslands, IslandsOfOneShapeShareAPlaceWhateverWayTheyLie) {
   for (int k = 0; k < 6; ++k) islands.push_back(flag(1, 0.7 * k, {5.0 * k, -k}));
   islands.push_back(square(2));
   const PageOptions page{.packing = {.stack_identical = true}};
-  const Packed packed = pack_alone(islands, page);
+  const PackResult packed = pack_alone(islands, page);
   EXPECT_EQ(packed.is_stacked, (std::vector<char>{0, 1, 1, 1, 1, 1, 0}));
   for (std::size_t k = 0; k < 6; ++k)
     for (std::size_t i = 0; i < islands[k].size(); ++i)
@@ -104,7 +104,7 @@ TEST(CongruentIslands, MirrorImagesAndOtherSizesAreOtherShapes) {
   }
   std::reverse(mirrored.begin(), mirrored.end());
   const std::vector<charts::Outline> islands{flag(1, 0, {0, 0}), mirrored, flag(1.01, 0, {0, 0})};
-  const Packed packed = pack_alone(islands, {.packing = {.stack_identical = true}});
+  const PackResult packed = pack_alone(islands, {.packing = {.stack_identical = true}});
   EXPECT_EQ(packed.is_stacked, (std::vector<char>{0, 0, 0}));
 }
 

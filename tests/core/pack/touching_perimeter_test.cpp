@@ -143,7 +143,7 @@ TEST(TouchingPerimeter, SaysWhereIslandsDoNotFitIn) {
 TEST(TouchingPerimeter, ManyIslandsLieAlikeForAnyNumberOfThreads) {
   const std::vector<charts::Outline> islands = nets(45, 4);
   TwoThreads threads;
-  const Packed one = pack_alone(islands), two = pack(islands, {}, threads);
+  const PackResult one = pack_alone(islands), two = pack(islands, {}, threads);
   for (std::size_t k = 0; k < islands.size(); ++k) {
     EXPECT_EQ(one.placements[k].offset, two.placements[k].offset);
     EXPECT_EQ(one.placements[k].scale, two.placements[k].scale);
