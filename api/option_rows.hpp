@@ -79,6 +79,9 @@ Json get_plain(const JobOptions& options) {
 
 template <auto kField>
 void set_plain(JobOptions& options, const Json& value) {
+  if constexpr (kIsOptional<kField>) {
+    if (value.is_null()) return field<kField>(options).reset();
+  }
   field<kField>(options) = value.get<HeldBy<kField>>();
 }
 

@@ -1,8 +1,10 @@
 // The table of options. A row reads and writes its own field, and nothing else in the project lists
 // the options by name: a new option needs its field and one row.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <variant>
 
 #include "api/constraints.hpp"
 #include "api/option_rows.hpp"
@@ -12,6 +14,8 @@ namespace unwrapd::api {
 namespace {
 
 // Each in the order of its enumerators.
+constexpr std::array<std::string_view, 4> kPresets = {"texture", "lightmap", "chart", "paper"};
+constexpr std::array<std::string_view, 2> kTexcoordChoices = {"auto", "free"};
 constexpr std::array<std::string_view, 9> kMethods = {"asap", "arap", "hybrid", "abf", "linabf",
                                                       "cp",   "bff",  "ic",     "slim"};
 constexpr std::array<std::string_view, 2> kLambdaUnits = {"dimensionless", "paper"};
@@ -44,11 +48,28 @@ Json get_lambda(const JobOptions& options) {
   return unwrap.lambda_curve.empty() ? Json(unwrap.lambda) : Json(unwrap.lambda_curve);
 }
 
+/// null is what resolved options have for other methods than hybrid.
 void set_lambda(JobOptions& options, const Json& value) {
+  if (value.is_null()) return;
   if (value.is_array()) {
     options.unwrap.lambda_curve = value.get<std::vector<double>>();
   } else {
     options.unwrap.lambda = value.get<double>();
+  }
+}
+
+Json get_texcoord(const JobOptions& options) {
+  if (const int* set = std::get_if<int>(&options.asset.texcoord)) return *set;
+  return kTexcoordChoices[static_cast<std::size_t>(
+      std::get<TexcoordChoice>(options.asset.texcoord))];
+}
+
+void set_texcoord(JobOptions& options, const Json& value) {
+  if (value.is_number()) {
+    options.asset.texcoord = value.get<int>();
+  } else {
+    const auto found = std::ranges::find(kTexcoordChoices, value.get_ref<const std::string&>());
+    options.asset.texcoord = static_cast<TexcoordChoice>(found - kTexcoordChoices.begin());
   }
 }
 
@@ -69,6 +90,12 @@ using O = UnwrapOptions;
 using A = AssetOptions;
 
 constexpr std::array kRows = {
+    choice<&JobOptions::preset, kPresets>(
+        "preset", kEveryMethod,
+        "What the result is for; all other options override it. texture: charts of little "
+        "distortion, and no texel is used twice. lightmap: the same in an unused set of texture "
+        "coordinates. chart: a disk stays one chart, at any distortion. paper: ten iterations, "
+        "one chart, no guarantee, for comparison."),
     choice<&O::method, kMethods>(
         "method", kEveryMethod,
         "The energy that the map minimizes. arap keeps angles and areas together (textures, light "
@@ -168,9 +195,17 @@ constexpr std::array kRows = {
     plain<&O::repack_only>(
         "repack_only", OptionType::flag, kEveryMethod,
         "true: packs the islands of the existing UVs again, without unwrapping; false: unwraps."),
-    figure<&A::texcoord>("texcoord", {0, kMaxTexcoord}, kEveryMethod,
-                         "The set of texture coordinates to write, TEXCOORD_n. All other sets are "
-                         "kept: choose 1 for a light map beside existing UVs."),
+    OptionRow{.name = "texcoord",
+              .type = OptionType::integer,
+              .choices = kTexcoordChoices,
+              .maximum = kMaxTexcoord,
+              .description =
+                  "The set of texture coordinates to write, n of TEXCOORD_n. All other sets are "
+                  "kept. auto: 0 unless textures of the asset sample it, else the first unused "
+                  "set; free: the first unused set, for light maps.",
+              .methods = kEveryMethod,
+              .get = get_texcoord,
+              .set = set_texcoord},
     plain<&A::materials>(
         "materials", OptionType::names, kEveryMethod,
         "Names of the materials to unwrap; all other surfaces keep their UVs. Empty: all."),
@@ -190,6 +225,8 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const OptionRow> option_table() { return kRows; }
+
+std::string_view preset_name(Preset preset) { return kPresets[static_cast<std::size_t>(preset)]; }
 
 std::string_view method_name(Method method) { return kMethods[static_cast<std::size_t>(method)]; }
 

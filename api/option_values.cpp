@@ -13,6 +13,8 @@
 namespace unwrapd::api {
 namespace {
 
+constexpr std::string_view kUnset = "none";  // null in JSON
+
 /// The text as a number if all of it is one; else as a string.
 template <class Number>
 Json number_of(std::string_view text) {
@@ -80,6 +82,8 @@ std::string allowed_values(const OptionRow& row, const Limits& limits) {
   const std::optional<double> maximum = option_maximum(row, limits);
   std::string text = kind + (maximum ? " between " + plain(row.minimum) + " and " + plain(*maximum)
                                      : " of at least " + plain(row.minimum));
+  if (row.type == OptionType::integer && !row.choices.empty())
+    text += ", or one of " + join_names(row.choices);
   if (row.type == OptionType::numbers)
     text += ", or a list of at most " + std::to_string(kMaxNumbers) + " different ones";
   return text;
@@ -92,6 +96,11 @@ bool is_number_of(const OptionRow& row, const Json& value, const Limits& limits)
   if (row.type == OptionType::integer && std::trunc(figure) != figure) return false;
   const double maximum = option_maximum(row, limits).value_or(std::numeric_limits<double>::max());
   return figure >= row.minimum && figure <= maximum;  // false for NaN
+}
+
+bool is_choice_of(const OptionRow& row, const Json& value) {
+  return value.is_string() &&
+         std::ranges::find(row.choices, value.get_ref<const std::string&>()) != row.choices.end();
 }
 
 bool is_list_of(const OptionRow& row, const Json& value, const Limits& limits) {
@@ -122,16 +131,14 @@ void check_objects(const OptionRow& row, const Json& value, const Limits& limits
 bool fits(const OptionRow& row, const Json& value, const Limits& limits) {
   switch (row.type) {
     case OptionType::choice:
-      return value.is_string() &&
-             std::ranges::find(row.choices, value.get_ref<const std::string&>()) !=
-                 row.choices.end();
+      return is_choice_of(row, value);
     case OptionType::flag:
       return value.is_boolean();
     case OptionType::names:
       return is_name_list(value);
     case OptionType::number:
     case OptionType::integer:
-      return is_number_of(row, value, limits);
+      return is_choice_of(row, value) || is_number_of(row, value, limits);
     case OptionType::numbers:
       return is_number_of(row, value, limits) || is_list_of(row, value, limits);
     case OptionType::objects:
@@ -144,6 +151,7 @@ bool fits(const OptionRow& row, const Json& value, const Limits& limits) {
 }  // namespace
 
 Json value_of_text(const OptionRow& row, const std::string& text) {
+  if (row.nullable && text == kUnset) return nullptr;
   switch (row.type) {
     case OptionType::choice:
       return text;

@@ -60,18 +60,27 @@ bool is_group(std::string_view name) {
   });
 }
 
-/// The member of an option in an object, which is added if it is missing.
-Json& member(Json& object, std::string_view name) {
-  const std::size_t dot = name.find('.');
-  if (dot == std::string_view::npos) return object[std::string(name)];
-  return object[std::string(name.substr(0, dot))][std::string(name.substr(dot + 1))];
+constexpr std::string_view kPreset = "preset";
+
+/// The preset that the object names, or the default.
+Preset preset_of(const Json& object, const Limits& limits) {
+  const auto named = object.find(kPreset);
+  JobOptions options;
+  options.preset = Preset::texture;
+  if (named == object.end()) return options.preset;
+  const OptionRow& row = *find_option(kPreset);
+  check_value(row, *named, limits);
+  row.set(options, *named);
+  return options.preset;
 }
 
 /// The options so far, and the rows that were given.
 struct PartialOptions {
-  explicit PartialOptions(const Limits& server) : limits(server) {
+  PartialOptions(Preset preset, const Limits& server)
+      : limits(server), options(preset_options(preset)) {
     Stop& stop = options.unwrap.stop;
     stop.max_iterations = std::min(stop.max_iterations, limits.max_iterations);
+    if (stop.iterations) stop.iterations = std::min(*stop.iterations, limits.max_iterations);
   }
 
   const Limits& limits;
@@ -81,10 +90,10 @@ struct PartialOptions {
   void add(const std::string& name, const Json& value) {
     const OptionRow* row = find_option(name);
     if (row == nullptr) refuse_unknown(name);
-    if (value.is_null() && row->nullable) return;  // allowed, since resolved options have null
-    check_value(*row, value, limits);
+    const bool unsets = value.is_null() && row->nullable;
+    if (!unsets) check_value(*row, value, limits);
     row->set(options, value);
-    given.push_back(row);
+    if (!unsets) given.push_back(row);
   }
 
   void add_group(const std::string& name, const Json& group) {
@@ -113,11 +122,17 @@ struct PartialOptions {
     return plain && (row.name == "stop.tolerance" || row.name == "stop.max_iterations");
   }
 
+  [[nodiscard]] bool is_given(std::string_view name) const {
+    return std::ranges::find(given, name, &OptionRow::name) != given.end();
+  }
+
   JobOptions finish() {
+    yield_to_request(options, [this](std::string_view name) { return is_given(name); });
     validate(options.unwrap, limits.max_iterations);
     for (const OptionRow* row : given) {
       if (!changes_nothing(*row)) continue;
-      if (!row->nullable && row->get(options) == option_default(*row, limits)) continue;
+      if (!row->nullable && row->get(options) == option_default(*row, limits, options.preset))
+        continue;
       const bool with_method = has_effect(*row, options.unwrap.method);
       options.notes.push_back(
           "The option " + std::string(row->name) + " has no effect with " +
@@ -130,6 +145,14 @@ struct PartialOptions {
 };
 
 }  // namespace
+
+void set_member(Json& object, std::string_view name, Json value) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string_view::npos)
+    object[std::string(name)] = std::move(value);
+  else
+    object[std::string(name.substr(0, dot))][std::string(name.substr(dot + 1))] = std::move(value);
+}
 
 std::string option_pointer(std::string_view name) {
   const std::size_t dot = name.find('.');
@@ -144,7 +167,7 @@ Json options_object(const Query& query) {
     const OptionRow* row = find_option(name);
     if (row == nullptr) refuse_unknown(name);
     if (query.count(name) > 1) refuse(name, name + " is given twice; give it once.");
-    member(object, name) = value_of_text(*row, text);
+    set_member(object, name, value_of_text(*row, text));
   }
   return object;
 }
@@ -157,12 +180,16 @@ JobOptions parse_options(const Json& object, const Limits& limits) {
   if (!object.is_object()) {
     throw Error(ErrorCode::invalid_option, "The options must be a JSON object.");
   }
-  PartialOptions gathering(limits);
+  PartialOptions gathering(preset_of(object, limits), limits);
   gathering.add_all(object);
   return gathering.finish();
 }
 
 JobOptions parse_stored_options(Json object) {
+  if (object.is_object() && !object.contains(kPreset)) {  // no presets before version 0.2
+    object[kPreset] = preset_name(Preset::chart);
+    object.emplace("texcoord", 0);
+  }
   const auto plain_iterations = object.find("iterations");  // resolved options of version 0.1.0
   if (plain_iterations != object.end()) {
     object["stop"]["iterations"] = *plain_iterations;
@@ -179,7 +206,7 @@ JobOptions parse_options_text(std::string_view text, const Limits& limits) {
 
 Json to_json(const JobOptions& options) {
   Json json = Json::object();
-  for (const OptionRow& row : option_table()) member(json, row.name) = row.get(options);
+  for (const OptionRow& row : option_table()) set_member(json, row.name, row.get(options));
   if (options.unwrap.method != Method::hybrid) json["lambda"] = nullptr;
   return json;
 }

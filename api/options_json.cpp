@@ -35,6 +35,28 @@ constexpr std::array kMethods = {
               "Keeps shape and never flips a triangle (symmetric Dirichlet energy)."},
 };
 
+struct PresetRow {
+  Preset preset;
+  std::string_view title;
+  std::string_view description;
+};
+
+constexpr std::array kPresets = {
+    PresetRow{
+        Preset::texture, "Texture",
+        "For painting and baking: every surface in charts of little distortion, no texel used "
+        "twice, and existing textures keep fitting."},
+    PresetRow{Preset::lightmap, "Light map",
+              "For baked light: as texture, in an unused set of texture coordinates, with more "
+              "padding."},
+    PresetRow{Preset::chart, "Chart",
+              "For geometry processing: a disk stays one chart at any distortion, and no triangle "
+              "is flipped."},
+    PresetRow{Preset::paper, "Paper",
+              "For comparison with the paper: ten plain iterations, one chart for each component, "
+              "no guarantee."},
+};
+
 std::string_view type_name(OptionType type) {
   switch (type) {
     case OptionType::choice:
@@ -79,6 +101,7 @@ Json option_json(const OptionRow& row, const Limits& limits) {
   } else if (has_range(row)) {
     json["minimum"] = bound(row, row.minimum);
     if (const auto maximum = option_maximum(row, limits)) json["maximum"] = bound(row, *maximum);
+    if (!row.choices.empty()) json["words"] = row.choices;
   }
   if (const auto most = most_items(row, limits)) json["max_items"] = *most;
   json["default"] = option_default(row, limits);
@@ -99,6 +122,25 @@ Json method_json(const MethodRow& row) {
   return json;
 }
 
+/// Whether the presets have different values for this option.
+bool is_preset_by(const OptionRow& row, const Limits& limits) {
+  const Json first = option_default(row, limits, kPresets.front().preset);
+  return std::ranges::any_of(kPresets, [&](const PresetRow& preset) {
+    return option_default(row, limits, preset.preset) != first;
+  });
+}
+
+Json preset_json(const PresetRow& preset, const Limits& limits) {
+  Json json = {{"name", preset_name(preset.preset)},
+               {"title", preset.title},
+               {"description", preset.description},
+               {"options", Json::object()}};
+  for (const OptionRow& row : option_table())
+    if (row.name != "preset" && is_preset_by(row, limits))
+      set_member(json["options"], row.name, option_default(row, limits, preset.preset));
+  return json;
+}
+
 }  // namespace
 
 const OptionRow* find_option(std::string_view name) {
@@ -115,8 +157,8 @@ const OptionRow* option_at(std::string_view pointer) {
   return found == option_table().end() ? nullptr : &*found;
 }
 
-Json option_default(const OptionRow& row, const Limits& limits) {
-  return row.get(parse_options(Json::object(), limits));
+Json option_default(const OptionRow& row, const Limits& limits, Preset preset) {
+  return row.get(parse_options({{"preset", preset_name(preset)}}, limits));
 }
 
 std::optional<double> option_maximum(const OptionRow& row, const Limits& limits) {
@@ -129,7 +171,8 @@ bool has_effect(const OptionRow& row, Method method) {
 }
 
 Json methods_json(const Limits& limits) {
-  Json json = {{"methods", Json::array()}, {"options", Json::array()}};
+  Json json = {{"methods", Json::array()}, {"presets", Json::array()}, {"options", Json::array()}};
+  for (const PresetRow& row : kPresets) json["presets"].push_back(preset_json(row, limits));
   for (const MethodRow& row : kMethods) json["methods"].push_back(method_json(row));
   for (const OptionRow& row : option_table()) json["options"].push_back(option_json(row, limits));
   return json;

@@ -1,5 +1,6 @@
 #include "api/report.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -16,6 +17,13 @@ constexpr std::array<std::string_view, 5> kRepairKinds = {
 constexpr std::array<std::string_view, 5> kFileRepairKinds = {
     "line_ends_replaced", "empty_indices_ignored", "normals_replaced", "chunks_padded",
     "shared_nodes_kept"};
+
+constexpr std::array<std::string_view, 19> kNoteCodes = {
+    "option_unused",    "overlaps",        "distorted",        "set_chosen",
+    "textures_lost",    "charts_exceeded", "surface_noisy",    "chart_remapped",
+    "outside_page",     "padding_reduced", "islands_stacked",  "faces_without_uvs",
+    "tangents_changed", "transform_reset", "materials_copied", "morph_targets_lost",
+    "sets_filled",      "images_separate", "polygons_split"};
 
 /// The stages of timings_ms, in the order of a job.
 constexpr std::array kTimings = {"queue", "read",     "setup",   "segment", "merge", "factor",
@@ -90,10 +98,26 @@ Json to_json(const VertexMap& map) {
   return {{"where", map.where}, {"kept", map.kept}, {"copies", map.copies}};
 }
 
+std::string_view code_name(NoteCode code) { return kNoteCodes[static_cast<std::size_t>(code)]; }
+
+Json to_json(const Note& note) { return {{"code", code_name(note.code)}, {"text", note.text}}; }
+
 Json notes_json(const Report& report, const ReportContext& context) {
-  Json notes = report.notes;
-  for (const std::string& note : context.notes) notes.push_back(note);
+  Json notes = Json::array();
+  for (const Note& note : report.notes) notes.push_back(to_json(note));
+  for (const Note& note : context.notes) notes.push_back(to_json(note));
   return notes;
+}
+
+/// Each code once, in the order of the notes.
+Json note_codes_json(const Report& report, const ReportContext& context) {
+  Json codes = Json::array();
+  for (const std::vector<Note>* notes : {&report.notes, &context.notes})
+    for (const Note& note : *notes)
+      if (const Json code = code_name(note.code);
+          std::find(codes.begin(), codes.end(), code) == codes.end())
+        codes.push_back(code);
+  return codes;
 }
 
 Json timings_json(const ReportContext& context) {
@@ -128,16 +152,21 @@ Json to_json(const InputReport& input, const std::vector<Repair>& repairs,
   return json;
 }
 
-Json totals_json(const Report& report) {
+Json totals_json(const Report& report, const ReportContext& context) {
   return {{"charts", report.charts.size()},
           {"distortion", to_json(report.distortion)},
+          {"overlaps", report.overlaps ? Json(*report.overlaps) : Json()},
           {"seam_length", finite(report.seam_length)},
           {"fill", finite(report.fill)},
-          {"texel_density", finite(report.texel_density)}};
+          {"texel_density", finite(report.texel_density)},
+          {"texcoord", context.texcoord},
+          {"notes", note_codes_json(report, context)}};
 }
 
 Json to_json(const Report& report, const ReportContext& context) {
   Json json = {{"input", to_json(report.input, context)},
+               {"options", context.options},
+               {"texcoord", context.texcoord},
                {"repairs", repairs_json(context.file_repairs, report.repairs)},
                {"notes", notes_json(report, context)},
                {"charts", array_of(report.charts)},

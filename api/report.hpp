@@ -24,7 +24,9 @@ struct ReportContext {
   /// total.
   std::map<std::string, double> timings_ms = {};
   std::vector<FileRepair> file_repairs = {};  ///< listed before core's own
-  std::vector<std::string> notes = {};        ///< listed beside core's own (see JobOptions::notes)
+  std::vector<Note> notes = {};               ///< listed beside core's own
+  Json options = Json::object();              ///< of the job, as resolved
+  int texcoord = 0;                           ///< n of the set TEXCOORD_n that is written
   std::optional<std::vector<VertexMap>> vertex_maps = {};  ///< set if the report shall have them
 };
 
@@ -36,7 +38,8 @@ Json to_json(const Report& report, const ReportContext& context);
 Json to_json(const InputReport& input, const std::vector<Repair>& repairs,
              std::span<const FileRepair> file_repairs = {});
 
-/// Only the totals, for a header: charts, distortion, seam_length, fill, texel_density.
-Json totals_json(const Report& report);
+/// Only the totals, for a header: charts, distortion, overlaps, seam_length, fill, texel_density,
+/// texcoord, and the codes of the notes.
+Json totals_json(const Report& report, const ReportContext& context);
 
 }  // namespace unwrapd::api

@@ -67,8 +67,11 @@ std::string range_text(const api::OptionRow& row) {
     const bool is_whole = std::trunc(value) == value;
     return is_whole ? std::to_string(std::lround(value)) : api::Json(value).dump();
   };
-  if (!row.maximum) return kind + " >= " + figure(row.minimum);
-  return kind + " in [" + figure(row.minimum) + ", " + figure(*row.maximum) + "]";
+  std::string text = kind + " >= " + figure(row.minimum);
+  if (row.maximum) text = kind + " in [" + figure(row.minimum) + ", " + figure(*row.maximum) + "]";
+  for (const std::string_view word : row.choices) text += "|" + std::string(word);
+  const bool can_unset = row.nullable && row.type != api::OptionType::numbers;
+  return can_unset ? text + "|none" : text;
 }
 
 /// Adds one flag for every row of the API's table; their values go to options.

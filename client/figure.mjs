@@ -28,7 +28,8 @@ const OTHERS = {
 /** The maps of the page as {title, options}, in two rows: the paper's own and the others. */
 export function plan(methods, optionNames) {
   const has = (name) => methods.includes(name);
-  const raw = optionNames.includes("guarantee") ? { guarantee: "none" } : {};
+  const raw = { ...(optionNames.includes("preset") && { preset: "chart" }),
+    ...(optionNames.includes("guarantee") && { guarantee: "none" }) };
   const map = (title, options) => ({ title, options: { ...options, ...raw } });
   const hybrids = LAMBDAS.map((lambda) =>
     map(`λ = ${lambda}`, { method: "hybrid", lambda, "lambda-units": "paper" }));

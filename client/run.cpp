@@ -62,16 +62,25 @@ void finish_job(JobClient& client, const Arguments& arguments, const std::string
   }
 }
 
-/// "chair.uv.glb: 20164 faces, 1 chart, D_angle 2.061, D_area 2.057, 0 flipped, fill 0.71".
+/// "2 overlaps"; overlaps that were not counted are told as such.
+std::string overlaps_text(const api::Json& report) {
+  const api::Json& overlaps = report.at("overlaps");
+  if (overlaps.is_null()) return "overlaps not counted";
+  return std::to_string(overlaps.get<long>()) + " overlaps";
+}
+
+/// "chair.uv.glb: 20164 faces, 3 charts, D_angle 2.002, D_area 2.002, 0 flipped, 0 overlaps, fill
+/// 0.71".
 std::string summary(const std::string& name, const api::Json& report) {
   const api::Json& distortion = report.at("distortion");
   const std::size_t charts = report.at("charts").size();
   std::array<char, 256> text;
   std::snprintf(text.data(), text.size(),
-                ": %ld faces, %zu chart%s, D_angle %.3f, D_area %.3f, %ld flipped, fill %.2f\n",
+                ": %ld faces, %zu chart%s, D_angle %.3f, D_area %.3f, %ld flipped, %s, fill %.2f\n",
                 report.at("input").at("faces").get<long>(), charts, charts == 1 ? "" : "s",
                 distortion.at("angle").get<double>(), distortion.at("area").get<double>(),
-                distortion.at("flipped").get<long>(), report.at("fill").get<double>());
+                distortion.at("flipped").get<long>(), overlaps_text(report).c_str(),
+                report.at("fill").get<double>());
   return name + text.data();
 }
 
@@ -81,7 +90,8 @@ void tell_maps(const std::vector<WrittenMap>& maps, const Console& console) {
     for (const WrittenMap& map : maps)
       console.out << summary(map.result, api::Json::parse(map.report));
     for (const api::Json& note : api::Json::parse(maps.front().report).at("notes"))
-      console.out << "note: " << note.get<std::string>() << "\n";
+      console.out << "note (" << note.at("code").get<std::string>()
+                  << "): " << note.at("text").get<std::string>() << "\n";
     console.out << std::flush;
   } catch (const api::Json::exception&) {
     throw Failure(ExitCode::unreachable,

@@ -14,6 +14,7 @@
 #include "core/guarantee/keep_guarantee.hpp"
 #include "core/pipeline/chart_progress.hpp"
 #include "core/pipeline/layout.hpp"
+#include "core/pipeline/note_faults.hpp"
 #include "core/pipeline/parameterize_chart.hpp"
 #include "core/pipeline/prepare_charts.hpp"
 #include "core/pipeline/repack.hpp"
@@ -114,7 +115,7 @@ void try_tighter_bounds(std::span<const Surface> surfaces, UnwrapOptions options
     const PreparedCharts prepared = pipeline::prepare_charts(surfaces, options, quiet, executor);
     const double border = border_of(*prepared.all);
     if (std::exchange(last, border) == border) continue;  // the same charts
-    if (!prepared.all->note.empty() || std::ranges::none_of(layouts, is_shorter)) return;
+    if (prepared.all->note || std::ranges::none_of(layouts, is_shorter)) return;
     std::vector<Layout> others = map_charts(prepared, surfaces, options, quiet, executor);
     is_split = std::ranges::any_of(others, pipeline::has_split_charts);
     for (std::size_t k = 0; k < layouts.size(); ++k)
@@ -143,7 +144,10 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
     quantize_maps(layout, options, progress.stop);
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
-  for (Layout& layout : layouts) measure_maps(layout, options, job);
+  for (Layout& layout : layouts) {
+    measure_maps(layout, options, job);
+    note_faults(layout, surfaces, options);
+  }
   std::vector<Unwrapped> maps;
   for (Layout& layout : layouts)
     maps.push_back(assemble_surfaces(surfaces, std::move(layout), progress.stop));

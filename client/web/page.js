@@ -1,6 +1,6 @@
 // The page: builds its form from /v1/methods, sends a mesh, follows the job by its events and shows
 // what came of it. It uses nothing but the API that everybody has; the key stays in the form.
-const FIRST = ["method", "lambda", "guarantee", "max_distortion", "resolution", "padding"];
+const FIRST = ["preset", "method", "lambda", "guarantee", "max_distortion", "resolution", "padding"];
 const LINE = /\r\n|\r|\n/;
 
 const $ = (id) => document.getElementById(id);
@@ -34,6 +34,8 @@ async function call(url, init = {}) {
 /* ---- the form ---- */
 
 function makeInput(option) {
+  if (option.words)
+    return Object.assign(document.createElement("input"), { value: option.default, size: 8 });
   if (!option.enum) {
     const kind = option.type === "boolean" ? "checkbox" : "number";
     const input = Object.assign(document.createElement("input"), { type: kind });
@@ -68,18 +70,37 @@ function showWhatCounts() {
 
 function valueOf(option, input) {
   if (option.type === "boolean") return input.checked;
-  if (option.enum) return input.value;
+  if (option.enum || option.words?.includes(input.value)) return input.value;
   return input.value === "" ? null : Number(input.value);
 }
 
-/** What differs from the defaults, nested as the API has it: {"stop": {"iterations": 10}}. */
+/** What the chosen preset sets. */
+function defaultOf(option) {
+  const { options } = methods.presets.find(({ name }) => name === $("form").elements.preset.value);
+  const set = option.name.split(".").reduce((at, name) => at?.[name], options);
+  return set === undefined ? option.default : set;
+}
+
+/** Shows the values of the chosen preset. */
+function showPreset() {
+  const { elements } = $("form");
+  for (const option of methods.options) {
+    const input = elements[option.name];
+    if (!input || option.name === "preset") continue;
+    if (option.type === "boolean") input.checked = defaultOf(option);
+    else input.value = defaultOf(option) ?? "";
+  }
+}
+
+/** What differs from the preset, nested as the API has it: {"stop": {"iterations": 10}}. */
 function chosenOptions() {
   const options = {};
   for (const option of methods.options) {
     const input = $("form").elements[option.name];
     if (!input || input.disabled) continue;
     const value = valueOf(option, input);
-    if (value === null || value === option.default) continue;
+    const usual = option.name === "preset" ? option.default : defaultOf(option);
+    if (value === usual || (value === null && typeof usual !== "number")) continue;
     const path = option.name.split(".");
     const last = path.pop();
     path.reduce((at, name) => (at[name] ??= {}), options)[last] = value;
@@ -180,9 +201,10 @@ async function blobOf(url) {
   return { blob, url: given.at(-1) };
 }
 
-function showFigures({ charts, distortion, seam_ratio: seams, fill }) {
+function showFigures({ charts, distortion, overlaps, seam_ratio: seams, fill, notes }) {
   const figures = { Charts: charts.length, "Angles (2 is ideal)": fixed(distortion.angle, 4),
     "Areas (2 is ideal)": fixed(distortion.area, 4), Flipped: distortion.flipped,
+    Overlaps: overlaps ?? "not counted",
     "Seams / √area": fixed(seams, 2), "Page filled": `${(100 * fill).toFixed(1)} %` };
   $("figures").replaceChildren(...Object.entries(figures).map(([name, value]) => {
     const pair = document.createElement("div");
@@ -190,6 +212,8 @@ function showFigures({ charts, distortion, seam_ratio: seams, fill }) {
     pair.append(make("dt", name), make("dd", value));
     return pair;
   }));
+  $("notes").replaceChildren(...notes.map(({ text }) =>
+    Object.assign(document.createElement("li"), { textContent: text })));
 }
 
 const EXTENSION = { "model/gltf-binary": "glb", "model/gltf+json": "gltf", "model/obj": "obj" };
@@ -270,6 +294,7 @@ async function start() {
   methods = await (await call("v1/methods")).json();
   methods.options.filter(({ type }) => type !== "array").forEach(addRow);
   $("form").elements.method.addEventListener("change", showWhatCounts);
+  $("form").elements.preset.addEventListener("change", showPreset);
   showWhatCounts();
   watchFiles();
   $("form").addEventListener("submit", (event) => { event.preventDefault(); run(); });

@@ -35,6 +35,11 @@ Format Asset::format() const { return document_->format; }
 
 std::span<const Surface> Asset::surfaces() const { return document_->surfaces; }
 
+int Asset::texcoord() const {
+  const Gltf* gltf = std::get_if<Gltf>(&document_->source);
+  return gltf == nullptr ? 0 : gltf->texcoord.back() - '0';
+}
+
 std::span<const FileRepair> Asset::repairs() const {
   return std::visit([](const auto& source) { return std::span(source.repairs); },
                     document_->source);
@@ -50,7 +55,7 @@ void check_for_obj(const AssetOptions& options) {
   const auto refuse = [](const char* option, const std::string& why) {
     throw Error(ErrorCode::invalid_option, why, option);
   };
-  if (options.texcoord != 0)
+  if (const int* set = std::get_if<int>(&options.texcoord); set != nullptr && *set != 0)
     refuse("/texcoord",
            "an OBJ has one set of texture coordinates; leave texcoord out, or send a glTF");
   if (!options.materials.empty())
@@ -153,15 +158,21 @@ std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const Unwrapped
   return maps;
 }
 
-std::vector<std::string> side_effects(const Asset& asset,
-                                      std::span<const UnwrappedSurface> unwrapped, Format output) {
+std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurface> unwrapped,
+                               Format output) {
   const Document& document = asset.document();
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   if (output == Format::obj && is_compressed(document.options.compression))
-    notes.emplace_back("An OBJ cannot be compressed; the option compression has no effect.");
-  std::vector<std::string> more;
-  if (const Obj* obj = std::get_if<Obj>(&document.source); obj != nullptr && output == Format::obj)
-    more = note_on_polygons(*obj, unwrapped.front());
+    notes.push_back({NoteCode::option_unused,
+                     "An OBJ cannot be compressed; the option compression has no effect."});
+  std::vector<Note> more;
+  if (const Obj* obj = std::get_if<Obj>(&document.source)) {
+    if (output == Format::obj) more = note_on_polygons(*obj, unwrapped.front());
+    if (obj->has_materials && !obj->texcoord_lines.empty())
+      notes.push_back({NoteCode::textures_lost,
+                       "The OBJ had texture coordinates, which are replaced: images of its "
+                       "materials no longer fit. Send a glTF to keep them in a set of their own."});
+  }
   if (const Gltf* gltf = std::get_if<Gltf>(&document.source);
       gltf != nullptr && output != Format::obj)
     more = side_effects_of_patch(*gltf, output);

@@ -15,6 +15,7 @@
 #include "core/mesh/tri_mesh.hpp"
 #include "core/types/asset_options.hpp"
 #include "core/types/file_repair.hpp"
+#include "core/types/note.hpp"
 
 namespace unwrapd::asset {
 
@@ -52,6 +53,7 @@ class Asset {
 
   [[nodiscard]] Format format() const;  ///< of the input
   [[nodiscard]] std::span<const Surface> surfaces() const;
+  [[nodiscard]] int texcoord() const;  ///< n of the set TEXCOORD_n that write() writes; 0 in an OBJ
   [[nodiscard]] std::span<const FileRepair> repairs() const;  ///< in the order of their kinds
   [[nodiscard]] const Document& document() const { return *document_; }
   [[nodiscard]] Document& document() { return *document_; }
@@ -67,8 +69,8 @@ class Asset {
 /// has nothing of a name in the options. Throws Error{cancelled}.
 Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& options = {});
 
-/// Fills Surface::corner_uv from the set of texture coordinates that the options name, scaled by
-/// their KHR_texture_transform as the textures show them.
+/// Fills Surface::corner_uv from the set of texture coordinates that the options name, or else from
+/// the first, scaled by their KHR_texture_transform as the textures show them.
 void read_uvs(Asset& asset);
 
 /// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data
@@ -83,7 +85,7 @@ std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const Unwrapped
 
 /// Notes about other changes by write(): tangents computed again, texture transforms reset, sets of
 /// texture coordinates filled in, polygons written as triangles.
-std::vector<std::string> side_effects(const Asset& asset,
-                                      std::span<const UnwrappedSurface> unwrapped, Format output);
+std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurface> unwrapped,
+                               Format output);
 
 }  // namespace unwrapd::asset

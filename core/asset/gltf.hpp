@@ -80,6 +80,8 @@ struct Gltf {
   Json json;                            ///< after reading: the part that writing may change
   Aside aside;                          ///< the other members of the root
   std::string texcoord = "TEXCOORD_0";  ///< the attribute that is replaced
+  std::string uvs_from = "TEXCOORD_0";  ///< the attribute that existing UVs are read from
+  bool is_texcoord_chosen = false;      ///< by choose_texcoord(), not by the caller
   Compression came_as = Compression::none;
   bool came_with_fallback =
       false;  ///< uncompressed data was in the input too, for readers without came_as

@@ -48,10 +48,13 @@ void check_geometry(Gltf& gltf, const ReadLimits& limits);
 /// Error{invalid_option} for a name that nothing has.
 void select_primitives(Gltf& gltf, const AssetOptions& options);
 
+/// Sets gltf.texcoord and gltf.uvs_from. Throws Error{invalid_option} if no set is left to choose.
+void choose_texcoord(Gltf& gltf, const std::variant<int, TexcoordChoice>& asked);
+
 /// One surface for each mesh that has triangles of its own; fills pieces, vertices and pools.
 std::vector<Surface> build_surfaces(Gltf& gltf, const ReadLimits& limits);
 
-/// Fills corner_uv from the attribute gltf.texcoord, on the surfaces that have it.
+/// Fills corner_uv from the attribute gltf.uvs_from, on the surfaces that have it.
 void read_gltf_uvs(const Gltf& gltf, std::vector<Surface>& surfaces);
 
 bool uses_extension(const Json& document, std::string_view name);

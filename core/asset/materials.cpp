@@ -93,14 +93,58 @@ MaterialUse use_of(const Json& material, std::string_view texcoord, Pace& pace) 
   return use;
 }
 
+/// The sets that the textures of a material read.
+TexcoordSets sets_read_by(const Json& material, Pace& pace) {
+  TexcoordSets sets;
+  for_each_texture(material, pace, [&](const std::string& /*key*/, const Json& texture) {
+    if (const std::size_t set = texcoord_of(texture); set < sets.size()) sets.set(set);
+  });
+  return sets;
+}
+
+TexcoordSets sets_of(const Primitive& primitive) {
+  TexcoordSets sets;
+  for (const auto& [semantic, accessor] : primitive.attributes)
+    for (std::size_t set = 0; set < sets.size(); ++set)
+      if (semantic == set_name(set)) sets.set(set);
+  return sets;
+}
+
 }  // namespace
 
-Materials::Materials(const Gltf& gltf) : gltf_(gltf) {
+TexcoordSets present_sets(const Gltf& gltf) {
+  TexcoordSets present;
+  for (const Primitive& primitive : gltf.primitives)
+    if (primitive.has_triangles) present |= sets_of(primitive);
+  return present;
+}
+
+TexcoordSets sampled_sets(const Gltf& gltf) {
+  const auto materials = gltf.json.find("materials");
+  if (materials == gltf.json.end()) return {};
+  Pace pace(gltf.stop);
+  std::vector<std::optional<TexcoordSets>> read(materials->size());
+  TexcoordSets sampled;
+  for (const Primitive& primitive : gltf.primitives) {
+    if (!primitive.has_triangles) continue;
+    for_each_material(json_of(gltf.json, primitive), [&](const Json& number) {
+      pace.add(1);
+      const auto i = number.get<std::size_t>();
+      if (i >= read.size()) return;
+      if (!read[i]) read[i] = sets_read_by((*materials)[i], pace);
+      sampled |= *read[i] & sets_of(primitive);
+    });
+  }
+  return sampled;
+}
+
+Materials::Materials(const Gltf& gltf, std::string_view texcoord)
+    : gltf_(gltf), texcoord_(texcoord) {
   const auto list = gltf.json.find("materials");
   if (list == gltf.json.end()) return;
   Pace pace(gltf.stop);
   uses_.reserve(list->size());
-  for (const Json& material : *list) uses_.push_back(use_of(material, gltf.texcoord, pace));
+  for (const Json& material : *list) uses_.push_back(use_of(material, texcoord_, pace));
 }
 
 const MaterialUse& Materials::of(const Primitive& primitive) const {
@@ -111,7 +155,7 @@ const MaterialUse& Materials::of(const Primitive& primitive) const {
 bool Materials::loses_tangents(const Primitive& primitive) const {
   const auto is_tangent = [](const auto& item) { return item.first == "TANGENT"; };
   return std::any_of(primitive.attributes.begin(), primitive.attributes.end(), is_tangent) &&
-         gltf_.texcoord == set_name(of(primitive).tangent_set);
+         texcoord_ == set_name(of(primitive).tangent_set);
 }
 
 MaterialsToReset Materials::to_reset() const {

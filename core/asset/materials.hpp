@@ -1,6 +1,8 @@
 #pragma once
 // The use of texture coordinates by materials.
 
+#include <bitset>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -9,7 +11,10 @@
 
 namespace unwrapd::asset {
 
-/// The use of the texture coordinates gltf.texcoord by one material.
+/// By number: 1 for each set TEXCOORD_n.
+using TexcoordSets = std::bitset<kMaxTexcoord + 1>;
+
+/// The use of the texture coordinates of one set by one material.
 struct MaterialUse {
   bool moves_texcoord = false;  ///< by the KHR_texture_transform of some texture
   Vec2 scale{1, 1};             ///< of the first texture that reads them; changes shapes, unlike
@@ -26,20 +31,29 @@ struct MaterialsToReset {
 /// The materials of a document, each is analysed once.
 class Materials {
  public:
-  explicit Materials(const Gltf& gltf);
+  /// texcoord: the set, gltf.texcoord where none is named.
+  explicit Materials(const Gltf& gltf) : Materials(gltf, gltf.texcoord) {}
+  Materials(const Gltf& gltf, std::string_view texcoord);
 
   [[nodiscard]] const MaterialUse& of(const Primitive& primitive) const;
 
-  /// Whether the primitive has tangents that belong to gltf.texcoord.
+  /// Whether the primitive has tangents that belong to the set.
   [[nodiscard]] bool loses_tangents(const Primitive& primitive) const;
 
-  /// Those on unwrapped primitives that move gltf.texcoord by KHR_texture_transform.
+  /// Those on unwrapped primitives that move the set by KHR_texture_transform.
   [[nodiscard]] MaterialsToReset to_reset() const;
 
  private:
   const Gltf& gltf_;
+  std::string texcoord_;
   std::vector<MaterialUse> uses_;
 };
+
+/// The sets that unwrapped primitives have.
+TexcoordSets present_sets(const Gltf& gltf);
+
+/// The sets that unwrapped primitives have and the textures of their materials read.
+TexcoordSets sampled_sets(const Gltf& gltf);
 
 /// Calls visit with the number of each material that a primitive can have: its own, and those of
 /// KHR_materials_variants. Value: Json or const Json.

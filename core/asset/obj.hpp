@@ -43,6 +43,7 @@ struct Obj {
       face_corners;  ///< [face]: the corners of its element that it uses
   std::vector<std::pair<std::size_t, std::size_t>> texcoord_lines;  ///< their bytes, in order
   std::vector<Vec3> normals;
+  bool has_materials = false;  ///< usemtl names one
   std::vector<FileRepair> repairs;
   std::stop_token stop;  ///< of the job, for reading and writing
 };

@@ -54,7 +54,7 @@ PolygonFate polygon_fate(const Obj& obj, const ObjElement& element,
   return is_convex(std::move(polygon)) ? PolygonFate::kept : PolygonFate::folded;
 }
 
-std::vector<std::string> note_on_polygons(const Obj& obj, const UnwrappedSurface& unwrapped) {
+std::vector<Note> note_on_polygons(const Obj& obj, const UnwrappedSurface& unwrapped) {
   std::size_t polygons = 0, cut = 0, folded = 0;
   std::vector<Index> texcoords;
   for (const ObjElement& element : obj.elements) {
@@ -65,10 +65,11 @@ std::vector<std::string> note_on_polygons(const Obj& obj, const UnwrappedSurface
     folded += fate == PolygonFate::folded ? 1 : 0;
   }
   if (cut + folded == 0) return {};
-  return {std::to_string(cut + folded) + " of " + std::to_string(polygons) +
-          " polygons are written as triangles: " + std::to_string(cut) +
-          " because a seam runs through them, " + std::to_string(folded) +
-          " because they are not convex on the page, where other diagonals would flip."};
+  return {{NoteCode::polygons_split,
+           std::to_string(cut + folded) + " of " + std::to_string(polygons) +
+               " polygons are written as triangles: " + std::to_string(cut) +
+               " because a seam runs through them, " + std::to_string(folded) +
+               " because they are not convex on the page, where other diagonals would flip."}};
 }
 
 }  // namespace unwrapd::asset

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/asset/obj.hpp"
+#include "core/types/note.hpp"
 
 namespace unwrapd::asset {
 
@@ -20,6 +21,6 @@ PolygonFate polygon_fate(const Obj& obj, const ObjElement& element,
                          const UnwrappedSurface& unwrapped, std::vector<Index>& texcoords);
 
 /// A note on the polygons that write_obj() writes as triangles, with the reason; empty if all stay.
-std::vector<std::string> note_on_polygons(const Obj& obj, const UnwrappedSurface& unwrapped);
+std::vector<Note> note_on_polygons(const Obj& obj, const UnwrappedSurface& unwrapped);
 
 }  // namespace unwrapd::asset

@@ -72,6 +72,7 @@ class ObjReader {
       ++texcoord_count_;
       obj_.texcoord_lines.emplace_back(at_.begin, at_.next);
     } else if (keyword == "usemtl") {
+      obj_.has_materials = true;
       part_ = part_of_.try_emplace(std::string(words.next()), Index(part_of_.size())).first->second;
     }
   }

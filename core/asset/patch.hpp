@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/asset/gltf.hpp"
+#include "core/types/note.hpp"
 
 namespace unwrapd::asset {
 
@@ -29,7 +30,7 @@ std::vector<VertexMap> vertex_maps_of_patch(const Gltf& gltf,
 std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primitive);
 
 /// Notes for side_effects().
-std::vector<std::string> side_effects_of_patch(const Gltf& gltf, Format output);
+std::vector<Note> side_effects_of_patch(const Gltf& gltf, Format output);
 
 /// The form of meshopt's compression in a document.
 struct MeshoptStyle {

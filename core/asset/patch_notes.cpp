@@ -46,6 +46,35 @@ Changed changed_primitives(const Gltf& gltf, const Materials& materials) {
   return changed;
 }
 
+/// add(holds, code, text) adds a note where it holds.
+template <class Add>
+void add_changes(const Changed& changed, const std::string& texcoord, const Add& add) {
+  add(changed.tangents > 0, NoteCode::tangents_changed,
+      "The tangents of " + counted(changed.tangents, "primitive") +
+          " belonged to the replaced texture coordinates; they are computed again by MikkTSpace.");
+  add(changed.morphed_tangents > 0, NoteCode::tangents_changed,
+      "The morph targets of " + counted(changed.morphed_tangents, "primitive") +
+          " had tangents for the replaced texture coordinates; the result leaves these out.");
+  add(changed.morphed_texcoords > 0, NoteCode::morph_targets_lost,
+      "The morph targets of " + counted(changed.morphed_texcoords, "primitive") +
+          " moved the replaced texture coordinates; the result leaves this out.");
+  add(changed.lower_sets > 0, NoteCode::sets_filled,
+      counted(changed.lower_sets, "primitive") + " lacked texture coordinates below " + texcoord +
+          "; glTF allows no gap, so these sets are the same.");
+}
+
+template <class Add>
+void add_resets(const MaterialsToReset& to_reset, const std::string& texcoord, const Add& add) {
+  const std::size_t copied = to_reset.copied.size(), reset = to_reset.in_place.size() + copied;
+  add(reset > 0, NoteCode::transform_reset,
+      "The KHR_texture_transform of " + counted(reset, "material") + " is reset for " + texcoord +
+          "; its new coordinates need no transform.");
+  add(copied > 0, NoteCode::materials_copied,
+      counted(copied, "material") +
+          " of these are also on primitives that are not unwrapped; the unwrapped ones have "
+          "copies.");
+}
+
 }  // namespace
 
 std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primitive) {
@@ -60,39 +89,27 @@ std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primiti
   return missing;
 }
 
-std::vector<std::string> side_effects_of_patch(const Gltf& gltf, Format output) {
+std::vector<Note> side_effects_of_patch(const Gltf& gltf, Format output) {
   const Materials materials(gltf);
-  const Changed changed = changed_primitives(gltf, materials);
-  const MaterialsToReset to_reset = materials.to_reset();
-  const std::size_t reset = to_reset.in_place.size() + to_reset.copied.size();
-  std::vector<std::string> notes;
-  if (changed.tangents > 0)
-    notes.push_back(
-        "The tangents of " + counted(changed.tangents, "primitive") +
-        " belonged to the replaced texture coordinates; they are computed again by MikkTSpace.");
-  if (changed.morphed_tangents > 0)
-    notes.push_back(
-        "The morph targets of " + counted(changed.morphed_tangents, "primitive") +
-        " had tangents for the replaced texture coordinates; the result leaves these out.");
-  if (reset > 0)
-    notes.push_back("The KHR_texture_transform of " + counted(reset, "material") +
-                    " is reset for " + gltf.texcoord + "; its new coordinates need no transform.");
-  if (!to_reset.copied.empty())
-    notes.push_back(counted(to_reset.copied.size(), "material") +
-                    " of these are also on primitives that are not unwrapped; the unwrapped ones "
-                    "have copies.");
-  if (changed.morphed_texcoords > 0)
-    notes.push_back("The morph targets of " + counted(changed.morphed_texcoords, "primitive") +
-                    " moved the replaced texture coordinates; the result leaves this out.");
-  if (changed.lower_sets > 0)
-    notes.push_back(counted(changed.lower_sets, "primitive") +
-                    " lacked texture coordinates below " + gltf.texcoord +
-                    "; glTF allows no gap, so these sets are the same.");
+  std::vector<Note> notes;
+  const auto add = [&](bool holds, NoteCode code, std::string text) {
+    if (holds) notes.push_back({code, std::move(text)});
+  };
+  add(gltf.is_texcoord_chosen && gltf.texcoord != gltf.uvs_from, NoteCode::set_chosen,
+      "The new texture coordinates are " + gltf.texcoord +
+          ", and the existing sets stay, so that textures of the asset keep fitting. Send "
+          "texcoord=0 to overwrite the first set.");
+  add(sampled_sets(gltf).test(static_cast<std::size_t>(gltf.texcoord.back() - '0')),
+      NoteCode::textures_lost,
+      "Textures of the asset sample " + gltf.texcoord +
+          ", which is replaced: their images no longer fit. Leave texcoord out to write another "
+          "set, or paint the images anew.");
+  add_changes(changed_primitives(gltf, materials), gltf.texcoord, add);
+  add_resets(materials.to_reset(), gltf.texcoord, add);
   const FilesBeside files = images_beside(gltf);
-  if (gltf.came_as_text && output == Format::glb && files.count > 0)
-    notes.push_back(
-        counted(files.count, "image") + " of the asset" + named(files.first) +
-        " remain in separate files; keep them beside the GLB, or send them with the request.");
+  add(gltf.came_as_text && output == Format::glb && files.count > 0, NoteCode::images_separate,
+      counted(files.count, "image") + " of the asset" + named(files.first) +
+          " remain in separate files; keep them beside the GLB, or send them with the request.");
   return notes;
 }
 

@@ -22,7 +22,6 @@ bool has_fallback(const Gltf& gltf, const std::vector<DracoSource>& sources) {
 Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
                const AssetOptions& options, std::vector<Surface>& surfaces) {
   Gltf gltf;
-  gltf.texcoord = "TEXCOORD_" + std::to_string(options.texcoord);
   const GlbChunks chunks =
       format == Format::glb ? split_glb(input.document) : GlbChunks{input.document, {}, {}};
   gltf.stop = input.stop;
@@ -50,6 +49,7 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
   check_nodes(gltf);
   gltf.aside.take_unwritten(gltf.json);
   select_primitives(gltf, options);
+  choose_texcoord(gltf, options.texcoord);
   check_geometry(gltf, limits);
   surfaces = build_surfaces(gltf, limits);
   return gltf;

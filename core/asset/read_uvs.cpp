@@ -19,7 +19,7 @@ const CornerUv kNoUv = {Vec2(kNone, kNone), Vec2(kNone, kNone), Vec2(kNone, kNon
 /// The accessor of the primitive's texture coordinates, if it has a type that glTF allows.
 std::optional<std::size_t> uv_accessor(const Gltf& gltf, const Primitive& primitive) {
   for (const auto& [semantic, accessor] : primitive.attributes)
-    if (semantic == gltf.texcoord && gltf.accessors[accessor].components == 2) return accessor;
+    if (semantic == gltf.uvs_from && gltf.accessors[accessor].components == 2) return accessor;
   return std::nullopt;
 }
 
@@ -78,7 +78,7 @@ void read_obj_uvs(const Obj& obj, Surface& surface) {
 }  // namespace
 
 void read_gltf_uvs(const Gltf& gltf, std::vector<Surface>& surfaces) {
-  const Materials materials(gltf);
+  const Materials materials(gltf, gltf.uvs_from);
   std::vector<char> is_read(gltf.pieces.size(), 0);
   for (const Primitive& primitive : gltf.primitives) {
     if (!primitive.has_triangles || is_read[primitive.piece] != 0) continue;

@@ -52,8 +52,9 @@ void note_charts_beyond(Layout& layout) {
       return std::any_of(uv.begin(), uv.end(), is_beyond);
     });
   if (count > 0)
-    layout.report.notes.push_back("The constraints put " + std::to_string(count) +
-                                  " of the charts partly or wholly outside the page.");
+    layout.report.notes.push_back(
+        {NoteCode::outside_page, "The constraints put " + std::to_string(count) +
+                                     " of the charts partly or wholly outside the page."});
 }
 
 /// The figures of the whole atlas. Overlaps are told only if they were counted in every chart.
@@ -107,7 +108,7 @@ std::vector<Layout> empty_layouts(const std::shared_ptr<const Prepared>& all,
   const InputAnalysis analysis = analysis_of(parts);
   layout.report.input = analysis.input;
   layout.report.repairs = analysis.repairs;
-  if (!all->note.empty()) layout.report.notes.push_back(all->note);
+  if (all->note) layout.report.notes.push_back(*all->note);
   return {map_count, layout};
 }
 
@@ -126,9 +127,11 @@ void note_new_maps(Layout& layout, const UnwrapOptions& options) {
   const auto& charts = layout.report.charts;
   if (const auto count = std::count_if(charts.begin(), charts.end(), is_new); count > 0)
     layout.report.notes.push_back(
-        "Charts that overlapped themselves and got a new map without overlaps: " +
-        std::to_string(count) + ". The new map stays as close as possible to " +
-        kept_energy_of(options.method) + "; energy_rise of the chart's mending tells the cost.");
+        {NoteCode::chart_remapped,
+         "Charts that overlapped themselves and got a new map without overlaps: " +
+             std::to_string(count) + ". The new map stays as close as possible to " +
+             kept_energy_of(options.method) +
+             "; energy_rise of the chart's mending tells the cost."});
 }
 
 bool has_split_charts(const Layout& layout) {

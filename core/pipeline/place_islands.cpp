@@ -19,18 +19,20 @@ double area_of(const charts::Outline& outline) {
 void note_padding(const pack::PackResult& packed, int asked, Report& report) {
   if (packed.padding >= asked) return;
   report.notes.push_back(
-      "Padding for so many islands would fill most of the page. The padding is " +
-      std::to_string(packed.padding) + " texels instead of " + std::to_string(asked) +
-      "; raise resolution for the full padding.");
+      {NoteCode::padding_reduced,
+       "Padding for so many islands would fill most of the page. The padding is " +
+           std::to_string(packed.padding) + " texels instead of " + std::to_string(asked) +
+           "; raise resolution for the full padding."});
 }
 
 void note_stacks(const pack::PackResult& packed, Report& report) {
   std::size_t stacked = 0;
   for (const char is_stacked : packed.is_stacked) stacked += is_stacked != 0 ? 1 : 0;
   if (stacked > 0)
-    report.notes.push_back(std::to_string(stacked) + " of " +
-                           std::to_string(packed.is_stacked.size()) +
-                           " islands are stacked on another of the same shape.");
+    report.notes.push_back(
+        {NoteCode::islands_stacked, std::to_string(stacked) + " of " +
+                                        std::to_string(packed.is_stacked.size()) +
+                                        " islands are stacked on another of the same shape."});
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ std::size_t bytes_of_disk(const solve::Disk& disk) {
 }  // namespace
 
 std::size_t bytes_of(const Prepared& prepared) {
-  std::size_t bytes = sizeof(Prepared) + prepared.note.size();
+  std::size_t bytes = sizeof(Prepared) + (prepared.note ? prepared.note->text.size() : 0);
   for (const charts::Charts& surface : prepared.surfaces) bytes += bytes_of_charts(surface);
   for (const std::vector<solve::Disk>& disks : prepared.disks)
     for (const solve::Disk& disk : disks) bytes += bytes_of_disk(disk);

@@ -3,8 +3,8 @@
 // surfaces and charts alone. Jobs on the same surfaces share it.
 
 #include <memory>
+#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/base/executor.hpp"
@@ -12,6 +12,7 @@
 #include "core/pack/pack.hpp"
 #include "core/pipeline/assemble.hpp"
 #include "core/solve/base/disk.hpp"
+#include "core/types/note.hpp"
 #include "core/types/progress.hpp"
 
 namespace unwrapd::pipeline {
@@ -21,7 +22,7 @@ struct Prepared {
   std::vector<charts::Charts> surfaces;                  ///< one a surface; every chart a disk
   std::vector<std::vector<solve::Disk>> disks;           ///< disks[s][k]: of chart k of surface s
   std::vector<std::shared_ptr<const VertexPlan>> plans;  ///< one a surface: all charts are whole
-  std::string note;  ///< what the report says of the charts; may be empty
+  std::optional<Note> note;                              ///< what the report says of the charts
 
   Prepared() = default;
   Prepared(const Prepared&) = delete;

@@ -92,9 +92,11 @@ void note_faces_without(const std::vector<charts::UvIslands>& all, Report& repor
     if (islands.maps.empty()) count += static_cast<std::size_t>(islands.charts.input.faces);
   }
   if (count > 0)
-    report.notes.push_back(std::to_string(count) +
-                           " faces of the input have no texture coordinates, and so no area on the "
-                           "page: they lie on an edge or a point of a neighbour, or at (0, 0).");
+    report.notes.push_back(
+        {NoteCode::faces_without_uvs,
+         std::to_string(count) +
+             " faces of the input have no texture coordinates, and so no area on the "
+             "page: they lie on an edge or a point of a neighbour, or at (0, 0)."});
 }
 
 void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIslands>& all,

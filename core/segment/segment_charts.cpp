@@ -205,30 +205,33 @@ Cuts cut_to_most(std::vector<charts::Charts>& surfaces, const SegmentOptions& op
   return cut_all(surfaces, shared_out(cuts, most), options, rest, executor);
 }
 
-std::string more_than_asked(Index charts, Index components) {
-  return "The surface needs more charts than max_charts: " + std::to_string(charts) +
-         ", because the mesh has " + std::to_string(components) +
-         " components, and no two remaining charts have a common map without overlaps.";
+Note more_than_asked(Index charts, Index components) {
+  return {NoteCode::charts_exceeded,
+          "The surface needs more charts than max_charts: " + std::to_string(charts) +
+              ", because the mesh has " + std::to_string(components) +
+              " components, and no two remaining charts have a common map without overlaps."};
 }
 
-std::string rough_surfaces(Index count) {
-  return "The noise of " + std::to_string(count) +
-         " of the surfaces leaves no room for max_distortion; the bound holds on a smoothed "
-         "surface "
-         "instead.";
+Note rough_surfaces(Index count) {
+  return {NoteCode::surface_noisy,
+          "The noise of " + std::to_string(count) +
+              " of the surfaces leaves no room for max_distortion; the bound holds on a smoothed "
+              "surface instead."};
 }
 
 }  // namespace
 
-std::string segment_charts(std::vector<charts::Charts>& surfaces, const SegmentOptions& options,
-                           const SegmentWatch& watch, Executor& executor) {
+std::optional<Note> segment_charts(std::vector<charts::Charts>& surfaces,
+                                   const SegmentOptions& options, const SegmentWatch& watch,
+                                   Executor& executor) {
   const std::size_t components = count_of(surfaces);
   const Index most = options.max_charts.value_or(std::numeric_limits<Index>::max());
   const Cuts cuts = options.max_charts ? cut_to_most(surfaces, options, watch, executor)
                                        : cut_all(surfaces, {std::vector<Index>(components, most)},
                                                  options, watch, executor);
   if (cuts.charts() > most) return more_than_asked(cuts.charts(), static_cast<Index>(components));
-  return cuts.rough > 0 ? rough_surfaces(cuts.rough) : std::string();
+  if (cuts.rough > 0) return rough_surfaces(cuts.rough);
+  return std::nullopt;
 }
 
 }  // namespace unwrapd::segment

@@ -2,13 +2,14 @@
 // Components made charts, each by the way that suits it and what was asked for.
 
 #include <functional>
+#include <optional>
 #include <stop_token>
-#include <string>
 #include <vector>
 
 #include "core/base/executor.hpp"
 #include "core/charts/charts.hpp"
 #include "core/types/cache_key.hpp"
+#include "core/types/note.hpp"
 #include "core/types/progress.hpp"
 
 namespace unwrapd::segment {
@@ -33,10 +34,10 @@ struct SegmentWatch {
 /// The components of surfaces (components_of()) become charts, all of them disks, and the repairs
 /// tell what was done. A disk stays as it is unless a distortion is asked for; any other component
 /// is taken apart by segment(), or cut to one disk where the number of charts leaves no more.
-/// Returns a sentence where more charts than asked for are needed, or noise leaves no room for the
+/// Returns a note where more charts than asked for are needed, or noise leaves no room for the
 /// distortion, else nothing.
 /// The same for any executor. Throws Error{cancelled}.
-std::string segment_charts(std::vector<charts::Charts>& surfaces, const SegmentOptions& options,
+std::optional<Note> segment_charts(std::vector<charts::Charts>& surfaces, const SegmentOptions& options,
                            const SegmentWatch& watch, Executor& executor);
 
 }  // namespace unwrapd::segment

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace unwrapd {
@@ -19,8 +20,16 @@ enum class Compression {
 inline constexpr int kMaxTexcoord = 7;
 inline constexpr std::size_t kMaxNames = 1000;  ///< entries of materials and of primitives
 
+/// How the set of texture coordinates to write is chosen where none is named. Other than with a
+/// named set, existing UVs are then read from TEXCOORD_0.
+enum class TexcoordChoice {
+  automatic,  ///< 0 unless a material of what is unwrapped samples it, else as `free`
+  free,       ///< the first set that no material samples, and that nothing unwrapped has
+};
+
 struct AssetOptions {
-  int texcoord = 0;  ///< the set that is written, and read: TEXCOORD_n, n in [0, kMaxTexcoord]
+  /// The set that is written, and read: n of TEXCOORD_n in [0, kMaxTexcoord].
+  std::variant<int, TexcoordChoice> texcoord = 0;
   Compression compression = Compression::keep;
   bool vertex_map = false;  ///< the report tells which vertices were copied
   /// Names of materials, and JSON pointers of primitives ("/meshes/0/primitives/1"): only these are

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/mesh/tri_mesh.hpp"
+#include "core/types/note.hpp"
 #include "core/types/options.hpp"
 
 namespace unwrapd {
@@ -88,7 +89,7 @@ struct Repair {
 struct Report {
   InputReport input;
   std::vector<Repair> repairs;
-  std::vector<std::string> notes;  ///< sentences for the user, e.g. an option without effect
+  std::vector<Note> notes;  ///< what the user should know, e.g. an option without effect
   std::vector<ChartReport> charts;
   Distortion distortion = {};             ///< over all charts, area-weighted
   double area = 0;                        ///< 3D area of all charts

@@ -9,6 +9,7 @@
 #include "core/base/shared_cache.hpp"
 #include "core/unwrap.hpp"
 #include "server/store/blob_store.hpp"
+#include "server/store/stored_input.hpp"
 #include "server/work/lambda_selection.hpp"
 #include "server/work/stage_timer.hpp"
 #include "server/work/uv_file.hpp"
@@ -48,12 +49,16 @@ asset::Format output_format(api::OutputFormat wanted, asset::Format came_as) {
   return came_as;
 }
 
+/// Without what follows from a map.
 api::ReportContext context_of(const JobTask& task, StageTimer& clock) {
-  return {.sha256 = task.record.input.sha256,
-          .bytes = task.record.input.bytes,
-          .version = UNWRAPD_VERSION,
-          .timings_ms = clock.timings_ms(task.queue_ms),
-          .notes = task.record.notes};
+  api::ReportContext context{.sha256 = task.record.input.sha256,
+                             .bytes = task.record.input.bytes,
+                             .version = UNWRAPD_VERSION,
+                             .timings_ms = clock.timings_ms(task.queue_ms),
+                             .options = store::without_long_members(task.record.options)};
+  for (const std::string& note : task.record.notes)
+    context.notes.push_back({NoteCode::option_unused, note});
+  return context;
 }
 
 /// The results of a job.
@@ -63,15 +68,16 @@ struct Made {
   const std::vector<Unwrapped>& maps;
 };
 
-/// A map's report, with what writing the asset adds to it.
-api::Json report_json(const Made& made, const Unwrapped& map, api::ReportContext context,
-                      bool with_vertex_maps) {
-  for (std::string& note : asset::side_effects(made.asset, map.surfaces, made.format))
+/// Adds what writing the asset with this map adds to the report.
+api::ReportContext completed(api::ReportContext context, const Made& made, const Unwrapped& map,
+                             bool with_vertex_maps) {
+  for (Note& note : asset::side_effects(made.asset, map.surfaces, made.format))
     context.notes.push_back(std::move(note));
   context.file_repairs.assign(made.asset.repairs().begin(), made.asset.repairs().end());
+  context.texcoord = made.asset.texcoord();
   if (with_vertex_maps)
     context.vertex_maps = asset::vertex_maps(made.asset, map.surfaces, made.format);
-  return api::to_json(map.report, context);
+  return context;
 }
 
 /// The files of each map of a job; all others are made on request.
@@ -81,11 +87,12 @@ void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageT
   for (std::size_t map = 0; map < maps.size(); ++map)
     output.file(map_file(store::kUvFile, map), encode_uvs(maps[map].surfaces));
   check_stop(task);
-  output.file(store::kTotalsFile, api::totals_json(maps.front().report).dump());
   const api::ReportContext context = context_of(task, clock);
-  for (std::size_t map = 0; map < maps.size(); ++map)
-    output.file(map_file(store::kReportFile, map),
-                report_json(made, maps[map], context, with_vertex_maps).dump());
+  for (std::size_t map = 0; map < maps.size(); ++map) {
+    const api::ReportContext own = completed(context, made, maps[map], with_vertex_maps);
+    if (map == 0) output.file(store::kTotalsFile, api::totals_json(maps[map].report, own).dump());
+    output.file(map_file(store::kReportFile, map), api::to_json(maps[map].report, own).dump());
+  }
 }
 
 }  // namespace

@@ -42,11 +42,19 @@ std::vector<std::string> schema_of(const OptionRow& row) {
 }
 
 std::string type_of(const OptionRow& row) {
+  if (row.type == OptionType::integer && !row.choices.empty()) return "[integer, string]";
   if (row.type == OptionType::integer) return row.nullable ? "[integer, 'null']" : "integer";
   if (row.type == OptionType::objects || row.type == OptionType::names) return "array";
   if (row.type == OptionType::flag) return "boolean";
   if (row.type == OptionType::number && row.nullable) return "[number, 'null']";
   return row.type == OptionType::choice ? "string" : "number";
+}
+
+std::string joined(std::span<const std::string_view> words, const char* between) {
+  std::string text;
+  for (const std::string_view word : words)
+    text += (text.empty() ? "" : between) + std::string(word);
+  return text;
 }
 
 std::string text(const Json& value) {
@@ -93,6 +101,9 @@ TEST(OptionTable, AgreesWithTheContractInTypeAndDefault) {
       EXPECT_EQ(std::stod(told), std::stod(own)) << row.name;
     } else {
       EXPECT_EQ(told, own) << row.name;
+    }
+    if (row.type == OptionType::integer && !row.choices.empty()) {
+      EXPECT_EQ(scalar(schema, "pattern"), "^(" + joined(row.choices, "|") + ")$") << row.name;
     }
     if (row.type != OptionType::choice) continue;
     EXPECT_THAT(list(schema, "enum"), ElementsAreArray(row.choices)) << row.name;

@@ -52,7 +52,8 @@ Json random_value(const OptionRow& row, std::mt19937& rng) {
   if (row.name == "constraints") return random_constraints(rng);
   if (row.type == OptionType::objects || row.type == OptionType::names) return Json::array();
   if (row.type == OptionType::flag) return rng() % 2 == 0;
-  if (row.type == OptionType::choice) {
+  const bool has_words = row.type == OptionType::integer && !row.choices.empty();
+  if (row.type == OptionType::choice || (has_words && rng() % 2 == 0)) {
     const double index = random_share(rng) * static_cast<double>(row.choices.size());
     return row.choices[static_cast<std::size_t>(index)];
   }
@@ -73,7 +74,7 @@ std::string query_text(const OptionRow& row, const Json& value) {
 
 TEST(Options, DefaultWhenNothingIsSaid) {
   const Json from_query = to_json(parse_options(Query{}, kLimits));
-  EXPECT_EQ(from_query, to_json(JobOptions{}));
+  EXPECT_EQ(from_query, to_json(preset_options(Preset::texture)));
   EXPECT_EQ(to_json(parse_options_text("{}", kLimits)), from_query);
 }
 
@@ -110,7 +111,7 @@ TEST(Options, EveryAllowedValueSurvivesJsonAndQuery) {
       } else {
         object.merge_patch(Json::parse(object_text(name, value.dump())));
       }
-      if (!value.is_null()) query.emplace(name, query_text(*find_option(name), value));
+      query.emplace(name, value.is_null() ? "none" : query_text(*find_option(name), value));
     }
     const JobOptions options = parse_options(object, kLimits);
     EXPECT_EQ(to_json(parse_options(query, kLimits)), to_json(options));
@@ -144,7 +145,7 @@ TEST(Options, RefuseAWrongTypeOfEveryOption) {
       if (row.type == OptionType::flag && std::string(value) == "true") continue;
       expect_refused(refusal(object_text(name, value)), name, value);
     }
-    const char* other = row.type == OptionType::choice ? "1" : "\"auto\"";
+    const char* other = row.type == OptionType::choice ? "1" : "\"best\"";
     expect_refused(refusal(object_text(name, other)), name, other);
     if (row.type == OptionType::names) continue;  // a query's text is a name, whatever it is
     for (const char* value : {"", " ", "x", "-1e9", "nan", "NaN", "1x", " 1", "1 ", "+1", "true"}) {
@@ -157,8 +158,9 @@ TEST(Options, RefuseAWrongTypeOfEveryOption) {
 TEST(Options, RefuseNullButWhereResolvedOptionsHaveIt) {
   for (const OptionRow& row : option_table()) {
     const std::string text = object_text(std::string(row.name), "null");
-    if (row.name == "lambda" || option_default(row, {}).is_null()) {
-      EXPECT_EQ(to_json(parse_options_text(text, kLimits)), to_json(JobOptions{}));
+    if (row.nullable) {
+      const Json options = to_json(parse_options_text(text, kLimits));
+      EXPECT_TRUE(options.at(Json::json_pointer(option_pointer(row.name))).is_null()) << row.name;
     } else {
       expect_refused(refusal(text), std::string(row.name), "null");
     }
@@ -260,7 +262,7 @@ TEST(Options, GuessWhatAMisspeltNameMeant) {
 
 TEST(Options, ListAllNamesForOneThatIsLikeNone) {
   for (const char* name : {"", "x", "texture_size"}) {
-    EXPECT_THAT(refusal(Query{{name, "1"}}).what(), HasSubstr("the options are method, lambda,"));
+    EXPECT_THAT(refusal(Query{{name, "1"}}).what(), HasSubstr("the options are preset, method, lambda,"));
   }
   EXPECT_EQ(refusal(Query{{"a/b~c", "1"}}).where(), "/a~1b~0c");
   EXPECT_EQ(refusal(Query{{std::string(100'000, 'a'), "1"}}).code(), ErrorCode::invalid_option);

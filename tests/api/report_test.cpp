@@ -31,7 +31,7 @@ Report sample() {
   report.charts[0].energy = {3, 2, 1};
   report.repairs = {Repair{RepairKind::cut_to_disk, 0, 2}};
   report.curve = {CurvePoint{0.1, 0.5, {}, 7}};
-  report.notes = {"core's own"};
+  report.notes = {{NoteCode::distorted, "core's own"}};
   return report;
 }
 
@@ -56,7 +56,8 @@ TEST(Report, HasExactlyTheMembersOfTheContract) {
   expect_members(json.at("curve").at(0), "CurvePoint");
   expect_members(json.at("distortion"), "Distortion");
   expect_members(json.at("timings_ms"), "Timings");
-  expect_members(totals_json(sample()), "Totals");
+  expect_members(totals_json(sample(), {}), "Totals");
+  expect_members(json.at("notes").at(0), "Note");
 }
 
 TEST(Report, NamesItsKindsAsTheContractDoes) {
@@ -115,8 +116,14 @@ TEST(Report, GivesTheCurveInItsOrder) {
 }
 
 TEST(Report, JoinsTheNotesOfCoreAndOfTheOptions) {
-  const Json json = to_json(sample(), {.notes = {"the options'"}});
-  EXPECT_EQ(json.at("notes"), (Json::array({"core's own", "the options'"})));
+  const Note own{NoteCode::option_unused, "the options'"};
+  const ReportContext context{.notes = {own, own}};
+  EXPECT_EQ(to_json(sample(), context).at("notes"),
+            (Json::array({{{"code", "distorted"}, {"text", "core's own"}},
+                          {{"code", "option_unused"}, {"text", "the options'"}},
+                          {{"code", "option_unused"}, {"text", "the options'"}}})));
+  EXPECT_EQ(totals_json(sample(), context).at("notes"),
+            (Json::array({"distorted", "option_unused"})));
   EXPECT_TRUE(to_json(Report{}, {}).at("notes").is_array());
 }
 

@@ -227,7 +227,7 @@ TEST(CameAs, AGlbTakesTheImagesAlongThatWereSent) {
   EXPECT_EQ(json_of(write(asset, split_nowhere(asset), Format::gltf))["images"], b.json["images"]);
 }
 
-std::vector<std::string> notes_of(const std::string& file, Format output) {
+std::vector<Note> notes_of(const std::string& file, Format output) {
   const Asset asset = read_file(file);
   return side_effects(asset, split_nowhere(asset), output);
 }
@@ -235,9 +235,10 @@ std::vector<std::string> notes_of(const std::string& file, Format output) {
 TEST(CameAs, ANoteNamesImagesThatStayBeside) {
   Builder b = square();
   b.json["images"] = {{{"uri", "a.png"}}};
-  const std::vector<std::string> notes = notes_of(b.gltf(), Format::glb);
+  const std::vector<Note> notes = notes_of(b.gltf(), Format::glb);
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes[0].find("a.png"), std::string::npos);
+  EXPECT_EQ(notes[0].code, NoteCode::images_separate);
+  EXPECT_NE(notes[0].text.find("a.png"), std::string::npos);
   EXPECT_TRUE(notes_of(b.gltf(), Format::gltf).empty());
   EXPECT_TRUE(notes_of(b.glb(), Format::glb).empty());
 }

@@ -64,9 +64,9 @@ TEST(Tangents, OfSeparateFacesFollowTheirTextureCoordinates) {
   const auto read = read_naively(answer);
   ASSERT_EQ(read[0].faces.size(), 72U);
   for (const Face& face : read[0].faces) expect_tangents_of(face);
-  const std::vector<std::string> notes = side_effects(asset, split_everywhere(asset), Format::glb);
+  const std::vector<Note> notes = side_effects(asset, split_everywhere(asset), Format::glb);
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes[0].find("computed again"), std::string::npos);
+  EXPECT_NE(notes[0].text.find("computed again"), std::string::npos);
 }
 
 UnwrappedSurface flat_map(const Asset& asset, const std::vector<Vec2>& uv) {

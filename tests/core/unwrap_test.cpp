@@ -114,9 +114,7 @@ TEST(Unwrap, SaysWhichMapsAreNotTheMethodsOwn) {
         return Vec3(radius * std::cos(angle), radius * std::sin(angle), 0.6 * u);
       }));
   const auto says_so = [](const Report& report) {
-    return std::any_of(report.notes.begin(), report.notes.end(), [](const std::string& note) {
-      return note.find("got a new map without overlaps") != std::string::npos;
-    });
+    return std::ranges::count(report.notes, NoteCode::chart_remapped, &Note::code) == 1;
   };
   for (const Method method : {Method::arap, Method::slim, Method::abf, Method::hybrid}) {
     const Report free = unwrapped({ramp}, {.method = method}).report;

@@ -14,7 +14,7 @@ namespace {
 
 struct WrittenObj {
   std::string text;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 WrittenObj unwrapped(const std::string& obj, const UnwrapOptions& options = {}) {
@@ -64,7 +64,7 @@ TEST(Written, QuadsHaveNoFlipsWhicheverDiagonalAReaderTakes) {
     const std::size_t own_split = faces_of(answer.text) - 81;
     EXPECT_EQ(answer.notes.size(), own_split > 0 ? 1U : 0U);
     if (own_split > 0) {
-      EXPECT_TRUE(answer.notes[0].starts_with(std::to_string(own_split) + " of 81 polygons "));
+      EXPECT_TRUE(answer.notes[0].text.starts_with(std::to_string(own_split) + " of 81 polygons "));
     }
     split += own_split;
     kept += 81 - own_split;

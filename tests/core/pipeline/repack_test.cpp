@@ -92,7 +92,7 @@ TEST(Repack, TellsOfFacesWithoutUvs) {
   surface.corner_uv[3][0] = Vec2(std::nan(""), 0);
   const Unwrapped u = repacked(surface);
   ASSERT_EQ(u.report.notes.size(), 1U);
-  EXPECT_TRUE(u.report.notes[0].starts_with("1 faces"));
+  EXPECT_TRUE(u.report.notes[0].text.starts_with("1 faces"));
 }
 
 }  // namespace

@@ -22,9 +22,7 @@ Unwrapped unwrapped(const TriMesh& mesh) {
 }
 
 long notes_on_the_bound(const Report& report) {
-  return std::ranges::count_if(report.notes, [](const std::string& note) {
-    return note.find("max_distortion") != std::string::npos;
-  });
+  return std::ranges::count(report.notes, NoteCode::surface_noisy, &Note::code);
 }
 
 TEST(LargeCharts, KeepTheBoundOnTheSurfaceThatWasGiven) {

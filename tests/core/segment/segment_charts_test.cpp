@@ -20,7 +20,7 @@ using namespace shapes;
 
 struct Cut {
   std::vector<charts::Charts> surfaces;
-  std::string note;
+  std::optional<Note> note;
 };
 
 Cut cut_up(const TriMesh& mesh, const SegmentOptions& options = {},
@@ -167,11 +167,11 @@ TEST(SegmentCharts, KeepsToANumberOfChartsWhereMapsAllow) {
   EXPECT_EQ(one.surfaces.front().repairs.at(0).kind, RepairKind::cut_to_disk);
   const Cut three = cut_up(cube(2), {.max_distortion = 2.0001, .max_charts = 3});
   EXPECT_LE(faces_of(three).size(), 3U);
-  EXPECT_TRUE(three.note.empty());
+  EXPECT_FALSE(three.note.has_value());
   const std::vector<TriMesh> pair{cube(1), moved(cube(1), {5, 0, 0})};
   const Cut two_pieces = cut_up(merged(pair), {.max_charts = 1});
   EXPECT_EQ(faces_of(two_pieces).size(), 2U);
-  EXPECT_NE(two_pieces.note.find("2 components"), std::string::npos);
+  EXPECT_NE(two_pieces.note.value().text.find("2 components"), std::string::npos);
 }
 
 TEST(SegmentCharts, CutsToOneDiskEachWhereComponentsShallStayWhole) {

@@ -1,0 +1,95 @@
+#include "core/pipeline/note_faults.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+
+namespace unwrapd::pipeline {
+namespace {
+
+constexpr double kSlack = 0.001;  // of D: rounding to the page moves it less
+
+double worst_of(const Distortion& distortion) {
+  return std::max(distortion.angle, distortion.area);
+}
+
+/// A figure with so many digits that a reader needs.
+std::string short_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+/// The mean of the chart's corners in space.
+Vec3 middle_of(const TriMesh& mesh) {
+  Vec3 sum = Vec3::Zero();
+  for (const Triangle& face : mesh.faces)
+    for (const Index v : face) sum += mesh.positions[v];
+  return sum / (3.0 * static_cast<double>(mesh.faces.size()));
+}
+
+/// "chart 3, on /meshes/0 near (0.1, 2, 3), with D_angle 2.31 and D_area 2.05".
+std::string described(const Layout& layout, std::span<const Surface> surfaces, std::size_t chart) {
+  const ChartReport& report = layout.report.charts[chart];
+  const auto surface = static_cast<std::size_t>(report.surface);
+  std::size_t first = 0;
+  for (std::size_t s = 0; s < surface; ++s) first += layout.charts[s].size();
+  const Vec3 middle = middle_of(layout.charts[surface][chart - first]->mesh);
+  return "chart " + std::to_string(chart) + ", on " + surfaces[surface].name + " near (" +
+         short_text(middle.x()) + ", " + short_text(middle.y()) + ", " + short_text(middle.z()) +
+         "), with D_angle " + short_text(report.distortion.angle) + " and D_area " +
+         short_text(report.distortion.area);
+}
+
+std::string advice_on_distortion(const UnwrapOptions& options) {
+  if (!options.max_distortion) return " Send max_distortion=2.02 to split such charts.";
+  if (options.method != Method::arap)
+    return " The bound holds for maps of method=arap; other methods trade areas for angles.";
+  return options.max_charts ? " max_charts leaves no room for the bound." : "";
+}
+
+void note_distortion(Layout& layout, std::span<const Surface> surfaces,
+                     const UnwrapOptions& options) {
+  const double bound = options.max_distortion.value_or(kBearableDistortion);
+  const std::vector<ChartReport>& charts = layout.report.charts;
+  const auto worse = [](const ChartReport& a, const ChartReport& b) {
+    return worst_of(a.distortion) < worst_of(b.distortion);
+  };
+  const auto is_beyond = [&](const ChartReport& chart) {
+    return worst_of(chart.distortion) > bound + kSlack;
+  };
+  const auto count = std::ranges::count_if(charts, is_beyond);
+  if (count == 0) return;
+  const auto worst =
+      static_cast<std::size_t>(std::ranges::max_element(charts, worse) - charts.begin());
+  layout.report.notes.push_back(
+      {NoteCode::distorted, std::to_string(count) + " of " + std::to_string(charts.size()) +
+                                " charts are distorted beyond " + short_text(bound) +
+                                ". The worst is " + described(layout, surfaces, worst) + "." +
+                                advice_on_distortion(options)});
+}
+
+void note_overlaps(Layout& layout, std::span<const Surface> surfaces) {
+  const std::vector<ChartReport>& charts = layout.report.charts;
+  const auto pairs = [](const ChartReport& chart) { return chart.overlaps.value_or(0); };
+  Index all = 0;
+  for (const ChartReport& chart : charts) all += pairs(chart);
+  if (all == 0) return;
+  const auto worst =
+      static_cast<std::size_t>(std::ranges::max_element(charts, {}, pairs) - charts.begin());
+  layout.report.notes.push_back(
+      {NoteCode::overlaps,
+       std::to_string(all) +
+           " pairs of triangles overlap, so that they share texels. Most are in " +
+           described(layout, surfaces, worst) + ". Send guarantee=bijective to prevent overlaps."});
+}
+
+}  // namespace
+
+void note_faults(Layout& layout, std::span<const Surface> surfaces, const UnwrapOptions& options) {
+  note_distortion(layout, surfaces, options);
+  note_overlaps(layout, surfaces);
+}
+
+}  // namespace unwrapd::pipeline
