@@ -24,6 +24,7 @@ constexpr std::array<std::string_view, 2> kPins = {"diameter", "spectral"};
 constexpr std::array<std::string_view, 4> kSeams = {"auto", "keep", "none", "uv0"};
 constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "bijective"};
 constexpr std::array<std::string_view, 2> kRepairs = {"untangle", "virtual_boundary"};
+constexpr std::array<std::string_view, 3> kEfforts = {"fast", "balanced", "best"};
 constexpr std::array<std::string_view, 3> kBoundaries = {"free", "circle", "square"};
 constexpr std::array<std::string_view, 4> kOutputs = {"auto", "glb", "gltf", "obj"};
 
@@ -175,6 +176,10 @@ constexpr std::array kRows = {
     figure<&O::max_charts>("max_charts", {1, kMaxCharts}, kEveryMethod,
                            "The most charts, at any distortion, where topology allows it. Lower "
                            "values result in fewer charts with more distortion. Unset: unlimited."),
+    choice<&O::effort, kEfforts>(
+        "effort", kEveryMethod,
+        "How long charts and their places on the page are searched for. fast: briefly, with more "
+        "charts and longer seams; balanced: for most assets; best: much longer."),
     figure<&O::resolution>("resolution", {kMinResolution, kMaxResolution}, kEveryMethod,
                            "Side of the square texture, in texels. Set it to the size of the "
                            "texture that will be painted or baked."),

@@ -25,15 +25,14 @@ namespace {
 struct Level {
   int cells = 0;          ///< least cells a side
   double per_island = 0;  ///< cells along a side for each island
-  std::int64_t work = 0;  ///< words for each share
+  double work = 0;        ///< words for each share
 };
-constexpr std::array kLevels = {Level{96, 12, 18'000'000}, Level{160, 20, 6'000'000}};
-constexpr Level kRough = {96, 12, 350'000};  // for rough_fill()
+constexpr std::array kLevels = {Level{96, 12, 18e6}, Level{160, 20, 6e6}};
+constexpr Level kRough = {96, 12, 350e3};  // for rough_fill()
 constexpr double kRoughHeat = 0.1;
-constexpr std::int64_t kRoughSqueezeWork = 1'000'000,
-                       kFineWork = 1'000'000;  // words for each share
-constexpr std::size_t kSearched = 400;         // islands; more are not searched on a coarse grid
-constexpr std::size_t kMostApart = 5000;       // islands; more are packed in rows, on one page
+constexpr double kRoughSqueezeWork = 1e6, kFineWork = 1e6;  // words for each share
+constexpr std::size_t kSearched = 400;    // islands; more are not searched on a coarse grid
+constexpr std::size_t kMostApart = 5000;  // islands; more are packed in rows, on one page
 
 int turns_for(std::size_t islands) {
   if (islands <= kFewOnAPage) return 48;
@@ -56,31 +55,31 @@ class Packer {
   PackResult largest() {
     if (page_.packing.max_pages > 1) return on_several();
     if (placer_.size() <= kFewOnAPage) {
-      auto few = pack_few(outlines_, grid_, executor_);
+      auto few = pack_few(outlines_, grid_, page_.effort, executor_);
       if (few) return {std::move(*few), 1, padding_, {}};
     }
-    return {pack_many(placer_, grid_, executor_), 1, padding_, {}};
+    return {pack_many(placer_, grid_, page_.effort, executor_), 1, padding_, {}};
   }
 
-  /// The share of the page that a short search on coarse grids fills. The search ends when it
-  /// reaches `enough`. area: of all islands.
-  double rough_fill(double area, double enough) {
+  /// The share of the page that a short search on coarse grids fills. area: of all islands.
+  double rough_fill(double area, const RoughRules& rules_of_search) {
     const std::size_t n = placer_.size();
     const int side = cells_for(n, kRough.per_island, kRough.cells);
     double scale = side * std::sqrt(kUsualFill / box_area(placer_));
     std::vector<Arrangement> starts = usual_arrangements(placer_);
     if (n > kSearched) starts.resize(1);
-    const double tightest = std::sqrt(area / enough);  // page side, in the islands' units
+    const double tightest =
+        std::sqrt(area / rules_of_search.enough);  // page side, in the islands' units
     const AnnealRules strip{side, kRoughHeat, static_cast<int>(scale * tightest)};
     placer_.set_scale(scale, 0);
-    Budget budget{work(kRough.work), stop_};
+    Budget budget{work(rules_of_search.work * kRough.work), stop_};
     CellPacking found = smallest_page(placer_, starts, strip, budget).front();
     if (n <= kFewOnAPage && found.side > strip.enough) {
       CompactRules rules = kFirstCompaction;
       const double ratio = double(rules.side) / found.side;
       rules.enough = static_cast<int>(scale * ratio * tightest);
       placer_.set_scale(scale * ratio, 0);
-      budget = {work(kRoughSqueezeWork), stop_};
+      budget = {work(rules_of_search.work * kRoughSqueezeWork), stop_};
       const CellPacking tight = compact(placer_, found, rules, budget);
       if (tight.side > 0) scale *= ratio, found = tight;
     }
@@ -121,8 +120,8 @@ class Packer {
     return false;
   }
 
-  [[nodiscard]] std::int64_t work(std::int64_t a_share) const {
-    return static_cast<std::int64_t>(shares_ * static_cast<double>(a_share));
+  [[nodiscard]] std::int64_t work(double a_share) const {
+    return static_cast<std::int64_t>(shares_ * a_share);
   }
 
   PackResult on_several() {
@@ -209,14 +208,14 @@ double area_of(const charts::Outline& outline) {
 
 }  // namespace
 
-double rough_fill(std::span<const charts::Outline> islands, double enough,
+double rough_fill(std::span<const charts::Outline> islands, const RoughRules& rules,
                   const std::stop_token& stop) {
   if (islands.empty() || !has_extent(points_of(islands))) return 1;
   double area = 0;
   for (const charts::Outline& island : islands) area += area_of(island);
   SerialExecutor serial;
   JobExecutor executor(serial, stop);
-  return Packer(islands, {.padding = 0}, executor).rough_fill(area, enough);
+  return Packer(islands, {.padding = 0}, executor).rough_fill(area, rules);
 }
 
 PackResult pack(std::span<const charts::Outline> islands, const PageOptions& page,

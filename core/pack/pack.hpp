@@ -29,6 +29,7 @@ struct PageOptions {
   int resolution = 1024;  ///< texels a side
   int padding = 2;        ///< texels between islands and to a page's border
   Packing packing = {};
+  Effort effort = Effort::balanced;
 };
 
 struct PackResult {
@@ -54,9 +55,14 @@ double kept_padding(const PageOptions& page, std::size_t island_count);
 PackResult pack(std::span<const charts::Outline> islands, const PageOptions& page,
                 Executor& executor);
 
+struct RoughRules {
+  double enough = 1;  ///< share of the page at which the search ends
+  double work = 1;    ///< in shares of the usual amount, (0, 1]
+};
+
 /// A quick estimate of the share of a page that the islands would fill, without padding; 1 if they
-/// have no extent. The search ends when it reaches `enough`. Throws Error{cancelled}.
-double rough_fill(std::span<const charts::Outline> islands, double enough = 1,
+/// have no extent. Throws Error{cancelled}.
+double rough_fill(std::span<const charts::Outline> islands, const RoughRules& rules = {},
                   const std::stop_token& stop = {});
 
 }  // namespace unwrapd::pack

@@ -21,7 +21,15 @@ struct Try {
 };
 constexpr std::array kTries = {Try{72, {.2, .45}}, Try{48, {.1, .9}}, Try{96, {.2, .45}},
                                Try{60, {.2, .45}}, Try{72, {.4, .7}}, Try{48, {.4, .7}}};
-constexpr std::size_t kFinished = 2;  // number of starts that continue on the fine grids
+
+/// How much is tried.
+struct Extent {
+  std::size_t starts = 0;    ///< of kTries
+  std::size_t finished = 0;  ///< starts that continue on the fine grids
+  double first = 1;          ///< work of the first compaction, in shares of the most
+  double fine = 1;           ///< the same of those on the fine grids
+};
+constexpr std::array kExtents = {Extent{2, 1, .05, .1}, Extent{6, 2, .1, .25}, Extent{6, 2, 1, 1}};
 
 struct Squeeze {
   CompactRules rules;     ///< for 1024 cells a side; the first grid's side is not scaled
@@ -45,16 +53,21 @@ struct Attempt {
 
 class FewPacker {
  public:
-  FewPacker(std::span<const charts::Outline> islands, const PageGrid& grid, Executor& executor)
-      : islands_(islands), grid_(grid), executor_(executor), shares_(shares_of(islands)) {}
+  FewPacker(std::span<const charts::Outline> islands, const PageGrid& grid, Effort effort,
+            Executor& executor)
+      : islands_(islands),
+        grid_(grid),
+        extent_(kExtents[static_cast<std::size_t>(effort)]),
+        executor_(executor),
+        shares_(shares_of(islands)) {}
 
   std::optional<std::vector<Placement>> packed() {
     auto tried = solve::parallel_map<Attempt>(
-        kTries.size(), executor_, [&](std::size_t k) { return compact_from(kTries[k]); });
+        extent_.starts, executor_, [&](std::size_t k) { return compact_from(kTries[k]); });
     std::ranges::stable_sort(tried, std::greater(), &Attempt::density);
-    tried.resize(kFinished);
+    tried.resize(extent_.finished);
     tried = solve::parallel_map<Attempt>(
-        kFinished, executor_, [&](std::size_t k) { return finish(std::move(tried[k])); });
+        extent_.finished, executor_, [&](std::size_t k) { return finish(std::move(tried[k])); });
     Attempt& best = *std::ranges::max_element(tried, {}, &Attempt::density);
     if (best.found.side == 0) return std::nullopt;
     return placements_of(best.found, *best.placer, grid_);
@@ -104,7 +117,8 @@ class FewPacker {
     const bool has_gaps = grid.rules.reach > 0;
     for (;;) {
       tried.placer->set_scale(scale, has_gaps ? grid_.padding(grid.rules.side) : 0);
-      Budget budget{static_cast<std::int64_t>(shares_ * static_cast<double>(grid.work)),
+      const double share = shares_ * (has_gaps ? extent_.fine : extent_.first);
+      Budget budget{static_cast<std::int64_t>(share * static_cast<double>(grid.work)),
                     executor_.stop()};
       CellPacking found = compact(*tried.placer, tried.found, grid.rules, budget);
       if (!has_gaps || found.side <= grid.rules.side) return found;
@@ -114,6 +128,7 @@ class FewPacker {
 
   std::span<const charts::Outline> islands_;
   const PageGrid& grid_;
+  Extent extent_;
   Executor& executor_;
   double shares_;
 };
@@ -127,8 +142,9 @@ double shares_of(std::span<const charts::Outline> islands) {
 }
 
 std::optional<std::vector<Placement>> pack_few(std::span<const charts::Outline> islands,
-                                               const PageGrid& grid, Executor& executor) {
-  return FewPacker(islands, grid, executor).packed();
+                                               const PageGrid& grid, Effort effort,
+                                               Executor& executor) {
+  return FewPacker(islands, grid, effort, executor).packed();
 }
 
 }  // namespace unwrapd::pack

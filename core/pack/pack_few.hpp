@@ -25,6 +25,7 @@ double shares_of(std::span<const charts::Outline> islands);
 /// are at least two, one of which has extent. The same for any number of threads. Throws
 /// Error{cancelled}.
 std::optional<std::vector<Placement>> pack_few(std::span<const charts::Outline> islands,
-                                               const PageGrid& grid, Executor& executor);
+                                               const PageGrid& grid, Effort effort,
+                                               Executor& executor);
 
 }  // namespace unwrapd::pack

@@ -24,7 +24,9 @@ struct SearchExtent {
   int scales = 0;         ///< for each rule
   double first = 1;       ///< the first scale, relative to the one that the coarse grid suggests
 };
-constexpr SearchExtent kUsualEffort{kRules.size(), 2, 3}, kOfVeryMany{1, 1, 1, 1.03};
+constexpr std::array kExtentsOfMany = {SearchExtent{1, 1, 2}, SearchExtent{kRules.size(), 1, 2},
+                                       SearchExtent{kRules.size(), 2, 3}};
+constexpr SearchExtent kOfVeryMany{1, 1, 1, 1.03};
 constexpr std::size_t kVeryMany = 1000;
 constexpr int kRoughCells = 512;
 constexpr double kRoughPerIsland = 15;
@@ -38,18 +40,20 @@ struct RatedRules {
 
 class SnugPacker {
  public:
-  SnugPacker(const BottomLeftPlacer& placer, const PageGrid& grid, Executor& executor)
+  SnugPacker(const BottomLeftPlacer& placer, const PageGrid& grid, Effort effort,
+             Executor& executor)
       : placer_(placer),
         grid_(grid),
         executor_(executor),
-        effort_(placer.size() > kVeryMany ? kOfVeryMany : kUsualEffort) {}
+        extent_(placer.size() > kVeryMany ? kOfVeryMany
+                                          : kExtentsOfMany[static_cast<std::size_t>(effort)]) {}
 
   std::vector<Placement> packed() {
-    auto rated = solve::parallel_map<RatedRules>(effort_.rules, executor_,
+    auto rated = solve::parallel_map<RatedRules>(extent_.rules, executor_,
                                                  [&](std::size_t k) { return rate(kRules[k]); });
     std::ranges::stable_sort(rated, std::greater(), &RatedRules::scale);
     auto found = solve::parallel_map<std::vector<Placement>>(
-        effort_.fine, executor_, [&](std::size_t k) { return largest_fit(rated[k]); });
+        extent_.fine, executor_, [&](std::size_t k) { return largest_fit(rated[k]); });
     return std::move(
         *std::ranges::max_element(found, {}, [](const auto& own) { return own.front().scale; }));
   }
@@ -74,8 +78,8 @@ class SnugPacker {
     const int side = grid_.tight_side(fine_cells(placer_.size()));
     BottomLeftPlacer placer = placer_;
     std::vector<Placement> best;
-    double scale = effort_.first * rated.scale * side, largest = 0, step = kTrialStep;
-    for (int tries = 0; tries < effort_.scales || best.empty(); ++tries) {
+    double scale = extent_.first * rated.scale * side, largest = 0, step = kTrialStep;
+    for (int tries = 0; tries < extent_.scales || best.empty(); ++tries) {
       placer.set_scale(scale, grid_.padding(side));
       const TouchingPage page =
           place_by_touching_perimeter(placer, side, rated.rules, executor_.stop());
@@ -96,14 +100,14 @@ class SnugPacker {
   const BottomLeftPlacer& placer_;
   const PageGrid& grid_;
   Executor& executor_;
-  SearchExtent effort_;
+  SearchExtent extent_;
 };
 
 }  // namespace
 
 std::vector<Placement> pack_many(const BottomLeftPlacer& placer, const PageGrid& grid,
-                                 Executor& executor) {
-  return SnugPacker(placer, grid, executor).packed();
+                                 Effort effort, Executor& executor) {
+  return SnugPacker(placer, grid, effort, executor).packed();
 }
 
 }  // namespace unwrapd::pack

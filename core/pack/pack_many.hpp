@@ -13,6 +13,6 @@ namespace unwrapd::pack {
 /// Places the placer's islands as large as they fit. The same for any number of threads. Throws
 /// Error{cancelled}.
 std::vector<Placement> pack_many(const BottomLeftPlacer& placer, const PageGrid& grid,
-                                 Executor& executor);
+                                 Effort effort, Executor& executor);
 
 }  // namespace unwrapd::pack

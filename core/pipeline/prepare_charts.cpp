@@ -21,6 +21,7 @@ segment::SegmentOptions segment_options(const UnwrapOptions& options) {
   return {
       .max_distortion = options.max_distortion,
       .max_charts = options.max_charts,
+      .effort = options.effort,
       .one_chart_each = !options.constraints.empty() || options.boundary != BoundaryShape::free};
 }
 

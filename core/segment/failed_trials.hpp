@@ -2,7 +2,7 @@
 // Which sets of faces were tried and found to have no sound map.
 //
 // Three quarters of all faces that a search tries end in flips or overlaps, and searches that begin
-// with the same patches come to the same sets with the same seeds again. Only failures are kept:
+// with the same patches come to the same sets again. Only failures are kept:
 // there is no map to remember of them. Rejected: unions that went well, too; 50 MB for 3 % of time.
 
 #include <cstdint>
@@ -13,7 +13,8 @@
 
 namespace unwrapd::segment {
 
-/// A number for all that a trial reads; two trials with the same number are the same.
+/// A number for the set of faces that is tried and for what is glued in it. Order and seed are left
+/// out: a set without a sound map from one seed hardly ever has one from another.
 std::uint64_t trial_key(std::span<const char> open, const TestRules& rules, const Region& region);
 
 /// Of one surface, for one thread.
@@ -23,8 +24,9 @@ class FailedTrials {
   /// Knows what `before` knows, which must outlive it; any number of threads may read that.
   explicit FailedTrials(const FailedTrials* before) : before_(before) {}
 
-  /// What a trial with this key came to; nothing: it was not tried, or went well.
-  [[nodiscard]] std::optional<TestResult> find(std::uint64_t key) const;
+  /// What a trial with this key came to; nothing: it was not tried, or went well, or failed by an
+  /// excess that is no more than most_excess.
+  [[nodiscard]] std::optional<TestResult> find(std::uint64_t key, double most_excess) const;
 
   /// A result that is sound is not kept.
   void keep(std::uint64_t key, const TestResult& result);

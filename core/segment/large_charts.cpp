@@ -16,11 +16,11 @@
 #include "core/segment/chart_excess.hpp"
 #include "core/segment/coarsen.hpp"
 #include "core/segment/region_charts.hpp"
+#include "core/segment/search_extent.hpp"
 
 namespace unwrapd::segment {
 namespace {
 
-constexpr Index kFacesOfCoarse = 12'000;
 constexpr double kCaution = 1.15;    // for each unit of excess that was measured
 constexpr double kMostHidden = 0.7;  // of the excess allowed; where noise takes more, it is let be
 constexpr double kRoughShare = 0.1, kFirstShare = 0.9;  // of the work, when they have ended
@@ -32,7 +32,8 @@ class Search {
       : component_(component),
         rules_(rules),
         executor_(executor),
-        coarse_(coarsen(component.mesh, component.halfedges, kFacesOfCoarse, rules.stop)),
+        coarse_(coarsen(component.mesh, component.halfedges,
+                        search_extent(rules.effort).coarse_faces, rules.stop)),
         surface_(make_segmentation_mesh(coarse_.mesh, coarse_.halfedges)),
         steps_(excess_steps(rules.max_distortion)) {}
 

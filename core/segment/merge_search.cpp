@@ -31,10 +31,8 @@ constexpr std::array kWeights = {
     Weights{2, 0, 0, .5},      Weights{5, .72, 0, 0},    Weights{2, .72, .7, .3},
     Weights{2, 0, 0, .2},      Weights{3, .72, .7, .3},  Weights{1, .72, .65, .5},
     Weights{.5, .72, .75, .3}, Weights{20, .72, .6, .1}, Weights{1, .5, .6, .3}};
-constexpr double kFacesOfSearch = 100'000;                // that are merged for a whole page
-constexpr std::size_t kFinished = 2;                      // greedy merges that are worked on
-constexpr double kFewMerges = 4;                          // that are worth half of the work
-constexpr double kShareOfRounds = 0.7, kMostRounds = 40;  // of what the work allows
+constexpr double kFewMerges = 4;        // that are worth half of the work
+constexpr double kShareOfRounds = 0.7;  // of what the work allows
 constexpr double kNoiseOfRepairs = 0.3, kMergesOfARound = 0.3;
 constexpr int kFirstSeedOfRepairs = 300;
 constexpr double kFittingFill = 0.72;  // see MergeSettings::least_fill
@@ -50,25 +48,26 @@ double all_of(const Candidate& own) { return own.cost.all; }
 }  // namespace
 
 MergeSearch::MergeSearch(const MergeContext& context, const Partition& from,
-                         const MergeSettings& settings, std::size_t steps, Executor& executor)
+                         const MergeSettings& settings, const SearchPlan& plan, Executor& executor)
     : context_(context),
       from_(from),
       settings_(settings),
       executor_(executor),
-      joiner_(context.surface) {
+      joiner_(context.surface),
+      extent_(plan.extent) {
   const double searches =
-      kFacesOfSearch / (context_.surface.face_count() * std::max(1.0, settings_.page_area));
+      extent_.faces / (context_.surface.face_count() * std::max(1.0, settings_.page_area));
   const double wanted = std::max(std::min(searches / 2, kFewMerges), searches / 4);
-  merges_ = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(kWeights.size())));
-  rounds_ = static_cast<std::size_t>(std::clamp(kShareOfRounds * searches, 0.0, kMostRounds));
-  kept_ = std::clamp(merges_ / 2, std::size_t{1}, kFinished);
+  merges_ = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(extent_.merges)));
+  rounds_ = static_cast<std::size_t>(std::clamp(kShareOfRounds * searches, 0.0, extent_.rounds));
+  kept_ = std::clamp(merges_ / 2, std::size_t{1}, extent_.kept);
   const auto of_rounds = [&](std::size_t rounds) {
     return (kMergesOfARound * static_cast<double>(rounds) + kMergesOfFinishing) *
            static_cast<double>(kept_);
   };
   work_left_ = static_cast<double>(merges_) + of_rounds(rounds_) +
-               static_cast<double>(steps) * (of_rounds(std::min(rounds_, kRoundsOfAStep)) +
-                                             static_cast<double>(std::min(kAbreast, merges_)));
+               static_cast<double>(plan.steps) * (of_rounds(std::min(rounds_, kRoundsOfAStep)) +
+                                                  static_cast<double>(std::min(kAbreast, merges_)));
   merge_faces_ = kFacesOfAMerge * context_.surface.face_count();
 }
 
@@ -100,14 +99,17 @@ void MergeSearch::merge_some(std::size_t first, std::size_t count, std::vector<C
 
 void MergeSearch::search_neighbourhoods(std::vector<Candidate>& best) {
   const auto count = static_cast<double>(best.size());
-  for (const std::size_t end = rounds_done_ + rounds_; rounds_done_ < end; ++rounds_done_) {
+  double idle = 0;  // rounds without a gain
+  for (const std::size_t end = rounds_done_ + rounds_; rounds_done_ < end; ++rounds_done_, ++idle) {
+    const auto regions = static_cast<double>(best.front().partition.patches.size());
+    if (idle > extent_.idle * regions) break;
     begin(kMergesOfARound * count);
     std::vector<Candidate> found = solve::parallel_map<Candidate>(
         best.size(), executor_,
         [&](std::size_t k) { return remerged_in_part(best[k], rounds_done_); });
     learn(found);
     for (std::size_t k = 0; k < found.size(); ++k)
-      if (all_of(found[k]) < all_of(best[k])) best[k] = std::move(found[k]);
+      if (all_of(found[k]) < all_of(best[k])) best[k] = std::move(found[k]), idle = 0;
   }
 }
 
@@ -289,6 +291,7 @@ Candidate MergeSearch::priced(Candidate own, double limit, CostRules rules) cons
   rules.page_area = settings_.page_area;
   rules.limit = limit;
   rules.longest = longest_;
+  rules.packing = extent_.packing;
   rules.stop = context_.stop;
   own.cost = partition_cost(context_.surface, own.partition, rules);
   return own;

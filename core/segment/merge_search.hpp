@@ -7,6 +7,7 @@
 
 #include "core/segment/failed_trials.hpp"
 #include "core/segment/partition_cost.hpp"
+#include "core/segment/search_extent.hpp"
 
 namespace unwrapd::segment {
 
@@ -18,13 +19,19 @@ struct Candidate {
   FailedTrials failures = {};  ///< on the way to it
 };
 
+/// How long a search is going to be.
+struct SearchPlan {
+  SearchExtent extent = {};
+  std::size_t steps = 0;  ///< how often widen() is going to be called
+};
+
 /// Every step is the same for any executor and throws Error{cancelled}.
 class MergeSearch {
  public:
-  /// steps: how often widen() is going to be called. What context and from refer to, and executor,
+  /// What context and from refer to, and executor,
   /// must outlive this; the context needs a progress estimate.
   MergeSearch(const MergeContext& context, const Partition& from, const MergeSettings& settings,
-              std::size_t steps, Executor& executor);
+              const SearchPlan& plan, Executor& executor);
 
   /// Greedy merges under several settings: the cheapest of the results, ascending.
   std::vector<Candidate> merge_greedily();
@@ -82,6 +89,7 @@ class MergeSearch {
   Executor& executor_;
   Joiner joiner_;
   FailedTrials failures_;  ///< of all searches that have ended
+  SearchExtent extent_;
   std::size_t merges_ = 1, kept_ = 1;
   std::size_t rounds_ = 0;  ///< of search_neighbourhoods()
   std::size_t rounds_done_ = 0;

@@ -60,8 +60,8 @@ PartitionCost partition_cost(const SegmentationMesh& surface, const Partition& p
   if (cost.seam >= rules.longest || cost.seams >= rules.limit) return cost;
   cost.all = cost.seams;
   if (rules.page_area > kMostPage) return cost;
-  const double fill =
-      pack::rough_fill(outlines(surface, partition, owner), rules.wanted_fill, rules.stop);
+  const double fill = pack::rough_fill(outlines(surface, partition, owner),
+                                       {rules.wanted_fill, rules.packing}, rules.stop);
   const double emptiness = std::max(0.0, rules.wanted_fill - fill);
   cost.all = rounded(seam + charts + kCostOfEmptiness * emptiness);
   return cost;

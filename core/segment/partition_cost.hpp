@@ -24,6 +24,7 @@ struct CostRules {
   double wanted_fill = 1;  ///< share of the page; a page that is fuller costs nothing
   double limit = std::numeric_limits<double>::infinity();    ///< from here on it is all the same
   double longest = std::numeric_limits<double>::infinity();  ///< seams of which cost without limit
+  double packing = 1;  ///< work of the rough packing, see pack::RoughRules
   std::stop_token stop = {};
 };
 

@@ -20,7 +20,6 @@
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kMargin = 0.97;  // of what is allowed: solving on may shift some between the two
 constexpr double kAnyExcess = 1e6, kFarWeight = 10;  // beyond the bound, for a number of regions
 constexpr double kFacesOfQuick = 20, kQuickWeight = 1;
 constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
@@ -59,7 +58,8 @@ Segments SurfaceSegmentation::first(double excess) {
   stage_ = Stage::merge;
   const MergeSettings settings = settings_for(excess);
   if (rules_.is_quick) return merged_quickly(settings);
-  MergeSearch& search = search_.emplace(context_, patches_, settings, steps_, executor_);
+  MergeSearch& search = search_.emplace(
+      context_, patches_, settings, SearchPlan{search_extent(rules_.effort), steps_}, executor_);
   competing_ = search.merge_greedily();
   search.search_neighbourhoods(competing_);
   best_ = search.bisect_regions(finished(competing_));
@@ -79,7 +79,7 @@ std::optional<Segments> SurfaceSegmentation::loosened(double excess) {
   if (!std::exchange(is_priced_, true)) best_ = search.priced(std::move(best_));
   const double seam = best_.cost.seam;
   if (seam <= 0) return std::nullopt;  // it needs no cut
-  search.widen(kMargin * excess, competing_);
+  search.widen(kMarginOfExcess * excess, competing_);
   std::vector<Candidate> all = competing_;
   all.push_back(best_);
   search.forbid_seams_from(seam);
@@ -92,7 +92,7 @@ std::optional<Segments> SurfaceSegmentation::loosened(double excess) {
 }
 
 MergeSettings SurfaceSegmentation::settings_for(double excess) const {
-  const double budget = kMargin * excess;
+  const double budget = kMarginOfExcess * excess;
   MergeSettings settings{.budget = budget, .cap = kCapOfOnePatch * budget};
   settings.page_area = rules_.page_area;
   return settings;

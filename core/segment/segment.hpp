@@ -15,11 +15,15 @@
 
 namespace unwrapd::segment {
 
+/// Of the excess allowed: solving on may shift some between D_angle and D_area.
+inline constexpr double kMarginOfExcess = 0.97;
+
 struct SegmentRules {
   double max_distortion = kDefaultDistortion;  ///< of all regions together, D_angle and D_area; > 2
   Index most_regions = std::numeric_limits<Index>::max();  ///< however distorted, if maps allow it
-  double page_area = 1;   ///< of all that lies on one page with this surface, in units of its area
-  bool is_quick = false;  ///< one merge, no search for the best
+  double page_area = 1;  ///< of all that lies on one page with this surface, in units of its area
+  Effort effort = Effort::balanced;
+  bool is_quick = false;                                ///< one merge, no search for the best
   std::function<void(Stage, double)> on_progress = {};  ///< the share that is done
   std::stop_token stop = {};
 };

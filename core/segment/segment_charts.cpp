@@ -16,13 +16,14 @@
 #include "core/measure/rest_triangle.hpp"
 #include "core/segment/large_charts.hpp"
 #include "core/segment/region_charts.hpp"
+#include "core/segment/search_extent.hpp"
+#include "core/segment/whole_chart.hpp"
 
 namespace unwrapd::segment {
 namespace {
 
 constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
-constexpr Index kMostFacesSegmented = 18'000;
-constexpr double kShareOfFirst = 0.25;  // of the work, to share charts out
+constexpr double kShareOfFirst = 0.25;   // of the work, to share charts out
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const charts::Chart& component) {
@@ -97,11 +98,24 @@ class Cutter {
     SegmentRules rules =
         account_.rules(options_.max_distortion.value_or(kDefaultDistortion), component);
     rules.most_regions = most;
-    std::vector<charts::Chart> parts = component.mesh.face_count() > kMostFacesSegmented
+    if (whole && openness(component) >= kLeastOpenness && keep_whole(component, rules)) return;
+    rules.effort = options_.effort;
+    const Index most_faces = search_extent(options_.effort).most_faces;
+    std::vector<charts::Chart> parts = component.mesh.face_count() > most_faces
                                            ? parts_of_large(component, rules)
                                            : parts_of_small(component, rules);
     segmented += !whole || parts.size() > 1 ? 1 : 0;
     for (charts::Chart& part : parts) charts.push_back(std::move(part));
+  }
+
+  /// Whether the bound holds for the disk as one chart, which then has all that regions have.
+  bool keep_whole(const charts::Chart& disk, const SegmentRules& rules) {
+    std::optional<UvMap> uv = map_whole(disk, rules.max_distortion, executor_, rules.stop);
+    if (!uv) return false;
+    charts.push_back(disk);
+    charts.back().start = std::move(*uv);
+    charts.back().least = Guarantee::bijective;
+    return true;
   }
 
   std::vector<charts::Chart> parts_of_small(const charts::Chart& component,

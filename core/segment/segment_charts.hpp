@@ -17,12 +17,13 @@ namespace unwrapd::segment {
 struct SegmentOptions {
   std::optional<double> max_distortion = {};  ///< empty: none for disks, kDefaultDistortion else
   std::optional<int> max_charts = {};         ///< of all surfaces together; empty: any number
+  Effort effort = Effort::balanced;
   bool one_chart_each = false;  ///< components stay whole: what is no disk is cut to one
 };
 
 inline void describe(CacheKey& key, const SegmentOptions& options) {
-  const auto& [max_distortion, max_charts, one_chart_each] = options;
-  key.add(max_distortion).add(max_charts).add(one_chart_each);
+  const auto& [max_distortion, max_charts, effort, one_chart_each] = options;
+  key.add(max_distortion).add(max_charts).add(effort).add(one_chart_each);
 }
 
 /// How the work is watched; calls come from the thread that called.

@@ -182,7 +182,7 @@ TestResult test_parameterization(const SegmentationMesh& surface, std::span<cons
                                  const TestRules& rules, Region& region) {
   if (rules.memory == nullptr) return tried(surface, open, rules, region);
   const std::uint64_t key = trial_key(open, rules, region);
-  if (const auto known = rules.memory->find(key)) return *known;
+  if (const auto known = rules.memory->find(key, rules.most_excess)) return *known;
   const TestResult result = tried(surface, open, rules, region);
   if (!is_cancelled(rules.stop)) rules.memory->keep(key, result);
   return result;

@@ -17,6 +17,7 @@ enum class SeamMode { automatic, keep, none, uv0 };  ///< automatic: "auto" on t
 enum class Guarantee { none, flip_free, bijective };
 enum class RepairMethod { untangle, virtual_boundary };  ///< how flipped triangles are turned back
 enum class BoundaryShape { free, circle, square };
+enum class Effort { fast, balanced, best };  ///< how much work a search for charts and places gets
 
 /// When the iterations of ARAP, Hybrid and SLIM end.
 struct Stop {
@@ -72,7 +73,8 @@ struct UnwrapOptions {
   std::vector<PositionConstraint> constraints =
       {};  ///< ASAP, ARAP, Hybrid; the page is then theirs
   Packing packing = {};
-  bool repack_only = false;  ///< the surfaces' own UVs are packed anew, nothing is solved
+  bool repack_only = false;          ///< the surfaces' own UVs are packed anew, nothing is solved
+  Effort effort = Effort::balanced;  ///< counted work of the searches, never time (ADR 0045)
 };
 
 /// The distortion up to which a surface that is no disk is taken apart when none is asked for.

@@ -192,6 +192,7 @@ TEST(OptionTable, ChoicesNameTheEnumeratorsThatTheySay) {
   EXPECT_EQ(options({{"repair", "virtual_boundary"}}).unwrap.repair,
             RepairMethod::virtual_boundary);
   EXPECT_EQ(options({{"boundary", "square"}}).unwrap.boundary, BoundaryShape::square);
+  EXPECT_EQ(options({{"effort", "best"}}).unwrap.effort, Effort::best);
   EXPECT_EQ(options({{"seams", "none"}}).unwrap.seams, SeamMode::none);
   EXPECT_EQ(options({{"output", "obj"}}).output, OutputFormat::obj);
 }

@@ -1,7 +1,8 @@
 // The atlas of each mesh in a table, measured on what is written, beside what others make of those
 // that are well known.
-//   unwrapd_atlas [--default] FILE|FOLDER|noisy:FACES...
-//   .obj, .glb, .gltf, or a generated body like a scan; --default: disks stay one chart
+//   unwrapd_atlas [--default] [--fast|--best] FILE|FOLDER|noisy:FACES|made:FAMILY:FACES:SEED...
+//   .obj, .glb, .gltf, a generated body like a scan, or a shape of a family (made_shapes.hpp);
+//   --default: disks stay one chart
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -19,6 +20,7 @@
 #include "core/base/error.hpp"
 #include "core/unwrap.hpp"
 #include "tests/bench/creases.hpp"
+#include "tests/bench/made_shapes.hpp"
 #include "tests/bench/measure.hpp"
 #include "tests/bench/noisy_body.hpp"
 #include "tests/bench/peers.hpp"
@@ -45,14 +47,25 @@ bool is_noisy(const std::string& name) {
   return name.starts_with(kNoisy) && noisy_faces(name) >= 1000;
 }
 
-std::vector<Surface> noisy_surface(const std::string& name) {
-  Surface surface{.mesh = noisy_body(noisy_faces(name), kNoise), .part = {}, .name = "noisy"};
+constexpr std::string_view kMade = "made:";
+
+bool is_made(const std::string& name) {
+  return name.starts_with(kMade) && !made_shape(name.substr(kMade.size())).faces.empty();
+}
+
+std::vector<Surface> generated(const std::string& name) {
+  Surface surface{.mesh = is_noisy(name) ? noisy_body(noisy_faces(name), kNoise)
+                                         : made_shape(name.substr(kMade.size())),
+                  .part = {},
+                  .name = "generated"};
   surface.part.assign(surface.mesh.faces.size(), 0);
   return {std::move(surface)};
 }
 
+bool is_generated(const std::string& name) { return is_noisy(name) || is_made(name); }
+
 std::vector<Surface> read_surfaces(const fs::path& path) {
-  if (is_noisy(path.string())) return noisy_surface(path.string());
+  if (is_generated(path.string())) return generated(path.string());
   asset::Input input;
   const std::string document = read_file(path);
   input.document = document;
@@ -129,7 +142,7 @@ void show(const fs::path& path, const UnwrapOptions& options, std::span<Shares> 
 }
 
 std::vector<fs::path> meshes_in(const fs::path& path) {
-  if (is_noisy(path.string()) || !fs::is_directory(path)) return {path};
+  if (is_generated(path.string()) || !fs::is_directory(path)) return {path};
   std::vector<fs::path> found;
   for (const auto& entry : fs::recursive_directory_iterator(path)) {
     const std::string ending = entry.path().extension().string();
@@ -171,8 +184,10 @@ int main(int argc, char** argv) {
   std::vector<std::string> paths(argv + 1, argv + argc);
   unwrapd::UnwrapOptions options{.max_distortion = unwrapd::kDefaultDistortion};
   if (std::erase(paths, "--default") > 0) options.max_distortion.reset();
+  if (std::erase(paths, "--fast") > 0) options.effort = unwrapd::Effort::fast;
+  if (std::erase(paths, "--best") > 0) options.effort = unwrapd::Effort::best;
   for (const std::string& path : paths)
-    if (!unwrapd::bench::is_noisy(path) && !std::filesystem::exists(path)) {
+    if (!unwrapd::bench::is_generated(path) && !std::filesystem::exists(path)) {
       std::fprintf(stderr, "unwrapd_atlas: there is no %s\n", path.c_str());
       return 2;
     }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,37 @@ double field(const Vec3& p) {
   return smooth_least(d, to_ring(p - Vec3(0.62, -0.15, 0.1), 0.2, 0.06), 0.06);
 }
 
+/// Negative within: a ball of limbs and rings drawn by the seed.
+class SeededField {
+ public:
+  explicit SeededField(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto draw = [&](double low, double high) {
+      return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+    };
+    for (unsigned k = 0, limbs = 3 + random() % 4; k < limbs; ++k) {
+      Vec3 to(draw(-1, 1), draw(-1, 1), draw(-1, 1));
+      to *= draw(0.6, 0.9) / std::max(to.norm(), 0.1);
+      limbs_.push_back({to, draw(0.1, 0.2)});
+    }
+    for (unsigned k = 0, rings = random() % 3; k < rings; ++k) {
+      const double angle = draw(0, 6.28);
+      rings_.push_back({0.6 * Vec3(std::cos(angle), std::sin(angle), 0.1), draw(0.06, 0.1)});
+    }
+  }
+
+  double operator()(const Vec3& p) const {
+    double d = p.norm() - 0.45;
+    for (const auto& [to, radius] : limbs_)
+      d = smooth_least(d, to_limb(p, Vec3::Zero(), to, radius), 0.1);
+    for (const auto& [at, thick] : rings_) d = smooth_least(d, to_ring(p - at, 0.22, thick), 0.08);
+    return d;
+  }
+
+ private:
+  std::vector<std::pair<Vec3, double>> limbs_, rings_;
+};
+
 using Cell = std::array<Index, 3>;
 
 Cell moved(Cell cell, std::size_t axis, Index by) {
@@ -56,7 +88,8 @@ Cell moved(Cell cell, std::size_t axis, Index by) {
 
 class Nets {
  public:
-  explicit Nets(Index cells)
+  template <class Field>
+  Nets(Index cells, const Field& field)
       : cells_(cells), step_(2 * kReach / cells), vertex_(count(cells), Index(-1)) {
     const Index corners = cells + 1;
     value_.reserve(count(corners));
@@ -157,7 +190,14 @@ void add_noise(TriMesh& mesh, double noise) {
 }  // namespace
 
 TriMesh noisy_body(double faces, double noise) {
-  TriMesh mesh = Nets(static_cast<Index>(std::sqrt(faces / kFacesByCell))).mesh();
+  TriMesh mesh = Nets(static_cast<Index>(std::sqrt(faces / kFacesByCell)), field).mesh();
+  add_noise(mesh, noise);
+  return mesh;
+}
+
+TriMesh seeded_body(double faces, double noise, unsigned seed) {
+  const SeededField body(seed);
+  TriMesh mesh = Nets(static_cast<Index>(std::sqrt(faces / kFacesByCell)), body).mesh();
   add_noise(mesh, noise);
   return mesh;
 }

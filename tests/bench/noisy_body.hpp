@@ -10,4 +10,7 @@ namespace unwrapd::bench {
 /// to `noise` of the mean edge's length, the same on every machine.
 TriMesh noisy_body(double faces, double noise);
 
+/// The same with three to six limbs and up to two rings drawn by the seed.
+TriMesh seeded_body(double faces, double noise, unsigned seed);
+
 }  // namespace unwrapd::bench

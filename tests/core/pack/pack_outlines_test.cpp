@@ -82,6 +82,21 @@ TEST(PackOutlines, KeepsIslandsAndTheBorderApartByThePadding) {
   expect_apart(stars(45, 2), {.resolution = 256, .padding = 3});
 }
 
+TEST(PackOutlines, KeepsThePaddingAtEveryEffortAndFillsMoreWithMore) {
+  double least = 0;
+  for (const Effort effort : {Effort::fast, Effort::balanced, Effort::best}) {
+    double all = 0;
+    for (const int count : {2, 7, 20, 60}) {
+      const std::vector<charts::Outline> islands = stars(count, 8);
+      const PageOptions page{.resolution = 512, .padding = 2, .effort = effort};
+      expect_apart(islands, page);
+      all += fill(islands, pack_alone(islands, page).placements);
+    }
+    EXPECT_GT(all, least);
+    least = all;
+  }
+}
+
 TEST(PackOutlines, FillsHollowsThatRowsLeaveEmpty) {
   for (int count : {5, 12, 60, 500}) {
     const std::vector<charts::Outline> islands = stars(count, 4);
@@ -164,7 +179,7 @@ TEST(PackOutlines, IsRatedAtAGlanceAsItIsPacked) {
                                          {0, 1},
                                          {1, 1}});
   EXPECT_LT(rough_fill(std::vector<charts::Outline>{cross, cross}), 0.4);
-  EXPECT_EQ(rough_fill(std::vector<charts::Outline>{cross, cross}, 0.9),  // never comes to that
+  EXPECT_EQ(rough_fill(std::vector<charts::Outline>{cross, cross}, {0.9}),  // never comes to that
             rough_fill(std::vector<charts::Outline>{cross, cross}));
   const std::vector<charts::Outline> islands = stars(12, 7);
   EXPECT_NEAR(rough_fill(islands), fill(islands, pack_alone(islands, {.padding = 0}).placements),
@@ -175,11 +190,11 @@ TEST(PackOutlines, AreRatedNoLongerThanUntilThePageIsFullEnough) {
   const std::vector<charts::Outline> islands = stars(12, 7);
   const double all = rough_fill(islands);
   for (const double enough : {0.5 * all, 0.8 * all, 0.999 * all}) {
-    EXPECT_GE(rough_fill(islands, enough), enough);
-    EXPECT_LE(rough_fill(islands, enough), all);
+    EXPECT_GE(rough_fill(islands, {enough}), enough);
+    EXPECT_LE(rough_fill(islands, {enough}), all);
   }
-  EXPECT_LT(rough_fill(islands, 0.5 * all), rough_fill(islands, 0.94 * all));
-  EXPECT_LT(rough_fill(islands, 0.97 * all), all);
+  EXPECT_LT(rough_fill(islands, {0.5 * all}), rough_fill(islands, {0.94 * all}));
+  EXPECT_LT(rough_fill(islands, {0.97 * all}), all);
 }
 
 TEST(PackOutlines, ShapesOfRightAnglesLieAlongThePage) {

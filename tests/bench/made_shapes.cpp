@@ -1,0 +1,97 @@
+#include "tests/bench/made_shapes.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <set>
+#include <sstream>
+
+#include "tests/bench/noisy_body.hpp"
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd::bench {
+namespace {
+
+using Random = std::mt19937;
+
+double between(Random& random, double low, double high) {
+  return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+}
+
+/// Refined until another time would pass the number of faces by much.
+TriMesh refined(TriMesh mesh, double faces) {
+  while (static_cast<double>(mesh.faces.size()) * 2.5 < faces) mesh = shapes::subdivided(mesh);
+  return mesh;
+}
+
+TriMesh blocks(double faces, Random& random) {
+  std::set<std::array<int, 3>> cells{{0, 0, 0}};
+  std::array<int, 3> at{0, 0, 0};
+  for (int k = 0; k < 12; ++k) {
+    at[random() % 3] += random() % 2 == 0 ? 1 : -1;
+    cells.insert(at);
+  }
+  return refined(shapes::voxel_surface(cells), faces);
+}
+
+TriMesh boxes(double faces, Random& random) {
+  const int count = std::max(1, static_cast<int>(faces / 12));
+  std::vector<TriMesh> all;
+  for (int k = 0; k < count; ++k) {
+    TriMesh box = shapes::cube();
+    const Vec3 size(between(random, .2, 1), between(random, .2, 1), between(random, .2, 1));
+    for (Vec3& p : box.positions) p = p.cwiseProduct(size) + Vec3(2 * k, 0, 0);
+    all.push_back(std::move(box));
+  }
+  return shapes::merged(all);
+}
+
+TriMesh triangles_apart(double faces, Random& random) {
+  TriMesh mesh;
+  for (Index k = 0; k < static_cast<Index>(faces); ++k) {
+    for (int i = 0; i < 3; ++i)
+      mesh.positions.emplace_back(between(random, 0, 1) + 2 * k, between(random, 0, 1),
+                                  between(random, 0, 1));
+    mesh.faces.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  return mesh;
+}
+
+Index side(double faces) { return std::max<Index>(3, static_cast<Index>(std::sqrt(faces / 2))); }
+
+TriMesh torus(double faces, Random& random) {
+  const double ratio = between(random, 1.5, 3);
+  const auto along = static_cast<Index>(std::sqrt(faces / 2 / ratio));
+  return shapes::torus(static_cast<Index>(ratio * along), std::max<Index>(along, 3), 1,
+                       between(random, .2, .6));
+}
+
+TriMesh cap(double faces, Random& random) {
+  return shapes::sphere_cap(2 * side(faces) / 2, side(faces), between(random, 1.2, 2.6));
+}
+
+}  // namespace
+
+TriMesh made_shape(const std::string& name) {
+  std::string family;
+  double faces = 0;
+  unsigned seed = 0;
+  char colon = ':';
+  std::istringstream words(name);
+  if (!std::getline(words, family, ':') || !(words >> faces >> colon >> seed)) return {};
+  Random random(seed + 1);
+  if (family == "body") return seeded_body(faces, 0, seed);
+  if (family == "noisy") return seeded_body(faces, 0.25, seed);
+  if (family == "blocks") return blocks(faces, random);
+  if (family == "boxes") return boxes(faces, random);
+  if (family == "soup") return triangles_apart(faces, random);
+  if (family == "hill") return shapes::random_disk(side(faces), seed);
+  if (family == "cap") return cap(faces, random);
+  if (family == "torus") return torus(faces, random);
+  return {};
+}
+
+}  // namespace unwrapd::bench

@@ -1,0 +1,17 @@
+#pragma once
+// Families of made meshes: any number of each by seed, so that nothing is tuned on named ones.
+
+#include <string>
+#include <vector>
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd::bench {
+
+/// "FAMILY:FACES:SEED", FAMILY one of body (a smooth closed body of random limbs and rings), noisy
+/// (the same, rough), blocks (a closed hull of random cells, subdivided), boxes (a scene of boxes,
+/// each a component), soup (triangles apart), hill (a bumpy disk), cap (more than half of a sphere,
+/// open), torus. About that many faces. Empty where the name is none of these.
+TriMesh made_shape(const std::string& name);
+
+}  // namespace unwrapd::bench
