@@ -51,23 +51,26 @@ std::string advice_on_distortion(const UnwrapOptions& options) {
 
 void note_distortion(Layout& layout, std::span<const Surface> surfaces,
                      const UnwrapOptions& options) {
-  const double bound = options.max_distortion.value_or(kBearableDistortion);
+  const double bearable = std::max(kBearableDistortion, options.max_distortion.value_or(0));
   const std::vector<ChartReport>& charts = layout.report.charts;
   const auto worse = [](const ChartReport& a, const ChartReport& b) {
     return worst_of(a.distortion) < worst_of(b.distortion);
   };
-  const auto is_beyond = [&](const ChartReport& chart) {
-    return worst_of(chart.distortion) > bound + kSlack;
-  };
-  const auto count = std::ranges::count_if(charts, is_beyond);
-  if (count == 0) return;
+  const auto count = std::ranges::count_if(charts, [&](const ChartReport& chart) {
+    return worst_of(chart.distortion) > bearable + kSlack;
+  });
+  const bool is_missed = options.max_distortion &&
+                         worst_of(layout.report.distortion) > *options.max_distortion + kSlack;
+  if (count == 0 && !is_missed) return;
   const auto worst =
       static_cast<std::size_t>(std::ranges::max_element(charts, worse) - charts.begin());
-  layout.report.notes.push_back(
-      {NoteCode::distorted, std::to_string(count) + " of " + std::to_string(charts.size()) +
-                                " charts are distorted beyond " + short_text(bound) +
-                                ". The worst is " + described(layout, surfaces, worst) + "." +
-                                advice_on_distortion(options)});
+  const std::string what = is_missed
+                               ? "The mean distortion is beyond max_distortion."
+                               : std::to_string(count) + " of " + std::to_string(charts.size()) +
+                                     " charts are distorted beyond " + short_text(bearable) + ".";
+  layout.report.notes.push_back({NoteCode::distorted, what + " The worst is " +
+                                                          described(layout, surfaces, worst) + "." +
+                                                          advice_on_distortion(options)});
 }
 
 void note_overlaps(Layout& layout, std::span<const Surface> surfaces) {

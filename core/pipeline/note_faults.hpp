@@ -7,11 +7,11 @@
 
 namespace unwrapd::pipeline {
 
-/// The distortion that textures bear: charts beyond it are told where no bound is asked for.
+/// The distortion of one chart that textures bear. A bound asked for holds for the mean over all.
 inline constexpr double kBearableDistortion = 2.1;
 
-/// Notes charts that are distorted beyond options.max_distortion, or kBearableDistortion, and
-/// charts whose triangles overlap. Requires the figures of measure_maps().
+/// Notes a mean distortion beyond options.max_distortion, charts distorted beyond both that and
+/// kBearableDistortion, and charts whose triangles overlap. Requires the figures of measure_maps().
 void note_faults(Layout& layout, std::span<const Surface> surfaces, const UnwrapOptions& options);
 
 }  // namespace unwrapd::pipeline

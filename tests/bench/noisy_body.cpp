@@ -61,7 +61,7 @@ class SeededField {
       to *= draw(0.6, 0.9) / std::max(to.norm(), 0.1);
       limbs_.push_back({to, draw(0.1, 0.2)});
     }
-    for (unsigned k = 0, rings = random() % 3; k < rings; ++k) {
+    for (unsigned k = 0, rings = static_cast<unsigned>(random() % 3); k < rings; ++k) {
       const double angle = draw(0, 6.28);
       rings_.push_back({0.6 * Vec3(std::cos(angle), std::sin(angle), 0.1), draw(0.06, 0.1)});
     }

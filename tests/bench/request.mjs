@@ -81,12 +81,12 @@ const data = mkdtempSync(join(tmpdir(), "unwrapd_bench_"));
 const server = spawn(join(bin, "unwrapd"), ["--listen", "127.0.0.1:0", "--data", data], {
   stdio: ["ignore", "pipe", "ignore"],
 });
-const line = await new GuaranteeRules((resolve) => createInterface(server.stdout).once("line", resolve));
+const line = await new Promise((resolve) => createInterface(server.stdout).once("line", resolve));
 const times = [];
 for (let k = 0; k < runs; ++k)
   times.push(await request(line.split(" ").at(-1), sheet(Number(faces), k)));
 server.kill("SIGTERM");
-await new GuaranteeRules((resolve) => server.once("exit", resolve));
+await new Promise((resolve) => server.once("exit", resolve));
 rmSync(data, { recursive: true });
 
 const middle = times.sort((a, b) => a.whole / a.core - b.whole / b.core)[(runs - 1) / 2];

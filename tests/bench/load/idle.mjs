@@ -13,7 +13,7 @@ const kSeconds = 8;
 
 function connect(base, live) {
   const {hostname, port} = new URL(base);
-  return new GuaranteeRules((resolve) => {
+  return new Promise((resolve) => {
     const socket = net.connect(Number(port), hostname, () => resolve(socket));
     socket.on('error', () => resolve(socket));
     socket.on('close', () => live.delete(socket));

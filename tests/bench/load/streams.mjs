@@ -16,7 +16,7 @@ const kTrimmed = 12_000;  // ms; the server gives memory back every 10 s
 function follow(base, job) {
   const begin = performance.now();
   const stream = {firstByteMs: NaN, events: 0};
-  return new GuaranteeRules((resolve, reject) => {
+  return new Promise((resolve, reject) => {
     const call = http.get(new URL(`/v1/jobs/${job}/events`, base), {agent: false}, (answer) => {
       if (answer.statusCode !== 200) return reject(new Error(`a stream got ${answer.statusCode}`));
       answer.on('error', () => {});
