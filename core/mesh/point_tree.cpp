@@ -9,6 +9,21 @@
 
 namespace unwrapd {
 
+struct PointTree::Nearby {
+  double radius2;
+  std::size_t most;
+  std::vector<Nearest> list = {};  // ascending
+
+  [[nodiscard]] double reach2() const {
+    return list.size() < most ? radius2 : list.back().distance2;
+  }
+  void add(const Nearest& found) {
+    if (found.distance2 > radius2) return;
+    list.insert(std::upper_bound(list.begin(), list.end(), found), found);
+    if (list.size() > most) list.pop_back();
+  }
+};
+
 PointTree::PointTree(std::span<const Vec3> points, std::vector<Index> of)
     : points_(points), of_(std::move(of)), box_(of_.size()) {
   build({0, of_.size()});
@@ -57,6 +72,16 @@ void PointTree::search(Range range, const Vec3& place, Nearest& best) const {
   if (far.first < far.last && to_far <= best.distance2) search(far, place, best);
 }
 
+void PointTree::search(Range range, const Vec3& place, Nearby& best) const {
+  if (range.first == range.last || distance2(range, place) > best.reach2()) return;
+  const std::size_t middle = range.middle();
+  best.add({of_[middle], (point(middle) - place).squaredNorm()});
+  Range near{range.first, middle}, far{middle + 1, range.last};
+  if (distance2(far, place) < distance2(near, place)) std::swap(near, far);
+  search(near, place, best);
+  search(far, place, best);
+}
+
 void PointTree::collect(Range range, const Vec3& place, std::vector<Index>& found) const {
   if (distance2(range, place) > 0) return;
   const std::size_t middle = range.middle();
@@ -70,6 +95,15 @@ std::optional<Index> PointTree::nearest(const Vec3& place) const {
   Nearest best{.point = of_.front()};  // if every distance overflows
   search({0, of_.size()}, place, best);
   return best.point;
+}
+
+std::vector<Index> PointTree::nearest_within(const Vec3& place, double radius,
+                                             std::size_t most) const {
+  Nearby best{radius * radius, most};
+  search({0, of_.size()}, place, best);
+  std::vector<Index> points;
+  for (const Nearest& found : best.list) points.push_back(found.point);
+  return points;
 }
 
 std::vector<Index> PointTree::at(const Vec3& place) const {

@@ -10,6 +10,7 @@
 
 #include "core/mesh/counting_sort.hpp"
 #include "core/mesh/edges.hpp"
+#include "core/mesh/parity_sets.hpp"
 
 namespace unwrapd {
 namespace {
@@ -72,40 +73,6 @@ void glue_parts(const SurfaceNumbers& surface, std::span<const Triangle> welded,
     if (start_of(welded, g) == start_of(welded, h)) out.clashes.push_back({g, h});
   });
 }
-
-/// Groups of components, each component with its orientation relative to the group's root.
-class Sides {
- public:
-  explicit Sides(std::size_t count) : parent_(count), turned_(count, false) {
-    for (std::size_t k = 0; k < count; ++k) parent_[k] = static_cast<Index>(k);
-  }
-
-  /// Gives a and b opposite orientations; false if they are already known to have the same.
-  bool set_opposite(Index a, Index b) {
-    const auto [root_a, turned_a] = find(a);
-    const auto [root_b, turned_b] = find(b);
-    if (root_a == root_b) return turned_a != turned_b;
-    parent_[root_a] = root_b;
-    turned_[root_a] = turned_a == turned_b;
-    return true;
-  }
-
- private:
-  std::pair<Index, bool> find(Index k) {
-    bool turned = false;
-    while (parent_[k] != k) {
-      const Index up = parent_[k];  // halve the path: point at the grandparent
-      turned_[k] = bool(turned_[k]) != bool(turned_[up]);  // a root is not reversed
-      parent_[k] = parent_[up];
-      turned = turned != turned_[k];
-      k = parent_[k];
-    }
-    return {k, turned};
-  }
-
-  std::vector<Index> parent_;
-  std::vector<bool> turned_;
-};
 
 }  // namespace
 
@@ -190,10 +157,10 @@ void close_slits(Halfedges& halfedges, const std::stop_token& stop) {
 
 std::optional<Index> one_sided_component(std::span<const std::array<Index, 2>> clashes,
                                          const Topology& topology) {
-  Sides sides(topology.components.size());
+  ParitySets sides(topology.components.size());
   for (const auto& [g, h] : clashes) {
     const Index a = topology.component_of[face_of(g)], b = topology.component_of[face_of(h)];
-    if (!sides.set_opposite(a, b)) return a;
+    if (!sides.relate(a, b, true)) return a;
   }
   return std::nullopt;
 }

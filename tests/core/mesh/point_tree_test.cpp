@@ -69,6 +69,27 @@ TEST(PointTree, FindsTheLowestAmongPointsAtHalvingDistances) {
   }
 }
 
+TEST(PointTree, FindsTheNearestOnesWithinARadius) {
+  const std::vector<Vec3> points = lattice_points(400, 6, 6, 5);
+  const PointTree tree(points, every(points, 1));
+  std::mt19937 rng(7);
+  std::uniform_int_distribution<int> twice(-4, 16), squared(0, 12);
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 place(twice(rng) / 2.0, twice(rng) / 2.0, twice(rng) / 2.0);
+    const double radius = squared(rng) / 4.0;
+    std::vector<std::pair<double, Index>> within;
+    for (Index i = 0; i < Index(points.size()); ++i)
+      if (const double d2 = (points[std::size_t(i)] - place).squaredNorm(); d2 <= radius * radius)
+        within.emplace_back(d2, i);
+    std::sort(within.begin(), within.end());
+    const std::size_t most = std::size_t(k) % 9 + 1;
+    within.resize(std::min(within.size(), most));
+    std::vector<Index> expected;
+    for (const auto& [d2, i] : within) expected.push_back(i);
+    EXPECT_EQ(tree.nearest_within(place, radius, most), expected);
+  }
+}
+
 TEST(PointTree, AnswersOneOfItsPointsHoweverFarThePlace) {
   const std::vector<Vec3> points = lattice_points(9, 6, 6, 5);
   const PointTree tree(points, {4, 7});
