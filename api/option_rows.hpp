@@ -13,7 +13,8 @@
 
 namespace unwrapd::api {
 
-/// The field that a member pointer names: of UnwrapOptions, its Stop or Packing, of AssetOptions,
+/// The field that a member pointer names: of UnwrapOptions, its Stop, Packing or
+/// Welding, of AssetOptions,
 /// or of JobOptions.
 template <auto kField>
 auto& field(auto& options) {
@@ -23,6 +24,8 @@ auto& field(auto& options) {
     return options.unwrap.stop.*kField;
   } else if constexpr (std::is_invocable_v<decltype(kField), Packing&>) {
     return options.unwrap.packing.*kField;
+  } else if constexpr (std::is_invocable_v<decltype(kField), Welding&>) {
+    return options.unwrap.welding.*kField;
   } else if constexpr (std::is_invocable_v<decltype(kField), AssetOptions&>) {
     return options.asset.*kField;
   } else {

@@ -22,6 +22,7 @@ constexpr std::array<std::string_view, 2> kLambdaUnits = {"dimensionless", "pape
 constexpr std::array<std::string_view, 4> kInitialMaps = {"auto", "mean_value", "tutte", "lscm"};
 constexpr std::array<std::string_view, 2> kPins = {"diameter", "spectral"};
 constexpr std::array<std::string_view, 4> kSeams = {"auto", "keep", "none", "uv0"};
+constexpr std::array<std::string_view, 3> kWeldModes = {"auto", "exact", "distance"};
 constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "bijective"};
 constexpr std::array<std::string_view, 2> kRepairs = {"untangle", "virtual_boundary"};
 constexpr std::array<std::string_view, 3> kEfforts = {"fast", "balanced", "best"};
@@ -42,6 +43,7 @@ constexpr std::array kOnlyAsap = {Method::asap};
 constexpr double kMaxPadding = 0.25 * kMaxResolution;  // and at most a quarter of resolution
 constexpr double kMinTexelsPerUnit = 1e-9, kMaxTexelsPerUnit = 1e12;
 constexpr double kMaxDistortion = 1e6, kMaxCharts = 1e6;
+constexpr double kMaxWeldDistance = 1e100;
 constexpr double kMinTolerance = 1e-12, kMaxTolerance = 0.1;
 
 Json get_lambda(const JobOptions& options) {
@@ -160,6 +162,14 @@ constexpr std::array kRows = {
                               "Which cuts of the input remain cuts. keep: wherever vertices are "
                               "duplicated; none: nowhere; uv0: at the seams of the existing UVs; "
                               "auto: as keep if that gives a few disks, else as none."),
+    choice<&Welding::mode, kWeldModes>(
+        "weld", kEveryMethod,
+        "Which vertices at different positions are taken for one where open edges meet. auto: "
+        "those apart by rounding, by a tolerance found in the mesh; exact: none; distance: those "
+        "within weld_distance. The file keeps its vertices."),
+    figure<&Welding::distance>("weld_distance", {0, kMaxWeldDistance}, kEveryMethod,
+                               "With weld=distance: the greatest distance of vertices that are "
+                               "welded, in the mesh's units."),
     OptionRow{
         .name = "seam_edges",
         .type = OptionType::objects,

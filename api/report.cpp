@@ -11,9 +11,13 @@ namespace {
 constexpr std::array<std::string_view, 5> kStopReasons = {"iterations", "direct", "collapse_guard",
                                                           "converged", "max_iterations"};
 constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "bijective"};
-constexpr std::array<std::string_view, 5> kRepairKinds = {
-    "degenerate_faces_set_aside", "duplicate_faces_set_aside", "non_manifold_edges_split",
-    "cut_to_disk", "segmented"};
+constexpr std::array<std::string_view, 7> kRepairKinds = {"degenerate_faces_set_aside",
+                                                          "duplicate_faces_set_aside",
+                                                          "non_manifold_edges_split",
+                                                          "cut_to_disk",
+                                                          "segmented",
+                                                          "vertices_welded_near",
+                                                          "faces_turned"};
 constexpr std::array<std::string_view, 5> kFileRepairKinds = {
     "line_ends_replaced", "empty_indices_ignored", "normals_replaced", "chunks_padded",
     "shared_nodes_kept"};

@@ -11,6 +11,7 @@
 
 #include "core/base/cancel.hpp"
 #include "core/charts/constraints.hpp"
+#include "core/charts/repair_surfaces.hpp"
 #include "core/guarantee/keep_guarantee.hpp"
 #include "core/pipeline/chart_progress.hpp"
 #include "core/pipeline/layout.hpp"
@@ -123,17 +124,26 @@ void try_tighter_bounds(std::span<const Surface> surfaces, UnwrapOptions options
   }
 }
 
+/// The faces as they came in, and the repairs before all others.
+void restore_input(const charts::RepairedSurfaces& repaired, Unwrapped& map) {
+  charts::restore_winding(repaired, map.surfaces);
+  std::vector<Repair>& repairs = map.report.repairs;
+  repairs.insert(repairs.begin(), repaired.repairs.begin(), repaired.repairs.end());
+}
+
 }  // namespace
 
-std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const UnwrapOptions& options,
+std::vector<Unwrapped> unwrap_curve(std::span<const Surface> given, const UnwrapOptions& options,
                                     const Progress& progress, Executor& executor) {
   validate(options, std::numeric_limits<int>::max());
   JobExecutor job(executor, progress.stop);
   const std::vector<double> lambdas = pipeline::lambdas_of(options);
-  if (options.repack_only)
-    return {lambdas.size(), pipeline::repack(surfaces, options, progress, job)};
+  if (options.repack_only) return {lambdas.size(), pipeline::repack(given, options, progress, job)};
 
   announce(progress, Stage::setup, 0, pipeline::kChartsBegin);
+  const charts::RepairedSurfaces repaired =
+      charts::repair_surfaces(given, options.welding, progress.stop);
+  const std::span<const Surface> surfaces = repaired.surfaces;
   const PreparedCharts prepared = pipeline::prepare_charts(surfaces, options, progress, job);
   std::vector<Layout> layouts = map_charts(prepared, surfaces, options, progress, job);
   if (has_bound(options)) try_tighter_bounds(surfaces, options, progress.stop, job, layouts);
@@ -151,6 +161,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> surfaces, const Unw
   std::vector<Unwrapped> maps;
   for (Layout& layout : layouts)
     maps.push_back(assemble_surfaces(surfaces, std::move(layout), progress.stop));
+  for (Unwrapped& map : maps) restore_input(repaired, map);
   if (pipeline::is_curve(options)) pipeline::report_curve(maps, lambdas);
   return maps;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.hpp"
+#include "core/charts/repair_surfaces.hpp"
 
 namespace unwrapd::pipeline {
 
@@ -50,9 +51,13 @@ void require_area(std::span<const charts::Charts> parts) {
 }
 
 InputAnalysis analyse(std::span<const Surface> surfaces, const std::stop_token& stop) {
-  const std::vector<charts::Charts> parts = components(surfaces, {.stop = stop});
+  const charts::RepairedSurfaces repaired = charts::repair_surfaces(surfaces, {}, stop);
+  const std::vector<charts::Charts> parts = components(repaired.surfaces, {.stop = stop});
   require_area(parts);
-  return analysis_of(parts);
+  InputAnalysis analysis = analysis_of(parts);
+  analysis.repairs.insert(analysis.repairs.begin(), repaired.repairs.begin(),
+                          repaired.repairs.end());
+  return analysis;
 }
 
 }  // namespace unwrapd::pipeline

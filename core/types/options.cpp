@@ -47,6 +47,16 @@ void require_charts(const UnwrapOptions& options) {
             "/seam_edges/" + std::to_string(k) + "/vertices");
 }
 
+void require_welding(const Welding& welding) {
+  const bool is_given = welding.distance.has_value();
+  require(welding.mode != WeldMode::distance || is_given,
+          "weld=distance needs weld_distance, a length in the mesh's units", "/weld_distance");
+  require(welding.mode == WeldMode::distance || !is_given, "weld_distance needs weld=distance",
+          "/weld");
+  require(!is_given || (*welding.distance >= 0 && std::isfinite(*welding.distance)),
+          "weld_distance must be a finite number of at least 0", "/weld_distance");
+}
+
 }  // namespace
 
 void validate(const UnwrapOptions& options, int max_iterations) {
@@ -77,6 +87,7 @@ void validate(const UnwrapOptions& options, int max_iterations) {
   require(!options.repack_only || options.guarantee != Guarantee::bijective,
           "repack_only keeps existing overlaps; leave out guarantee=bijective", "/guarantee");
   require_packing(options);
+  require_welding(options.welding);
   require_charts(options);
   require(options.padding >= 0 && 4 * options.padding <= options.resolution,
           "padding must lie between 0 and a quarter of resolution", "/padding");

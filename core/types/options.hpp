@@ -43,6 +43,14 @@ struct SeamPath {
   std::vector<Index> vertices;  ///< of that surface, two or more; copies at a position are one
 };
 
+enum class WeldMode { automatic, exact, distance };  ///< automatic: "auto" on the wire
+
+/// Which vertices at different positions are one, for topology; those at one position always are.
+struct Welding {
+  WeldMode mode = WeldMode::automatic;
+  std::optional<double> distance = {};  ///< mesh units, >= 0; given if and only if mode is distance
+};
+
 /// How islands go onto the page, or onto several: page k is the square [k, k+1] x [0, 1], UDIM tile
 /// 1001 + k.
 struct Packing {
@@ -75,6 +83,7 @@ struct UnwrapOptions {
   Packing packing = {};
   bool repack_only = false;          ///< the surfaces' own UVs are packed anew, nothing is solved
   Effort effort = Effort::balanced;  ///< counted work of the searches, never time (ADR 0045)
+  Welding welding = {};              ///< of vertices at different positions
 };
 
 /// The distortion up to which a surface that is no disk is taken apart when none is asked for.

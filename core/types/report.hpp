@@ -70,6 +70,8 @@ enum class RepairKind {
   non_manifold_edges_split,    ///< more than two faces at an edge, or two of the same direction
   cut_to_disk,                 ///< closed or high-genus components opened along a cut graph
   segmented,                   ///< components taken apart into charts, see max_distortion
+  vertices_welded_near,        ///< positions that were welded to others near them, see Welding
+  faces_turned,                ///< whose winding was opposite to that of their neighbours
 };
 
 /// One point of a lambda curve: all charts together.
@@ -83,7 +85,7 @@ struct CurvePoint {
 struct Repair {
   RepairKind kind = RepairKind::degenerate_faces_set_aside;
   Index surface = 0;
-  Index count = 0;  ///< faces, edges or components, as the kind says
+  Index count = 0;  ///< faces, edges, components or positions, as the kind says
 };
 
 struct Report {

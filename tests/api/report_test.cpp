@@ -64,7 +64,7 @@ TEST(Report, NamesItsKindsAsTheContractDoes) {
   std::vector<std::string> kinds;
   std::vector<std::string> reasons;
   Report report = sample();
-  for (int i = 0; i <= static_cast<int>(RepairKind::segmented); ++i) {
+  for (int i = 0; i <= static_cast<int>(RepairKind::faces_turned); ++i) {
     report.repairs[0].kind = static_cast<RepairKind>(i);
     kinds.push_back(to_json(report, {}).at("repairs").at(0).at("kind"));
   }
