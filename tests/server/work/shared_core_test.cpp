@@ -5,6 +5,7 @@
 #include <malloc.h>
 
 #include "tests/core/hard_shapes.hpp"
+#include "tests/core/rounded.hpp"
 #include "tests/server/shared_jobs.hpp"
 
 namespace unwrapd::server::work {
@@ -108,6 +109,16 @@ TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyCut) {
   });
   ASSERT_GE(meshes.size(), 6U);
   expect_answers_as_alone(meshes, jobs);
+}
+
+TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyWeld) {
+  shapes::Rounded soup = shapes::rounded_soup(shapes::random_disk(3, 3), 1e-7, 5);
+  shapes::wind_at_random(0.5, 6, soup);
+  std::vector<UnwrapOptions> jobs(3);
+  for (UnwrapOptions& options : jobs) options.stop.iterations = 2;
+  jobs[1].welding.mode = WeldMode::exact;
+  jobs[2].welding = {.mode = WeldMode::distance, .distance = 1e-9};
+  expect_answers_as_alone({{shapes::surface_of(soup.mesh)}}, jobs);
 }
 
 TEST(JobsThatShare, AnswerAsTheyWouldAloneWhateverPartsFacesAreOf) {
