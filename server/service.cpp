@@ -81,15 +81,15 @@ struct Service::Parts {
     store::sweep_at_start(store, mesh_store, blobs, log);
     blobs.room().on_shortage(
         {.evict = [this] { return store::evict_oldest(store, mesh_store, blobs); },
-         .bytes = [this] { return store.evictable_bytes() + blobs.lost().bytes(); }});
-    blobs.on_keeping(
-        {.reservation = [this](const std::string& id,
-                               std::int64_t bytes) { return claim_to_keep(id, bytes); },
-         .kept =
-             [this](std::string_view id, std::int64_t bytes) {
-               is_mesh_id(id) ? mesh_store.set_stored_bytes(id, bytes)
-                              : store.set_stored_bytes(id, bytes);
-             }});
+         .bytes = [this] { return store.evictable_bytes() + blobs.lost().bytes(); },
+         .give_up_lost = [this] { return blobs.lost().give_up_first(); }});
+    blobs.on_keeping({.reservation = [this](const auto& id, auto seq,
+                                            auto bytes) { return claim_to_keep(id, seq, bytes); },
+                      .kept =
+                          [this](std::string_view id, std::int64_t bytes) {
+                            is_mesh_id(id) ? mesh_store.set_stored_bytes(id, bytes)
+                                           : store.set_stored_bytes(id, bytes);
+                          }});
     start_periodic(log);
     workers.emplace(
         queue, blobs, config.limits, log,
@@ -125,9 +125,9 @@ struct Service::Parts {
 
   /// Reserves bytes in the quota of the job's owner, if it allows them. The analysis of a mesh is
   /// short and not counted.
-  std::shared_ptr<void> claim_to_keep(const std::string& id, std::int64_t bytes) {
+  std::shared_ptr<void> claim_to_keep(const std::string& id, std::int64_t seq, std::int64_t bytes) {
     const std::optional<store::JobRecord> job = store.find(id);
-    if (!job && !is_mesh_id(id)) return nullptr;
+    if (job ? job->seq != seq : !is_mesh_id(id)) return nullptr;
     auto reservation =
         std::make_shared<store::QuotaReservation>(reservations, job ? job->owner : std::string());
     if (job && !reservation->try_set(bytes, most_bytes(job->owner))) return nullptr;

@@ -23,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kBlobs = "blobs";
+constexpr const char* kLock = "lock";
 constexpr const char* kNotedFile = "digests-noted";
 constexpr std::int64_t kRowsAtOnce = 1000;
 
@@ -188,6 +189,17 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
   return std::ranges::mismatch(outer, inner).in1 == outer.end();
 }
 
+/// Throws if a directory has anything but the lock of a server.
+void require_empty(const fs::path& data) {
+  if (!fs::is_directory(data)) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(data)) {
+    if (entry.path().filename() == kLock) continue;
+    throw Error(ErrorCode::invalid_option,
+                data.string() + " is not empty: it has " + entry.path().filename().string() +
+                    "; move its files away first, or give another --data directory.");
+  }
+}
+
 }  // namespace
 
 StoreReport back_up(const fs::path& data, const fs::path& to) {
@@ -220,13 +232,9 @@ StoreReport back_up(const fs::path& data, const fs::path& to) {
 
 StoreReport restore(const fs::path& backup, const fs::path& data) {
   check_backup(backup);
+  if (!fs::exists(data / kLock)) require_empty(data);  // a refusal leaves no lock behind
   const store::DataLock lock(data);
-  for (const fs::directory_entry& entry : fs::directory_iterator(data)) {
-    if (entry.path().filename() == "lock") continue;
-    throw Error(ErrorCode::invalid_option,
-                data.string() + " is not empty: it has " + entry.path().filename().string() +
-                    "; move its files away first, or give another --data directory.");
-  }
+  require_empty(data);
   StoreReport report;
   make_directories(data / kBlobs);
   FolderCopy copy(backup / kBlobs, data / kBlobs);

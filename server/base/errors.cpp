@@ -1,5 +1,8 @@
 #include "server/base/errors.hpp"
 
+#include <new>
+#include <system_error>
+
 #include "server/base/files.hpp"
 
 namespace unwrapd::server {
@@ -8,6 +11,17 @@ namespace {
 constexpr int kDrainRetrySeconds = 5;
 
 }  // namespace
+
+std::string reason_of(const std::exception& error) {
+  if (const auto* inside = dynamic_cast<const InsideError*>(&error)) return inside->reason();
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
+    return "There is too little memory; raise its limit (ulimit -v, MemoryMax).";
+  const auto* refused = dynamic_cast<const std::system_error*>(&error);
+  if (refused != nullptr && refused->code() == std::errc::resource_unavailable_try_again)
+    return "A thread could not be started; raise the limit of address space (ulimit -v) or of "
+           "threads (ulimit -u, TasksMax, pids.max).";
+  return error.what();
+}
 
 RetryLater draining() {
   return {ErrorCode::draining,

@@ -35,11 +35,8 @@ class InsideError : public Error {
   std::string reason_;
 };
 
-/// What the log says of an error.
-inline std::string reason_of(const std::exception& error) {
-  const auto* inside = dynamic_cast<const InsideError*>(&error);
-  return inside != nullptr ? inside->reason() : error.what();
-}
+/// What the log says of an error; where a limit of this process is too small, which one to raise.
+std::string reason_of(const std::exception& error);
 
 // The queue refuses a job, or gives one up.
 RetryLater draining();

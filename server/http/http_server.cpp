@@ -144,7 +144,7 @@ void HttpServer::begin_thread() {
     threads_.emplace_back([this] { work(); });
   } catch (const std::system_error& error) {  // those that there are go on
     log_.error("a thread could not be started",
-               {{"threads", threads_.size()}, {"reason", error.what()}});
+               {{"threads", threads_.size()}, {"reason", reason_of(error)}});
   }
 }
 
@@ -198,7 +198,7 @@ void HttpServer::serve_client(Client client, Exchange& exchange) {
   try {
     again = serve_requests(connection, exchange);
   } catch (const std::exception& error) {
-    log_.error("a connection failed", {{"reason", error.what()}});
+    log_.error("a connection failed", {{"reason", reason_of(error)}});
   }
   if (std::optional<OpenStream> stream = exchange.take_stream())
     return streams_.take(connection.release(), std::move(*stream));

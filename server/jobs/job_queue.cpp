@@ -64,11 +64,11 @@ void JobQueue::give_back(std::string_view sender) {
 
 std::optional<store::JobRecord> JobQueue::same_name(const store::JobRecord& job) {
   if (job.request_key.empty()) return std::nullopt;
+  const std::lock_guard lock(mutex_);  // what is being removed is gone with its files
   std::optional<store::JobRecord> known = store_.find_request(job.owner, job.request_key);
   if (!known) known = store_.find(job.id);
-  if (!known) return std::nullopt;
-  if (known->owner != job.owner) throw unknown_job();
-  if (!is_same_request(*known, job)) throw another_question();
+  if (known && known->owner != job.owner) throw unknown_job();
+  if (known && !is_same_request(*known, job)) throw another_question();
   return known;
 }
 

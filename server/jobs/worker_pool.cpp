@@ -181,7 +181,7 @@ void WorkerPool::give_up(RunningJob& job, store::QuotaReservation& reservation) 
     queue_.finish(job, outcome_of(stopped, job, limits_.max_job_seconds),
                   [&] { reservation.give_up(); });
   } catch (const std::exception& error) {  // the store: the job is run again at the next start
-    log_.error("a worker failed", {{"reason", error.what()}});
+    log_.error("a worker failed", {{"reason", reason_of(error)}});
   }
 }
 

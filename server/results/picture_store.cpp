@@ -61,7 +61,7 @@ StoredResult PictureStore::open(const store::JobRecord& job, std::size_t map,
   const std::string bytes =
       renderer_.render(job, {.map = map, .picture = picture, .format = {}}, has_left);
   counts_.made(bytes);
-  return is_kept(picture) ? keep(blobs_, job.id, name, bytes) : lend(blobs_, bytes);
+  return is_kept(picture) ? keep(blobs_, job, name, bytes) : lend(blobs_, bytes);
 }
 
 }  // namespace unwrapd::server::results

@@ -27,10 +27,10 @@ std::optional<StoredResult> find_whole(const store::BlobStore& blobs, const std:
   }
 }
 
-StoredResult keep(store::BlobStore& blobs, const std::string& job, const std::string& file,
+StoredResult keep(store::BlobStore& blobs, const store::JobRecord& job, const std::string& file,
                   std::string_view bytes) {
-  if (!blobs.try_keep(job, file, bytes)) return lend(blobs, bytes);
-  return {.file = blobs.open(job, file), .sha256 = blobs.digest(job, file)};
+  if (!blobs.try_keep(job.id, file, bytes, job.seq)) return lend(blobs, bytes);
+  return {.file = blobs.open(job.id, file), .sha256 = blobs.digest(job.id, file)};
 }
 
 StoredResult lend(const store::BlobStore& blobs, std::string_view bytes) {
@@ -53,7 +53,7 @@ StoredResult ResultStore::open(const store::JobRecord& job, std::size_t map,
   const work::Rendering rendering{.map = map, .picture = {}, .format = format_named(format)};
   const std::string bytes = renderer_.render(job, rendering, has_left);
   counts_.made(bytes);
-  return keep(blobs_, job.id, file, bytes);
+  return keep(blobs_, job, file, bytes);
 }
 
 }  // namespace unwrapd::server::results

@@ -24,8 +24,9 @@ struct StoredResult {
 /// A file of a job that exists and matches its digest.
 std::optional<StoredResult> find_whole(const store::BlobStore& blobs, const std::string& job,
                                        const std::string& file);
-/// A file that was made after the end of its job, kept where that takes nothing from others.
-StoredResult keep(store::BlobStore& blobs, const std::string& job, const std::string& file,
+/// A file that was made after the end of its job, kept where that takes nothing from others and no
+/// other job has taken its id meanwhile.
+StoredResult keep(store::BlobStore& blobs, const store::JobRecord& job, const std::string& file,
                   std::string_view bytes);
 /// One that is handed out once.
 StoredResult lend(const store::BlobStore& blobs, std::string_view bytes);

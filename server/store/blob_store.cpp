@@ -170,10 +170,11 @@ void BlobStore::note(std::string_view job, const std::string& file) {
   if (keeping_.kept) keeping_.kept(job, counted);
 }
 
-bool BlobStore::try_keep(std::string_view job, const std::string& file, std::string_view bytes) {
+bool BlobStore::try_keep(std::string_view job, const std::string& file, std::string_view bytes,
+                         std::int64_t seq) {
   const auto count = static_cast<std::int64_t>(bytes.size());
   std::shared_ptr<void> reservation;  // until the bytes count
-  if (keeping_.reservation && !(reservation = keeping_.reservation(std::string(job), count)))
+  if (keeping_.reservation && !(reservation = keeping_.reservation(std::string(job), seq, count)))
     return false;
   if (!room_.try_take(job, count)) return false;
   try {

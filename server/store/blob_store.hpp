@@ -29,8 +29,9 @@ namespace unwrapd::server::store {
 /// Callbacks of try_keep().
 struct Keeping {
   /// Reserves bytes in the quota of the job's owner while the returned pointer lives; nullptr if
-  /// the quota does not allow them.
-  std::function<std::shared_ptr<void>(const std::string& job, std::int64_t bytes)> reservation = {};
+  /// the quota does not allow them, or if the job of this number is gone.
+  std::function<std::shared_ptr<void>(const std::string& job, std::int64_t seq, std::int64_t bytes)>
+      reservation = {};
   /// The bytes of all the job's files now.
   std::function<void(std::string_view job, std::int64_t bytes)> kept = {};
 };
@@ -86,10 +87,11 @@ class BlobStore {
   /// they survive a loss of power. Returns the bytes of all files of the job.
   std::int64_t seal(std::string_view job);
   /// Keeps a file that was made after seal() and can be made again, and notes its digest. False
-  /// when that would take something from others: there is no room for it, or its owner may not
-  /// have so much. Throws Error{storage_failed}.
-  [[nodiscard]] bool try_keep(std::string_view job, const std::string& file,
-                              std::string_view bytes);
+  /// when that would take something from others: there is no room for it, its owner may not have
+  /// so much, or another job has this id by now. seq: the number of the job's row; 0 for a mesh.
+  /// Throws Error{storage_failed}.
+  [[nodiscard]] bool try_keep(std::string_view job, const std::string& file, std::string_view bytes,
+                              std::int64_t seq = 0);
   /// A file without a name, for what is handed out once. Throws Error: storage_full,
   /// storage_failed.
   [[nodiscard]] std::shared_ptr<const File> lend(std::string_view bytes) const;

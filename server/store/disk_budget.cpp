@@ -43,6 +43,13 @@ bool DiskBudget::is_free(std::int64_t bytes, std::int64_t left_free) const {
   return !known || static_cast<std::int64_t>(free) - bytes >= left_free;
 }
 
+/// Gives up what is in DIR/lost until so much is free. Throws if that is not enough.
+void DiskBudget::free_on_disk(std::int64_t bytes, std::int64_t left_free) {
+  while (!is_free(bytes, left_free)) {
+    if (!evictions_.give_up_lost || !evictions_.give_up_lost()) full();
+  }
+}
+
 void DiskBudget::check_free(std::int64_t bytes) const {
   if (!is_free(bytes, limits_.min_free_bytes)) full();
 }
@@ -61,7 +68,7 @@ void DiskBudget::check_evictions(std::string_view job, std::int64_t whole) const
 }
 
 bool DiskBudget::try_take_for_upload(std::string_view job, std::int64_t bytes) {
-  check_free(bytes);
+  free_on_disk(bytes, limits_.min_free_bytes);
   return try_take(job, bytes, upload_limit());
 }
 
@@ -73,7 +80,7 @@ void DiskBudget::take_for_upload(std::string_view job, std::int64_t bytes, std::
 }
 
 void DiskBudget::take(std::string_view job, std::int64_t bytes) {
-  if (!is_free(bytes, limits_.min_free_bytes / 2)) full();
+  free_on_disk(bytes, limits_.min_free_bytes / 2);
   take_below(job, bytes, limits_.max_bytes > 0 ? limits_.max_bytes : kNoLimit);
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 // How much disk the jobs take, and how much they may take. A file without room is refused before it
 // is written. Uploads may fill three quarters of the room; the last quarter is for the results of
-// accepted jobs. Older results are removed for an upload only if it then has room.
+// accepted jobs. Older results are removed for an upload only if it then has room. On a disk that
+// is full, what is in DIR/lost is given up first.
 
 #include <cstdint>
 #include <filesystem>
@@ -23,6 +24,7 @@ struct DiskLimits {
 struct Evictions {
   std::function<bool()> evict;          ///< the files of one finished job; false when there is none
   std::function<std::int64_t()> bytes;  ///< of all that evict() would give up
+  std::function<bool()> give_up_lost = {};  ///< one folder of DIR/lost; false when there is none
 };
 
 /// Size of the reserve.
@@ -87,6 +89,7 @@ class DiskBudget {
  private:
   [[nodiscard]] std::int64_t upload_limit() const;
   [[nodiscard]] bool is_free(std::int64_t bytes, std::int64_t left_free) const;
+  void free_on_disk(std::int64_t bytes, std::int64_t left_free);
   void check_evictions(std::string_view job, std::int64_t whole) const;
   bool try_take(std::string_view job, std::int64_t bytes, std::int64_t limit);
   void take_below(std::string_view job, std::int64_t bytes, std::int64_t limit);

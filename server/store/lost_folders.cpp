@@ -115,10 +115,11 @@ int LostFolders::sweep(std::int64_t epoch_ms) {
 
 bool LostFolders::give_up_first() {
   const std::lock_guard lock(mutex_);
-  const std::vector<Entry> all = entries();
-  if (all.empty()) return false;
-  remove(all.front().name);
-  return true;
+  for (const Entry& entry : entries()) {
+    remove(entry.name);
+    if (!fs::exists(fs::symlink_status(lost_ / entry.name))) return true;
+  }
+  return false;
 }
 
 }  // namespace unwrapd::server::store

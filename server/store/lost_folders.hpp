@@ -2,8 +2,9 @@
 // DIR/lost: what was found in DIR/blobs at a start and belongs to no row that can be read. The
 // database may be older than the files (a copy put back, a WAL that was cut off), and then these
 // are results which only the newer one knows: put that back, start again, and they return to blobs.
-// Else they go after the time that results are kept, or as the first when room is needed. Nothing
-// comes here but by a move, so the folder never makes more of what is stored.
+// Else they go after the time that results are kept, or as the first when room is needed, be it of
+// --max-disk-bytes or of the disk. Nothing comes here but by a move, so the folder never makes more
+// of what is stored.
 
 #include <atomic>
 #include <cstdint>
@@ -30,7 +31,7 @@ class LostFolders {
   void take(const std::string& name, std::int64_t now_ms);
   /// Removes what came before this time; returns how many.
   int sweep(std::int64_t epoch_ms);
-  /// Removes what came first. False when there is nothing.
+  /// Removes what came first and can be removed. False when there is nothing.
   bool give_up_first();
   /// Of all that is here.
   [[nodiscard]] std::int64_t bytes() const { return bytes_; }

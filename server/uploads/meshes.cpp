@@ -144,7 +144,7 @@ api::Json Meshes::analysis(const store::MeshRecord& mesh, const http::HasLeft& h
   } else {
     const std::string bytes = analyse(renderer_, job, has_left);
     counts_.made(bytes);
-    kept = results::keep(blobs_, mesh.id, file, bytes);
+    kept = results::keep(blobs_, job, file, bytes);
   }
   return api::Json::parse(kept->file->read(0, static_cast<std::size_t>(kept->file->size())));
 }

@@ -132,6 +132,8 @@ TEST_F(Backup, IsNotMadeOverAnythingNorRestoredIntoADirectoryInUse) {
                 HasSubstr("lies in the data directory"));
   stop();
   EXPECT_THAT(error_of([&] { restore(backup(), config_.data); }).what(), HasSubstr("not empty"));
+  EXPECT_THAT(error_of([&] { restore(backup(), dir_.path()); }).what(), HasSubstr("not empty"));
+  EXPECT_FALSE(fs::exists(dir_.path() / "lock")) << "left in a folder of others";
   EXPECT_EQ(error_of([&] { back_up(dir_.path(), dir_.path() / "b"); }).code(),
             ErrorCode::not_found);
   EXPECT_EQ(error_of([&] { restore(config_.data, restored()); }).code(),

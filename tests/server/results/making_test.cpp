@@ -181,5 +181,26 @@ TEST_F(Makers, AreBoundedInNumber) {
   EXPECT_EQ(most_at_once_, 4);
 }
 
+TEST_F(Makers, KeepNothingOfAJobForTheNextOneOfItsId) {
+  start_held_up();
+  const std::string id = "j_" + std::string(32, '7');
+  const auto put = [&](int size) {
+    client().Put("/v1/jobs/" + id, grid_obj(size), "model/obj");
+    await_state(id, "succeeded");
+  };
+  const httplib::Headers json = {{"Accept", "application/json"}};
+  put(4);
+  std::jthread asker([&] { static_cast<void>(get(id, "result", json)); });
+  await([&] { return made() == 1; });
+  EXPECT_EQ(client().Delete("/v1/jobs/" + id)->status, 204);
+  put(5);
+  let_go();
+  asker.join();
+  const auto meshes = [&](const std::string& job) {
+    return api::Json::parse(get(job, "result", json)->body).at("meshes");
+  };
+  EXPECT_EQ(meshes(id), meshes(succeeded(5)));
+}
+
 }  // namespace
 }  // namespace unwrapd::server::results

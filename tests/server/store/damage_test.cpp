@@ -254,5 +254,21 @@ TEST_F(Lost, CountsAfterARestartAndGoesFirst) {
   EXPECT_EQ(next.room().used_bytes(), 0);
 }
 
+TEST_F(Lost, GoesWhenTheDiskIsFull) {
+  for (const char* name : {"j_1", "j_2"}) make(name, 10);
+  BlobStore full(dir_.path(), {.max_bytes = 0, .min_free_bytes = std::int64_t{1} << 60});
+  static_cast<void>(full.sweep(unknown, 5000));
+  full.room().on_shortage({.evict =
+                               [] {
+                                 ADD_FAILURE() << "a result was given up";
+                                 return false;
+                               },
+                           .bytes = [] { return 0; },
+                           .give_up_lost = [&] { return full.lost().give_up_first(); }});
+  EXPECT_EQ(error_of([&] { full.room().take("j_3", 1); }).code(), ErrorCode::storage_full);
+  EXPECT_TRUE(!has("j_1") && !has("j_2"));
+  EXPECT_EQ(full.room().used_bytes(), 0);
+}
+
 }  // namespace
 }  // namespace unwrapd::server::store

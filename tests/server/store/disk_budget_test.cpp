@@ -76,7 +76,9 @@ TEST_F(FilesOfJobs, AreClaimedUntilTheyCount) {
   add_sealed(blobs, "j_1");
   bool allowed = false;
   std::int64_t claimed = 0, counted = 0;
-  const auto reservation = [&](const std::string&, std::int64_t bytes) -> std::shared_ptr<void> {
+  const auto reservation = [&](const std::string&, std::int64_t seq,
+                               std::int64_t bytes) -> std::shared_ptr<void> {
+    EXPECT_EQ(seq, 5);
     if (!allowed) return nullptr;
     claimed = bytes;
     return {&claimed, [&](void*) { claimed = 0; }};
@@ -86,9 +88,9 @@ TEST_F(FilesOfJobs, AreClaimedUntilTheyCount) {
     counted = bytes;
   };
   blobs.on_keeping({.reservation = reservation, .kept = kept});
-  EXPECT_FALSE(blobs.try_keep("j_1", "picture", "1234567"));
+  EXPECT_FALSE(blobs.try_keep("j_1", "picture", "1234567", 5));
   allowed = true;
-  EXPECT_TRUE(blobs.try_keep("j_1", "picture", "1234567"));
+  EXPECT_TRUE(blobs.try_keep("j_1", "picture", "1234567", 5));
   EXPECT_EQ(counted, 16) << "the document, the report and the picture: digests are ours";
   EXPECT_EQ(claimed, 0);
 }
