@@ -41,7 +41,7 @@ constexpr std::array kRows = {
     ErrorRow{malformed_glb, "malformed_glb", 400, "The GLB container is broken"},
     ErrorRow{malformed_json, "malformed_json", 400, "The asset's JSON is broken"},
     ErrorRow{malformed_gltf, "malformed_gltf", 400, "The glTF document is broken"},
-    ErrorRow{malformed_obj, "malformed_obj", 400, "The OBJ file is broken"},
+    ErrorRow{malformed_obj, "malformed_obj", 400, "The OBJ, STL, PLY, OFF or zip file is broken"},
     ErrorRow{malformed_draco, "malformed_draco", 400, "The Draco data is broken"},
     ErrorRow{malformed_meshopt, "malformed_meshopt", 400, "The meshopt data is broken"},
     ErrorRow{missing_buffer, "missing_buffer", 422, "A buffer of the asset is missing"},

@@ -228,7 +228,8 @@ constexpr std::array kRows = {
         "primitives", OptionType::names, kEveryMethod,
         "JSON pointers of the primitives to unwrap; all others keep their UVs. Empty: all."),
     choice<&JobOptions::output, kOutputs>("output", kEveryMethod,
-                                          "Format of the result. auto: the format of the input."),
+                                          "Format of the result. auto: the format of the input, or "
+                                          "GLB for STL, PLY and OFF, which are only read."),
     choice<&A::compression, kCompressions>(
         "compression", kEveryMethod,
         "Encoding of a glTF's geometry, always lossless. keep: as in the input; none: "

@@ -2,8 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <string_view>
 
 #include "api/error_table.hpp"
 #include "api/options.hpp"
@@ -17,8 +20,9 @@ namespace fs = std::filesystem;
 constexpr double kMaxTimeoutSeconds = 1e6;
 
 constexpr const char* kAbout =
-    "unwrap computes UV coordinates for a triangle mesh: it sends FILE (glTF, GLB or OBJ) to an "
-    "unwrapd server, shows the progress, and writes the same asset with texture coordinates.";
+    "unwrap computes UV coordinates for a triangle mesh: it sends FILE (glTF, GLB, OBJ, STL, "
+    "PLY or OFF) to an unwrapd server, shows the progress, and writes the same asset with texture "
+    "coordinates.";
 
 constexpr const char* kFooter = R"(Examples:
   unwrap chair.glb                                 writes chair.uv.glb
@@ -121,11 +125,15 @@ void add_picture_flags(CLI::App& app, Arguments& arguments) {
 
 void add_flags(CLI::App& app, RawArguments& raw) {
   Arguments& arguments = raw.arguments;
-  app.add_option("FILE", arguments.file, "The mesh: .glb, .gltf or .obj")->type_name("");
-  app.add_option("-o,--out", arguments.out,
-                 "File to write the result to. Its extension selects the format unless --output "
-                 "does. Default: the name of FILE with \".uv\" before the extension. A list of "
-                 "lambdas writes one file for each, with the lambda before the extension")
+  app.add_option("FILE", arguments.file,
+                 "The mesh: .glb, .gltf, .obj, .stl, .ply or .off, or a .zip with one of them")
+      ->type_name("");
+  app.add_option(
+         "-o,--out", arguments.out,
+         "File to write the result to. Its extension selects the format unless --output "
+         "does; GLB, glTF and OBJ are written. Default: the name of FILE with \".uv\" before the "
+         "extension, which becomes .glb for .stl, .ply, .off and .zip. A list of "
+         "lambdas writes one file for each, with the lambda before the extension")
       ->type_name("OUT");
   app.add_option("--report", arguments.report, "Write the report (JSON) to PATH")
       ->type_name("PATH");
@@ -146,13 +154,37 @@ void add_flags(CLI::App& app, RawArguments& raw) {
   app.set_version_flag("--version", "unwrap " UNWRAPD_VERSION);
 }
 
-/// The format of a file name: "glb", "gltf", "obj", or "auto" for any other.
+constexpr std::array<std::string_view, 3> kWritten = {"glb", "gltf", "obj"};
+constexpr std::array<std::string_view, 3> kOnlyRead = {"stl", "ply", "off"};
+constexpr std::array<std::string_view, 10> kForeign = {"zip",  "fbx",  "dae", "usd", "usda",
+                                                       "usdc", "usdz", "3mf", "3ds", "blend"};
+
+bool is_among(std::span<const std::string_view> names, std::string_view name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// The extension in small letters, without its dot.
+std::string extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return extension.empty() ? extension : extension.substr(1);
+}
+
+/// The format of a file name: "glb", "gltf", "obj", or "auto" for any other. Throws Failure for the
+/// name of a format that is not written.
 std::string format_of(const fs::path& path) {
-  const std::string extension = path.extension().string();
-  if (extension == ".glb" || extension == ".gltf" || extension == ".obj")
-    return extension.substr(1);
+  const std::string extension = extension_of(path);
+  if (is_among(kWritten, extension)) return extension;
+  if (is_among(kOnlyRead, extension) || is_among(kForeign, extension))
+    throw Failure(ExitCode::usage,
+                  "--out: ." + extension + " is not written" +
+                      (extension == "stl" ? ", because STL has no place for UVs" : "") +
+                      "; name a .glb, .gltf or .obj.");
   return "auto";
 }
+
+/// An archive's asset may have any format, so that the format of its result is to be named.
+bool is_zip(const fs::path& path) { return extension_of(path) == "zip"; }
 
 /// Checks the options without a server's limits, which the server checks itself.
 void check_options(const OptionTexts& options) {
@@ -195,8 +227,10 @@ Arguments complete(RawArguments raw) {
   const bool output_given = output != arguments.options.end();
   if (arguments.out.empty()) {
     arguments.out = default_out(arguments.file, output_given ? output->second : "auto");
-  } else if (!output_given && format_of(arguments.out) != "auto") {
-    arguments.options["output"] = format_of(arguments.out);
+    if (!output_given && is_zip(arguments.file)) arguments.options["output"] = "glb";
+  } else if (const std::string format = format_of(arguments.out);
+             !output_given && format != "auto") {
+    arguments.options["output"] = format;
   }
   return std::move(arguments);
 }
@@ -206,7 +240,8 @@ Arguments complete(RawArguments raw) {
 fs::path default_out(const fs::path& file, const std::string& output) {
   fs::path out = file;
   const bool keep = output.empty() || output == "auto";
-  const std::string extension = keep ? file.extension().string() : "." + output;
+  std::string extension = keep ? file.extension().string() : "." + output;
+  if (keep && (is_among(kOnlyRead, extension_of(file)) || is_zip(file))) extension = ".glb";
   out.replace_filename(file.stem().string() + ".uv" + extension);
   return out;
 }

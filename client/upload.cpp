@@ -56,7 +56,9 @@ std::string media_type(const fs::path& path) {
   const std::string extension = path.extension().string();
   if (extension == ".glb") return "model/gltf-binary";
   if (extension == ".gltf") return "model/gltf+json";
-  if (extension == ".obj") return "model/obj";
+  if (extension == ".obj" || extension == ".stl" || extension == ".ply" || extension == ".off")
+    return "model/" + extension.substr(1);
+  if (extension == ".zip") return "application/zip";
   return "application/octet-stream";
 }
 

@@ -32,7 +32,8 @@ Upload raw_upload(const std::filesystem::path& document);
 Upload multipart_upload(const std::string& options, const std::filesystem::path& document,
                         const std::vector<ExternalBuffer>& buffers);
 
-/// "model/gltf-binary", "model/gltf+json", "model/obj"; else "application/octet-stream".
+/// "model/gltf-binary", "model/gltf+json", "model/" and the name of another format that is read;
+/// else "application/octet-stream".
 std::string media_type(const std::filesystem::path& path);
 
 /// Reads an upload in order, a block at a time.

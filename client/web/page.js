@@ -110,7 +110,7 @@ function chosenOptions() {
 
 function body() {
   const files = [...$("files").files];
-  const mesh = files.find(({ name }) => /\.(glb|gltf|obj)$/i.test(name)) ?? files[0];
+  const mesh = files.find(({ name }) => /\.(glb|gltf|obj|stl|ply|off|zip)$/i.test(name)) ?? files[0];
   const form = new FormData();
   form.append("options", new Blob([JSON.stringify(chosenOptions())], { type: "application/json" }));
   form.append("mesh", mesh, mesh.name);

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <limits>
 #include <utility>
+#include <variant>
 
 #include "core/asset/compress.hpp"
 #include "core/asset/convert.hpp"
@@ -11,6 +12,7 @@
 #include "core/asset/patch.hpp"
 #include "core/asset/read_gltf.hpp"
 #include "core/asset/recognise.hpp"
+#include "core/asset/zip.hpp"
 
 namespace unwrapd::asset {
 
@@ -22,8 +24,18 @@ std::string_view format_name(Format format) {
       return "gltf";
     case Format::obj:
       return "obj";
+    case Format::stl:
+      return "stl";
+    case Format::ply:
+      return "ply";
+    case Format::off:
+      return "off";
   }
   return "glb";
+}
+
+Format usual_output(Format input) {
+  return input == Format::gltf || input == Format::obj ? input : Format::glb;
 }
 
 Asset::Asset(std::unique_ptr<Document> document) : document_(std::move(document)) {}
@@ -50,18 +62,20 @@ namespace {
 constexpr ReadLimits kNoLimits = {.max_vertices = std::numeric_limits<Index>::max(),
                                   .max_faces = std::numeric_limits<Index>::max()};
 
-/// An OBJ has one set of texture coordinates, and its materials and objects are one mesh.
-void check_for_obj(const AssetOptions& options) {
-  const auto refuse = [](const char* option, const std::string& why) {
-    throw Error(ErrorCode::invalid_option, why, option);
+/// All formats but glTF have one set of texture coordinates, and no primitives. A surface has all
+/// their materials.
+void check_for_one_mesh(const AssetOptions& options, Format format) {
+  const std::string name =
+      format == Format::obj ? "an OBJ" : "a mesh in " + std::string(format_name(format));
+  const auto refuse = [&](const char* option, const std::string& why) {
+    throw Error(ErrorCode::invalid_option, name + why, option);
   };
   if (const int* set = std::get_if<int>(&options.texcoord); set != nullptr && *set != 0)
-    refuse("/texcoord",
-           "an OBJ has one set of texture coordinates; leave texcoord out, or send a glTF");
+    refuse("/texcoord", " has one set of texture coordinates; leave texcoord out, or send a glTF");
   if (!options.materials.empty())
-    refuse("/materials", "an OBJ is unwrapped whole; leave materials out, or send a glTF");
+    refuse("/materials", " is unwrapped whole; leave materials out, or send a glTF");
   if (!options.primitives.empty())
-    refuse("/primitives", "an OBJ has no primitives; leave them out, or send a glTF");
+    refuse("/primitives", " has no primitives; leave them out, or send a glTF");
 }
 
 /// An uncompressed document.
@@ -104,38 +118,76 @@ std::string write_from_gltf(const Gltf& gltf, std::span<const UnwrappedSurface> 
   return assemble(gltf, std::move(patched), output, style);
 }
 
+/// The GLB or glTF of a document that was none. make: the uncompressed one, in a format.
+template <class Make>
+std::string write_gltf(const Document& document, const std::stop_token& stop, Format output,
+                       const Make& make) {
+  const Compression compression = document.options.compression;
+  if (!is_compressed(compression)) return make(output);
+  return compressed({make(Format::glb), nullptr, stop}, output, compression, false);
+}
+
 std::string write_from_obj(const Document& document, const UnwrappedSurface& unwrapped,
                            Format output) {
   const Obj& obj = std::get<Obj>(document.source);
   if (output == Format::obj) return write_obj(obj, unwrapped);
-  const Compression compression = document.options.compression;
-  if (!is_compressed(compression))
-    return obj_as_gltf(obj, document.surfaces.front(), unwrapped, output);
-  std::string plain = obj_as_gltf(obj, document.surfaces.front(), unwrapped, Format::glb);
-  return compressed({std::move(plain), nullptr, obj.stop}, output, compression, false);
+  return write_gltf(document, obj.stop, output, [&](Format format) {
+    return obj_as_gltf(obj, document.surfaces.front(), unwrapped, format);
+  });
+}
+
+std::string write_from_mesh_file(const Document& document, const UnwrappedSurface& unwrapped,
+                                 Format output) {
+  const MeshFile& file = std::get<MeshFile>(document.source);
+  const Surface& surface = document.surfaces.front();
+  if (output == Format::obj) return mesh_file_as_obj(file, surface, unwrapped);
+  return write_gltf(document, file.stop, output, [&](Format format) {
+    return mesh_file_as_gltf(file, surface, unwrapped, format);
+  });
+}
+
+/// Reads all formats but glTF, which have one surface.
+std::variant<Gltf, Obj, MeshFile> read_one_mesh(const Input& input, const ReadLimits& limits,
+                                                Format format, Surface& surface) {
+  surface.name = format_name(format);
+  if (format == Format::stl) return read_stl(input, limits, surface);
+  if (format == Format::ply) return read_ply(input, limits, surface);
+  if (format == Format::off) return read_off(input, limits, surface);
+  return read_obj(input, limits, surface);
+}
+
+Asset read_document(const Input& input, const ReadLimits& limits, const AssetOptions& options) {
+  auto document = std::make_unique<Document>();
+  document->options = options;
+  document->format = recognise(input.document, input.stop);
+  if (document->format == Format::glb || document->format == Format::gltf) {
+    document->source = read_gltf(input, document->format, limits, options, document->surfaces);
+  } else {
+    check_for_one_mesh(options, document->format);
+    document->surfaces.resize(1);
+    document->source = read_one_mesh(input, limits, document->format, document->surfaces.front());
+  }
+  return Asset(std::move(document));
 }
 
 }  // namespace
 
 Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& options) {
-  auto document = std::make_unique<Document>();
-  document->options = options;
-  document->format = recognise(input.document, input.stop);
-  if (document->format == Format::obj) {
-    check_for_obj(options);
-    document->surfaces.resize(1);
-    document->source = read_obj(input, limits, document->surfaces.front());
-  } else {
-    document->source = read_gltf(input, document->format, limits, options, document->surfaces);
-  }
-  return Asset(std::move(document));
+  if (!is_zip(input.document)) return read_document(input, limits, options);
+  const Unzipped unzipped = unzip(input.document, limits.max_unzipped_bytes, input.stop);
+  Input inner{unzipped.document, {}, input.stop};
+  for (const auto& [path, bytes] : unzipped.files) inner.buffers.emplace(path, bytes);
+  return read_document(inner, limits, options);
 }
 
 std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrapped, Format output) {
   const Document& document = asset.document();
   assert(unwrapped.size() == document.surfaces.size());
+  assert(output == usual_output(output));
   if (std::holds_alternative<Obj>(document.source))
     return write_from_obj(document, unwrapped.front(), output);
+  if (std::holds_alternative<MeshFile>(document.source))
+    return write_from_mesh_file(document, unwrapped.front(), output);
   const Gltf& gltf = std::get<Gltf>(document.source);
   return output == Format::obj
              ? gltf_as_obj(gltf, document.surfaces, unwrapped)
@@ -149,6 +201,11 @@ std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const Unwrapped
     const Surface& surface = document.surfaces.front();
     if (output == Format::obj) return {{surface.name, surface.mesh.vertex_count(), {}}};
     return {{surface.name, 0, sources_in_gltf(*obj, surface, unwrapped.front())}};
+  }
+  if (const MeshFile* file = std::get_if<MeshFile>(&document.source)) {
+    const Surface& surface = document.surfaces.front();
+    if (output == Format::obj) return {{surface.name, surface.mesh.vertex_count(), {}}};
+    return {{surface.name, 0, sources_in_gltf(*file, surface, unwrapped.front())}};
   }
   const Gltf& gltf = std::get<Gltf>(document.source);
   if (output != Format::obj) return vertex_maps_of_patch(gltf, unwrapped);
@@ -167,12 +224,15 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
                      "An OBJ cannot be compressed; the option compression has no effect."});
   std::vector<Note> more;
   if (const Obj* obj = std::get_if<Obj>(&document.source)) {
-    if (output == Format::obj) more = note_on_polygons(*obj, unwrapped.front());
-    if (obj->has_materials && !obj->texcoord_lines.empty())
+    more =
+        output == Format::obj ? note_on_polygons(*obj, unwrapped.front()) : note_on_materials(*obj);
+    if (obj->has_materials() && !obj->texcoord_lines.empty())
       notes.push_back({NoteCode::textures_lost,
                        "The OBJ had texture coordinates, which are replaced: images of its "
                        "materials no longer fit. Send a glTF to keep them in a set of their own."});
   }
+  if (const MeshFile* file = std::get_if<MeshFile>(&document.source))
+    more = note_on_mesh_file(*file, document.format);
   if (const Gltf* gltf = std::get_if<Gltf>(&document.source);
       gltf != nullptr && output != Format::obj)
     more = side_effects_of_patch(*gltf, output);

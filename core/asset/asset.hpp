@@ -19,10 +19,14 @@
 
 namespace unwrapd::asset {
 
-enum class Format { glb, gltf, obj };
+enum class Format { glb, gltf, obj, stl, ply, off };
 
-/// "glb", "gltf" or "obj".
+/// "glb", "gltf", "obj", "stl", "ply" or "off".
 std::string_view format_name(Format format);
+
+/// The format of the answer to an input, unless another is asked for: its own if that is written,
+/// else GLB. Only GLB, glTF and OBJ are written.
+Format usual_output(Format input);
 
 /// The bytes of a request. No other file or address is ever opened. buffers: a .gltf's external
 /// buffers by the URI that the document uses for them.
@@ -38,7 +42,8 @@ inline constexpr std::size_t kNoByteLimit = std::numeric_limits<std::size_t>::ma
 struct ReadLimits {
   std::int64_t max_vertices = 10'000'000;
   std::int64_t max_faces = 20'000'000;
-  std::size_t max_bytes = kNoByteLimit;  ///< of memory for a job
+  std::size_t max_bytes = kNoByteLimit;                     ///< of memory for a job
+  std::size_t max_unzipped_bytes = std::size_t{256} << 20;  ///< of the files in a zip archive
 };
 
 struct Document;  // the original JSON and buffers, or the OBJ's text; private to asset
@@ -62,11 +67,13 @@ class Asset {
   std::unique_ptr<Document> document_;
 };
 
-/// Recognises the format by content. Returns the surfaces that the options select; write() then
-/// applies the options. Throws Error with a JSON pointer or a file position: unknown_format,
-/// malformed_*, missing_buffer, external_uri, unsupported_extension, too_many_vertices,
-/// too_many_faces, too_much_memory, no_triangles, non_finite_position; invalid_option if the asset
-/// has nothing of a name in the options. Throws Error{cancelled}.
+/// Recognises the format by content; of a zip archive, that of the one asset in it. Returns the
+/// surfaces that the options select; write() then applies the options. Throws Error with a JSON
+/// pointer or a file position: unknown_format, malformed_*, missing_buffer, external_uri,
+/// unsupported_extension, too_many_vertices, too_many_faces, too_much_memory, no_triangles,
+/// non_finite_position; invalid_option if the asset has nothing of a name in the options;
+/// body_too_large if an archive unpacks to more than its limit. Throws
+/// Error{cancelled}.
 Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& options = {});
 
 /// Fills Surface::corner_uv from the set of texture coordinates that the options name, or else from

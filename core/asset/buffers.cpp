@@ -45,14 +45,6 @@ bool has_parent_segment(std::string_view path) {
   }
 }
 
-bool is_plain_relative(std::string_view path) {
-  const bool odd = std::any_of(path.begin(), path.end(), [](char c) {
-    return c == '\\' || static_cast<unsigned char>(c) < 0x20;
-  });
-  return !path.empty() && !odd && path.front() != '/' && !has_scheme(path) &&
-         !has_parent_segment(path);
-}
-
 std::string data_uri_bytes(const Node& uri, const std::stop_token& stop) {
   const std::string& text = uri.text();
   const std::size_t comma = text.find(',');
@@ -127,6 +119,14 @@ std::string buffer_bytes(const Node& buffer, std::string_view bin, const Input& 
 }
 
 }  // namespace
+
+bool is_plain_relative(std::string_view path) {
+  const bool odd = std::any_of(path.begin(), path.end(), [](char c) {
+    return c == '\\' || static_cast<unsigned char>(c) < 0x20;
+  });
+  return !path.empty() && !odd && path.front() != '/' && !has_scheme(path) &&
+         !has_parent_segment(path);
+}
 
 void resolve_buffers(Gltf& gltf, std::string_view bin, const Input& input) {
   const auto list = Node(gltf.json).find("buffers");

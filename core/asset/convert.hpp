@@ -1,21 +1,37 @@
 #pragma once
-// Converts between the formats: geometry, normals and UVs, since OBJ has nothing else.
+// Converts between the formats: geometry, normals and UVs, since OBJ and the bare formats of
+// geometry have little else.
 
 #include <span>
 #include <string>
 
 #include "core/asset/gltf.hpp"
+#include "core/asset/mesh_file.hpp"
 #include "core/asset/obj.hpp"
 
 namespace unwrapd::asset {
 
-/// A minimal glTF: one node, one mesh, one primitive for each material that has faces.
+/// A minimal glTF: one node, one mesh, one primitive for each material that has faces, with its
+/// name.
 std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
                         Format output);
+
+/// A note that the glTF has the materials by name only; empty if the OBJ has none.
+std::vector<Note> note_on_materials(const Obj& obj);
 
 /// The vertex of the OBJ that each vertex of that glTF copies.
 std::vector<Index> sources_in_gltf(const Obj& obj, const Surface& surface,
                                    const UnwrappedSurface& unwrapped);
+
+/// The same for STL, PLY and OFF.
+std::string mesh_file_as_gltf(const MeshFile& file, const Surface& surface,
+                              const UnwrappedSurface& unwrapped, Format output);
+std::vector<Index> sources_in_gltf(const MeshFile& file, const Surface& surface,
+                                   const UnwrappedSurface& unwrapped);
+
+/// Triangles with their normals, if the file has any.
+std::string mesh_file_as_obj(const MeshFile& file, const Surface& surface,
+                             const UnwrappedSurface& unwrapped);
 
 /// One object ("o") for each mesh, in the mesh's own space.
 std::string gltf_as_obj(const Gltf& gltf, std::span<const Surface> surfaces,

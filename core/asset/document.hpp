@@ -6,6 +6,7 @@
 
 #include "core/asset/asset.hpp"
 #include "core/asset/gltf.hpp"
+#include "core/asset/mesh_file.hpp"
 #include "core/asset/obj.hpp"
 
 namespace unwrapd::asset {
@@ -14,7 +15,7 @@ struct Document {
   Format format = Format::glb;
   AssetOptions options;
   std::vector<Surface> surfaces;
-  std::variant<Gltf, Obj> source;
+  std::variant<Gltf, Obj, MeshFile> source;
 };
 
 }  // namespace unwrapd::asset

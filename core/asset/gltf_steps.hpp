@@ -23,6 +23,9 @@ void check_asset_and_extensions(Gltf& gltf);
 /// Fills buffers from the GLB's chunk, data URIs, and the request's parts; nothing else is opened.
 void resolve_buffers(Gltf& gltf, std::string_view bin, const Input& input);
 
+/// Whether a path leads below its folder: it has no scheme, no parent and no odd characters.
+bool is_plain_relative(std::string_view path);
+
 /// Fills sent_images with the images that the document names by a URI and the request has as parts.
 void take_images(Gltf& gltf, const Input& input);
 

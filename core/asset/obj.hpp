@@ -43,9 +43,13 @@ struct Obj {
       face_corners;  ///< [face]: the corners of its element that it uses
   std::vector<std::pair<std::size_t, std::size_t>> texcoord_lines;  ///< their bytes, in order
   std::vector<Vec3> normals;
-  bool has_materials = false;  ///< usemtl names one
+  std::vector<std::string> materials;  ///< [part]: the name after usemtl, empty before the first
+  bool has_material_library = false;   ///< an mtllib, which is never opened
   std::vector<FileRepair> repairs;
   std::stop_token stop;  ///< of the job, for reading and writing
+
+  /// Whether usemtl names one. Part 0 has none.
+  [[nodiscard]] bool has_materials() const { return materials.size() > 1; }
 };
 
 /// Throws Error{malformed_obj, non_finite_position, too_many_*, no_triangles} with the line, and

@@ -1,5 +1,5 @@
-// A glTF vertex is a position, a UV and a normal together. An OBJ's corners combine them freely, so
-// that each combination becomes a vertex.
+// A glTF vertex is a position, a UV and a normal together. The corners of an OBJ combine them
+// freely, so that each combination becomes a vertex.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -30,56 +30,80 @@ struct Vertices {
   std::map<Index, std::vector<Index>> corners;  ///< [part]: three to a face
 };
 
+/// What the corners of a surface are made of, whatever format it came in.
+struct Parts {
+  const Surface& surface;
+  const UnwrappedSurface& unwrapped;
+  std::span<const Vec3> normals;  ///< empty unless every corner has one
+};
+
 class Combiner {
  public:
-  Combiner(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped)
-      : obj_(obj), surface_(surface), unwrapped_(unwrapped), has_normals_(!obj.normals.empty()) {
-    for (const ObjElement& element : obj.elements)
-      for (std::size_t i = 0; element.face_count() > 0 && i < element.corner_count; ++i)
-        has_normals_ &= obj.corners[element.first_corner + i].normal != kNoNormal;
+  explicit Combiner(const Parts& parts) : parts_(parts) {}
+
+  /// Corner k of face t. normal: in parts.normals, or kNoNormal.
+  void add(std::size_t t, std::size_t k, Index normal) {
+    vertices_.corners[parts_.surface.part[t]].push_back(
+        number_of(parts_.unwrapped.faces[t][k], normal));
   }
 
-  Vertices run() {
-    for (const ObjElement& element : obj_.elements)
-      for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
-        check_cancelled_every(t, obj_.stop);
-        for (std::size_t k = 0; k < 3; ++k)
-          vertices_.corners[surface_.part[t]].push_back(
-              number_of(unwrapped_.faces[t][k], normal_of(element, t, k)));
-      }
-    return std::move(vertices_);
-  }
+  Vertices take() { return std::move(vertices_); }
 
  private:
-  [[nodiscard]] Index normal_of(const ObjElement& element, std::size_t t, std::size_t k) const {
-    if (!has_normals_) return kNoNormal;
-    return obj_.corners[element.first_corner + as_size(obj_.face_corners[t][k])].normal;
-  }
-
   Index number_of(Index vertex, Index normal) {
     const std::uint64_t key = std::uint64_t(vertex) << 32 | static_cast<std::uint32_t>(normal);
     const auto [found, is_new] =
         numbers_.try_emplace(key, static_cast<Index>(vertices_.positions.size()));
     if (!is_new) return found->second;
-    const Index source = unwrapped_.source[as_size(vertex)];
+    const Index source = parts_.unwrapped.source[as_size(vertex)];
     vertices_.sources.push_back(source);
-    vertices_.positions.push_back(as_floats(surface_.mesh.positions[as_size(source)]));
-    const Vec2& uv = unwrapped_.uv[as_size(vertex)];
+    vertices_.positions.push_back(as_floats(parts_.surface.mesh.positions[as_size(source)]));
+    const Vec2& uv = parts_.unwrapped.uv[as_size(vertex)];
     vertices_.uv.push_back({static_cast<float>(uv.x()), static_cast<float>(1 - uv.y())});
-    if (has_normals_) {
-      const Vec3 unit = obj_.normals[as_size(normal)].stableNormalized();
+    if (normal != kNoNormal) {
+      const Vec3 unit = parts_.normals[as_size(normal)].stableNormalized();
       vertices_.normals.push_back(as_floats(unit.squaredNorm() > 0 ? unit : Vec3(0, 0, 1)));
     }
     return found->second;
   }
 
-  const Obj& obj_;
-  const Surface& surface_;
-  const UnwrappedSurface& unwrapped_;
-  bool has_normals_;
+  Parts parts_;
   Vertices vertices_;
   std::unordered_map<std::uint64_t, Index> numbers_;
 };
+
+bool has_all_normals(const Obj& obj) {
+  return !obj.normals.empty() && std::ranges::all_of(obj.elements, [&](const ObjElement& element) {
+    const auto corners = std::span(obj.corners).subspan(element.first_corner, element.corner_count);
+    return element.face_count() == 0 ||
+           std::ranges::all_of(corners, [](const ObjCorner& c) { return c.normal != kNoNormal; });
+  });
+}
+
+Vertices vertices_of(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped) {
+  const bool has_normals = has_all_normals(obj);
+  Combiner combiner({surface, unwrapped, obj.normals});
+  for (const ObjElement& element : obj.elements)
+    for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
+      check_cancelled_every(t, obj.stop);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t corner = element.first_corner + as_size(obj.face_corners[t][k]);
+        combiner.add(t, k, has_normals ? obj.corners[corner].normal : kNoNormal);
+      }
+    }
+  return combiner.take();
+}
+
+Vertices vertices_of(const MeshFile& file, const Surface& surface,
+                     const UnwrappedSurface& unwrapped) {
+  Combiner combiner({surface, unwrapped, file.normals});
+  for (std::size_t t = 0; t < surface.mesh.faces.size(); ++t) {
+    check_cancelled_every(t, file.stop);
+    for (std::size_t k = 0; k < 3; ++k)
+      combiner.add(t, k, file.normals.empty() ? kNoNormal : surface.mesh.faces[t][k]);
+  }
+  return combiner.take();
+}
 
 std::string_view bytes_of(const std::vector<Float3>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Float3)};
@@ -92,18 +116,33 @@ Json vec3_accessor(const std::vector<Float3>& values, NewViews& views) {
           {"type", "VEC3"}};
 }
 
-}  // namespace
-
-std::vector<Index> sources_in_gltf(const Obj& obj, const Surface& surface,
-                                   const UnwrappedSurface& unwrapped) {
-  return Combiner(obj, surface, unwrapped).run().sources;
+/// Whatever bytes the name has, the document is UTF-8.
+Json material(const std::string& name) {
+  const std::string text = Json(name).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return {{"name", Json::parse(text)}};
 }
 
-std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
-                        Format output) {
-  const Vertices vertices = Combiner(obj, surface, unwrapped).run();
+/// The primitives of all parts with faces. materials: [part] their names, empty for none.
+void add_primitives(const Vertices& vertices, std::span<const std::string> materials,
+                    const Gltf& empty, NewViews& views, Json& json) {
+  Json& accessors = json["accessors"];
+  Json attributes = {{"POSITION", 0}, {"TEXCOORD_0", 1}};
+  if (!vertices.normals.empty()) attributes["NORMAL"] = 2;
+  for (const auto& [part, corners] : vertices.corners) {
+    Json primitive = {{"attributes", attributes}, {"indices", accessors.size()}};
+    accessors.push_back(index_accessor(empty, std::nullopt, corners, views));
+    if (as_size(part) < materials.size() && !materials[as_size(part)].empty()) {
+      primitive["material"] = json["materials"].size();
+      json["materials"].push_back(material(materials[as_size(part)]));
+    }
+    json["meshes"][0]["primitives"].push_back(std::move(primitive));
+  }
+}
+
+std::string write_gltf(const Vertices& vertices, std::span<const std::string> materials,
+                       const std::stop_token& stop, Format output) {
   Gltf empty;
-  empty.stop = obj.stop;
+  empty.stop = stop;
   PatchedDocument document{Json::parse(R"({
     "asset": {"version": "2.0", "generator": "unwrapd"},
     "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
@@ -114,17 +153,40 @@ std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedS
   accessors.push_back(vec3_accessor(vertices.positions, views));
   set_bounds(accessors.back(), bytes_of(vertices.positions), sizeof(Float3), 3);
   accessors.push_back(texcoord_accessor(empty, std::nullopt, vertices.uv, views));
-  Json attributes = {{"POSITION", 0}, {"TEXCOORD_0", 1}};
-  if (!vertices.normals.empty()) {
-    attributes["NORMAL"] = accessors.size();
-    accessors.push_back(vec3_accessor(vertices.normals, views));
-  }
-  Json& primitives = document.json["meshes"][0]["primitives"];
-  for (const auto& [part, corners] : vertices.corners) {
-    primitives.push_back({{"attributes", attributes}, {"indices", accessors.size()}});
-    accessors.push_back(index_accessor(empty, std::nullopt, corners, views));
-  }
+  if (!vertices.normals.empty()) accessors.push_back(vec3_accessor(vertices.normals, views));
+  add_primitives(vertices, materials, empty, views, document.json);
   return assemble(empty, std::move(document), output);
+}
+
+}  // namespace
+
+std::vector<Index> sources_in_gltf(const Obj& obj, const Surface& surface,
+                                   const UnwrappedSurface& unwrapped) {
+  return vertices_of(obj, surface, unwrapped).sources;
+}
+
+std::vector<Index> sources_in_gltf(const MeshFile& file, const Surface& surface,
+                                   const UnwrappedSurface& unwrapped) {
+  return vertices_of(file, surface, unwrapped).sources;
+}
+
+std::vector<Note> note_on_materials(const Obj& obj) {
+  const auto count = static_cast<std::size_t>(
+      std::ranges::count_if(obj.materials, [](const std::string& name) { return !name.empty(); }));
+  if (count == 0 && !obj.has_material_library) return {};
+  return {{NoteCode::data_dropped,
+           "The result has the names of the OBJ's materials (" + std::to_string(count) +
+               "), without their colours and textures: no file that mtllib names is read."}};
+}
+
+std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
+                        Format output) {
+  return write_gltf(vertices_of(obj, surface, unwrapped), obj.materials, obj.stop, output);
+}
+
+std::string mesh_file_as_gltf(const MeshFile& file, const Surface& surface,
+                              const UnwrappedSurface& unwrapped, Format output) {
+  return write_gltf(vertices_of(file, surface, unwrapped), {}, file.stop, output);
 }
 
 }  // namespace unwrapd::asset

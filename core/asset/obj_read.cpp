@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "core/asset/as_size.hpp"
 #include "core/asset/obj.hpp"
 #include "core/asset/obj_words.hpp"
 #include "core/base/cancel.hpp"
@@ -39,6 +40,8 @@ class ObjReader {
       pace_.add(1 + (at_.next - at_.begin) / 16);
       read_statement(Words(std::string_view(obj_.text).substr(at_.begin, at_.end - at_.begin)));
     }
+    obj_.materials.resize(part_of_.size());
+    for (const auto& [name, part] : part_of_) obj_.materials[as_size(part)] = name;
     check_indices();
     triangulate_faces();
     note(FileRepairKind::line_ends_replaced, line_ends_);
@@ -71,9 +74,10 @@ class ObjReader {
     } else if (keyword == "vt") {
       ++texcoord_count_;
       obj_.texcoord_lines.emplace_back(at_.begin, at_.next);
+    } else if (keyword == "mtllib") {
+      obj_.has_material_library = true;
     } else if (keyword == "usemtl") {
-      obj_.has_materials = true;
-      part_ = part_of_.try_emplace(std::string(words.next()), Index(part_of_.size())).first->second;
+      part_ = part_of_.try_emplace(std::string(words.rest()), Index(part_of_.size())).first->second;
     }
   }
 
@@ -219,7 +223,6 @@ class ObjReader {
 }  // namespace
 
 Obj read_obj(const Input& input, const ReadLimits& limits, Surface& surface) {
-  surface.name = "obj";
   return ObjReader(input, limits, surface).read();
 }
 

@@ -40,6 +40,13 @@ std::string_view Words::next() {
   return word;
 }
 
+std::string_view Words::rest() const {
+  std::string_view rest = rest_;
+  while (!rest.empty() && is_gap(rest.front())) rest.remove_prefix(1);
+  while (!rest.empty() && is_gap(rest.back())) rest.remove_suffix(1);
+  return rest;
+}
+
 bool Words::is_gap(char c) { return is_space(c) || c == '\n' || c == '\\'; }
 
 std::optional<double> number_in(std::string_view word) {

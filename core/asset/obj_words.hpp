@@ -27,6 +27,9 @@ class Words {
   /// Empty at the end.
   std::string_view next();
 
+  /// All that is left, without the spaces around it.
+  [[nodiscard]] std::string_view rest() const;
+
  private:
   static bool is_gap(char c);
   std::string_view rest_;

@@ -75,6 +75,18 @@ void read_obj_uvs(const Obj& obj, Surface& surface) {
     }
 }
 
+void read_mesh_file_uvs(const MeshFile& file, Surface& surface) {
+  if (file.uv.empty()) return;
+  surface.corner_uv.assign(surface.mesh.faces.size(), kNoUv);
+  for (std::size_t t = 0; t < surface.mesh.faces.size(); ++t) {
+    check_cancelled_every(t, file.stop);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec2& uv = file.uv[as_size(surface.mesh.faces[t][i])];
+      if (uv.allFinite()) surface.corner_uv[t][i] = uv;
+    }
+  }
+}
+
 }  // namespace
 
 void read_gltf_uvs(const Gltf& gltf, std::vector<Surface>& surfaces) {
@@ -94,6 +106,8 @@ void read_uvs(Asset& asset) {
   Document& document = asset.document();
   if (const Obj* obj = std::get_if<Obj>(&document.source))
     read_obj_uvs(*obj, document.surfaces.front());
+  else if (const MeshFile* file = std::get_if<MeshFile>(&document.source))
+    read_mesh_file_uvs(*file, document.surfaces.front());
   else
     read_gltf_uvs(std::get<Gltf>(document.source), document.surfaces);
 }

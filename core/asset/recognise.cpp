@@ -3,36 +3,22 @@
 #include <algorithm>
 #include <array>
 
+#include "core/asset/mesh_file.hpp"
 #include "core/asset/obj_words.hpp"
+#include "core/asset/other_formats.hpp"
 #include "core/asset/pace.hpp"
+#include "core/asset/text_reader.hpp"
 #include "core/base/error.hpp"
 
 namespace unwrapd::asset {
 namespace {
 
-constexpr std::string_view kMarkOfUtf8 = "\xef\xbb\xbf";
 constexpr std::string_view kSpaces = " \t\r\n";
 constexpr std::array<std::string_view, 6> kOtherGeometry = {"vt", "vn", "vp", "f", "l", "p"};
 constexpr std::string_view kStartsOfNumbers = "+-.0123456789";
 constexpr std::size_t kBlock = 1 << 16;
 constexpr std::size_t kMaxStatements =
     kBlock;  // bytes of other statements that may precede geometry
-
-struct Refusal {
-  std::string_view magic;
-  std::string_view message;
-};
-
-constexpr std::array<Refusal, 9> kRefusals = {
-    {{"DRACO", "a bare Draco file is not accepted; wrap it into a glTF"},
-     {"\x1f\x8b", "a gzip file is not accepted; send it unpacked"},
-     {"PK\x03\x04", "a zip archive is not accepted; send the glTF or OBJ in it"},
-     {"Kaydara FBX", "FBX is not accepted; convert it to glTF"},
-     {"ply\n", "PLY is not accepted; convert it to glTF or OBJ"},
-     {"ply\r", "PLY is not accepted; convert it to glTF or OBJ"},
-     {"solid ", "STL is not accepted; convert it to glTF or OBJ"},
-     {"\xff\xfe", "UTF-16 text is not accepted; save the file as UTF-8"},
-     {"\xfe\xff", "UTF-16 text is not accepted; save the file as UTF-8"}}};
 
 /// The position after spaces and empty lines; the text's size at its end.
 std::size_t skip_spaces(std::string_view text, std::size_t at, Pace& pace) {
@@ -72,20 +58,31 @@ bool looks_like_obj(std::string_view file, Pace& pace) {
   return false;
 }
 
+/// Whether a text starts with "solid" and a space, in any case.
+bool starts_with_solid(std::string_view text) {
+  constexpr std::string_view kSolid = "solid";
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  return text.size() > kSolid.size() &&
+         std::ranges::equal(text.substr(0, kSolid.size()), kSolid, {}, lower) &&
+         kSpaces.find(text[kSolid.size()]) != std::string_view::npos;
+}
+
 }  // namespace
 
 Format recognise(std::string_view file, const std::stop_token& stop) {
   if (file.starts_with("glTF")) return Format::glb;
-  for (const Refusal& refusal : kRefusals)
-    if (file.starts_with(refusal.magic))
-      throw Error(ErrorCode::unknown_format, std::string(refusal.message));
-  std::string_view text = file;
-  if (text.starts_with(kMarkOfUtf8)) text.remove_prefix(kMarkOfUtf8.size());
+  if (file.starts_with("ply\n") || file.starts_with("ply\r")) return Format::ply;
+  if (is_binary_stl(file)) return Format::stl;
+  refuse_other_formats(file);
+  const std::string_view text = file.substr(start_of_text(file));
   Pace pace(stop);
-  if (text.substr(skip_spaces(text, 0, pace)).starts_with('{')) return Format::gltf;
+  const std::string_view words = text.substr(skip_spaces(text, 0, pace));
+  if (words.starts_with('{')) return Format::gltf;
+  if (starts_with_solid(words)) return Format::stl;
+  if (is_off(text)) return Format::off;
   if (looks_like_obj(text, pace)) return Format::obj;
   throw Error(ErrorCode::unknown_format,
-              "the file is neither GLB, glTF nor OBJ; send one of these");
+              "the file is neither GLB, glTF, OBJ, STL, PLY nor OFF; send one of these");
 }
 
 }  // namespace unwrapd::asset

@@ -26,6 +26,8 @@ enum class NoteCode {
   sets_filled,         ///< lower sets of texture coordinates were missing
   images_separate,     ///< images remain in files beside the result
   polygons_split,      ///< polygons are written as triangles
+  format_changed,      ///< the format of the input is not written
+  data_dropped,        ///< materials or properties of the input are not in the result
 };
 
 struct Note {

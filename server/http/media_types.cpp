@@ -21,6 +21,12 @@ constexpr std::array kRepresentations = {
     Representation{"glb", "model/gltf-binary"}, Representation{"gltf", "model/gltf+json"},
     Representation{"obj", "model/obj"}, Representation{"json", "application/json"}};
 
+/// The types of an asset that is sent; those that no result has are named as files of the format
+/// are.
+constexpr std::array<std::string_view, 8> kAssetTypes = {
+    "model/gltf-binary", "model/gltf+json", "model/obj",       "model/stl",
+    "model/ply",         "model/off",       "application/zip", "application/octet-stream"};
+
 std::string_view trim(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t");
   if (begin == std::string_view::npos) return {};
@@ -114,14 +120,14 @@ BodyKind body_kind(std::string_view content_type) {
   const std::string type = lower(trim(content_type.substr(0, content_type.find(';'))));
   if (type == "multipart/form-data") return BodyKind::multipart;
   if (type == media_type("json")) return BodyKind::reference;
-  const bool is_asset = type.empty() || type == "application/octet-stream" ||
-                        type == media_type("glb") || type == media_type("gltf") ||
-                        type == media_type("obj");
-  if (is_asset) return BodyKind::asset;
-  throw Error(ErrorCode::unsupported_media_type,
-              "The Content-Type must be model/gltf-binary, model/gltf+json, model/obj, "
-              "application/octet-stream, multipart/form-data or, for a stored mesh, "
-              "application/json; send one of these.");
+  if (type.empty() || std::ranges::find(kAssetTypes, type) != kAssetTypes.end())
+    return BodyKind::asset;
+  std::string known;
+  for (const std::string_view asset_type : kAssetTypes) known += std::string(asset_type) + ", ";
+  throw Error(
+      ErrorCode::unsupported_media_type,
+      "The Content-Type must be " + known +
+          "multipart/form-data or, for a stored mesh, application/json; send one of these.");
 }
 
 std::string multipart_boundary(std::string_view content_type) {

@@ -38,7 +38,7 @@ Progress progress_of(const JobTask& task, JobOutput& output, StageTimer& clock) 
 asset::Format output_format(api::OutputFormat wanted, asset::Format came_as) {
   switch (wanted) {
     case api::OutputFormat::automatic:
-      return came_as;
+      break;
     case api::OutputFormat::glb:
       return asset::Format::glb;
     case api::OutputFormat::gltf:
@@ -46,7 +46,7 @@ asset::Format output_format(api::OutputFormat wanted, asset::Format came_as) {
     case api::OutputFormat::obj:
       return asset::Format::obj;
   }
-  return came_as;
+  return asset::usual_output(came_as);
 }
 
 /// Without what follows from a map.
@@ -102,7 +102,8 @@ asset::ReadLimits read_limits(const store::JobRecord& job, const api::Limits& li
   const std::int64_t faces = job.synchronous ? limits.max_sync_faces : limits.max_faces;
   return {.max_vertices = limits.max_vertices,
           .max_faces = std::min(faces, limits.max_faces),
-          .max_bytes = memory_bytes};
+          .max_bytes = memory_bytes,
+          .max_unzipped_bytes = static_cast<std::size_t>(limits.max_body_bytes)};
 }
 
 std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& output,

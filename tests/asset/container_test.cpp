@@ -45,15 +45,31 @@ TEST(Recognition, TakesNoProseForAnObj) {
     EXPECT_EQ(error_of(file).code(), ErrorCode::unknown_format) << file.substr(0, 50);
 }
 
-TEST(Recognition, TellsOtherFormatsByName) {
-  for (const auto& [file, name] :
-       std::map<std::string, std::string>{{"ply\r\nformat ascii 1.0\r\n", "PLY"},
-                                          {std::string("\xff\xfev\0 \0", 6), "UTF-16"},
-                                          {std::string("\xfe\xff\0v\0 ", 6), "UTF-16"},
-                                          {"solid cube\n", "STL"}}) {
-    const Error error = error_of(file);
+TEST(Recognition, TellsOtherFormatsByNameAndHowToConvertThem) {
+  struct Case {
+    std::string file, name, advice;
+  };
+  const std::string zip("PK\3\4\24\0\0\0\0\0", 10);
+  for (const Case& c : std::vector<Case>{
+           {std::string("Kaydara FBX Binary  \0", 21), "FBX", "FBX2glTF"},
+           {"; FBX 7.4.0 project file\n", "FBX", "FBX2glTF"},
+           {"PXR-USDC\1", "USD", "usd2gltf"},
+           {"#usda 1.0\n", "USD", "usd2gltf"},
+           {zip + "scene.usdc", "USDZ", "usd2gltf"},
+           {"BLENDER-v300", "BLEND", "Export"},
+           {zip + "3D/3dmodel.model", "3MF", "Blender"},
+           {zip + std::string(9000, 'x') + "3D/3dmodel.model", "3MF", "Blender"},
+           {zip + "mesh.glb", "zip", "in it"},
+           {"\xef\xbb\xbf<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"\">", "Collada", "Blender"},
+           {"<?xml version=\"1.0\"?>\n<amf>", "AMF", "Blender"},
+           {"#VRML V2.0 utf8\n", "VRML", "Blender"},
+           {"ISO-10303-21;\n", "STEP", "CAD"},
+           {std::string("\xff\xfev\0 \0", 6), "UTF-16", "UTF-8"},
+           {std::string("\xfe\xff\0v\0 ", 6), "UTF-16", "UTF-8"}}) {
+    const Error error = error_of(c.file);
     EXPECT_EQ(error.code(), ErrorCode::unknown_format);
-    EXPECT_THAT(error.what(), testing::HasSubstr(name));
+    EXPECT_THAT(error.what(), testing::HasSubstr(c.name));
+    EXPECT_THAT(error.what(), testing::HasSubstr(c.advice));
   }
 }
 

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -67,6 +68,25 @@ TEST(Obj, PolygonsNegativeIndicesAndPartsAreRead) {
   EXPECT_EQ(surface.mesh.faces[0], (Triangle{3, 2, 1}));
   EXPECT_EQ(surface.mesh.faces[7][0], 2);
   EXPECT_EQ(surface.name, "obj");
+}
+
+TEST(Obj, MaterialsKeepTheirNamesInAGltf) {
+  std::string latin = kCube;
+  latin.replace(latin.find("usemtl Blue"), 11,
+                "usemtl dark gr\xfcn  # one\nusemtl Red\nusemtl Blue");
+  const Asset asset = read_file(latin + "usemtl L\xe4rche\nf 1 2 3\n");
+  const Json json = json_of(write(asset, split_everywhere(asset), Format::glb));
+  ASSERT_EQ(json["materials"].size(), 3);  // "dark gr\xfcn" has no faces
+  EXPECT_EQ(json["materials"][0]["name"], "Red");
+  EXPECT_EQ(json["materials"][1]["name"], "Blue");
+  EXPECT_EQ(json["materials"][2]["name"], "L\xef\xbf\xbdrche");  // not UTF-8
+  for (std::size_t p = 0; p < 3; ++p) EXPECT_EQ(json["meshes"][0]["primitives"][p]["material"], p);
+  const std::vector<Note> notes = side_effects(asset, split_everywhere(asset), Format::glb);
+  const auto dropped = std::ranges::find(notes, NoteCode::data_dropped, &Note::code);
+  ASSERT_NE(dropped, notes.end());
+  EXPECT_NE(dropped->text.find("(4)"), std::string::npos) << dropped->text;
+  for (const Note& note : side_effects(asset, split_everywhere(asset), Format::obj))
+    EXPECT_NE(note.code, NoteCode::data_dropped);
 }
 
 TEST(Obj, OnlyTexcoordsAndFacesChange) {

@@ -39,6 +39,11 @@ TEST(Arguments, AResultIsWrittenBesideTheFileWhenNoNameIsGiven) {
   EXPECT_EQ(accepted({"a/chair.glb"}).out, "a/chair.uv.glb");
   EXPECT_EQ(accepted({"a/chair.gltf", "--output", "obj"}).out, "a/chair.uv.obj");
   EXPECT_EQ(accepted({"chair.obj", "--output", "auto"}).out, "chair.uv.obj");
+  EXPECT_EQ(accepted({"a/chair.stl"}).out, "a/chair.uv.glb");
+  EXPECT_EQ(accepted({"chair.PLY", "--output", "auto"}).out, "chair.uv.glb");
+  EXPECT_EQ(accepted({"chair.off", "--output", "obj"}).out, "chair.uv.obj");
+  EXPECT_EQ(accepted({"chair.zip"}).out, "chair.uv.glb");
+  EXPECT_EQ(accepted({"chair.zip"}).options.at("output"), "glb");
 }
 
 TEST(Arguments, PicturesHaveNamesAndTheLayoutAColour) {
@@ -55,6 +60,19 @@ TEST(Arguments, TheFormatFollowsTheResultsName) {
   EXPECT_EQ(accepted({"a.obj", "-o", "b.glb"}).options.at("output"), "glb");
   EXPECT_EQ(accepted({"a.obj", "-o", "b.bin"}).options.count("output"), 0);
   EXPECT_EQ(accepted({"a.obj", "-o", "b.glb", "--output", "gltf"}).options.at("output"), "gltf");
+}
+
+TEST(Arguments, AResultIsNotWrittenUnderTheNameOfAnotherFormat) {
+  for (const char* out :
+       {"b.stl", "b.STL", "b.ply", "b.off", "b.fbx", "b.usdz", "b.3mf", "b.blend"})
+    for (const std::vector<const char*>& words :
+         {std::vector<const char*>{"a.obj", "-o", out}, {"a.stl", "-o", out, "--output", "obj"}}) {
+      const Message message = refused(words);
+      EXPECT_EQ(message.code, ExitCode::usage);
+      EXPECT_THAT(message.text, HasSubstr("is not written"));
+    }
+  EXPECT_THAT(refused({"a.stl", "-o", "b.stl"}).text, HasSubstr("no place for UVs"));
+  EXPECT_EQ(accepted({"a.stl", "-o", "b.OBJ"}).options.at("output"), "obj");
 }
 
 TEST(Arguments, EveryOptionOfTheApiIsAFlag) {

@@ -31,6 +31,10 @@ TEST(Upload, SendsTheBytesOfTheFile) {
 TEST(Upload, NamesTheMediaTypeOfEveryFormat) {
   EXPECT_EQ(media_type("a.gltf"), "model/gltf+json");
   EXPECT_EQ(media_type("a.obj"), "model/obj");
+  EXPECT_EQ(media_type("a.stl"), "model/stl");
+  EXPECT_EQ(media_type("a.ply"), "model/ply");
+  EXPECT_EQ(media_type("a.off"), "model/off");
+  EXPECT_EQ(media_type("a.zip"), "application/zip");
   EXPECT_EQ(media_type("a.glb.txt"), "application/octet-stream");
 }
 

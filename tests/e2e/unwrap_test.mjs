@@ -109,6 +109,26 @@ test("an OBJ comes back as an OBJ with vt", async () => {
   assert.match(text, /# kept/);
 });
 
+test("an STL comes back as a GLB, whose report says so", async () => {
+  const corner = (x, y) => `vertex ${x} ${y} ${(x * y) / 4}`;
+  const facet = (...corners) =>
+    ["facet normal 0 0 1", "outer loop", ...corners, "endloop", "endfacet"].join("\n");
+  const facets = [[0, 0], [1, 0], [0, 1], [1, 1]].flatMap(([x, y]) => [
+    facet(corner(x, y), corner(x + 1, y), corner(x + 1, y + 1)),
+    facet(corner(x, y), corner(x + 1, y + 1), corner(x, y + 1))]);
+  writeFileSync(at("grid.stl"), `solid grid\n${facets.join("\n")}\nendsolid grid\n`);
+  const run = await unwrap(at("grid.stl"), "--report", at("grid.report.json"));
+  assert.equal(run.code, 0, run.err);
+  const { json } = readGlb(at("grid.uv.glb"));
+  assert.equal(json.accessors[json.meshes[0].primitives[0].attributes.TEXCOORD_0].count, 9);
+  const report = JSON.parse(readFileSync(at("grid.report.json"), "utf8"));
+  assert.ok(report.notes.some(({ code }) => code === "format_changed"));
+  const refused = await unwrap(at("grid.stl"), "-o", at("grid.uv.stl"));
+  assert.equal(refused.code, 2);
+  assert.match(refused.err, /STL has no place for UVs/);
+  assert.ok(!existsSync(at("grid.uv.stl")));
+});
+
 test("a .gltf takes its buffers along, and any format goes into any other", async () => {
   splitSample();
   const run = await unwrap(at("shell.gltf"), "-o", at("joined.glb"), ...kChart, "--stop-iterations", "3");

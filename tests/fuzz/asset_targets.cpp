@@ -11,6 +11,7 @@
 
 #include "core/asset/asset.hpp"
 #include "core/base/error.hpp"
+#include "tests/asset/mesh_file_samples.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace unwrapd::fuzz {
@@ -67,6 +68,17 @@ std::vector<std::string> obj_seeds() {
   return {grid_obj(2), grid_as(asset::Format::obj, 1),
           "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\nf -1 -2 \\\n-3\n"};
 }
+
+std::vector<std::string> stl_seeds() {
+  return {asset::test::cube_stl(), asset::test::cube_text_stl()};
+}
+
+std::vector<std::string> ply_seeds() {
+  return {asset::test::cube_text_ply(), asset::test::cube_binary_ply(false),
+          asset::test::cube_binary_ply(true)};
+}
+
+std::vector<std::string> off_seeds() { return {asset::test::cube_off()}; }
 
 /// A document whose one buffer is these bytes, as a data URI of hex would not be: base64.
 std::string base64(std::string_view bytes) {
@@ -180,9 +192,13 @@ std::vector<std::string> meshopt_seeds() {
           choices(1, 0, 4) + bytes, choices(2, 0, 2) + bytes};
 }
 
-constexpr std::array kTargets = {
-    Target{"gltf", whole_file, gltf_seeds}, Target{"obj", whole_file, obj_seeds},
-    Target{"draco", draco_stream, draco_seeds}, Target{"meshopt", meshopt_stream, meshopt_seeds}};
+constexpr std::array kTargets = {Target{"gltf", whole_file, gltf_seeds},
+                                 Target{"obj", whole_file, obj_seeds},
+                                 Target{"stl", whole_file, stl_seeds},
+                                 Target{"ply", whole_file, ply_seeds},
+                                 Target{"off", whole_file, off_seeds},
+                                 Target{"draco", draco_stream, draco_seeds},
+                                 Target{"meshopt", meshopt_stream, meshopt_seeds}};
 
 }  // namespace
 

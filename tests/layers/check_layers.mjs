@@ -17,6 +17,7 @@ const ONLY_IN = [
   { header: /^CLI\//, files: /^(server|client)\// },
   { header: /^seccomp\.h$/, files: /^server\/work\/sandbox\.cpp$/ },
   { header: /^png\.h$/, files: /^(server\/work\/png_file\.cpp$|tests\/server\/)/ },
+  { header: /^zip\.h$/, files: /^(core\/asset\/zip\.cpp$|tests\/asset\/)/ },
   { header: /^yaml\.h$/, files: /^api\/contract\// },
   { header: /^sqlite3\.h$/, files: /^(server|tests\/server)\// },
   { header: /^(draco\/|meshoptimizer\.h|tiny_gltf\.h)/, files: /^(core\/asset|tests\/asset|tests\/fuzz)\// },

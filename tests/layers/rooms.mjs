@@ -28,7 +28,7 @@ export const ROOMS = [
   ["core/pipeline", "the steps of unwrapping", [...SOLVING, "core/charts", "core/guarantee", "core/pack", "core/segment", "core/solve"]],
   ["core", "the front door: unwrap(), the list of its steps", [...TERMS, "core/charts", "core/guarantee", "core/pipeline", "core/segment", "core/solve"]],
   ["core/figure", "layouts and previews as SVG and pixels", [...TERMS, "core/measure"]],
-  ["core/asset", "reads and writes glTF, Draco, meshopt and OBJ; a separate library", [...TERMS, "core/json"]],
+  ["core/asset", "reads and writes glTF, Draco, meshopt and OBJ, reads STL, PLY and OFF; a separate library", [...TERMS, "core/json"]],
   ["api/contract", "`openapi.yaml` as JSON and as a page", []],
   ["api", "the contract; the tables of options and of errors", [...TERMS, "core/json"]],
   ["client/web", "the page at `/`, embedded in the program", []],

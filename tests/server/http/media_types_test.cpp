@@ -27,6 +27,10 @@ TEST(MediaTypes, WhatCannotBeHadIsRefused) {
 
 TEST(MediaTypes, BodiesAreAssetsOrForms) {
   EXPECT_EQ(body_kind("model/obj"), BodyKind::asset);
+  EXPECT_EQ(body_kind("model/stl"), BodyKind::asset);
+  EXPECT_EQ(body_kind("Model/PLY"), BodyKind::asset);
+  EXPECT_EQ(body_kind("application/zip"), BodyKind::asset);
+  EXPECT_EQ(body_kind("model/off; charset=utf-8"), BodyKind::asset);
   EXPECT_EQ(body_kind(""), BodyKind::asset);
   EXPECT_EQ(body_kind("Multipart/Form-Data; boundary=x"), BodyKind::multipart);
   EXPECT_THROW(body_kind("text/html"), Error);
