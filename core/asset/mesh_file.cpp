@@ -56,7 +56,7 @@ class FaceCutter {
 }  // namespace
 
 void refuse_mesh(const std::string& message, const std::string& where) {
-  throw Error(ErrorCode::malformed_obj, message + "; export the mesh again", where);
+  throw Error(ErrorCode::malformed_mesh, message + "; export the mesh again", where);
 }
 
 void check_vertex_count(std::int64_t count, const ReadLimits& limits) {

@@ -28,7 +28,7 @@ struct PolygonList {
   std::vector<std::size_t> ends;
 };
 
-/// Each throws Error{malformed_obj, non_finite_position, too_many_*, no_triangles} with the byte
+/// Each throws Error{malformed_mesh, non_finite_position, too_many_*, no_triangles} with the byte
 /// or the line, and Error{cancelled}. Counts in the file are checked against its length before
 /// anything of their size is allocated.
 ///
@@ -47,7 +47,7 @@ bool is_binary_stl(std::string_view file);
 /// Whether the text begins with a keyword of OFF.
 bool is_off(std::string_view text);
 
-/// Throws Error{malformed_obj}. where: "byte 84" or "line 3".
+/// Throws Error{malformed_mesh}. where: "byte 84" or "line 3".
 [[noreturn]] void refuse_mesh(const std::string& message, const std::string& where);
 
 void check_vertex_count(std::int64_t count, const ReadLimits& limits);

@@ -32,7 +32,7 @@ struct PlyHead {
   std::size_t size = 0;  ///< bytes of the file before the first element's values
 };
 
-/// Throws Error{malformed_obj} with the line. Names have printable characters only.
+/// Throws Error{malformed_mesh} with the line. Names have printable characters only.
 PlyHead read_ply_head(std::string_view file, const std::stop_token& stop);
 
 /// Reads the values of a PLY one after another, in any encoding.
@@ -45,7 +45,7 @@ class PlyValues {
         text_(file, at_, stop),
         pace_(stop) {}
 
-  /// Every type's numbers are exact in a double. Throws Error{malformed_obj} at the file's end and
+  /// Every type's numbers are exact in a double. Throws Error{malformed_mesh} at the file's end and
   /// where a text has no number, and Error{cancelled}.
   double next(PlyType type);
 
@@ -54,7 +54,7 @@ class PlyValues {
 
   void skip(const PlyProperty& property);
 
-  /// Throws Error{malformed_obj} if the rest of the file is too short for the element's values.
+  /// Throws Error{malformed_mesh} if the rest of the file is too short for the element's values.
   void check_fits(const PlyElement& element) const;
 
   [[nodiscard]] std::string place() const;  ///< of the latest value

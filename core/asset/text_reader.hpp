@@ -33,10 +33,10 @@ class TextReader {
   /// Continues after the end of the latest word's line.
   void skip_line();
 
-  /// Throws Error{malformed_obj} if the next word is no number. It may be infinite or undefined.
+  /// Throws Error{malformed_mesh} if the next word is no number. It may be infinite or undefined.
   double number();
 
-  /// Throws Error{malformed_obj} unless the next word is a whole number in [least, most].
+  /// Throws Error{malformed_mesh} unless the next word is a whole number in [least, most].
   std::int64_t whole(std::int64_t least, std::int64_t most);
 
   [[nodiscard]] std::size_t bytes_left() const { return text_.size() - next_; }

@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 6> kEndings = {".glb", ".gltf", ".obj",
                                                       ".stl", ".ply",  ".off"};
 
 [[noreturn]] void refuse_zip(const std::string& message) {
-  throw Error(ErrorCode::malformed_obj, message + "; pack the archive again");
+  throw Error(ErrorCode::malformed_mesh, message + "; pack the archive again");
 }
 
 /// The name for a message.

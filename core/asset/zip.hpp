@@ -19,7 +19,7 @@ bool is_zip(std::string_view file);
 
 /// Unpacks the one asset, and for a .gltf the files below its folder, max_bytes together at most.
 /// Paths are names only: nothing is written, and no link is followed. Throws Error{unknown_format}
-/// if there is none or more than one, malformed_obj if the archive is broken, body_too_large, and
+/// if there is none or more than one, malformed_mesh if the archive is broken, body_too_large, and
 /// cancelled.
 Unzipped unzip(std::string_view archive, std::size_t max_bytes, const std::stop_token& stop);
 

@@ -42,6 +42,7 @@ enum class ErrorCode {
   malformed_json,
   malformed_gltf,
   malformed_obj,
+  malformed_mesh,  ///< an STL, a PLY, an OFF or a zip archive
   malformed_draco,
   malformed_meshopt,
   missing_buffer,

@@ -15,6 +15,7 @@ bool is_of_work(ErrorCode code) {
     case malformed_json:
     case malformed_gltf:
     case malformed_obj:
+    case malformed_mesh:
     case malformed_draco:
     case malformed_meshopt:
     case missing_buffer:

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 TEST(Stl, BrokenFilesAreRefusedWithTheirPlace) {
   struct Case {
     std::string file, where, message;
-    ErrorCode code = ErrorCode::malformed_obj;
+    ErrorCode code = ErrorCode::malformed_mesh;
   };
   std::string infinite = cube_stl();
   infinite.replace(84 + 50 + 12, 4, bytes(std::numeric_limits<float>::infinity()));
@@ -44,7 +44,7 @@ TEST(Ply, BrokenFilesAreRefusedWithTheirPlace) {
   const std::string text = cube_text_ply();
   struct Case {
     std::string from, to, where, message;
-    ErrorCode code = ErrorCode::malformed_obj;
+    ErrorCode code = ErrorCode::malformed_mesh;
   };
   for (const Case& c :
        std::vector<Case>{{"format ascii", "format utf8", "line 2", "ascii"},
@@ -91,7 +91,7 @@ TEST(Off, BrokenFilesAreRefusedWithTheirPlace) {
                                          {"4 3 2 1 0", "4 3 2 1 8", "line 12", "from 0 to 7"},
                                          {"4 3 2 1 0", "4 3 2 1 -1", "line 12", "from 0 to 7"}}) {
     const Error error = error_of(replaced(cube_off(), c.from, c.to));
-    EXPECT_EQ(error.code(), ErrorCode::malformed_obj) << c.to;
+    EXPECT_EQ(error.code(), ErrorCode::malformed_mesh) << c.to;
     EXPECT_EQ(error.where(), c.where) << c.to;
     EXPECT_THAT(error.what(), HasSubstr(c.message)) << c.to;
   }

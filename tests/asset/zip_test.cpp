@@ -103,7 +103,7 @@ TEST(Zip, PathsThatLeadOutAreRefusedAndLinksIgnored) {
     std::vector<Packed> files = square_in_parts("");
     files.push_back({name, "x"});
     const Error error = error_of(zip_of(files));
-    EXPECT_EQ(error.code(), ErrorCode::malformed_obj) << name;
+    EXPECT_EQ(error.code(), ErrorCode::malformed_mesh) << name;
     EXPECT_THAT(error.what(), HasSubstr("leads out")) << name;
   }
   std::vector<Packed> files = square_in_parts("");
@@ -135,7 +135,7 @@ TEST(Zip, AFileIsNoLongerThanAnnounced) {
   const std::string size = bytes(static_cast<std::uint32_t>(cube_stl().size()));
   for (std::size_t at = archive.find(size); at != std::string::npos; at = archive.find(size, at))
     archive.replace(at, 4, bytes(std::uint32_t{100}));
-  EXPECT_EQ(error_of(archive).code(), ErrorCode::malformed_obj);
+  EXPECT_EQ(error_of(archive).code(), ErrorCode::malformed_mesh);
 }
 
 TEST(Zip, BrokenArchivesAreReadOrRefused) {

@@ -145,6 +145,7 @@ export const kRefused = {
   malformed_json: Buffer.from('{"asset":{"version":"2.0"},"meshes":[}'),
   malformed_gltf: changed((json) => (json.accessors[1].bufferView = 7)),
   malformed_obj: Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n'),
+  malformed_mesh: Buffer.from('OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n'),
   malformed_draco: compressedBy('KHR_draco_mesh_compression', (json) => {
     json.meshes[0].primitives[0].extensions = {
       KHR_draco_mesh_compression: {bufferView: 0, attributes: {POSITION: 0}}};
