@@ -87,6 +87,7 @@ Json random_values(std::mt19937& rng) {
     values[std::string(row.name)] = one ? value[0] : value;  // a query cannot tell a list of one
   }
   values["repack_only"] = false;  // goes with few others
+  if (values["weld"] != "distance") values["weld_distance"] = nullptr;
   if (values["boundary"] != "free") values["max_distortion"] = values["max_charts"] = nullptr;
   if (values["constraints"].empty()) return values;
   values["method"] = "hybrid";
@@ -262,7 +263,8 @@ TEST(Options, GuessWhatAMisspeltNameMeant) {
 
 TEST(Options, ListAllNamesForOneThatIsLikeNone) {
   for (const char* name : {"", "x", "texture_size"}) {
-    EXPECT_THAT(refusal(Query{{name, "1"}}).what(), HasSubstr("the options are preset, method, lambda,"));
+    EXPECT_THAT(refusal(Query{{name, "1"}}).what(),
+                HasSubstr("the options are preset, method, lambda,"));
   }
   EXPECT_EQ(refusal(Query{{"a/b~c", "1"}}).where(), "/a~1b~0c");
   EXPECT_EQ(refusal(Query{{std::string(100'000, 'a'), "1"}}).code(), ErrorCode::invalid_option);

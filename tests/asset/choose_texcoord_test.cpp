@@ -112,11 +112,14 @@ TEST(ChooseTexcoord, ANamedSetThatTexturesSampleIsToldAsALoss) {
 }
 
 TEST(ChooseTexcoord, AnObjWithMaterialsAndCoordinatesLosesTheFitOfItsImages) {
+  const auto loses_textures = [](const std::string& obj) {
+    const std::vector<NoteCode> told = codes(read_file(obj, kAutomatic));
+    return std::ranges::count(told, NoteCode::textures_lost) == 1;
+  };
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  const Asset painted = read_file(triangle + "vt 0 0\nusemtl wood\nf 1/1 2/1 3/1\n", kAutomatic);
-  EXPECT_EQ(codes(painted), std::vector{NoteCode::textures_lost});
-  EXPECT_TRUE(codes(read_file(triangle + "vt 0 0\nf 1/1 2/1 3/1\n", kAutomatic)).empty());
-  EXPECT_TRUE(codes(read_file(triangle + "usemtl wood\nf 1 2 3\n", kAutomatic)).empty());
+  EXPECT_TRUE(loses_textures(triangle + "vt 0 0\nusemtl wood\nf 1/1 2/1 3/1\n"));
+  EXPECT_FALSE(loses_textures(triangle + "vt 0 0\nf 1/1 2/1 3/1\n"));
+  EXPECT_FALSE(loses_textures(triangle + "usemtl wood\nf 1 2 3\n"));
 }
 
 TEST(ChooseTexcoord, ExistingUvsAreReadFromTheFirstSet) {

@@ -49,17 +49,12 @@ TEST(Recognition, TellsOtherFormatsByNameAndHowToConvertThem) {
   struct Case {
     std::string file, name, advice;
   };
-  const std::string zip("PK\3\4\24\0\0\0\0\0", 10);
   for (const Case& c : std::vector<Case>{
            {std::string("Kaydara FBX Binary  \0", 21), "FBX", "FBX2glTF"},
            {"; FBX 7.4.0 project file\n", "FBX", "FBX2glTF"},
            {"PXR-USDC\1", "USD", "usd2gltf"},
            {"#usda 1.0\n", "USD", "usd2gltf"},
-           {zip + "scene.usdc", "USDZ", "usd2gltf"},
            {"BLENDER-v300", "BLEND", "Export"},
-           {zip + "3D/3dmodel.model", "3MF", "Blender"},
-           {zip + std::string(9000, 'x') + "3D/3dmodel.model", "3MF", "Blender"},
-           {zip + "mesh.glb", "zip", "in it"},
            {"\xef\xbb\xbf<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"\">", "Collada", "Blender"},
            {"<?xml version=\"1.0\"?>\n<amf>", "AMF", "Blender"},
            {"#VRML V2.0 utf8\n", "VRML", "Blender"},
@@ -75,9 +70,8 @@ TEST(Recognition, TellsOtherFormatsByNameAndHowToConvertThem) {
 
 TEST(Recognition, RefusesWhatItKnowsToBeSomethingElse) {
   for (const std::string& file :
-       {std::string("DRACO\2\2\1\1"), std::string("\x1f\x8b\x08"), std::string("PK\3\4"),
-        std::string(), std::string("null"), std::string("[1]"), std::string("hello"),
-        std::string("v 0 0 0\0", 8)})
+       {std::string("DRACO\2\2\1\1"), std::string("\x1f\x8b\x08"), std::string(),
+        std::string("null"), std::string("[1]"), std::string("hello"), std::string("v 0 0 0\0", 8)})
     EXPECT_EQ(error_of(file).code(), ErrorCode::unknown_format) << file;
 }
 
