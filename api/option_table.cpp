@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 2> kLambdaUnits = {"dimensionless", "pape
 constexpr std::array<std::string_view, 4> kInitialMaps = {"auto", "mean_value", "tutte", "lscm"};
 constexpr std::array<std::string_view, 2> kPins = {"diameter", "spectral"};
 constexpr std::array<std::string_view, 4> kSeams = {"auto", "keep", "none", "uv0"};
-constexpr std::array<std::string_view, 3> kWeldModes = {"auto", "exact", "distance"};
+constexpr std::array<std::string_view, 2> kWeldModes = {"auto", "exact"};
 constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "bijective"};
 constexpr std::array<std::string_view, 2> kRepairs = {"untangle", "virtual_boundary"};
 constexpr std::array<std::string_view, 3> kEfforts = {"fast", "balanced", "best"};
@@ -74,6 +74,15 @@ void set_texcoord(JobOptions& options, const Json& value) {
     const auto found = std::ranges::find(kTexcoordChoices, value.get_ref<const std::string&>());
     options.asset.texcoord = static_cast<TexcoordChoice>(found - kTexcoordChoices.begin());
   }
+}
+
+/// The distance has an option of its own, see settle_welding().
+Json get_weld(const JobOptions& options) {
+  return options.unwrap.welding.mode == WeldMode::exact ? "exact" : "auto";
+}
+
+void set_weld(JobOptions& options, const Json& value) {
+  options.unwrap.welding.mode = value == "exact" ? WeldMode::exact : WeldMode::automatic;
 }
 
 Json get_constraints(const JobOptions& options) { return to_json(options.unwrap.constraints); }
@@ -162,14 +171,19 @@ constexpr std::array kRows = {
                               "Which cuts of the input remain cuts. keep: wherever vertices are "
                               "duplicated; none: nowhere; uv0: at the seams of the existing UVs; "
                               "auto: as keep if that gives a few disks, else as none."),
-    choice<&Welding::mode, kWeldModes>(
-        "weld", kEveryMethod,
-        "Which vertices at different positions are taken for one where open edges meet. auto: "
-        "those apart by rounding, by a tolerance found in the mesh; exact: none; distance: those "
-        "within weld_distance. The file keeps its vertices."),
+    OptionRow{.name = "weld",
+              .type = OptionType::choice,
+              .choices = kWeldModes,
+              .description =
+                  "Which vertices at different positions are taken for one where open edges meet. "
+                  "auto: those apart by rounding, by a tolerance found in the mesh or by "
+                  "weld_distance; exact: none. The file keeps its vertices.",
+              .methods = kEveryMethod,
+              .get = get_weld,
+              .set = set_weld},
     figure<&Welding::distance>("weld_distance", {0, kMaxWeldDistance}, kEveryMethod,
-                               "With weld=distance: the greatest distance of vertices that are "
-                               "welded, in the mesh's units."),
+                               "The greatest distance of vertices that weld=auto welds, in the "
+                               "mesh's units. Unset: found in the mesh."),
     OptionRow{
         .name = "seam_edges",
         .type = OptionType::objects,

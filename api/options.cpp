@@ -74,6 +74,14 @@ Preset preset_of(const Json& object, const Limits& limits) {
   return options.preset;
 }
 
+/// A distance is a mode of its own in core; exact welding has no use for one.
+void settle_welding(Welding& welding) {
+  if (welding.mode == WeldMode::exact)
+    welding.distance.reset();
+  else
+    welding.mode = welding.distance ? WeldMode::distance : WeldMode::automatic;
+}
+
 /// The options so far, and the rows that were given.
 struct PartialOptions {
   PartialOptions(Preset preset, const Limits& server)
@@ -128,6 +136,7 @@ struct PartialOptions {
 
   JobOptions finish() {
     yield_to_request(options, [this](std::string_view name) { return is_given(name); });
+    settle_welding(options.unwrap.welding);
     validate(options.unwrap, limits.max_iterations);
     for (const OptionRow* row : given) {
       if (!changes_nothing(*row)) continue;

@@ -126,17 +126,19 @@ Json material(const std::string& name) {
 void add_primitives(const Vertices& vertices, std::span<const std::string> materials,
                     const Gltf& empty, NewViews& views, Json& json) {
   Json& accessors = json["accessors"];
+  Json used = Json::array();
   Json attributes = {{"POSITION", 0}, {"TEXCOORD_0", 1}};
   if (!vertices.normals.empty()) attributes["NORMAL"] = 2;
   for (const auto& [part, corners] : vertices.corners) {
     Json primitive = {{"attributes", attributes}, {"indices", accessors.size()}};
     accessors.push_back(index_accessor(empty, std::nullopt, corners, views));
     if (as_size(part) < materials.size() && !materials[as_size(part)].empty()) {
-      primitive["material"] = json["materials"].size();
-      json["materials"].push_back(material(materials[as_size(part)]));
+      primitive["material"] = used.size();
+      used.push_back(material(materials[as_size(part)]));
     }
     json["meshes"][0]["primitives"].push_back(std::move(primitive));
   }
+  if (!used.empty()) json["materials"] = std::move(used);  // last: accessors may move in memory
 }
 
 std::string write_gltf(const Vertices& vertices, std::span<const std::string> materials,

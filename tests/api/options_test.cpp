@@ -87,7 +87,7 @@ Json random_values(std::mt19937& rng) {
     values[std::string(row.name)] = one ? value[0] : value;  // a query cannot tell a list of one
   }
   values["repack_only"] = false;  // goes with few others
-  if (values["weld"] != "distance") values["weld_distance"] = nullptr;
+  if (values["weld"] == "exact") values["weld_distance"] = nullptr;
   if (values["boundary"] != "free") values["max_distortion"] = values["max_charts"] = nullptr;
   if (values["constraints"].empty()) return values;
   values["method"] = "hybrid";

@@ -115,9 +115,9 @@ async function newErrors(path, answer) {
 }
 
 /** The triangles of an answer as it is written; of a compressed one as they are in its OBJ. */
-async function trianglesWritten({ id, format, bytes }) {
+async function trianglesWritten({ id, format, bytes, report }) {
   const isPlain = !/KHR_draco|meshopt_compression/.test(Buffer.from(bytes).toString("latin1"));
-  if (format.startsWith("model/gltf") && isPlain) return trianglesOfGltf(bytes);
+  if (format.startsWith("model/gltf") && isPlain) return trianglesOfGltf(bytes, report.texcoord);
   if (format === "model/obj") return trianglesOfObj(new TextDecoder().decode(bytes));
   const headers = { accept: "model/obj" };
   const obj = await fetch(`${address}/v1/jobs/${id}/result`, { headers });

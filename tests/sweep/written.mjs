@@ -104,14 +104,15 @@ function cornersOf(indices, mode) {
 }
 
 /** The same of a GLB or glTF with nothing compressed. */
-export function trianglesOfGltf(bytes) {
+export function trianglesOfGltf(bytes, texcoord = 0) {
+  const set = `TEXCOORD_${texcoord}`;
   const file = openGltf(bytes);
   const triangles = [];
   for (const { primitives } of file.json.meshes)
     for (const { attributes, indices, mode = 4 } of primitives) {
-      if (mode < 4 || attributes.TEXCOORD_0 === undefined) continue;
+      if (mode < 4 || attributes[set] === undefined) continue;
       const points = elements(file, attributes.POSITION);
-      const coordinates = elements(file, attributes.TEXCOORD_0).map(([u, v]) => [u, 1 - v].map(inSteps));
+      const coordinates = elements(file, attributes[set]).map(([u, v]) => [u, 1 - v].map(inSteps));
       const inOrder = () => points.map((_, i) => i);
       const order = indices === undefined ? inOrder() : elements(file, indices).map(([i]) => i);
       for (const triple of cornersOf(order, mode))
