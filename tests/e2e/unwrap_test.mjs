@@ -172,7 +172,7 @@ test("--json prints the report and nothing else", async () => {
   const report = JSON.parse(run.out);
   assert.equal(report.charts.length, 1);
   assert.equal(report.options.preset, "chart");
-  assert.ok(report.notes.some(({ code }) => code === "distorted"), JSON.stringify(report.notes));
+  assert.ok(report.notes.some(({ code }) => code === "overlaps"), JSON.stringify(report.notes));
   assert.equal(report.solver.name, "unwrapd");
 });
 
