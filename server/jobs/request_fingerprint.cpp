@@ -5,6 +5,19 @@
 #include "server/store/stored_input.hpp"
 
 namespace unwrapd::server::jobs {
+namespace {
+
+/// Resolved options of today as a version without presets resolved the same request: its defaults
+/// in place of those of the default preset.
+api::Json without_default_preset(api::Json options) {
+  const api::Json now = api::to_json(api::preset_options(api::Preset::texture));
+  const api::Json before = api::to_json(api::parse_stored_options(api::Json::object()));
+  for (const auto& [name, value] : now.items())
+    if (options.value(name, api::Json()) == value) options[name] = before.at(name);
+  return options;
+}
+
+}  // namespace
 
 std::string request_fingerprint(const api::Json& options, const store::JobRecord& job) {
   Sha256 hash;
@@ -23,8 +36,10 @@ bool is_same_request(const store::JobRecord& stored, const store::JobRecord& sen
   if (sent.request_key == sent.id && stored.id != sent.id) return false;
   if (!stored.asked.empty()) return stored.asked == sent.asked;
   const api::Json resolved = api::to_json(api::parse_stored_options(stored.options));
+  const api::Json asked =
+      stored.options.contains("preset") ? sent.options : without_default_preset(sent.options);
   return stored.input.sha256 == sent.input.sha256 &&
-         store::without_long_members(resolved) == store::without_long_members(sent.options);
+         store::without_long_members(resolved) == store::without_long_members(asked);
 }
 
 }  // namespace unwrapd::server::jobs

@@ -95,7 +95,8 @@ TEST_F(Results, ExpireAfterTheirTime) {
 
 TEST_F(Results, ASmallMeshIsUnwrappedInOneCall) {
   start();
-  const auto answer = client().Post("/v1/unwrap?method=asap", grid_glb(4), "model/gltf-binary");
+  const auto answer =
+      client().Post("/v1/unwrap?preset=chart&method=asap", grid_glb(4), "model/gltf-binary");
   ASSERT_EQ(answer->status, 200) << answer->body;
   EXPECT_THAT(answer->body, StartsWith("glTF"));
   const api::Json totals = api::Json::parse(answer->get_header_value("Unwrapd-Report"));
@@ -106,7 +107,7 @@ TEST_F(Results, ASmallMeshIsUnwrappedInOneCall) {
   EXPECT_THAT(json->body, StartsWith("{\"report\""));
   const httplib::Headers known = {{"If-None-Match", answer->get_header_value("ETag")}};
   const auto again =
-      client().Post("/v1/unwrap?method=asap", known, grid_glb(4), "model/gltf-binary");
+      client().Post("/v1/unwrap?preset=chart&method=asap", known, grid_glb(4), "model/gltf-binary");
   EXPECT_EQ(again->body, answer->body);
 }
 

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::string kCurve = "?method=hybrid&lambda=1,0.01,0.1";
+const std::string kCurve = "?preset=chart&method=hybrid&lambda=1,0.01,0.1";
 
 class Curve : public RunningServer {
  protected:
