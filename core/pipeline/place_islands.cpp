@@ -39,8 +39,8 @@ void note_stacks(const pack::PackResult& packed, Report& report) {
 
 void place_islands(std::span<const charts::Outline> outlines, const UnwrapOptions& options,
                    Executor& executor, std::span<UvMap* const> maps, Report& report) {
-  const pack::PackResult packed =
-      pack::pack(outlines, {options.resolution, options.padding, options.packing, options.effort}, executor);
+  const pack::PackResult packed = pack::pack(
+      outlines, {options.resolution, options.padding, options.packing, options.effort}, executor);
   double covered = 0;
   for (std::size_t k = 0; k < maps.size(); ++k) {
     const pack::Placement& placement = packed.placements[k];

@@ -38,7 +38,8 @@ struct SegmentWatch {
 /// Returns a note where more charts than asked for are needed, or noise leaves no room for the
 /// distortion, else nothing.
 /// The same for any executor. Throws Error{cancelled}.
-std::optional<Note> segment_charts(std::vector<charts::Charts>& surfaces, const SegmentOptions& options,
-                           const SegmentWatch& watch, Executor& executor);
+std::optional<Note> segment_charts(std::vector<charts::Charts>& surfaces,
+                                   const SegmentOptions& options, const SegmentWatch& watch,
+                                   Executor& executor);
 
 }  // namespace unwrapd::segment
