@@ -34,7 +34,7 @@ TEST_F(Curve, HasTheMapOfEveryLambdaAsIfItHadBeenAskedForAlone) {
   const std::string id = succeeded(kCurve);
   std::set<std::string> seen;
   for (const std::string& lambda : std::vector<std::string>{"1", "0.01", "0.1"}) {
-    const std::string alone = succeeded("?method=hybrid&lambda=" + lambda);
+    const std::string alone = succeeded("?preset=chart&method=hybrid&lambda=" + lambda);
     const std::string own = body(id, "result?lambda=" + lambda);
     EXPECT_EQ(own, body(alone, "result")) << lambda;
     EXPECT_EQ(body(id, "layout.svg?lambda=" + lambda), body(alone, "layout.svg")) << lambda;
