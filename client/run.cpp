@@ -89,7 +89,8 @@ void tell_maps(const std::vector<WrittenMap>& maps, const Console& console) {
   try {
     for (const WrittenMap& map : maps)
       console.out << summary(map.result, api::Json::parse(map.report));
-    for (const api::Json& note : api::Json::parse(maps.front().report).at("notes"))
+    const api::Json report = api::Json::parse(maps.front().report);
+    for (const api::Json& note : report.at("notes"))
       console.out << "note (" << note.at("code").get<std::string>()
                   << "): " << note.at("text").get<std::string>() << "\n";
     console.out << std::flush;

@@ -137,6 +137,7 @@ test("a .gltf takes its buffers along, and any format goes into any other", asyn
   assert.equal(uvsOf(json, bin).length, 2 * 10224);
   const again = await unwrap(at("shell.gltf"), "-o", at("shell.uv.obj"), ...kChart, "--lambda-units", "paper");
   assert.equal(again.code, 0, again.err);
+  assert.match(again.out, /^note \(overlaps\): \d+ pairs of triangles overlap/m);
   assert.match(readFileSync(at("shell.uv.obj"), "utf8"), /^vt /m);
 });
 
