@@ -138,7 +138,10 @@ httplib::Client RunningServer::client() const {
 std::string RunningServer::submit(const std::string& query, int size) {
   const httplib::Headers bypass_cache = {
       {"Cache-Control", "no-cache"}};  // not answered from the store
-  const auto answer = client().Post("/v1/jobs" + query, bypass_cache, grid_obj(size), "model/obj");
+  const bool has_preset = query.find("preset=") != std::string::npos;
+  const std::string more = query.empty() ? "" : "&" + query.substr(1);
+  const std::string path = "/v1/jobs" + (has_preset ? query : "?preset=chart" + more);
+  const auto answer = client().Post(path, bypass_cache, grid_obj(size), "model/obj");
   if (!answer || answer->status != 202) {
     ADD_FAILURE() << "no job: " << (answer ? answer->body : "no answer");
     return "none";

@@ -185,7 +185,7 @@ TEST_F(Makers, KeepNothingOfAJobForTheNextOneOfItsId) {
   start_held_up();
   const std::string id = "j_" + std::string(32, '7');
   const auto put = [&](int size) {
-    client().Put("/v1/jobs/" + id, grid_obj(size), "model/obj");
+    client().Put("/v1/jobs/" + id + "?preset=chart", grid_obj(size), "model/obj");
     await_state(id, "succeeded");
   };
   const httplib::Headers json = {{"Accept", "application/json"}};

@@ -161,7 +161,7 @@ TEST_F(Operations, TheHealthCheckOfTheProgramAsksTheAdminPort) {
 TEST_F(Operations, MetricsTellWhatHasHappened) {
   config_.workers = 1;
   start();
-  const std::string done = submit("?preset=chart&stop.iterations=7");
+  const std::string done = submit("?stop.iterations=7");
   await_state(done, "succeeded");
   EXPECT_EQ(metric("unwrapd_iterations_total"), 7);
   EXPECT_EQ(metric("unwrapd_jobs_ended_total{state=\"succeeded\"}"), 1);

@@ -154,7 +154,7 @@ TEST_F(StoredMeshes, AskTheSameQuestionAsWhenTheyAreSent) {
   const std::string id = submit();
   await_state(id, "succeeded");
   put(mesh);
-  const api::Json job = api::Json::parse(post_mesh(mesh, api::Json::object())->body);
+  const api::Json job = api::Json::parse(post_mesh(mesh, {{"preset", "chart"}})->body);
   EXPECT_EQ(job.at("attempt"), 0) << "answered from the store";
   EXPECT_EQ(get(job.at("id"), "result")->body, get(id, "result")->body);
 }
