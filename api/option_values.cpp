@@ -84,6 +84,7 @@ std::string allowed_values(const OptionRow& row, const Limits& limits) {
                                      : " of at least " + plain(row.minimum));
   if (row.type == OptionType::integer && !row.choices.empty())
     text += ", or one of " + join_names(row.choices);
+  if (can_unset(row)) text += ", or none (null in JSON)";
   if (row.type == OptionType::numbers)
     text += ", or a list of at most " + std::to_string(kMaxNumbers) + " different ones";
   return text;
@@ -151,7 +152,7 @@ bool fits(const OptionRow& row, const Json& value, const Limits& limits) {
 }  // namespace
 
 Json value_of_text(const OptionRow& row, const std::string& text) {
-  if (row.nullable && text == kUnset) return nullptr;
+  if (can_unset(row) && text == kUnset) return nullptr;
   switch (row.type) {
     case OptionType::choice:
       return text;

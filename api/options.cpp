@@ -195,7 +195,7 @@ JobOptions parse_options(const Json& object, const Limits& limits) {
 }
 
 JobOptions parse_stored_options(Json object) {
-  if (object.is_object() && !object.contains(kPreset)) {  // no presets before version 0.2
+  if (object.is_object() && !object.contains(kPreset)) {  // earlier versions had no presets
     object[kPreset] = preset_name(Preset::chart);
     object.emplace("texcoord", 0);
   }

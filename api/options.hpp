@@ -53,7 +53,7 @@ struct OptionRow {
   double minimum = 0;                  ///< of a number
   std::optional<double> maximum = {};  ///< of a number; empty: none, or the server's
   int Limits::*limit = nullptr;     ///< the server's own maximum of a number or of a list's length
-  bool nullable = false;            ///< null, "none" in a query: unset, whatever the preset sets
+  bool nullable = false;            ///< may be null, see can_unset()
   std::string_view description;     ///< what each value does, and when to choose it
   std::span<const Method> methods;  ///< methods with which it has an effect
 
@@ -81,6 +81,10 @@ Json option_default(const OptionRow& row, const Limits& limits, Preset preset = 
 
 /// The highest allowed number, if there is one.
 std::optional<double> option_maximum(const OptionRow& row, const Limits& limits);
+
+/// Whether null in JSON, and none in a query, unset the option. A lambda always has a value; null
+/// is only what resolved options have in its place for other methods than hybrid.
+bool can_unset(const OptionRow& row);
 
 /// Whether the option has an effect with this method.
 bool has_effect(const OptionRow& row, Method method);

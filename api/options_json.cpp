@@ -166,6 +166,8 @@ std::optional<double> option_maximum(const OptionRow& row, const Limits& limits)
   return row.maximum;
 }
 
+bool can_unset(const OptionRow& row) { return row.nullable && row.type != OptionType::numbers; }
+
 bool has_effect(const OptionRow& row, Method method) {
   return std::ranges::find(row.methods, method) != row.methods.end();
 }

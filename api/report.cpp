@@ -29,6 +29,7 @@ constexpr std::array<std::string_view, 21> kNoteCodes = {
     "tangents_changed", "transform_reset", "materials_copied", "morph_targets_lost",
     "sets_filled",      "images_separate", "polygons_split",   "format_changed",
     "data_dropped"};
+static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::data_dropped) + 1);
 
 /// The stages of timings_ms, in the order of a job.
 constexpr std::array kTimings = {"queue", "read",     "setup",   "segment", "merge", "factor",

@@ -74,8 +74,7 @@ std::string range_text(const api::OptionRow& row) {
   std::string text = kind + " >= " + figure(row.minimum);
   if (row.maximum) text = kind + " in [" + figure(row.minimum) + ", " + figure(*row.maximum) + "]";
   for (const std::string_view word : row.choices) text += "|" + std::string(word);
-  const bool can_unset = row.nullable && row.type != api::OptionType::numbers;
-  return can_unset ? text + "|none" : text;
+  return can_unset(row) ? text + "|none" : text;
 }
 
 /// Adds one flag for every row of the API's table; their values go to options.

@@ -6,7 +6,8 @@
 
 namespace unwrapd::web {
 
-std::string_view index_html();  ///< refers to the two beside it
+std::string_view index_html();  ///< refers to those beside it
+std::string_view form_js();
 std::string_view page_css();
 std::string_view page_js();
 

@@ -9,37 +9,29 @@
 namespace unwrapd::asset {
 namespace {
 
-std::size_t size_of(PlyType type) {
-  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes.at(static_cast<std::size_t>(type));
+struct NumberType {
+  std::size_t size;  ///< bytes
+  double (*read)(const char*);
+};
+
+template <class T>
+constexpr NumberType number_type() {
+  return {sizeof(T), [](const char* bytes) { return static_cast<double>(load<T>(bytes)); }};
 }
 
-double number_of(PlyType type, const char* bytes) {
-  switch (type) {
-    case PlyType::i8:
-      return load<std::int8_t>(bytes);
-    case PlyType::u8:
-      return load<std::uint8_t>(bytes);
-    case PlyType::i16:
-      return load<std::int16_t>(bytes);
-    case PlyType::u16:
-      return load<std::uint16_t>(bytes);
-    case PlyType::i32:
-      return load<std::int32_t>(bytes);
-    case PlyType::u32:
-      return load<std::uint32_t>(bytes);
-    case PlyType::f32:
-      return load<float>(bytes);
-    case PlyType::f64:
-      return load<double>(bytes);
-  }
-  return 0;
-}
+/// In the order of PlyType.
+constexpr std::array kNumberTypes = {number_type<std::int8_t>(),  number_type<std::uint8_t>(),
+                                     number_type<std::int16_t>(), number_type<std::uint16_t>(),
+                                     number_type<std::int32_t>(), number_type<std::uint32_t>(),
+                                     number_type<float>(),        number_type<double>()};
+static_assert(kNumberTypes.size() == static_cast<std::size_t>(PlyType::f64) + 1);
+
+const NumberType& type_of(PlyType type) { return kNumberTypes[static_cast<std::size_t>(type)]; }
 
 }  // namespace
 
 std::size_t PlyValues::least_bytes(PlyType type) const {
-  return encoding_ == PlyEncoding::text ? 2 : size_of(type);  // a digit and a space
+  return encoding_ == PlyEncoding::text ? 2 : type_of(type).size;  // a digit and a space
 }
 
 std::size_t PlyValues::bytes_left() const {
@@ -54,7 +46,7 @@ void PlyValues::refuse(const std::string& message) const { refuse_mesh(message, 
 
 double PlyValues::next(PlyType type) {
   if (encoding_ == PlyEncoding::text) return text_.number();
-  const std::size_t size = size_of(type);
+  const std::size_t size = type_of(type).size;
   if (size > file_.size() - at_) refuse("the file ends within a value");
   std::array<char, 8> bytes{};
   std::copy_n(&file_[at_], size, bytes.begin());
@@ -62,7 +54,7 @@ double PlyValues::next(PlyType type) {
     std::reverse(bytes.begin(), bytes.begin() + std::ptrdiff_t(size));
   at_ += size;
   pace_.add(1);
-  return number_of(type, bytes.data());
+  return type_of(type).read(bytes.data());
 }
 
 std::size_t PlyValues::next_count(const PlyProperty& list) {

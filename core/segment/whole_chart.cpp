@@ -34,8 +34,8 @@ std::optional<UvMap> map_whole(const charts::Chart& disk, double max_distortion,
   if (sums.flipped > 0 || !(excess_of(sums).worst() <= most)) return std::nullopt;
   if (!measure::is_plainly_injective(own.faces, own.loops, uv, stop)) return std::nullopt;
   return uv;
-} catch (const Error&) {  // told to stop, or too ill-conditioned to factor
-  throw_if_cancelled(stop);
+} catch (const Error& error) {  // too ill-conditioned: its parts may be better
+  if (error.code() != ErrorCode::solver_failed) throw;
   return std::nullopt;
 }
 

@@ -61,6 +61,7 @@ void add_info_routes(std::vector<http::Route>& routes, const api::Limits& limits
   routes.push_back({"GET", "/docs", page_handler(api::docs_html(), kHtml, kDocsPolicy)});
   routes.push_back({"GET", "/docs.css", page_handler(api::docs_css(), kCss, kDocsPolicy)});
   routes.push_back({"GET", "/", page_handler(web::index_html(), kHtml, kPagePolicy)});
+  routes.push_back({"GET", "/form.js", page_handler(web::form_js(), kScript, kPagePolicy)});
   routes.push_back({"GET", "/page.css", page_handler(web::page_css(), kCss, kPagePolicy)});
   routes.push_back({"GET", "/page.js", page_handler(web::page_js(), kScript, kPagePolicy)});
 }

@@ -32,8 +32,19 @@ TEST(Presets, EveryOtherOptionOverridesThem) {
 }
 
 TEST(Presets, NoneInAQueryUnsetsWhatTheyBound) {
-  const Query query{{"preset", "texture"}, {"max_distortion", "none"}};
-  EXPECT_TRUE(to_json(parse_options(query, kLimits)).at("max_distortion").is_null());
+  const Query bounded{{"preset", "texture"}, {"max_distortion", "none"}};
+  EXPECT_TRUE(to_json(parse_options(bounded, kLimits)).at("max_distortion").is_null());
+  for (const OptionRow& row : option_table()) {
+    const Query query{{std::string(row.name), "none"}};
+    if (can_unset(row)) {
+      EXPECT_TRUE(row.get(parse_options(query, kLimits)).is_null()) << row.name;
+    } else if (!row.nullable && row.type != OptionType::integer) {
+      continue;  // none may be a choice or a name
+    } else {
+      const Error error = error_of([&] { parse_options(query, kLimits); });
+      EXPECT_EQ(error.where(), option_pointer(row.name)) << row.name;
+    }
+  }
 }
 
 TEST(Presets, TheOrderOfMembersDoesNotMatter) {

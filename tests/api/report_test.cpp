@@ -84,6 +84,20 @@ TEST(Report, NamesItsKindsAsTheContractDoes) {
             reasons);
 }
 
+TEST(Report, NamesTheCodesOfNotesAsTheContractDoes) {
+  const std::vector<std::string> prose = section({"components", "schemas", "NoteCode"});
+  std::vector<std::string> told, own;
+  for (const std::string& line : prose)
+    if (const auto begin = line.find("- `"); begin != std::string::npos)
+      told.push_back(line.substr(begin + 3, line.find('`', begin + 3) - begin - 3));
+  for (int i = 0; i <= static_cast<int>(NoteCode::data_dropped); ++i) {
+    Report report;
+    report.notes = {{static_cast<NoteCode>(i), "why"}};
+    own.push_back(to_json(report, {}).at("notes").at(0).at("code"));
+  }
+  EXPECT_EQ(told, own);
+}
+
 TEST(Report, TellsOverlapsOnlyWhereTheyWereCounted) {
   Report report = sample();
   EXPECT_TRUE(to_json(report, {}).at("charts").at(0).at("overlaps").is_null());

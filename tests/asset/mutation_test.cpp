@@ -28,17 +28,6 @@ std::string damaged(std::string file, std::mt19937& random) {
   return file;
 }
 
-void try_file(const std::string& file) {
-  try {
-    const Asset asset = read({file, {}}, {.max_vertices = 100'000, .max_faces = 100'000});
-    const std::vector<UnwrappedSurface> unwrapped = split_everywhere(asset);
-    for (const Format format : {Format::glb, Format::gltf, Format::obj})
-      EXPECT_FALSE(write(asset, unwrapped, format).empty());
-  } catch (const Error& error) {
-    EXPECT_NE(error.code(), ErrorCode::internal);
-  }
-}
-
 /// The JSON of a GLB damaged, the container right: most damage gets past the first check.
 TEST(Mutation, DamagedDocumentsAreReadOrRefused) {
   std::mt19937 random(1);

@@ -163,6 +163,17 @@ Error error_of(const std::string& document, const ReadLimits& limits) {
   return Error(ErrorCode::internal, "none");
 }
 
+void try_file(const std::string& document) {
+  try {
+    const Asset asset = read({document, {}}, {.max_vertices = 100'000, .max_faces = 100'000});
+    const std::vector<UnwrappedSurface> unwrapped = split_everywhere(asset);
+    for (const Format format : {Format::glb, Format::gltf, Format::obj})
+      EXPECT_FALSE(write(asset, unwrapped, format).empty());
+  } catch (const Error& error) {
+    EXPECT_NE(error.code(), ErrorCode::internal);
+  }
+}
+
 std::array<double, 2> uv_of(const std::array<Vec3, 3>& face, int corner) {
   const std::uint64_t all = hash_of(face[0]) + hash_of(face[1]) + hash_of(face[2]);
   const std::uint64_t hash = mixed(all ^ mixed(hash_of(face[static_cast<std::size_t>(corner)])));

@@ -56,6 +56,9 @@ Asset read_file(const std::string& document, const AssetOptions& options = kPlai
 /// The error that reading ends with; fails the test when there is none.
 Error error_of(const std::string& document, const ReadLimits& limits = {});
 
+/// Reads a file and writes it in every format, or gets an Error of the file.
+void try_file(const std::string& document);
+
 /// A UV that depends on nothing but where the face and the corner are: whoever reads an answer can
 /// tell what its UVs must be.
 std::array<double, 2> uv_of(const std::array<Vec3, 3>& face, int corner);
