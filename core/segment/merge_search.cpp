@@ -172,6 +172,7 @@ Candidate MergeSearch::bisect_regions(Candidate whole) {
     best = std::move(*next);
   }
   close_slits(context_, settings_, best.partition);
+  shorten_in_parts(context_, settings_, best.partition);
   return best;
 }
 
@@ -206,8 +207,7 @@ MergeSettings MergeSearch::settings_of(std::size_t number) const {
   return settings;
 }
 
-/// Reports and remembers the tests on the way to the candidates, which parallel searches do not
-/// share.
+/// Reports and remembers the tests of searches that ran side by side.
 void MergeSearch::learn(std::vector<Candidate>& found) {
   double faces = 0;
   for (Candidate& own : found) {

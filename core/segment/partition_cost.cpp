@@ -30,14 +30,14 @@ std::vector<charts::Outline> outlines(const SegmentationMesh& surface, const Par
   return all;
 }
 
+/// weight: one a half-edge.
 double seam_of(const SegmentationMesh& surface, const Partition& partition,
-               const std::vector<Index>& owner) {
+               const std::vector<Index>& owner, const std::vector<double>& weight) {
   double seam = 0;
   for (std::size_t h = 0; h < partition.open.size(); ++h) {
     const Index twin = surface.halfedges.twin[h];
     if (twin == kNoTwin) continue;
-    if (partition.open[h] != 0 || owner[face_of(twin)] != owner[h / 3])
-      seam += surface.length[h] / 2;
+    if (partition.open[h] != 0 || owner[face_of(twin)] != owner[h / 3]) seam += weight[h] / 2;
   }
   return seam;
 }
@@ -45,19 +45,20 @@ double seam_of(const SegmentationMesh& surface, const Partition& partition,
 }  // namespace
 
 double seam_length(const SegmentationMesh& surface, const Partition& partition) {
-  return seam_of(surface, partition, owners(surface, partition));
+  return seam_of(surface, partition, owners(surface, partition), surface.length);
 }
 
 PartitionCost partition_cost(const SegmentationMesh& surface, const Partition& partition,
                              const CostRules& rules) {
   const std::vector<Index> owner = owners(surface, partition);
-  const double seam = seam_of(surface, partition, owner);
-  if (seam <= 0) return {0, 0, 0};
+  const double length = seam_of(surface, partition, owner, surface.length);
+  if (length <= 0) return {0, 0, 0};
+  const double seam = seam_of(surface, partition, owner, surface.seam_cost);
   double charts = 0;
   for (const MappedRegion& patch : partition.patches)
     charts += patch.area < kSmallRegion ? rules.small_chart : rules.chart;
-  PartitionCost cost{.seams = rounded(seam + charts), .seam = rounded(seam)};
-  if (cost.seam >= rules.longest || cost.seams >= rules.limit) return cost;
+  PartitionCost cost{.seams = rounded(seam + charts), .length = rounded(length)};
+  if (cost.length >= rules.longest || cost.seams >= rules.limit) return cost;
   cost.all = cost.seams;
   if (rules.page_area > kMostPage) return cost;
   const double fill = pack::rough_fill(outlines(surface, partition, owner),

@@ -12,9 +12,10 @@ namespace unwrapd::segment {
 inline constexpr double kCostOfEmptiness = 40;  ///< of a whole page, in length of seams
 
 struct PartitionCost {
-  double seams = std::numeric_limits<double>::infinity();  ///< and charts; area of the surface: 1
+  double seams = std::numeric_limits<double>::infinity();  ///< by seam_cost, and charts
   double all = std::numeric_limits<double>::infinity();    ///< and what the page leaves empty
-  double seam = std::numeric_limits<double>::infinity();   ///< alone
+  double length =
+      std::numeric_limits<double>::infinity();  ///< of the seams; area of the surface: 1
 };
 
 struct CostRules {
@@ -31,7 +32,7 @@ struct CostRules {
 /// The length of all seams; area of the surface: 1.
 double seam_length(const SegmentationMesh& surface, const Partition& partition);
 
-/// Seams by their lengths, so much for each chart, and more for each share of a rough packing
+/// Seams by seam_cost, so much for each chart, and more for each share of a rough packing
 /// that is wanted and left empty; nothing for what needs no cut. Where `all` is not below the limit
 /// it may be infinite instead. Rounded: equal costs tie. Throws Error{cancelled}.
 PartitionCost partition_cost(const SegmentationMesh& surface, const Partition& partition,

@@ -77,16 +77,16 @@ Candidate SurfaceSegmentation::finished(std::vector<Candidate> all) {
 std::optional<Segments> SurfaceSegmentation::loosened(double excess) {
   MergeSearch& search = *search_;
   if (!std::exchange(is_priced_, true)) best_ = search.priced(std::move(best_));
-  const double seam = best_.cost.seam;
+  const double seam = best_.cost.length;
   if (seam <= 0) return std::nullopt;  // it needs no cut
   search.widen(kMarginOfExcess * excess, competing_);
   std::vector<Candidate> all = competing_;
   all.push_back(best_);
   search.forbid_seams_from(seam);
   Candidate next = finished(std::move(all));
-  if (next.cost.seam < seam) next = search.priced(search.bisect_regions(std::move(next)));
+  if (next.cost.length < seam) next = search.priced(search.bisect_regions(std::move(next)));
   search.forbid_seams_from(std::numeric_limits<double>::infinity());
-  if (!(next.cost.seam < seam && next.cost.all < best_.cost.all)) return std::nullopt;
+  if (!(next.cost.length < seam && next.cost.all < best_.cost.all)) return std::nullopt;
   best_ = std::move(next);
   return segments_of(best_.partition);
 }

@@ -1,146 +1,126 @@
 // Borders come from clusters of triangles and zigzag; merging keeps some and drops others, and what
 // is kept need no longer lie where a cluster ended. Each is replaced by a shortest path (Dijkstra)
-// whose ends stay where three borders meet.
+// whose ends stay where seams meet. Where the maps do not allow it, a path nearby may do: what
+// remains then lies where the distortion asks for it, without its zigzag.
 #include "core/segment/shorten_seams.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
-#include <queue>
 #include <utility>
 
 #include "core/base/cancel.hpp"
-#include "core/linear/sparse.hpp"
-#include "core/mesh/edges.hpp"
 #include "core/segment/ranks.hpp"
+#include "core/segment/remap.hpp"
+#include "core/segment/seam_path.hpp"
 
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kWorthwhile = 0.98;  // of a border's length: longer paths change nothing
+constexpr double kWorthwhile = 0.995;  // of a row's length: longer paths change nothing
+constexpr std::array kCorridors = {1'000'000, 4, 1};  // sides of triangles off the row
+constexpr std::size_t kLeastHalved = 8, kNeverHalved = std::numeric_limits<std::size_t>::max();
 constexpr int kRounds = 2;
 
-/// Half-edges of one region that lie on its border with another, in a row.
-using Chain = std::vector<Index>;
-
-class Straightening {
+class Shortening {
  public:
-  Straightening(const MergeContext& context, const MergeSettings& settings, Partition& partition)
+  /// least: rows of fewer sides are not shortened half by half.
+  Shortening(const MergeContext& context, const MergeSettings& settings, std::size_t least,
+             Partition& partition)
       : context_(context),
         surface_(context.surface),
         settings_(settings),
+        least_(least),
         partition_(partition),
-        corners_(linear::vertex_corners(surface_.mesh.faces, surface_.mesh.vertex_count())) {
+        corners_(linear::vertex_corners(surface_.mesh.faces, surface_.mesh.vertex_count())),
+        seams_(surface_, partition) {
     for (const MappedRegion& patch : partition.patches) total_ += patch.excess;
-    mark();
   }
 
   void run() {
-    const std::vector<Chain> chains = find_chains();
-    for (const Chain& chain : chains) {
-      throw_if_cancelled(context_.stop);
-      if (is_still_there(chain)) shorten(chain);
-    }
+    for (const Chain& row : seams_.rows()) shorten(row);
   }
 
  private:
   [[nodiscard]] Index twin(Index h) const { return surface_.halfedges.twin[h]; }
-  [[nodiscard]] Index start(Index h) const { return start_of(surface_.mesh.faces, h); }
-  [[nodiscard]] Index end(Index h) const { return end_of(surface_.mesh.faces, h); }
 
-  /// Whether the regions on both sides of h differ.
-  [[nodiscard]] bool is_border(Index h) const {
-    return twin(h) != kNoTwin && owner_[face_of(h)] != owner_[face_of(twin(h))];
-  }
-  [[nodiscard]] bool is_seam(Index h) const {
-    return twin(h) == kNoTwin || partition_.open[h] != 0 || is_border(h);
-  }
-
-  /// Finds the region of each face, and how many seams meet in each vertex.
-  void mark() {
-    owner_.assign(surface_.mesh.faces.size(), -1);
-    for (std::size_t k = 0; k < partition_.patches.size(); ++k)
-      for (const Index t : partition_.patches[k].region.faces) owner_[t] = static_cast<Index>(k);
-    degree_.assign(surface_.mesh.positions.size(), 0);
-    for (Index h = 0; h < static_cast<Index>(surface_.length.size()); ++h) {
-      if (!is_seam(h) || (twin(h) != kNoTwin && twin(h) < h)) continue;
-      ++degree_[start(h)];
-      ++degree_[end(h)];
-    }
+  /// By the shortest path that the maps on both sides allow: nearer and nearer to the row, then
+  /// half of the row by half.
+  void shorten(const Chain& row) {
+    throw_if_cancelled(context_.stop);
+    const bool is_ring = seams_.start(row.front()) == seams_.end(row.back());
+    if (row.size() < 2 || is_ring || !is_still_there(row) || is_short(row)) return;
+    if (row.size() < least_) return;
+    const auto half = row.begin() + std::ssize(row) / 2;
+    shorten({row.begin(), half});
+    shorten({half, row.end()});
   }
 
-  /// The border half-edge that goes on from h where just two meet; kNoTwin at a junction.
-  [[nodiscard]] Index next_border(Index h) const {
-    if (degree_[end(h)] != 2) return kNoTwin;
-    Index g = next_halfedge(h);
-    while (!is_seam(g)) g = next_halfedge(twin(g));
-    return is_border(g) && partition_.open[g] == 0 ? g : kNoTwin;
+  /// Rows found before may have moved with others since.
+  [[nodiscard]] bool is_still_there(const Chain& row) const {
+    const Index a = seams_.owner(row.front()), b = seams_.owner(twin(row.front()));
+    const char open = partition_.open[row.front()];
+    return std::ranges::all_of(row, [&](Index h) {
+      const bool is_within = h == row.back() || seams_.degree(seams_.end(h)) == 2;
+      return is_within && seams_.is_seam(h) && partition_.open[h] == open && seams_.owner(h) == a &&
+             seams_.owner(twin(h)) == b;
+    });
   }
 
-  /// Those that begin and end at junctions, each once: from the region of lower number.
-  [[nodiscard]] std::vector<Chain> find_chains() const {
-    std::vector<Chain> chains;
-    for (Index h = 0; h < static_cast<Index>(surface_.length.size()); ++h) {
-      if (!is_border(h) || partition_.open[h] != 0 || degree_[start(h)] == 2) continue;
-      if (owner_[face_of(h)] > owner_[face_of(twin(h))]) continue;
-      Chain chain{h};
-      for (Index g = next_border(h); g != kNoTwin; g = next_border(g)) chain.push_back(g);
-      if (chain.size() > 1 && start(h) != end(chain.back())) chains.push_back(std::move(chain));
-    }
-    return chains;
-  }
-
-  /// Chains found before may have moved with others since.
-  [[nodiscard]] bool is_still_there(const Chain& chain) const {
-    const Index a = owner_[face_of(chain.front())], b = owner_[face_of(twin(chain.front()))];
-    return a != b && degree_[start(chain.front())] != 2 && degree_[end(chain.back())] != 2 &&
-           std::ranges::all_of(chain, [&](Index h) {
-             return owner_[face_of(h)] == a && owner_[face_of(twin(h))] == b;
-           });
-  }
-
-  [[nodiscard]] double length(const Chain& chain) const {
+  [[nodiscard]] double length(const Chain& row) const {
     double sum = 0;
-    for (const Index h : chain) sum += surface_.seam_cost[h];
+    for (const Index h : row) sum += surface_.seam_cost[h];
     return sum;
   }
 
-  /// The shortest way between the ends of a chain through both of its regions, meeting no other
-  /// seam; empty where there is none shorter than `most`.
-  [[nodiscard]] Chain shortest_path(const Chain& chain, double most) const {
-    const Index a = owner_[face_of(chain.front())], b = owner_[face_of(twin(chain.front()))];
-    const Index from = start(chain.front()), to = end(chain.back());
-    std::vector<double> distance(degree_.size(), most);
-    std::vector<Index> via(degree_.size(), kNoTwin);
-    std::vector<char> on_chain(degree_.size(), 0);
-    for (const Index h : chain) on_chain[end(h)] = 1;
-    const auto is_inside = [&](Index h) {
-      const auto of_both = [&](Index g) {
-        return owner_[face_of(g)] == a || owner_[face_of(g)] == b;
-      };
-      const bool open = partition_.open[h] != 0;
-      return twin(h) != kNoTwin && !open && of_both(h) && of_both(twin(h)) &&
-             (degree_[end(h)] == 0 || on_chain[end(h)] != 0);
-    };
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-    distance[from] = 0;
-    open.emplace(0.0, from);
-    while (!open.empty() && open.top().second != to) {
-      const auto [d, v] = open.top();
-      open.pop();
-      if (d > distance[v]) continue;
-      for (Index k = corners_.begin[v]; k < corners_.begin[v + 1]; ++k) {
-        const Index h = corners_.corner[k];
-        if (!is_inside(h) || !(d + surface_.seam_cost[h] < distance[end(h)])) continue;
-        distance[end(h)] = d + surface_.seam_cost[h];
-        via[end(h)] = h;
-        open.emplace(distance[end(h)], end(h));
+  /// Makes it short, unless it is or only a part of it can be.
+  bool is_short(const Chain& row) {
+    const char was_open = partition_.open[row.front()];
+    const bool is_slit = seams_.is_slit(row.front());
+    set_open(row, 0);
+    const SeamPaths paths(surface_, corners_, seams_, partition_.open, row);
+    Chain last;
+    for (const int corridor : kCorridors) {
+      Chain path = paths.shortest(corridor, kWorthwhile * length(row));
+      if (path.empty()) break;
+      if (path == last) continue;
+      if (is_slit ? move_slit(row, path) : move_border(row, path)) {
+        seams_ = SeamGraph(surface_, partition_);
+        return true;
       }
+      last = std::move(path);
     }
-    Chain path;
-    for (Index v = to; v != from && via[v] != kNoTwin; v = start(path.back()))
-      path.push_back(via[v]);
-    return path;
+    set_open(row, was_open);
+    return last.empty();
+  }
+
+  void set_open(const Chain& row, char is_open) {
+    for (const Index h : row) partition_.open[h] = partition_.open[twin(h)] = is_open;
+  }
+
+  bool move_border(const Chain& row, const Chain& path) {
+    MappedRegion& a = partition_.patches[seams_.owner(row.front())];
+    MappedRegion& b = partition_.patches[seams_.owner(twin(row.front()))];
+    auto sides = parted(row, path);
+    const std::size_t count = a.region.faces.size() + b.region.faces.size();
+    if (sides[0].empty() || sides[0].size() + sides[1].size() != count) return false;
+    Chain seen_from_b;
+    for (const Index h : row) seen_from_b.push_back(twin(h));
+    const Region both = beside(surface_, a.region, b.region, seen_from_b);
+    const double most = (a.excess + b.excess).worst();
+    std::array<MappedRegion, 2> now;
+    ExcessDistortion after = total_ - a.excess - b.excess;
+    const std::size_t smaller = sides[1].size() < sides[0].size() ? 1 : 0;
+    for (const std::size_t k : {smaller, 1 - smaller}) {
+      now[k] = mapped(std::move(sides[k]), both, most);
+      after += now[k].excess;
+      const bool fits = after.worst() <= std::max(settings_.budget, total_.worst());
+      if (!now[k].is_sound || !fits) return false;
+    }
+    total_ = after;
+    a = std::move(now[0]);
+    b = std::move(now[1]);
+    return true;
   }
 
   /// The faces of both regions parted along the path instead of the chain: those on its two sides;
@@ -150,14 +130,16 @@ class Straightening {
     std::vector<char> is_chain(surface_.length.size(), 0), is_path(surface_.length.size(), 0);
     for (const Index h : chain) is_chain[h] = is_chain[twin(h)] = 1;
     for (const Index h : path) is_path[h] = is_path[twin(h)] = 1;
-    std::vector<char> seen(owner_.size(), 0);
+    std::vector<char> seen(surface_.mesh.faces.size(), 0);
     const auto flood = [&](Index from) {
       std::vector<Index> faces{from};
       seen[from] = 1;
       for (std::size_t k = 0; k < faces.size(); ++k)
         for (Index h = 3 * faces[k]; h < 3 * faces[k] + 3; ++h) {
           if (twin(h) == kNoTwin || partition_.open[h] != 0 || is_path[h] != 0) continue;
-          if ((is_border(h) && is_chain[h] == 0) || seen[face_of(twin(h))] != 0) continue;
+          if ((seams_.owner(h) != seams_.owner(twin(h)) && is_chain[h] == 0) ||
+              seen[face_of(twin(h))] != 0)
+            continue;
           seen[face_of(twin(h))] = 1;
           faces.push_back(face_of(twin(h)));
         }
@@ -170,34 +152,10 @@ class Straightening {
     return {std::move(left), std::move(right)};
   }
 
-  void shorten(const Chain& chain) {
-    const Chain path = shortest_path(chain, kWorthwhile * length(chain));
-    if (path.empty()) return;
-    const Index a = owner_[face_of(chain.front())], b = owner_[face_of(twin(chain.front()))];
-    MappedRegion &old_a = partition_.patches[a], &old_b = partition_.patches[b];
-    auto sides = parted(chain, path);
-    const std::size_t count = old_a.region.faces.size() + old_b.region.faces.size();
-    if (sides[0].empty() || sides[0].size() + sides[1].size() != count) return;
-    Chain seen_from_b;
-    for (const Index h : chain) seen_from_b.push_back(twin(h));
-    const Region both = beside(surface_, old_a.region, old_b.region, seen_from_b);
-    const double most = (old_a.excess + old_b.excess).worst();
-    MappedRegion new_a = mapped(std::move(sides[0]), both, most);
-    MappedRegion new_b = mapped(std::move(sides[1]), both, most);
-    const ExcessDistortion after =
-        total_ + new_a.excess + new_b.excess - old_a.excess - old_b.excess;
-    const bool fits = after.worst() <= std::max(settings_.budget, total_.worst());
-    if (!new_a.is_sound || !new_b.is_sound || !fits) return;
-    total_ = after;
-    old_a = std::move(new_a);
-    old_b = std::move(new_b);
-    mark();
-  }
-
   /// A patch of some of the faces of a region, from its map. most: excess it may have at any rate.
   [[nodiscard]] MappedRegion mapped(std::vector<Index> faces, const Region& both,
                                     double most) const {
-    const Ranks rank(owner_.size(), both.faces);
+    const Ranks rank(surface_.mesh.faces.size(), both.faces);
     MappedRegion patch;
     for (const Index t : faces) {
       patch.region.uv.push_back(both.uv[rank[t]]);
@@ -214,13 +172,76 @@ class Straightening {
     return patch;
   }
 
+  /// Whether the slit, which is closed, runs along the path from now on.
+  bool move_slit(const Chain& slit, const Chain& path) {
+    MappedRegion& old = partition_.patches[seams_.owner(slit.front())];
+    MappedRegion now = old;
+    set_open(slit, 1);
+    set_open(path, 1);
+    now.region = with_pockets_moved(old.region, slit);
+    set_open(slit, 0);
+    set_open(path, 1);
+    if (!remap(context_, settings_, partition_.open, old.excess, now, total_)) {
+      set_open(path, 0);
+      return false;
+    }
+    old = std::move(now);
+    return true;
+  }
+
+  /// Between a slit and the path that it shall take lie pockets, shut off by both. Each is laid
+  /// where the other side of the slit is.
+  [[nodiscard]] Region with_pockets_moved(Region region, const Chain& chain) const {
+    const std::vector<Index> piece = pieces(region.faces);
+    std::vector<Index> size;
+    for (const Index t : region.faces) {
+      size.resize(std::max(size.size(), static_cast<std::size_t>(piece[t]) + 1));
+      ++size[piece[t]];
+    }
+    const Index outside = static_cast<Index>(std::ranges::max_element(size) - size.begin());
+    for (Index k = 0; k < static_cast<Index>(size.size()); ++k) {
+      if (k == outside) continue;
+      Region rest, pocket;
+      for (std::size_t f = 0; f < region.faces.size(); ++f) {
+        Region& own = piece[region.faces[f]] == k ? pocket : rest;
+        own.faces.push_back(region.faces[f]);
+        own.uv.push_back(region.uv[f]);
+      }
+      Chain border;
+      for (const Index edge : chain)
+        for (const Index h : {edge, twin(edge)})
+          if (piece[face_of(h)] == k && piece[face_of(twin(h))] != k) border.push_back(h);
+      if (!border.empty()) region = beside(surface_, rest, pocket, border);
+    }
+    return region;
+  }
+
+  /// The piece of each face, where seams take these faces apart; others have none, -1.
+  [[nodiscard]] std::vector<Index> pieces(const std::vector<Index>& faces) const {
+    std::vector<Index> piece(surface_.mesh.faces.size(), -1);
+    Index count = 0;
+    for (const Index first : faces) {
+      if (piece[first] >= 0) continue;
+      std::vector<Index> reached{first};
+      piece[first] = count;
+      for (std::size_t k = 0; k < reached.size(); ++k)
+        for (Index h = 3 * reached[k]; h < 3 * reached[k] + 3; ++h) {
+          if (seams_.is_seam(h) || piece[face_of(twin(h))] >= 0) continue;
+          piece[face_of(twin(h))] = count;
+          reached.push_back(face_of(twin(h)));
+        }
+      ++count;
+    }
+    return piece;
+  }
+
   const MergeContext& context_;
   const SegmentationMesh& surface_;
   const MergeSettings& settings_;
+  std::size_t least_;
   Partition& partition_;
   linear::VertexCorners corners_;
-  std::vector<Index> owner_;  ///< one a face
-  std::vector<int> degree_;   ///< seams that meet in a vertex
+  SeamGraph seams_;
   ExcessDistortion total_;
 };
 
@@ -228,7 +249,14 @@ class Straightening {
 
 void shorten_seams(const MergeContext& context, const MergeSettings& settings,
                    Partition& partition) {
-  for (int round = 0; round < kRounds; ++round) Straightening(context, settings, partition).run();
+  for (int round = 0; round < kRounds; ++round)
+    Shortening(context, settings, kNeverHalved, partition).run();
+}
+
+void shorten_in_parts(const MergeContext& context, const MergeSettings& settings,
+                      Partition& partition) {
+  for (int round = 0; round < kRounds; ++round)
+    Shortening(context, settings, kLeastHalved, partition).run();
 }
 
 }  // namespace unwrapd::segment

@@ -5,11 +5,16 @@
 
 namespace unwrapd::segment {
 
-/// Moves every border between two regions, from one junction of borders to the next, to the
-/// shortest path along edges of both, where that saves length and both regions keep a sound map:
-/// the excess of each over its area is at most the cap, or what both had; that of all is at most
-/// the budget. Throws Error{cancelled}.
+/// Moves every row of seams, from one junction to the next, to the shortest path along edges of the
+/// regions on its sides, or to the shortest one nearby, where that saves length and the regions
+/// keep a sound map: the excess of each over its area is at most the cap, or what both had; that of
+/// all is at most the budget. Lengths are by seam_cost. Throws Error{cancelled}.
 void shorten_seams(const MergeContext& context, const MergeSettings& settings,
                    Partition& partition);
+
+/// The same where a whole stretch cannot be straight: its halves, their halves, and so on. Takes
+/// longer: for the last partition.
+void shorten_in_parts(const MergeContext& context, const MergeSettings& settings,
+                      Partition& partition);
 
 }  // namespace unwrapd::segment

@@ -59,6 +59,14 @@ TEST(PartitionCost, CountsSeamsChartsAndWhatThePageLeavesEmpty) {
   EXPECT_EQ(strip.cost({.page_area = 2, .wanted_fill = 0.7}).all, none.seams);
 }
 
+TEST(PartitionCost, TakesLessForACreaseButTellsItsLength) {
+  Strip strip;
+  for (double& cost : strip.surface.seam_cost) cost *= 0.6;
+  const PartitionCost cost = strip.cost({.wanted_fill = 0.1});
+  EXPECT_NEAR(cost.seams, 0.6 * 0.25 + 2 * 0.15, 1e-5);
+  EXPECT_NEAR(cost.length, 0.25, 1e-5);
+}
+
 TEST(PartitionCost, TakesLessForASmallChart) {
   Strip strip;
   strip.halves.patches[1].area = 0.9 * kSmallRegion;
