@@ -55,6 +55,8 @@ std::string value_text(const api::Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+constexpr double kMostDigits = 1e9;  // larger numbers have an exponent
+
 /// "asap|arap|hybrid", "INT >= 1", "NUMBER[,NUMBER...] >= 0", "INT in [16, 16384]".
 std::string range_text(const api::OptionRow& row) {
   if (row.type == api::OptionType::objects) return "FILE.json";
@@ -68,7 +70,7 @@ std::string range_text(const api::OptionRow& row) {
   std::string kind = row.type == api::OptionType::integer ? "INT" : "NUMBER";
   if (row.type == api::OptionType::numbers) kind += "[,NUMBER...]";
   const auto figure = [](double value) {
-    const bool is_whole = std::trunc(value) == value;
+    const bool is_whole = std::trunc(value) == value && std::abs(value) < kMostDigits;
     return is_whole ? std::to_string(std::lround(value)) : api::Json(value).dump();
   };
   std::string text = kind + " >= " + figure(row.minimum);

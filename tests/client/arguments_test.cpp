@@ -101,7 +101,8 @@ TEST(Arguments, HelpTellsRangesAsTheyAreTyped) {
   for (const char* range :
        {"--stop-max-iterations INT >= 1\n", "--stop-tolerance NUMBER in [1e-12, 0.1]",
         "--lambda NUMBER[,NUMBER...] >= 0\n", "INT in [16, 16384]", "--constraints FILE.json",
-        "asap|arap|hybrid|abf", "--texcoord INT in [0, 7]|auto|free", "1000000]|none"})
+        "--weld-distance NUMBER in [0, 1e+100]|none", "asap|arap|hybrid|abf",
+        "--texcoord INT in [0, 7]|auto|free", "1000000]|none"})
     EXPECT_THAT(help, HasSubstr(range));
 }
 
