@@ -41,7 +41,7 @@ class Search {
     measure_hidden();
     Found best = first();
     for (std::size_t k = 1; k < steps_.size(); ++k) {
-      std::optional<Found> next = loosened(steps_[k]);
+      std::optional<Found> next = loosen(steps_[k]);
       if (next && is_better(next->seams, best.seams, rules_.most_regions)) best = std::move(*next);
     }
     return {std::move(best.charts), is_rough_};
@@ -82,9 +82,9 @@ class Search {
 
   /// Nothing where there are no other charts, or they do not keep the bound; then more is kept from
   /// the small surface in steps to come.
-  std::optional<Found> loosened(double excess) {
+  std::optional<Found> loosen(double excess) {
     if (on_small(excess) <= last_) return std::nullopt;
-    const std::optional<Segments> segments = segmentation_->loosened(on_small(excess));
+    const std::optional<Segments> segments = segmentation_->loosen(on_small(excess));
     last_ = on_small(excess);
     if (!segments) return std::nullopt;
     Found found = on_large(*segments);

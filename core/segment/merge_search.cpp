@@ -85,7 +85,7 @@ void MergeSearch::merge_some(std::size_t first, std::size_t count, std::vector<C
   begin(static_cast<double>(count));
   std::vector<Candidate> found = solve::parallel_map<Candidate>(
       count, executor_,
-      [&](std::size_t k) { return priced(merged(from_, settings_of(first + k)), limit, kUsual); });
+      [&](std::size_t k) { return price(merge(from_, settings_of(first + k)), limit, kUsual); });
   learn(found);
   merge_faces_ = context_.progress->done() / static_cast<double>(count);
   for (Candidate& own : found) best.push_back(std::move(own));
@@ -105,8 +105,7 @@ void MergeSearch::search_neighbourhoods(std::vector<Candidate>& best) {
     if (idle > extent_.idle * regions) break;
     begin(kMergesOfARound * count);
     std::vector<Candidate> found = solve::parallel_map<Candidate>(
-        best.size(), executor_,
-        [&](std::size_t k) { return remerged_in_part(best[k], rounds_done_); });
+        best.size(), executor_, [&](std::size_t k) { return remerge_part(best[k], rounds_done_); });
     learn(found);
     for (std::size_t k = 0; k < found.size(); ++k)
       if (all_of(found[k]) < all_of(best[k])) best[k] = std::move(found[k]), idle = 0;
@@ -116,7 +115,7 @@ void MergeSearch::search_neighbourhoods(std::vector<Candidate>& best) {
 std::vector<Candidate> MergeSearch::shorten_borders(std::vector<Candidate> all) {
   begin(kMergesOfFinishing * static_cast<double>(all.size()));
   all = solve::parallel_map<Candidate>(all.size(), executor_, [&](std::size_t k) {
-    return tracked([&](const MergeContext& context) {
+    return track([&](const MergeContext& context) {
       shorten_seams(context, settings_, all[k].partition);
       return std::move(all[k].partition);
     });
@@ -129,8 +128,8 @@ std::vector<Candidate> MergeSearch::merge_again(std::vector<Candidate> all) {
   constexpr std::array kLeastFills = {0.0, kFittingFill};
   std::vector<Candidate> found = solve::parallel_map<Candidate>(
       all.size() * kLeastFills.size(), executor_, [&](std::size_t k) {
-        return merged_again(all[k / kLeastFills.size()].partition,
-                            kLeastFills[k % kLeastFills.size()]);
+        return merge_more(all[k / kLeastFills.size()].partition,
+                          kLeastFills[k % kLeastFills.size()]);
       });
   learn(found);
   for (Candidate& own : found) all.push_back(std::move(own));
@@ -140,7 +139,7 @@ std::vector<Candidate> MergeSearch::merge_again(std::vector<Candidate> all) {
 std::vector<Candidate> MergeSearch::close_and_attach(std::vector<Candidate> all) {
   all = distinct(std::move(all));
   all = solve::parallel_map<Candidate>(all.size(), executor_, [&](std::size_t k) {
-    return tracked([&](const MergeContext& context) {
+    return track([&](const MergeContext& context) {
       close_slits(context, settings_, all[k].partition);
       attach_small_charts(context, settings_, all[k].partition);
       return std::move(all[k].partition);
@@ -154,14 +153,14 @@ Candidate MergeSearch::cheapest(std::vector<Candidate> all) const {
   all = distinct(std::move(all));
   Candidate best;
   for (Candidate& own : all) {
-    own = priced(std::move(own), best.cost.all, kUsual);
+    own = price(std::move(own), best.cost.all, kUsual);
     if (own.cost.all < best.cost.all || best.partition.patches.empty()) best = std::move(own);
   }
   return best;
 }
 
 Candidate MergeSearch::bisect_regions(Candidate whole) {
-  Candidate best = priced(std::move(whole), kInfinity, kAcross);
+  Candidate best = price(std::move(whole), kInfinity, kAcross);
   while (best.cost.all > best.cost.seams) {
     std::vector<Candidate> found =
         solve::parallel_map<Candidate>(best.partition.patches.size(), executor_,
@@ -176,8 +175,8 @@ Candidate MergeSearch::bisect_regions(Candidate whole) {
   return best;
 }
 
-Candidate MergeSearch::priced(Candidate own) const {
-  return priced(std::move(own), kInfinity, kUsual);
+Candidate MergeSearch::price(Candidate own) const {
+  return price(std::move(own), kInfinity, kUsual);
 }
 
 void MergeSearch::widen(double budget, std::vector<Candidate>& best) {
@@ -221,7 +220,7 @@ void MergeSearch::learn(std::vector<Candidate>& found) {
 
 /// search(context) makes the partition; its failures and its tested faces are kept with it.
 template <class Search>
-Candidate MergeSearch::tracked(Search search) const {
+Candidate MergeSearch::track(Search search) const {
   Candidate found;
   ProgressEstimate own({});
   found.failures = FailedTrials(&failures_);
@@ -230,19 +229,19 @@ Candidate MergeSearch::tracked(Search search) const {
   return found;
 }
 
-Candidate MergeSearch::merged(Partition partition, const MergeSettings& settings) const {
-  return tracked([&](const MergeContext& context) {
+Candidate MergeSearch::merge(Partition partition, const MergeSettings& settings) const {
+  return track([&](const MergeContext& context) {
     SerialExecutor serial;
     return merge_patches(context, joiner_, std::move(partition), settings, serial);
   });
 }
 
 /// The partition after more unions, with its borders shortened again.
-Candidate MergeSearch::merged_again(const Partition& partition, double least_fill) const {
+Candidate MergeSearch::merge_more(const Partition& partition, double least_fill) const {
   if (partition.patches.size() == 1) return {};
   MergeSettings settings = settings_;
   settings.least_fill = least_fill;
-  return tracked([&](const MergeContext& context) {
+  return track([&](const MergeContext& context) {
     SerialExecutor serial;
     Partition next = merge_patches(context, joiner_, partition, settings, serial);
     shorten_seams(context, settings, next);
@@ -252,33 +251,33 @@ Candidate MergeSearch::merged_again(const Partition& partition, double least_fil
 
 /// One round of large-neighbourhood search. The cost is known where it is lower than that of
 /// `best`.
-Candidate MergeSearch::remerged_in_part(const Candidate& best, std::size_t number) const {
+Candidate MergeSearch::remerge_part(const Candidate& best, std::size_t number) const {
   if (best.partition.patches.size() <= 1) return {};
   MergeSettings settings = settings_of(number);
   settings.seed = kFirstSeedOfRepairs + static_cast<int>(number);
   settings.noise = kNoiseOfRepairs;
   Destroyed loose = destroy(context_.surface, from_, best.partition, number);
   settings.whole = loose.whole;
-  Candidate again = merged(std::move(loose.partition), settings);
-  return priced(std::move(again), best.cost.all, kUsual);
+  Candidate again = merge(std::move(loose.partition), settings);
+  return price(std::move(again), best.cost.all, kUsual);
 }
 
 Candidate MergeSearch::with_halves(const Candidate& whole, std::size_t k) const {
   if (whole.partition.patches[k].area < kLargeRegion) return {};
-  Candidate apart = tracked([&](const MergeContext& context) {
+  Candidate apart = track([&](const MergeContext& context) {
     std::optional<Partition> cut = bisect(context, whole.partition, k);
     if (!cut) return Partition{};
     shorten_seams(context, settings_, *cut);
     return std::move(*cut);
   });
   if (apart.partition.patches.empty()) return apart;
-  return priced(std::move(apart), whole.cost.all, kAcross);
+  return price(std::move(apart), whole.cost.all, kAcross);
 }
 
 /// Each distinct candidate once, the shortest seams first.
 std::vector<Candidate> MergeSearch::distinct(std::vector<Candidate> all) const {
   std::erase_if(all, [](const Candidate& own) { return own.partition.patches.empty(); });
-  for (Candidate& own : all) own = priced(std::move(own), 0, kUsual);
+  for (Candidate& own : all) own = price(std::move(own), 0, kUsual);
   const auto seams = [](const Candidate& own) { return own.cost.seams; };
   std::ranges::stable_sort(all, std::less(), seams);
   const auto repeats = std::ranges::unique(all, std::equal_to(), seams);
@@ -287,7 +286,7 @@ std::vector<Candidate> MergeSearch::distinct(std::vector<Candidate> all) const {
 }
 
 /// The candidate with its cost, if that is below the limit.
-Candidate MergeSearch::priced(Candidate own, double limit, CostRules rules) const {
+Candidate MergeSearch::price(Candidate own, double limit, CostRules rules) const {
   rules.page_area = settings_.page_area;
   rules.limit = limit;
   rules.longest = longest_;

@@ -56,11 +56,11 @@ class MergeSearch {
 
   /// Bisects the region whose halves make the partition cheapest, as long as that helps: rings and
   /// stars leave a page emptier than necessary. Then closes slits that are no longer needed, and
-  /// shortens seams part by part. The cost is not that of the result: see priced().
+  /// shortens seams part by part. The cost is not that of the result: see price().
   [[nodiscard]] Candidate bisect_regions(Candidate whole);
 
   /// The candidate with its cost, which takes a rough packing.
-  [[nodiscard]] Candidate priced(Candidate own) const;
+  [[nodiscard]] Candidate price(Candidate own) const;
 
   /// Raises the budget. More greedy merges compete with `best`, which the search so far has led to,
   /// and the cheapest go through search_neighbourhoods().
@@ -75,13 +75,13 @@ class MergeSearch {
   [[nodiscard]] MergeSettings settings_of(std::size_t number) const;
   void learn(std::vector<Candidate>& found);
   template <class Search>
-  [[nodiscard]] Candidate tracked(Search search) const;
-  [[nodiscard]] Candidate merged(Partition partition, const MergeSettings& settings) const;
-  [[nodiscard]] Candidate merged_again(const Partition& partition, double least_fill) const;
-  [[nodiscard]] Candidate remerged_in_part(const Candidate& best, std::size_t number) const;
+  [[nodiscard]] Candidate track(Search search) const;
+  [[nodiscard]] Candidate merge(Partition partition, const MergeSettings& settings) const;
+  [[nodiscard]] Candidate merge_more(const Partition& partition, double least_fill) const;
+  [[nodiscard]] Candidate remerge_part(const Candidate& best, std::size_t number) const;
   [[nodiscard]] Candidate with_halves(const Candidate& whole, std::size_t k) const;
   [[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> all) const;
-  [[nodiscard]] Candidate priced(Candidate own, double limit, CostRules rules) const;
+  [[nodiscard]] Candidate price(Candidate own, double limit, CostRules rules) const;
 
   const MergeContext context_;
   const Partition& from_;

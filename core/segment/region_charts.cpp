@@ -55,8 +55,9 @@ class Extended {
 };
 
 /// The map of the small surface, smoothed by the way: each corner follows the triangle nearby.
-UvMap carried_map(const charts::ChartPart& part, const Coarse& coarse, std::span<const CornerUv> uv,
-                  std::span<const Index> near, const std::stop_token& stop) {
+UvMap transferred_map(const charts::ChartPart& part, const Coarse& coarse,
+                      std::span<const CornerUv> uv, std::span<const Index> near,
+                      const std::stop_token& stop) {
   UvMap map(part.vertex.size(), Vec2::Zero());
   std::vector<double> count(map.size(), 0);
   const TriMesh& mesh = part.chart.mesh;
@@ -105,10 +106,11 @@ std::vector<charts::Chart> region_charts(const charts::Chart& component, const S
 std::vector<charts::Chart> region_charts(const charts::Chart& component, const Coarse& coarse,
                                          const Segments& segments, const std::stop_token& stop) {
   const auto [uv, seam] = seamed(coarse.halfedges, segments);
-  const TransferredSeams carried = carry(component.mesh, component.halfedges, coarse, seam, stop);
+  const TransferredSeams transferred =
+      transfer_seams(component.mesh, component.halfedges, coarse, seam, stop);
   std::vector<charts::Chart> charts;
-  for (charts::ChartPart& part : charts::parts_of(component, carried.cut, stop)) {
-    part.chart.start = carried_map(part, coarse, uv, carried.near, stop);
+  for (charts::ChartPart& part : charts::parts_of(component, transferred.cut, stop)) {
+    part.chart.start = transferred_map(part, coarse, uv, transferred.near, stop);
     part.chart.least = Guarantee::bijective;
     charts.push_back(std::move(part.chart));
   }

@@ -16,7 +16,7 @@ double boundary_length(const charts::Chart& chart);
 /// The regions of a component, each with its map for a start.
 std::vector<charts::Chart> region_charts(const charts::Chart& component, const Segments& segments);
 
-/// The regions of the small surface that stands for a component, carried to the component. The
+/// The regions of the small surface that stands for a component, transferred to the component. The
 /// starts follow the maps of the small surface: they may have flips where triangles are rough.
 /// Throws Error{cancelled}.
 std::vector<charts::Chart> region_charts(const charts::Chart& component, const Coarse& coarse,

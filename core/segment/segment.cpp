@@ -1,6 +1,6 @@
 // The search, step by step: over-segment by normals; merge greedily; large-neighbourhood search;
 // shorten borders; merge again; close slits and attach small charts; bisect. ARAP is the judge of
-// every union. See SurfaceSegmentation::first() and finished().
+// every union. See SurfaceSegmentation::first() and finish().
 //
 // A looser bound starts from the result of the tighter one and accepts only shorter seams, so that
 // no bound costs more seam than a tighter one (ADR 0039). Rejected: a search of its own for every
@@ -28,8 +28,8 @@ constexpr int kDecades = 4;
 constexpr double kSameBound = 1e-9;
 
 /// Merges further, whatever the distortion, to the allowed number of regions if maps allow it.
-Partition limited(const MergeContext& context, Partition partition, Index most_regions,
-                  Executor& executor) {
+Partition merge_to_limit(const MergeContext& context, Partition partition, Index most_regions,
+                         Executor& executor) {
   if (partition.patches.size() <= static_cast<std::size_t>(most_regions)) return partition;
   const MergeSettings settings{.budget = kAnyExcess,
                                .cap = kAnyExcess,
@@ -57,34 +57,34 @@ Segments SurfaceSegmentation::first(double excess) {
               std::vector<char>(surface_.length.size(), 0)};
   stage_ = Stage::merge;
   const MergeSettings settings = settings_for(excess);
-  if (rules_.is_quick) return merged_quickly(settings);
+  if (rules_.is_quick) return merge_quickly(settings);
   MergeSearch& search = search_.emplace(
       context_, patches_, settings, SearchPlan{search_extent(rules_.effort), steps_}, executor_);
   competing_ = search.merge_greedily();
   search.search_neighbourhoods(competing_);
-  best_ = search.bisect_regions(finished(competing_));
+  best_ = search.bisect_regions(finish(competing_));
   return segments_of(best_.partition);
 }
 
 /// The cheapest result of all candidates.
-Candidate SurfaceSegmentation::finished(std::vector<Candidate> all) {
+Candidate SurfaceSegmentation::finish(std::vector<Candidate> all) {
   all = search_->shorten_borders(std::move(all));
   all = search_->merge_again(std::move(all));
   all = search_->close_and_attach(std::move(all));
   return search_->cheapest(std::move(all));
 }
 
-std::optional<Segments> SurfaceSegmentation::loosened(double excess) {
+std::optional<Segments> SurfaceSegmentation::loosen(double excess) {
   MergeSearch& search = *search_;
-  if (!std::exchange(is_priced_, true)) best_ = search.priced(std::move(best_));
+  if (!std::exchange(is_priced_, true)) best_ = search.price(std::move(best_));
   const double seam = best_.cost.length;
   if (seam <= 0) return std::nullopt;  // it needs no cut
   search.widen(kMarginOfExcess * excess, competing_);
   std::vector<Candidate> all = competing_;
   all.push_back(best_);
   search.forbid_seams_from(seam);
-  Candidate next = finished(std::move(all));
-  if (next.cost.length < seam) next = search.priced(search.bisect_regions(std::move(next)));
+  Candidate next = finish(std::move(all));
+  if (next.cost.length < seam) next = search.price(search.bisect_regions(std::move(next)));
   search.forbid_seams_from(std::numeric_limits<double>::infinity());
   if (!(next.cost.length < seam && next.cost.all < best_.cost.all)) return std::nullopt;
   best_ = std::move(next);
@@ -98,7 +98,7 @@ MergeSettings SurfaceSegmentation::settings_for(double excess) const {
   return settings;
 }
 
-Segments SurfaceSegmentation::merged_quickly(const MergeSettings& settings) {
+Segments SurfaceSegmentation::merge_quickly(const MergeSettings& settings) {
   progress_.begin(1, kFacesOfQuick * surface_.face_count());
   MergeSettings quick = settings;
   quick.distortion_weight = kQuickWeight;
@@ -107,7 +107,7 @@ Segments SurfaceSegmentation::merged_quickly(const MergeSettings& settings) {
 }
 
 Segments SurfaceSegmentation::segments_of(Partition best) const {
-  best = limited(context_, std::move(best), rules_.most_regions, executor_);
+  best = merge_to_limit(context_, std::move(best), rules_.most_regions, executor_);
   Segments segments{.regions = {},
                     .open = {},
                     .excess = total_excess(best.patches),
@@ -148,7 +148,7 @@ Segments segment(const SegmentationMesh& surface, const SegmentRules& rules, Exe
   };
   Segments best = segmentation.first(steps.front());
   for (const double excess : std::span(steps).subspan(1)) {
-    std::optional<Segments> next = segmentation.loosened(excess);
+    std::optional<Segments> next = segmentation.loosen(excess);
     if (next && is_better(seams(*next), seams(best), rules.most_regions)) best = std::move(*next);
   }
   return best;

@@ -50,7 +50,7 @@ bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most)
 /// was moved or scaled. All throw Error{cancelled}.
 class SurfaceSegmentation {
  public:
-  /// steps: how often loosened() is going to be called. surface and executor must outlive this.
+  /// steps: how often loosen() is going to be called. surface and executor must outlive this.
   SurfaceSegmentation(const SegmentationMesh& surface, SegmentRules rules, std::size_t steps,
                       Executor& executor);
   SurfaceSegmentation(const SurfaceSegmentation&) = delete;
@@ -62,12 +62,12 @@ class SurfaceSegmentation {
   /// Those for a larger excess than the last one; nothing where the same partition is the best.
   /// Another one has shorter seams, unless there are more regions than the rules allow: either is
   /// then merged further.
-  std::optional<Segments> loosened(double excess);
+  std::optional<Segments> loosen(double excess);
 
  private:
   [[nodiscard]] MergeSettings settings_for(double excess) const;
-  [[nodiscard]] Segments merged_quickly(const MergeSettings& settings);
-  [[nodiscard]] Candidate finished(std::vector<Candidate> all);
+  [[nodiscard]] Segments merge_quickly(const MergeSettings& settings);
+  [[nodiscard]] Candidate finish(std::vector<Candidate> all);
   [[nodiscard]] Segments segments_of(Partition best) const;
 
   const SegmentationMesh& surface_;

@@ -101,7 +101,7 @@ class Shortening {
   bool move_border(const Chain& row, const Chain& path) {
     MappedRegion& a = partition_.patches[seams_.owner(row.front())];
     MappedRegion& b = partition_.patches[seams_.owner(twin(row.front()))];
-    auto sides = parted(row, path);
+    auto sides = part_faces(row, path);
     const std::size_t count = a.region.faces.size() + b.region.faces.size();
     if (sides[0].empty() || sides[0].size() + sides[1].size() != count) return false;
     Chain seen_from_b;
@@ -112,7 +112,7 @@ class Shortening {
     ExcessDistortion after = total_ - a.excess - b.excess;
     const std::size_t smaller = sides[1].size() < sides[0].size() ? 1 : 0;
     for (const std::size_t k : {smaller, 1 - smaller}) {
-      now[k] = mapped(std::move(sides[k]), both, most);
+      now[k] = map_faces(std::move(sides[k]), both, most);
       after += now[k].excess;
       const bool fits = after.worst() <= std::max(settings_.budget, total_.worst());
       if (!now[k].is_sound || !fits) return false;
@@ -123,12 +123,12 @@ class Shortening {
     return true;
   }
 
-  /// The faces of both regions parted along the path instead of the chain: those on its two sides;
+  /// The faces of both regions parted along the path instead of the row: those on its two sides;
   /// empty where that does not make two connected sets.
-  [[nodiscard]] std::array<std::vector<Index>, 2> parted(const Chain& chain,
-                                                         const Chain& path) const {
-    std::vector<char> is_chain(surface_.length.size(), 0), is_path(surface_.length.size(), 0);
-    for (const Index h : chain) is_chain[h] = is_chain[twin(h)] = 1;
+  [[nodiscard]] std::array<std::vector<Index>, 2> part_faces(const Chain& row,
+                                                             const Chain& path) const {
+    std::vector<char> is_row(surface_.length.size(), 0), is_path(surface_.length.size(), 0);
+    for (const Index h : row) is_row[h] = is_row[twin(h)] = 1;
     for (const Index h : path) is_path[h] = is_path[twin(h)] = 1;
     std::vector<char> seen(surface_.mesh.faces.size(), 0);
     const auto flood = [&](Index from) {
@@ -137,7 +137,7 @@ class Shortening {
       for (std::size_t k = 0; k < faces.size(); ++k)
         for (Index h = 3 * faces[k]; h < 3 * faces[k] + 3; ++h) {
           if (twin(h) == kNoTwin || partition_.open[h] != 0 || is_path[h] != 0) continue;
-          if ((seams_.owner(h) != seams_.owner(twin(h)) && is_chain[h] == 0) ||
+          if ((seams_.owner(h) != seams_.owner(twin(h)) && is_row[h] == 0) ||
               seen[face_of(twin(h))] != 0)
             continue;
           seen[face_of(twin(h))] = 1;
@@ -153,8 +153,8 @@ class Shortening {
   }
 
   /// A patch of some of the faces of a region, from its map. most: excess it may have at any rate.
-  [[nodiscard]] MappedRegion mapped(std::vector<Index> faces, const Region& both,
-                                    double most) const {
+  [[nodiscard]] MappedRegion map_faces(std::vector<Index> faces, const Region& both,
+                                       double most) const {
     const Ranks rank(surface_.mesh.faces.size(), both.faces);
     MappedRegion patch;
     for (const Index t : faces) {
@@ -191,7 +191,7 @@ class Shortening {
 
   /// Between a slit and the path that it shall take lie pockets, shut off by both. Each is laid
   /// where the other side of the slit is.
-  [[nodiscard]] Region with_pockets_moved(Region region, const Chain& chain) const {
+  [[nodiscard]] Region with_pockets_moved(Region region, const Chain& row) const {
     const std::vector<Index> piece = pieces(region.faces);
     std::vector<Index> size;
     for (const Index t : region.faces) {
@@ -208,7 +208,7 @@ class Shortening {
         own.uv.push_back(region.uv[f]);
       }
       Chain border;
-      for (const Index edge : chain)
+      for (const Index edge : row)
         for (const Index h : {edge, twin(edge)})
           if (piece[face_of(h)] == k && piece[face_of(twin(h))] != k) border.push_back(h);
       if (!border.empty()) region = beside(surface_, rest, pocket, border);

@@ -225,11 +225,11 @@ class Tracing {
 /// From the faces that both surfaces have to all others on the same side of the cut.
 class Spreading {
  public:
-  Spreading(const Coarse& coarse, const std::stop_token& stop, TransferredSeams& carried)
-      : carried_(carried), stop_(stop) {
-    carried.near.assign(carried.cut.twin.size() / 3, -1);
+  Spreading(const Coarse& coarse, const std::stop_token& stop, TransferredSeams& transferred)
+      : transferred_(transferred), stop_(stop) {
+    transferred.near.assign(transferred.cut.twin.size() / 3, -1);
     for (std::size_t k = 0; k < coarse.face.size(); ++k) {
-      carried.near[coarse.face[k]] = static_cast<Index>(k);
+      transferred.near[coarse.face[k]] = static_cast<Index>(k);
       open_.push_back(coarse.face[k]);
     }
     spread();
@@ -240,10 +240,11 @@ class Spreading {
   void glue_what_is_left(const Halfedges& uncut) {
     for (Index h = 0; h < static_cast<Index>(uncut.twin.size()); ++h) {
       const Index twin = uncut.twin[h];
-      if (twin == kNoTwin || carried_.near[face_of(h)] < 0 || carried_.near[face_of(twin)] >= 0)
+      if (twin == kNoTwin || transferred_.near[face_of(h)] < 0 ||
+          transferred_.near[face_of(twin)] >= 0)
         continue;
-      carried_.cut.twin[h] = twin;
-      carried_.cut.twin[twin] = h;
+      transferred_.cut.twin[h] = twin;
+      transferred_.cut.twin[twin] = h;
       open_.assign(1, face_of(h));
       spread();
     }
@@ -254,35 +255,36 @@ class Spreading {
     for (std::size_t k = 0; k < open_.size(); ++k) {
       check_cancelled_every(k, stop_);
       for (Index h = 3 * open_[k]; h < 3 * open_[k] + 3; ++h) {
-        const Index twin = carried_.cut.twin[h];
-        if (twin == kNoTwin || carried_.near[face_of(twin)] >= 0) continue;
-        carried_.near[face_of(twin)] = carried_.near[open_[k]];
+        const Index twin = transferred_.cut.twin[h];
+        if (twin == kNoTwin || transferred_.near[face_of(twin)] >= 0) continue;
+        transferred_.near[face_of(twin)] = transferred_.near[open_[k]];
         open_.push_back(face_of(twin));
       }
     }
     open_.clear();
   }
 
-  TransferredSeams& carried_;
+  TransferredSeams& transferred_;
   const std::stop_token& stop_;
   std::vector<Index> open_;
 };
 
 }  // namespace
 
-TransferredSeams carry(const TriMesh& mesh, const Halfedges& halfedges, const Coarse& coarse,
-                       std::span<const char> seam, const std::stop_token& stop) {
+TransferredSeams transfer_seams(const TriMesh& mesh, const Halfedges& halfedges,
+                                const Coarse& coarse, std::span<const char> seam,
+                                const std::stop_token& stop) {
   Tracing tracing(mesh, halfedges, coarse, stop);
   for (const SeamRow& row : SeamRows(coarse, seam).find()) {
     throw_if_cancelled(stop);
     tracing.trace(row);
   }
   const std::vector<char> cut = tracing.take();
-  TransferredSeams carried{halfedges, {}};
+  TransferredSeams transferred{halfedges, {}};
   for (std::size_t h = 0; h < cut.size(); ++h)
-    if (cut[h] != 0) carried.cut.twin[h] = kNoTwin;
-  Spreading(coarse, stop, carried).glue_what_is_left(halfedges);
-  return carried;
+    if (cut[h] != 0) transferred.cut.twin[h] = kNoTwin;
+  Spreading(coarse, stop, transferred).glue_what_is_left(halfedges);
+  return transferred;
 }
 
 }  // namespace unwrapd::segment

@@ -1,5 +1,5 @@
 #pragma once
-// Seams found on a small surface carried to the large one that it stands for.
+// Seams found on a small surface transferred to the large one that it stands for.
 
 #include <span>
 #include <stop_token>
@@ -17,7 +17,8 @@ struct TransferredSeams {
 /// seam: one a half-edge of coarse, 1 on both sides of every edge along which it is opened; sides
 /// without a twin may have either. Parts, genus and boundaries of what is left are the same on
 /// both surfaces. Throws Error{cancelled}.
-TransferredSeams carry(const TriMesh& mesh, const Halfedges& halfedges, const Coarse& coarse,
-                       std::span<const char> seam, const std::stop_token& stop);
+TransferredSeams transfer_seams(const TriMesh& mesh, const Halfedges& halfedges,
+                                const Coarse& coarse, std::span<const char> seam,
+                                const std::stop_token& stop);
 
 }  // namespace unwrapd::segment

@@ -174,7 +174,8 @@ TEST(Cancel, IsHeardWhereLargeSurfacesAreTakenApart) {
   const charts::Chart& chart = *s.owned.chart;
   expect_all_to_hear(
       {{"coarsen", [&](Stop stop) { segment::coarsen(s.mesh, s.halfedges, 60, stop); }},
-       {"carry", [&](Stop stop) { segment::carry(s.mesh, s.halfedges, coarse, seam, stop); }},
+       {"transfer_seams",
+        [&](Stop stop) { segment::transfer_seams(s.mesh, s.halfedges, coarse, seam, stop); }},
        {"parts", [&](Stop stop) { charts::parts_of(chart, chart.halfedges, stop); }},
        {"split", [&](Stop stop) {
           charts::split_chart(chart, {{{0}, {200}}}, stop);

@@ -186,9 +186,9 @@ TEST(TransferSeams, CutsTheLargeSurfaceIntoPartsOfTheSameGenusAndBoundaries) {
       for (std::size_t h = 0; h < seam.size(); ++h)
         if (seam[h] != 0) cut.twin[h] = kNoTwin;
       for (Index t = 0; t < coarse.mesh.face_count(); ++t) all.push_back(t);
-      const TransferredSeams carried = carry(mesh, halfedges, coarse, seam, {});
-      EXPECT_EQ(kinds(carried.cut, coarse.face), kinds(cut, all)) << name << ' ' << width;
-      EXPECT_GE(std::ranges::min(carried.near), 0) << name;
+      const TransferredSeams transferred = transfer_seams(mesh, halfedges, coarse, seam, {});
+      EXPECT_EQ(kinds(transferred.cut, coarse.face), kinds(cut, all)) << name << ' ' << width;
+      EXPECT_GE(std::ranges::min(transferred.near), 0) << name;
     }
 }
 
@@ -210,8 +210,8 @@ TEST(TransferSeams, TakesTheShortestWay) {
     Halfedges cut = coarse.halfedges;
     for (std::size_t h = 0; h < seam.size(); ++h)
       if (seam[h] != 0) cut.twin[h] = kNoTwin;
-    const TransferredSeams carried = carry(mesh, halfedges, coarse, seam, {});
-    const double large = seam_length(mesh, carried.cut, halfedges);
+    const TransferredSeams transferred = transfer_seams(mesh, halfedges, coarse, seam, {});
+    const double large = seam_length(mesh, transferred.cut, halfedges);
     const double small = seam_length(coarse.mesh, cut, coarse.halfedges);
     EXPECT_LT(large, 1.15 * small) << name;
   }
@@ -236,9 +236,9 @@ TEST(TransferSeams, LeavesNoPartWithoutAFaceOfTheSmallSurface) {
     for (const int target : {20, 60, 300}) {
       const Coarse coarse = coarsen(mesh, halfedges, target, {});
       for (int k = 0; k < 80; ++k) {
-        const TransferredSeams carried =
-            carry(mesh, halfedges, coarse, seams_by_lot(coarse, rng), {});
-        EXPECT_GE(std::ranges::min(carried.near), 0) << name << ' ' << target << ' ' << k;
+        const TransferredSeams transferred =
+            transfer_seams(mesh, halfedges, coarse, seams_by_lot(coarse, rng), {});
+        EXPECT_GE(std::ranges::min(transferred.near), 0) << name << ' ' << target << ' ' << k;
       }
     }
   }
@@ -249,7 +249,7 @@ TEST(TransferSeams, CutsNothingWhereThereIsNoSeam) {
   const Halfedges halfedges = build_halfedges(mesh.faces, mesh.vertex_count());
   const Coarse coarse = coarsen(mesh, halfedges, 300, {});
   const std::vector<char> none(coarse.halfedges.twin.size(), 0);
-  EXPECT_EQ(carry(mesh, halfedges, coarse, none, {}).cut.twin, halfedges.twin);
+  EXPECT_EQ(transfer_seams(mesh, halfedges, coarse, none, {}).cut.twin, halfedges.twin);
 }
 
 TEST(Coarsen, StopsWhenTold) {
