@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "core/unwrap.hpp"
 #include "tests/core/shapes.hpp"
 
@@ -35,6 +37,30 @@ TEST(NoteFaults, TellTheWorstChartAndItsPlace) {
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_NE(notes[0]->text.find("chart 0"), std::string::npos);
   EXPECT_NE(notes[0]->text.find("max_distortion=2.02"), std::string::npos);
+}
+
+/// A plate, and a tube beside it.
+TEST(NoteFaults, NameTheWorstOfSeveralCharts) {
+  const std::array meshes{shapes::grid(8, 8), shapes::moved(cylinder().mesh, Vec3(40, 0, 0)),
+                          shapes::grid(4, 4)};
+  const Unwrapped all = unwrapped(shapes::surface_of(shapes::merged(meshes)), {});
+  ASSERT_EQ(all.report.charts.size(), 3U);
+  const auto notes = notes_of(all, NoteCode::distorted);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0]->text.find("1 of 3 charts"), std::string::npos) << notes[0]->text;
+  EXPECT_NE(notes[0]->text.find("chart 1, on"), std::string::npos) << notes[0]->text;
+  EXPECT_NE(notes[0]->text.find("near (40, "), std::string::npos) << notes[0]->text;
+}
+
+/// No chart is distorted badly, but the bound is a tight one.
+TEST(NoteFaults, TellABoundThatTheMeanMisses) {
+  const Surface cap = shapes::surface_of(shapes::sphere_cap(24, 8, 1));
+  const Unwrapped one = unwrapped(cap, {.max_distortion = 2.001, .max_charts = 1});
+  ASSERT_GT(one.report.distortion.angle, 2.002);
+  ASSERT_LT(one.report.distortion.area, 2.1);
+  const auto notes = notes_of(one, NoteCode::distorted);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0]->text.find("max_charts leaves no room"), std::string::npos) << notes[0]->text;
 }
 
 TEST(NoteFaults, AreSilentWhereThereIsNone) {
