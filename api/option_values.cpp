@@ -129,6 +129,13 @@ void check_objects(const OptionRow& row, const Json& value, const Limits& limits
   row.set(unused, value);
 }
 
+/// Why a format that is read is not written.
+std::string reason_against(const OptionRow& row, const Json& value) {
+  if (row.name != "output" || !value.is_string()) return {};
+  if (value == "stl" || value == "off") return ": this format holds no texture coordinates";
+  return value == "ply" ? ": this format holds no texture coordinates for seams" : "";
+}
+
 bool fits(const OptionRow& row, const Json& value, const Limits& limits) {
   switch (row.type) {
     case OptionType::choice:
@@ -175,7 +182,8 @@ Json value_of_text(const OptionRow& row, const std::string& text) {
 void check_value(const OptionRow& row, const Json& value, const Limits& limits) {
   if (fits(row, value, limits)) return;
   throw Error(ErrorCode::invalid_option,
-              std::string(row.name) + " must be " + allowed_values(row, limits) + ".",
+              std::string(row.name) + " must be " + allowed_values(row, limits) +
+                  reason_against(row, value) + ".",
               option_pointer(row.name));
 }
 

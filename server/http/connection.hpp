@@ -91,6 +91,7 @@ class Connection {
   [[nodiscard]] const std::string& client() const { return client_.address; }
   /// Of the current request.
   [[nodiscard]] const Framing& framing() const { return framing_; }
+  [[nodiscard]] std::int64_t max_body_bytes() const { return limits_.max_body_bytes; }
   /// Bytes of the current request's body, without framing.
   [[nodiscard]] std::int64_t body_bytes() const { return body_bytes_; }
   /// Bytes sent since the current request's head was vetted.

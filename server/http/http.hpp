@@ -75,7 +75,7 @@ struct Request {
   std::string client;          ///< the address of the client
   std::string host;            ///< by which the server was reached, with its port; may be empty
   BodyReader* body = nullptr;  ///< of POST, PUT and PATCH
-  std::int64_t declared_bytes = 0;              ///< of the body; 0 when not declared
+  std::int64_t declared_bytes = 0;              ///< of the body, decoded; 0 when not declared
   std::optional<Error> refusal = std::nullopt;  ///< why its head is refused; this is the answer
   HasLeft has_left = {};
 
@@ -89,6 +89,7 @@ struct FileBody {
   std::shared_ptr<const File> file;
   std::int64_t offset = 0;
   std::int64_t length = 0;
+  bool gzip = false;  ///< compressed as it is sent
 };
 
 struct StreamPiece {

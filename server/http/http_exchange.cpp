@@ -11,7 +11,8 @@
 
 #include "server/base/trace.hpp"
 #include "server/base/utf8.hpp"
-#include "server/http/form.hpp"
+#include "server/http/connection_body.hpp"
+#include "server/http/gzip.hpp"
 #include "server/http/media_types.hpp"
 #include "server/http/query.hpp"
 
@@ -19,7 +20,6 @@ namespace unwrapd::server::http {
 namespace {
 
 constexpr std::int64_t kFilePiece = std::int64_t{256} * 1024;
-constexpr std::size_t kBodyPiece = std::size_t{64} * 1024;
 constexpr int kFirstError = 400;  // of statuses
 
 /// A connection as httplib sees it: heads in, answers out.
@@ -44,33 +44,6 @@ class ConnectionStream final : public httplib::Stream {
   Connection& connection_;
 };
 
-/// The body from the connection: httplib does not read it.
-class ConnectionBody final : public BodyReader {
- public:
-  ConnectionBody(Connection& connection, std::string boundary)
-      : connection_(connection), boundary_(std::move(boundary)) {}
-
-  void read(const Sink& sink) override {
-    std::vector<char> piece(kBodyPiece);
-    while (true) {
-      const std::int64_t got = connection_.read(piece.data(), piece.size());
-      if (connection_.failure()) throw Error(*connection_.failure());
-      if (got == 0) return;
-      sink({piece.data(), static_cast<std::size_t>(got)});
-    }
-  }
-
-  void read_parts(const PartStart& start, const Sink& sink) override {
-    FormParser form(boundary_, start, sink);
-    read([&](std::string_view bytes) { form.feed(bytes); });
-    form.finish();
-  }
-
- private:
-  Connection& connection_;
-  const std::string boundary_;
-};
-
 bool is_text(const std::multimap<std::string, std::string>& query) {
   return std::ranges::all_of(query, [](const auto& parameter) {
     return is_utf8_text(parameter.first) && is_utf8_text(parameter.second);
@@ -85,7 +58,7 @@ Request to_request(const httplib::Request& from, const Framing& framing) {
   request.headers.insert(framing.fields.begin(), framing.fields.end());
   if (framing.brings_body) request.headers.erase("Range");  // RFC 9110, 14.2
   request.host = framing.host;
-  request.declared_bytes = framing.content_length;
+  request.declared_bytes = framing.gzip ? 0 : framing.content_length;
   request.refusal = framing.refusal;
   if (!request.refusal && !is_text(request.query))
     request.refusal.emplace(ErrorCode::malformed_request,
@@ -101,7 +74,20 @@ std::string forwarded_for(const Request& request) {
   return all;
 }
 
+/// Its length is not known beforehand, so that it is sent in chunks.
+void set_gzip_file(const FileBody& file, const std::string& type, httplib::Response& out) {
+  out.set_chunked_content_provider(type, [next = gzip_pieces(file)](size_t,
+                                                                    httplib::DataSink& sink) {
+    const std::optional<StreamPiece> piece = next();
+    if (!piece || (!piece->bytes.empty() && !sink.write(piece->bytes.data(), piece->bytes.size())))
+      return false;
+    if (piece->end) sink.done();
+    return true;
+  });
+}
+
 void set_file(const FileBody& file, const std::string& type, httplib::Response& out) {
+  if (file.gzip) return set_gzip_file(file, type, out);
   if (file.length == 0) return out.set_content(std::string(), type);
   out.set_content_provider(
       static_cast<size_t>(file.length), type,
@@ -214,7 +200,11 @@ class Exchange::Http final : public httplib::Server {
     done_.method = request.method;
     done_.path = request.path;
     done_.client = request.client;
-    send(uses_.answer(request), out);
+    Response response = uses_.answer(request);
+    if (!connection_->framing().version_1_0) encode_answer(request, response);
+    send(response, out);
+    if (connection_->framing().unknown_coding)
+      out.set_header("Accept-Encoding", "gzip");  // RFC 9110, 12.5.3
     out.set_header("traceparent", to_traceparent(trace));
   }
 

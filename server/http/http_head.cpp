@@ -165,6 +165,17 @@ void vet_host(std::string_view value, Framing& framing, Counts& counts) {
     malformed("The Host header is not a valid host; check the client.");
 }
 
+/// One gzip, or nothing.
+void vet_coding(std::string_view value, Framing& framing) {
+  if (same(value, "identity")) return;
+  const bool is_gzip = same(value, "gzip") || same(value, "x-gzip");
+  framing.unknown_coding = framing.unknown_coding || !is_gzip || framing.gzip;
+  framing.gzip = framing.gzip || is_gzip;
+  if (framing.unknown_coding)
+    refuse(framing, ErrorCode::unsupported_media_type,
+           "The Content-Encoding of the body must be gzip, once; send it so or uncompressed.");
+}
+
 void vet_field(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
   framing.fields.emplace_back(name, value);
   vet_single(name, value, framing, counts);
@@ -183,10 +194,7 @@ void vet_field(std::string_view name, std::string_view value, Framing& framing, 
     framing.last = framing.last || lists(value, "close");
     counts.stays = counts.stays || value == "Keep-Alive";  // as httplib spells it
   }
-  if (same(name, "content-encoding") && !same(value, "identity")) {
-    refuse(framing, ErrorCode::unsupported_media_type,
-           "The body has a Content-Encoding; send it uncompressed.");
-  }
+  if (same(name, "content-encoding")) vet_coding(value, framing);
 }
 
 void vet_counts(const Counts& counts, std::string_view method, Framing& framing) {

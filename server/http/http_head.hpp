@@ -29,6 +29,8 @@ struct Framing {
   std::string host;                 ///< of the target, else of the Host header; may be empty
   bool brings_body = false;         ///< by its method
   bool version_1_0 = false;         ///< knows no chunks
+  bool gzip = false;                ///< the Content-Encoding of the body
+  bool unknown_coding = false;      ///< its Content-Encoding is another one
   bool last = false;                ///< the sender wants no other answer on this connection
   /// Name and value of each header field, as they came: httplib percent-decodes what it hands on.
   std::vector<std::pair<std::string, std::string>> fields = {};

@@ -160,7 +160,19 @@ std::string choose_format(std::string_view accept, std::string_view usual) {
   if (best_quality > 0) return std::string(best);
   throw Error(ErrorCode::not_acceptable,
               "The result is available as model/gltf-binary, model/gltf+json, model/obj or "
-              "application/json; name one of these in Accept.");
+              "application/json; name one of these in Accept. Formats such as STL hold no texture "
+              "coordinates.");
+}
+
+bool accepts_gzip(std::string_view accept_encoding) {
+  double gzip = -1, any = -1, identity = 0;  // qualities; -1: not named
+  for (const MediaRange& coding : media_ranges(accept_encoding)) {
+    if (coding.type == "gzip" || coding.type == "x-gzip") gzip = coding.quality;
+    if (coding.type == "*") any = coding.quality;
+    if (coding.type == "identity") identity = coding.quality;
+  }
+  const double quality = gzip < 0 ? any : gzip;
+  return quality > 0 && quality >= identity;
 }
 
 bool prefers_events(std::string_view accept) {

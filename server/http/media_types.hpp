@@ -8,6 +8,9 @@
 
 namespace unwrapd::server::http {
 
+/// Whether a client that sends this Accept-Encoding wants gzip; empty is no.
+bool accepts_gzip(std::string_view accept_encoding);
+
 enum class BodyKind { asset, multipart, reference };
 
 /// Throws Error{unsupported_media_type} for anything but an asset's types, multipart/form-data, and

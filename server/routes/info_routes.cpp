@@ -25,13 +25,14 @@ constexpr std::string_view kScript = "text/javascript; charset=utf-8";
 http::Handler text_handler(std::string_view text, std::string_view type) {
   return [text, type, etag = "\"" + sha256(text) + "\""](const http::Request& request) {
     http::Response response;
-    response.headers = {{"ETag", etag}, {"Cache-Control", "no-cache"}};
     if (has_copy(request, etag)) {
-      response.status = 304;
-      return response;
+      response = not_modified(request, etag, type);
+    } else {
+      response.content_type = type;
+      response.headers = {{"ETag", etag}};
+      response.body = std::string(text);
     }
-    response.content_type = type;
-    response.body = std::string(text);
+    response.headers.emplace_back("Cache-Control", "no-cache");
     return response;
   };
 }

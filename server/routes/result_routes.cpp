@@ -1,6 +1,7 @@
 #include "server/routes/result_routes.hpp"
 
 #include "api/error_table.hpp"
+#include "server/http/gzip.hpp"
 #include "server/http/media_types.hpp"
 
 namespace unwrapd::server::routes {
@@ -30,7 +31,19 @@ void send_range(const http::Request& request, http::FileBody& body, http::Respon
 bool has_copy(const http::Request& request, const std::string& etag) {
   if (request.method == "POST") return false;  // an answer to a call, not a copy of a resource
   const std::string if_none_match = request.header("If-None-Match");
-  return if_none_match == "*" || if_none_match.find(etag) != std::string::npos;
+  return if_none_match == "*" || if_none_match.find(etag) != std::string::npos ||
+         if_none_match.find(http::gzip_etag(etag)) != std::string::npos;
+}
+
+http::Response not_modified(const http::Request& request, const std::string& etag,
+                            std::string_view type) {
+  const std::string as_gzip = http::gzip_etag(etag);
+  const bool is_gzip = request.header("If-None-Match").find(as_gzip) != std::string::npos;
+  http::Response response;
+  response.status = 304;
+  response.content_type = type;
+  response.headers = {{"ETag", is_gzip ? as_gzip : etag}};
+  return response;
 }
 
 void require_result(const store::JobRecord& job) {
@@ -48,12 +61,9 @@ void require_result(const store::JobRecord& job) {
 http::Response stored_response(const results::StoredResult& stored, std::string_view type,
                                const http::Request& request) {
   const std::string etag = "\"" + stored.sha256 + "\"";
+  if (has_copy(request, etag)) return not_modified(request, etag, type);
   http::Response response;
   response.headers = {{"ETag", etag}, {"Accept-Ranges", "bytes"}};
-  if (has_copy(request, etag)) {
-    response.status = 304;
-    return response;
-  }
   response.content_type = type;
   http::FileBody body{.file = stored.file, .offset = 0, .length = stored.file->size()};
   if (range_counts(request, etag)) send_range(request, body, response);

@@ -11,6 +11,11 @@ namespace unwrapd::server::routes {
 /// Whether the sender of a GET has what this ETag names, and asks only for something else.
 bool has_copy(const http::Request& request, const std::string& etag);
 
+/// The answer to it, under the ETag of the copy that it has, which may be one as gzip. type: of what
+/// was asked for.
+http::Response not_modified(const http::Request& request, const std::string& etag,
+                            std::string_view type);
+
 /// Throws unless the job has succeeded and its files are still kept: job_unfinished,
 /// result_expired, or the job's own problem.
 void require_result(const store::JobRecord& job);

@@ -80,7 +80,7 @@ std::string sender_of(const http::Request& request) {
     add(name);
     add(value);
   }
-  add(std::to_string(request.declared_bytes));
+  add(request.header("Content-Length"));
   add(request.header("Idempotency-Key"));
   return hash.finish();
 }

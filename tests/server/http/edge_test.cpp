@@ -143,7 +143,7 @@ TEST_F(Edge, RefusalsAreProblemsAndCloseTheConnection) {
       {"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\nContent-Length: "
        "2\r\n\r\nab",
        "HTTP/1.1 400"},
-      {"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Encoding: gzip\r\nContent-Length: "
+      {"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Encoding: br\r\nContent-Length: "
        "1\r\n\r\na",
        "HTTP/1.1 415"},
       {"BREW /healthz HTTP/1.1\r\nHost: x\r\n\r\n", "HTTP/1.1 400"},
@@ -165,7 +165,7 @@ TEST_F(Edge, RefusalsOfWhatCanBeReadTellTheirTraceToThePageThatAsked) {
   const std::string sent = "Origin: https://x\r\ntraceparent: " + trace + "b7ad6b7169203331-01\r\n";
   for (const auto& [fields, status] :
        {std::pair{"", "HTTP/1.1 411"},
-        {"Content-Encoding: gzip\r\nContent-Length: 1\r\n", "HTTP/1.1 415"},
+        {"Content-Encoding: br\r\nContent-Length: 1\r\n", "HTTP/1.1 415"},
         {"Content-Length: 1\r\nContent-Type: a/b\r\nContent-Type: c/d\r\n", "HTTP/1.1 400"}})
     EXPECT_THAT(post(sent + fields, "x"),
                 AllOf(StartsWith(status), HasSubstr("application/problem+json"),

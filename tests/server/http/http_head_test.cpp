@@ -63,11 +63,19 @@ TEST(HttpHead, AsksForOneHostWhichOldClientsNeedNotName) {
         << host;
 }
 
-TEST(HttpHead, RefusesCompressedBodies) {
-  EXPECT_EQ(refusal(head(kPost, "Content-Length: 5\r\nContent-Encoding: gzip\r\n")),
-            ErrorCode::unsupported_media_type);
-  EXPECT_EQ(refusal(head(kPost, "Content-Length: 5\r\nContent-Encoding: identity\r\n")),
-            std::nullopt);
+TEST(HttpHead, TakesOneGzipAndNoOtherCoding) {
+  const auto with = [](const std::string& codings) {
+    return head(kPost, "Content-Length: 5\r\nContent-Encoding: " + codings + "\r\n");
+  };
+  for (const char* coding : {"gzip", "x-gzip", "GZIP", "identity"}) {
+    EXPECT_EQ(refusal(with(coding)), std::nullopt) << coding;
+    EXPECT_EQ(vet_head(with(coding)).gzip, std::string_view(coding) != "identity");
+  }
+  for (const char* codings :
+       {"br", "deflate", "gzip, gzip", "gzip\r\nContent-Encoding: gzip", ""}) {
+    EXPECT_EQ(refusal(with(codings)), ErrorCode::unsupported_media_type) << codings;
+    EXPECT_TRUE(vet_head(with(codings)).unknown_coding);
+  }
 }
 
 TEST(HttpHead, RefusesWhatIsNoRequestLine) {
