@@ -1,5 +1,7 @@
 #include "api/events.hpp"
 
+#include "api/report.hpp"
+
 namespace unwrapd::api {
 
 Event accepted_event(const Job& job) { return {0, "accepted", to_json(job)}; }
@@ -38,6 +40,8 @@ Event iteration_event(std::int64_t seq, const IterationEvent& iteration, double 
   if (iteration.lambda) event.data["lambda"] = finite(*iteration.lambda);
   return event;
 }
+
+Event note_event(std::int64_t seq, const Note& note) { return {seq, "note", to_json(note)}; }
 
 Event final_event(std::int64_t seq, const Job& job) {
   return {seq, std::string(state_name(job.state)), to_json(job)};

@@ -1,7 +1,7 @@
 #pragma once
 // The events of a job, as frames of a text/event-stream: queued, started, stage and iteration
-// (many), then exactly one of succeeded, failed, cancelled. A client that submits and watches in
-// one request first receives the event accepted.
+// (many), a note for each of the report's, then exactly one of succeeded, failed, cancelled. A
+// client that submits and watches in one request first receives the event accepted.
 
 #include <cstdint>
 #include <string>
@@ -9,6 +9,7 @@
 
 #include "api/job.hpp"
 #include "api/json.hpp"
+#include "core/types/note.hpp"
 #include "core/types/progress.hpp"
 
 namespace unwrapd::api {
@@ -33,6 +34,8 @@ Event stage_event(std::int64_t seq, const StageEvent& stage);
 
 /// ms: since the start of the job.
 Event iteration_event(std::int64_t seq, const IterationEvent& iteration, double ms);
+
+Event note_event(std::int64_t seq, const Note& note);
 
 /// Its name is the job's final state; its data is the job.
 Event final_event(std::int64_t seq, const Job& job);

@@ -126,8 +126,18 @@ struct PartialOptions {
 
   [[nodiscard]] bool changes_nothing(const OptionRow& row) const {
     if (!has_effect(row, options.unwrap.method)) return true;
+    if (row.name == "draco_bits")
+      return options.asset.compression != Compression::draco &&
+             row.get(options) != option_default(row, limits, options.preset);
     const bool plain = options.unwrap.stop.iterations.has_value();
     return plain && (row.name == "stop.tolerance" || row.name == "stop.max_iterations");
+  }
+
+  /// Of an option that changes nothing.
+  [[nodiscard]] std::string reason_against(const OptionRow& row) const {
+    if (!has_effect(row, options.unwrap.method))
+      return "with the method " + std::string(method_name(options.unwrap.method));
+    return row.name == "draco_bits" ? "without compression=draco" : "with stop.iterations";
   }
 
   [[nodiscard]] bool is_given(std::string_view name) const {
@@ -142,12 +152,8 @@ struct PartialOptions {
       if (!changes_nothing(*row)) continue;
       if (!row->nullable && row->get(options) == option_default(*row, limits, options.preset))
         continue;
-      const bool with_method = has_effect(*row, options.unwrap.method);
-      options.notes.push_back(
-          "The option " + std::string(row->name) + " has no effect with " +
-          (with_method ? "stop.iterations"
-                       : "the method " + std::string(method_name(options.unwrap.method))) +
-          ".");
+      options.notes.push_back("The option " + std::string(row->name) + " has no effect " +
+                              reason_against(*row) + ".");
     }
     return std::move(options);
   }
@@ -199,6 +205,7 @@ JobOptions parse_stored_options(Json object) {
     object[kPreset] = preset_name(Preset::chart);
     object.emplace("texcoord", 0);
   }
+  if (object.is_object()) object.emplace("draco_bits", nullptr);  // Draco was lossless
   const auto plain_iterations = object.find("iterations");  // resolved options of version 0.1.0
   if (plain_iterations != object.end()) {
     object["stop"]["iterations"] = *plain_iterations;

@@ -5,6 +5,7 @@ namespace unwrapd::api {
 namespace {
 
 constexpr double kTextureDistortion = 2.02;  // ADR 0047
+constexpr int kDracoBits = 14;               // ADR 0049
 constexpr int kLightmapPadding = 4;          // light maps are small and filtered
 constexpr int kPaperIterations = 10;         // Sec. 4.4 of the paper
 
@@ -55,6 +56,7 @@ JobOptions preset_options(Preset preset) {
     return texture_options();
   };
   JobOptions options = make();
+  options.asset.draco_bits = kDracoBits;
   options.preset = preset;
   return options;
 }

@@ -22,14 +22,14 @@ constexpr std::array<std::string_view, 5> kFileRepairKinds = {
     "line_ends_replaced", "empty_indices_ignored", "normals_replaced", "chunks_padded",
     "shared_nodes_kept"};
 
-constexpr std::array<std::string_view, 21> kNoteCodes = {
-    "option_unused",    "overlaps",        "distorted",        "set_chosen",
-    "textures_lost",    "charts_exceeded", "surface_noisy",    "chart_remapped",
-    "outside_page",     "padding_reduced", "islands_stacked",  "faces_without_uvs",
-    "tangents_changed", "transform_reset", "materials_copied", "morph_targets_lost",
-    "sets_filled",      "images_separate", "polygons_split",   "format_changed",
-    "data_dropped"};
-static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::data_dropped) + 1);
+constexpr std::array<std::string_view, 22> kNoteCodes = {
+    "option_unused",    "overlaps",         "distorted",        "set_chosen",
+    "textures_lost",    "charts_exceeded",  "surface_noisy",    "chart_remapped",
+    "outside_page",     "padding_reduced",  "islands_stacked",  "faces_without_uvs",
+    "tangents_changed", "transform_reset",  "materials_copied", "morph_targets_lost",
+    "sets_filled",      "images_separate",  "polygons_split",   "format_changed",
+    "data_dropped",     "positions_rounded"};
+static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::positions_rounded) + 1);
 
 /// The stages of timings_ms, in the order of a job.
 constexpr std::array kTimings = {"queue", "read",     "setup",   "segment", "merge", "factor",
@@ -104,14 +104,10 @@ Json to_json(const VertexMap& map) {
   return {{"where", map.where}, {"kept", map.kept}, {"copies", map.copies}};
 }
 
-std::string_view code_name(NoteCode code) { return kNoteCodes[static_cast<std::size_t>(code)]; }
-
-Json to_json(const Note& note) { return {{"code", code_name(note.code)}, {"text", note.text}}; }
-
 Json notes_json(const Report& report, const ReportContext& context) {
   Json notes = Json::array();
-  for (const Note& note : report.notes) notes.push_back(to_json(note));
-  for (const Note& note : context.notes) notes.push_back(to_json(note));
+  for (const Note& note : report.notes) notes.push_back(api::to_json(note));
+  for (const Note& note : context.notes) notes.push_back(api::to_json(note));
   return notes;
 }
 
@@ -150,6 +146,16 @@ Json repairs_json(std::span<const FileRepair> file_repairs, const std::vector<Re
 }
 
 }  // namespace
+
+std::string_view code_name(NoteCode code) { return kNoteCodes[static_cast<std::size_t>(code)]; }
+
+std::optional<NoteCode> note_code_named(std::string_view name) {
+  const auto found = std::ranges::find(kNoteCodes, name);
+  if (found == kNoteCodes.end()) return std::nullopt;
+  return static_cast<NoteCode>(found - kNoteCodes.begin());
+}
+
+Json to_json(const Note& note) { return {{"code", code_name(note.code)}, {"text", note.text}}; }
 
 Json to_json(const InputReport& input, const std::vector<Repair>& repairs,
              std::span<const FileRepair> file_repairs) {

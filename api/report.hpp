@@ -6,11 +6,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "api/json.hpp"
 #include "core/types/asset_options.hpp"
 #include "core/types/file_repair.hpp"
+#include "core/types/note.hpp"
 #include "core/types/report.hpp"
 
 namespace unwrapd::api {
@@ -29,6 +31,11 @@ struct ReportContext {
   int texcoord = 0;                           ///< n of the set TEXCOORD_n that is written
   std::optional<std::vector<VertexMap>> vertex_maps = {};  ///< set if the report shall have them
 };
+
+/// The name of a code on the wire, and back.
+std::string_view code_name(NoteCode code);
+std::optional<NoteCode> note_code_named(std::string_view name);
+Json to_json(const Note& note);
 
 /// The report with finite numbers; an infinite one becomes the largest double.
 Json to_json(const Report& report, const ReportContext& context);

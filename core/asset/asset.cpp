@@ -1,6 +1,9 @@
 #include "core/asset/asset.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cstdio>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -86,13 +89,14 @@ struct Plain {
 };
 
 /// Draco, and meshopt for an OBJ, first need the finished document.
-std::string compressed(Plain plain, Format output, Compression compression, bool with_fallback) {
+std::string compressed(Plain plain, Format output, Compression compression, bool with_fallback,
+                       std::optional<int> draco_bits) {
   std::vector<Surface> surfaces;
   const Gltf again = read_gltf({plain.glb, {}, plain.stop}, Format::glb, kNoLimits, {}, surfaces);
   plain.glb = {};
   if (compression != Compression::draco)
     return assemble(again, {again.json, {}, &again.aside}, output, MeshoptStyle{});
-  PatchedDocument packed = draco_compressed(again, with_fallback);
+  PatchedDocument packed = draco_compressed(again, with_fallback, draco_bits);
   packed.aside = plain.aside != nullptr ? plain.aside : &again.aside;
   return assemble(again, std::move(packed), output);
 }
@@ -102,20 +106,46 @@ bool is_compressed(Compression compression) {
 }
 
 std::string write_from_gltf(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped,
-                            Format output, Compression wanted) {
-  const bool is_kept = wanted == Compression::keep;
-  const Compression compression = is_kept ? gltf.came_as : wanted;
+                            Format output, const AssetOptions& options) {
+  const bool is_kept = options.compression == Compression::keep;
+  const Compression compression = is_kept ? gltf.came_as : options.compression;
   const bool with_fallback = is_kept && gltf.came_with_fallback;
   PatchedDocument patched = patch(gltf, unwrapped, output);
   if (compression == Compression::draco) {
     patched.aside = nullptr;  // so that unread members are not read again
     return compressed({assemble(gltf, std::move(patched), Format::glb), &gltf.aside, gltf.stop},
-                      output, compression, with_fallback);
+                      output, compression, with_fallback,
+                      is_kept ? std::nullopt : options.draco_bits);
   }
   if (compression != Compression::meshopt) return assemble(gltf, std::move(patched), output);
   const MeshoptStyle style =
       is_kept ? MeshoptStyle{gltf.meshopt_name, with_fallback} : MeshoptStyle{};
   return assemble(gltf, std::move(patched), output, style);
+}
+
+/// How positions are rounded, if they are.
+std::optional<int> rounding_bits(const AssetOptions& options, Format output) {
+  const bool is_draco = output != Format::obj && options.compression == Compression::draco;
+  return is_draco ? options.draco_bits : std::nullopt;
+}
+
+Note note_on_rounding(std::span<const Surface> surfaces, int bits) {
+  double side = 0;
+  for (const Surface& surface : surfaces) {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Vec3& point : surface.mesh.positions) {
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
+    if (!surface.mesh.positions.empty()) side = std::max(side, (high - low).maxCoeff());
+  }
+  std::array<char, 32> error{};
+  std::snprintf(error.data(), error.size(), "%.3g", draco_position_error(side, bits));
+  return {NoteCode::positions_rounded,
+          "Draco rounds positions to " + std::to_string(bits) + " bits, by at most " +
+              error.data() + " in the units of the mesh, and normals to " +
+              std::to_string(kDracoNormalBits) +
+              " bits. Texture coordinates stay exact. draco_bits=none keeps all values."};
 }
 
 /// The GLB or glTF of a document that was none. make: the uncompressed one, in a format.
@@ -124,7 +154,8 @@ std::string write_gltf(const Document& document, const std::stop_token& stop, Fo
                        const Make& make) {
   const Compression compression = document.options.compression;
   if (!is_compressed(compression)) return make(output);
-  return compressed({make(Format::glb), nullptr, stop}, output, compression, false);
+  return compressed({make(Format::glb), nullptr, stop}, output, compression, false,
+                    document.options.draco_bits);
 }
 
 std::string write_from_obj(const Document& document, const UnwrappedSurface& unwrapped,
@@ -189,9 +220,8 @@ std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrappe
   if (std::holds_alternative<MeshFile>(document.source))
     return write_from_mesh_file(document, unwrapped.front(), output);
   const Gltf& gltf = std::get<Gltf>(document.source);
-  return output == Format::obj
-             ? gltf_as_obj(gltf, document.surfaces, unwrapped)
-             : write_from_gltf(gltf, unwrapped, output, document.options.compression);
+  return output == Format::obj ? gltf_as_obj(gltf, document.surfaces, unwrapped)
+                               : write_from_gltf(gltf, unwrapped, output, document.options);
 }
 
 std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const UnwrappedSurface> unwrapped,
@@ -222,6 +252,8 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
   if (output == Format::obj && is_compressed(document.options.compression))
     notes.push_back({NoteCode::option_unused,
                      "An OBJ cannot be compressed; the option compression has no effect."});
+  if (const std::optional<int> bits = rounding_bits(document.options, output))
+    notes.push_back(note_on_rounding(document.surfaces, *bits));
   std::vector<Note> more;
   if (const Obj* obj = std::get_if<Obj>(&document.source)) {
     more =

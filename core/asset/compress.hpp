@@ -1,6 +1,7 @@
 #pragma once
-// Compresses the geometry of a document before it is written, without loss.
+// Compresses the geometry of a document before it is written.
 
+#include <optional>
 #include <string>
 
 #include "core/asset/gltf.hpp"
@@ -9,10 +10,17 @@
 namespace unwrapd::asset {
 
 /// Compresses every primitive of indexed or plain triangles by KHR_draco_mesh_compression:
-/// sequentially, so that vertices and faces keep their order, and without quantisation. gltf: an
-/// uncompressed document. with_fallback: readers without Draco still find the geometry, and the
-/// extension is not required.
-PatchedDocument draco_compressed(const Gltf& gltf, bool with_fallback);
+/// sequentially, so that vertices and faces keep their order. gltf: an uncompressed document.
+/// with_fallback: readers without Draco still find the geometry, and the extension is not required.
+/// position_bits: positions are rounded to a grid of so many bits over the box of their mesh, and
+/// normals to kDracoNormalBits; texture coordinates and all else stay exact. Unset: all is exact.
+PatchedDocument draco_compressed(const Gltf& gltf, bool with_fallback,
+                                 std::optional<int> position_bits);
+
+inline constexpr int kDracoNormalBits = 10;  ///< of each octahedral coordinate: 0.25 degrees
+
+/// The most that rounding moves a coordinate of a mesh whose box has this largest side.
+double draco_position_error(double side, int position_bits);
 
 /// Compresses every buffer view that has only vertices or indices by EXT_meshopt_compression, or by
 /// KHR_ as style says. bytes are those of buffer 0, the only one, and become the compressed ones.

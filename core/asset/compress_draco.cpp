@@ -1,15 +1,20 @@
 // A bitstream for each geometry: Draco's sequential method keeps the order of vertices and faces,
 // and without quantisation their values. Edgebreaker would be smaller but renumbers both. Accessors
-// that something else needs as well keep their bytes beside it.
+// that something else needs as well keep their bytes beside it. Values are rounded to grids that
+// we choose, as Draco's own are of one primitive and would open cracks between two.
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <tuple>
 
 #include "core/asset/as_size.hpp"
 #include "core/asset/compress.hpp"
+#include "core/asset/draco_grid.hpp"
 #include "core/asset/elements.hpp"
 #include "core/asset/gltf_steps.hpp"
 #include "core/asset/grow.hpp"
@@ -87,8 +92,42 @@ std::vector<Index> corners_of(const Gltf& gltf, const Primitive& primitive) {
   return corners;
 }
 
+std::string exact_text(float value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+/// Draco's own setter of a grid writes its numbers with six decimals.
+void set_grid(draco::ExpertEncoder& encoder, int attribute, const DracoGrid& grid,
+              std::size_t components) {
+  draco::Options options;
+  std::string origin;
+  for (std::size_t k = 0; k < components; ++k) origin += exact_text(grid.origin[k]) + " ";
+  options.SetInt("quantization_bits", grid.bits);
+  options.SetString("quantization_origin", origin);
+  options.SetString("quantization_range", exact_text(grid.range));
+  encoder.options().SetAttributeOptions(attribute, options);
+}
+
+/// positions: of the primitive's mesh; null: nothing is rounded.
+void set_grids(const Gltf& gltf, const Primitive& primitive, const DracoGrid* positions,
+               draco::ExpertEncoder& encoder) {
+  if (positions == nullptr) return;
+  encoder.options().SetGlobalBool("compress_connectivity", true);
+  int attribute = 0;
+  for (const auto& [semantic, number] : primitive.attributes) {
+    const bool is_float = gltf.accessors[number].type == ComponentType::f32;
+    if (semantic == "POSITION") set_grid(encoder, attribute, *positions, 3);
+    if (semantic == "NORMAL" && is_float)
+      encoder.SetAttributeQuantization(attribute, kDracoNormalBits);
+    if (semantic.starts_with("TEXCOORD_") && is_float)
+      if (const auto grid = exact_grid(gltf, number)) set_grid(encoder, attribute, *grid, 2);
+    ++attribute;
+  }
+}
+
 /// A bitstream, or nothing if Draco cannot express the primitive.
-std::string bitstream_of(const Gltf& gltf, const Primitive& primitive) {
+std::string bitstream_of(const Gltf& gltf, const Primitive& primitive, const DracoGrid* positions) {
   draco::Mesh mesh;
   mesh.set_num_points(static_cast<std::uint32_t>(gltf.accessors[primitive.position].count));
   for (const auto& [semantic, accessor] : primitive.attributes)
@@ -102,6 +141,7 @@ std::string bitstream_of(const Gltf& gltf, const Primitive& primitive) {
   draco::ExpertEncoder encoder(mesh);
   encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
   encoder.SetSpeedOptions(10 - kCompressionLevel, 10 - kCompressionLevel);
+  set_grids(gltf, primitive, positions, encoder);
   draco::EncoderBuffer buffer;
   if (!encoder.EncodeToBuffer(&buffer).ok()) return {};
   return {buffer.data(), buffer.size()};
@@ -109,19 +149,22 @@ std::string bitstream_of(const Gltf& gltf, const Primitive& primitive) {
 
 class DracoPacker {
  public:
-  DracoPacker(const Gltf& gltf, bool with_fallback)
+  DracoPacker(const Gltf& gltf, bool with_fallback, std::optional<int> position_bits)
       : gltf_(gltf),
         with_fallback_(with_fallback),
+        grids_(position_bits ? position_grids(gltf, *position_bits) : Grids()),
         patched_{gltf.json, {}},
         views_(patched_, gltf.buffers.size()),
         left_(count_accessor_references(gltf.json, gltf.accessors.size())) {}
 
   void pack(const Primitive& primitive) {
     if (!can_be_packed(primitive)) return;
-    const Key key{primitive.attributes, primitive.indices};
+    const auto grid = grids_.find(primitive.mesh);
+    const DracoGrid* const positions = grid == grids_.end() ? nullptr : &grid->second;
+    const Key key{primitive.attributes, primitive.indices, positions};
     auto found = done_.find(key);
     if (found == done_.end()) {
-      const std::string bytes = bitstream_of(gltf_, primitive);
+      const std::string bytes = bitstream_of(gltf_, primitive, positions);
       if (bytes.empty()) return;
       found = done_.emplace(key, Done{views_.add(bytes, 0, 0), indices_of(primitive)}).first;
     }
@@ -142,15 +185,20 @@ class DracoPacker {
     if (with_fallback_) return std::move(patched_);
     patched_.json["extensionsRequired"].push_back(kExtension);
     for (const auto& [key, done] : done_) {
-      for (const auto& [semantic, accessor] : key.first) forget_bytes(accessor);
-      if (key.second) forget_bytes(*key.second);
+      for (const auto& [semantic, accessor] : std::get<0>(key)) {
+        if (semantic == "POSITION" && std::get<2>(key) != nullptr)
+          round_bounds(accessor, *std::get<2>(key));
+        forget_bytes(accessor);
+      }
+      if (const auto& indices = std::get<1>(key)) forget_bytes(*indices);
     }
     return std::move(patched_);
   }
 
  private:
-  using Key =
-      std::pair<std::vector<std::pair<std::string, std::size_t>>, std::optional<std::size_t>>;
+  using Grids = std::map<std::size_t, DracoGrid>;  // [mesh]
+  using Key = std::tuple<std::vector<std::pair<std::string, std::size_t>>,
+                         std::optional<std::size_t>, const DracoGrid*>;
   struct Done {
     std::size_t view = 0;
     std::size_t indices = 0;
@@ -179,6 +227,17 @@ class DracoPacker {
     return accessors.size() - 1;
   }
 
+  /// The bounds of what readers decode, if all readers of the accessor do.
+  void round_bounds(std::size_t accessor, const DracoGrid& grid) {
+    if (left_[accessor] > 0) return;
+    for (const char* bound : {"min", "max"}) {
+      Json& json = patched_.json["accessors"][accessor];
+      if (!json.contains(bound)) continue;
+      for (std::size_t k = 0; k < 3; ++k)
+        json[bound][k] = grid.rounded(json[bound][k].get<float>(), k);
+    }
+  }
+
   void forget_bytes(std::size_t accessor) {
     if (left_[accessor] > 0) return;
     for (const char* part : {"bufferView", "byteOffset", "sparse"})
@@ -187,6 +246,7 @@ class DracoPacker {
 
   const Gltf& gltf_;
   bool with_fallback_;
+  const Grids grids_;
   PatchedDocument patched_;
   NewViews views_;
   std::vector<std::size_t> left_;  ///< references by accessors that are not compressed
@@ -195,8 +255,13 @@ class DracoPacker {
 
 }  // namespace
 
-PatchedDocument draco_compressed(const Gltf& gltf, bool with_fallback) {
-  DracoPacker packer(gltf, with_fallback);
+double draco_position_error(double side, int position_bits) {
+  return side / (std::ldexp(1.0, position_bits) - 1) / 2;
+}
+
+PatchedDocument draco_compressed(const Gltf& gltf, bool with_fallback,
+                                 std::optional<int> position_bits) {
+  DracoPacker packer(gltf, with_fallback, position_bits);
   for (const Primitive& primitive : gltf.primitives) packer.pack(primitive);
   return packer.finish();
 }

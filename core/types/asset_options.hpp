@@ -3,6 +3,7 @@
 // coordinates go, how the result is encoded.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -13,11 +14,12 @@ namespace unwrapd {
 enum class Compression {
   keep,     ///< as it came in
   none,     ///< plain accessors
-  draco,    ///< KHR_draco_mesh_compression, lossless
+  draco,    ///< KHR_draco_mesh_compression, positions and normals rounded as draco_bits says
   meshopt,  ///< EXT_meshopt_compression, lossless
 };
 
 inline constexpr int kMaxTexcoord = 7;
+inline constexpr int kMinDracoBits = 8, kMaxDracoBits = 22;
 inline constexpr std::size_t kMaxNames = 1000;  ///< entries of materials and of primitives
 
 /// How the set of texture coordinates to write is chosen where none is named. Other than with a
@@ -31,6 +33,8 @@ struct AssetOptions {
   /// The set that is written, and read: n of TEXCOORD_n in [0, kMaxTexcoord].
   std::variant<int, TexcoordChoice> texcoord = 0;
   Compression compression = Compression::keep;
+  /// Positions in [kMinDracoBits, kMaxDracoBits] where compression is draco; unset: lossless.
+  std::optional<int> draco_bits = {};
   bool vertex_map = false;  ///< the report tells which vertices were copied
   /// Names of materials, and JSON pointers of primitives ("/meshes/0/primitives/1"): only these are
   /// unwrapped, all others keep what they have. Both empty: everything is.

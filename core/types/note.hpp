@@ -28,6 +28,7 @@ enum class NoteCode {
   polygons_split,      ///< polygons are written as triangles
   format_changed,      ///< the format of the input is not written
   data_dropped,        ///< materials or properties of the input are not in the result
+  positions_rounded,   ///< Draco rounds positions and normals
 };
 
 struct Note {

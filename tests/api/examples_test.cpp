@@ -55,7 +55,7 @@ TEST(Examples, OfAnInvalidOptionIsWhatTheParserSays) {
 TEST(Examples, OfEventsEndsWithTheExampleJob) {
   const std::string stream = example("events.txt");
   const Job job = job_from_json(Json::parse(example("job_succeeded.json")));
-  const std::string last = sse_frame(final_event(5, job));
+  const std::string last = sse_frame(final_event(6, job));
   EXPECT_TRUE(stream.ends_with(last));
   EXPECT_TRUE(stream.starts_with(sse_frame(queued_event(1, 0)) + sse_frame(started_event(2, 1))));
 }

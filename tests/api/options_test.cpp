@@ -290,7 +290,9 @@ TEST(Options, NoteWhatWasGivenButHasNoEffect) {
   EXPECT_THAT(
       parse_options(both, kLimits).notes,
       testing::ElementsAre("The option stop.tolerance has no effect with stop.iterations."));
+  EXPECT_EQ(parse_options_text(R"({"draco_bits": 12})", kLimits).notes.size(), 1U);
   EXPECT_TRUE(parse_options(Query{{"method", "hybrid"}, {"lambda", "2"}}, kLimits).notes.empty());
+  EXPECT_TRUE(parse_options(to_json(parse_options_text("{}", kLimits)), kLimits).notes.empty());
 }
 
 }  // namespace

@@ -85,6 +85,19 @@ TEST(Presets, StoredOptionsOfEarlierVersionsKeepWhatTheyMeant) {
   EXPECT_EQ(options.asset.texcoord, (std::variant<int, TexcoordChoice>(0)));
 }
 
+TEST(Presets, StoredDracoStaysLosslessWhereItWas) {
+  const auto bits = [](const char* stored) {
+    return parse_stored_options(Json::parse(stored)).asset.draco_bits;
+  };
+  EXPECT_FALSE(bits(R"({"preset":"texture","compression":"draco"})"));
+  EXPECT_FALSE(bits(R"({"compression":"draco"})"));
+  const JobOptions now = parse_options_text(R"({"compression":"draco"})", kLimits);
+  EXPECT_EQ(now.asset.draco_bits, 14);
+  EXPECT_EQ(parse_stored_options(to_json(now)).asset.draco_bits, 14);
+  EXPECT_FALSE(
+      parse_options_text(R"({"compression":"draco","draco_bits":null})", kLimits).asset.draco_bits);
+}
+
 TEST(Presets, AreListedWithTheOptionsInWhichTheyDiffer) {
   const Json presets = methods_json(kLimits).at("presets");
   ASSERT_EQ(presets.size(), 4U);
