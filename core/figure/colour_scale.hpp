@@ -45,6 +45,7 @@ struct ColourScale {
 const ColourScale& colour_scale(Colouring colouring);
 
 inline constexpr Rgb kFlippedColour = {0xff, 0x2a, 0x4d};
+inline constexpr Rgb kOverlapColour = {0x52, 0x00, 0x7a};  ///< of the hatching
 inline constexpr Rgb kInk = {0x16, 0x13, 0x1f};
 inline constexpr Rgb kPaper = {0xff, 0xff, 0xff};
 inline constexpr Rgb kPage = {0xe9, 0xe8, 0xed};

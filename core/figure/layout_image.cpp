@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/base/cancel.hpp"
@@ -15,6 +16,8 @@ namespace unwrapd::figure {
 namespace {
 
 constexpr double kOutlineWidth = 3, kFlipWidth = 12;  // in 1/4096 of the page's side
+constexpr double kHatchPeriod = 36;                   // the same, between two stripes
+constexpr double kMinPeriod = 6;                      // pixels
 constexpr double kMinLine = 0.7, kMinFlip = 3;        // pixels
 
 using Drawing = std::vector<FlatTriangle>;
@@ -52,6 +55,27 @@ void append_faces(Drawing& drawing, const UnwrappedSurface& surface,
   for (std::size_t t = 0; t < painted.size(); ++t) {
     if (painted[t] < colours.size())
       drawing.push_back({on_screen(surface.faces[t], surface.uv, scale), colours[painted[t]]});
+  }
+}
+
+/// Stripes across every place that two triangles share.
+void append_hatching(Drawing& drawing, std::span<const Polygon> overlaps, const Scale& scale) {
+  const double period = std::max(kMinPeriod, scale.length(kHatchPeriod)), width = period / 3;
+  const Vec2 across = Vec2(1, 1).normalized();
+  for (const Polygon& overlap : overlaps) {
+    Polygon place;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec2& uv : overlap) {
+      place.push_back(scale.pixel(uv));
+      low = std::min(low, across.dot(place.back()));
+      high = std::max(high, across.dot(place.back()));
+    }
+    for (double at = period * std::floor(low / period); at < high; at += period) {
+      const Polygon stripe = clipped(place, across, at, at + width);
+      for (std::size_t k = 2; k < stripe.size(); ++k)
+        drawing.push_back(
+            {{snapped(stripe[0]), snapped(stripe[k - 1]), snapped(stripe[k])}, kOverlapColour});
+    }
   }
 }
 
@@ -95,6 +119,7 @@ Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedS
     for (std::size_t t = 0; t < painted[s].size(); ++t)
       if (painted[s][t] == kFlippedFace)
         append_flipped(drawing, unwrapped[s].faces[t], unwrapped[s].uv, scale, flip_width);
+  append_hatching(drawing, overlap_polygons(unwrapped, stop), scale);
   for (const UnwrappedSurface& surface : unwrapped) append_outline(drawing, surface, scale);
   append_legend(drawing, colours, scale, height);
   return rasterised(drawing, size, height, kPage, stop);

@@ -11,7 +11,8 @@
 namespace unwrapd::figure {
 
 /// `size` pixels wide, in [kMinImageSize, kMaxImageSize], and as much higher as the legend takes.
-/// unwrapped has one entry for each surface. Throws Error{cancelled} once a stop was requested.
+/// Places that two triangles share are hatched. unwrapped has one entry for each surface. Throws
+/// Error{cancelled} once a stop was requested.
 Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
                    Colouring colouring, int size, const std::stop_token& stop = {});
 

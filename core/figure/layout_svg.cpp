@@ -96,6 +96,23 @@ void append_fill(std::string& svg, const Rgb& colour, std::string_view data, lon
   svg.append("\" d=\"").append(data).append("\"/>\n");
 }
 
+/// Pattern units are those of the drawing, whose V points up.
+void append_hatching(std::string& svg, const std::vector<Polygon>& overlaps, const Frame& frame) {
+  if (overlaps.empty()) return;
+  svg.append(
+      "<defs><pattern id=\"shared\" width=\"360\" height=\"360\" patternUnits=\"userSpaceOnUse\" "
+      "patternTransform=\"rotate(45)\"><rect width=\"120\" height=\"360\" fill=\"");
+  svg.append(hex(kOverlapColour)).append("\"/></pattern></defs>\n<path fill=\"url(#shared)\" d=\"");
+  for (const Polygon& polygon : overlaps) {
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const Vec2 place = kUnits * frame.place(polygon[k]);
+      append_point(svg, k == 0 ? 'M' : 'L', std::lround(place.x()), std::lround(place.y()));
+    }
+    svg += 'z';
+  }
+  svg.append("\"><title>shared by two triangles</title></path>\n");
+}
+
 void append_boundary(std::string& svg, std::string_view data) {
   svg.append("<path fill=\"none\" stroke=\"").append(hex(kInk));
   svg.append("\" stroke-width=\"30\" d=\"").append(data).append("\"/>\n");
@@ -163,6 +180,7 @@ std::string layout_svg(std::span<const Surface> surfaces,
   for (std::size_t k = 0; k < scale.colours.size(); ++k)
     append_fill(svg, scale.colours[k], paths.colour[k], 5);
   append_fill(svg, kFlippedColour, paths.flipped, colouring == Colouring::flips ? 120 : 5);
+  append_hatching(svg, overlap_polygons(unwrapped, stop), frame);
   append_boundary(svg, paths.boundary);
   svg += "</g>\n";
   append_legend(svg, scale);

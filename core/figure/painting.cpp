@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <utility>
 
+#include "core/measure/overlaps.hpp"
 #include "core/mesh/counting_sort.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/mesh/weld.hpp"
@@ -53,6 +56,28 @@ double common_scale(std::span<const Surface> surfaces,
   return uv_area > 0 ? std::sqrt(area / uv_area) : 1;
 }
 
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+
+Polygon counter_clockwise(const Triangle& face, const UvMap& uv) {
+  Polygon corners = {uv[face[0]], uv[face[1]], uv[face[2]]};
+  const Vec2 a = corners[1] - corners[0], b = corners[2] - corners[0];
+  if (a.x() * b.y() - a.y() * b.x() < 0) std::swap(corners[1], corners[2]);
+  return corners;
+}
+
+/// The part where normal . p >= least.
+Polygon above_line(const Polygon& polygon, const Vec2& normal, double least) {
+  Polygon kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2& from = polygon[k];
+    const Vec2& to = polygon[(k + 1) % polygon.size()];
+    const double a = normal.dot(from) - least, b = normal.dot(to) - least;
+    if (a >= 0) kept.push_back(from);
+    if ((a > 0 && b < 0) || (a < 0 && b > 0)) kept.emplace_back(from + a / (a - b) * (to - from));
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::vector<std::vector<std::uint8_t>> painted_faces(std::span<const Surface> surfaces,
@@ -71,6 +96,35 @@ std::vector<std::vector<std::uint8_t>> painted_faces(std::span<const Surface> su
         });
   }
   return painted;
+}
+
+std::vector<Polygon> overlap_polygons(std::span<const UnwrappedSurface> unwrapped,
+                                      const std::stop_token& stop) {
+  std::vector<Triangle> faces;
+  UvMap uv;
+  for (const UnwrappedSurface& surface : unwrapped) {
+    const auto first = static_cast<Index>(uv.size());
+    for (const Triangle& face : surface.faces)
+      faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+    uv.insert(uv.end(), surface.uv.begin(), surface.uv.end());
+  }
+  std::vector<Polygon> polygons;
+  for (const auto& [s, t] : measure::overlapping_pairs(faces, uv, kMostOverlaps, stop)) {
+    if (std::ranges::is_permutation(faces[s], faces[t])) continue;  // a face that the file repeats
+    Polygon polygon = counter_clockwise(faces[s], uv);
+    const Polygon other = counter_clockwise(faces[t], uv);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 along = other[(k + 1) % 3] - other[k], inwards(-along.y(), along.x());
+      polygon = clipped(polygon, inwards, inwards.dot(other[k]), kEndless);
+    }
+    if (polygon.size() > 2) polygons.push_back(std::move(polygon));
+  }
+  return polygons;
+}
+
+Polygon clipped(const Polygon& polygon, const Vec2& normal, double low, double high) {
+  const Polygon above = above_line(polygon, normal, low);
+  return above_line(above, -normal, -high);
 }
 
 std::vector<Edge> outline(const UnwrappedSurface& surface) {

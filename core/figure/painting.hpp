@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/figure/colour_scale.hpp"
@@ -21,6 +22,19 @@ inline constexpr std::uint8_t kHiddenFace = 255;  ///< no area in 3D: left out
 std::vector<std::vector<std::uint8_t>> painted_faces(std::span<const Surface> surfaces,
                                                      std::span<const UnwrappedSurface> unwrapped,
                                                      Colouring colouring);
+
+/// A convex polygon of UV space, counter-clockwise.
+using Polygon = std::vector<Vec2>;
+
+/// Where two triangles of the page share texels, be it of one island or of two: the intersection of
+/// each such pair, of at most kMostOverlaps. Throws Error{cancelled}.
+std::vector<Polygon> overlap_polygons(std::span<const UnwrappedSurface> unwrapped,
+                                      const std::stop_token& stop);
+
+inline constexpr std::size_t kMostOverlaps = 200'000;
+
+/// The part of a polygon where low <= normal . p <= high; empty if there is none.
+Polygon clipped(const Polygon& polygon, const Vec2& normal, double low, double high);
 
 using Edge = std::array<Index, 2>;  ///< vertices of an UnwrappedSurface
 

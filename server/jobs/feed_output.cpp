@@ -46,6 +46,12 @@ void FeedOutput::iteration(const IterationEvent& event, double elapsed_ms) {
       [&](std::int64_t seq) { return api::iteration_event(seq, event, elapsed_ms); });
 }
 
+void FeedOutput::note(const Note& note) {
+  const std::lock_guard lock(job_.output);
+  if (job_.has_ended) return;
+  job_.feed->publish([&](std::int64_t seq) { return api::note_event(seq, note); });
+}
+
 void FeedOutput::result(std::string_view format, std::string_view bytes) {
   keep(store::result_file(format), bytes);
 }

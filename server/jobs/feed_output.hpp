@@ -30,6 +30,7 @@ class FeedOutput final : public work::JobOutput {
   /// readers would get thousands of events otherwise.
   void stage(const StageEvent& event) override;
   void iteration(const IterationEvent& event, double elapsed_ms) override;
+  void note(const Note& note) override;
   void result(std::string_view format, std::string_view bytes) override;
   void file(std::string_view name, std::string_view bytes) override;
 

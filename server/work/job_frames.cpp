@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "api/report.hpp"
 #include "server/base/byte_pack.hpp"
+#include "server/base/utf8.hpp"
 
 namespace unwrapd::server::work {
 namespace {
@@ -15,6 +17,7 @@ struct FrameHead {
 };
 constexpr std::size_t kHeadBytes = 1 + 8 + 8;
 constexpr std::size_t kShortBytes = 4096;
+constexpr std::size_t kMaxNoteText = 4096;
 constexpr std::uint64_t kPieceBytes = std::uint64_t{1} << 20;
 
 [[noreturn]] void no_frame() {
@@ -55,6 +58,37 @@ bool receive_text(const ReceiveAll& receive, std::uint64_t size, std::string& te
 double next_fraction(ByteUnpacker& from) {
   const auto fraction = from.next<double>();
   return fraction >= 0 ? std::min(fraction, 1.0) : 0;  // nor is it NaN
+}
+
+void unpack_stage(std::string_view bytes, JobOutput& output) {
+  ByteUnpacker from(bytes);
+  const auto stage = from.next<std::uint8_t>();
+  if (stage > static_cast<std::uint8_t>(Stage::write)) no_frame();
+  StageEvent event{.stage = static_cast<Stage>(stage)};
+  event.chart = from.next<Index>();
+  event.chart_count = from.next<Index>();
+  event.fraction = next_fraction(from);
+  event.lambda = next_lambda(from);
+  output.stage(event);
+}
+
+void unpack_iteration(std::string_view bytes, JobOutput& output) {
+  ByteUnpacker from(bytes);
+  IterationEvent event;
+  event.chart = from.next<Index>();
+  event.iteration = from.next<int>();
+  for (double* figure : {&event.energy, &event.rel_change, &event.angle, &event.area})
+    *figure = from.next<double>();
+  event.flipped = from.next<Index>();
+  event.fraction = next_fraction(from);
+  event.lambda = next_lambda(from);
+  output.iteration(event, from.next<double>());
+}
+
+void unpack_note(const Frame& frame, JobOutput& output) {
+  const std::optional<NoteCode> code = api::note_code_named(frame.name);
+  if (!code) no_frame();
+  output.note({*code, std::string(within_bytes(frame.bytes, kMaxNoteText))});
 }
 
 }  // namespace
@@ -101,29 +135,10 @@ std::string pack(const IterationEvent& event, double elapsed_ms) {
   return pack.add(elapsed_ms).take();
 }
 
-void unpack_stage(std::string_view bytes, JobOutput& output) {
-  ByteUnpacker from(bytes);
-  const auto stage = from.next<std::uint8_t>();
-  if (stage > static_cast<std::uint8_t>(Stage::write)) no_frame();
-  StageEvent event{.stage = static_cast<Stage>(stage)};
-  event.chart = from.next<Index>();
-  event.chart_count = from.next<Index>();
-  event.fraction = next_fraction(from);
-  event.lambda = next_lambda(from);
-  output.stage(event);
-}
-
-void unpack_iteration(std::string_view bytes, JobOutput& output) {
-  ByteUnpacker from(bytes);
-  IterationEvent event;
-  event.chart = from.next<Index>();
-  event.iteration = from.next<int>();
-  for (double* figure : {&event.energy, &event.rel_change, &event.angle, &event.area})
-    *figure = from.next<double>();
-  event.flipped = from.next<Index>();
-  event.fraction = next_fraction(from);
-  event.lambda = next_lambda(from);
-  output.iteration(event, from.next<double>());
+void unpack_event(const Frame& frame, JobOutput& output) {
+  if (frame.kind == FrameKind::stage) unpack_stage(frame.bytes, output);
+  if (frame.kind == FrameKind::iteration) unpack_iteration(frame.bytes, output);
+  if (frame.kind == FrameKind::note) unpack_note(frame, output);
 }
 
 }  // namespace unwrapd::server::work

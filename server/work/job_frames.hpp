@@ -23,6 +23,7 @@ enum class FrameKind : std::uint8_t {
   ready,      ///< from here on from the worker: it has locked itself in
   stage,      ///< bytes of pack()
   iteration,  ///< bytes of pack()
+  note,       ///< the name is its code, the bytes are its text
   result,     ///< the answer's asset, by its format
   file,       ///< a further file, by its name
   done,       ///< the end; the name is the result's format
@@ -52,8 +53,12 @@ bool receive_frame(const ReceiveAll& receive, std::int64_t max_bytes, Frame& fra
 
 std::string pack(const StageEvent& event);
 std::string pack(const IterationEvent& event, double elapsed_ms);
-/// Hands what pack() made to an output. Throws Error{internal} for anything else.
-void unpack_stage(std::string_view bytes, JobOutput& output);
-void unpack_iteration(std::string_view bytes, JobOutput& output);
+/// Hands an event to an output: what pack() made, or a note, of a long text the beginning. Throws
+/// Error{internal} for anything else.
+void unpack_event(const Frame& frame, JobOutput& output);
+
+inline bool is_event(FrameKind kind) {
+  return kind == FrameKind::stage || kind == FrameKind::iteration || kind == FrameKind::note;
+}
 
 }  // namespace unwrapd::server::work

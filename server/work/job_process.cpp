@@ -82,18 +82,21 @@ class EventCopy final : public JobOutput {
     iteration_ = event;
     elapsed_ms_ = elapsed_ms;
   }
+  void note(const Note& note) override { note_ = note; }
   void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
   void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
 
   void hand_to(JobOutput& output) const {
     if (stage_) output.stage(*stage_);
     if (iteration_) output.iteration(*iteration_, elapsed_ms_);
+    if (note_) output.note(*note_);
   }
 
  private:
   std::optional<StageEvent> stage_;
   std::optional<IterationEvent> iteration_;
   double elapsed_ms_ = 0;
+  std::optional<Note> note_;
 };
 
 /// One conversation with a worker.
@@ -140,8 +143,7 @@ class Conversation {
   }
 
   void hand_over(const Frame& frame) {
-    if (frame.kind == FrameKind::stage || frame.kind == FrameKind::iteration)
-      return hand_over_event(frame);
+    if (is_event(frame.kind)) return hand_over_event(frame);
     if (frame.kind == FrameKind::result && files_.take_result(frame.name))
       return output_.result(frame.name, frame.bytes);
     const bool is_file = frame.kind == FrameKind::file && files_.take(frame.name);
@@ -151,10 +153,7 @@ class Conversation {
 
   void hand_over_event(const Frame& frame) {
     EventCopy event;
-    believed([&] {
-      frame.kind == FrameKind::stage ? unpack_stage(frame.bytes, event)
-                                     : unpack_iteration(frame.bytes, event);
-    });
+    believed([&] { unpack_event(frame, event); });
     event.hand_to(output_);
   }
 
@@ -173,6 +172,7 @@ class NoOutput final : public JobOutput {
  public:
   void stage(const StageEvent& /*event*/) override {}
   void iteration(const IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
+  void note(const Note& /*note*/) override {}
   void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
   void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
 };

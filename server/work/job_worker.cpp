@@ -58,6 +58,9 @@ class SocketOutput final : public JobOutput {
   void iteration(const IterationEvent& event, double elapsed_ms) override {
     send_frame(send_all, FrameKind::iteration, {}, pack(event, elapsed_ms));
   }
+  void note(const Note& note) override {
+    send_frame(send_all, FrameKind::note, api::code_name(note.code), note.text);
+  }
   void result(std::string_view format, std::string_view bytes) override {
     send_frame(send_all, FrameKind::result, format, bytes);
   }

@@ -90,7 +90,11 @@ void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageT
   const api::ReportContext context = context_of(task, clock);
   for (std::size_t map = 0; map < maps.size(); ++map) {
     const api::ReportContext own = completed(context, made, maps[map], with_vertex_maps);
-    if (map == 0) output.file(store::kTotalsFile, api::totals_json(maps[map].report, own).dump());
+    if (map == 0) {
+      for (const Note& note : maps[map].report.notes) output.note(note);
+      for (const Note& note : own.notes) output.note(note);
+      output.file(store::kTotalsFile, api::totals_json(maps[map].report, own).dump());
+    }
     output.file(map_file(store::kReportFile, map), api::to_json(maps[map].report, own).dump());
   }
 }

@@ -8,6 +8,7 @@
 #include "api/limits.hpp"
 #include "core/asset/asset.hpp"
 #include "core/base/executor.hpp"
+#include "core/types/note.hpp"
 #include "core/types/progress.hpp"
 #include "server/store/job_record.hpp"
 #include "server/work/stage_timer.hpp"
@@ -26,6 +27,8 @@ class JobOutput {
   virtual void stage(const StageEvent& event) = 0;
   /// elapsed_ms: since the job began.
   virtual void iteration(const IterationEvent& event, double elapsed_ms) = 0;
+  /// A note of the report of the job's first map.
+  virtual void note(const Note& note) = 0;
   /// The answer's asset. format: glb, gltf or obj.
   virtual void result(std::string_view format, std::string_view bytes) = 0;
   /// A further file of the job's folder.

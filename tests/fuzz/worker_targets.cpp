@@ -21,6 +21,7 @@ class EventSink final : public server::work::JobOutput {
     promise(event.stage <= Stage::write, "a stage is one of ours");
   }
   void iteration(const IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
+  void note(const Note& /*note*/) override {}
   void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
   void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
 };
@@ -29,9 +30,7 @@ void read_frame(const server::work::Frame& frame) {
   EventSink sink;
   promise(frame.name.size() <= server::work::kMaxFrameName, "a name is as long as names may be");
   promise(static_cast<std::int64_t>(frame.bytes.size()) <= kMaxFrameBytes, "a frame is bounded");
-  if (frame.kind == server::work::FrameKind::stage) server::work::unpack_stage(frame.bytes, sink);
-  if (frame.kind == server::work::FrameKind::iteration)
-    server::work::unpack_iteration(frame.bytes, sink);
+  server::work::unpack_event(frame, sink);
 }
 
 void frames(std::string_view bytes) {
@@ -57,6 +56,7 @@ std::vector<std::string> frames_seeds() {
                            server::work::pack(StageEvent{.stage = Stage::solve}));
   server::work::send_frame(send, server::work::FrameKind::iteration, {},
                            server::work::pack(IterationEvent{}, 1.5));
+  server::work::send_frame(send, server::work::FrameKind::note, "overlaps", "2 pairs");
   server::work::send_frame(send, server::work::FrameKind::result, "glb", "glTF");
   server::work::send_frame(send, server::work::FrameKind::done, "glb", {});
   return {all};

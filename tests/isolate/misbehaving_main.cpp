@@ -161,6 +161,7 @@ class NoOutput final : public server::work::JobOutput {
  public:
   void stage(const unwrapd::StageEvent& /*event*/) override {}
   void iteration(const unwrapd::IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
+  void note(const unwrapd::Note& /*note*/) override {}
   void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
   void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
 };

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <stop_token>
 #include <vector>
@@ -93,6 +95,53 @@ TEST(LayoutImage, AFlipShowsHoweverSmallItIs) {
   EXPECT_EQ(count_of(picture(mesh, out, Colouring::flips), kFlippedColour), 0);
   std::swap(out.faces[777][0], out.faces[777][1]);
   EXPECT_GE(count_of(picture(mesh, out, Colouring::flips), kFlippedColour), 3);
+}
+
+/// Two squares of side .5, the second one moved.
+UnwrappedSurface two_squares(const TriMesh& mesh, const Vec2& second) {
+  UnwrappedSurface out = flattened(mesh, {0.5, 0.5});
+  for (std::size_t v = 0; v < out.uv.size(); ++v) {
+    if (v < out.uv.size() / 2)
+      out.uv[v] += Vec2(0.05, 0.05);
+    else
+      out.uv[v] += second - Vec2(1, 0);
+  }
+  return out;
+}
+
+TEST(LayoutImage, OnlyPlacesThatTwoTrianglesShareAreHatched) {
+  const TriMesh mesh = merged(std::array{grid(7, 7), moved(grid(7, 7), {2, 0, 0})});
+  const auto beside = [&](double u) { return picture(mesh, two_squares(mesh, {u, 0.05})); };
+  EXPECT_EQ(count_of(beside(0.05 + 0.5), kOverlapColour), 0);  // they touch
+  const Image both = picture(mesh, two_squares(mesh, {0.35, 0.35}));
+  const Image one = picture(grid(7, 7), flattened(grid(7, 7), {0.5, 0.5}));
+  const Rgb plain = at(one, 0.25, 0.26);
+  long hatched = 0, inside = 0;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const double u = (x + 0.5) / kSize, v = 1 - (y + 0.5) / kSize, slack = 2.0 / kSize;
+      const bool is_near = std::min(u, v) > 0.35 - slack && std::max(u, v) < 0.55 + slack;
+      const bool is_inside = std::min(u, v) > 0.35 + slack && std::max(u, v) < 0.55 - slack;
+      const Rgb colour = both.at(x, y);
+      const bool is_usual = colour == kPage || colour == plain || colour == kInk;
+      if (colour == kOverlapColour) {
+        EXPECT_TRUE(is_near) << x << " " << y;
+      }
+      hatched += is_inside && !is_usual ? 1 : 0;
+      inside += is_inside ? 1 : 0;
+    }
+  EXPECT_GT(hatched, inside / 4);
+  EXPECT_LT(hatched, inside * 7 / 10);
+}
+
+TEST(LayoutImage, AFaceThatTheFileRepeatsIsNotHatchedButAFoldIs) {
+  TriMesh mesh = grid(4, 4);
+  mesh.faces.push_back({mesh.faces[5][1], mesh.faces[5][2], mesh.faces[5][0]});
+  EXPECT_EQ(count_of(picture(mesh, flattened(mesh, {0.9, 0.9})), kOverlapColour), 0);
+  const TriMesh strip = grid(4, 4);
+  UnwrappedSurface folded = flattened(strip, {0.9, 0.9});
+  for (Vec2& uv : folded.uv) uv.x() = std::min(uv.x(), 0.9 - uv.x()) * 2;
+  EXPECT_GT(count_of(picture(strip, folded), kOverlapColour), kSize * kSize / 10);
 }
 
 TEST(LayoutImage, TheLegendShowsEveryColourOfTheScale) {

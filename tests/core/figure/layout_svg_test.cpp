@@ -84,11 +84,45 @@ TEST(LayoutSvg, AFlippedTriangleIsInThePathOnTop) {
   EXPECT_NE(svg.find("#ff2a4d"), std::string::npos);
 }
 
+TEST(LayoutSvg, PlacesThatTwoTrianglesShareAreHatched) {
+  const TriMesh mesh = merged(std::array{grid(1, 1), moved(grid(1, 1), {2, 0, 0})});
+  UnwrappedSurface out = flattened(mesh);
+  for (Vec2& uv : out.uv) uv *= 0.25;
+  EXPECT_EQ(picture(mesh, out).find("shared"), std::string::npos);
+  for (std::size_t v = 4; v < 8; ++v) out.uv[v] = out.uv[v - 4] + Vec2(0.1, 0.1);
+  const std::string svg = picture(mesh, out);
+  const auto paths = path_data(svg);
+  EXPECT_NE(svg.find("url(#shared)"), std::string::npos);
+  double area = 0;  // of polygons, each "Mx yLx yLx yz"
+  const std::string& hatched = paths[paths.size() - 2];
+  std::vector<std::array<double, 2>> polygon;
+  const auto number = [&](std::size_t& i) {
+    std::size_t read = 0;
+    const double value = std::stod(hatched.substr(i), &read);
+    i += read;
+    return value;
+  };
+  for (std::size_t i = 0; i < hatched.size();) {
+    if (hatched[i++] == 'z') {
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const auto& [x, y] = polygon[k];
+        const auto& [next_x, next_y] = polygon[(k + 1) % polygon.size()];
+        area += (x * next_y - y * next_x) / 2;
+      }
+      polygon.clear();
+      continue;
+    }
+    const double x = number(i);
+    polygon.push_back({x, number(i)});
+  }
+  EXPECT_NEAR(area / 40960 / 40960, 0.15 * 0.15, 1e-4);
+}
+
 TEST(LayoutSvg, MoreDistortionIsALaterColour) {
   TriMesh mesh = merged(std::array{grid(1, 1), moved(grid(1, 1), {2, 0, 0})});
   UnwrappedSurface out = flattened(mesh);
   for (std::size_t v = 0; v < 4; ++v) out.uv[v] *= 0.1;
-  for (std::size_t v = 4; v < 8; ++v) out.uv[v] = {0.02 * out.uv[v].x(), 0.5 * out.uv[v].y()};
+  for (std::size_t v = 4; v < 8; ++v) out.uv[v] = {0.2 + 0.02 * out.uv[v].x(), 0.5 * out.uv[v].y()};
   const auto paths = path_data(picture(mesh, out));
   ASSERT_EQ(paths.size(), 3U);  // both have the same area: only the second is distorted
   EXPECT_NEAR(double(twice_area(paths[0])), double(twice_area(paths[1])), 1e5);
