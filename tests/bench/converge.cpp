@@ -110,7 +110,7 @@ int first_below(const std::vector<double>& energy, double bound) {
 /// Iterations from a mean-value map to 1e-3 and to 1e-5 above the lowest energy; -1: not in 2,000.
 void compare_iterations(const solve::Disk& disk) {
   SerialExecutor serial;
-  const solve::Holds free;
+  const solve::VertexConstraints free;
   const solve::arap::GlobalStep global(disk, free);
   const solve::arap::Assembly assembly{disk, free, global};
   solve::arap::Objective objective(disk, {}, free, global.rank(), serial);

@@ -5,11 +5,11 @@ import {setTimeout as sleep} from 'node:timers/promises';
 
 import * as meshes from '../../contract/meshes.mjs';
 import {startServer} from '../../contract/server.mjs';
-import {anonymousKb, figure, probe, quantile, round, submit} from './measure.mjs';
+import {anonymousKb, figure, kScale, probe, quantile, round, submit} from './measure.mjs';
 
-const kIdle = 1000;
-const kSlow = 200;
-const kSeconds = 8;
+const kIdle = 1000 * kScale;
+const kSlow = 200 * kScale;
+const kSeconds = 8 * kScale;
 
 function connect(base, live) {
   const {hostname, port} = new URL(base);

@@ -6,6 +6,9 @@ import {Worker} from 'node:worker_threads';
 import {request} from '../../contract/http.mjs';
 import * as meshes from '../../contract/meshes.mjs';
 
+/** Share of the full numbers of streams, connections, jobs and seconds; 1 is what figures are told of. */
+export const kScale = Number(process.env.LOAD_SCALE ?? 1);
+
 export const kGlb = {'Content-Type': 'model/gltf-binary'};
 
 export function quantile(values, q) {

@@ -4,9 +4,9 @@ import {setTimeout as sleep} from 'node:timers/promises';
 
 import * as meshes from '../../contract/meshes.mjs';
 import {startServer} from '../../contract/server.mjs';
-import {anonymousKb, figure, quantile, round, submit, timed} from './measure.mjs';
+import {anonymousKb, figure, kScale, quantile, round, submit, timed} from './measure.mjs';
 
-const kJobs = 5000;
+const kJobs = 5000 * kScale;
 const kSenders = 8;
 
 export async function queue(binary) {

@@ -5,12 +5,12 @@ import {setTimeout as sleep} from 'node:timers/promises';
 
 import {startServer} from '../../contract/server.mjs';
 import {
-  anonymousKb, figure, meshOfTenIterationsASecond, probe, quantile, round, submit, timed,
+  anonymousKb, figure, kScale, meshOfTenIterationsASecond, probe, quantile, round, submit, timed,
 } from './measure.mjs';
 
-const kStreams = 500;
-const kWatchSeconds = 15;
-const kTrimmed = 12_000;  // ms; the server gives memory back every 10 s
+const kStreams = 500 * kScale;
+const kWatchSeconds = 15 * kScale;
+const kTrimmed = 12_000 * kScale;  // ms; the server gives memory back every 10 s
 
 /** Opens a stream; resolves at its first byte. */
 function follow(base, job) {

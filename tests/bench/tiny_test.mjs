@@ -1,0 +1,84 @@
+// Every bench that needs no yardstick, on a tiny input: it ends well and tells figures. What they are
+// says nothing here.
+import assert from 'node:assert/strict';
+import {execFile} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {dirname, join} from 'node:path';
+import {after, test} from 'node:test';
+import {fileURLToPath} from 'node:url';
+import {promisify} from 'node:util';
+
+import * as meshes from '../contract/meshes.mjs';
+
+const bin = process.env.UNWRAPD_BIN;
+const here = dirname(fileURLToPath(import.meta.url));
+const scratch = mkdtempSync(join(tmpdir(), 'unwrapd_bench_'));
+after(() => rmSync(scratch, {recursive: true}));
+const sheet = join(scratch, 'sheet.obj');
+writeFileSync(sheet, meshes.obj(8));
+
+/** What a program prints; rejects unless it ends with 0. */
+async function printed(program, ...words) {
+  const env = {...process.env, LOAD_SCALE: '0.05'};
+  return (await promisify(execFile)(program, words, {env, timeout: 120_000})).stdout;
+}
+
+const script = (name, ...words) => printed(process.execPath, join(here, `${name}.mjs`), ...words);
+const program = (name, ...words) => printed(join(bin, `unwrapd_${name}`), ...words);
+const kept = (file) => JSON.parse(readFileSync(file, 'utf8'));
+
+test('goals', async () => {
+  const out = join(scratch, 'goals.json');
+  await program('bench', out, '--tiny');
+  assert.ok(kept(out).goals.length > 12);
+});
+
+test('methods', async () => {
+  for (const method of ['asap', 'arap', 'hybrid', 'abf', 'linabf', 'cp', 'bff', 'ic', 'slim'])
+    assert.match(await program('methods', 'one', method, '500'), /^\d+\.\d+ \d+ \d+\n$/);
+});
+
+test('converge', async () => {
+  assert.match(await program('converge', sheet), /128 faces, 1 boundaries\n(.*\d+.*\n){4}/);
+});
+
+test('atlas', async () => {
+  const table = await program('atlas', sheet, 'noisy:1000', 'made:torus:300:1');
+  assert.match(table, /^sheet +128 +1 /m);
+  assert.equal(table.match(/^\S+( +[\d.]+){13}$/gm)?.length, 3, table);
+});
+
+test('cancel-latency', async () => {
+  assert.match(await program('cancel_latency', 'disk:400'), /\d/);
+});
+
+test('engine', async () => {
+  const out = join(scratch, 'engine.json');
+  await program('engine', '20000', out);
+  assert.ok(kept(out).rows.every(({factor_ms: ms}) => ms > 0));
+});
+
+test('load', async () => {
+  const out = join(scratch, 'load.json');
+  await script('load', join(bin, 'unwrapd'), out, '2');
+  const {figures} = kept(out);
+  assert.deepEqual(Object.keys(figures), ['streams', 'idle', 'queue', 'soak', 'shared_soak']);
+  for (const {name, value} of Object.values(figures).flat()) assert.equal(typeof value, 'number', name);
+});
+
+test('isolation', async () => {
+  const out = join(scratch, 'isolation.json');
+  await script('isolation', join(bin, 'unwrapd'), out, '1', sheet);
+  for (const {name, value} of kept(out).figures) assert.equal(typeof value, 'number', name);
+});
+
+test('defaults', async () => {
+  const out = join(scratch, 'defaults.json');
+  await script('defaults', bin, out, sheet);
+  assert.deepEqual(kept(out).rows.map(({faces}) => faces), [128]);
+});
+
+test('request', async () => {
+  assert.match(await script('request', bin, '200'), /ratio [\d.]+ \(asked: 1.1\)/);
+});
