@@ -11,8 +11,8 @@ namespace unwrapd::server::routes {
 /// Whether the sender of a GET has what this ETag names, and asks only for something else.
 bool has_copy(const http::Request& request, const std::string& etag);
 
-/// The answer to it, under the ETag of the copy that it has, which may be one as gzip. type: of what
-/// was asked for.
+/// The answer to it, under the ETag of the copy that it has, which may be one as gzip. type: of
+/// what was asked for.
 http::Response not_modified(const http::Request& request, const std::string& etag,
                             std::string_view type);
 
