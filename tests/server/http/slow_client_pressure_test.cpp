@@ -67,5 +67,33 @@ TEST_F(SlowClients, ThatSendDoNotHoldAllThreads) {
   }
 }
 
+/// Twice as many as the admin port has places (64), each with half a head.
+std::list<RawClient> too_many_idle(int port) {
+  std::list<RawClient> idle;
+  for (int k = 0; k < 128; ++k) idle.emplace_back(port).send("GET /healthz HTTP/1.1\r\nHo");
+  return idle;
+}
+
+TEST_F(SlowClients, OfOnePortTakeNoPlaceOfTheOther) {
+  config_.admin = http::Address{"127.0.0.1", 0};
+  config_.edge.max_connections = 64;
+  start();
+  const auto answers = [](int port, const char* path) {
+    httplib::Client other("127.0.0.1", port);
+    other.set_read_timeout(std::chrono::seconds(4));  // less than half a head is waited for
+    const auto answer = other.Get(path);
+    return answer && answer->status == 200;
+  };
+  {
+    const std::list<RawClient> of_admin = too_many_idle(*service_->admin_port());
+    EXPECT_TRUE(answers(service_->port(), "/healthz")) << "the other port";
+    EXPECT_TRUE(answers(*service_->admin_port(), "/readyz")) << "its own: the idle have 48 places";
+    await_state(submit(), "succeeded");
+  }
+  const std::list<RawClient> of_edge = too_many_idle(service_->port());
+  EXPECT_TRUE(answers(*service_->admin_port(), "/healthz"));
+  EXPECT_TRUE(answers(*service_->admin_port(), "/metrics"));
+}
+
 }  // namespace
 }  // namespace unwrapd::server::http
