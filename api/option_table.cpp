@@ -247,14 +247,13 @@ constexpr std::array kRows = {
     choice<&A::compression, kCompressions>(
         "compression", kEveryMethod,
         "Encoding of a glTF's geometry. keep: as in the input; none: uncompressed; meshopt: "
-        "smaller "
-        "files for readers that support the extension, lossless; draco: the smallest files, with "
-        "positions and normals rounded as draco_bits says."),
+        "smaller files for readers that support the extension, lossless; draco: the smallest "
+        "files, with positions and normals rounded as draco_bits says."),
     figure<&A::draco_bits>(
         "draco_bits", {kMinDracoBits, kMaxDracoBits}, kEveryMethod,
-        "Bits of a position with compression=draco: positions move by at most half of "
-        "2^-draco_bits "
-        "of the mesh's longest side. Texture coordinates stay exact. Unset: all values do."),
+        "Bits of a position with compression=draco: positions are rounded to the nearest of "
+        "2^draco_bits places along the mesh's longest side. Texture coordinates stay exact. "
+        "Unset: all values do."),
     plain<&A::vertex_map>("vertex_map", OptionType::flag, kEveryMethod,
                           "true: the report lists the vertices that were duplicated for seams."),
 };
