@@ -171,7 +171,6 @@ Candidate MergeSearch::bisect_regions(Candidate whole) {
     best = std::move(*next);
   }
   close_slits(context_, settings_, best.partition);
-  shorten_in_parts(context_, settings_, best.partition);
   return best;
 }
 

@@ -55,8 +55,8 @@ class MergeSearch {
   [[nodiscard]] Candidate cheapest(std::vector<Candidate> all) const;
 
   /// Bisects the region whose halves make the partition cheapest, as long as that helps: rings and
-  /// stars leave a page emptier than necessary. Then closes slits that are no longer needed, and
-  /// shortens seams part by part. The cost is not that of the result: see price().
+  /// stars leave a page emptier than necessary. Then closes slits that are no longer needed. The
+  /// cost is not that of the result: see price().
   [[nodiscard]] Candidate bisect_regions(Candidate whole);
 
   /// The candidate with its cost, which takes a rough packing.

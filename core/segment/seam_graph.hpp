@@ -35,8 +35,8 @@ class SeamGraph {
     return twin(h) != kNoTwin && is_seam(h) && owner(h) == owner(twin(h));
   }
 
-  /// The seams with faces on both sides, in rows from where they do not just go on to the next such
-  /// place, each once: seen from the region of lower number. Rings are two rows.
+  /// The seams with faces on both sides, each once, in rows from one junction (or tip, or boundary)
+  /// to the next: half-edges of the region of lower number. A ring without one is two rows.
   [[nodiscard]] std::vector<Chain> rows() const;
 
  private:

@@ -1,6 +1,6 @@
 // The search, step by step: over-segment by normals; merge greedily; large-neighbourhood search;
-// shorten borders; merge again; close slits and attach small charts; bisect. ARAP is the judge of
-// every union. See SurfaceSegmentation::first() and finish().
+// shorten borders; merge again; close slits and attach small charts; bisect; shorten part by part.
+// ARAP is the judge of every union. See SurfaceSegmentation::first() and finish().
 //
 // A looser bound starts from the result of the tighter one and accepts only shorter seams, so that
 // no bound costs more seam than a tighter one (ADR 0039). Rejected: a search of its own for every
@@ -16,6 +16,7 @@
 
 #include "core/segment/over_segment.hpp"
 #include "core/segment/partition_cost.hpp"
+#include "core/segment/shorten_seams.hpp"
 
 namespace unwrapd::segment {
 namespace {
@@ -63,6 +64,7 @@ Segments SurfaceSegmentation::first(double excess) {
   competing_ = search.merge_greedily();
   search.search_neighbourhoods(competing_);
   best_ = search.bisect_regions(finish(competing_));
+  shorten_in_parts(context_, settings, best_.partition);
   return segments_of(best_.partition);
 }
 
@@ -84,7 +86,11 @@ std::optional<Segments> SurfaceSegmentation::loosen(double excess) {
   all.push_back(best_);
   search.forbid_seams_from(seam);
   Candidate next = finish(std::move(all));
-  if (next.cost.length < seam) next = search.price(search.bisect_regions(std::move(next)));
+  if (next.cost.length < seam) {
+    next = search.bisect_regions(std::move(next));
+    shorten_in_parts(context_, settings_for(excess), next.partition);
+    next = search.price(std::move(next));
+  }
   search.forbid_seams_from(std::numeric_limits<double>::infinity());
   if (!(next.cost.length < seam && next.cost.all < best_.cost.all)) return std::nullopt;
   best_ = std::move(next);

@@ -12,7 +12,7 @@
 #include "core/base/cancel.hpp"
 #include "core/segment/ranks.hpp"
 #include "core/segment/remap.hpp"
-#include "core/segment/seam_path.hpp"
+#include "core/segment/seam_paths.hpp"
 
 namespace unwrapd::segment {
 namespace {
@@ -49,7 +49,7 @@ class Shortening {
   void shorten(const Chain& row) {
     throw_if_cancelled(context_.stop);
     const bool is_ring = seams_.start(row.front()) == seams_.end(row.back());
-    if (row.size() < 2 || is_ring || !is_still_there(row) || is_short(row)) return;
+    if (row.size() < 2 || is_ring || !is_still_there(row) || shorten_whole(row)) return;
     if (row.size() < least_) return;
     const auto half = row.begin() + std::ssize(row) / 2;
     shorten({row.begin(), half});
@@ -73,8 +73,8 @@ class Shortening {
     return sum;
   }
 
-  /// Makes it short, unless it is or only a part of it can be.
-  bool is_short(const Chain& row) {
+  /// Whether the row is as short as its corridors allow from now on. If not, no path was allowed.
+  bool shorten_whole(const Chain& row) {
     const char was_open = partition_.open[row.front()];
     const bool is_slit = seams_.is_slit(row.front());
     set_open(row, 0);

@@ -1,4 +1,4 @@
-#include "core/segment/seam_path.hpp"
+#include "core/segment/seam_paths.hpp"
 
 #include <functional>
 #include <queue>
