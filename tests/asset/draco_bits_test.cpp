@@ -178,6 +178,20 @@ TEST(DracoBits, SaveBytesAndBoundsHold) {
         }
 }
 
+/// Draco that came in and shall be kept is not rounded a second time.
+TEST(DracoBits, KeepKeepsAllValues) {
+  const std::string came = packed(far_grid(12).glb(), std::nullopt);
+  const Asset asset =
+      read_file(came, {.texcoord = 7, .compression = Compression::keep, .draco_bits = 8});
+  const std::string kept = write(asset, split_nowhere(asset), Format::glb);
+  ASSERT_NE(kept.find("KHR_draco_mesh_compression"), std::string::npos);
+  const std::vector<ReadPrimitive> before = decoded(came), after = decoded(kept);
+  ASSERT_EQ(after[0].faces.size(), before[0].faces.size());
+  for (std::size_t t = 0; t < before[0].faces.size(); ++t)
+    for (const char* semantic : {"POSITION", "NORMAL"})
+      EXPECT_EQ(after[0].faces[t].at(semantic), before[0].faces[t].at(semantic));
+}
+
 TEST(DracoBits, ANoteSaysTheError) {
   const auto notes_with = [](const AssetOptions& options, Format output) {
     const Asset asset = read_file(grid(4).glb(), options);

@@ -47,7 +47,7 @@ async function get(server, path, headers) {
 }
 
 test('a job in a process of its own gives the same answer', async () => {
-  const query = '?method=hybrid&lambda=1,0.01&output=glb';
+  const query = '?method=hybrid&lambda=1,0.01&output=glb&compression=draco';
   const [one, other] = await Promise.all(
     [isolated, plain].map((server) => done(server, meshes.obj(12), query)));
   assert.equal(one.state, 'succeeded');
@@ -63,9 +63,11 @@ test('a job in a process of its own gives the same answer', async () => {
   assert.deepEqual(await figures(isolated, one), await figures(plain, other));
   const events = async (server, {id}) =>
     parseEvents((await get(server, `/v1/jobs/${id}/events`)).toString())
-      .filter(({event}) => event === 'stage' || event === 'iteration')
+      .filter(({event}) => ['stage', 'iteration', 'note'].includes(event))
       .map(({event, data}) => ({event, ...data, ms: 0}));
-  assert.deepEqual(await events(isolated, one), await events(plain, other));
+  const story = await events(isolated, one);
+  assert.deepEqual(story, await events(plain, other));
+  assert.ok(story.some(({event, code}) => event === 'note' && code === 'positions_rounded'));
 });
 
 test('what is wrong with a mesh is told as ever', async () => {

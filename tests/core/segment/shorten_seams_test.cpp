@@ -5,11 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 
 #include "core/mesh/edges.hpp"
 #include "core/segment/partition_cost.hpp"
 #include "core/segment/seam_graph.hpp"
+#include "core/segment/segment.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::segment {
@@ -20,6 +23,20 @@ constexpr Index kSide = 12;
 SegmentationMesh sheet() {
   const TriMesh mesh = shapes::grid(kSide, kSide);
   return make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+}
+
+TriMesh bumpy_sphere(unsigned seed) {
+  TriMesh mesh = shapes::sphere(4);
+  std::mt19937 random(seed);
+  std::array<Vec3, 5> bump;
+  for (Vec3& b : bump)
+    for (int i = 0; i < 3; ++i) b[i] = static_cast<double>(random() % 1000) / 500 - 1;
+  for (Vec3& p : mesh.positions) {
+    double height = 1;
+    for (const Vec3& b : bump) height += 0.4 * std::exp(-8 * (p - b.normalized()).squaredNorm());
+    p *= height;
+  }
+  return mesh;
 }
 
 Vec3 middle_of(const SegmentationMesh& surface, Index t) {
@@ -181,6 +198,27 @@ TEST(ShortenSeams, StaysNearWhereTheDistortionAsksForIt) {
   EXPECT_GT(dome.patches[0].area, 0.7 * top);
   EXPECT_LE(excess(), budget);
   expect_whole_and_sound(surface, dome);
+}
+
+/// What segment() finds has nothing left to shorten.
+TEST(ShortenSeams, IsTheLastStepOfTheSearch) {
+  SerialExecutor serial;
+  double before = 0, after = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const TriMesh mesh = bumpy_sphere(seed);
+    const SegmentationMesh surface =
+        make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+    Segments found = segment(surface, {.effort = Effort::fast}, serial);
+    Partition partition{{}, std::move(found.open)};
+    for (Region& region : found.regions)
+      partition.patches.push_back({std::move(region), {}, 0, {}});
+    map(surface, partition);
+    const double budget = kMarginOfExcess * (kDefaultDistortion - 2);
+    before += seam_length(surface, partition);
+    shorten_in_parts({surface}, {.budget = budget, .cap = 4 * budget}, partition);
+    after += seam_length(surface, partition);
+  }
+  EXPECT_GT(after, 0.99 * before);
 }
 
 TEST(ShortenSeams, GetsFartherPartByPart) {

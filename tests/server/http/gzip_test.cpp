@@ -255,10 +255,16 @@ TEST_F(Gzip, OnlyWhatGainsIsCompressedAndOnlyForWhoAsks) {
   for (const std::string path : {"/v1/methods", "/", "/openapi.yaml"}) {
     EXPECT_TRUE(unzipped(body_of(raw_get(path, gzip))) == body_of(raw_get(path, ""))) << path;
     EXPECT_EQ(field(raw_get(path, "Accept-Encoding: gzip;q=0, *\r\n"), "Content-Encoding"), "");
+    EXPECT_EQ(field(raw_get(path, ""), "Vary"), "Accept-Encoding") << path;
   }
   const std::string head = raw_get("/v1/methods", gzip, "HEAD");
   EXPECT_EQ(field(head, "Content-Encoding"), "gzip");
   EXPECT_EQ(body_of(head), "");
+  const RawClient old(service_->port());
+  old.send("GET /v1/methods HTTP/1.0\r\nHost: x\r\n" + gzip + "\r\n");
+  const std::string plain = old.finish();
+  EXPECT_EQ(field(plain, "Content-Encoding"), "");  // as of HTTP/1.0, which knows no chunks
+  EXPECT_TRUE(body_of(plain) == body_of(raw_get("/v1/methods", "")));
   const std::string whole = raw_get("/v1/jobs/" + id + "/result", gzip, "HEAD");
   EXPECT_THAT(whole, StartsWith("HTTP/1.1 200"));
   EXPECT_EQ(field(whole, "Content-Encoding"), "gzip");
