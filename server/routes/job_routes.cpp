@@ -104,7 +104,9 @@ http::Response post_unwrap(const JobServices& services, const http::Request& req
   const store::JobRecord job = stored_job(services.store, id);
   http::Response response;
   try {
-    response = sync_response(services, job, request);
+    response = answer_with_files(services.store, job, [&](const store::JobRecord& ended) {
+      return sync_response(services, ended, request);
+    });
   } catch (const Error& error) {
     response = http::error_response(error, id);
   }
@@ -116,9 +118,10 @@ void add_files(std::vector<http::Route>& routes, const JobServices& services) {
   const auto add = [&](std::string_view path, auto answer) {
     routes.push_back(
         {"GET", path, [services, answer](const http::Request& request) {
-           return answer_with_files(services.store, request, [&](const store::JobRecord& job) {
-             return answer(job, work::only_chosen_map(job, request.query), request);
-           });
+           return answer_with_files(
+               services.store, find_job(services.store, request), [&](const store::JobRecord& job) {
+                 return answer(job, work::only_chosen_map(job, request.query), request);
+               });
          }});
   };
   add("/v1/jobs/{id}/result",
@@ -214,15 +217,14 @@ store::JobRecord find_job(store::JobStore& store, const http::Request& request) 
 }
 
 http::Response answer_with_files(
-    store::JobStore& store, const http::Request& request,
+    store::JobStore& store, const store::JobRecord& job,
     const std::function<http::Response(const store::JobRecord& job)>& answer) {
-  const store::JobRecord job = find_job(store, request);
   try {
     return answer(job);
   } catch (const Error& error) {
     const bool may_be_gone =
         error.code() == ErrorCode::storage_failed || error.code() == ErrorCode::storage_corrupt;
-    if (may_be_gone) require_result(find_job(store, request));
+    if (may_be_gone) require_result(stored_job(store, job.id));
     throw;
   }
 }

@@ -32,10 +32,10 @@ struct JobServices {
 /// The job of the path. Throws Error{not_found} when there is none, or none of the caller's.
 store::JobRecord find_job(store::JobStore& store, const http::Request& request);
 
-/// What is answered with files of the job of the path. Throws not_found, or what require_result()
-/// throws, when they went meanwhile.
+/// What is answered with files of a job. Throws not_found, or what require_result() throws, when
+/// they went meanwhile.
 http::Response answer_with_files(
-    store::JobStore& store, const http::Request& request,
+    store::JobStore& store, const store::JobRecord& job,
     const std::function<http::Response(const store::JobRecord& job)>& answer);
 
 /// POST /v1/jobs and everything below /v1/jobs/{id} but the pictures.

@@ -63,9 +63,10 @@ void add_picture_routes(std::vector<http::Route>& routes, store::JobStore& jobs,
                         results::PictureStore& pictures) {
   const auto add = [&](std::string_view path, work::PictureKind kind) {
     routes.push_back({"GET", path, [&jobs, &pictures, kind](const http::Request& request) {
-                        return answer_with_files(jobs, request, [&](const store::JobRecord& job) {
-                          return get_picture(pictures, job, kind, request);
-                        });
+                        return answer_with_files(jobs, find_job(jobs, request),
+                                                 [&](const store::JobRecord& job) {
+                                                   return get_picture(pictures, job, kind, request);
+                                                 });
                       }});
   };
   add("/v1/jobs/{id}/layout.svg", work::PictureKind::layout_svg);
