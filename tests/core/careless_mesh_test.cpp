@@ -19,7 +19,7 @@ namespace {
 
 using shapes::Rounded;
 
-Unwrapped unwrapped(const TriMesh& mesh, const UnwrapOptions& options = {}) {
+Unwrapped unwrapped(const TriMesh& mesh, const UnwrapOptions& options = {.effort = Effort::fast}) {
   SerialExecutor serial;
   return unwrap(std::vector{shapes::surface_of(mesh)}, options, {}, serial);
 }
@@ -118,10 +118,12 @@ TEST(CarelessMesh, IsUnwrappedAsTheMeshThatWasMeant) {
 TEST(CarelessMesh, IsLeftAsItIsWhereWeldIsExact) {
   const TriMesh mesh = shapes::sphere(1);
   const Rounded soup = shapes::rounded_soup(mesh, 1e-7, 5);
-  const Unwrapped exact = unwrapped(soup.mesh, {.welding = {.mode = WeldMode::exact}});
+  const Unwrapped exact =
+      unwrapped(soup.mesh, {.effort = Effort::fast, .welding = {.mode = WeldMode::exact}});
   EXPECT_EQ(exact.report.charts.size(), mesh.faces.size());
   const Welding welding{.mode = WeldMode::distance, .distance = 1e-5};
-  EXPECT_LT(unwrapped(soup.mesh, {.welding = welding}).report.charts.size(), 10U);
+  EXPECT_LT(unwrapped(soup.mesh, {.effort = Effort::fast, .welding = welding}).report.charts.size(),
+            10U);
 }
 
 TEST(CarelessMesh, IsAnalysedAsItIsUnwrapped) {

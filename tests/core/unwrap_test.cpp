@@ -11,6 +11,7 @@
 #include "core/base/error.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/shapes.hpp"
+#include "tests/samples/sanitized.hpp"
 
 namespace unwrapd {
 namespace {
@@ -257,20 +258,16 @@ TEST(Unwrap, GivesDegenerateFacesUvsAndSaysSo) {
   EXPECT_TRUE(kinds.contains(RepairKind::duplicate_faces_set_aside));
 }
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr Index kMostRealFaces = 3'000;  // a sanitizer takes minutes for a larger one
-#else
-constexpr Index kMostRealFaces = std::numeric_limits<Index>::max();
-#endif
-
 TEST(Unwrap, AnswersEveryRealMeshOrSaysWhyNot) {
   const std::filesystem::path data = test_data();
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no test data at " << data;
+  const Index most_faces =  // under a sanitizer larger ones take minutes
+      is_sanitized() ? 3000 : std::numeric_limits<Index>::max();
   for (const char* folder : {"disk", "closed"})
     for (const auto& entry : std::filesystem::directory_iterator(data / folder)) {
       SCOPED_TRACE(entry.path().filename().string());
       const Surface surface = shapes::surface_of(read_obj(entry.path()));
-      if (surface.mesh.face_count() > kMostRealFaces) continue;
+      if (surface.mesh.face_count() > most_faces) continue;
       try {
         expect_sound(surface, unwrapped({surface}).surfaces[0]);
       } catch (const Error& e) {
