@@ -4,6 +4,7 @@
 
 #include "core/base/error.hpp"
 #include "core/charts/repair_surfaces.hpp"
+#include "core/measure/rest_triangle.hpp"
 
 namespace unwrapd::pipeline {
 
@@ -45,9 +46,16 @@ std::size_t job_bytes(std::span<const Surface> surfaces) {
 }
 
 void require_area(std::span<const charts::Charts> parts) {
-  const auto is_empty = [](const charts::Charts& part) { return part.charts.empty(); };
-  if (std::all_of(parts.begin(), parts.end(), is_empty))
+  constexpr double kLeastArea = 1e-150;  // whose square double precision holds
+  double area = 0;
+  for (const charts::Charts& part : parts)
+    for (const charts::Chart& chart : part.charts) area += measure::surface_area(chart.mesh);
+  if (area == 0)
     throw Error(ErrorCode::zero_area, "every triangle has zero area; there is nothing to unwrap");
+  if (area < kLeastArea)
+    throw Error(ErrorCode::zero_area,
+                "the mesh has less area than can be computed with; scale it to ordinary units and "
+                "try again");
 }
 
 InputAnalysis analyse(std::span<const Surface> surfaces, const std::stop_token& stop) {

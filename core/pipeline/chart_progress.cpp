@@ -5,7 +5,6 @@
 
 #include "core/base/cancel.hpp"
 #include "core/measure/distortion.hpp"
-#include "core/pipeline/analyse.hpp"
 
 namespace unwrapd::pipeline {
 namespace {
@@ -41,7 +40,6 @@ ChartProgress::ChartProgress(const Progress& progress, std::span<const charts::C
     chart_count_ += static_cast<Index>(surface.charts.size());
     for (const charts::Chart& chart : surface.charts) faces += chart.mesh.faces.size();
   }
-  require_area(surfaces);
   faces_total_ = static_cast<double>(std::max<std::size_t>(faces, 1));
 }
 

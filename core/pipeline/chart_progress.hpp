@@ -21,7 +21,7 @@ inline constexpr double kChartsBegin = 0.05, kSolveBegin = 0.10, kSolveEnd = 0.9
 class ChartProgress {
  public:
   /// executor: measures the map of each iteration. progress and executor must outlive this. begin:
-  /// the share of the job that is done. Throws Error{zero_area} when there is no chart.
+  /// the share of the job that is done.
   ChartProgress(const Progress& progress, std::span<const charts::Charts> surfaces, double begin,
                 Executor& executor);
 

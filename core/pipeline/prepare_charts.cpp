@@ -58,6 +58,7 @@ std::shared_ptr<const Prepared> prepare(const Preparing& by, std::span<const Sur
                                         const TakingApart& rules) {
   auto prepared = std::make_shared<Prepared>();
   prepared->surfaces = components(surfaces, {rules.seams, rules.paths, 0, by.stop, by.core});
+  require_area(prepared->surfaces);
   prepared->note =
       segment::segment_charts(prepared->surfaces, rules.segment, by.watch, *by.executor);
   for (std::size_t s = 0; s < surfaces.size(); ++s) {

@@ -231,6 +231,23 @@ ErrorCode refusal(const TriMesh& mesh, const UnwrapOptions& options = {}) {
   return ErrorCode::internal;
 }
 
+TEST(Unwrap, OfAMeshOfAnySizeIsTheSameOrRefused) {
+  const UnwrapOptions options{.max_distortion = kDefaultDistortion, .effort = Effort::fast};
+  const Report of_one = unwrapped(shapes::sphere(1), options).report;
+  for (const int exponent : {30, -30, -60, -70, -80, -90, -120, -160, -200, -300}) {
+    TriMesh mesh = shapes::sphere(1);
+    for (Vec3& p : mesh.positions) p *= std::pow(10.0, exponent);
+    SCOPED_TRACE(exponent);
+    if (exponent < -75) {
+      EXPECT_EQ(refusal(mesh, options), ErrorCode::zero_area);
+      continue;
+    }
+    const Report report = unwrapped(mesh, options).report;
+    EXPECT_EQ(report.charts.size(), of_one.charts.size());
+    EXPECT_NEAR(report.distortion.angle, of_one.distortion.angle, 1e-6);
+  }
+}
+
 TEST(Unwrap, RefusesWhatCannotBeDone) {
   const TriMesh line{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
   EXPECT_EQ(refusal(line), ErrorCode::zero_area);
