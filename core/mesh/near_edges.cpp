@@ -85,8 +85,8 @@ std::vector<NearPair> near_pairs(std::span<const Vec3> positions, std::span<cons
   }
   const auto key = [](const NearPair& pair) { return std::pair(pair.first, pair.second); };
   std::ranges::sort(pairs, {}, key);
-  const auto same = std::ranges::unique(pairs, {}, key);
-  pairs.erase(same.begin(), same.end());
+  const auto is_same = [&](const NearPair& a, const NearPair& b) { return key(a) == key(b); };
+  pairs.erase(std::unique(pairs.begin(), pairs.end(), is_same), pairs.end());
   return pairs;
 }
 

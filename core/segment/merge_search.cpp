@@ -279,8 +279,8 @@ std::vector<Candidate> MergeSearch::distinct(std::vector<Candidate> all) const {
   for (Candidate& own : all) own = price(std::move(own), 0, kUsual);
   const auto seams = [](const Candidate& own) { return own.cost.seams; };
   std::ranges::stable_sort(all, std::less(), seams);
-  const auto repeats = std::ranges::unique(all, std::equal_to(), seams);
-  all.erase(repeats.begin(), repeats.end());
+  const auto is_same = [&](const Candidate& a, const Candidate& b) { return seams(a) == seams(b); };
+  all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
   return all;
 }
 
