@@ -185,9 +185,12 @@ class Page {
     if (schema.contains("$ref")) return type_of_reference(schema) + with_default(schema);
     if (schema.contains("const")) return literal(schema.at("const"));
     if (schema.contains("enum")) return listed(schema.at("enum")) + with_default(schema);
-    for (const char* choice : {"oneOf", "anyOf"})
+    for (const char* choice : {"oneOf", "anyOf", "allOf"})
       if (schema.contains(choice)) return choices(schema.at(choice));
-    if (schema.contains("contentSchema")) return "events: " + type_of(schema.at("contentSchema"));
+    if (schema.contains("contentSchema"))
+      return (text_of(schema, "contentMediaType") == "application/json" ? "JSON text: "
+                                                                        : "events: ") +
+             type_of(schema.at("contentSchema"));
     std::string text = plain_type(schema) + range(schema);
     if (schema.contains("items")) text += " of " + type_of(schema.at("items"));
     if (schema.contains("pattern")) text += ", " + code(text_of(schema, "pattern"));

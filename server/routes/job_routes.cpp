@@ -76,11 +76,14 @@ http::Response delete_job(const JobServices& services, const http::Request& requ
   return response;
 }
 
+/// get_result() or get_json_result().
+using GetResult = decltype(&get_result);
+
 /// The answer to a synchronous call, once its job is final.
 http::Response sync_response(const JobServices& services, const store::JobRecord& job,
-                             const http::Request& request) {
+                             const http::Request& request, GetResult result_of) {
   require_result(job);
-  http::Response response = get_result(services.results, job, 0, request);
+  http::Response response = result_of(services.results, job, 0, request);
   response.headers.emplace_back("Unwrapd-Report", services.blobs.read(job.id, store::kTotalsFile));
   return response;
 }
@@ -96,7 +99,8 @@ RetryLater too_many_wait() {
           kRetryAfterSeconds};
 }
 
-http::Response post_unwrap(const JobServices& services, const http::Request& request) {
+http::Response post_unwrap(const JobServices& services, const http::Request& request,
+                           GetResult result_of) {
   const auto place = services.waiters.try_enter(request.caller.owner);
   if (!place) throw too_many_wait();
   const std::string id = services.submissions.accept(request, true);
@@ -105,7 +109,7 @@ http::Response post_unwrap(const JobServices& services, const http::Request& req
   http::Response response;
   try {
     response = answer_with_files(services.store, job, [&](const store::JobRecord& ended) {
-      return sync_response(services, ended, request);
+      return sync_response(services, ended, request, result_of);
     });
   } catch (const Error& error) {
     response = http::error_response(error, id);
@@ -124,10 +128,14 @@ void add_files(std::vector<http::Route>& routes, const JobServices& services) {
                });
          }});
   };
-  add("/v1/jobs/{id}/result",
-      [services](const store::JobRecord& job, std::size_t map, const http::Request& request) {
-        return get_result(services.results, job, map, request);
-      });
+  const auto add_result = [&](std::string_view path, GetResult result_of) {
+    add(path, [services, result_of](const store::JobRecord& job, std::size_t map,
+                                    const http::Request& request) {
+      return result_of(services.results, job, map, request);
+    });
+  };
+  add_result("/v1/jobs/{id}/result", &get_result);
+  add_result("/v1/jobs/{id}/result.json", &get_json_result);
   add("/v1/jobs/{id}/report",
       [services](const store::JobRecord& job, std::size_t map, const http::Request&) {
         return get_file(services.blobs, job, work::map_file(store::kReportFile, map),
@@ -207,6 +215,19 @@ http::Response get_link(const store::JobRecord& job, const access::LinkSigner& l
   return response;
 }
 
+void add_submission_routes(std::vector<http::Route>& routes, const JobServices& services) {
+  const auto add = [&](std::string_view method, std::string_view path, auto post) {
+    routes.push_back({method, path, [services, post](const http::Request& request) {
+                        return post(services, request);
+                      }});
+  };
+  add("POST", "/v1/jobs", &post_job);
+  add("PUT", "/v1/jobs/{id}", &post_job);
+  add("POST", "/v1/meshes/{sha256}/jobs", &post_job);
+  add("POST", "/v1/jobs/events", &post_watched);
+  add("PUT", "/v1/jobs/{id}/events", &post_watched);
+}
+
 }  // namespace
 
 store::JobRecord find_job(store::JobStore& store, const http::Request& request) {
@@ -233,17 +254,12 @@ void add_job_routes(std::vector<http::Route>& routes, const JobServices& service
   const auto find = [services](const http::Request& request) {
     return find_job(services.store, request);
   };
-  routes.push_back({"POST", "/v1/jobs", [services](const http::Request& request) {
-                      return post_job(services, request);
-                    }});
+  add_submission_routes(routes, services);
   routes.push_back({"GET", "/v1/jobs", [services](const http::Request& request) {
                       return list_jobs(services.store, request);
                     }});
   routes.push_back({"GET", "/v1/jobs/{id}/link", [services, find](const http::Request& request) {
                       return get_link(find(request), services.links, request);
-                    }});
-  routes.push_back({"PUT", "/v1/jobs/{id}", [services](const http::Request& request) {
-                      return post_job(services, request);
                     }});
   routes.push_back({"GET", "/v1/jobs/{id}", [services, find](const http::Request& request) {
                       return job_response(200, find(request), services.events);
@@ -258,9 +274,13 @@ void add_job_routes(std::vector<http::Route>& routes, const JobServices& service
 }
 
 void add_unwrap_route(std::vector<http::Route>& routes, const JobServices& services) {
-  routes.push_back({"POST", "/v1/unwrap", [services](const http::Request& request) {
-                      return post_unwrap(services, request);
-                    }});
+  const auto add = [&](std::string_view path, GetResult result_of) {
+    routes.push_back({"POST", path, [services, result_of](const http::Request& request) {
+                        return post_unwrap(services, request, result_of);
+                      }});
+  };
+  add("/v1/unwrap", &get_result);
+  add("/v1/unwrap.json", &get_json_result);
 }
 
 }  // namespace unwrapd::server::routes

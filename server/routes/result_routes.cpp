@@ -26,6 +26,13 @@ void send_range(const http::Request& request, http::FileBody& body, http::Respon
                                     std::to_string(size));
 }
 
+http::Response result_in(const std::string& format, results::ResultStore& results,
+                         const store::JobRecord& job, std::size_t map,
+                         const http::Request& request) {
+  return stored_response(results.open(job, map, format, request.has_left), http::media_type(format),
+                         request);
+}
+
 }  // namespace
 
 bool has_copy(const http::Request& request, const std::string& etag) {
@@ -75,10 +82,15 @@ http::Response get_result(results::ResultStore& results, const store::JobRecord&
                           std::size_t map, const http::Request& request) {
   require_result(job);
   const std::string format = http::choose_format(request.header("Accept"), job.result_format);
-  http::Response response = stored_response(results.open(job, map, format, request.has_left),
-                                            http::media_type(format), request);
+  http::Response response = result_in(format, results, job, map, request);
   response.headers.emplace_back("Vary", "Accept");
   return response;
+}
+
+http::Response get_json_result(results::ResultStore& results, const store::JobRecord& job,
+                               std::size_t map, const http::Request& request) {
+  require_result(job);
+  return result_in("json", results, job, map, request);
 }
 
 http::Response get_file(const store::BlobStore& blobs, const store::JobRecord& job,

@@ -29,6 +29,10 @@ http::Response stored_response(const results::StoredResult& stored, std::string_
 http::Response get_result(results::ResultStore& results, const store::JobRecord& job,
                           std::size_t map, const http::Request& request);
 
+/// The report and the meshes as JSON, whatever Accept says, the same.
+http::Response get_json_result(results::ResultStore& results, const store::JobRecord& job,
+                               std::size_t map, const http::Request& request);
+
 /// A file of the job as it is.
 http::Response get_file(const store::BlobStore& blobs, const store::JobRecord& job,
                         std::string_view file, std::string_view type);

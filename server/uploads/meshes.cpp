@@ -11,7 +11,6 @@ namespace unwrapd::server::uploads {
 namespace {
 
 constexpr std::string_view kAnalysisFile = "analysis.json";
-constexpr std::string_view kMeshMember = "/mesh";  // of the request that makes a job of one
 
 /// Throws Error{unsupported_media_type} unless the type is that of an asset.
 std::string media_type_of(const http::Request& request) {
@@ -118,13 +117,12 @@ store::MeshRecord Meshes::find(const std::string& owner, const std::string& sha2
 }
 
 store::JobInput Meshes::share(const std::string& owner, const std::string& sha256,
-                              const std::string& upload) {
-  const store::MeshRecord mesh = find(owner, sha256, std::string(kMeshMember));
-  if (!blobs_.share_document(mesh.id, upload)) throw no_mesh(std::string(kMeshMember));
+                              const std::string& upload, const std::string& where) {
+  const store::MeshRecord mesh = find(owner, sha256, where);
+  if (!blobs_.share_document(mesh.id, upload)) throw no_mesh(where);
   if (!results::find_whole(blobs_, mesh.id, std::string(store::kDocumentFile))) {
     throw Error(ErrorCode::storage_corrupt,
-                "The stored mesh is damaged; send it again by PUT /v1/meshes/{sha256}.",
-                std::string(kMeshMember));
+                "The stored mesh is damaged; send it again by PUT /v1/meshes/{sha256}.", where);
   }
   store_.use(mesh.id, jobs_.now().kept_ms());
   return {.sha256 = mesh.sha256, .bytes = mesh.bytes, .buffers = {}};

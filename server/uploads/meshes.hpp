@@ -39,9 +39,10 @@ class Meshes {
   store::MeshRecord find(const std::string& owner, const std::string& sha256,
                          const std::string& where = {});
 
-  /// The document of a mesh becomes that of an upload, too. Throws like find(), storage_corrupt.
+  /// The document of a mesh becomes that of an upload, too. Throws like find(),
+  /// storage_corrupt.
   store::JobInput share(const std::string& owner, const std::string& sha256,
-                        const std::string& upload);
+                        const std::string& upload, const std::string& where = {});
 
   /// {"analysis": ...}, or {"problem": ...} for a mesh of which no job can be made; worked out
   /// once. Throws what Renderer throws.

@@ -158,6 +158,7 @@ Submissions::Sent Submissions::read_whole(SpooledText& text) {
 
 Submissions::Sent Submissions::bring(const http::Request& request,
                                      const store::UploadFolder& folder, store::JobRecord& job) {
+  if (!request.sha256.empty()) return bring_options(request, folder, job);
   const http::BodyKind kind = http::body_kind(request.header("Content-Type"));
   if (kind == http::BodyKind::reference) return bring_reference(request, folder, job);
   Upload came = kind == http::BodyKind::asset ? receive_asset(*request.body, folder)
@@ -174,9 +175,22 @@ Submissions::Sent Submissions::bring_reference(const http::Request& request,
   receive_reference_text(*request.body, text);
   Sent sent = read_whole(text);
   MeshReference named = parse_mesh_reference(*sent.options);
-  job.input = meshes_.share(request.caller.owner, named.sha256, folder.path.filename());
+  job.input = meshes_.share(request.caller.owner, named.sha256, folder.path.filename(), "/mesh");
   sent.options = std::move(named.options);
   sent.place = "/options";
+  return sent;
+}
+
+Submissions::Sent Submissions::bring_options(const http::Request& request,
+                                             const store::UploadFolder& folder,
+                                             store::JobRecord& job) {
+  if (http::body_kind(request.header("Content-Type")) != http::BodyKind::reference)
+    throw Error(ErrorCode::unsupported_media_type,
+                "The options of a job on a stored mesh are JSON; send application/json.");
+  SpooledText text(folder.path / "options.sent", folder.room);
+  receive_reference_text(*request.body, text);
+  Sent sent = read_whole(text);
+  job.input = meshes_.share(request.caller.owner, request.sha256, folder.path.filename());
   return sent;
 }
 

@@ -33,10 +33,11 @@ class Submissions {
         meshes_(meshes) {}
 
   /// Returns the job's id. synchronous: the sender waits, so the mesh must be small. Where the path
-  /// has an id, it becomes the job's; a request by Idempotency-Key or by such an id may come again
-  /// and gets the same job. Throws Error: queue_full, draining, unsupported_media_type,
-  /// invalid_option, malformed_request, body_too_large, idempotency_conflict, too_many_jobs,
-  /// quota_exceeded, storage_full, storage_failed, webhook_refused, mesh_not_found.
+  /// names a stored mesh, the body is its options. Where it has an id, it becomes the job's; a
+  /// request by Idempotency-Key or by such an id may come again and gets the same job. Throws
+  /// Error: queue_full, draining, unsupported_media_type, invalid_option, malformed_request,
+  /// body_too_large, idempotency_conflict, too_many_jobs, quota_exceeded, storage_full,
+  /// storage_failed, webhook_refused, mesh_not_found.
   std::string accept(const http::Request& request, bool synchronous);
 
  private:
@@ -50,6 +51,9 @@ class Submissions {
                            store::JobRecord& job);
   [[nodiscard]] Sent bring_reference(const http::Request& request,
                                      const store::UploadFolder& folder, store::JobRecord& job);
+  /// The options alone, of a job on the mesh that the path names.
+  [[nodiscard]] Sent bring_options(const http::Request& request, const store::UploadFolder& folder,
+                                   store::JobRecord& job);
   void receive(const http::Request& request, store::JobRecord& job, UploadBudget& room,
                const std::string& upload);
 

@@ -1,6 +1,6 @@
 // The statuses that need a server in a special state: tiny limits, a full queue, results that
 // expire, a server that drains. Each state is a server of its own.
-import {failure, kSubmissions, newId} from './cases/shared.mjs';
+import {failure, kOfMesh, kSubmissions, newId, ofNoMesh} from './cases/shared.mjs';
 import {openStream} from './http.mjs';
 import * as meshes from './meshes.mjs';
 import {kOutcomes} from './run.mjs';
@@ -46,6 +46,7 @@ export function tinyLimits(run, binary) {
       await run.call(base, id,
                      {job, headers, body: meshes.glb(20), status: 413, name: 'long, in chunks'});
     }
+    await run.call(base, kOfMesh, {...ofNoMesh({materials: ['x'.repeat(5000)]}), status: 413});
   });
 }
 
@@ -81,6 +82,7 @@ export function fullQueue(run, binary) {
     for (const id of kSubmissions) {
       await run.call(base, id, {job: newId(), headers: kGlb, body: meshes.glb(), status: 429});
     }
+    await run.call(base, kOfMesh, {...ofNoMesh(), status: 429});
     await unfinished(run, base, first);
     await unfinished(run, base, second);
     await cancelled(run, base, second);
@@ -112,10 +114,9 @@ export function tooManyStreams(run, binary) {
     run.expectEqual('the stream that fits', stream.status, 200);
     const problem = await run.json(base, 'watchJob', {job, status: 503});
     run.expectEqual('the stream too many', problem.code, 'too_many_streams');
-    const headers = {...kGlb, Accept: 'text/event-stream'};
-    for (const id of ['createJob', 'putJob']) {
+    for (const id of ['createAndWatchJob', 'putAndWatchJob']) {
       const refused = await run.json(base, id,
-                                     {job: newId(), headers, body: meshes.glb(), status: 503});
+                                     {job: newId(), headers: kGlb, body: meshes.glb(), status: 503});
       run.expectEqual(`${id} without a place to watch`, refused.code, 'too_many_streams');
     }
     stream.close();
@@ -147,7 +148,8 @@ export function timeLimit(run, binary) {
     });
     run.expectEqual('a mesh that takes too long', ended.code, 'time_limit');
     await Promise.all(Array.from({length: 8}, () => slowJob(run, base, 202)));
-    await run.call(base, 'unwrap', {headers: kGlb, body: meshes.glb(), status: 409});
+    await Promise.all(['unwrap', 'unwrapAsJson'].map(
+      (id) => run.call(base, id, {headers: kGlb, body: meshes.glb(), status: 409})));
   });
 }
 
@@ -173,6 +175,7 @@ export function draining(run, binary) {
     for (const id of kSubmissions) {
       await run.call(base, id, {job: newId(), headers: kGlb, body: meshes.glb(), status: 503});
     }
+    await run.call(base, kOfMesh, {...ofNoMesh(), status: 503});
     await run.call(base, 'getHealth', {status: 200});
     await run.call(base, 'deleteJob', {job, status: 202});
   });

@@ -3,20 +3,20 @@ import {execFileSync} from 'node:child_process';
 import {renameSync, rmSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 
-import {digest, kSubmissions, newId} from './cases/shared.mjs';
+import {digest, kOfMesh, kSubmissions, newId, ofNoMesh} from './cases/shared.mjs';
 import * as meshes from './meshes.mjs';
 import {withServer} from './server.mjs';
 
 const kGlb = {'Content-Type': 'model/gltf-binary', 'Cache-Control': 'no-cache'};
 
 const kBodies = [...kSubmissions, 'putMesh'];
+const kLong = {materials: ['x'.repeat(100_000)]};  // JSON that is spooled to disk
 
 /** Calls an operation, with a mesh where it takes one; the answer must be this refusal. */
 async function refused(run, base, {id = 'createJob', headers, status, code}) {
-  const sends = kBodies.includes(id);
-  const body = sends ? meshes.glb() : undefined;
+  const sent = id === kOfMesh ? ofNoMesh(kLong) : kBodies.includes(id) ? {headers: kGlb, body: meshes.glb()} : {};
   const problem = await run.json(base, id, {
-    job: newId(), sha256: digest(body ?? ''), headers: {...(sends ? kGlb : {}), ...headers}, body, status,
+    job: newId(), sha256: digest(sent.body ?? ''), status, ...sent, headers: {...sent.headers, ...headers},
   });
   run.expectEqual(`${id}, refused as ${code}`, problem.code, code);
 }
@@ -44,7 +44,9 @@ export function keys(run, binary) {
       await call(seldom, 429, 'rate_limited');
     }
     const poor = add('poor', '--max-bytes', '10');
-    for (const id of kBodies) await refused(run, base, {id, headers: poor, status: 507, code: 'quota_exceeded'});
+    for (const id of [...kBodies, kOfMesh]) {
+      await refused(run, base, {id, headers: poor, status: 507, code: 'quota_exceeded'});
+    }
     const single = add('single', '--max-jobs', '1');
     const {id: job} = await run.json(base, 'createJob', {
       query: {'stop.iterations': 10_000}, headers: {...kGlb, ...single}, body: meshes.glb(150), status: 202,

@@ -2,7 +2,8 @@
 import {request} from './http.mjs';
 
 /** What a job that succeeded has to show. */
-export const kOutcomes = ['getResult', 'getReport', 'getLayout', 'getLayoutPng', 'getPreview'];
+export const kOutcomes =
+    ['getResult', 'getResultAsJson', 'getReport', 'getLayout', 'getLayoutPng', 'getPreview'];
 
 const kNoMesh = '0'.repeat(64);
 

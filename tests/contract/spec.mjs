@@ -6,7 +6,7 @@ import {readFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
 import yaml from 'js-yaml';
 
-const kAnyCall = new Set([400, 403, 404, 405, 408, 431, 500]);  // what 4XX and 5XX stand for
+const kAnyCall = new Set([400, 403, 404, 405, 408, 431, 500]);  // what `default` stands for
 
 const escape = (token) => String(token).replaceAll('~', '~0').replaceAll('/', '~1');
 
@@ -44,6 +44,13 @@ export class Contract {
     const validate = this.validators.get(pointer);
     if (validate(value)) return [];
     return validate.errors.map((e) => `${e.instancePath} ${e.message} ${JSON.stringify(e.params)}`);
+  }
+
+  /** The schemas of all options, by name. */
+  options() {
+    const at = '#/components/schemas/Options/properties';
+    return Object.fromEntries(Object.keys(this.locate(at).value)
+      .map((name) => [name, this.locate(`${at}/${name}`).value]));
   }
 
   checkNamed(schema, value) {
@@ -84,11 +91,10 @@ export class Contract {
     const operation = this.operation(id);
     this.seen.add(`${id} ${answer.status}`);
     const explicit = operation.responses[answer.status] !== undefined;
-    const range = `${String(answer.status)[0]}XX`;
-    if (!explicit && !(operation.responses[range] && kAnyCall.has(answer.status))) {
+    if (!explicit && !(operation.responses.default && kAnyCall.has(answer.status))) {
       return [`status ${answer.status} is not documented: ${answer.body?.subarray(0, 300)}`];
     }
-    const at = this.locate(`${operation.pointer}/responses/${explicit ? answer.status : range}`);
+    const at = this.locate(`${operation.pointer}/responses/${explicit ? answer.status : 'default'}`);
     return [...this.judgeHeaders(at, answer), ...this.judgeBody(at, answer)];
   }
 
@@ -123,7 +129,7 @@ export class Contract {
     if (!documented[type]) return [`the media type "${type}" is not documented`];
     const pointer = `${at.pointer}/content/${escape(type)}/schema`;
     if (type === 'text/event-stream') return this.judgeEvents(answer.body.toString());
-    if (!type.endsWith('json') || !documented[type].schema) return [];
+    if (!type.endsWith('json') || this.locate(pointer).value.format === 'binary') return [];
     return this.judgeJson(at, pointer, answer);
   }
 

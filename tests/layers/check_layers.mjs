@@ -26,7 +26,7 @@ const ONLY_IN = [
 ];
 
 const MAX_LINES = [
-  { files: /\.(cpp|hpp|mjs|sh)$/, lines: 300 },
+  { files: /\.(cpp|hpp|mjs|sh|ts|py)$|^client\/js\/.*\.js$/, lines: 300 },
   { files: /^CMakeLists\.txt$/, lines: 60 },
   { files: /^README\.md$/, lines: 100 },
   { files: /^CONTRIBUTING\.md$/, lines: 80 },

@@ -17,6 +17,8 @@ export async function jobsByName(run, base) {
   run.expectEqual('the job of a repeated request', same.id, first.id);
   const other = await run.json(base, 'createJob', {headers: named, body: meshes.glb(2), status: 409});
   run.expectEqual('another request of that name', other.code, 'idempotency_conflict');
+  for (const [id, headers] of [['createAndWatchJob', named], ['putAndWatchJob', kGlb]])
+    await run.call(base, id, {job, headers, body: meshes.glb(2), status: 409});
 }
 
 export async function lists(run, base) {

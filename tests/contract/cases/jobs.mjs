@@ -1,4 +1,5 @@
 // A job from its submission to its removal: its state, its events, its result and its failures.
+import {request} from '../http.mjs';
 import * as meshes from '../meshes.mjs';
 import {kOutcomes} from '../run.mjs';
 import {parseEvents} from '../spec.mjs';
@@ -50,6 +51,10 @@ async function partsOfAResult(run, base, job) {
                   whole.body.subarray(4, 12).toString('hex'));
   run.expectEqual('its place', part.headers['content-range'], `bytes 4-11/${whole.body.length}`);
   await get({Range: 'bytes=4-11', 'If-Range': '"another"'}, 200);
+  const json = await run.call(base, 'getResultAsJson', {job, status: 200});
+  const again = {'If-None-Match': json.headers.etag};
+  await run.call(base, 'getResultAsJson', {job, headers: again, status: 304});
+  await run.call(base, 'getResultAsJson', {job, headers: {Range: 'bytes=4-11'}, status: 206});
   await get({Range: `bytes=${whole.body.length}-`}, 200);
 }
 
@@ -61,8 +66,8 @@ async function representation(run, base, job, type) {
 
 /** Submitted and watched in one request: the job, then its events; sent again, the rest of them. */
 export async function watchedSubmission(run, base) {
-  const headers = {...kAnew, Accept: 'text/event-stream', 'Idempotency-Key': `watched-${Date.now()}`};
-  for (const [id, job] of [['createJob', undefined], ['putJob', newId()]]) {
+  const headers = {...kAnew, 'Idempotency-Key': `watched-${Date.now()}`};
+  for (const [id, job] of [['createAndWatchJob', undefined], ['putAndWatchJob', newId()]]) {
     const whole = await run.call(base, id, {job, headers, body: meshes.glb(), status: 200});
     run.expectEqual(`type of ${id}`, whole.headers['content-type'], 'text/event-stream');
     const events = parseEvents(whole.body.toString());
@@ -75,6 +80,22 @@ export async function watchedSubmission(run, base) {
     const ids = (list) => list.slice(1).map((event) => event.id).join();
     run.expectEqual('the rest', ids(parseEvents(again.body.toString())), ids(events.slice(1)));
   }
+  await negotiated(run, base);
+}
+
+/** What Accept chooses is what calls of their own answer. */
+async function negotiated(run, base) {
+  const send = async (path, Accept, id, method = 'POST') => {
+    const body = method === 'POST' ? meshes.glb() : undefined;
+    const answer = await request(base, {method, path, headers: {...kGlb, Accept}, body});
+    return run.judge(`${path} as ${Accept}`, id, answer, 200);
+  };
+  const events = await send('/v1/jobs', 'text/event-stream', 'createAndWatchJob');
+  await send('/v1/unwrap', 'application/json', 'unwrapAsJson');
+  const path = `${events.headers.location}/result`;
+  const chosen = await send(path, 'application/json', 'getResultAsJson', 'GET');
+  const own = await send(`${path}.json`, 'image/png', 'getResultAsJson', 'GET');
+  run.expectEqual('the same JSON', chosen.body.toString(), own.body.toString());
 }
 
 export async function preferWait(run, base) {

@@ -5,8 +5,7 @@ import {parseEvents} from '../spec.mjs';
 import {kGlb, kWait} from './shared.mjs';
 
 export async function everyOption(run, base) {
-  const {properties} = run.contract.document.components.schemas.Options;
-  for (const [name, schema] of Object.entries(properties)) {
+  for (const [name, schema] of Object.entries(run.contract.options())) {
     for (const value of schema.enum ?? []) {
       const query = {[name]: value, ...(name === 'padding' ? {resolution: 16384} : {})};
       const job = await run.json(base, 'createJob',
@@ -67,8 +66,7 @@ export async function constraints(run, base) {
   run.expectEqual('a job with positions', job.state, 'succeeded');
   run.expectEqual('positions, resolved', JSON.stringify(job.options?.constraints),
                   JSON.stringify(pins.map((pin) => ({...pin, weight: null, mesh: 0}))));
-  const headers = {Accept: 'application/json'};
-  const result = await run.json(base, 'getResult', {job: job.id, headers, status: 200});
+  const result = await run.json(base, 'getResultAsJson', {job: job.id, status: 200});
   const [mesh] = result.meshes;
   for (const {vertex, uv} of pins) {
     const at = mesh.vertex_map.indexOf(vertex);

@@ -78,7 +78,7 @@ export async function unknownJobs(run, base) {
   }
 }
 
-/** What 4XX stands for at every call: paths and methods that are not there, broken requests. */
+/** What `default` stands for at every call: paths and methods that are not there, broken requests. */
 export async function anyCall(run, base) {
   for (const path of ['/v1', '/v1/jobs/', '/v1/nothing', '/openapi.yaml/x']) {
     run.judge(`no path ${path}`, 'getMethods', await request(base, {path}), 404);

@@ -7,8 +7,7 @@ import {parseEvents} from '../spec.mjs';
 
 export const kGlb = {'Content-Type': 'model/gltf-binary'};
 export const kWait = {...kGlb, Prefer: 'wait=30'};
-export const kRepresentations =
-    ['model/gltf-binary', 'model/gltf+json', 'model/obj', 'application/json'];
+export const kRepresentations = ['model/gltf-binary', 'model/gltf+json', 'model/obj'];
 
 /** Of a job that is not there. */
 export const newId = () => `j_${randomBytes(16).toString('hex')}`;
@@ -16,8 +15,16 @@ export const newId = () => `j_${randomBytes(16).toString('hex')}`;
 /** SHA-256, as meshes are named by it. */
 export const digest = (bytes) => createHash('sha256').update(bytes).digest('hex');
 
-/** The calls that make jobs. */
-export const kSubmissions = ['createJob', 'putJob', 'unwrap'];
+/** The calls that make jobs of a body. */
+export const kSubmissions =
+    ['createJob', 'putJob', 'createAndWatchJob', 'putAndWatchJob', 'unwrap', 'unwrapAsJson'];
+
+/** The call that makes one of a mesh that is stored, whose body is the options. */
+export const kOfMesh = 'createJobOfMesh';
+
+/** A request by it, of a mesh that is not there. */
+export const ofNoMesh = (options = {}) =>
+  ({headers: {'Content-Type': 'application/json'}, body: Buffer.from(JSON.stringify(options))});
 
 export async function validGltf(run, name, bytes) {
   const report = await validator.validateBytes(new Uint8Array(bytes));
