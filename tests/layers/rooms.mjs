@@ -32,6 +32,8 @@ export const ROOMS = [
   ["api/contract", "`openapi.yaml` as JSON and as a page", []],
   ["api", "the contract; the tables of options and of errors", [...TERMS, "core/json"]],
   ["client/web", "the page at `/`, embedded in the program", []],
+  ["client/js", "the npm package", []],
+  ["client/python", "the Python package", []],
   ["client", "the program `unwrap`: uploads, follows, downloads", ["api"]],
   ["server/base", "files, clocks, log, metrics, waiting", ["core/base", "api"]],
   ["server/http", "the edge: connections, TLS, limits, framing, routing", ["core/base", "api", "server/base"]],

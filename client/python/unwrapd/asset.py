@@ -1,0 +1,70 @@
+"""The request that sends an asset: a form, whose files are read as they are sent."""
+
+from __future__ import annotations
+
+import json
+import secrets
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
+
+PIECE = 1 << 20
+
+
+@dataclass(frozen=True)
+class Asset:
+    """A mesh and the files beside it, by the URIs by which a .gltf names them."""
+
+    mesh: Path | bytes
+    buffers: Mapping[str, Path] = field(default_factory=dict)
+
+
+def asset_at(path: Path) -> Asset:
+    """The asset in a file, with the buffers and images of a .gltf that lie in its folder or below."""
+    if path.suffix.lower() != ".gltf":
+        return Asset(path)
+    document = json.loads(path.read_bytes())
+    named = [part.get("uri", "") for part in [*document.get("buffers", []), *document.get("images", [])]]
+    folder = path.parent.resolve()
+    beside = {uri: (folder / unquote(uri)).resolve() for uri in named if uri and not uri.startswith("data:")}
+    return Asset(path, {uri: file for uri, file in beside.items() if file.is_relative_to(folder) and file.is_file()})
+
+
+def _size(part: Path | bytes) -> int:
+    return part.stat().st_size if isinstance(part, Path) else len(part)
+
+
+class Form:
+    """A multipart/form-data body. It can be read again for another attempt."""
+
+    def __init__(self, asset: Asset, options: Mapping[str, Any]) -> None:
+        self._boundary = f"unwrapd-{secrets.token_hex(16)}"
+        parts: list[Path | bytes] = []
+        parts += [self._head('name="options"', "application/json"), json.dumps(options).encode()]
+        parts += [self._head('name="mesh"', "application/octet-stream"), asset.mesh]
+        for uri, file in asset.buffers.items():
+            name = uri.replace('"', "%22").replace("\r", "%0D").replace("\n", "%0A")
+            parts += [self._head(f'name="buffer"; filename="{name}"', "application/octet-stream"), file]
+        self._parts = [*parts, f"\r\n--{self._boundary}--\r\n".encode()]
+
+    def _head(self, disposition: str, kind: str) -> bytes:
+        lines = f"\r\n--{self._boundary}\r\nContent-Disposition: form-data; {disposition}\r\nContent-Type: {kind}\r\n\r\n"
+        return lines.encode()
+
+    def headers(self) -> dict[str, str]:
+        length = sum(_size(part) for part in self._parts)
+        return {
+            "Content-Type": f"multipart/form-data; boundary={self._boundary}",
+            "Content-Length": str(length),
+        }
+
+    def __iter__(self) -> Iterator[bytes]:
+        for part in self._parts:
+            if isinstance(part, bytes):
+                yield part
+                continue
+            with part.open("rb") as file:
+                while piece := file.read(PIECE):
+                    yield piece

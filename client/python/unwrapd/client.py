@@ -1,0 +1,63 @@
+"""The front door: one call from a mesh to the mesh with its texture coordinates."""
+
+from __future__ import annotations
+
+import json
+import os
+import uuid
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .asset import Asset, Form, asset_at
+from .connection import Connection, default_server
+from .job import Job, OnProgress, download, run_job
+from .mesh import MappedMesh, MeshLike, glb_of, mapped
+
+
+@dataclass(frozen=True)
+class Unwrapped:
+    """asset: the bytes of the result; mesh: its triangles, where a mesh was given."""
+
+    asset: bytes
+    report: dict[str, Any]
+    job: Job
+    mesh: MappedMesh | None = None
+
+
+def _asset_of(given: str | os.PathLike[str] | bytes | MeshLike) -> Asset:
+    if isinstance(given, bytes | bytearray | memoryview):
+        return Asset(bytes(given))
+    if isinstance(given, str | os.PathLike):
+        return asset_at(Path(given))
+    return Asset(glb_of(given))
+
+
+def unwrap(
+    asset: str | os.PathLike[str] | bytes | MeshLike,
+    options: Mapping[str, Any] | None = None,
+    *,
+    server: str | None = None,
+    key: str | None = None,
+    on_progress: OnProgress | None = None,
+    retries: int = 10,
+    idempotency_key: str | None = None,
+) -> Unwrapped:
+    """Unwraps an asset: the path or the bytes of a glTF, OBJ, STL, PLY or OFF, or a mesh with
+    vertices and faces, such as a trimesh.Trimesh.
+
+    options: those of docs/options.md. server: its address; default: UNWRAPD_SERVER, else
+    http://127.0.0.1:8080. key: an API key. retries: failures in a row, of the connection or for want
+    of room, before the call fails. idempotency_key: names the request, so that it can be sent again.
+    Raises UnwrapdError, and OSError for a file that cannot be read.
+    """
+    connection = Connection(server or default_server(), key, retries)
+    form = Form(_asset_of(asset), options or {})
+    job = run_job(connection, form, idempotency_key or str(uuid.uuid4()), on_progress)
+    links = job["links"]
+    report = json.loads(download(connection, links["report"]))
+    mesh = None
+    if not isinstance(asset, str | os.PathLike | bytes | bytearray | memoryview):
+        mesh = mapped(json.loads(download(connection, links["result"] + ".json")))
+    return Unwrapped(download(connection, links["result"]), report, job, mesh)
