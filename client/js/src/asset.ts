@@ -1,5 +1,5 @@
 /** The bytes of a file. */
-export type Bytes = Blob | ArrayBuffer | ArrayBufferView<ArrayBuffer>;
+export type Bytes = Blob | ArrayBuffer | ArrayBufferView;
 
 /** A .gltf and the files beside it, by the URIs by which it names them. */
 export interface AssetInParts {
@@ -10,7 +10,7 @@ export interface AssetInParts {
 export type Asset = Bytes | AssetInParts;
 
 function blobOf(bytes: Bytes): Blob {
-  return bytes instanceof Blob ? bytes : new Blob([bytes]);
+  return bytes instanceof Blob ? bytes : new Blob([bytes as BlobPart]);
 }
 
 function isInParts(asset: Asset): asset is AssetInParts {

@@ -52,22 +52,32 @@ function picked(from: Accessor, sources: Uint32Array): Accessor {
   return from.clone().setArray(array);
 }
 
+/** Removes accessors that nothing uses any more. */
+function release(accessors: (Accessor | null)[]): void {
+  for (const accessor of new Set(accessors))
+    if (accessor?.listParents().every(({propertyType}) => propertyType === 'Root')) accessor.dispose();
+}
+
 function apply(document: Document, primitive: Primitive, {uv, indices, sources}: MappedTriangles, semantic: string): void {
   const buffer = primitive.getAttribute('POSITION')!.getBuffer();
-  for (const part of [primitive, ...primitive.listTargets()])
-    for (const name of part.listSemantics()) part.setAttribute(name, picked(part.getAttribute(name)!, sources));
+  const parts = [primitive, ...primitive.listTargets()];
+  const replaced = [primitive.getIndices(), ...parts.flatMap((part) => part.listAttributes())];
+  for (const part of parts)
+    for (const name of part.listSemantics())
+      if (part !== primitive || name !== semantic) part.setAttribute(name, picked(part.getAttribute(name)!, sources));
   const down = uv.map((value, i) => (i % 2 === 1 ? 1 - value : value)); // V of a glTF
   primitive
     .setMode(TRIANGLES)
     .setIndices(document.createAccessor().setType('SCALAR').setArray(indices).setBuffer(buffer))
     .setAttribute(semantic, document.createAccessor().setType('VEC2').setArray(down).setBuffer(buffer));
+  release(replaced);
 }
 
 /** The primitives to unwrap, those that share a page together. */
 function groupsOf(document: Document, {groupBy = 'mesh', overwrite = false}: UnwrapdOptions, semantic: string): Primitive[][] {
   const isOurs = (primitive: Primitive) =>
     [TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN].includes(primitive.getMode()) && primitive.getAttribute('POSITION') &&
-    (overwrite || !primitive.getAttribute(semantic));
+    (overwrite || !primitive.getAttribute(semantic)) && indicesOf(primitive).length > 0;
   const meshes = document.getRoot().listMeshes().map((mesh) => mesh.listPrimitives().filter(isOurs));
   const groups = {primitive: () => meshes.flat().map((one) => [one]), mesh: () => meshes, scene: () => [meshes.flat()]};
   return groups[groupBy]().filter((group) => group.length > 0);

@@ -25,9 +25,12 @@ def asset_at(path: Path) -> Asset:
     """The asset in a file, with the buffers and images of a .gltf that lie in its folder or below."""
     if path.suffix.lower() != ".gltf":
         return Asset(path)
-    document = json.loads(path.read_bytes())
-    named = [part.get("uri", "") for part in [*document.get("buffers", []), *document.get("images", [])]]
     folder = path.parent.resolve()
+    try:
+        document = json.loads(path.read_bytes())
+        named = [part.get("uri", "") for part in [*document.get("buffers", []), *document.get("images", [])]]
+    except (ValueError, AttributeError, TypeError):
+        return Asset(path)  # the server says what is wrong with it
     beside = {uri: (folder / unquote(uri)).resolve() for uri in named if uri and not uri.startswith("data:")}
     return Asset(path, {uri: file for uri, file in beside.items() if file.is_relative_to(folder) and file.is_file()})
 

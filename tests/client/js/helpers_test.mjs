@@ -61,16 +61,26 @@ function areasOf(uv, index, count) {
   });
 }
 
+function assertAllUsed(document) {
+  const isUsed = (accessor) => accessor.listParents().some(({ propertyType }) => propertyType === "Primitive");
+  assert.ok(document.getRoot().listAccessors().every(isUsed), "no accessor is left over");
+}
+
 test("the transform writes UVs and keeps all else", async () => {
   const { unwrapd } = await installed.load("gltf-transform.js");
   const document = new Document();
   const [plain, strip] = [primitiveOf(document), primitiveOf(document, { strip: true, shift: 5 })];
   const lines = primitiveOf(document).setMode(1);
-  document.createMesh("both").addPrimitive(plain).addPrimitive(lines).addPrimitive(strip);
+  const empty = primitiveOf(document);
+  empty.getIndices().setArray(new Uint16Array(0));
+  document.createMesh("all").addPrimitive(plain).addPrimitive(lines).addPrimitive(empty).addPrimitive(strip);
   const before = cornersOf(plain);
   await document.transform(unwrapd({ server: server.base }));
   assert.deepEqual(cornersOf(plain), before);
-  assert.equal(lines.getAttribute("TEXCOORD_0"), null);
+  for (const other of [lines, empty]) assert.equal(other.getAttribute("TEXCOORD_0"), null);
+  for (const accessor of [empty.getIndices(), ...empty.listAttributes()]) accessor.dispose();
+  empty.dispose(); // which no valid file has
+  assertAllUsed(document);
   for (const primitive of [plain, strip]) {
     assert.equal(primitive.getMode(), 4);
     const [uv, indices] = [primitive.getAttribute("TEXCOORD_0"), primitive.getIndices()];
@@ -95,6 +105,7 @@ test("the transform leaves UVs that are there, unless it is to overwrite them", 
   assert.ok(primitive.getAttribute("TEXCOORD_1"));
   await document.transform(unwrapd({ server: server.base, overwrite: true }));
   assert.notDeepEqual(primitive.getAttribute("TEXCOORD_0").getArray(), new Float32Array(20));
+  assertAllUsed(document);
 });
 
 test("what groupBy puts together shares a page", async () => {
@@ -152,13 +163,15 @@ test("the examples do what they say", async () => {
 });
 
 test("the types hold what they promise, and refuse what the server would", async () => {
-  const good = `import {unwrap, UnwrapdError, type Report} from 'unwrapd-client';
+  const good = `import {readFile} from 'node:fs/promises';
+    import {unwrap, UnwrapdError, type Report} from 'unwrapd-client';
     import {unwrapd} from 'unwrapd-client/gltf-transform';
     import {unwrapGeometry} from 'unwrapd-client/three';
     const {asset, report} = await unwrap(new Blob(), {preset: 'texture', lambda: [0.1, 1]}, {onProgress: ({event}) =>
       event.event === 'iteration' ? event.data.energy : 0, signal: AbortSignal.timeout(1), key: 'k'});
     const kept: [Blob, Report, string] = [asset, report, new UnwrapdError({detail: '', status: 1, code: ''}).code];
-    export {kept, unwrapd, unwrapGeometry};`;
+    const read = await unwrap(await readFile('mesh.glb'));
+    export {kept, read, unwrapd, unwrapGeometry};`;
   writeFileSync(at("good.mts"), good);
   writeFileSync(at("bad.mts"), good.replace("'texture'", "'textures'"));
   const tsc = new URL("../../node_modules/typescript/bin/tsc", import.meta.url).pathname;

@@ -1,5 +1,5 @@
 """The Python package against the real server and against one that refuses and breaks off. UNWRAPD is
-the server, UNWRAPD_CLIENT the folder of the package, or of its wheel's contents."""
+the server, CLIENT_PACKAGE the folder of the package, or of its wheel's contents."""
 
 import http.server
 import json
@@ -18,7 +18,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, os.environ.get("UNWRAPD_CLIENT", str(HERE / "../../../client/python")))
+sys.path.insert(0, os.environ.get("CLIENT_PACKAGE", str(HERE / "../../../client/python")))
 
 from unwrapd import Progress, UnwrapdError, unwrap  # noqa: E402
 
@@ -142,6 +142,11 @@ class RealServer(unittest.TestCase):
         self.assertEqual((nobody.exception.code, nobody.exception.status), ("unreachable", 0))
         with self.assertRaises(FileNotFoundError):
             unwrap("no/such/file.obj", server=self.server.base)
+        with tempfile.TemporaryDirectory() as folder:
+            for text in ("{", "[]", '{"buffers": 1}'):
+                (file := Path(folder) / "broken.gltf").write_text(text)
+                with self.assertRaisesRegex(UnwrapdError, "malformed_|unknown_format"):
+                    unwrap(file, server=self.server.base)
 
     def test_what_on_progress_raises_cancels_the_job(self) -> None:
         def stop(progress: Progress) -> None:
@@ -151,7 +156,8 @@ class RealServer(unittest.TestCase):
         with self.assertRaisesRegex(ConnectionError, "enough"):
             endless = {"preset": "chart", "stop": {"iterations": 10000}}
             unwrap(obj(100), endless, server=self.server.base, on_progress=stop)
-        while (state := self.server.jobs()[0]["state"]) in ("queued", "running"):
+        give_up = time.monotonic() + 20
+        while (state := self.server.jobs()[0]["state"]) == "running" and time.monotonic() < give_up:
             time.sleep(0.05)
         self.assertEqual(state, "cancelled")
 

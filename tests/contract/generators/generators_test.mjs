@@ -1,7 +1,7 @@
 // Clients that generators make of openapi.yaml: they are generated without a warning, compiled by
 // tsc --strict, and each uploads a mesh, follows its job and downloads the asset.
 import assert from 'node:assert/strict';
-import {spawnSync} from 'node:child_process';
+import {execFile} from 'node:child_process';
 import {cpSync, mkdtempSync, rmSync, symlinkSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
@@ -31,9 +31,12 @@ after(async () => {
   rmSync(folder, {recursive: true});
 });
 
+/** Runs node; connections that the server closes meanwhile are seen. */
 function run(...words) {
-  const {stdout, stderr, status} = spawnSync(process.execPath, words, {cwd: folder, encoding: 'utf8'});
-  return {said: stdout + stderr, status};
+  return new Promise((resolve) => {
+    execFile(process.execPath, words, {cwd: folder}, (error, stdout, stderr) =>
+      resolve({said: stdout + stderr, status: error?.code ?? 0}));
+  });
 }
 
 function generate(name) {
@@ -53,13 +56,16 @@ async function plainly(body) {
   return (await request(server.base, {method: 'POST', path: '/v1/unwrap?preset=chart', headers, body})).body;
 }
 
+const [major, minor] = process.versions.node.split('.').map(Number);
+const skip = (major < 20 || (major === 20 && minor < 19)) && 'generators need Node 20.19';
+
 for (const [index, name] of kNames.entries()) {
-  test(`${name} makes a client that uploads, follows and downloads`, async () => {
-    const generated = generate(name);
+  test(`${name} makes a client that uploads, follows and downloads`, {skip}, async () => {
+    const generated = await generate(name);
     assert.equal(generated.status, 0, generated.said);
     assert.doesNotMatch(generated.said, /warn|error|⚠/i);
     const driver = name.replace('-', '_');
-    const compiled = run(join(tools, 'typescript/bin/tsc'), ...kCompile, `${driver}.ts`);
+    const compiled = await run(join(tools, 'typescript/bin/tsc'), ...kCompile, `${driver}.ts`);
     assert.equal(compiled.status, 0, compiled.said);
     const {unwrap} = createRequire(join(folder, 'built/'))(`./${driver}.js`);
     const mesh = meshes.glb(6 + index);  // new to the server
