@@ -32,14 +32,28 @@ export interface Many extends Omit<Call, 'idempotencyKey'> {
 export type Outcome<T extends Asset> =
   ({input: T} & Unwrapped & {error?: undefined}) | {input: T; error: unknown};
 
-/** Unwraps assets, several at once; yields what became of each in their order. */
+/**
+ * Unwraps assets, several at once; yields what became of each in their order. Whoever stops early
+ * cancels the jobs that are under way.
+ */
 export async function* unwrapMany<T extends Asset>(assets: Iterable<T> | AsyncIterable<T>, settings: Many = {}):
     AsyncGenerator<Outcome<T>> {
   const {concurrency = 4, options = {}, ...each} = settings;
   const begun: Promise<Outcome<T>>[] = [];
-  for await (const input of assets) {
-    begun.push(unwrap(input, options, each).then((done) => ({input, ...done}), (error) => ({input, error})));
-    if (begun.length >= concurrency) yield (await begun.shift())!;
+  const all = new AbortController();
+  const stop = () => all.abort(each.signal?.reason);
+  each.signal?.addEventListener('abort', stop);
+  if (each.signal?.aborted) stop();
+  const begin = (input: T) => unwrap(input, options, {...each, signal: all.signal});
+  try {
+    for await (const input of assets) {
+      begun.push(begin(input).then((done) => ({input, ...done}), (error) => ({input, error})));
+      if (begun.length >= concurrency) yield (await begun.shift())!;
+    }
+    while (begun.length > 0) yield (await begun.shift())!;
+  } finally {
+    each.signal?.removeEventListener('abort', stop);
+    if (begun.length > 0) stop();
+    await Promise.all(begun);
   }
-  while (begun.length > 0) yield (await begun.shift())!;
 }

@@ -102,7 +102,10 @@ async function cancel(job: Job, {server, key}: Call): Promise<void> {
   await call({server, key}, job.links.self, {method: 'DELETE'}).catch(() => {});
 }
 
-/** Submits and follows a job. Throws UnwrapdError unless it succeeds, or the signal's reason. */
+/**
+ * Submits and follows a job. Throws UnwrapdError unless it succeeds. The signal's reason, or what
+ * onProgress throws, ends the call and cancels the job.
+ */
 export async function runJob(asset: Asset, options: Options, settings: Call): Promise<Job> {
   const job = await submit(asset, options, settings);
   try {
@@ -110,7 +113,7 @@ export async function runJob(asset: Asset, options: Options, settings: Call): Pr
     if (ended.problem) throw new UnwrapdError(ended.problem);
     return ended;
   } catch (error) {
-    if (settings.signal?.aborted) await cancel(job, settings);
+    if (!(error instanceof UnwrapdError)) await cancel(job, settings);
     throw error;
   }
 }

@@ -100,6 +100,15 @@ test("a refusal is an UnwrapdError with code, pointer, detail and status", async
   await assert.rejects(nobody, { name: "UnwrapdError", code: "unreachable", status: 0 });
 });
 
+/** The state of a job once it has ended, which takes a cancelled one an iteration. */
+async function endOf(id) {
+  for (const giveUp = Date.now() + 20_000; Date.now() < giveUp; ) {
+    const { state } = await (await fetch(`${server.base}/v1/jobs/${id}`)).json();
+    if (!["running", "queued"].includes(state)) return state;
+  }
+  return "still running";
+}
+
 test("a signal ends the call and cancels the job", async () => {
   const stop = new AbortController();
   const onProgress = ({ event }) => {
@@ -108,10 +117,8 @@ test("a signal ends the call and cancels the job", async () => {
   const endless = { preset: "chart", stop: { iterations: 10000 } };
   const settings = { server: server.base, signal: stop.signal, onProgress };
   await assert.rejects(client.unwrap(new Blob([grid(100)]), endless, settings), /enough/);
-  let state = "running"; // the worker notices within one iteration
-  for (const giveUp = Date.now() + 20_000; state === "running" && Date.now() < giveUp; )
-    [{ state }] = (await (await fetch(`${server.base}/v1/jobs?limit=1`)).json()).jobs;
-  assert.equal(state, "cancelled");
+  const { jobs } = await (await fetch(`${server.base}/v1/jobs?limit=1`)).json();
+  assert.equal(await endOf(jobs[0].id), "cancelled");
 });
 
 test("many assets come back in their order, the broken ones with their errors", async () => {
@@ -122,4 +129,21 @@ test("many assets come back in their order, the broken ones with their errors", 
   assert.deepEqual(outcomes.map(({ input }) => input), assets);
   assert.deepEqual(outcomes.map(({ report }) => report?.input.faces), [32, undefined, 50, 72, 98]);
   assert.equal(outcomes[1].error.code, "unknown_format");
+});
+
+test("whoever stops early cancels the rest", async () => {
+  let iterates;
+  const iterating = new Promise((resolve) => (iterates = resolve));
+  const settings = {
+    server: server.base, concurrency: 2, options: { preset: "chart", stop: { iterations: 9999 } },
+    onProgress: ({ event }) => event.event === "iteration" && iterates(),
+  };
+  for await (const { error } of client.unwrapMany([null, new Blob([grid(100)])], settings)) {
+    assert.ok(error instanceof TypeError, "null is no asset");
+    await iterating;
+    break;
+  }
+  const { jobs } = await (await fetch(`${server.base}/v1/jobs?limit=1`)).json();
+  assert.equal(jobs[0].options.stop.iterations, 9999);
+  assert.equal(await endOf(jobs[0].id), "cancelled");
 });

@@ -120,9 +120,12 @@ test("patience ends, and what is refused for good is not asked again", async (t)
   await assert.rejects(unwrapBy(t, { "POST /v1/jobs": stranger }), { code: "unexpected_answer", status: 404 });
 });
 
-test("the key is sent with each request; what onProgress throws is the caller's", async (t) => {
+test("the key is sent with each request; what onProgress throws is the caller's, and cancels", async (t) => {
   const { of } = await unwrapBy(t, {}, { key: "secret" });
   for (const name of Object.keys(kUsual)) assert.equal(of(name)[0].headers.authorization, "Bearer secret", name);
   const onProgress = () => { throw new RangeError("mine"); };
-  await assert.rejects(unwrapBy(t, {}, { onProgress }), RangeError);
+  let cancelled = 0;
+  const cancel = (request, response) => response.writeHead((cancelled += 1) && 204).end();
+  await assert.rejects(unwrapBy(t, { [`DELETE ${kJob.links.self}`]: cancel }, { onProgress }), RangeError);
+  assert.equal(cancelled, 1);
 });
