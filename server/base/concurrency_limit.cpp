@@ -6,6 +6,8 @@
 namespace unwrapd::server {
 
 struct ConcurrencyLimit::State {
+  State(int all, Share part) : places(all), share(std::move(part)) {}
+
   /// Requires the mutex, like of().
   [[nodiscard]] Refusal refusal(const std::string& owner) const {
     if (taken >= places) return Refusal::full;
@@ -27,9 +29,9 @@ struct ConcurrencyLimit::State {
 
   const int places;
   const Share share;
-  mutable std::mutex mutex = {};
+  mutable std::mutex mutex;
   int taken = 0;
-  std::map<std::string, int> of_owner = {};
+  std::map<std::string, int> of_owner;
 };
 
 ConcurrencyLimit::ConcurrencyLimit(int places, Share share)
