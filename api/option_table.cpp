@@ -26,6 +26,7 @@ constexpr std::array<std::string_view, 2> kWeldModes = {"auto", "exact"};
 constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "bijective"};
 constexpr std::array<std::string_view, 2> kRepairs = {"untangle", "virtual_boundary"};
 constexpr std::array<std::string_view, 3> kEfforts = {"fast", "balanced", "best"};
+constexpr std::array<std::string_view, 3> kRotations = {"any", "90", "none"};
 constexpr std::array<std::string_view, 3> kBoundaries = {"free", "circle", "square"};
 constexpr std::array<std::string_view, 4> kOutputs = {"auto", "glb", "gltf", "obj"};
 
@@ -218,6 +219,11 @@ constexpr std::array kRows = {
     figure<&Packing::max_pages>(
         "max_pages", {1, kMaxPages}, kEveryMethod,
         "The most pages. Page k is the UDIM tile 1001 + k and lies at U from k to k + 1."),
+    choice<&Packing::rotation, kRotations>(
+        "rotation", kEveryMethod,
+        "How islands may be turned. any: as they fit best; 90: with their straight sides, or their "
+        "smallest rectangle, along the page; none: as their map lies, or with repack_only their "
+        "UVs."),
     plain<&Packing::stack_identical>("stack_identical", OptionType::flag, kEveryMethod,
                                      "true: islands of the same shape share one place, and so "
                                      "their texels; false: every island has its own place."),

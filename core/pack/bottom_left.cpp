@@ -26,6 +26,11 @@ UvMap points_of(const charts::Outline& outline) {
   return points;
 }
 
+int allowed_turns(int turns, Rotation rotation) {
+  if (rotation == Rotation::any) return turns;
+  return rotation == Rotation::quarter ? 4 : 1;
+}
+
 }  // namespace
 
 /// A page and its free cells.
@@ -34,13 +39,12 @@ struct BottomLeftPlacer::Page {
   PlacementHints lowest = {};
 };
 
-BottomLeftPlacer::BottomLeftPlacer(std::span<const charts::Outline> outlines, int turns)
-    : outlines_(outlines), turns_(turns) {
+BottomLeftPlacer::BottomLeftPlacer(std::span<const charts::Outline> outlines, int turns,
+                                   Rotation rotation)
+    : outlines_(outlines), turns_(allowed_turns(turns, rotation)) {
   boxes_.reserve(outlines.size());
-  for (const charts::Outline& outline : outlines) {
-    const std::optional<Box> straight = straight_box(outline);
-    boxes_.push_back(straight ? *straight : smallest_box(points_of(outline)));
-  }
+  for (const charts::Outline& outline : outlines) boxes_.push_back(resting_box(outline, rotation));
+  if (rotation != Rotation::any) return;
   double area = 0;
   for (const Box& box : boxes_) area += box.size.prod();
   for (std::size_t k = 0; k < outlines.size(); ++k) {

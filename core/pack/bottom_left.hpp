@@ -52,10 +52,11 @@ struct Budget {
 /// Islands at one scale as masks. The mask of each rotation is made when it is first needed.
 class BottomLeftPlacer {
  public:
-  /// outlines must outlive this. turns: the number of rotations in a full circle. The first puts an
-  /// island's right angles or its smallest box upright, or its squarest box if it may span the
-  /// page.
-  BottomLeftPlacer(std::span<const charts::Outline> outlines, int turns);
+  /// outlines must outlive this. turns: the number of rotations in a full circle, where `rotation`
+  /// leaves the choice. The first puts an island's right angles or its smallest box upright, or,
+  /// with any rotation, its squarest box if it may span the page.
+  BottomLeftPlacer(std::span<const charts::Outline> outlines, int turns,
+                   Rotation rotation = Rotation::any);
 
   /// cells_per_unit: the islands' scale; padding: cells. Drops masks of other values.
   void set_scale(double cells_per_unit, double padding);

@@ -133,4 +133,14 @@ std::optional<Box> straight_box(std::span<const std::array<Vec2, 2>> sides) {
   return box_along(points, best.normalized());
 }
 
+Box resting_box(std::span<const std::array<Vec2, 2>> sides, Rotation rotation) {
+  const std::optional<Box> straight =
+      rotation == Rotation::none ? std::nullopt : straight_box(sides);
+  if (straight) return *straight;
+  UvMap points;
+  points.reserve(sides.size());
+  for (const auto& [a, b] : sides) points.push_back(a);
+  return rotation == Rotation::none ? box_along(points, Vec2::UnitX()) : smallest_box(points);
+}
+
 }  // namespace unwrapd::pack

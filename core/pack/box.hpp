@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/mesh/tri_mesh.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd::pack {
 
@@ -35,5 +36,9 @@ Box squarest_box(std::span<const Vec2> points);
 /// The bounding rectangle along or across most of the sides (segments), if at least half of their
 /// length has these directions: shapes with right angles fit into each other that way. Else empty.
 std::optional<Box> straight_box(std::span<const std::array<Vec2, 2>> sides);
+
+/// The box of the sides (at least one) as they lie (none), or along most of them, else the smallest
+/// (quarter, any).
+Box resting_box(std::span<const std::array<Vec2, 2>> sides, Rotation rotation);
 
 }  // namespace unwrapd::pack

@@ -47,8 +47,9 @@ struct Motion {
 
 /// The best motion of one loop onto the other; corner k + shift of `to` corresponds to corner k of
 /// `from`.
-Motion motion_onto(const Loop& from, const Loop& to, std::size_t shift) {
+Motion motion_onto(const Loop& from, const Loop& to, std::size_t shift, Rotation rotation) {
   const Point a = middle(from), b = middle(to);
+  if (rotation == Rotation::none) return {1, b - a};
   Point sum = 0;
   for (std::size_t k = 0; k < from.size(); ++k)
     sum += std::conj(from[k] - a) * (to[(k + shift) % to.size()] - b);
@@ -71,7 +72,7 @@ bool lies_on(const Loop& from, const Loop& to, const Motion& motion, double tole
 }
 
 /// Sets motion and returns true if it takes all loops of `from` to those of `to`.
-bool match(const Shape& from, const Shape& to, Motion& motion) {
+bool match(const Shape& from, const Shape& to, Rotation rotation, Motion& motion) {
   const double tolerance = kTolerance * to.length / 4;
   const auto equal_size = [](const Loop& a, const Loop& b) { return a.size() == b.size(); };
   if (!std::equal(from.loops.begin(), from.loops.end(), to.loops.begin(), to.loops.end(),
@@ -83,7 +84,7 @@ bool match(const Shape& from, const Shape& to, Motion& motion) {
     return true;
   };
   for (std::size_t shift = 0; shift < to.loops[0].size(); ++shift) {
-    motion = motion_onto(from.loops[0], to.loops[0], shift);
+    motion = motion_onto(from.loops[0], to.loops[0], shift, rotation);
     if (lies_on(from.loops[0], to.loops[0], shift, motion, tolerance) && others_lie()) return true;
   }
   return false;
@@ -92,7 +93,7 @@ bool match(const Shape& from, const Shape& to, Motion& motion) {
 }  // namespace
 
 std::vector<CongruentIsland> congruent_islands(std::span<const charts::Outline> islands,
-                                               const std::stop_token& stop) {
+                                               Rotation rotation, const std::stop_token& stop) {
   std::vector<Shape> shapes;
   shapes.reserve(islands.size());
   for (const charts::Outline& island : islands) shapes.push_back(shape_of(island));
@@ -109,7 +110,7 @@ std::vector<CongruentIsland> congruent_islands(std::span<const charts::Outline> 
     for (auto first = firsts.rbegin(); first != firsts.rend(); ++first) {
       if (shapes[*first].length < (1 - kTolerance) * shapes[k].length) break;
       Motion motion;
-      if (!match(shapes[k], shapes[*first], motion)) continue;
+      if (!match(shapes[k], shapes[*first], rotation, motion)) continue;
       same[k] = {static_cast<Index>(*first),
                  motion.turn.real(),
                  motion.turn.imag(),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/charts/outline.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd::pack {
 
@@ -23,9 +24,9 @@ struct CongruentIsland {
 };
 
 /// Two outlines are congruent if a motion takes the corners of one to those of the other, in their
-/// order around the island, up to a ten-thousandth of its extent. One entry an island. Throws
-/// Error{cancelled}.
+/// order around the island, up to a ten-thousandth of its extent; a translation where rotation is
+/// none. One entry an island. Throws Error{cancelled}.
 std::vector<CongruentIsland> congruent_islands(std::span<const charts::Outline> islands,
-                                               const std::stop_token& stop);
+                                               Rotation rotation, const std::stop_token& stop);
 
 }  // namespace unwrapd::pack

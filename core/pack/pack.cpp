@@ -43,7 +43,7 @@ class Packer {
  public:
   Packer(std::span<const charts::Outline> outlines, const PageOptions& page, Executor& executor)
       : outlines_(outlines),
-        placer_(outlines, turns_for(outlines.size())),
+        placer_(outlines, turns_for(outlines.size()), page.packing.rotation),
         shares_(shares_of(outlines)),
         page_(page),
         padding_(kept_padding(page, outlines.size())),
@@ -55,7 +55,7 @@ class Packer {
   PackResult largest() {
     if (page_.packing.max_pages > 1) return on_several();
     if (placer_.size() <= kFewOnAPage) {
-      auto few = pack_few(outlines_, grid_, page_.effort, executor_);
+      auto few = pack_few(outlines_, grid_, {page_.packing.rotation, page_.effort}, executor_);
       if (few) return {std::move(*few), 1, padding_, {}};
     }
     return {pack_many(placer_, grid_, page_.effort, executor_), 1, padding_, {}};
@@ -193,7 +193,11 @@ PackResult pack_apart(std::span<const charts::Outline> islands, const PageOption
   if (page.packing.texels_per_unit)
     return Packer(islands, page, executor).at_density(*page.packing.texels_per_unit);
   const std::vector<UvMap> points = points_of(islands);
-  PackResult rows{pack_in_rows(points, page), 1, kept_padding(page, islands.size()), {}};
+  const bool is_free = page.packing.rotation == Rotation::any;
+  PackResult rows{is_free ? pack_in_rows(points, page) : pack_outlines_in_rows(islands, page),
+                  1,
+                  kept_padding(page, islands.size()),
+                  {}};
   const bool are_too_many = islands.size() > kMostApart && page.packing.max_pages == 1;
   if (islands.size() < 2 || are_too_many || !has_extent(points)) return rows;
   PackResult tight = Packer(islands, page, executor).largest();
@@ -224,8 +228,9 @@ PackResult pack(std::span<const charts::Outline> islands, const PageOptions& pag
   const auto apart = [&](std::span<const charts::Outline> each) {
     return pack_apart(each, page, executor);
   };
-  return page.packing.stack_identical ? pack_stacked(islands, apart, executor.stop())
-                                      : apart(islands);
+  return page.packing.stack_identical
+             ? pack_stacked(islands, page.packing.rotation, apart, executor.stop())
+             : apart(islands);
 }
 
 }  // namespace unwrapd::pack

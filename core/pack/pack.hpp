@@ -45,6 +45,10 @@ struct PackResult {
 /// would take more than half of the page's side, the padding is reduced to that.
 std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOptions& page);
 
+/// The same for outlines, turned as packing.rotation allows.
+std::vector<Placement> pack_outlines_in_rows(std::span<const charts::Outline> islands,
+                                             const PageOptions& page);
+
 /// The padding that remains for this many islands, texels: see pack_in_rows().
 double kept_padding(const PageOptions& page, std::size_t island_count);
 

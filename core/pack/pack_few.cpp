@@ -22,6 +22,9 @@ struct Try {
 constexpr std::array kTries = {Try{72, {.2, .45}}, Try{48, {.1, .9}}, Try{96, {.2, .45}},
                                Try{60, {.2, .45}}, Try{72, {.4, .7}}, Try{48, {.4, .7}}};
 
+/// Where rotations are fixed, tries differ by their rules alone.
+constexpr std::array kFixedTries = {Try{1, {.2, .45}}, Try{1, {.1, .9}}, Try{1, {.4, .7}}};
+
 /// How much is tried.
 struct Extent {
   std::size_t starts = 0;    ///< of kTries
@@ -53,17 +56,21 @@ struct Attempt {
 
 class FewPacker {
  public:
-  FewPacker(std::span<const charts::Outline> islands, const PageGrid& grid, Effort effort,
+  FewPacker(std::span<const charts::Outline> islands, const PageGrid& grid, const FewRules& rules,
             Executor& executor)
       : islands_(islands),
         grid_(grid),
-        extent_(kExtents[static_cast<std::size_t>(effort)]),
+        rotation_(rules.rotation),
+        extent_(kExtents[static_cast<std::size_t>(rules.effort)]),
         executor_(executor),
         shares_(shares_of(islands)) {}
 
   std::optional<std::vector<Placement>> packed() {
-    auto tried = solve::parallel_map<Attempt>(
-        extent_.starts, executor_, [&](std::size_t k) { return compact_from(kTries[k]); });
+    const std::span<const Try> tries =
+        rotation_ == Rotation::any ? std::span<const Try>(kTries) : kFixedTries;
+    auto tried =
+        solve::parallel_map<Attempt>(std::min(extent_.starts, tries.size()), executor_,
+                                     [&](std::size_t k) { return compact_from(tries[k]); });
     std::ranges::stable_sort(tried, std::greater(), &Attempt::density);
     tried.resize(extent_.finished);
     tried = solve::parallel_map<Attempt>(
@@ -75,7 +82,7 @@ class FewPacker {
 
  private:
   Attempt compact_from(const Try& own) const {
-    Attempt tried{BottomLeftPlacer(islands_, own.turns)};
+    Attempt tried{BottomLeftPlacer(islands_, own.turns, rotation_)};
     tried.found = start(*tried.placer, own.rules);
     const double scale = tried.placer->scale() * kFirst.rules.side / tried.found.side;
     tried.found = compact_on(kFirst, tried, scale);
@@ -128,6 +135,7 @@ class FewPacker {
 
   std::span<const charts::Outline> islands_;
   const PageGrid& grid_;
+  Rotation rotation_;
   Extent extent_;
   Executor& executor_;
   double shares_;
@@ -142,9 +150,9 @@ double shares_of(std::span<const charts::Outline> islands) {
 }
 
 std::optional<std::vector<Placement>> pack_few(std::span<const charts::Outline> islands,
-                                               const PageGrid& grid, Effort effort,
+                                               const PageGrid& grid, const FewRules& rules,
                                                Executor& executor) {
-  return FewPacker(islands, grid, effort, executor).packed();
+  return FewPacker(islands, grid, rules, executor).packed();
 }
 
 }  // namespace unwrapd::pack

@@ -96,6 +96,23 @@ Layout lay_rows(std::vector<Box> boxes, const Page& page) {
   return layout;
 }
 
+std::vector<Placement> pack_boxes(const std::vector<std::vector<Box>>& ways,
+                                  const PageOptions& options) {
+  const Page page = page_of(options, ways.front().size());
+  Layout best;
+  for (const std::vector<Box>& boxes : ways) {
+    Layout own = lay_rows(boxes, page);
+    if (best.boxes.empty() || own.scale > best.scale) best = std::move(own);
+  }
+  std::vector<Placement> placements(best.boxes.size());
+  const double scale = best.scale * kSlack / options.resolution;
+  fill_rows(best.boxes, best.order, best.scale, page, [&](Index k, const Vec2& corner) {
+    const Box& box = best.boxes[k];
+    placements[k] = {box.cosine, box.sine, scale, corner / options.resolution - scale * box.low};
+  });
+  return placements;
+}
+
 /// Rotates all boxes to lie flat, or to stand upright.
 std::vector<Box> orient(std::vector<Box> boxes, bool standing) {
   for (Box& box : boxes)
@@ -118,17 +135,16 @@ std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOp
   std::transform(islands.begin(), islands.end(), boxes.begin(), [&](const UvMap& island) {
     return islands.size() == 1 ? squarest_box(island) : smallest_box(island);
   });
-  const Page page = page_of(options, islands.size());
-  const Layout lying = lay_rows(orient(boxes, false), page);
-  const Layout standing = lay_rows(orient(boxes, true), page);
-  const Layout& best = standing.scale > lying.scale ? standing : lying;
-  std::vector<Placement> placements(islands.size());
-  const double scale = best.scale * kSlack / options.resolution;
-  fill_rows(best.boxes, best.order, best.scale, page, [&](Index k, const Vec2& corner) {
-    const Box& box = best.boxes[k];
-    placements[k] = {box.cosine, box.sine, scale, corner / options.resolution - scale * box.low};
-  });
-  return placements;
+  return pack_boxes({orient(boxes, false), orient(boxes, true)}, options);
+}
+
+std::vector<Placement> pack_outlines_in_rows(std::span<const charts::Outline> islands,
+                                             const PageOptions& options) {
+  std::vector<Box> boxes;
+  for (const charts::Outline& island : islands)
+    boxes.push_back(resting_box(island, options.packing.rotation));
+  if (options.packing.rotation == Rotation::none) return pack_boxes({boxes}, options);
+  return pack_boxes({orient(boxes, false), orient(boxes, true)}, options);
 }
 
 }  // namespace unwrapd::pack

@@ -15,10 +15,10 @@ Placement on_top(const Placement& first, const CongruentIsland& same) {
 }  // namespace
 
 PackResult pack_stacked(
-    std::span<const charts::Outline> islands,
+    std::span<const charts::Outline> islands, Rotation rotation,
     const std::function<PackResult(std::span<const charts::Outline>)>& pack_shapes,
     const std::stop_token& stop) {
-  const std::vector<CongruentIsland> same = congruent_islands(islands, stop);
+  const std::vector<CongruentIsland> same = congruent_islands(islands, rotation, stop);
   std::vector<charts::Outline> shapes;
   std::vector<std::size_t> shape_of(islands.size());
   for (std::size_t k = 0; k < islands.size(); ++k)

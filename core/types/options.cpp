@@ -21,6 +21,7 @@ void require_packing(const UnwrapOptions& options) {
   require(is_packed || !packing.texels_per_unit, placed + "texels_per_unit", "/texels_per_unit");
   require(is_packed || packing.max_pages == 1, placed + "max_pages", "/max_pages");
   require(is_packed || !packing.stack_identical, placed + "stack_identical", "/stack_identical");
+  require(is_packed || packing.rotation == Rotation::any, placed + "rotation", "/rotation");
   require(!packing.texels_per_unit ||
               (*packing.texels_per_unit > 0 && std::isfinite(*packing.texels_per_unit)),
           "texels_per_unit must be a finite number above 0", "/texels_per_unit");

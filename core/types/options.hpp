@@ -43,6 +43,10 @@ struct SeamPath {
   std::vector<Index> vertices;  ///< of that surface, two or more; copies at a position are one
 };
 
+/// How packing may turn an island: as fits best; along the page by its straight sides or its
+/// smallest box, in quarter turns ("90" on the wire); not at all.
+enum class Rotation { any, quarter, none };
+
 enum class WeldMode { automatic, exact, distance };  ///< automatic: "auto" on the wire
 
 /// Which vertices at different positions are one, for topology; those at one position always are.
@@ -57,6 +61,7 @@ struct Packing {
   std::optional<double> texels_per_unit = {};  ///< of every island, > 0; empty: as many as fit
   int max_pages = 1;                           ///< [1, kMaxPages]; no more are taken than needed
   bool stack_identical = false;                ///< congruent islands lie on each other
+  Rotation rotation = Rotation::any;           ///< of islands
 };
 
 struct UnwrapOptions {

@@ -76,7 +76,9 @@ std::vector<std::string> list(const std::vector<std::string>& path, const std::s
   const std::string line = scalar(path, key);
   if (!line.empty() && line.front() != '&') {  // an anchor names what follows
     for (const std::string& item : split(line.substr(1, line.size() - 2), ',')) {
-      items.push_back(trimmed(item));
+      const std::string text = trimmed(item);
+      const bool is_quoted = text.size() > 1 && text.front() == '\'' && text.back() == '\'';
+      items.push_back(is_quoted ? text.substr(1, text.size() - 2) : text);
     }
     return items;
   }

@@ -97,6 +97,7 @@ Json random_values(std::mt19937& rng) {
   values["texels_per_unit"] = nullptr;
   values["max_pages"] = 1;
   values["stack_identical"] = false;
+  values["rotation"] = "any";
   return values;
 }
 

@@ -89,9 +89,11 @@ function someOptions(properties) {
 /** What the schema cannot say: which options go together. */
 function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary = 'free',
                      constraints = [], repack_only = false, texels_per_unit = null, max_pages = 1,
-                     stack_identical = false, max_distortion = null, guarantee = 'flip_free'}) {
+                     stack_identical = false, max_distortion = null, guarantee = 'flip_free',
+                     rotation = 'any'}) {
   const free = boundary === 'free';
-  const unpacked = !repack_only && texels_per_unit === null && max_pages === 1 && !stack_identical;
+  const unpacked = !repack_only && texels_per_unit === null && max_pages === 1 &&
+      !stack_identical && rotation === 'any';
   const held = ['asap', 'arap', 'hybrid'].includes(method) && free && unpacked;
   const loose = constraints.length === 0;
   return 4 * padding <= resolution && (loose || held) && (free || !repack_only) &&

@@ -54,6 +54,28 @@ TEST(Repack, KeepsShapesSidesAndSizesBesideEachOther) {
   EXPECT_GT(u.report.fill, 0.5);
 }
 
+TEST(Repack, WithoutRotationEverySideKeepsItsDirection) {
+  Surface surface = quads(4);
+  const double angle = 0.4;
+  for (CornerUv& corners : surface.corner_uv)
+    for (Vec2& uv : corners)
+      uv = {std::cos(angle) * uv.x() - std::sin(angle) * uv.y(),
+            std::sin(angle) * uv.x() + std::cos(angle) * uv.y()};
+  const auto most_turned = [&](Rotation rotation) {
+    const Unwrapped u = repacked(surface, {.rotation = rotation});
+    const UnwrappedSurface& s = u.surfaces[0];
+    double most = 0;
+    for (std::size_t t = 0; t < s.faces.size(); ++t) {
+      const Vec2 was = surface.corner_uv[t][1] - surface.corner_uv[t][0];
+      const Vec2 is = s.uv[std::size_t(s.faces[t][1])] - s.uv[std::size_t(s.faces[t][0])];
+      most = std::max(most, std::abs(was.x() * is.y() - was.y() * is.x()) / was.norm() / is.norm());
+    }
+    return most;
+  };
+  EXPECT_LT(most_turned(Rotation::none), 1e-6);
+  EXPECT_NEAR(most_turned(Rotation::quarter), std::sin(angle), 1e-6);
+}
+
 TEST(Repack, GivesEveryIslandTheDensityThatIsAskedFor) {
   const Unwrapped u = repacked(quads(3), {.texels_per_unit = 20.0});
   for (std::size_t k = 0; k < 3; ++k)
