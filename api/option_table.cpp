@@ -27,6 +27,8 @@ constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "b
 constexpr std::array<std::string_view, 2> kRepairs = {"untangle", "virtual_boundary"};
 constexpr std::array<std::string_view, 3> kEfforts = {"fast", "balanced", "best"};
 constexpr std::array<std::string_view, 3> kRotations = {"any", "90", "none"};
+constexpr std::array<std::string_view, 3> kGroups = {"scene", "material", "mesh"};
+constexpr std::array<std::string_view, 2> kStraightenings = {"off", "auto"};
 constexpr std::array<std::string_view, 3> kBoundaries = {"free", "circle", "square"};
 constexpr std::array<std::string_view, 4> kOutputs = {"auto", "glb", "gltf", "obj"};
 
@@ -41,7 +43,7 @@ constexpr std::array kHolding = {Method::asap, Method::arap, Method::hybrid};
 constexpr std::array kOnlyHybrid = {Method::hybrid};
 constexpr std::array kOnlyAsap = {Method::asap};
 
-constexpr double kMaxPadding = 0.25 * kMaxResolution;  // and at most a quarter of resolution
+constexpr double kMaxPadding = 0.25 * kMaxResolution;  // and at most a quarter of a side
 constexpr double kMinTexelsPerUnit = 1e-9, kMaxTexelsPerUnit = 1e12;
 constexpr double kMaxDistortion = 1e6, kMaxCharts = 1e6;
 constexpr double kMaxWeldDistance = 1e100;
@@ -208,10 +210,15 @@ constexpr std::array kRows = {
     figure<&O::resolution>("resolution", {kMinResolution, kMaxResolution}, kEveryMethod,
                            "Side of the square texture, in texels. Set it to the size of the "
                            "texture that will be painted or baked."),
+    figure<&O::width>("width", {kMinResolution, kMaxResolution}, kEveryMethod,
+                      "Width of the texture, along U, in texels. Unset: resolution."),
+    figure<&O::height>("height", {kMinResolution, kMaxResolution}, kEveryMethod,
+                       "Height of the texture, along V, in texels. Unset: resolution."),
     figure<&O::padding>(
         "padding", {0, kMaxPadding}, kEveryMethod,
-        "Least gap between islands, in texels; at most a quarter of resolution. Higher values "
-        "prevent bleeding between islands at lower mip levels, but fill less of the page."),
+        "Least gap between islands, in texels; at most a quarter of the texture's shorter side. "
+        "Higher values prevent bleeding between islands at lower mip levels, but fill less of the "
+        "page."),
     figure<&Packing::texels_per_unit>(
         "texels_per_unit", {kMinTexelsPerUnit, kMaxTexelsPerUnit}, kEveryMethod,
         "Texels for each unit of length of the mesh, on every island. Unset: as many as fit. Set "
@@ -219,6 +226,16 @@ constexpr std::array kRows = {
     figure<&Packing::max_pages>(
         "max_pages", {1, kMaxPages}, kEveryMethod,
         "The most pages. Page k is the UDIM tile 1001 + k and lies at U from k to k + 1."),
+    choice<&O::straighten, kStraightenings>(
+        "straighten", kEveryMethod,
+        "auto: charts that are nearly rectangles become rectangles, where that keeps "
+        "max_distortion "
+        "(2.02 without one) and flips no triangle; off: maps stay as they are."),
+    choice<&Packing::group, kGroups>(
+        "group", kEveryMethod,
+        "What has a page of its own, all at one texel density. scene: everything shares the pages; "
+        "material: each material, and charts end where materials do; mesh: each mesh. Page k is "
+        "the UDIM tile 1001 + k, and page_names of the report tell what lies on it."),
     choice<&Packing::rotation, kRotations>(
         "rotation", kEveryMethod,
         "How islands may be turned. any: as they fit best; 90: with their straight sides, or their "

@@ -191,6 +191,7 @@ Json to_json(const Report& report, const ReportContext& context) {
                {"overlaps", report.overlaps ? Json(*report.overlaps) : Json()},
                {"fill", finite(report.fill)},
                {"pages", report.pages},
+               {"page_names", report.page_names},
                {"texel_density", finite(report.texel_density)},
                {"timings_ms", timings_json(context)},
                {"solver", {{"name", "unwrapd"}, {"version", context.version}}}};

@@ -19,6 +19,7 @@
 #include "core/pipeline/parameterize_chart.hpp"
 #include "core/pipeline/prepare_charts.hpp"
 #include "core/pipeline/repack.hpp"
+#include "core/pipeline/straighten_charts.hpp"
 #include "core/segment/segment.hpp"
 #include "core/solve/constrain_chart.hpp"
 #include "core/solve/solve.hpp"
@@ -80,8 +81,10 @@ std::vector<Layout> map_charts(const PreparedCharts& prepared, std::span<const S
                                const UnwrapOptions& options, const Progress& progress,
                                Executor& executor) {
   const pipeline::Prepared& all = *prepared.all;
-  const auto page =
-      charts::page_constraints(surfaces, all.surfaces, options.constraints, progress.stop);
+  auto page = charts::page_constraints(surfaces, all.surfaces, options.constraints, progress.stop);
+  for (std::vector<solve::VertexConstraints>& own : page)
+    for (solve::VertexConstraints& chart : own)
+      chart = solve::stretched_v(std::move(chart), options.page_size().aspect());
   pipeline::ChartProgress watch(progress, all.surfaces, prepared.solve_begin, executor);
   std::vector<Layout> layouts =
       pipeline::empty_layouts(prepared.all, pipeline::lambdas_of(options).size());
@@ -150,7 +153,8 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> given, const Unwrap
 
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
   for (Layout& layout : layouts) {
-    pack_charts(layout, options, job);
+    straighten_charts(layout, options, job);
+    pack_charts(layout, surfaces, options, job);
     quantize_maps(layout, options, progress.stop);
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);

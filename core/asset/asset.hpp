@@ -82,6 +82,10 @@ void read_uvs(Asset& asset);
 
 /// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data
 /// URIs). unwrapped has one entry for each of asset.surfaces(). Tangents of replaced texture
+/// Fills Surface::materials: a glTF's materials by JSON pointer ("/materials/0"), an OBJ's by name;
+/// "" where there is none. Meshes that share geometry have the materials of the first.
+void name_materials(Asset& asset);
+
 /// coordinates are computed again. Throws Error{cancelled}.
 std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrapped, Format output);
 

@@ -12,8 +12,8 @@
 
 namespace unwrapd::charts {
 
-/// The constraints of every chart, in the page's coordinates: result[s][k] for chart k of surface
-/// s. All are empty if there are no constraints; else each has at least one vertex.
+/// The constraints of every chart, in the page's coordinates (UVs): result[s][k] for chart k of
+/// surface s. All are empty if there are no constraints; else each has at least one vertex.
 ///
 /// A constraint applies to one vertex in each chart in which its vertex occurs. If it names a point
 /// in space, its vertex is the nearest one; of equally near ones the lowest. If a cut runs through

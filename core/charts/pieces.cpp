@@ -96,11 +96,13 @@ void cut_paths(const InspectedSurface& in, const SeamRules& seams, Halfedges& ha
 Pieces welded_pieces(const InspectedSurface& in, Pairing pairing, const SeamRules& seams) {
   if (seams.mode == SeamMode::uv0 && !in.surface.corner_uv.empty())
     cut_at_uv_seams(in.surface, pairing.halfedges);
+  cut_at_materials(in.surface, pairing.halfedges);
   cut_paths(in, seams, pairing.halfedges);
   return pieces_of(pairing, in.states, seams.stop);
 }
 
 Pieces kept_pieces(const InspectedSurface& in, Pairing pairing, const SeamRules& seams) {
+  cut_at_materials(in.surface, pairing.halfedges);
   cut_paths(in, seams, pairing.halfedges);
   return pieces_of(pairing, in.states, seams.stop);
 }

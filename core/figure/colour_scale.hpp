@@ -19,6 +19,15 @@ inline constexpr std::array<std::string_view, 4> kColouringNames = {"stretch", "
 
 std::optional<Colouring> colouring_named(std::string_view name);
 
+/// How a layout is drawn.
+struct LayoutLook {
+  LayoutLook(Colouring shown = Colouring::stretch, const Vec2& extent = Vec2::Ones())
+      : colouring(shown), page(extent) {}
+
+  Colouring colouring;
+  Vec2 page;  ///< its sides, the longer one 1; UVs are in these units
+};
+
 /// A figure that stands below the bar.
 struct Tick {
   double value = 0;

@@ -85,6 +85,13 @@ void append_outline(Drawing& drawing, const UnwrappedSurface& surface, const Sca
                 scale.line(kOutlineWidth), kInk);
 }
 
+/// What of the square is not the page.
+void append_margins(Drawing& drawing, const Vec2& page, const Scale& scale) {
+  const double right = scale.size * page.x(), top = scale.size * (1 - page.y());
+  if (page.x() < 1) append_rectangle(drawing, {right, 0}, {scale.size, scale.size}, kPaper);
+  if (page.y() < 1) append_rectangle(drawing, {0, 0}, {scale.size, top}, kPaper);
+}
+
 void append_legend(Drawing& drawing, const ColourScale& colours, const Scale& scale,
                    double height) {
   append_rectangle(drawing, {0, scale.size}, {scale.size, height}, kPaper);
@@ -103,18 +110,19 @@ void append_legend(Drawing& drawing, const ColourScale& colours, const Scale& sc
 }  // namespace
 
 Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
-                   Colouring colouring, int size, const std::stop_token& stop) {
+                   const LayoutLook& look, int size, const std::stop_token& stop) {
   assert(size >= kMinImageSize && size <= kMaxImageSize);
-  const ColourScale& colours = colour_scale(colouring);
+  const ColourScale& colours = colour_scale(look.colouring);
   const Scale scale{.frame = frame_of(unwrapped), .size = static_cast<double>(size)};
   const int height = size + static_cast<int>(std::lround(scale.length(kLegendUnits)));
-  const auto painted = painted_faces(surfaces, unwrapped, colouring);
+  const auto painted = painted_faces(surfaces, unwrapped, look.colouring);
   Drawing drawing;
+  if (scale.frame.side == 1) append_margins(drawing, look.page, scale);
   throw_if_cancelled(stop);
   for (std::size_t s = 0; s < unwrapped.size(); ++s)
     append_faces(drawing, unwrapped[s], painted[s], colours.colours, scale);
   const double flip_width =
-      colouring == Colouring::flips ? std::max(kMinFlip, scale.length(kFlipWidth)) : 0;
+      look.colouring == Colouring::flips ? std::max(kMinFlip, scale.length(kFlipWidth)) : 0;
   for (std::size_t s = 0; s < unwrapped.size(); ++s)
     for (std::size_t t = 0; t < painted[s].size(); ++t)
       if (painted[s][t] == kFlippedFace)

@@ -14,6 +14,6 @@ namespace unwrapd::figure {
 /// Places that two triangles share are hatched. unwrapped has one entry for each surface. Throws
 /// Error{cancelled} once a stop was requested.
 Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
-                   Colouring colouring, int size, const std::stop_token& stop = {});
+                   const LayoutLook& look, int size, const std::stop_token& stop = {});
 
 }  // namespace unwrapd::figure

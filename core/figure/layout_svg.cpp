@@ -151,13 +151,23 @@ void append_legend(std::string& svg, const ColourScale& scale) {
   svg += "</g>\n";
 }
 
-void append_head(std::string& svg, const ColourScale& scale) {
+void append_page(std::string& svg, const Vec2& page) {
+  const long width = std::lround(kPageUnits * page.x()),
+             height = std::lround(kPageUnits * page.y());
+  svg += "<rect";
+  if (height < kPageUnits) append_attribute(svg, "y", static_cast<double>(kPageUnits - height));
+  append_attribute(svg, "width", static_cast<double>(width));
+  append_attribute(svg, "height", static_cast<double>(height));
+  svg.append(" fill=\"").append(hex(kPage)).append("\"/>\n");
+}
+
+void append_head(std::string& svg, const ColourScale& scale, const Vec2& page) {
   svg +=
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 4096 4416\">\n"
       "<title>UV layout, coloured by ";
   svg.append(scale.title).append("</title>\n");
   svg.append("<rect width=\"4096\" height=\"4416\" fill=\"").append(hex(kPaper)).append("\"/>\n");
-  svg.append("<rect width=\"4096\" height=\"4096\" fill=\"").append(hex(kPage)).append("\"/>\n");
+  append_page(svg, page);
 }
 
 static_assert(kPageUnits == 4096 && kLegendUnits == 320, "append_head() spells them out");
@@ -165,21 +175,21 @@ static_assert(kPageUnits == 4096 && kLegendUnits == 320, "append_head() spells t
 }  // namespace
 
 std::string layout_svg(std::span<const Surface> surfaces,
-                       std::span<const UnwrappedSurface> unwrapped, Colouring colouring,
+                       std::span<const UnwrappedSurface> unwrapped, const LayoutLook& look,
                        const std::stop_token& stop) {
-  const ColourScale& scale = colour_scale(colouring);
-  const auto painted = painted_faces(surfaces, unwrapped, colouring);
+  const ColourScale& scale = colour_scale(look.colouring);
+  const auto painted = painted_faces(surfaces, unwrapped, look.colouring);
   const Frame frame = frame_of(unwrapped);
   Paths paths{
       .colour = std::vector<std::string>(scale.colours.size()), .flipped = {}, .boundary = {}};
   for (std::size_t s = 0; s < unwrapped.size(); ++s)
     draw(unwrapped[s], painted[s], frame, stop, paths);
   std::string svg;
-  append_head(svg, scale);
+  append_head(svg, scale, frame.side == 1 ? look.page : Vec2::Ones());
   svg += "<g transform=\"matrix(.1 0 0 -.1 0 4096)\" stroke-linejoin=\"round\">\n";
   for (std::size_t k = 0; k < scale.colours.size(); ++k)
     append_fill(svg, scale.colours[k], paths.colour[k], 5);
-  append_fill(svg, kFlippedColour, paths.flipped, colouring == Colouring::flips ? 120 : 5);
+  append_fill(svg, kFlippedColour, paths.flipped, look.colouring == Colouring::flips ? 120 : 5);
   append_hatching(svg, overlap_polygons(unwrapped, stop), frame);
   append_boundary(svg, paths.boundary);
   svg += "</g>\n";

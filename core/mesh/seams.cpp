@@ -141,6 +141,17 @@ void cut_at_uv_seams(const SurfaceNumbers& surface, Halfedges& halfedges) {
   }
 }
 
+void cut_at_materials(const SurfaceNumbers& surface, Halfedges& halfedges) {
+  if (surface.materials.empty()) return;
+  const auto material = [&](Index h) -> const std::string& {
+    return surface.materials[surface.part[face_of(h)]];
+  };
+  for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
+    const Index twin = halfedges.twin[h];
+    if (twin != kNoTwin && h < twin && material(h) != material(twin)) open_edge(halfedges, h);
+  }
+}
+
 void close_slits(Halfedges& halfedges, const std::stop_token& stop) {
   const auto next_open = [&](Index h) {
     Index g = next_halfedge(h);

@@ -47,6 +47,9 @@ std::optional<EdgeEnds> cut_edges(std::span<const Triangle> welded, std::span<co
 /// UVs are equal.
 void cut_at_uv_seams(const SurfaceNumbers& surface, Halfedges& halfedges);
 
+/// Opens edges whose faces have different materials; none if the surface has no names of them.
+void cut_at_materials(const SurfaceNumbers& surface, Halfedges& halfedges);
+
 /// Pairs the two half-edges of every boundary loop that has no more than two. Splitting a
 /// non-manifold edge inside one sheet leaves such slits, which have no use.
 void close_slits(Halfedges& halfedges, const std::stop_token& stop = {});

@@ -2,6 +2,7 @@
 // The input of topology: a surface without the positions of its vertices.
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "core/mesh/tri_mesh.hpp"
@@ -15,13 +16,15 @@ struct SurfaceNumbers {
         vertex_count(surface.mesh.vertex_count()),
         part(surface.part),
         name(surface.name),
-        corner_uv(surface.corner_uv) {}
+        corner_uv(surface.corner_uv),
+        materials(surface.materials) {}
 
   std::span<const Triangle> faces;
   Index vertex_count;
   std::span<const Index> part;
   std::string_view name;
   std::span<const CornerUv> corner_uv;
+  std::span<const std::string> materials;
 };
 
 }  // namespace unwrapd

@@ -36,6 +36,8 @@ struct Surface {
   std::vector<CornerUv> corner_uv =
       {};  ///< one a face: the UVs of the input, V pointing up; empty
            ///< unless requested and present. NaN for corners without UVs
+  std::vector<std::string> materials =
+      {};  ///< materials[part[t]] names that of face t; empty unless requested
 };
 
 /// The result for a surface. Faces keep their number and order; a vertex on a seam is split.

@@ -16,6 +16,7 @@
 #include <numeric>
 
 #include "core/base/splitmix64.hpp"
+#include "core/pack/page_grid.hpp"
 
 namespace unwrapd::pack {
 namespace {
@@ -206,17 +207,20 @@ std::vector<CellPacking> smallest_page(BottomLeftPlacer& placer,
 }
 
 CellPacking smallest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
-                           int page_count, Budget& budget) {
-  const double area = area_in_cells(placer) / page_count;
-  const double least =
-      std::max<double>(placer.least_side(budget.stop), std::sqrt(kLoose * area / kDense));
+                           const PagesWanted& pages, Budget& budget) {
+  const auto sheet = [&](int side) {
+    return PageCells{side, rows_of(side, pages.ratio), pages.count};
+  };
+  const double area = area_in_cells(placer) / (pages.count * pages.ratio);
+  const double least = std::max<double>(placer.least_side(budget.stop, pages.ratio),
+                                        std::sqrt(kLoose * area / kDense));
   CellPacking best;
   double low = least, high = std::max(least, std::sqrt(area / kLoose)) + 1;
   for (double side = high; best.side == 0; side *= 2)
-    best = fewest_pages(placer, starts, {int(side), int(side), page_count}, budget);
+    best = fewest_pages(placer, starts, sheet(int(side)), budget);
   for (high = best.side; high > low * kStep && high - low > 1;) {
     const int side = static_cast<int>((low + high) / 2);
-    CellPacking found = fewest_pages(placer, starts, {side, side, page_count}, budget);
+    CellPacking found = fewest_pages(placer, starts, sheet(side), budget);
     (found.side > 0 ? high : low) = side;
     if (found.side > 0) best = std::move(found);
   }

@@ -7,7 +7,7 @@
 
 namespace unwrapd::pack {
 
-/// Islands on square pages of `side` cells.
+/// Islands on pages of `side` columns of cells.
 struct CellPacking {
   Arrangement arrangement;  ///< all rotations are chosen
   std::vector<CellPlace> spots;
@@ -30,12 +30,18 @@ std::vector<CellPacking> smallest_page(BottomLeftPlacer& placer,
                                        const std::vector<Arrangement>& starts,
                                        const AnnealRules& rules, Budget& budget);
 
-/// The same for several pages of one side.
-CellPacking smallest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
-                           int page_count, Budget& budget);
+/// Several pages of one shape.
+struct PagesWanted {
+  int count = 1;
+  double ratio = 1;  ///< of a page's height to its width
+};
 
-/// Searches for as few pages of this side as possible, at most page_count; side 0 if the islands do
-/// not fit.
+/// The same for several pages of one size.
+CellPacking smallest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
+                           const PagesWanted& pages, Budget& budget);
+
+/// Searches for as few pages of this size as possible, at most sheet.pages; side 0 if the islands
+/// do not fit.
 CellPacking fewest_pages(BottomLeftPlacer& placer, const std::vector<Arrangement>& starts,
                          const PageCells& sheet, Budget& budget);
 

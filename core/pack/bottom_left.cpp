@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/base/cancel.hpp"
+#include "core/pack/page_grid.hpp"
 #include "core/pack/placement_hints.hpp"
 
 namespace unwrapd::pack {
@@ -71,14 +72,14 @@ const Mask& BottomLeftPlacer::mask_of(std::size_t island, int turn) {
   return *mask;
 }
 
-int BottomLeftPlacer::least_side(const std::stop_token& stop) {
+int BottomLeftPlacer::least_side(const std::stop_token& stop, double ratio) {
   int side = 1;
   for (std::size_t k = 0; k < size(); ++k) {
     throw_if_cancelled(stop);
     int own = std::numeric_limits<int>::max();
     for (int turn = 0; turn < turns_; ++turn) {
       const Mask& mask = mask_of(k, turn);
-      own = std::min(own, std::max(mask.width, mask.touched.height()));
+      own = std::min(own, std::max(mask.width, columns_for(mask.touched.height(), ratio)));
     }
     side = std::max(side, own);
   }

@@ -73,8 +73,9 @@ class BottomLeftPlacer {
   [[nodiscard]] Turn turn_of(std::size_t island, int turn) const;
   const Mask& mask_of(std::size_t island, int turn);
 
-  /// The least side of a page on which every island fits alone. Throws Error{cancelled}.
-  int least_side(const std::stop_token& stop);
+  /// The least columns of a page, of this ratio of height to width, on which every island fits
+  /// alone. Throws Error{cancelled}.
+  int least_side(const std::stop_token& stop, double ratio = 1);
 
  private:
   struct Page;

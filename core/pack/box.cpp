@@ -93,13 +93,17 @@ Box smallest_box(std::span<const Vec2> points) {
   return box_along(points, hull.size() < 2 ? Vec2(Vec2::UnitX()) : best_direction(hull));
 }
 
-Box squarest_box(std::span<const Vec2> points) {
+Box squarest_box(std::span<const Vec2> points, double aspect) {
+  const auto page_of = [&](const Box& box) {  // its width
+    const Vec2& size = box.size;
+    return std::min(std::max(size.x(), size.y() / aspect), std::max(size.y(), size.x() / aspect));
+  };
   Box best = smallest_box(points);
   const UvMap hull = convex_hull({points.begin(), points.end()});
   for (int k = 0; k < kSquareAngles; ++k) {
     const double angle = k * std::numbers::pi / 2 / kSquareAngles;
     const Box box = box_along(hull, {std::cos(angle), std::sin(angle)});
-    if (box.size.maxCoeff() < best.size.maxCoeff() * kSquareGain) best = box;
+    if (page_of(box) < page_of(best) * kSquareGain) best = box;
   }
   return best;
 }

@@ -29,9 +29,10 @@ UvMap convex_hull(UvMap points);
 /// The bounding rectangle of least area; one side of it lies on a side of the hull.
 Box smallest_box(std::span<const Vec2> points);
 
-/// The bounding rectangle whose longer side is least, to half a degree of its angle. A point set
-/// that has the page to itself is rotated to it.
-Box squarest_box(std::span<const Vec2> points);
+/// The bounding rectangle whose longer side is least, to half a degree of its angle; on a page that
+/// is not square, the one for which the page is least. aspect: of the page's height to its width. A
+/// point set that has the page to itself is rotated to it.
+Box squarest_box(std::span<const Vec2> points, double aspect = 1);
 
 /// The bounding rectangle along or across most of the sides (segments), if at least half of their
 /// length has these directions: shapes with right angles fit into each other that way. Else empty.

@@ -17,6 +17,7 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/splitmix64.hpp"
+#include "core/pack/page_grid.hpp"
 #include "core/pack/row_prefix_sums.hpp"
 
 namespace unwrapd::pack {
@@ -36,7 +37,7 @@ struct Place {
   std::int32_t overlap = RowPrefixSums::kTooMuch;  ///< weighted
 };
 
-/// All islands on one page of a given side, which may overlap.
+/// All islands on one page of a given size, which may overlap.
 class Page {
  public:
   Page(BottomLeftPlacer& placer, Budget& budget, const CompactRules& rules)
@@ -50,6 +51,7 @@ class Page {
   /// Moves the islands into the page of `side` cells and apart; false if some still overlap.
   bool separate(std::vector<CellPlace>& spots, int side) {
     side_ = side;
+    rows_ = rows_of(side, rules_.ratio);
     spots_ = spots;
     std::ranges::fill(weight_, kLeastWeight);
     for (std::size_t k = 0; k < count_; ++k)
@@ -89,7 +91,7 @@ class Page {
   const Mask& mask(std::size_t k) { return placer_.mask_of(k, spots_[k].turn); }
 
   [[nodiscard]] bool has_room(const Mask& mask) const {
-    return mask.width <= side_ && mask.touched.height() <= side_;
+    return mask.width <= side_ && mask.touched.height() <= rows_;
   }
 
   bool pull_inside(std::size_t k) {
@@ -98,7 +100,7 @@ class Page {
     for (int t = 0; t < turns && !has_room(mask(k)); ++t) spot.turn = (spot.turn + 1) % turns;
     if (!has_room(mask(k))) return false;
     spot.x = std::min(spot.x, side_ - mask(k).width);
-    spot.y = std::min(spot.y, side_ - mask(k).touched.height());
+    spot.y = std::min(spot.y, rows_ - mask(k).touched.height());
     return true;
   }
 
@@ -154,9 +156,9 @@ class Page {
 
   /// The possible positions of a mask's lower left cell.
   [[nodiscard]] CellWindow places(const Mask& mask, const CellPlace& from) const {
-    const int reach = rules_.reach > 0 ? rules_.reach : side_;
+    const int reach = rules_.reach > 0 ? rules_.reach : std::max(side_, rows_);
     return {std::max(0, from.x - reach), std::min(side_ - mask.width, from.x + reach),
-            std::max(0, from.y - reach), std::min(side_ - mask.touched.height(), from.y + reach)};
+            std::max(0, from.y - reach), std::min(rows_ - mask.touched.height(), from.y + reach)};
   }
 
   /// Searches the places of a column from y_begin to y_last.
@@ -228,7 +230,7 @@ class Page {
   /// All cells that island k can come near to.
   CellWindow window_of(std::size_t k) {
     const int margin = mask(k).margin;
-    if (rules_.reach == 0) return {-margin, side_ + margin, -margin, side_ + margin};
+    if (rules_.reach == 0) return {-margin, side_ + margin, -margin, rows_ + margin};
     const int turns = placer_.turns(), turn = spots_[k].turn;
     int width = 0, height = 0;
     for (const int t : {turn, (turn + 1) % turns, (turn + turns - 1) % turns}) {
@@ -240,14 +242,14 @@ class Page {
     return {std::max(0, spot.x - rules_.reach) - margin,
             std::min(side_, spot.x + rules_.reach + width) + margin,
             std::max(0, spot.y - rules_.reach) - margin,
-            std::min(side_, spot.y + rules_.reach + height) + margin};
+            std::min(rows_, spot.y + rules_.reach + height) + margin};
   }
 
   BottomLeftPlacer& placer_;
   Budget& budget_;
   const CompactRules& rules_;
   std::size_t count_;
-  int side_ = 0;
+  int side_ = 0, rows_ = 0;
   std::vector<CellPlace> spots_;
   std::vector<int> weight_, overlap_;  ///< of pairs of islands
   RowPrefixSums table_;                ///< of all islands but the one that moves

@@ -6,12 +6,13 @@
 namespace unwrapd::pack {
 
 struct CompactRules {
-  int side = 0;  ///< cells of the first page
+  int side = 0;  ///< columns of cells of the first page
   int reach =
       0;  ///< cells that an island may move at once, each way; 0: anywhere, with any rotation
   int step = 1;      ///< cells by which the page shrinks after a success
   int failures = 1;  ///< ends after this many failures in a row
-  int enough = 0;    ///< cells a side; a page no larger also ends it
+  int enough = 0;    ///< columns; a page no larger also ends it
+  double ratio = 1;  ///< of a page's height to its width
 };
 
 /// from: one page of any side. It is scaled to the first page, and enlarged until the islands do

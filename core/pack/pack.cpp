@@ -47,7 +47,7 @@ class Packer {
         shares_(shares_of(outlines)),
         page_(page),
         padding_(kept_padding(page, outlines.size())),
-        grid_{padding_ / page.resolution},
+        grid_{padding_ / page.resolution, page.aspect()},
         executor_(executor),
         stop_(executor.stop()) {}
 
@@ -88,7 +88,7 @@ class Packer {
 
   /// Packs at the given density, on as few pages as possible.
   PackResult at_density(double texels_per_unit) {
-    const int side = grid_.tight_side(fine_cells(placer_.size()));
+    const int side = fine_side();
     const double page_per_unit = texels_per_unit / page_.resolution;
     if (is_too_large(page_per_unit))
       refuse(
@@ -96,8 +96,9 @@ class Packer {
           "resolution.");
     placer_.set_scale(page_per_unit / grid_.cell(side), grid_.padding(side));
     Budget budget{work(kFineWork), stop_};
-    const CellPacking found = fewest_pages(placer_, usual_arrangements(placer_),
-                                           {side, side, page_.packing.max_pages}, budget);
+    const CellPacking found =
+        fewest_pages(placer_, usual_arrangements(placer_),
+                     {side, rows_of(side, grid_.ratio()), page_.packing.max_pages}, budget);
     if (found.side == 0)
       refuse(
           "The islands at this density do not fit on the pages; raise max_pages or resolution, or "
@@ -110,12 +111,19 @@ class Packer {
     throw Error(ErrorCode::does_not_fit, message, "/texels_per_unit");
   }
 
+  /// Columns of the final grid.
+  [[nodiscard]] int fine_side() const {
+    return grid_.tight_side(grid_.columns(fine_cells(placer_.size())));
+  }
+
   /// Tested before any island is rasterized, which would need too many cells. The smallest box
   /// contains a square of its shorter side; an island cannot fit if that square does not.
   [[nodiscard]] bool is_too_large(double page_per_unit) const {
     for (std::size_t k = 0; k < placer_.size(); ++k) {
       const Vec2 size = page_per_unit * placer_.box(k).size;
-      if (size.minCoeff() > 1 || size.maxCoeff() > std::sqrt(2.0)) return true;
+      if (size.minCoeff() > std::min(1.0, grid_.aspect) ||
+          size.maxCoeff() > std::sqrt(1 + grid_.aspect * grid_.aspect))
+        return true;
     }
     return false;
   }
@@ -127,19 +135,19 @@ class Packer {
   PackResult on_several() {
     std::vector<Arrangement> starts = usual_arrangements(placer_);
     const std::size_t n = placer_.size();
-    double side = fine_cells(n);
+    double side = grid_.columns(fine_cells(n));
     double scale = usual_scale(placer_, grid_, page_.packing.max_pages, side);
     if (n > kSearched) starts.resize(1);
     for (const Level& level : kLevels) {
       if (n > kSearched) break;
-      const int cells = cells_for(n, level.per_island, level.cells);
+      const int cells = grid_.columns(cells_for(n, level.per_island, level.cells));
       const double loose = scale / side * cells;
       const CellPacking found = on_grid(starts, cells, loose, work(level.work));
       starts = {found.arrangement};
       scale = loose;
       side = found.side;
     }
-    const int fine = grid_.tight_side(fine_cells(n));
+    const int fine = fine_side();
     return to_result(on_grid_exactly(starts, fine, fine * scale / side / kSpareSide));
   }
 
@@ -148,7 +156,7 @@ class Packer {
                       std::int64_t work) {
     placer_.set_scale(cells_per_unit, grid_.padding(side));
     Budget budget{work, stop_};
-    return smallest_pages(placer_, starts, page_.packing.max_pages, budget);
+    return smallest_pages(placer_, starts, {page_.packing.max_pages, grid_.ratio()}, budget);
   }
 
   /// The same with exact padding: if the pages come out larger than `side`, the islands shrink and

@@ -1,6 +1,7 @@
 #pragma once
-// Packs islands on square pages, at one texel density, without overlaps.
+// Packs islands on pages, at one texel density, without overlaps.
 
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -13,7 +14,8 @@
 namespace unwrapd::pack {
 
 /// The position of an island: uv_page = scale * (rotation * uv) + offset. rotation is proper, so
-/// nothing is mirrored. scale is common to all islands. Page k is the square [k, k+1] x [0, 1].
+/// nothing is mirrored. scale is common to all islands. Page k is [k, k+1] x [0, aspect]: its width
+/// is the unit of length of both axes.
 struct Placement {
   double cosine = 1;
   double sine = 0;
@@ -26,10 +28,15 @@ struct Placement {
 };
 
 struct PageOptions {
-  int resolution = 1024;  ///< texels a side
+  int resolution = 1024;  ///< texels along U, and along V unless there is a height
   int padding = 2;        ///< texels between islands and to a page's border
   Packing packing = {};
   Effort effort = Effort::balanced;
+  std::optional<int> height = {};  ///< texels along V
+
+  [[nodiscard]] double aspect() const {
+    return static_cast<double>(height.value_or(resolution)) / resolution;
+  }
 };
 
 struct PackResult {
@@ -42,7 +49,7 @@ struct PackResult {
 /// Places the islands on the page in their smallest rectangles, at least the padding apart and from
 /// the border. Each is a UV map of at least one point, at its relative density (UV area = 3D area).
 /// Deterministic; near-linear in the number of islands. If the islands are so many that padding
-/// would take more than half of the page's side, the padding is reduced to that.
+/// would take more than half of a side of the page, the padding is reduced to that.
 std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOptions& page);
 
 /// The same for outlines, turned as packing.rotation allows.

@@ -81,26 +81,36 @@ class FewPacker {
   }
 
  private:
+  /// The same on the page's own shape.
+  [[nodiscard]] Squeeze on_page(Squeeze squeeze, int side) const {
+    squeeze.rules.side = side;
+    squeeze.rules.ratio = grid_.ratio();
+    return squeeze;
+  }
+
   Attempt compact_from(const Try& own) const {
     Attempt tried{BottomLeftPlacer(islands_, own.turns, rotation_)};
     tried.found = start(*tried.placer, own.rules);
-    const double scale = tried.placer->scale() * kFirst.rules.side / tried.found.side;
-    tried.found = compact_on(kFirst, tried, scale);
+    const Squeeze first = on_page(kFirst, grid_.columns(kFirst.rules.side));
+    const double scale = tried.placer->scale() * first.rules.side / tried.found.side;
+    tried.found = compact_on(first, tried, scale);
     return tried;
   }
 
   /// Places twice, the second time at the scale at which the islands should just fit.
   CellPacking start(BottomLeftPlacer& placer, const TouchingRules& rules) const {
-    const int side = kFirst.rules.side;
+    const int side = grid_.columns(kFirst.rules.side);
+    const double ratio = grid_.ratio();
     TouchingPage page;
-    double scale = side * std::sqrt(kUsualFill / box_area(placer));
+    double scale = side * std::sqrt(kUsualFill * ratio / box_area(placer));
     for (; page.found.side == 0; scale *= kSmaller) {
       placer.set_scale(scale, 0);
-      page = place_by_touching_perimeter(placer, side, rules, executor_.stop());
+      page = place_by_touching_perimeter(placer, side, rules, executor_.stop(), ratio);
     }
     const double first = placer.scale();
-    placer.set_scale(first * std::sqrt(double(side) / page.height), 0);
-    const TouchingPage again = place_by_touching_perimeter(placer, side, rules, executor_.stop());
+    placer.set_scale(first * std::sqrt(ratio * side / page.height), 0);
+    const TouchingPage again =
+        place_by_touching_perimeter(placer, side, rules, executor_.stop(), ratio);
     if (again.found.side > 0 && placer.scale() / again.found.side > first / page.found.side)
       return again.found;
     placer.set_scale(first, 0);
@@ -110,8 +120,7 @@ class FewPacker {
   Attempt finish(Attempt tried) const {
     for (const Squeeze& grid : kGrids) {
       if (tried.found.side == 0) return tried;
-      Squeeze own = grid;
-      own.rules.side = grid_.tight_side(grid.rules.side);
+      const Squeeze own = on_page(grid, grid_.tight_side(grid_.columns(grid.rules.side)));
       const double scale = tried.placer->scale() * own.rules.side / tried.found.side;
       tried.found = compact_on(own, tried, scale);
     }

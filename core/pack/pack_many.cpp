@@ -60,7 +60,12 @@ class SnugPacker {
 
  private:
   [[nodiscard]] int rough_side() const {
-    return grid_.tight_side(cells_for(placer_.size(), kRoughPerIsland, kRoughCells));
+    return grid_.tight_side(grid_.columns(cells_for(placer_.size(), kRoughPerIsland, kRoughCells)));
+  }
+
+  /// The factor of the scale at which a strip would be as high as the page.
+  [[nodiscard]] double to_page(int side, const TouchingPage& page) const {
+    return std::sqrt(grid_.ratio() * side / page.height);
   }
 
   [[nodiscard]] RatedRules rate(const TouchingRules& rules) const {
@@ -68,21 +73,22 @@ class SnugPacker {
     BottomLeftPlacer placer = placer_;
     for (double scale = usual_scale(placer, grid_, 1, side);; scale *= kSmallerTrial) {
       placer.set_scale(scale, grid_.padding(side));
-      const TouchingPage page = place_by_touching_perimeter(placer, side, rules, executor_.stop());
-      if (page.found.side > 0) return {rules, scale / side * std::sqrt(double(side) / page.height)};
+      const TouchingPage page =
+          place_by_touching_perimeter(placer, side, rules, executor_.stop(), grid_.ratio());
+      if (page.found.side > 0) return {rules, scale / side * to_page(side, page)};
     }
   }
 
   /// On the fine grid: the largest scale tried at which the strip is no higher than wide.
   [[nodiscard]] std::vector<Placement> largest_fit(const RatedRules& rated) const {
-    const int side = grid_.tight_side(fine_cells(placer_.size()));
+    const int side = grid_.tight_side(grid_.columns(fine_cells(placer_.size())));
     BottomLeftPlacer placer = placer_;
     std::vector<Placement> best;
     double scale = extent_.first * rated.scale * side, largest = 0, step = kTrialStep;
     for (int tries = 0; tries < extent_.scales || best.empty(); ++tries) {
       placer.set_scale(scale, grid_.padding(side));
       const TouchingPage page =
-          place_by_touching_perimeter(placer, side, rated.rules, executor_.stop());
+          place_by_touching_perimeter(placer, side, rated.rules, executor_.stop(), grid_.ratio());
       const bool fits = page.found.side == side;
       if (fits && scale > largest) {
         largest = scale;
@@ -91,7 +97,7 @@ class SnugPacker {
       if (page.found.side == 0)
         scale *= kSmallerTrial;
       else
-        scale *= std::sqrt(double(side) / page.height) * (fits ? step : 1 / step);
+        scale *= to_page(side, page) * (fits ? step : 1 / step);
       if (!fits) step *= kTrialStep;
     }
     return best;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/pack/box.hpp"
@@ -20,15 +21,16 @@ constexpr double kScaleStep = 0.99;          // between one attempt and the next
 constexpr int kRefinements = 12;             // bisections after a scale fits
 constexpr double kSlack = 1 - 1e-9;          // of the scale, for rounding
 
-/// A square in texels, without the padding at its left and lower border.
+/// In texels, without the padding at its left and lower border.
 struct Page {
-  double side = 0;
+  Vec2 size = Vec2::Zero();
   double padding = 0;
 };
 
 Page page_of(const PageOptions& options, std::size_t island_count) {
   const double padding = std::max(kept_padding(options, island_count), kLeastPadding);
-  return {options.resolution - padding, padding};
+  const double height = options.height.value_or(options.resolution);
+  return {Vec2(options.resolution - padding, height - padding), padding};
 }
 
 /// Calls place(island, lower left corner in texels) row by row; false if the page is full. order:
@@ -39,13 +41,13 @@ bool fill_rows(const std::vector<Box>& boxes, const std::vector<Index>& order, d
   double x = 0, y = 0, row_height = 0;
   for (Index k : order) {
     const Vec2 need = scale * boxes[k].size + Vec2::Constant(page.padding);
-    if (x + need.x() > page.side) {
+    if (x + need.x() > page.size.x()) {
       x = 0;
       y += row_height;
       row_height = 0;
     }
     row_height = std::max(row_height, need.y());
-    if (x + need.x() > page.side || y + row_height > page.side) return false;
+    if (x + need.x() > page.size.x() || y + row_height > page.size.y()) return false;
     place(k, Vec2(x + page.padding, y + page.padding));
     x += need.x();
   }
@@ -64,14 +66,18 @@ bool fits(const Layout& layout, double scale, const Page& page) {
 
 /// A scale that this page can hold barely or not at all.
 double scale_bound(const std::vector<Box>& boxes, const Page& page) {
-  double area = 0, longest = 0;
+  double area = 0;
+  Vec2 longest = Vec2::Zero();
   for (const Box& box : boxes) {
     area += box.size.x() * box.size.y();
-    longest = std::max(longest, box.size.maxCoeff());
+    longest = longest.cwiseMax(box.size);
   }
-  const double room = page.side - page.padding;
-  if (longest == 0) return 1;  // islands of no extent fit at any scale
-  return area > 0 ? std::min(page.side / std::sqrt(area), room / longest) : room / longest;
+  if (longest == Vec2::Zero()) return 1;  // islands of no extent fit at any scale
+  double bound = area > 0 ? std::sqrt(page.size.prod()) / std::sqrt(area)
+                          : std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 2; ++i)
+    if (longest[i] > 0) bound = std::min(bound, (page.size[i] - page.padding) / longest[i]);
+  return bound;
 }
 
 /// The largest scale at which the rows fit, among those tried.
@@ -124,8 +130,11 @@ std::vector<Box> orient(std::vector<Box> boxes, bool standing) {
 
 /// At most half of the page is padding; more would leave the islands no room.
 double kept_padding(const PageOptions& page, std::size_t island_count) {
-  const double gaps = std::ceil(std::sqrt(static_cast<double>(island_count))) + 1;
-  return std::min<double>(page.padding, page.resolution / (2 * gaps));
+  const auto count = static_cast<double>(island_count);
+  const double columns = std::ceil(std::sqrt(count / page.aspect())) + 1;
+  const double rows = std::ceil(std::sqrt(count * page.aspect())) + 1;
+  return std::min({static_cast<double>(page.padding), page.resolution / (2 * columns),
+                   page.height.value_or(page.resolution) / (2 * rows)});
 }
 
 std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOptions& options) {
@@ -133,7 +142,7 @@ std::vector<Placement> pack_in_rows(std::span<const UvMap> islands, const PageOp
   if (islands.empty()) return {};
   std::vector<Box> boxes(islands.size());
   std::transform(islands.begin(), islands.end(), boxes.begin(), [&](const UvMap& island) {
-    return islands.size() == 1 ? squarest_box(island) : smallest_box(island);
+    return islands.size() == 1 ? squarest_box(island, options.aspect()) : smallest_box(island);
   });
   return pack_boxes({orient(boxes, false), orient(boxes, true)}, options);
 }

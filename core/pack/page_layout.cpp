@@ -30,8 +30,10 @@ double usual_scale(const BottomLeftPlacer& placer, const PageGrid& grid, int pag
   double half = 0;  // of the equation area s^2 + 2 half s + all margin^2 = room
   for (std::size_t k = 0; k < placer.size(); ++k) half += placer.box(k).size.sum() * margin / 2;
   const double area = box_area(placer);
-  const double room = kFullBoxes * pages * side * side - all * margin * margin;
-  return (std::sqrt(half * half + area * std::max(room, 0.2 * side * side)) - half) / area;
+  const double ratio = grid.ratio();
+  const double room = kFullBoxes * pages * side * side * ratio - all * margin * margin;
+  const double least = 0.2 * side * side * ratio;
+  return (std::sqrt(half * half + area * std::max(room, least)) - half) / area;
 }
 
 std::vector<Placement> placements_of(const CellPacking& found, BottomLeftPlacer& placer,

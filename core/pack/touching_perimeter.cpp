@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "core/base/cancel.hpp"
+#include "core/pack/page_grid.hpp"
 #include "core/pack/placement_hints.hpp"
 
 namespace unwrapd::pack {
@@ -22,7 +23,7 @@ namespace {
 
 constexpr int kTouch = 3;  // cells beyond the padding: nearer islands touch
 constexpr double kChoice = 100, kChoices = 40'000;  // islands to choose from; choices in all
-constexpr double kHighest = 1.5;                    // in widths of the strip
+constexpr double kHighest = 1.5;                    // in heights of the page
 
 /// The cells around an island, relative to its lower left one, in which others touch it.
 std::vector<Cell> feelers_of(const Mask& mask) {
@@ -56,13 +57,15 @@ struct Candidate {
 
 class Snug {
  public:
-  Snug(BottomLeftPlacer& placer, int width, const TouchingRules& rules, const std::stop_token& stop)
+  Snug(BottomLeftPlacer& placer, int width, const TouchingRules& rules, const std::stop_token& stop,
+       double ratio)
       : placer_(placer),
         rules_(rules),
         stop_(stop),
+        ratio_(ratio),
         turns_(static_cast<std::size_t>(placer.turns())),
         margin_(placer.mask_of(0, 0).margin),
-        page_(width, static_cast<int>(kHighest * width), margin_, longest_run(width)),
+        page_(width, static_cast<int>(kHighest * ratio * width), margin_, longest_run(width)),
         candidates_(placer.size() * turns_) {}
 
   TouchingPage run() {
@@ -81,7 +84,7 @@ class Snug {
       forget_around(*best, choices);
       rest.erase(std::ranges::find(rest, *best / turns_));
     }
-    laid.found.side = std::max(page_.width(), laid.height);
+    laid.found.side = std::max(page_.width(), columns_for(laid.height, ratio_));
     return laid;
   }
 
@@ -183,6 +186,7 @@ class Snug {
   BottomLeftPlacer& placer_;
   TouchingRules rules_;
   const std::stop_token& stop_;
+  double ratio_;  ///< of the page's height to its width
   std::size_t turns_;
   int margin_;
   Occupancy page_;
@@ -195,8 +199,9 @@ class Snug {
 }  // namespace
 
 TouchingPage place_by_touching_perimeter(BottomLeftPlacer& placer, int width,
-                                         const TouchingRules& rules, const std::stop_token& stop) {
-  return Snug(placer, width, rules, stop).run();
+                                         const TouchingRules& rules, const std::stop_token& stop,
+                                         double ratio) {
+  return Snug(placer, width, rules, stop, ratio).run();
 }
 
 }  // namespace unwrapd::pack

@@ -19,10 +19,11 @@ struct TouchingPage {
   int height = 0;          ///< cells: height of the strip
 };
 
-/// Places the islands in a strip of this width, cells, and at most half as high again. The next
-/// island is one of the 100 largest left (fewer if there are more than 400) with any rotation, each
-/// at its lowest free place. Throws Error{cancelled}.
+/// Places the islands in a strip of this width, cells, at most half as high again as a page of
+/// this ratio of height to width. The next island is one of the 100 largest left (fewer if there
+/// are more than 400) with any rotation, each at its lowest free place. Throws Error{cancelled}.
 TouchingPage place_by_touching_perimeter(BottomLeftPlacer& placer, int width,
-                                         const TouchingRules& rules, const std::stop_token& stop);
+                                         const TouchingRules& rules, const std::stop_token& stop,
+                                         double ratio = 1);
 
 }  // namespace unwrapd::pack

@@ -32,15 +32,17 @@ std::string kept_energy_of(Method method) {
 }
 
 /// Places every chart on the page; the maps become page UVs.
-void pack_free_charts(Layout& layout, const UnwrapOptions& options, Executor& executor) {
-  std::vector<charts::Outline> outlines;
-  std::vector<UvMap*> maps;
+void pack_free_charts(Layout& layout, std::span<const Surface> surfaces,
+                      const UnwrapOptions& options, Executor& executor) {
+  IslandsToPlace islands;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
-      outlines.push_back(charts::outline_of(*layout.charts[s][k], layout.islands[s][k]));
-      maps.push_back(&layout.islands[s][k]);
+      const charts::Chart& chart = *layout.charts[s][k];
+      UvMap& map = layout.islands[s][k];
+      islands.add(charts::outline_of(chart, map), map,
+                  group_of(surfaces[s], chart.face_source.front(), options.packing.group));
     }
-  place_islands(outlines, options, executor, maps, layout.report);
+  place_islands(islands, options, executor, layout.report);
 }
 
 /// Notes how many charts the constraints put beyond the page.
@@ -154,11 +156,13 @@ double border_of(const Layout& layout) {
   return length;
 }
 
-void pack_charts(Layout& layout, const UnwrapOptions& options, Executor& executor) {
-  if (options.constraints.empty())
-    pack_free_charts(layout, options, executor);
-  else
-    note_charts_beyond(layout);
+void pack_charts(Layout& layout, std::span<const Surface> surfaces, const UnwrapOptions& options,
+                 Executor& executor) {
+  const bool are_placed = !options.constraints.empty();
+  if (!are_placed) pack_free_charts(layout, surfaces, options, executor);
+  for (std::vector<UvMap>& own : layout.islands)
+    for (UvMap& map : own) to_uvs(map, options.page_size());
+  if (are_placed) note_charts_beyond(layout);
 }
 
 void quantize_maps(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop) {
@@ -180,9 +184,10 @@ void measure_maps(Layout& layout, const UnwrapOptions& options, Executor& execut
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
       const TriMesh& mesh = layout.charts[s][k]->mesh;
-      measure::DistortionSums own =
-          measure::distortion_sums(measure::flatten(mesh.positions, mesh.faces, executor),
-                                   mesh.faces, layout.islands[s][k], executor);
+      UvMap map = layout.islands[s][k];
+      to_page_widths(map, options.page_size());
+      measure::DistortionSums own = measure::distortion_sums(
+          measure::flatten(mesh.positions, mesh.faces, executor), mesh.faces, map, executor);
       own.flipped = report->distortion.flipped;  // by exact signs
       report->area = own.area;
       report->distortion = measure::distortion(own);
@@ -190,8 +195,9 @@ void measure_maps(Layout& layout, const UnwrapOptions& options, Executor& execut
     }
   const measure::DistortionSums& sums = layout.sums;
   layout.report.distortion = measure::distortion(sums);
-  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * options.resolution;
-  if (!options.constraints.empty()) layout.report.fill = sums.uv_area;
+  const PageSize page = options.page_size();
+  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * page.width;
+  if (!options.constraints.empty()) layout.report.fill = sums.uv_area / page.aspect();
 }
 
 Unwrapped assemble_surfaces(std::span<const Surface> surfaces, Layout layout,

@@ -42,8 +42,9 @@ double border_of(const Prepared& all);
 double border_of(const Layout& layout);
 
 /// Packs all charts; their maps become page UVs. Charts under position constraints stay in place.
-/// Throws Error{does_not_fit, cancelled}.
-void pack_charts(Layout& layout, const UnwrapOptions& options, Executor& executor);
+/// surfaces: those of the layout. Throws Error{does_not_fit, cancelled}.
+void pack_charts(Layout& layout, std::span<const Surface> surfaces, const UnwrapOptions& options,
+                 Executor& executor);
 
 /// Rounds the page UVs to the numbers that are written, and keeps the guarantee in them. Throws
 /// Error{guarantee_failed, cancelled}.

@@ -2,9 +2,12 @@
 
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <string>
+#include <utility>
 
-#include "core/pack/pack.hpp"
+#include "core/base/error.hpp"
+#include "core/pack/pack_groups.hpp"
 
 namespace unwrapd::pipeline {
 namespace {
@@ -35,23 +38,72 @@ void note_stacks(const pack::PackResult& packed, Report& report) {
                                         " islands are stacked on another of the same shape."});
 }
 
+/// The page of each island: that of its group, in the order in which groups occur. Throws
+/// Error{does_not_fit}.
+std::vector<Index> pages_of(const std::vector<std::string>& groups, Report& report) {
+  std::map<std::string, Index> known;
+  std::vector<Index> pages;
+  for (const std::string& group : groups) {
+    const auto [at, is_new] = known.try_emplace(group, static_cast<Index>(known.size()));
+    if (is_new) report.page_names.push_back(group);
+    pages.push_back(at->second);
+  }
+  if (known.size() > static_cast<std::size_t>(kMaxPages))
+    throw Error(ErrorCode::does_not_fit,
+                "group asks for " + std::to_string(known.size()) +
+                    " pages, and there are at most " + std::to_string(kMaxPages) +
+                    "; unwrap fewer of the asset's materials or primitives at once, or leave out "
+                    "group",
+                "/group");
+  return pages;
+}
+
+pack::PackResult pack_islands(const IslandsToPlace& islands, const UnwrapOptions& options,
+                              Executor& executor, Report& report) {
+  const PageSize size = options.page_size();
+  const pack::PageOptions page{size.width, options.padding, options.packing, options.effort,
+                               size.height};
+  if (options.packing.group == PageGroup::scene)
+    return pack::pack(islands.outlines, page, executor);
+  return pack::pack_groups(islands.outlines, pages_of(islands.groups, report), page, executor);
+}
+
 }  // namespace
 
-void place_islands(std::span<const charts::Outline> outlines, const UnwrapOptions& options,
-                   Executor& executor, std::span<UvMap* const> maps, Report& report) {
-  const pack::PackResult packed = pack::pack(
-      outlines, {options.resolution, options.padding, options.packing, options.effort}, executor);
+void IslandsToPlace::add(charts::Outline outline, UvMap& map, std::string group) {
+  outlines.push_back(std::move(outline));
+  maps.push_back(&map);
+  groups.push_back(std::move(group));
+}
+
+std::string group_of(const Surface& surface, Index face, PageGroup group) {
+  if (group == PageGroup::mesh) return surface.name;
+  if (group == PageGroup::scene || surface.materials.empty()) return {};
+  return surface.materials[static_cast<std::size_t>(surface.part[static_cast<std::size_t>(face)])];
+}
+
+void place_islands(const IslandsToPlace& islands, const UnwrapOptions& options, Executor& executor,
+                   Report& report) {
+  const pack::PackResult packed = pack_islands(islands, options, executor, report);
   double covered = 0;
-  for (std::size_t k = 0; k < maps.size(); ++k) {
+  for (std::size_t k = 0; k < islands.maps.size(); ++k) {
     const pack::Placement& placement = packed.placements[k];
-    for (Vec2& uv : *maps[k]) uv = placement(uv);
+    for (Vec2& uv : *islands.maps[k]) uv = placement(uv);
     if (packed.is_stacked.empty() || packed.is_stacked[k] == 0)
-      covered += area_of(outlines[k]) * placement.scale * placement.scale;
+      covered += area_of(islands.outlines[k]) * placement.scale * placement.scale;
   }
   report.pages = packed.pages;
-  report.fill = covered / packed.pages;
+  report.fill = covered / packed.pages / options.page_size().aspect();
   note_padding(packed, options.padding, report);
   note_stacks(packed, report);
+}
+
+void to_uvs(UvMap& map, const PageSize& page) {
+  for (Vec2& uv : map) uv.y() /= page.aspect();
+}
+
+void to_page_widths(UvMap& map, const PageSize& page) {
+  for (Vec2& uv : map) uv.y() *= page.aspect();
 }
 
 }  // namespace unwrapd::pipeline

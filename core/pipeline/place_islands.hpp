@@ -1,7 +1,7 @@
 #pragma once
 // Islands onto their pages, and what the report says of it.
 
-#include <span>
+#include <string>
 #include <vector>
 
 #include "core/base/executor.hpp"
@@ -11,10 +11,26 @@
 
 namespace unwrapd::pipeline {
 
-/// Packs the islands; maps (one an island, in the units of its outline) become page UVs. Fills the
-/// report's fill and pages, and notes what could not be had.
+/// What shall be packed.
+struct IslandsToPlace {
+  std::vector<charts::Outline> outlines;
+  std::vector<UvMap*> maps;         ///< one an island, in the units of its outline
+  std::vector<std::string> groups;  ///< one an island: what it belongs to, see PageGroup
+
+  void add(charts::Outline outline, UvMap& map, std::string group);
+};
+
+/// The group of an island, by one of its faces.
+std::string group_of(const Surface& surface, Index face, PageGroup group);
+
+/// Packs the islands; their maps become places on the page,
+/// in units of its width. Fills the report's fill and pages, and notes what could not be had.
 /// Throws Error{does_not_fit, cancelled}.
-void place_islands(std::span<const charts::Outline> outlines, const UnwrapOptions& options,
-                   Executor& executor, std::span<UvMap* const> maps, Report& report);
+void place_islands(const IslandsToPlace& islands, const UnwrapOptions& options, Executor& executor,
+                   Report& report);
+
+/// From units of the page's width to UVs, which are 1 at its upper edge; and back.
+void to_uvs(UvMap& map, const PageSize& page);
+void to_page_widths(UvMap& map, const PageSize& page);
 
 }  // namespace unwrapd::pipeline

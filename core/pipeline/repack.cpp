@@ -58,20 +58,31 @@ void even_out(charts::UvIslands& islands) {
   }
 }
 
-void place(std::vector<charts::UvIslands>& all, const UnwrapOptions& options, Executor& executor,
-           Report& report) {
-  std::vector<charts::Outline> outlines;
-  std::vector<UvMap*> maps;
-  for (charts::UvIslands& islands : all) {
-    if (options.packing.texels_per_unit) even_out(islands);
-    for (std::size_t k = 0; k < islands.maps.size(); ++k) {
-      outlines.push_back(islands.outlines[k]);
-      maps.push_back(&islands.maps[k]);
+void widen_to_page(charts::UvIslands& islands, const PageSize& page) {
+  for (UvMap& map : islands.maps) to_page_widths(map, page);
+  for (charts::Outline& outline : islands.outlines)
+    for (auto& side : outline)
+      for (Vec2& end : side) end.y() *= page.aspect();
+}
+
+void place(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& all,
+           const UnwrapOptions& options, Executor& executor, Report& report) {
+  IslandsToPlace islands;
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    charts::UvIslands& own = all[s];
+    widen_to_page(own, options.page_size());
+    if (options.packing.texels_per_unit) even_out(own);
+    for (std::size_t k = 0; k < own.maps.size(); ++k) {
+      const Index face = own.charts.charts[k].face_source.front();
+      islands.add(own.outlines[k], own.maps[k], group_of(surfaces[s], face, options.packing.group));
     }
   }
-  place_islands(outlines, options, executor, maps, report);
+  place_islands(islands, options, executor, report);
   report.fill = std::min(report.fill, 1.0);  // faces on top of each other count each
-  for (UvMap* map : maps) guarantee::round_to_step(*map);
+  for (UvMap* map : islands.maps) {
+    to_uvs(*map, options.page_size());
+    guarantee::round_to_step(*map);
+  }
 }
 
 ChartReport report_of(const charts::Chart& chart, const measure::DistortionSums& sums,
@@ -110,7 +121,9 @@ void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIsla
     report.input.faces += charts.input.faces;
     report.input.vertices += charts.input.vertices;
     for (std::size_t k = 0; k < charts.charts.size(); ++k) {
-      const measure::DistortionSums sums = sums_of(charts.charts[k], all[s].maps[k]);
+      UvMap map = all[s].maps[k];
+      to_page_widths(map, options.page_size());
+      const measure::DistortionSums sums = sums_of(charts.charts[k], map);
       total += sums;
       report.charts.push_back(report_of(charts.charts[k], sums, s));
       for (const Index t : charts.charts[k].face_source)
@@ -122,7 +135,7 @@ void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIsla
   report.distortion = measure::distortion(total);
   if (!(total.area > 0)) return;
   report.seam_ratio = report.seam_length / std::sqrt(total.area);
-  report.texel_density = std::sqrt(total.uv_area / total.area) * options.resolution;
+  report.texel_density = std::sqrt(total.uv_area / total.area) * options.page_size().width;
 }
 
 }  // namespace
@@ -136,7 +149,7 @@ Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options
   std::vector<charts::UvIslands> all = find_islands(surfaces, progress.stop);
   Unwrapped out;
   announce(Stage::pack, 0.2);
-  place(all, options, executor, out.report);
+  place(surfaces, all, options, executor, out.report);
   announce(Stage::measure, 0.9);
   note_faces_without(all, out.report);
   measure(surfaces, all, options, out);

@@ -19,11 +19,11 @@ namespace {
 
 constexpr int kGuideIterations = 10;
 
-/// The longer side of the rectangle around the map.
-double extent(const UvMap& uv) {
+/// The rectangle around the map.
+Vec2 extent(const UvMap& uv) {
   Vec2 low = uv.front(), high = uv.front();
   for (const Vec2& u : uv) low = low.cwiseMin(u), high = high.cwiseMax(u);
-  return (high - low).maxCoeff();
+  return high - low;
 }
 
 }  // namespace
@@ -54,8 +54,10 @@ PageFrame page_frame(const UvMap& guide, const VertexConstraints& page,
                      const UnwrapOptions& options) {
   const Alignment alignment = align(guide, page);
   if (page.count() > 1) return {alignment.to, alignment.scale};
-  const double side = 1 - 2.0 * options.padding / options.resolution;
-  return {alignment.to, side / extent(guide)};
+  const PageSize page_size = options.page_size();
+  const double border = 2.0 * options.padding / page_size.width;
+  const Vec2 room(1 - border, page_size.aspect() - border);
+  return {alignment.to, room.cwiseQuotient(extent(guide)).minCoeff()};
 }
 
 ConstrainedStart constrained_on_page(const PageFrame& frame, const UvMap& guide,

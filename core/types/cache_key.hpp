@@ -94,13 +94,13 @@ inline void describe(CacheKey& key, const TriMesh& mesh) {
 }
 
 inline void describe(CacheKey& key, const Surface& surface) {
-  const auto& [mesh, part, name, corner_uv] = surface;
-  key.add(mesh).add(part).add(name).add(corner_uv);
+  const auto& [mesh, part, name, corner_uv, materials] = surface;
+  key.add(mesh).add(part).add(name).add(corner_uv).add(materials);
 }
 
 inline void describe(CacheKey& key, const SurfaceNumbers& surface) {
-  const auto& [faces, vertex_count, part, name, corner_uv] = surface;
-  key.add(faces).add(vertex_count).add(part).add(name).add(corner_uv);
+  const auto& [faces, vertex_count, part, name, corner_uv, materials] = surface;
+  key.add(faces).add(vertex_count).add(part).add(name).add(corner_uv).add(materials);
 }
 
 }  // namespace unwrapd

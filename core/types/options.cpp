@@ -1,5 +1,6 @@
 #include "core/types/options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -12,6 +13,13 @@ void require(bool holds, const std::string& what, const std::string& pointer) {
   if (!holds) throw Error(ErrorCode::invalid_option, what, pointer);
 }
 
+void require_side(int texels, const std::string& name) {
+  require(texels >= kMinResolution && texels <= kMaxResolution,
+          name + " must lie between " + std::to_string(kMinResolution) + " and " +
+              std::to_string(kMaxResolution) + " texels",
+          "/" + name);
+}
+
 /// Constraints say themselves where charts lie.
 void require_packing(const UnwrapOptions& options) {
   const Packing& packing = options.packing;
@@ -22,6 +30,10 @@ void require_packing(const UnwrapOptions& options) {
   require(is_packed || packing.max_pages == 1, placed + "max_pages", "/max_pages");
   require(is_packed || !packing.stack_identical, placed + "stack_identical", "/stack_identical");
   require(is_packed || packing.rotation == Rotation::any, placed + "rotation", "/rotation");
+  const bool is_grouped = packing.group != PageGroup::scene;
+  require(is_packed || !is_grouped, placed + "group", "/group");
+  require(packing.max_pages == 1 || !is_grouped,
+          "group determines the number of pages; leave out max_pages", "/max_pages");
   require(!packing.texels_per_unit ||
               (*packing.texels_per_unit > 0 && std::isfinite(*packing.texels_per_unit)),
           "texels_per_unit must be a finite number above 0", "/texels_per_unit");
@@ -74,10 +86,9 @@ void validate(const UnwrapOptions& options, int max_iterations) {
           "stop.max_iterations must lie " + range, "/stop/max_iterations");
   require(stop.tolerance > 0 && stop.tolerance < 1, "stop.tolerance must lie between 0 and 1",
           "/stop/tolerance");
-  require(options.resolution >= kMinResolution && options.resolution <= kMaxResolution,
-          "resolution must lie between " + std::to_string(kMinResolution) + " and " +
-              std::to_string(kMaxResolution) + " texels",
-          "/resolution");
+  require_side(options.resolution, "resolution");
+  require_side(options.page_size().width, "width");
+  require_side(options.page_size().height, "height");
   require(options.constraints.empty() || can_hold(options.method),
           "constraints need method asap, arap or hybrid", "/constraints");
   require(options.constraints.empty() || options.boundary == BoundaryShape::free,
@@ -87,11 +98,19 @@ void validate(const UnwrapOptions& options, int max_iterations) {
           "repack_only keeps the islands as they are; leave out boundary", "/boundary");
   require(!options.repack_only || options.guarantee != Guarantee::bijective,
           "repack_only keeps existing overlaps; leave out guarantee=bijective", "/guarantee");
+  const bool is_straightened = options.straighten != Straighten::off;
+  require(!is_straightened || options.constraints.empty(),
+          "constraints determine the maps; leave out straighten", "/straighten");
+  require(!is_straightened || options.boundary == BoundaryShape::free,
+          "boundary determines the shape of charts; leave out straighten", "/straighten");
+  require(!is_straightened || !options.repack_only,
+          "repack_only keeps the islands as they are; leave out straighten", "/straighten");
   require_packing(options);
   require_welding(options.welding);
   require_charts(options);
-  require(options.padding >= 0 && 4 * options.padding <= options.resolution,
-          "padding must lie between 0 and a quarter of resolution", "/padding");
+  const PageSize page = options.page_size();
+  require(options.padding >= 0 && 4 * options.padding <= std::min(page.width, page.height),
+          "padding must lie between 0 and a quarter of the page's shorter side", "/padding");
 }
 
 }  // namespace unwrapd

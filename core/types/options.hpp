@@ -55,6 +55,21 @@ struct Welding {
   std::optional<double> distance = {};  ///< mesh units, >= 0; given if and only if mode is distance
 };
 
+/// What shares a page; each further page is a UDIM tile of its own.
+enum class PageGroup { scene, material, mesh };
+
+/// Whether islands that are nearly rectangles become rectangles.
+enum class Straighten { off, automatic };  ///< automatic: "auto" on the wire
+
+/// Texels along the page's U and V.
+struct PageSize {
+  int width = 1024;
+  int height = 1024;
+
+  /// V of a page whose U is one unit long.
+  [[nodiscard]] double aspect() const { return static_cast<double>(height) / width; }
+};
+
 /// How islands go onto the page, or onto several: page k is the square [k, k+1] x [0, 1], UDIM tile
 /// 1001 + k.
 struct Packing {
@@ -62,6 +77,7 @@ struct Packing {
   int max_pages = 1;                           ///< [1, kMaxPages]; no more are taken than needed
   bool stack_identical = false;                ///< congruent islands lie on each other
   Rotation rotation = Rotation::any;           ///< of islands
+  PageGroup group = PageGroup::scene;          ///< what has a page of its own
 };
 
 struct UnwrapOptions {
@@ -78,6 +94,7 @@ struct UnwrapOptions {
   std::optional<double> max_distortion = {};   ///< D_angle and D_area of all charts, ADR 0018
   std::optional<int> max_charts = {};          ///< of the asset, where its topology allows
   int resolution = 1024;                       ///< side of the square page, texels, [16, 16384]
+  std::optional<int> width = {}, height = {};  ///< of the page, texels, in place of resolution
   int padding = 2;                             ///< gap between islands and to the border, texels
   Guarantee guarantee = Guarantee::flip_free;  ///< what holds of the UVs that are written
   RepairMethod repair = RepairMethod::untangle;
@@ -89,6 +106,11 @@ struct UnwrapOptions {
   bool repack_only = false;          ///< the surfaces' own UVs are packed anew, nothing is solved
   Effort effort = Effort::balanced;  ///< counted work of the searches, never time (ADR 0045)
   Welding welding = {};              ///< of vertices at different positions
+  Straighten straighten = Straighten::off;
+
+  [[nodiscard]] PageSize page_size() const {
+    return {width.value_or(resolution), height.value_or(resolution)};
+  }
 };
 
 /// The distortion up to which a surface that is no disk is taken apart when none is asked for.

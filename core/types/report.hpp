@@ -93,16 +93,17 @@ struct Report {
   std::vector<Repair> repairs;
   std::vector<Note> notes;  ///< what the user should know, e.g. an option without effect
   std::vector<ChartReport> charts;
-  Distortion distortion = {};             ///< over all charts, area-weighted
-  double area = 0;                        ///< 3D area of all charts
-  double seam_length = 0;                 ///< 3D length of edges whose UVs differ on both sides
-  double seam_ratio = 0;                  ///< seam_length ÷ square root of area
-  std::optional<Index> overlaps = {};     ///< of all charts, where they were counted in each
-  double fill = 0;                        ///< UV area covered by islands ÷ area of the pages
-  Index pages = 1;                        ///< that the islands take, see Packing
-  double texel_density = 0;               ///< texels per mesh unit
-  Guarantee guarantee = Guarantee::none;  ///< what holds of the UVs that are written
-  std::vector<CurvePoint> curve = {};     ///< one for each lambda of a curve, in its order
+  Distortion distortion = {};                ///< over all charts, area-weighted
+  double area = 0;                           ///< 3D area of all charts
+  double seam_length = 0;                    ///< 3D length of edges whose UVs differ on both sides
+  double seam_ratio = 0;                     ///< seam_length ÷ square root of area
+  std::optional<Index> overlaps = {};        ///< of all charts, where they were counted in each
+  double fill = 0;                           ///< UV area covered by islands ÷ area of the pages
+  Index pages = 1;                           ///< that the islands take, see Packing
+  double texel_density = 0;                  ///< texels per mesh unit
+  Guarantee guarantee = Guarantee::none;     ///< what holds of the UVs that are written
+  std::vector<CurvePoint> curve = {};        ///< one for each lambda of a curve, in its order
+  std::vector<std::string> page_names = {};  ///< what lies on each page, see PageGroup
 };
 
 /// What a job makes of its surfaces.

@@ -1,5 +1,7 @@
 #include "server/work/rendering.hpp"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "api/error_table.hpp"
@@ -20,14 +22,24 @@ namespace {
 
 using Surfaces = std::vector<UnwrappedSurface>;
 
-std::string draw(const Picture& picture, const asset::Asset& asset, const Surfaces& unwrapped,
-                 const std::stop_token& stop) {
+/// Stretches UVs to the shape of the page, whose longer side becomes 1. Returns its sides.
+Vec2 shape_page(const PageSize& page, Surfaces& unwrapped) {
+  const Vec2 sides = Vec2(page.width, page.height) / std::max(page.width, page.height);
+  if (sides != Vec2::Ones())
+    for (UnwrappedSurface& surface : unwrapped)
+      for (Vec2& uv : surface.uv) uv = uv.cwiseProduct(sides);
+  return sides;
+}
+
+std::string draw(const Picture& picture, const asset::Asset& asset, const PageSize& page,
+                 Surfaces unwrapped, const std::stop_token& stop) {
+  const figure::LayoutLook look(picture.colouring, shape_page(page, unwrapped));
   switch (picture.kind) {
     case PictureKind::layout_svg:
-      return figure::layout_svg(asset.surfaces(), unwrapped, picture.colouring, stop);
+      return figure::layout_svg(asset.surfaces(), unwrapped, look, stop);
     case PictureKind::layout_png:
       return encode_png(
-          figure::layout_image(asset.surfaces(), unwrapped, picture.colouring, picture.size, stop));
+          figure::layout_image(asset.surfaces(), unwrapped, look, picture.size, stop));
     case PictureKind::preview_png:
       return encode_png(figure::preview(asset.surfaces(), unwrapped, picture.size, stop));
   }
@@ -65,10 +77,13 @@ std::string mesh_analysis(const RenderingInput& mesh, std::size_t memory_bytes,
 std::string render(const Rendering& rendering, const RenderingInput& input,
                    const api::Limits& limits) {
   if (rendering.analysis) return mesh_analysis(input, *rendering.analysis, limits);
-  const asset::Asset asset = asset::read(input.asset, read_limits(input.record, limits),
-                                         api::parse_stored_options(input.record.options).asset);
-  const Surfaces unwrapped = decode_uvs(input.uvs);
-  if (rendering.picture) return draw(*rendering.picture, asset, unwrapped, input.asset.stop);
+  const api::JobOptions options = api::parse_stored_options(input.record.options);
+  const asset::Asset asset =
+      asset::read(input.asset, read_limits(input.record, limits), options.asset);
+  Surfaces unwrapped = decode_uvs(input.uvs);
+  if (rendering.picture)
+    return draw(*rendering.picture, asset, options.unwrap.page_size(), std::move(unwrapped),
+                input.asset.stop);
   if (rendering.format) return asset::write(asset, unwrapped, *rendering.format);
   return api::result_json(api::Json::parse(input.report), asset.surfaces(), unwrapped);
 }

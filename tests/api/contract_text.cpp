@@ -63,6 +63,11 @@ std::vector<std::string> keys(const std::vector<std::string>& path) {
   return names;
 }
 
+std::string unquoted(const std::string& text) {
+  const bool is_quoted = text.size() > 1 && text.front() == '\'' && text.back() == '\'';
+  return is_quoted ? text.substr(1, text.size() - 2) : text;
+}
+
 std::string scalar(const std::vector<std::string>& path, const std::string& key) {
   const std::vector<std::string> lines = section(path);
   for (const std::string& line : lines) {
@@ -76,9 +81,7 @@ std::vector<std::string> list(const std::vector<std::string>& path, const std::s
   const std::string line = scalar(path, key);
   if (!line.empty() && line.front() != '&') {  // an anchor names what follows
     for (const std::string& item : split(line.substr(1, line.size() - 2), ',')) {
-      const std::string text = trimmed(item);
-      const bool is_quoted = text.size() > 1 && text.front() == '\'' && text.back() == '\'';
-      items.push_back(is_quoted ? text.substr(1, text.size() - 2) : text);
+      items.push_back(unquoted(trimmed(item)));
     }
     return items;
   }

@@ -16,6 +16,9 @@ std::vector<std::string> keys(const std::vector<std::string>& path);
 /// The text after "key:" directly below a path; empty when there is none.
 std::string scalar(const std::vector<std::string>& path, const std::string& key);
 
+/// Without the quotes around it.
+std::string unquoted(const std::string& text);
+
 /// The items of a list written as "[a, b]" or as lines "- a", directly below a path.
 std::vector<std::string> list(const std::vector<std::string>& path, const std::string& key);
 

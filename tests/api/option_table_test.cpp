@@ -98,7 +98,8 @@ TEST(OptionTable, AgreesWithTheContractInTypeAndDefault) {
   for (const OptionRow& row : option_table()) {
     const std::vector<std::string> schema = schema_of(row);
     EXPECT_EQ(scalar(schema, "type"), type_of(row)) << row.name;
-    const std::string told = scalar(schema, "default"), own = text(option_default(row, {}));
+    const std::string told = unquoted(scalar(schema, "default")),
+                      own = text(option_default(row, {}));
     const bool is_number = row.type == OptionType::number || row.type == OptionType::numbers;
     if (is_number && own != "null") {
       EXPECT_EQ(std::stod(told), std::stod(own)) << row.name;

@@ -86,18 +86,18 @@ Json random_values(std::mt19937& rng) {
     const bool one = row.type == OptionType::numbers && value.is_array() && value.size() == 1;
     values[std::string(row.name)] = one ? value[0] : value;  // a query cannot tell a list of one
   }
+  if (values["group"] != "scene") values["max_pages"] = 1;
+  if (values["boundary"] != "free") values["straighten"] = "off";
   values["repack_only"] = false;  // goes with few others
   if (values["weld"] == "exact") values["weld_distance"] = nullptr;
   if (values["boundary"] != "free") values["max_distortion"] = values["max_charts"] = nullptr;
   if (values["constraints"].empty()) return values;
   values["method"] = "hybrid";
   values["boundary"] = "free";
-  values["max_distortion"] = nullptr;
-  values["max_charts"] = nullptr;
-  values["texels_per_unit"] = nullptr;
+  values["max_distortion"] = values["max_charts"] = values["texels_per_unit"] = nullptr;
   values["max_pages"] = 1;
   values["stack_identical"] = false;
-  values["rotation"] = "any";
+  values.update({{"rotation", "any"}, {"group", "scene"}, {"straighten", "off"}});
   return values;
 }
 

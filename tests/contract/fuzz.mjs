@@ -55,7 +55,7 @@ function validValue(name, schema) {
   if (name === 'constraints') return fc.array(kConstraint, {maxLength: 3});
   if (name in kLists) return fc.constantFrom([], kLists[name]);
   if (has(schema, 'boolean')) return fc.boolean();
-  const bounds = {min: schema.minimum, max: Math.min(schema.maximum, name === 'resolution' ? 4096 : 1e6)};
+  const bounds = {min: schema.minimum, max: Math.min(schema.maximum, ['resolution', 'width', 'height'].includes(name) ? 4096 : 1e6)};
   const number = has(schema, 'integer') ? fc.integer(bounds) : fc.double({...bounds, noNaN: true});
   return has(schema, 'null') ? fc.option(number) : number;
 }
@@ -90,13 +90,17 @@ function someOptions(properties) {
 function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary = 'free',
                      constraints = [], repack_only = false, texels_per_unit = null, max_pages = 1,
                      stack_identical = false, max_distortion = null, guarantee = 'flip_free',
-                     rotation = 'any'}) {
+                     rotation = 'any', group = 'scene', width = null, height = null,
+                     straighten = 'off'}) {
   const free = boundary === 'free';
   const unpacked = !repack_only && texels_per_unit === null && max_pages === 1 &&
-      !stack_identical && rotation === 'any';
+      !stack_identical && rotation === 'any' && group === 'scene';
   const held = ['asap', 'arap', 'hybrid'].includes(method) && free && unpacked;
   const loose = constraints.length === 0;
-  return 4 * padding <= resolution && (loose || held) && (free || !repack_only) &&
+  const shorter = Math.min(width ?? resolution, height ?? resolution);
+  return 4 * padding <= shorter && (max_pages === 1 || group === 'scene') &&
+      (straighten === 'off' || (loose && free && !repack_only)) &&
+      (loose || held) && (free || !repack_only) &&
       (guarantee !== 'bijective' || !repack_only) &&
       (max_distortion === null || (loose && free));
 }

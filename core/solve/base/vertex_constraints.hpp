@@ -54,6 +54,13 @@ inline linear::FreeVertices free_vertices(std::size_t vertex_count,
   return linear::number_free(fixed_vertices(vertex_count, constraints));
 }
 
+/// Positions with their V times this: from UVs to units of the page's width.
+inline VertexConstraints stretched_v(VertexConstraints constraints, double aspect) {
+  for (HardConstraint& p : constraints.hard) p.at.y() *= aspect;
+  for (SoftConstraint& s : constraints.soft) s.at.y() *= aspect;
+  return constraints;
+}
+
 inline void describe(CacheKey& key, const HardConstraint& point) {
   const auto& [vertex, at] = point;
   key.add(vertex).add(at);

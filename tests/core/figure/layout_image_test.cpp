@@ -212,5 +212,14 @@ TEST(LayoutImage, HearsAStop) {
     EXPECT_EQ(error_of(draw).code(), ErrorCode::cancelled);
 }
 
+TEST(LayoutImage, WhatIsNotThePageIsPaper) {
+  const Image wide = layout_image({}, {}, {Colouring::area, Vec2(1, 0.25)}, kMinImageSize);
+  EXPECT_EQ(wide.at(5, 40), kPaper);
+  EXPECT_EQ(wide.at(5, 60), kPage);
+  const Image high = layout_image({}, {}, {Colouring::area, Vec2(0.5, 1)}, kMinImageSize);
+  EXPECT_EQ(high.at(5, 5), kPage);
+  EXPECT_EQ(high.at(40, 60), kPaper);
+}
+
 }  // namespace
 }  // namespace unwrapd::figure

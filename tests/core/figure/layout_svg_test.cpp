@@ -147,5 +147,14 @@ TEST(LayoutSvg, AnEmptyPageIsStillADocument) {
   EXPECT_NE(svg.find("</svg>"), std::string::npos);
 }
 
+TEST(LayoutSvg, AWidePageIsTheLowerPartOfTheSquare) {
+  const Surface surface = surface_of(grid(2, 2));
+  UnwrappedSurface out = flattened(surface.mesh);
+  for (Vec2& uv : out.uv) uv = uv.cwiseProduct(Vec2(1, 0.25)) / 2;
+  const std::string svg = layout_svg({&surface, 1}, {&out, 1}, {Colouring::angle, Vec2(1, 0.25)});
+  EXPECT_NE(svg.find("<rect y=\"3072\" width=\"4096\" height=\"1024\""), std::string::npos);
+  EXPECT_EQ(layout_svg({&surface, 1}, {&out, 1}).find("<rect y="), std::string::npos);
+}
+
 }  // namespace
 }  // namespace unwrapd::figure

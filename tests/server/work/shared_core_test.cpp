@@ -121,6 +121,18 @@ TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyWeld) {
   expect_answers_as_alone({{shapes::surface_of(soup.mesh)}}, jobs);
 }
 
+TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyArePacked) {
+  std::vector<UnwrapOptions> jobs(7);
+  for (UnwrapOptions& options : jobs) options.stop.iterations = 2;
+  jobs[3].width = 2048;
+  jobs[4].height = 2048;
+  jobs[5].packing.group = PageGroup::mesh;
+  jobs[6].straighten = Straighten::automatic;
+  jobs[1].packing.rotation = Rotation::quarter;
+  jobs[2].packing.rotation = Rotation::none;
+  expect_answers_as_alone({{shapes::surface_of(shapes::sphere(0))}}, jobs);
+}
+
 TEST(JobsThatShare, AnswerAsTheyWouldAloneWhateverPartsFacesAreOf) {
   const Surface soup = shapes::surface_of(shapes::soup(shapes::random_disk(2, 3)));
   Surface in_two = soup;  // faces of two parts are joined where they meet
