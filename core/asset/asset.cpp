@@ -11,6 +11,7 @@
 #include "core/asset/compress.hpp"
 #include "core/asset/convert.hpp"
 #include "core/asset/document.hpp"
+#include "core/asset/obj_materials.hpp"
 #include "core/asset/obj_polygons.hpp"
 #include "core/asset/patch.hpp"
 #include "core/asset/read_gltf.hpp"
@@ -50,9 +51,13 @@ Format Asset::format() const { return document_->format; }
 
 std::span<const Surface> Asset::surfaces() const { return document_->surfaces; }
 
-int Asset::texcoord() const {
-  const Gltf* gltf = std::get_if<Gltf>(&document_->source);
-  return gltf == nullptr ? 0 : gltf->texcoord.back() - '0';
+int Asset::texcoord() const { return texcoord(usual_output(document_->format)); }
+
+int Asset::texcoord(Format output) const {
+  if (const Gltf* gltf = std::get_if<Gltf>(&document_->source)) return gltf->texcoord.back() - '0';
+  const Obj* obj = std::get_if<Obj>(&document_->source);
+  return obj != nullptr && output != Format::obj && keeps_texcoords(*obj, document_->options) ? 1
+                                                                                              : 0;
 }
 
 std::span<const FileRepair> Asset::repairs() const {
@@ -163,7 +168,8 @@ std::string write_from_obj(const Document& document, const UnwrappedSurface& unw
   const Obj& obj = std::get<Obj>(document.source);
   if (output == Format::obj) return write_obj(obj, unwrapped);
   return write_gltf(document, obj.stop, output, [&](Format format) {
-    return obj_as_gltf(obj, document.surfaces.front(), unwrapped, format);
+    return obj_as_gltf(obj, document.surfaces.front(), unwrapped,
+                       keeps_texcoords(obj, document.options), format);
   });
 }
 
@@ -230,7 +236,8 @@ std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const Unwrapped
   if (const Obj* obj = std::get_if<Obj>(&document.source)) {
     const Surface& surface = document.surfaces.front();
     if (output == Format::obj) return {{surface.name, surface.mesh.vertex_count(), {}}};
-    return {{surface.name, 0, sources_in_gltf(*obj, surface, unwrapped.front())}};
+    const bool keeps = keeps_texcoords(*obj, document.options);
+    return {{surface.name, 0, sources_in_gltf(*obj, surface, unwrapped.front(), keeps)}};
   }
   if (const MeshFile* file = std::get_if<MeshFile>(&document.source)) {
     const Surface& surface = document.surfaces.front();
@@ -258,10 +265,16 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
   if (const Obj* obj = std::get_if<Obj>(&document.source)) {
     more =
         output == Format::obj ? note_on_polygons(*obj, unwrapped.front()) : note_on_materials(*obj);
-    if (obj->has_materials() && !obj->texcoord_lines.empty())
+    if (output != Format::obj && keeps_texcoords(*obj, document.options))
+      notes.push_back({NoteCode::set_chosen,
+                       "The new texture coordinates are TEXCOORD_1. TEXCOORD_0 has those of the "
+                       "OBJ, so that images of its materials keep fitting. Send texcoord=0 to "
+                       "replace them."});
+    else if (obj->has_materials() && !obj->texcoord_lines.empty())
       notes.push_back({NoteCode::textures_lost,
                        "The OBJ had texture coordinates, which are replaced: images of its "
-                       "materials no longer fit. Send a glTF to keep them in a set of their own."});
+                       "materials no longer fit. Send output=glb, with the files of its materials, "
+                       "to keep them in a set of their own."});
   }
   if (const MeshFile* file = std::get_if<MeshFile>(&document.source))
     more = note_on_mesh_file(*file, document.format);

@@ -29,7 +29,7 @@ std::string_view format_name(Format format);
 Format usual_output(Format input);
 
 /// The bytes of a request. No other file or address is ever opened. buffers: a .gltf's external
-/// buffers by the URI that the document uses for them.
+/// buffers, or an OBJ's materials and their images, by the URI that the document uses for them.
 struct Input {
   std::string_view document;
   std::map<std::string, std::string_view> buffers;
@@ -58,7 +58,9 @@ class Asset {
 
   [[nodiscard]] Format format() const;  ///< of the input
   [[nodiscard]] std::span<const Surface> surfaces() const;
-  [[nodiscard]] int texcoord() const;  ///< n of the set TEXCOORD_n that write() writes; 0 in an OBJ
+  /// n of the set TEXCOORD_n that write() writes in a format, or in the usual one; 0 in an OBJ.
+  [[nodiscard]] int texcoord(Format output) const;
+  [[nodiscard]] int texcoord() const;
   [[nodiscard]] std::span<const FileRepair> repairs() const;  ///< in the order of their kinds
   [[nodiscard]] const Document& document() const { return *document_; }
   [[nodiscard]] Document& document() { return *document_; }
@@ -80,12 +82,12 @@ Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& opt
 /// the first, scaled by their KHR_texture_transform as the textures show them.
 void read_uvs(Asset& asset);
 
-/// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data
-/// URIs). unwrapped has one entry for each of asset.surfaces(). Tangents of replaced texture
 /// Fills Surface::materials: a glTF's materials by JSON pointer ("/materials/0"), an OBJ's by name;
 /// "" where there is none. Meshes that share geometry have the materials of the first.
 void name_materials(Asset& asset);
 
+/// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data
+/// URIs). unwrapped has one entry for each of asset.surfaces(). Tangents of replaced texture
 /// coordinates are computed again. Throws Error{cancelled}.
 std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrapped, Format output);
 

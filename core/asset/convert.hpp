@@ -12,16 +12,16 @@
 namespace unwrapd::asset {
 
 /// A minimal glTF: one node, one mesh, one primitive for each material that has faces, with its
-/// name.
+/// name and looks. keeps_texcoords: see there.
 std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
-                        Format output);
-
-/// A note that the glTF has the materials by name only; empty if the OBJ has none.
-std::vector<Note> note_on_materials(const Obj& obj);
+                        bool keeps_texcoords, Format output);
 
 /// The vertex of the OBJ that each vertex of that glTF copies.
 std::vector<Index> sources_in_gltf(const Obj& obj, const Surface& surface,
-                                   const UnwrappedSurface& unwrapped);
+                                   const UnwrappedSurface& unwrapped, bool keeps_texcoords);
+
+/// The texture coordinates of an OBJ, V pointing up; NaN where they cannot be read.
+std::vector<Vec2> texcoords_of(const Obj& obj);
 
 /// The same for STL, PLY and OFF.
 std::string mesh_file_as_gltf(const MeshFile& file, const Surface& surface,

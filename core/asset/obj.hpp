@@ -2,6 +2,7 @@
 // Wavefront OBJ: the author's text is kept, except for texture coordinates and faces.
 
 #include <array>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/asset/asset.hpp"
+#include "core/asset/mtl.hpp"
 #include "core/asset/pace.hpp"
 
 namespace unwrapd::asset {
@@ -44,7 +46,9 @@ struct Obj {
   std::vector<std::pair<std::size_t, std::size_t>> texcoord_lines;  ///< their bytes, in order
   std::vector<Vec3> normals;
   std::vector<std::string> materials;  ///< [part]: the name after usemtl, empty before the first
-  bool has_material_library = false;   ///< an mtllib, which is never opened
+  std::vector<std::string> libraries;  ///< after mtllib, as written
+  MtlLibrary looks;                    ///< materials of those that were sent
+  std::map<std::string, std::string> images;  ///< sent ones that these use, by the paths in the MTL
   std::vector<FileRepair> repairs;
   std::stop_token stop;  ///< of the job, for reading and writing
 

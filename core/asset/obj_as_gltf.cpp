@@ -10,8 +10,10 @@
 #include "core/asset/bytes.hpp"
 #include "core/asset/convert.hpp"
 #include "core/asset/grow.hpp"
+#include "core/asset/obj_materials.hpp"
 #include "core/asset/patch.hpp"
 #include "core/base/cancel.hpp"
+#include "core/base/splitmix64.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -26,6 +28,7 @@ struct Vertices {
   std::vector<Float3> positions;
   std::vector<Float3> normals;  ///< empty unless every corner has one
   std::vector<std::array<float, 2>> uv;
+  std::vector<std::array<float, 2>> old_uv;     ///< of the input; empty unless they are kept
   std::vector<Index> sources;                   ///< in the OBJ
   std::map<Index, std::vector<Index>> corners;  ///< [part]: three to a face
 };
@@ -34,24 +37,40 @@ struct Vertices {
 struct Parts {
   const Surface& surface;
   const UnwrappedSurface& unwrapped;
-  std::span<const Vec3> normals;  ///< empty unless every corner has one
+  std::span<const Vec3> normals;         ///< empty unless every corner has one
+  std::span<const Vec2> texcoords = {};  ///< of the input; empty unless they are kept
+};
+
+/// What makes a vertex, beside its surface.
+struct CornerData {
+  Index normal = kNoNormal;      ///< in Parts::normals
+  Index texcoord = kNoTexcoord;  ///< in Parts::texcoords
 };
 
 class Combiner {
  public:
   explicit Combiner(const Parts& parts) : parts_(parts) {}
 
-  /// Corner k of face t. normal: in parts.normals, or kNoNormal.
-  void add(std::size_t t, std::size_t k, Index normal) {
+  /// Corner k of face t.
+  void add(std::size_t t, std::size_t k, const CornerData& data) {
     vertices_.corners[parts_.surface.part[t]].push_back(
-        number_of(parts_.unwrapped.faces[t][k], normal));
+        number_of({parts_.unwrapped.faces[t][k], data.normal, data.texcoord}));
   }
 
   Vertices take() { return std::move(vertices_); }
 
  private:
-  Index number_of(Index vertex, Index normal) {
-    const std::uint64_t key = std::uint64_t(vertex) << 32 | static_cast<std::uint32_t>(normal);
+  using Key = std::array<Index, 3>;  ///< vertex, normal, texture coordinates
+  struct HashOfKey {
+    std::size_t operator()(const Key& key) const {
+      std::uint64_t hash = 0;
+      for (const Index number : key) hash = splitmix64(hash ^ static_cast<std::uint32_t>(number));
+      return hash;
+    }
+  };
+
+  Index number_of(const Key& key) {
+    const auto [vertex, normal, texcoord] = key;
     const auto [found, is_new] =
         numbers_.try_emplace(key, static_cast<Index>(vertices_.positions.size()));
     if (!is_new) return found->second;
@@ -64,12 +83,22 @@ class Combiner {
       const Vec3 unit = parts_.normals[as_size(normal)].stableNormalized();
       vertices_.normals.push_back(as_floats(unit.squaredNorm() > 0 ? unit : Vec3(0, 0, 1)));
     }
+    if (!parts_.texcoords.empty()) vertices_.old_uv.push_back(old_uv(texcoord));
     return found->second;
+  }
+
+  /// 0 where the corner has none, or none that can be read.
+  [[nodiscard]] std::array<float, 2> old_uv(Index texcoord) const {
+    if (texcoord < 0 || as_size(texcoord) >= parts_.texcoords.size()) return {};
+    const Vec2& uv = parts_.texcoords[as_size(texcoord)];
+    const Eigen::Vector2f written(static_cast<float>(uv.x()), static_cast<float>(1 - uv.y()));
+    if (!written.allFinite()) return {};
+    return {written.x(), written.y()};
   }
 
   Parts parts_;
   Vertices vertices_;
-  std::unordered_map<std::uint64_t, Index> numbers_;
+  std::unordered_map<Key, Index, HashOfKey> numbers_;
 };
 
 bool has_all_normals(const Obj& obj) {
@@ -80,15 +109,20 @@ bool has_all_normals(const Obj& obj) {
   });
 }
 
-Vertices vertices_of(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped) {
+Vertices vertices_of(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
+                     bool keeps_texcoords) {
   const bool has_normals = has_all_normals(obj);
-  Combiner combiner({surface, unwrapped, obj.normals});
+  const std::vector<Vec2> texcoords = keeps_texcoords ? texcoords_of(obj) : std::vector<Vec2>();
+  Combiner combiner({surface, unwrapped, obj.normals, texcoords});
   for (const ObjElement& element : obj.elements)
     for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
       check_cancelled_every(t, obj.stop);
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t corner = element.first_corner + as_size(obj.face_corners[t][k]);
-        combiner.add(t, k, has_normals ? obj.corners[corner].normal : kNoNormal);
+        const ObjCorner& corner =
+            obj.corners[element.first_corner + as_size(obj.face_corners[t][k])];
+        combiner.add(t, k,
+                     {has_normals ? corner.normal : kNoNormal,
+                      keeps_texcoords ? corner.texcoord : kNoTexcoord});
       }
     }
   return combiner.take();
@@ -100,7 +134,7 @@ Vertices vertices_of(const MeshFile& file, const Surface& surface,
   for (std::size_t t = 0; t < surface.mesh.faces.size(); ++t) {
     check_cancelled_every(t, file.stop);
     for (std::size_t k = 0; k < 3; ++k)
-      combiner.add(t, k, file.normals.empty() ? kNoNormal : surface.mesh.faces[t][k]);
+      combiner.add(t, k, {file.normals.empty() ? kNoNormal : surface.mesh.faces[t][k]});
   }
   return combiner.take();
 }
@@ -116,33 +150,38 @@ Json vec3_accessor(const std::vector<Float3>& values, NewViews& views) {
           {"type", "VEC3"}};
 }
 
-/// Whatever bytes the name has, the document is UTF-8.
-Json material(const std::string& name) {
-  const std::string text = Json(name).dump(-1, ' ', false, Json::error_handler_t::replace);
-  return {{"name", Json::parse(text)}};
-}
-
-/// The primitives of all parts with faces. materials: [part] their names, empty for none.
-void add_primitives(const Vertices& vertices, std::span<const std::string> materials,
-                    const Gltf& empty, NewViews& views, Json& json) {
+/// The primitives of all parts with faces.
+void add_primitives(const Vertices& vertices, const Json& attributes, const Gltf& empty,
+                    NewViews& views, Json& json) {
   Json& accessors = json["accessors"];
-  Json used = Json::array();
-  Json attributes = {{"POSITION", 0}, {"TEXCOORD_0", 1}};
-  if (!vertices.normals.empty()) attributes["NORMAL"] = 2;
   for (const auto& [part, corners] : vertices.corners) {
     Json primitive = {{"attributes", attributes}, {"indices", accessors.size()}};
     accessors.push_back(index_accessor(empty, std::nullopt, corners, views));
-    if (as_size(part) < materials.size() && !materials[as_size(part)].empty()) {
-      primitive["material"] = used.size();
-      used.push_back(material(materials[as_size(part)]));
-    }
     json["meshes"][0]["primitives"].push_back(std::move(primitive));
   }
-  if (!used.empty()) json["materials"] = std::move(used);  // last: accessors may move in memory
 }
 
-std::string write_gltf(const Vertices& vertices, std::span<const std::string> materials,
-                       const std::stop_token& stop, Format output) {
+/// Adds the accessors of all vertices. Returns the attributes of primitives.
+Json add_vertices(const Vertices& vertices, const Gltf& empty, NewViews& views, Json& accessors) {
+  accessors.push_back(vec3_accessor(vertices.positions, views));
+  set_bounds(accessors.back(), bytes_of(vertices.positions), sizeof(Float3), 3);
+  accessors.push_back(texcoord_accessor(empty, std::nullopt, vertices.uv, views));
+  Json attributes = {{"POSITION", 0}, {"TEXCOORD_0", 1}};
+  if (!vertices.normals.empty()) {
+    attributes["NORMAL"] = accessors.size();
+    accessors.push_back(vec3_accessor(vertices.normals, views));
+  }
+  if (!vertices.old_uv.empty()) {
+    attributes["TEXCOORD_1"] = 1;
+    attributes["TEXCOORD_0"] = accessors.size();
+    accessors.push_back(texcoord_accessor(empty, std::nullopt, vertices.old_uv, views));
+  }
+  return attributes;
+}
+
+/// obj: null for a format without materials.
+std::string write_gltf(const Vertices& vertices, const Obj* obj, const std::stop_token& stop,
+                       Format output) {
   Gltf empty;
   empty.stop = stop;
   PatchedDocument document{Json::parse(R"({
@@ -151,20 +190,19 @@ std::string write_gltf(const Vertices& vertices, std::span<const std::string> ma
     "meshes": [{"primitives": []}], "accessors": [], "bufferViews": [], "buffers": []})"),
                            {}};
   NewViews views(document, 0);
-  Json& accessors = document.json["accessors"];
-  accessors.push_back(vec3_accessor(vertices.positions, views));
-  set_bounds(accessors.back(), bytes_of(vertices.positions), sizeof(Float3), 3);
-  accessors.push_back(texcoord_accessor(empty, std::nullopt, vertices.uv, views));
-  if (!vertices.normals.empty()) accessors.push_back(vec3_accessor(vertices.normals, views));
-  add_primitives(vertices, materials, empty, views, document.json);
+  const Json attributes = add_vertices(vertices, empty, views, document.json["accessors"]);
+  add_primitives(vertices, attributes, empty, views, document.json);
+  std::vector<Index> parts;
+  for (const auto& [part, corners] : vertices.corners) parts.push_back(part);
+  if (obj != nullptr) add_materials(*obj, parts, views, document.json);
   return assemble(empty, std::move(document), output);
 }
 
 }  // namespace
 
 std::vector<Index> sources_in_gltf(const Obj& obj, const Surface& surface,
-                                   const UnwrappedSurface& unwrapped) {
-  return vertices_of(obj, surface, unwrapped).sources;
+                                   const UnwrappedSurface& unwrapped, bool keeps_texcoords) {
+  return vertices_of(obj, surface, unwrapped, keeps_texcoords).sources;
 }
 
 std::vector<Index> sources_in_gltf(const MeshFile& file, const Surface& surface,
@@ -172,23 +210,14 @@ std::vector<Index> sources_in_gltf(const MeshFile& file, const Surface& surface,
   return vertices_of(file, surface, unwrapped).sources;
 }
 
-std::vector<Note> note_on_materials(const Obj& obj) {
-  const auto count = static_cast<std::size_t>(
-      std::ranges::count_if(obj.materials, [](const std::string& name) { return !name.empty(); }));
-  if (count == 0 && !obj.has_material_library) return {};
-  return {{NoteCode::data_dropped,
-           "The result has the names of the OBJ's materials (" + std::to_string(count) +
-               "), without their colours and textures: no file that mtllib names is read."}};
-}
-
 std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
-                        Format output) {
-  return write_gltf(vertices_of(obj, surface, unwrapped), obj.materials, obj.stop, output);
+                        bool keeps_texcoords, Format output) {
+  return write_gltf(vertices_of(obj, surface, unwrapped, keeps_texcoords), &obj, obj.stop, output);
 }
 
 std::string mesh_file_as_gltf(const MeshFile& file, const Surface& surface,
                               const UnwrappedSurface& unwrapped, Format output) {
-  return write_gltf(vertices_of(file, surface, unwrapped), {}, file.stop, output);
+  return write_gltf(vertices_of(file, surface, unwrapped), nullptr, file.stop, output);
 }
 
 }  // namespace unwrapd::asset

@@ -9,6 +9,7 @@
 
 #include "core/asset/as_size.hpp"
 #include "core/asset/obj.hpp"
+#include "core/asset/obj_materials.hpp"
 #include "core/asset/obj_words.hpp"
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
@@ -75,7 +76,7 @@ class ObjReader {
       ++texcoord_count_;
       obj_.texcoord_lines.emplace_back(at_.begin, at_.next);
     } else if (keyword == "mtllib") {
-      obj_.has_material_library = true;
+      obj_.libraries.emplace_back(words.rest());
     } else if (keyword == "usemtl") {
       part_ = part_of_.try_emplace(std::string(words.rest()), Index(part_of_.size())).first->second;
     }
@@ -223,7 +224,9 @@ class ObjReader {
 }  // namespace
 
 Obj read_obj(const Input& input, const ReadLimits& limits, Surface& surface) {
-  return ObjReader(input, limits, surface).read();
+  Obj obj = ObjReader(input, limits, surface).read();
+  read_materials(input, obj);
+  return obj;
 }
 
 }  // namespace unwrapd::asset

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/asset/as_size.hpp"
+#include "core/asset/convert.hpp"
 #include "core/asset/document.hpp"
 #include "core/asset/elements.hpp"
 #include "core/asset/gltf_steps.hpp"
@@ -55,12 +56,7 @@ Vec2 read_vt(std::string_view line) {
 }
 
 void read_obj_uvs(const Obj& obj, Surface& surface) {
-  std::vector<Vec2> vt;
-  vt.reserve(obj.texcoord_lines.size());
-  for (const auto& [begin, end] : obj.texcoord_lines) {
-    check_cancelled_every(vt.size(), obj.stop);
-    vt.push_back(read_vt(std::string_view(obj.text).substr(begin, end - begin)));
-  }
+  const std::vector<Vec2> vt = texcoords_of(obj);
   if (vt.empty()) return;
   surface.corner_uv.assign(surface.mesh.faces.size(), kNoUv);
   for (const ObjElement& element : obj.elements)
@@ -88,6 +84,16 @@ void read_mesh_file_uvs(const MeshFile& file, Surface& surface) {
 }
 
 }  // namespace
+
+std::vector<Vec2> texcoords_of(const Obj& obj) {
+  std::vector<Vec2> vt;
+  vt.reserve(obj.texcoord_lines.size());
+  for (const auto& [begin, end] : obj.texcoord_lines) {
+    check_cancelled_every(vt.size(), obj.stop);
+    vt.push_back(read_vt(std::string_view(obj.text).substr(begin, end - begin)));
+  }
+  return vt;
+}
 
 void read_gltf_uvs(const Gltf& gltf, std::vector<Surface>& surfaces) {
   const Materials materials(gltf, gltf.uvs_from);

@@ -43,10 +43,14 @@ std::string_view ending_of(std::string_view name) {
   return dot == std::string_view::npos ? std::string_view() : name.substr(dot);
 }
 
-bool is_asset_name(const std::string& name) {
+std::string ending_in_lower_case(const std::string& name) {
   std::string ending(ending_of(name));
   for (char& c : ending) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return std::ranges::find(kEndings, ending) != kEndings.end();
+  return ending;
+}
+
+bool is_asset_name(const std::string& name) {
+  return std::ranges::find(kEndings, ending_in_lower_case(name)) != kEndings.end();
 }
 
 /// Folders, and what a Mac adds.
@@ -66,6 +70,10 @@ class ZipReader {
   }
 
   [[nodiscard]] const std::vector<ZipEntry>& entries() const { return entries_; }
+
+  [[nodiscard]] bool has_room_for(const ZipEntry& entry) const {
+    return entry.bytes <= bytes_left_;
+  }
 
   std::string read(const ZipEntry& entry) {
     if (entry.bytes > bytes_left_)
@@ -158,11 +166,21 @@ Unzipped unzip(std::string_view archive, std::size_t max_bytes, const std::stop_
   ZipReader reader(archive, max_bytes, stop);
   const ZipEntry& document = find_document(reader.entries(), archive);
   Unzipped unzipped{reader.read(document), {}};
-  if (!document.name.ends_with("gltf") && !document.name.ends_with("GLTF")) return unzipped;
+  const std::string ending = ending_in_lower_case(document.name);
   const std::string folder = document.name.substr(0, document.name.rfind('/') + 1);
-  for (const ZipEntry& entry : reader.entries())
-    if (&entry != &document && entry.name.starts_with(folder))
-      unzipped.files.emplace(entry.name.substr(folder.size()), reader.read(entry));
+  const auto unpack = [&](const auto& is_wanted) {
+    for (const ZipEntry& entry : reader.entries())
+      if (&entry != &document && entry.name.starts_with(folder) && is_wanted(entry))
+        unzipped.files.emplace(entry.name.substr(folder.size()), reader.read(entry));
+  };
+  if (ending == ".gltf") unpack([](const ZipEntry&) { return true; });
+  if (ending != ".obj") return unzipped;
+  for (const bool is_image : {false, true})  // which an OBJ can do without
+    unpack([&](const ZipEntry& entry) {
+      const std::string own = ending_in_lower_case(entry.name);
+      return (is_image ? own == ".png" || own == ".jpg" || own == ".jpeg" : own == ".mtl") &&
+             reader.has_room_for(entry);
+    });
   return unzipped;
 }
 

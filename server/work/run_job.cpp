@@ -74,7 +74,7 @@ api::ReportContext completed(api::ReportContext context, const Made& made, const
   for (Note& note : asset::side_effects(made.asset, map.surfaces, made.format))
     context.notes.push_back(std::move(note));
   context.file_repairs.assign(made.asset.repairs().begin(), made.asset.repairs().end());
-  context.texcoord = made.asset.texcoord();
+  context.texcoord = made.asset.texcoord(made.format);
   if (with_vertex_maps)
     context.vertex_maps = asset::vertex_maps(made.asset, map.surfaces, made.format);
   return context;

@@ -160,5 +160,23 @@ TEST(Zip, BrokenArchivesAreReadOrRefused) {
   }
 }
 
+TEST(Zip, AnObjFindsItsMaterialsAndImages) {
+  const std::string obj =
+      "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";
+  const std::string png = "\x89PNG\r\n\x1a\n" + std::string(80, '.');
+  const std::vector<Packed> files = {{"x/a.obj", obj},
+                                     {"x/tex/b.png", png},
+                                     {"x/big.jpg", std::string(5000, 'x'), ZIP_CM_STORE},
+                                     {"x/notes.txt", "no part of it"},
+                                     {"x/a.mtl", "newmtl m\nmap_Kd tex/b.png\n"}};
+  for (const std::size_t room : {std::size_t{1} << 20, obj.size() + 100}) {
+    const Asset asset = read({zip_of(files), {}, {}}, {.max_unzipped_bytes = room}, kPlain);
+    const Json json = json_of(write(asset, split_everywhere(asset), Format::glb));
+    EXPECT_EQ(json["materials"][0]["name"], "m");
+    ASSERT_TRUE(json.contains("images"));
+    EXPECT_EQ(json["images"].size(), 1);
+  }
+}
+
 }  // namespace
 }  // namespace unwrapd::asset::test
