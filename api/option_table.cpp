@@ -32,6 +32,7 @@ constexpr std::array<std::string_view, 2> kStraightenings = {"off", "auto"};
 constexpr std::array<std::string_view, 3> kBoundaries = {"free", "circle", "square"};
 constexpr std::array<std::string_view, 4> kOutputs = {"auto", "glb", "gltf", "obj"};
 
+constexpr std::array<std::string_view, 2> kTextureModes = {"keep", "transfer"};
 constexpr std::array<std::string_view, 4> kCompressions = {"keep", "none", "draco", "meshopt"};
 
 constexpr std::array kEveryMethod = {Method::asap, Method::arap,   Method::hybrid,
@@ -258,6 +259,12 @@ constexpr std::array kRows = {
               .methods = kEveryMethod,
               .get = get_texcoord,
               .set = set_texcoord},
+    choice<&A::textures, kTextureModes>(
+        "textures", kEveryMethod,
+        "What becomes of images that sample the set of texture coordinates that is written. keep: "
+        "they stay as they are; transfer: they are resampled for the new coordinates, normal maps "
+        "turned, and auto writes the set that they sample. Needs guarantee=bijective or "
+        "repack_only, and one page."),
     plain<&A::materials>(
         "materials", OptionType::names, kEveryMethod,
         "Names of the materials to unwrap; all other surfaces keep their UVs. Empty: all."),

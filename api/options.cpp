@@ -82,6 +82,21 @@ void settle_welding(Welding& welding) {
     welding.mode = welding.distance ? WeldMode::distance : WeldMode::automatic;
 }
 
+/// Each texel of a new texture belongs to one place of the surface, on the page.
+void settle_textures(JobOptions& options) {
+  const UnwrapOptions& unwrap = options.unwrap;
+  options.asset.resolution = unwrap.resolution;
+  if (options.asset.textures != TextureMode::transfer) return;
+  const auto require = [](bool holds, const std::string& message) {
+    if (!holds) refuse("textures", "textures=transfer " + message);
+  };
+  require(unwrap.repack_only || unwrap.guarantee == Guarantee::bijective,
+          "needs guarantee=bijective: overlapping triangles would share texels.");
+  require(unwrap.packing.max_pages == 1, "writes one page; leave out max_pages.");
+  require(!unwrap.packing.stack_identical,
+          "needs a place for every island; leave out stack_identical.");
+}
+
 /// The options so far, and the rows that were given.
 struct PartialOptions {
   PartialOptions(Preset preset, const Limits& server)
@@ -147,6 +162,7 @@ struct PartialOptions {
   JobOptions finish() {
     yield_to_request(options, [this](std::string_view name) { return is_given(name); });
     settle_welding(options.unwrap.welding);
+    settle_textures(options);
     validate(options.unwrap, limits.max_iterations);
     for (const OptionRow* row : given) {
       if (!changes_nothing(*row)) continue;

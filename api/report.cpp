@@ -22,13 +22,15 @@ constexpr std::array<std::string_view, 5> kFileRepairKinds = {
     "line_ends_replaced", "empty_indices_ignored", "normals_replaced", "chunks_padded",
     "shared_nodes_kept"};
 
-constexpr std::array<std::string_view, 22> kNoteCodes = {
-    "option_unused",    "overlaps",         "distorted",        "set_chosen",
-    "textures_lost",    "charts_exceeded",  "surface_noisy",    "chart_remapped",
-    "outside_page",     "padding_reduced",  "islands_stacked",  "faces_without_uvs",
-    "tangents_changed", "transform_reset",  "materials_copied", "morph_targets_lost",
-    "sets_filled",      "images_separate",  "polygons_split",   "format_changed",
-    "data_dropped",     "positions_rounded"};
+constexpr std::array<std::string_view, 23> kNoteCodes = {
+    "option_unused",     "overlaps",           "distorted",
+    "set_chosen",        "textures_lost",      "textures_transferred",
+    "charts_exceeded",   "surface_noisy",      "chart_remapped",
+    "outside_page",      "padding_reduced",    "islands_stacked",
+    "faces_without_uvs", "tangents_changed",   "transform_reset",
+    "materials_copied",  "morph_targets_lost", "sets_filled",
+    "images_separate",   "polygons_split",     "format_changed",
+    "data_dropped",      "positions_rounded"};
 static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::positions_rounded) + 1);
 
 /// The stages of timings_ms, in the order of a job.

@@ -82,6 +82,9 @@ void check_for_one_mesh(const AssetOptions& options, Format format) {
     refuse("/texcoord", " has one set of texture coordinates; leave texcoord out, or send a glTF");
   if (!options.materials.empty())
     refuse("/materials", " is unwrapped whole; leave materials out, or send a glTF");
+  if (options.textures == TextureMode::transfer)
+    refuse("/textures",
+           " has no images that could be resampled; leave textures out, or send a glTF");
   if (!options.primitives.empty())
     refuse("/primitives", " has no primitives; leave them out, or send a glTF");
 }
@@ -259,6 +262,9 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
   if (output == Format::obj && is_compressed(document.options.compression))
     notes.push_back({NoteCode::option_unused,
                      "An OBJ cannot be compressed; the option compression has no effect."});
+  if (output == Format::obj && document.options.textures == TextureMode::transfer)
+    notes.push_back(
+        {NoteCode::option_unused, "An OBJ has no images; the option textures has no effect."});
   if (const std::optional<int> bits = rounding_bits(document.options, output))
     notes.push_back(note_on_rounding(document.surfaces, *bits));
   std::vector<Note> more;
@@ -280,7 +286,7 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
     more = note_on_mesh_file(*file, document.format);
   if (const Gltf* gltf = std::get_if<Gltf>(&document.source);
       gltf != nullptr && output != Format::obj)
-    more = side_effects_of_patch(*gltf, output);
+    more = side_effects_of_patch(*gltf, unwrapped, output);
   notes.insert(notes.end(), more.begin(), more.end());
   return notes;
 }

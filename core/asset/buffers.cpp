@@ -45,21 +45,6 @@ bool has_parent_segment(std::string_view path) {
   }
 }
 
-std::string data_uri_bytes(const Node& uri, const std::stop_token& stop) {
-  const std::string& text = uri.text();
-  const std::size_t comma = text.find(',');
-  const std::string_view head = std::string_view(text).substr(0, comma);
-  std::optional<std::string> bytes;
-  if (comma != std::string::npos && head.ends_with(";base64"))
-    bytes = base64_decoded(std::string_view(text).substr(comma + 1), stop);
-  else if (comma != std::string::npos)  // RFC 2397: percent-encoded
-    bytes = percent_decoded(std::string_view(text).substr(comma + 1));
-  if (!bytes)
-    fail(ErrorCode::malformed_gltf, uri.place(),
-         "the data URI has no data, or is not valid base64; export the asset again");
-  return std::move(*bytes);
-}
-
 /// The part of the request that a URI names; end() if there is none.
 auto part_of(const std::string& uri, const Input& input) {
   const auto part = input.buffers.find(uri);
@@ -119,6 +104,21 @@ std::string buffer_bytes(const Node& buffer, std::string_view bin, const Input& 
 }
 
 }  // namespace
+
+std::string data_uri_bytes(const Node& uri, const std::stop_token& stop) {
+  const std::string& text = uri.text();
+  const std::size_t comma = text.find(',');
+  const std::string_view head = std::string_view(text).substr(0, comma);
+  std::optional<std::string> bytes;
+  if (comma != std::string::npos && head.ends_with(";base64"))
+    bytes = base64_decoded(std::string_view(text).substr(comma + 1), stop);
+  else if (comma != std::string::npos)  // RFC 2397: percent-encoded
+    bytes = percent_decoded(std::string_view(text).substr(comma + 1));
+  if (!bytes)
+    fail(ErrorCode::malformed_gltf, uri.place(),
+         "the data URI has no data, or is not valid base64; export the asset again");
+  return std::move(*bytes);
+}
 
 bool is_plain_relative(std::string_view path) {
   const bool odd = std::any_of(path.begin(), path.end(), [](char c) {

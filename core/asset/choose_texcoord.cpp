@@ -19,6 +19,8 @@ std::optional<int> first_outside(const TexcoordSets& taken) {
 
 int chosen_set(const Gltf& gltf, TexcoordChoice choice) {
   const TexcoordSets sampled = sampled_sets(gltf);
+  if (choice == TexcoordChoice::automatic && gltf.transfer)
+    return first_outside(~sampled).value_or(0);
   if (choice == TexcoordChoice::automatic && !sampled.test(0)) return 0;
   if (const auto free = first_outside(sampled | present_sets(gltf))) return *free;
   if (const auto unsampled = first_outside(sampled)) return *unsampled;

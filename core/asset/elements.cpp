@@ -74,6 +74,11 @@ Vec3 Elements::vec3_at(std::size_t element) const {
   return {component(bytes, 0), component(bytes, 1), component(bytes, 2)};
 }
 
+double Elements::fourth_at(std::size_t element) const {
+  const char* bytes = at(element);
+  return bytes == nullptr ? 0 : component(bytes, 3);
+}
+
 Vec2 Elements::vec2_at(std::size_t element) const {
   const char* bytes = at(element);
   if (bytes == nullptr) return Vec2::Zero();

@@ -19,7 +19,8 @@ class Elements {
 
   [[nodiscard]] std::size_t unsigned_at(std::size_t element) const;  ///< of an unsigned scalar
   [[nodiscard]] Vec3 vec3_at(std::size_t element) const;  ///< normalised if the accessor says so
-  [[nodiscard]] Vec2 vec2_at(std::size_t element) const;  ///< likewise
+  [[nodiscard]] double fourth_at(std::size_t element) const;  ///< of a vector of four, likewise
+  [[nodiscard]] Vec2 vec2_at(std::size_t element) const;      ///< likewise
 
  private:
   [[nodiscard]] double component(const char* bytes, std::size_t k) const;

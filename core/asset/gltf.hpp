@@ -75,6 +75,12 @@ struct Piece {
   std::size_t face_count = 0;
 };
 
+/// How textures are transferred.
+struct Transfer {
+  int least_side = 1024;                 ///< of a new texture, texels
+  std::size_t max_bytes = kNoByteLimit;  ///< of memory for the job
+};
+
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct Gltf {
   Json json;                            ///< after reading: the part that writing may change
@@ -99,6 +105,7 @@ struct Gltf {
   std::vector<std::size_t> spent_views;  ///< views of compressed data that has been decoded
   bool has_dead_bytes = false;           ///< buffers have bytes that no view refers to
   bool has_foreign_references = false;   ///< an extension may refer to views or accessors
+  std::optional<Transfer> transfer;      ///< set where textures are transferred
   std::vector<FileRepair> repairs;
   std::stop_token stop;  ///< of the job, for reading and writing
 };

@@ -23,6 +23,9 @@ void check_asset_and_extensions(Gltf& gltf);
 /// Fills buffers from the GLB's chunk, data URIs, and the request's parts; nothing else is opened.
 void resolve_buffers(Gltf& gltf, std::string_view bin, const Input& input);
 
+/// The bytes of a data URI. Throws Error{malformed_gltf}, Error{cancelled}.
+std::string data_uri_bytes(const Node& uri, const std::stop_token& stop);
+
 /// Whether a path leads below its folder: it has no scheme, no parent and no odd characters.
 bool is_plain_relative(std::string_view path);
 
@@ -51,7 +54,8 @@ void check_geometry(Gltf& gltf, const ReadLimits& limits);
 /// Error{invalid_option} for a name that nothing has.
 void select_primitives(Gltf& gltf, const AssetOptions& options);
 
-/// Sets gltf.texcoord and gltf.uvs_from. Throws Error{invalid_option} if no set is left to choose.
+/// Sets gltf.texcoord and gltf.uvs_from; where textures are transferred, it chooses what they
+/// sample. Throws Error{invalid_option} if no set is left to choose.
 void choose_texcoord(Gltf& gltf, const std::variant<int, TexcoordChoice>& asked);
 
 /// One surface for each mesh that has triangles of its own; fills pieces, vertices and pools.

@@ -35,6 +35,7 @@ void embed_images(const Gltf& gltf, Json& document, NewViews& views) {
     throw_if_cancelled(gltf.stop);
     if (media_type(bytes).empty()) continue;
     Json& image = document["images"][number];
+    if (!image.contains("uri")) continue;  // a resampled one took its place
     image.erase("uri");
     image["mimeType"] = media_type(bytes);
     image["bufferView"] = views.add(bytes, 0, 0);

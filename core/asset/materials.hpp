@@ -49,6 +49,12 @@ class Materials {
   std::vector<MaterialUse> uses_;
 };
 
+/// Whether a primitive has texture coordinates by this name, of the type that glTF asks for.
+bool has_set(const Gltf& gltf, const Primitive& primitive, std::string_view name);
+
+/// The sets that a primitive has.
+TexcoordSets sets_of(const Primitive& primitive);
+
 /// The sets that unwrapped primitives have.
 TexcoordSets present_sets(const Gltf& gltf);
 

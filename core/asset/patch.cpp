@@ -11,6 +11,7 @@
 #include "core/asset/images.hpp"
 #include "core/asset/materials.hpp"
 #include "core/asset/references.hpp"
+#include "core/asset/transfer_textures.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -33,10 +34,14 @@ class Patcher {
     if (!cut.tangents.empty()) set_tangents(pool, cut.tangents);
   }
 
+  void take_textures(std::span<const UnwrappedSurface> unwrapped, const WrittenTangents& tangents) {
+    transfer_textures(gltf_, unwrapped, tangents, patched_.json, views_);
+  }
+
   void take_images() { embed_images(gltf_, patched_.json, views_); }
 
   PatchedDocument finish() {
-    reset_materials();
+    if (!gltf_.transfer) reset_materials();
     return std::move(patched_);
   }
 
@@ -235,7 +240,13 @@ PatchedDocument patch(const Gltf& gltf, std::span<const UnwrappedSurface> unwrap
                       Format output) {
   Patcher patcher(gltf);
   Cutter cutter(gltf, unwrapped);
-  for (const Pool& pool : pools_of(gltf)) patcher.patch_pool(pool, cutter.cut(pool));
+  WrittenTangents tangents;
+  for (const Pool& pool : pools_of(gltf)) {
+    const Cut cut = cutter.cut(pool);
+    patcher.patch_pool(pool, cut);
+    if (gltf.transfer) add_tangents(cut, tangents);
+  }
+  if (gltf.transfer) patcher.take_textures(unwrapped, tangents);
   if (gltf.came_as_text && output == Format::glb) patcher.take_images();
   return patcher.finish();
 }

@@ -30,7 +30,8 @@ std::vector<VertexMap> vertex_maps_of_patch(const Gltf& gltf,
 std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primitive);
 
 /// Notes for side_effects().
-std::vector<Note> side_effects_of_patch(const Gltf& gltf, Format output);
+std::vector<Note> side_effects_of_patch(const Gltf& gltf,
+                                        std::span<const UnwrappedSurface> unwrapped, Format output);
 
 /// The form of meshopt's compression in a document.
 struct MeshoptStyle {

@@ -4,6 +4,7 @@
 #include "core/asset/images.hpp"
 #include "core/asset/materials.hpp"
 #include "core/asset/patch.hpp"
+#include "core/asset/transfer_textures.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -89,9 +90,12 @@ std::vector<std::string> missing_sets(const Gltf& gltf, const Primitive& primiti
   return missing;
 }
 
-std::vector<Note> side_effects_of_patch(const Gltf& gltf, Format output) {
+std::vector<Note> side_effects_of_patch(const Gltf& gltf,
+                                        std::span<const UnwrappedSurface> unwrapped,
+                                        Format output) {
   const Materials materials(gltf);
   std::vector<Note> notes;
+  if (gltf.transfer) notes = notes_on_transfer(gltf, unwrapped);
   const auto add = [&](bool holds, NoteCode code, std::string text) {
     if (holds) notes.push_back({code, std::move(text)});
   };
@@ -99,13 +103,14 @@ std::vector<Note> side_effects_of_patch(const Gltf& gltf, Format output) {
       "The new texture coordinates are " + gltf.texcoord +
           ", and the existing sets stay, so that textures of the asset keep fitting. Send "
           "texcoord=0 to overwrite the first set.");
-  add(sampled_sets(gltf).test(static_cast<std::size_t>(gltf.texcoord.back() - '0')),
+  add(!gltf.transfer &&
+          sampled_sets(gltf).test(static_cast<std::size_t>(gltf.texcoord.back() - '0')),
       NoteCode::textures_lost,
       "Textures of the asset sample " + gltf.texcoord +
           ", which is replaced: their images no longer fit. Leave texcoord out to write another "
-          "set, or paint the images anew.");
+          "set, or send textures=transfer to have them painted anew.");
   add_changes(changed_primitives(gltf, materials), gltf.texcoord, add);
-  add_resets(materials.to_reset(), gltf.texcoord, add);
+  if (!gltf.transfer) add_resets(materials.to_reset(), gltf.texcoord, add);
   const FilesBeside files = images_beside(gltf);
   add(gltf.came_as_text && output == Format::glb && files.count > 0, NoteCode::images_separate,
       counted(files.count, "image") + " of the asset" + named(files.first) +

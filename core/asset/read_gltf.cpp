@@ -4,6 +4,7 @@
 
 #include "core/asset/container.hpp"
 #include "core/asset/gltf_steps.hpp"
+#include "core/asset/texture_slots.hpp"
 #include "core/base/cancel.hpp"
 
 namespace unwrapd::asset {
@@ -49,9 +50,12 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
   check_nodes(gltf);
   gltf.aside.take_unwritten(gltf.json);
   select_primitives(gltf, options);
+  if (options.textures == TextureMode::transfer)
+    gltf.transfer = {options.resolution, limits.max_bytes};
   choose_texcoord(gltf, options.texcoord);
   check_geometry(gltf, limits);
   surfaces = build_surfaces(gltf, limits);
+  if (gltf.transfer) check_textures(gltf);
   return gltf;
 }
 

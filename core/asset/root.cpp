@@ -12,12 +12,10 @@
 namespace unwrapd::asset {
 namespace {
 
-constexpr std::array<std::string_view, 13> kRead = {
-    "asset",   "extensionsUsed", "extensionsRequired",
-    "buffers", "bufferViews",    "accessors",
-    "meshes",  "materials",      "images",
-    "skins",   "animations",     "nodes",
-    "scenes"};
+constexpr std::array<std::string_view, 15> kRead = {
+    "asset",     "extensionsUsed", "extensionsRequired", "buffers", "bufferViews",
+    "accessors", "meshes",         "materials",          "images",  "textures",
+    "samplers",  "skins",          "animations",         "nodes",   "scenes"};
 constexpr std::array<std::string_view, 2> kUnwritten = {"nodes", "scenes"};  // subset of these
 
 /// Writes a text in pieces, and checks the stop at each.

@@ -45,9 +45,11 @@ enum class ErrorCode {
   malformed_mesh,  ///< an STL, a PLY, an OFF or a zip archive
   malformed_draco,
   malformed_meshopt,
+  malformed_image,
   missing_buffer,
   external_uri,
   unsupported_extension,
+  unsupported_image,
   // the mesh
   too_many_vertices,
   too_many_faces,

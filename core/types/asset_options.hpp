@@ -25,8 +25,15 @@ inline constexpr std::size_t kMaxNames = 1000;  ///< entries of materials and of
 /// How the set of texture coordinates to write is chosen where none is named. Other than with a
 /// named set, existing UVs are then read from TEXCOORD_0.
 enum class TexcoordChoice {
-  automatic,  ///< 0 unless a material of what is unwrapped samples it, else as `free`
+  automatic,  ///< 0 unless a material of what is unwrapped samples it, else as `free`; where
+              ///< textures are transferred, the first set that a material samples
   free,       ///< the first set that no material samples, and that nothing unwrapped has
+};
+
+/// What becomes of images that sample the set of texture coordinates that is written.
+enum class TextureMode {
+  keep,      ///< they stay as they are
+  transfer,  ///< they are painted anew for the new coordinates
 };
 
 struct AssetOptions {
@@ -35,6 +42,8 @@ struct AssetOptions {
   Compression compression = Compression::keep;
   /// Positions in [kMinDracoBits, kMaxDracoBits] where compression is draco; unset: lossless.
   std::optional<int> draco_bits = {};
+  TextureMode textures = TextureMode::keep;
+  int resolution = 1024;  ///< that islands are packed for: the least side of a new texture, texels
   bool vertex_map = false;  ///< the report tells which vertices were copied
   /// Names of materials, and JSON pointers of primitives ("/meshes/0/primitives/1"): only these are
   /// unwrapped, all others keep what they have. Both empty: everything is.

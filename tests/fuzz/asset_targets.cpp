@@ -192,13 +192,14 @@ std::vector<std::string> meshopt_seeds() {
           choices(1, 0, 4) + bytes, choices(2, 0, 2) + bytes};
 }
 
-constexpr std::array kTargets = {Target{"gltf", whole_file, gltf_seeds},
-                                 Target{"obj", whole_file, obj_seeds},
-                                 Target{"stl", whole_file, stl_seeds},
-                                 Target{"ply", whole_file, ply_seeds},
-                                 Target{"off", whole_file, off_seeds},
-                                 Target{"draco", draco_stream, draco_seeds},
-                                 Target{"meshopt", meshopt_stream, meshopt_seeds}};
+const std::array kTargets = {Target{"gltf", whole_file, gltf_seeds},
+                             Target{"obj", whole_file, obj_seeds},
+                             Target{"stl", whole_file, stl_seeds},
+                             Target{"ply", whole_file, ply_seeds},
+                             Target{"off", whole_file, off_seeds},
+                             Target{"draco", draco_stream, draco_seeds},
+                             Target{"meshopt", meshopt_stream, meshopt_seeds},
+                             image_target()};
 
 }  // namespace
 

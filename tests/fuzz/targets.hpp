@@ -16,11 +16,12 @@ struct Target {
   std::vector<std::string> (*seeds)();  ///< good inputs to begin with, made by our own writers
 };
 
-std::span<const Target> asset_targets();   ///< gltf, obj, draco, meshopt
+std::span<const Target> asset_targets();   ///< gltf, obj, draco, meshopt, image
 std::span<const Target> api_targets();     ///< options, query, constraints
 std::span<const Target> http_targets();    ///< head, http, multipart, reference, parking
 std::span<const Target> worker_targets();  ///< frames, uvs
 Target parking_target();
+Target image_target();
 
 /// Ends the program, saying what was promised, when it does not hold.
 void promise(bool holds, const char* what);

@@ -1,0 +1,130 @@
+// Averages are taken in linear light, since renderers decode sRGB before they filter.
+#include "core/texture/texture.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "core/base/cancel.hpp"
+
+namespace unwrapd::texture {
+namespace {
+
+/// IEC 61966-2-1.
+double from_srgb(double stored) {
+  return stored <= 0.04045 ? stored / 12.92 : std::pow((stored + 0.055) / 1.055, 2.4);
+}
+
+std::array<float, 256> table(bool is_srgb) {
+  std::array<float, 256> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = static_cast<double>(i) / 255;
+    values[i] = static_cast<float>(is_srgb ? from_srgb(value) : value);
+  }
+  return values;
+}
+
+const std::array<float, 256>& decoded(bool is_srgb) {
+  static const std::array<float, 256> plain = table(false), srgb = table(true);
+  return is_srgb ? srgb : plain;
+}
+
+/// [i]: where the stored value i ends and i + 1 begins.
+const std::array<float, 255>& srgb_bounds() {
+  static const std::array<float, 255> bounds = [] {
+    std::array<float, 255> made{};
+    for (std::size_t i = 0; i < made.size(); ++i)
+      made[i] = static_cast<float>(from_srgb((static_cast<double>(i) + 0.5) / 255));
+    return made;
+  }();
+  return bounds;
+}
+
+/// The coordinate within the image, or its mirror image.
+double within(double u, Wrap wrap) {
+  if (wrap == Wrap::clamp) return std::clamp(u, 0.0, 1.0);
+  return wrap == Wrap::repeat ? u - std::floor(u) : u - 2 * std::floor(u / 2);
+}
+
+/// The texel for a number up to one beyond what within() leads to.
+int wrapped(int i, int count, Wrap wrap) {
+  if (wrap == Wrap::clamp) return std::clamp(i, 0, count - 1);
+  if (wrap == Wrap::repeat) return (i + count) % count;
+  const int k = (i + 2 * count) % (2 * count);
+  return k < count ? k : 2 * count - 1 - k;
+}
+
+/// Two texels along one axis, and the weight of the second.
+struct Taps {
+  int first = 0, second = 0;
+  float weight = 0;
+};
+
+Taps taps(double u, int count, Wrap wrap, bool is_nearest) {
+  const double at = within(u, wrap) * count;
+  if (is_nearest) return {wrapped(static_cast<int>(std::floor(at)), count, wrap), 0, 0};
+  const double low = std::floor(at - 0.5);
+  const int i = static_cast<int>(low);
+  return {wrapped(i, count, wrap), wrapped(i + 1, count, wrap), static_cast<float>(at - 0.5 - low)};
+}
+
+Texel mixed(const Texel& a, const Texel& b, float weight) {
+  Texel mix;
+  for (std::size_t c = 0; c < 4; ++c) mix[c] = a[c] + weight * (b[c] - a[c]);
+  return mix;
+}
+
+}  // namespace
+
+std::uint8_t stored(float value, bool is_srgb) {
+  if (!is_srgb) return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0F, 1.0F)));
+  const auto& bounds = srgb_bounds();
+  return static_cast<std::uint8_t>(std::upper_bound(bounds.begin(), bounds.end(), value) -
+                                   bounds.begin());
+}
+
+Texture::Texture(Image image, bool is_srgb, const std::stop_token& stop) : is_srgb_(is_srgb) {
+  assert(image.width > 0 && image.height > 0);
+  levels_.push_back(std::move(image));
+  while (levels_.back().width > 1 || levels_.back().height > 1)
+    levels_.push_back(halved(levels_.back(), stop));
+}
+
+Texel Texture::texel(const Image& image, int x, int y) const {
+  const std::uint8_t* rgba = image.at(x, y);
+  const std::array<float, 256>& colour = decoded(is_srgb_);
+  return {colour[rgba[0]], colour[rgba[1]], colour[rgba[2]], decoded(false)[rgba[3]]};
+}
+
+/// Each texel is the mean of four; at an odd end, of those that there are.
+Image Texture::halved(const Image& image, const std::stop_token& stop) const {
+  Image half{std::max(image.width / 2, 1), std::max(image.height / 2, 1), {}};
+  half.rgba.reserve(4 * static_cast<std::size_t>(half.width) *
+                    static_cast<std::size_t>(half.height));
+  for (int y = 0; y < half.height; ++y) {
+    throw_if_cancelled(stop);
+    const int below = std::min(2 * y + 1, image.height - 1);
+    for (int x = 0; x < half.width; ++x) {
+      const int right = std::min(2 * x + 1, image.width - 1);
+      const Texel top = mixed(texel(image, 2 * x, 2 * y), texel(image, right, 2 * y), 0.5F);
+      const Texel bottom = mixed(texel(image, 2 * x, below), texel(image, right, below), 0.5F);
+      const Texel mean = mixed(top, bottom, 0.5F);
+      for (std::size_t c = 0; c < 4; ++c) half.rgba.push_back(stored(mean[c], is_srgb_ && c < 3));
+    }
+  }
+  return half;
+}
+
+Texel Texture::sample(const Vec2& uv, int level, const Sampling& sampling) const {
+  assert(uv.allFinite() && level >= 0 && level < levels());
+  const Image& image = levels_[static_cast<std::size_t>(level)];
+  const Taps x = taps(uv.x(), image.width, sampling.wrap_u, sampling.is_nearest);
+  const Taps y = taps(uv.y(), image.height, sampling.wrap_v, sampling.is_nearest);
+  if (sampling.is_nearest) return texel(image, x.first, y.first);
+  return mixed(mixed(texel(image, x.first, y.first), texel(image, x.second, y.first), x.weight),
+               mixed(texel(image, x.first, y.second), texel(image, x.second, y.second), x.weight),
+               y.weight);
+}
+
+}  // namespace unwrapd::texture

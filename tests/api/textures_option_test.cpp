@@ -1,0 +1,47 @@
+// textures=transfer: what it goes with.
+#include <gtest/gtest.h>
+
+#include "api/options.hpp"
+#include "core/base/error.hpp"
+#include "error_of.hpp"
+
+namespace unwrapd::api {
+namespace {
+
+const Limits kLimits;
+
+std::string with(const std::string& members) {
+  return R"({"textures":"transfer")" + (members.empty() ? "" : "," + members) + "}";
+}
+
+TEST(TexturesOption, IsKeepUnlessItIsAskedFor) {
+  for (const Preset preset : {Preset::texture, Preset::lightmap, Preset::chart, Preset::paper})
+    EXPECT_EQ(preset_options(preset).asset.textures, TextureMode::keep);
+  EXPECT_EQ(parse_options_text(with(""), kLimits).asset.textures, TextureMode::transfer);
+}
+
+TEST(TexturesOption, NeedsAPlaceOfItsOwnForEveryTexel) {
+  for (const std::string members :
+       {R"("guarantee":"flip_free")", R"("preset":"chart")", R"("max_pages":2)",
+        R"("stack_identical":true)", R"("boundary":"circle")"}) {
+    SCOPED_TRACE(members);
+    try {
+      parse_options_text(with(members), kLimits);
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::invalid_option);
+      EXPECT_EQ(error.where(), "/textures");
+    }
+  }
+  for (const std::string members :
+       {R"("repack_only":true)", R"("preset":"chart","guarantee":"bijective")",
+        R"("boundary":"circle","guarantee":"bijective")"})
+    EXPECT_NO_THROW(parse_options_text(with(members), kLimits)) << members;
+}
+
+TEST(TexturesOption, PaintsAtLeastAtTheResolutionOfThePage) {
+  EXPECT_EQ(parse_options_text(with(R"("resolution":512)"), kLimits).asset.resolution, 512);
+}
+
+}  // namespace
+}  // namespace unwrapd::api
