@@ -18,9 +18,11 @@ bool is_of_work(ErrorCode code) {
     case malformed_mesh:
     case malformed_draco:
     case malformed_meshopt:
+    case malformed_image:
     case missing_buffer:
     case external_uri:
     case unsupported_extension:
+    case unsupported_image:
     case too_many_vertices:
     case too_many_faces:
     case too_much_memory:
