@@ -66,7 +66,12 @@ CornerTangents stored(const Gltf& gltf, std::size_t accessor,
   return corners;
 }
 
-Eigen::Vector3f vector_of(const Tangent& tangent) { return {tangent[0], tangent[1], tangent[2]}; }
+/// The tangent, turned towards the bitangent as the material turns directions of the map.
+Eigen::Vector3f axis_of(const Tangent& tangent, const Vec3& normal, double turn) {
+  const Vec3 along(tangent[0], tangent[1], tangent[2]);
+  const Vec3 across = double{tangent[3]} * normal.cross(along);
+  return (std::cos(turn) * along + std::sin(turn) * across).cast<float>();
+}
 
 }  // namespace
 
@@ -97,9 +102,11 @@ void set_frames(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped,
     texture::TurnedFrames& frames = patch.frames[t];
     frames.from_sign = before[t][0][3];
     frames.to_sign = after[t][0][3];
-    for (std::size_t k = 0; k < 3; ++k)
-      frames.corner[k] = {soup.normals[3 * t + k].cast<float>(), vector_of(before[t][k]),
-                          vector_of(after[t][k])};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& normal = soup.normals[3 * t + k];
+      frames.corner[k] = {normal.cast<float>(), axis_of(before[t][k], normal, use.mapping.turn),
+                          axis_of(after[t][k], normal, use.mapping.turn)};
+    }
   }
 }
 

@@ -79,6 +79,16 @@ TextureMapping mapping_of(const Json& texture_info, const texture::Sampling& sam
   return mapping;
 }
 
+double turn_of(const Json& material) {
+  const Json* anisotropy = &material;
+  for (const char* name : {"extensions", "KHR_materials_anisotropy"}) {
+    const auto found = anisotropy->find(name);
+    if (found == anisotropy->end() || !found->is_object()) return 0;
+    anisotropy = &*found;
+  }
+  return number_at(*anisotropy, "anisotropyRotation", 0, 0);
+}
+
 std::string extensions_of(const Node& texture) {
   const auto extensions = texture.find("extensions");
   std::string names;
@@ -123,6 +133,7 @@ std::vector<TextureSlot> slots_of(const Gltf& gltf, std::size_t material, Pace& 
     slot.texture = Node(info, node.place().at(key)).at("index").number();
     slot.image = source_image(gltf, slot.texture);
     slot.mapping = mapping_of(info, sampling_of(gltf, element(gltf, "textures", slot.texture)));
+    if (key == kAnisotropy) slot.mapping.turn = turn_of(node.json());
     slots.push_back(slot);
   });
   return slots;

@@ -22,6 +22,8 @@ struct TextureMapping {
   /// Of KHR_texture_transform: u' = rows[0] . (u, v, 1), v' = rows[1] . (u, v, 1).
   std::array<std::array<double, 3>, 2> rows = {{{1, 0, 0}, {0, 1, 0}}};
 
+  double turn = 0;  ///< radians by which a material turns directions in the tangent plane
+
   bool operator==(const TextureMapping&) const = default;
   [[nodiscard]] Vec2 operator()(const Vec2& uv) const;
 };

@@ -50,8 +50,8 @@ double within(double u, Wrap wrap) {
 /// The texel for a number up to one beyond what within() leads to.
 int wrapped(int i, int count, Wrap wrap) {
   if (wrap == Wrap::clamp) return std::clamp(i, 0, count - 1);
-  if (wrap == Wrap::repeat) return (i + count) % count;
-  const int k = (i + 2 * count) % (2 * count);
+  const int period = wrap == Wrap::repeat ? count : 2 * count;
+  const int k = i < 0 ? i + period : i >= period ? i - period : i;
   return k < count ? k : 2 * count - 1 - k;
 }
 
@@ -63,10 +63,9 @@ struct Taps {
 
 Taps taps(double u, int count, Wrap wrap, bool is_nearest) {
   const double at = within(u, wrap) * count;
-  if (is_nearest) return {wrapped(static_cast<int>(std::floor(at)), count, wrap), 0, 0};
-  const double low = std::floor(at - 0.5);
-  const int i = static_cast<int>(low);
-  return {wrapped(i, count, wrap), wrapped(i + 1, count, wrap), static_cast<float>(at - 0.5 - low)};
+  if (is_nearest) return {wrapped(static_cast<int>(at), count, wrap), 0, 0};  // at >= 0
+  const int i = static_cast<int>(at + 0.5) - 1;  // at - 0.5, rounded down
+  return {wrapped(i, count, wrap), wrapped(i + 1, count, wrap), static_cast<float>(at - 0.5 - i)};
 }
 
 Texel mixed(const Texel& a, const Texel& b, float weight) {

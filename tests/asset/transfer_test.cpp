@@ -1,118 +1,15 @@
 // Textures that are transferred: what the document has then, and what the images show.
-#include "core/texture/codec.hpp"
-#include "core/texture/resample.hpp"
-#include "tests/asset/support.hpp"
+#include "tests/asset/transfer_samples.hpp"
 
 namespace unwrapd::asset::test {
 namespace {
-
-using texture::Codec;
-using texture::Image;
-
-constexpr int kSide = 16;
-constexpr AssetOptions kTransfer = {.texcoord = TexcoordChoice::automatic,
-                                    .compression = Compression::none,
-                                    .textures = TextureMode::transfer,
-                                    .resolution = kSide};
-
-/// Every texel another colour.
-Image chart_of_colours(int side) {
-  Image image{side, side, {}};
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x)
-      for (const int value : {16 * x + 7, 16 * y + 3, (x * 7 + y * 13) % 256, 255})
-        image.rgba.push_back(static_cast<std::uint8_t>(value));
-  return image;
-}
-
-Image constant(int side, std::array<int, 3> rgb) {
-  Image image{side, side, {}};
-  for (int i = 0; i < side * side; ++i)
-    for (const int value : {rgb[0], rgb[1], rgb[2], 255})
-      image.rgba.push_back(static_cast<std::uint8_t>(value));
-  return image;
-}
-
-std::string file_of(const Image& image, Codec codec = Codec::png) {
-  return texture::encode(image, {codec, image.width, image.height, false, false, true}, {});
-}
-
-std::size_t add_image(Builder& b, const std::string& bytes) {
-  b.json["images"].push_back({{"bufferView", b.add_view(bytes)}, {"mimeType", "image/png"}});
-  return b.json["images"].size() - 1;
-}
-
-/// A unit square with an upright normal, the UVs of its positions, and this image as base colour.
-Builder textured(const std::string& image) {
-  Builder b;
-  const std::size_t position = b.add("VEC3", 5126, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
-  b.json["accessors"][position]["min"] = {0, 0, 0};
-  b.json["accessors"][position]["max"] = {1, 1, 0};
-  const std::size_t normal = b.add("VEC3", 5126, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
-  const std::size_t uv = b.add("VEC2", 5126, {0, 1, 1, 1, 1, 0, 0, 0});
-  b.add_primitive({{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", uv}},
-                  b.add("SCALAR", 5123, {0, 1, 2, 0, 2, 3}));
-  b.json["meshes"][0]["primitives"][0]["material"] = 0;
-  b.json["textures"] = {{{"source", add_image(b, image)}}};
-  b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
-  return b;
-}
-
-/// The square on the page turned by a quarter: (x, y) is at (1 - y, x), V pointing up.
-std::vector<UnwrappedSurface> quarter_turn(const Asset& asset) {
-  std::vector<UnwrappedSurface> unwrapped;
-  for (const Surface& surface : asset.surfaces()) {
-    UnwrappedSurface& turned = unwrapped.emplace_back();
-    turned.faces = surface.mesh.faces;
-    for (Index v = 0; v < surface.mesh.vertex_count(); ++v) {
-      const Vec3& p = surface.mesh.positions[static_cast<std::size_t>(v)];
-      turned.source.push_back(v);
-      turned.uv.emplace_back(1 - p.y(), p.x());
-    }
-  }
-  return unwrapped;
-}
-
-std::vector<NoteCode> codes(const Asset& asset) {
-  std::vector<NoteCode> found;
-  for (const Note& note : side_effects(asset, quarter_turn(asset), Format::glb))
-    found.push_back(note.code);
-  return found;
-}
-
-/// The written document, and its images decoded.
-struct Written {
-  Json json;
-  std::vector<Image> images;
-  std::vector<texture::ImageHead> heads;
-};
-
-Written written(const Asset& asset) {
-  const std::string glb = write(asset, quarter_turn(asset), Format::glb);
-  Written result{json_of(glb), {}, {}};
-  const std::string bin = glb.substr(glb.find("BIN") + 4);
-  for (const Json& image : result.json["images"]) {
-    const Json& view = result.json["bufferViews"][image["bufferView"].get<std::size_t>()];
-    const std::string bytes = bin.substr(view.value("byteOffset", 0U), view["byteLength"]);
-    const texture::ImageFile file{bytes, ""};
-    result.heads.push_back(texture::head_of(file));
-    result.images.push_back(texture::decode(file, result.heads.back(), {}));
-  }
-  return result;
-}
-
-/// The texel of the old image where the quarter turn shows it.
-const std::uint8_t* old_texel(const Image& old, int x, int y) {
-  // Place (x, y), V down: 1 - v = 1 - y', u = 1 - y of space, so space is (1 - y', 1 - x').
-  return old.at(kSide - 1 - y, x);
-}
 
 TEST(Transfer, PaintsTheImageForTheNewLayout) {
   const Image old = chart_of_colours(kSide);
   for (const Codec codec : {Codec::png, Codec::webp}) {
     const Asset asset = read_file(textured(file_of(old, codec)).glb(), kTransfer);
     EXPECT_EQ(asset.texcoord(), 0);
-    EXPECT_EQ(codes(asset), std::vector{NoteCode::textures_transferred});
+    EXPECT_EQ(codes_of_transfer(asset), std::vector{NoteCode::textures_transferred});
     const Written now = written(asset);
     ASSERT_EQ(now.images.size(), 1U);
     EXPECT_EQ(now.heads[0].codec, codec);
@@ -162,6 +59,27 @@ TEST(Transfer, TurnsANormalMapWithItsFrames) {
     }
 }
 
+TEST(Transfer, TurnsDirectionsOfAnisotropyOnAMirroredLayout) {
+  Builder b = textured(file_of(constant(4, {255, 128, 70})));  // along the tangent, strength 70
+  const std::size_t uv = b.add("VEC2", 5126, {1, 1, 0, 1, 0, 0, 1, 0});
+  b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = uv;
+  b.json["extensionsUsed"] = {"KHR_materials_anisotropy"};
+  b.json["materials"] = {
+      {{"extensions",
+        {{"KHR_materials_anisotropy",
+          {{"anisotropyRotation", 0.5}, {"anisotropyTexture", {{"index", 0}}}}}}}}};
+  const Written now = written(read_file(b.glb(), kTransfer));
+  // Before: U along -X, V along +Y of space; so the material turns -X by 0.5 towards +Y.
+  const Vec2 space(-std::cos(0.5), std::sin(0.5));
+  // After: U along -Y, V along +X. The material turns by 0.5 from U towards V again.
+  const Vec2 read(-space.y(), space.x());
+  const Vec2 turned_back(std::cos(0.5) * read.x() + std::sin(0.5) * read.y(),
+                         -std::sin(0.5) * read.x() + std::cos(0.5) * read.y());
+  EXPECT_NEAR(now.images[0].at(5, 5)[0], 127.5 * (1 + turned_back.x()), 2);
+  EXPECT_NEAR(now.images[0].at(5, 5)[1], 127.5 * (1 + turned_back.y()), 2);
+  EXPECT_NEAR(now.images[0].at(5, 5)[2], 70, 1);
+}
+
 TEST(Transfer, SharesOneImageAmongSlotsOfOneMeaning) {
   Builder b = textured(file_of(chart_of_colours(kSide)));
   Json& material = b.json["materials"][0];
@@ -209,39 +127,40 @@ TEST(Transfer, ASideKeepsTheDetailAndTheNoteTellsIt) {
   EXPECT_NE(notes[0].text.find("from 48 x 48 to 64 x 64"), std::string::npos) << notes[0].text;
 }
 
-ErrorCode refusal(const std::string& file, const std::string& where,
-                  const AssetOptions& options = kTransfer) {
-  try {
-    read_file(file, options);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.where(), where);
-    return error.code();
-  }
-  return ErrorCode::internal;
+TEST(Transfer, TakesAnImageThatWasSentBesideTheDocument) {
+  const Image old = chart_of_colours(kSide);
+  Builder b = textured("");
+  b.json["images"][0] = {{"uri", "wood.png"}, {"name", "wood"}};
+  const std::string document = b.gltf();
+  const std::map<std::string, std::string> parts = {{"wood.png", file_of(old)}};
+  const Asset asset = read(input_of(document, parts), {}, kTransfer);
+  const Written now = written(asset);
+  ASSERT_EQ(now.images.size(), 1U);
+  EXPECT_FALSE(now.json["images"][0].contains("uri"));
+  EXPECT_EQ(now.json["images"][0]["name"], "wood");
+  EXPECT_EQ(now.images[0].at(2, 3)[0], old_texel(old, 2, 3)[0]);
 }
 
-TEST(Transfer, RefusesImagesItCannotReadByName) {
-  EXPECT_EQ(refusal(textured("\xabKTX 20\xbb\r\n\x1a\n").glb(), "/images/0"),
-            ErrorCode::unsupported_image);
-  EXPECT_EQ(refusal(textured("\x89PNG\r\n\x1a\n").glb(), "/images/0"), ErrorCode::malformed_image);
-  Builder basisu = textured("");
-  basisu.json["extensionsUsed"] = {"KHR_texture_basisu"};
-  basisu.json["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
-  EXPECT_EQ(refusal(basisu.glb(), "/textures/0"), ErrorCode::unsupported_image);
-  Builder beside = textured("");
-  beside.json["images"][0] = {{"uri", "wood.png"}};
-  EXPECT_EQ(refusal(beside.glb(), "/images/0/uri"), ErrorCode::missing_buffer);
-  Builder dangling = textured("");
-  dangling.json["textures"][0]["source"] = 9;
-  EXPECT_EQ(refusal(dangling.glb(), "/images/9"), ErrorCode::malformed_gltf);
-  EXPECT_EQ(refusal("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "/textures"),
-            ErrorCode::invalid_option);
-  for (const std::string& file : {basisu.glb(), beside.glb(), dangling.glb()})
-    EXPECT_NO_THROW(read_file(file, {.texcoord = TexcoordChoice::automatic}));
+TEST(Transfer, FollowsTheMaterialsOfVariants) {
+  Builder b = textured(file_of(chart_of_colours(kSide)));
+  b.json["textures"].push_back({{"source", add_image(b, file_of(constant(4, {9, 90, 200})))}});
+  b.json["materials"].push_back({{"emissiveTexture", {{"index", 1}}}});
+  b.json["extensionsUsed"] = {"KHR_materials_variants"};
+  b.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "other"}}};
+  b.json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
+      {{"material", 1}, {"variants", {0}}}};
+  const Written now = written(read_file(b.glb(), kTransfer));
+  ASSERT_EQ(now.images.size(), 2U);
+  EXPECT_EQ(now.json["materials"].size(), 2U);
+  const int texture = now.json["materials"][1]["emissiveTexture"]["index"];
+  const int image = now.json["textures"][static_cast<std::size_t>(texture)]["source"];
+  EXPECT_EQ(now.images[static_cast<std::size_t>(image)].width, kSide);
+  EXPECT_EQ(now.images[static_cast<std::size_t>(image)].at(7, 7)[2], 200);
 }
 
 TEST(Transfer, HasNoEffectWhereNothingIsSampled) {
-  EXPECT_EQ(codes(read_file(square().glb(), kTransfer)), std::vector{NoteCode::option_unused});
+  EXPECT_EQ(codes_of_transfer(read_file(square().glb(), kTransfer)),
+            std::vector{NoteCode::option_unused});
 }
 
 TEST(Transfer, WorksOnACompressedAsset) {

@@ -138,6 +138,23 @@ function compressedBy(extension, place) {
   });
 }
 
+/** The grid with an image on it, which its UVs sample. */
+const pictured = (image) => changed((json) => {
+  json.images = [{uri: `data:image/png;base64,${image.toString('base64')}`}];
+  json.textures = [{source: 0}];
+  json.materials = [{emissiveTexture: {index: 0}}];
+  const [primitive] = json.meshes[0].primitives;
+  primitive.material = 0;
+  json.accessors.push({componentType: kFloat, type: 'VEC2', count: json.accessors[0].count});
+  primitive.attributes.TEXCOORD_0 = json.accessors.length - 1;
+});
+
+/** Assets whose textures cannot be transferred, likewise. */
+export const kRefusedTextures = {
+  malformed_image: pictured(Buffer.from('\x89PNG\r\n\x1a\n', 'latin1')),
+  unsupported_image: pictured(Buffer.from('\xabKTX 20\xbb\r\n\x1a\n', 'latin1')),
+};
+
 /** Assets that cannot be done, by the code of the problem that they are to get. */
 export const kRefused = {
   unknown_format: Buffer.from([0, 1, 2, 3, 4, 5, 6, 7]),

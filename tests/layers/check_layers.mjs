@@ -16,7 +16,7 @@ const ONLY_IN = [
   { header: /^toml\+\+\//, files: /^server\/config\/config\.cpp$/ },
   { header: /^CLI\//, files: /^(server|client)\// },
   { header: /^seccomp\.h$/, files: /^server\/work\/sandbox\.cpp$/ },
-  { header: /^png\.h$/, files: /^(core\/texture\/png\.cpp$|server\/work\/png_file\.cpp$|tests\/server\/)/ },
+  { header: /^png\.h$/, files: /^(core\/texture\/png\.cpp$|tests\/core\/texture\/|server\/work\/png_file\.cpp$|tests\/server\/)/ },
   { header: /^(jpeglib|jerror)\.h$/, files: /^core\/texture\/jpeg\.cpp$/ },
   { header: /^webp\//, files: /^core\/texture\/webp\.cpp$/ },
   { header: /^zip\.h$/, files: /^(core\/asset\/zip\.cpp$|tests\/asset\/)/ },

@@ -90,51 +90,91 @@ Vec3 pixel_of(const TexturedScene& scene, const std::vector<const Hit*>& hits, L
   return sum;
 }
 
+/// Compares pixel by pixel.
+class Comparison {
+ public:
+  Comparison(const TexturedScene& before, const TexturedScene& after, const Screen& screen,
+             Look look)
+      : before_(before),
+        after_(after),
+        look_(look),
+        side_(screen.size * kSamples),
+        hits_(hits_of(before, screen)),
+        old_chart_(before.charts()),
+        new_chart_(after.charts()) {
+    result_.before = result_.after = {screen.size, screen.size, {}};
+  }
+
+  Compared run() {
+    const int size = side_ / kSamples;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) compare_pixel(x, y);
+    const auto mean = [](double sum, std::size_t count) {
+      return count == 0 ? 0 : sum / static_cast<double>(count);
+    };
+    result_.mean_difference = mean(away_, away_count_);
+    result_.near_seams = mean(near_, near_count_);
+    result_.share_compared = mean(double(away_count_), away_count_ + near_count_);
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] const Hit& hit(int x, int y) const {
+    return hits_[static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) +
+                 static_cast<std::size_t>(x)];
+  }
+
+  void compare_pixel(int x, int y) {
+    std::vector<const Hit*> own;
+    for (int j = 0; j < kSamples; ++j)
+      for (int i = 0; i < kSamples; ++i) own.push_back(&hit(x * kSamples + i, y * kSamples + j));
+    const Vec3 a = pixel_of(before_, own, look_), b = pixel_of(after_, own, look_);
+    add_pixel(result_.before, a);
+    add_pixel(result_.after, b);
+    if (own.front()->face < 0) return;
+    const bool is_near = is_near_seam(x, y);
+    (is_near ? near_ : away_) += (a - b).cwiseAbs().mean();
+    ++(is_near ? near_count_ : away_count_);
+  }
+
+  static void add_pixel(texture::Image& image, const Vec3& colour) {
+    for (int c = 0; c < 3; ++c)
+      image.rgba.push_back(static_cast<std::uint8_t>(std::lround(colour[c])));
+    image.rgba.push_back(255);
+  }
+
+  /// Whether the pixel and its neighbours show more than one chart, of either scene, or an edge.
+  [[nodiscard]] bool is_near_seam(int x, int y) const {
+    const auto own = static_cast<std::size_t>(hit(x * kSamples, y * kSamples).face);
+    for (int j = -kSamples; j < 2 * kSamples; ++j)
+      for (int i = -kSamples; i < 2 * kSamples; ++i) {
+        const int face = hit(std::clamp(x * kSamples + i, 0, side_ - 1),
+                             std::clamp(y * kSamples + j, 0, side_ - 1))
+                             .face;
+        if (face < 0) return true;
+        const auto other = static_cast<std::size_t>(face);
+        if (old_chart_[other] != old_chart_[own] || new_chart_[other] != new_chart_[own])
+          return true;
+      }
+    return false;
+  }
+
+  const TexturedScene& before_;
+  const TexturedScene& after_;
+  Look look_;
+  int side_;  ///< samples
+  std::vector<Hit> hits_;
+  std::vector<int> old_chart_, new_chart_;
+  double away_ = 0, near_ = 0;
+  std::size_t away_count_ = 0, near_count_ = 0;
+  Compared result_;
+};
+
 }  // namespace
 
 Compared compare(const TexturedScene& before, const TexturedScene& after, const Vec3& direction,
                  Look look, int size) {
-  const Screen screen = screen_of(before, direction, size);
-  const std::vector<Hit> hits = hits_of(before, screen);
-  const std::vector<int> old_chart = before.charts(), new_chart = after.charts();
-  Compared result{0, 0, {size, size, {}}, {size, size, {}}};
-  const int n = size * kSamples;
-  double total = 0;
-  std::size_t shown = 0, compared = 0;
-  const auto hit_at = [&](int x, int y) {
-    return &hits[static_cast<std::size_t>(y) * static_cast<std::size_t>(n) +
-                 static_cast<std::size_t>(x)];
-  };
-  for (int y = 0; y < size; ++y)
-    for (int x = 0; x < size; ++x) {
-      std::vector<const Hit*> own;
-      for (int j = 0; j < kSamples; ++j)
-        for (int i = 0; i < kSamples; ++i)
-          own.push_back(hit_at(x * kSamples + i, y * kSamples + j));
-      const Vec3 a = pixel_of(before, own, look), b = pixel_of(after, own, look);
-      for (const auto& [image, colour] : {std::pair{&result.before, &a}, {&result.after, &b}}) {
-        for (int c = 0; c < 3; ++c)
-          image->rgba.push_back(static_cast<std::uint8_t>(std::lround((*colour)[c])));
-        image->rgba.push_back(255);
-      }
-      if (own.front()->face < 0) continue;
-      ++shown;
-      bool is_near_seam = false;  // in the pixel or a neighbour
-      for (int j = -kSamples; j < 2 * kSamples; ++j)
-        for (int i = -kSamples; i < 2 * kSamples; ++i) {
-          const int sx = std::clamp(x * kSamples + i, 0, n - 1);
-          const int sy = std::clamp(y * kSamples + j, 0, n - 1);
-          const int f = hit_at(sx, sy)->face, g = own.front()->face;
-          is_near_seam |= f < 0 || old_chart[std::size_t(f)] != old_chart[std::size_t(g)] ||
-                          new_chart[std::size_t(f)] != new_chart[std::size_t(g)];
-        }
-      if (is_near_seam) continue;
-      ++compared;
-      total += (a - b).cwiseAbs().mean();
-    }
-  result.mean_difference = compared == 0 ? 0 : total / static_cast<double>(compared);
-  result.share_compared = shown == 0 ? 0 : double(compared) / double(shown);
-  return result;
+  return Comparison(before, after, screen_of(before, direction, size), look).run();
 }
 
 std::vector<Vec3> eight_sides() {

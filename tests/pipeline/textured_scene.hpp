@@ -62,6 +62,7 @@ class TexturedScene {
 /// Two scenes of the same faces side by side.
 struct Compared {
   double mean_difference = 0;  ///< of a channel in 1/255, over pixels away from seams
+  double near_seams = 0;       ///< the same near seams and silhouettes
   double share_compared = 0;   ///< of the pixels that show a face
   texture::Image before, after;
 };

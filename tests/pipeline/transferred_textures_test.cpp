@@ -15,7 +15,8 @@ namespace {
 using asset::test::Builder;
 
 constexpr double kMostDifference = 2;  // of 255, mean over pixels away from seams
-constexpr int kSize = 160;             // pixels
+constexpr double kMostNearSeams = 1;
+constexpr int kSize = 160;  // pixels
 
 const UnwrapOptions kTexture = {.max_distortion = 2.02, .guarantee = Guarantee::bijective};
 
@@ -54,9 +55,11 @@ void expect_same_look(const Pair& pair, Look look, const std::string& name) {
     const Compared compared = compare(pair.before, pair.after, direction, look, kSize);
     save(name + std::to_string(side) + "_before", compared.before);
     save(name + std::to_string(side) + "_after", compared.after);
-    std::printf("%s, side %d: %.3f of 255 over %.0f %% of the pixels\n", name.c_str(), side++,
-                compared.mean_difference, 100 * compared.share_compared);
+    std::printf("%s, side %d: %.3f of 255 over %.0f %% of the pixels, %.3f near seams\n",
+                name.c_str(), side++, compared.mean_difference, 100 * compared.share_compared,
+                compared.near_seams);
     EXPECT_LE(compared.mean_difference, kMostDifference);
+    EXPECT_LE(compared.near_seams, kMostNearSeams);
     EXPECT_GE(compared.share_compared, 0.4);
   }
 }

@@ -123,6 +123,10 @@ export async function failedJobs(run, base) {
   for (const [code, body] of Object.entries(meshes.kRefused)) {
     await failure(run, base, {body, code, status: statusOf(code)});
   }
+  for (const [code, body] of Object.entries(meshes.kRefusedTextures)) {
+    const query = {textures: 'transfer'};
+    await failure(run, base, {body, query, code, status: statusOf(code)});
+  }
   for (const [code, query] of Object.entries(kRefusedWith)) {
     await failure(run, base, {body: meshes.obj(), query, code, status: 422});
   }

@@ -1,6 +1,8 @@
 // Layouts whose pictures are known beforehand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/base/error.hpp"
 #include "tests/core/texture/pictures.hpp"
 
@@ -70,6 +72,22 @@ TEST(Resample, MinifiedColoursAreAveragedInLinearLight) {
   }
 }
 
+TEST(Resample, ATexelIsTheMeanOfAllThatLiesUnderIt) {
+  const Image image = noise(64, 64);
+  const auto same = [](float u, float v) { return Eigen::Vector2f(u, v); };
+  for (const int side : {32, 16, 8, 4, 2, 1}) {
+    const Image small = paint(image, page(same, kClamped), side, Content::values).image;
+    const int under = 64 / side;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        double sum = 0;
+        for (int j = 0; j < under; ++j)
+          for (int i = 0; i < under; ++i) sum += at(image, x * under + i, y * under + j)[0];
+        EXPECT_NEAR(at(small, x, y)[0], sum / (under * under), 1) << side;
+      }
+  }
+}
+
 TEST(Resample, AnElongatedFootprintIsAveragedAlongItsLengthOnly) {
   const Image stripes = picture(64, 64, [](int x, int y) {
     return Rgba{x % 2 * 255, y < 32 ? 0 : 255, 0, 255};
@@ -87,13 +105,14 @@ TEST(Resample, AnElongatedFootprintIsAveragedAlongItsLengthOnly) {
 
 TEST(Resample, TrianglesOfOnePageMeetWithoutGaps) {
   Patch fan{kClamped, {}, {}};
-  const Eigen::Vector2f center(0.317F, 0.583F);
+  const Eigen::Vector2f center(40.5F / 128, 74.5F / 128);  // where a sample is
   const auto rim = [](int k) {
     const float angle = 6.2831853F * static_cast<float>(k % 97) / 97;
     return Eigen::Vector2f(0.5F + 2 * std::cos(angle), 0.5F + 2 * std::sin(angle));
   };
   for (int k = 0; k < 97; ++k) {
-    const std::array<Eigen::Vector2f, 3> place = {center, rim(k), rim(k + 1)};
+    std::array<Eigen::Vector2f, 3> place = {center, rim(k), rim(k + 1)};
+    std::rotate(place.begin(), place.begin() + k % 3, place.end());
     fan.triangles.push_back({place, place});
   }
   const Painted painted = paint(noise(16, 16), fan, 128);
@@ -149,6 +168,22 @@ TEST(Detail, ASideKeepsTheTexelsOfTheImage) {
   EXPECT_DOUBLE_EQ(side_that_keeps_detail(std::array{page(tiled)}, 256, 256, {}), 768);
   const auto point = [](float, float) { return Eigen::Vector2f(0.5F, 0.5F); };
   EXPECT_EQ(side_that_keeps_detail(std::array{page(point)}, 256, 256, {}), 0);
+}
+
+TEST(Detail, ATwentiethOfTheImageMayLoseSome) {
+  const auto strips = [](float squeezed) {  // the rest of the image is on the rest of the page
+    const auto strip = [](float from, float to, float low, float high) {
+      Patch patch =
+          page([&](float u, float v) { return Eigen::Vector2f(from + u * (to - from), v); });
+      for (PlacedTriangle& triangle : patch.triangles)
+        for (Eigen::Vector2f& corner : triangle.to) corner.x() = low + corner.x() * (high - low);
+      return patch;
+    };
+    return std::array{strip(0, 1 - squeezed, 0, 1 - squeezed),
+                      strip(1 - squeezed, 1, 1 - squeezed, 1 - squeezed / 2)};
+  };
+  EXPECT_NEAR(side_that_keeps_detail(strips(0.04F), 256, 256, {}), 256, 1);
+  EXPECT_NEAR(side_that_keeps_detail(strips(0.06F), 256, 256, {}), 512, 1);
 }
 
 }  // namespace
