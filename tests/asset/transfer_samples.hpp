@@ -63,7 +63,8 @@ inline Builder textured(const std::string& image) {
 }
 
 /// The square on the page turned by a quarter: (x, y) is at (1 - y, x), V pointing up.
-inline std::vector<UnwrappedSurface> quarter_turn(const Asset& asset) {
+/// scale: of the square, which stays at the lower left.
+inline std::vector<UnwrappedSurface> quarter_turn(const Asset& asset, double scale = 1) {
   std::vector<UnwrappedSurface> unwrapped;
   for (const Surface& surface : asset.surfaces()) {
     UnwrappedSurface& turned = unwrapped.emplace_back();
@@ -71,7 +72,7 @@ inline std::vector<UnwrappedSurface> quarter_turn(const Asset& asset) {
     for (Index v = 0; v < surface.mesh.vertex_count(); ++v) {
       const Vec3& p = surface.mesh.positions[static_cast<std::size_t>(v)];
       turned.source.push_back(v);
-      turned.uv.emplace_back(1 - p.y(), p.x());
+      turned.uv.emplace_back(scale * (1 - p.y()), scale * p.x());
     }
   }
   return unwrapped;
@@ -91,8 +92,8 @@ struct Written {
   std::vector<texture::ImageHead> heads;
 };
 
-inline Written written(const Asset& asset) {
-  const std::string glb = write(asset, quarter_turn(asset), Format::glb);
+inline Written written(const Asset& asset, double scale = 1) {
+  const std::string glb = write(asset, quarter_turn(asset, scale), Format::glb);
   Written result{json_of(glb), {}, {}};
   const std::string bin = glb.substr(glb.find("BIN") + 4);
   for (const Json& image : result.json["images"]) {

@@ -23,6 +23,12 @@ TEST(Transfer, PaintsTheImageForTheNewLayout) {
   }
 }
 
+TEST(Transfer, FillsTheRestOfThePageFromTheNearestTexels) {
+  const Image old = constant(8, {50, 100, 150});
+  const Written now = written(read_file(textured(file_of(old)).glb(), kTransfer), 0.5);
+  EXPECT_EQ(now.images[0].rgba, constant(kSide, {50, 100, 150}).rgba);
+}
+
 TEST(Transfer, RespectsATransformAndRemovesIt) {
   const Image old = chart_of_colours(kSide);
   Builder b = textured(file_of(old));
