@@ -145,7 +145,8 @@ const pictured = (image) => changed((json) => {
   json.materials = [{emissiveTexture: {index: 0}}];
   const [primitive] = json.meshes[0].primitives;
   primitive.material = 0;
-  json.accessors.push({componentType: kFloat, type: 'VEC2', count: json.accessors[0].count});
+  json.accessors.push({componentType: kFloat, type: 'VEC2',
+                       count: json.accessors[primitive.attributes.POSITION].count});
   primitive.attributes.TEXCOORD_0 = json.accessors.length - 1;
 });
 
