@@ -243,8 +243,8 @@ std::vector<Note> note_on_materials(const Obj& obj) {
   const std::set<std::string> beside = images_beside(obj);
   if (!beside.empty())
     notes.push_back({NoteCode::images_separate,
-                     std::to_string(beside.size()) + " images of the OBJ's materials, such as " +
-                         *beside.begin() +
+                     std::to_string(beside.size()) + (beside.size() == 1 ? " image" : " images") +
+                         " of the OBJ's materials, such as " + *beside.begin() +
                          ", remain in separate files; keep them beside the result, or send them "
                          "with the OBJ."});
   return notes;

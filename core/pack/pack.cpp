@@ -11,6 +11,7 @@
 
 #include "core/base/error.hpp"
 #include "core/pack/anneal_packing.hpp"
+#include "core/pack/box.hpp"
 #include "core/pack/compact.hpp"
 #include "core/pack/pack_few.hpp"
 #include "core/pack/pack_many.hpp"
@@ -120,12 +121,20 @@ class Packer {
   /// contains a square of its shorter side; an island cannot fit if that square does not.
   [[nodiscard]] bool is_too_large(double page_per_unit) const {
     for (std::size_t k = 0; k < placer_.size(); ++k) {
-      const Vec2 size = page_per_unit * placer_.box(k).size;
+      const Vec2 size = page_per_unit * least_box(k);
       if (size.minCoeff() > std::min(1.0, grid_.aspect) ||
           size.maxCoeff() > std::sqrt(1 + grid_.aspect * grid_.aspect))
         return true;
     }
     return false;
+  }
+
+  /// On a square page the placer's box says the same as the smallest one, and is known.
+  [[nodiscard]] Vec2 least_box(std::size_t island) const {
+    if (grid_.aspect == 1) return placer_.box(island).size;
+    UvMap points;
+    for (const auto& [a, b] : outlines_[island]) points.push_back(a);
+    return smallest_box(points).size;
   }
 
   [[nodiscard]] std::int64_t work(double a_share) const {

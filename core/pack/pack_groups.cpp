@@ -13,6 +13,7 @@
 namespace unwrapd::pack {
 namespace {
 
+constexpr double kRounding = 1e-12;
 constexpr double kSmallerDensity = 0.97;  // factor of the density after a group did not fit
 
 class GroupPacker {
@@ -59,7 +60,7 @@ class GroupPacker {
     PageOptions page = page_;
     page.packing.texels_per_unit = scale * page.resolution;
     for (std::size_t g = 0; g < pages.size(); ++g) {
-      if (scale_of(pages[g]) <= scale) continue;
+      if (scale_of(pages[g]) <= scale * (1 + kRounding)) continue;
       try {
         pages[g] = pack(outlines_[g], page, executor_);
       } catch (const Error& error) {

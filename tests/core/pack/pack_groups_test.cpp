@@ -71,6 +71,17 @@ TEST(PackGroups, TheFullestPageDeterminesTheDensity) {
   EXPECT_NEAR(packed.placements[0].scale, (1 - 16.0 / 1024) / 3, 1e-6);
 }
 
+TEST(PackGroups, LongIslandsFillLongPages) {
+  const charts::Outline strip = polygon({{0, 0}, {3, 0}, {3, 1}, {0, 1}}),
+                        shorter = polygon({{0, 0}, {2.9, 0}, {2.9, 1}, {0, 1}});
+  for (const int height : {512, 2048}) {  // strips of at most a third of the longer side
+    const PageOptions page{.resolution = 1024, .padding = 2, .height = height};
+    const double most = std::max(1.0, page.aspect()) / 3;
+    EXPECT_GT(grouped({strip, strip}, {0, 1}, page).placements[0].scale, 0.99 * most);
+    EXPECT_GT(grouped({strip, shorter}, {0, 1}, page).placements[0].scale, 0.96 * most);
+  }
+}
+
 TEST(PackGroups, OneGroupIsPackedAsWithoutGroups) {
   const std::vector<charts::Outline> islands = stars(9, 2);
   const PackResult packed = grouped(islands, std::vector<Index>(9, 0)),
