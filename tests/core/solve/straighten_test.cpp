@@ -67,6 +67,25 @@ TEST(Straightened, AWavySheetBecomesARectangleOfItsArea) {
   }
 }
 
+TEST(Straightened, InnerVerticesFollowTheBoundary) {
+  const TriMesh mesh = sheet(0.15, 0);
+  const charts::Charts charts = charts::make_charts(shapes::surface_of(mesh), SeamMode::none);
+  const charts::Chart& chart = charts.charts.front();
+  const Disk disk = make_disk(chart.mesh, chart.loops);
+  const auto map = straight(mesh);
+  ASSERT_TRUE(map);
+  UvMap stiff = flat(chart.mesh);  // the boundary alone moves
+  for (const Index h : chart.loops[0]) {
+    const auto v = static_cast<std::size_t>(chart.mesh.faces[h / 3][h % 3]);
+    stiff[v] = (*map)[v];
+  }
+  const auto worst = [&](const UvMap& uv) {
+    const Distortion own = measure::distortion(measure::distortion_sums(disk.rest, disk.faces, uv));
+    return own.angle + own.area;
+  };
+  EXPECT_LT(worst(*map), worst(stiff) - 1e-3);
+}
+
 TEST(Straightened, ARectangleStaysAsItIs) {
   const TriMesh mesh = sheet(0, 0);
   const auto map = straight(mesh);
