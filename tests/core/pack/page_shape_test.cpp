@@ -37,7 +37,7 @@ double fill(const std::vector<charts::Outline>& texels, const PageOptions& page)
   return area_in_texels(texels) / page.resolution / page.height.value_or(page.resolution);
 }
 
-double distance_of(const Vec2& p, const Vec2& a, const Vec2& b) {
+double gap_to(const Vec2& p, const Vec2& a, const Vec2& b) {
   const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
   return (p - a - t * (b - a)).norm();
 }
@@ -63,13 +63,12 @@ void expect_padding(const std::vector<charts::Outline>& texels, const PageOption
       if (i == j) continue;
       ASSERT_FALSE(has_inside(texels[j], texels[i].front()[0])) << i << " lies in " << j;
       for (const auto& [p, q] : texels[i])
-        for (const auto& [a, b] : texels[j])
-          ASSERT_GE(distance_of(p, a, b), least) << i << " and " << j;
+        for (const auto& [a, b] : texels[j]) ASSERT_GE(gap_to(p, a, b), least) << i << " and " << j;
     }
   }
 }
 
-charts::Outline square(double side, const Vec2& at = Vec2::Zero()) {
+charts::Outline square_at(double side, const Vec2& at = Vec2::Zero()) {
   return polygon({at, at + Vec2(side, 0), at + Vec2(side, side), at + Vec2(0, side)});
 }
 
@@ -78,7 +77,7 @@ PageOptions page_of(int width, int height, int padding) {
 }
 
 TEST(PageShape, TwoSquaresFillAPageTwiceAsLongAsWide) {
-  const std::vector<charts::Outline> islands{square(3), square(3, {9, 9})};
+  const std::vector<charts::Outline> islands{square_at(3), square_at(3, {9, 9})};
   for (const PageOptions& page : {page_of(1024, 512, 0), page_of(256, 512, 0)}) {
     const auto texels = in_texels(islands, pack_alone(islands, page), page.resolution);
     EXPECT_GT(fill(texels, page), 0.9999);
@@ -160,7 +159,7 @@ TEST(PageShape, AnIslandThatIsLargerThanThePageIsRefused) {
   PageOptions page = page_of(1024, 64, 2);
   page.packing.texels_per_unit = 100.0;
   try {
-    pack_alone(std::vector<charts::Outline>{square(1)}, page);
+    pack_alone(std::vector<charts::Outline>{square_at(1)}, page);
     ADD_FAILURE() << "it fits";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::does_not_fit);
