@@ -14,7 +14,7 @@ import { restartable } from "./restartable.mjs";
 const data = process.env.UNWRAPD_TEST_DATA ?? new URL("../../../../shared/data", import.meta.url).pathname;
 const kFiles = [
   "disk/tiny_square.obj", "disk/hand_lowres.obj", "paper/Balls.obj", "paper/Isis_dABF.obj",
-  "closed/spot_control_mesh.obj", "gltf/pmndrs/bunny.glb", "gltf/pmndrs/suzi.glb", "gltf/tinygltf/models/box01.glb",
+  "closed/spot_control_mesh.obj", "gltf/pmndrs/bunny.glb", "gltf/gltfrs/tests/box_sparse.glb", "gltf/tinygltf/models/box01.glb",
   "gltf/gltfpipeline/2.0/box-morph/box-morph.gltf", "gltf/blenderio/tests/roundtrip/02_node_hierarchy/02_node_hierarchy.gltf",
 ];
 const curl = promisify(execFile);

@@ -25,7 +25,7 @@ from unwrapd import Progress, UnwrapdError, unwrap  # noqa: E402
 DATA = Path(os.environ.get("UNWRAPD_TEST_DATA", HERE / "../../../../shared/data"))
 FILES = [
     "disk/tiny_square.obj", "disk/hand_lowres.obj", "paper/Balls.obj", "paper/Isis_dABF.obj",
-    "closed/spot_control_mesh.obj", "gltf/pmndrs/bunny.glb", "gltf/pmndrs/suzi.glb", "gltf/tinygltf/models/box01.glb",
+    "closed/spot_control_mesh.obj", "gltf/pmndrs/bunny.glb", "gltf/gltfrs/tests/box_sparse.glb", "gltf/tinygltf/models/box01.glb",
     "gltf/gltfpipeline/2.0/box-morph/box-morph.gltf", "gltf/blenderio/tests/roundtrip/02_node_hierarchy/02_node_hierarchy.gltf",
 ]
 
