@@ -22,7 +22,7 @@ PackResult grouped(const std::vector<charts::Outline>& islands, const std::vecto
   return pack_groups(islands, group, page, job);
 }
 
-charts::Outline square(double side) {
+charts::Outline square_of(double side) {
   return polygon({{0, 0}, {side, 0}, {side, side}, {0, side}});
 }
 
@@ -66,7 +66,7 @@ TEST(PackGroups, EveryGroupHasItsPageAndAllHaveOneDensity) {
 }
 
 TEST(PackGroups, TheFullestPageDeterminesTheDensity) {
-  const std::vector<charts::Outline> islands{square(1), square(3), square(0.1)};
+  const std::vector<charts::Outline> islands{square_of(1), square_of(3), square_of(0.1)};
   const PackResult packed = grouped(islands, {0, 1, 2}, {.resolution = 1024, .padding = 8});
   EXPECT_NEAR(packed.placements[0].scale, (1 - 16.0 / 1024) / 3, 1e-6);
 }
@@ -110,12 +110,12 @@ TEST(PackGroups, NearlyEqualGroupsFillTheirPages) {
 }
 
 TEST(PackGroups, IslandsWithoutExtentDoNotShrinkTheOthers) {
-  const std::vector<charts::Outline> islands{square(1), polygon({{3, 3}, {3, 3}})};
+  const std::vector<charts::Outline> islands{square_of(1), polygon({{3, 3}, {3, 3}})};
   EXPECT_GT(grouped(islands, {0, 1}).placements[0].scale, 0.9);
 }
 
 TEST(PackGroups, KeepAGivenDensityOrRefuseIt) {
-  const std::vector<charts::Outline> islands{square(1), square(2)};
+  const std::vector<charts::Outline> islands{square_of(1), square_of(2)};
   PageOptions page{.packing = {.texels_per_unit = 200.0}};
   for (const Placement& placement : grouped(islands, {0, 1}, page).placements)
     EXPECT_NEAR(placement.scale * 1024, 200, 1e-9);
@@ -124,7 +124,7 @@ TEST(PackGroups, KeepAGivenDensityOrRefuseIt) {
 }
 
 TEST(PackGroups, StackOnlyWithinAGroup) {
-  const std::vector<charts::Outline> islands{square(1), square(1), square(1)};
+  const std::vector<charts::Outline> islands{square_of(1), square_of(1), square_of(1)};
   const PackResult packed = grouped(islands, {0, 1, 1}, {.packing = {.stack_identical = true}});
   EXPECT_EQ(std::ranges::count(packed.is_stacked, 1), 1);
   EXPECT_EQ(packed.is_stacked[0], 0);
