@@ -274,12 +274,10 @@ TEST(Options, ListAllNamesForOneThatIsLikeNone) {
 }
 
 TEST(Options, RefuseAnythingButAnObject) {
-  for (const char* text : {"[]", "null", "1", "\"arap\"", "true"}) {
+  for (const char* text : {"[]", "null", "1", "\"arap\"", "true"})
     EXPECT_EQ(refusal(std::string(text)).code(), ErrorCode::invalid_option) << text;
-  }
-  for (const char* text : {"", "{", "method=arap", "{'method':'arap'}"}) {
+  for (const char* text : {"", "{", "method=arap", "{'method':'arap'}"})
     EXPECT_EQ(refusal(std::string(text)).code(), ErrorCode::malformed_request) << text;
-  }
 }
 
 TEST(Options, NoteWhatWasGivenButHasNoEffect) {
