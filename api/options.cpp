@@ -85,7 +85,7 @@ void settle_welding(Welding& welding) {
 /// Each texel of a new texture belongs to one place of the surface, on the page.
 void settle_textures(JobOptions& options) {
   const UnwrapOptions& unwrap = options.unwrap;
-  options.asset.resolution = unwrap.resolution;
+  options.asset.resolution = unwrap.page_size().width;
   if (options.asset.textures != TextureMode::transfer) return;
   const auto require = [](bool holds, const std::string& message) {
     if (!holds) refuse("textures", "textures=transfer " + message);
@@ -93,6 +93,9 @@ void settle_textures(JobOptions& options) {
   require(unwrap.repack_only || unwrap.guarantee == Guarantee::bijective,
           "needs guarantee=bijective: overlapping triangles would share texels.");
   require(unwrap.packing.max_pages == 1, "writes one page; leave out max_pages.");
+  require(unwrap.packing.group == PageGroup::scene, "writes one page; leave out group.");
+  require(unwrap.page_size().width == unwrap.page_size().height,
+          "paints square images; ask for a page as wide as high.");
   require(!unwrap.packing.stack_identical,
           "needs a place for every island; leave out stack_identical.");
 }

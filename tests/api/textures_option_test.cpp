@@ -23,7 +23,8 @@ TEST(TexturesOption, IsKeepUnlessItIsAskedFor) {
 TEST(TexturesOption, NeedsAPlaceOfItsOwnForEveryTexel) {
   for (const std::string members :
        {R"("guarantee":"flip_free")", R"("preset":"chart")", R"("max_pages":2)",
-        R"("stack_identical":true)", R"("boundary":"circle")"}) {
+        R"("stack_identical":true)", R"("boundary":"circle")", R"("group":"material")",
+        R"("height":512)"}) {
     SCOPED_TRACE(members);
     try {
       parse_options_text(with(members), kLimits);
@@ -40,7 +41,8 @@ TEST(TexturesOption, NeedsAPlaceOfItsOwnForEveryTexel) {
 }
 
 TEST(TexturesOption, PaintsAtLeastAtTheResolutionOfThePage) {
-  EXPECT_EQ(parse_options_text(with(R"("resolution":512)"), kLimits).asset.resolution, 512);
+  for (const char* members : {R"("resolution":512)", R"("width":512,"height":512)"})
+    EXPECT_EQ(parse_options_text(with(members), kLimits).asset.resolution, 512) << members;
 }
 
 }  // namespace
