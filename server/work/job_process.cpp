@@ -4,9 +4,8 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 
-#include "api/error_table.hpp"
-#include "server/base/byte_pack.hpp"
 #include "server/base/threads.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/work/job_frames.hpp"
@@ -24,7 +23,6 @@ constexpr std::int64_t kProgramReserve = std::int64_t{256} << 20;
 constexpr std::int64_t kThreadReserve = std::int64_t{80} << 20;  // its stack and its arena
 constexpr int kSpareSeconds = 60;  // of processor time: the deadline comes first
 constexpr std::size_t kMaxTotals = 16384;
-constexpr std::size_t kMaxErrorText = 65536;
 constexpr std::chrono::seconds kProbePatience{20};
 
 SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolation) {
@@ -39,13 +37,6 @@ SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolati
 
 [[noreturn]] void misbehaved() { throw WorkerCrashed("its answer is invalid"); }
 
-/// The text of an error, which may quote a mesh: invalid UTF-8 is replaced, and a long text is cut.
-std::string readable(std::string_view text) {
-  constexpr auto replace = api::Json::error_handler_t::replace;
-  const std::string json = api::Json(text.substr(0, kMaxErrorText)).dump(-1, ' ', false, replace);
-  return api::Json::parse(json).get<std::string>();
-}
-
 /// Parses a message of a worker. A message that cannot be parsed is no error of the job.
 template <class Read>
 auto believed(Read read) {
@@ -56,16 +47,12 @@ auto believed(Read read) {
   }
 }
 
-/// The error that a worker reports, if work on a mesh can end with it.
-Error error_told(const Frame& frame) {
-  return believed([&] {
-    ByteUnpacker from(frame.bytes);
-    const std::string message = readable(from.next_text());
-    const std::string where = readable(from.next_text());
-    const std::optional<ErrorCode> code = api::code_named(frame.name);
-    if (!code || !is_of_work(*code)) misbehaved();
-    return Error(*code, message, where);
-  });
+/// Throws what the worker caught: an exception that nobody foresaw as such, as it would be thrown
+/// in this process.
+[[noreturn]] void throw_told(const Frame& frame) {
+  const ToldFailure failure = believed([&] { return failure_told(frame); });
+  if (failure.reason.empty()) throw failure.error;
+  throw std::runtime_error(failure.reason);
 }
 
 /// Whether the totals can become a header field of an answer.
@@ -138,7 +125,7 @@ class Conversation {
     const auto receive = [&](char* data, std::size_t size) { return worker_.receive(data, size); };
     if (!believed([&] { return receive_frame(receive, left_, frame); })) worker_.reap();
     left_ -= static_cast<std::int64_t>(frame.bytes.size());
-    if (frame.kind == FrameKind::failed) throw error_told(frame);
+    if (frame.kind == FrameKind::failed) throw_told(frame);
     return frame;
   }
 
@@ -212,10 +199,10 @@ void try_out(Use use) {
   const Deadline deadline(kProbePatience, [&] { late.request_stop(); });
   try {
     use(late.get_token());
-  } catch (const WorkerCrashed& crash) {
-    throw cannot(crash.what());
   } catch (const Error& error) {
     throw cannot(error.code() == ErrorCode::cancelled ? "it does not answer" : error.what());
+  } catch (const std::exception& error) {  // it has crashed, or something unforeseen was thrown
+    throw cannot(error.what());
   }
 }
 

@@ -48,7 +48,8 @@ std::string why_not(const Isolation& isolation);
 std::shared_ptr<SpareWorkers> spare_workers(int count, const api::Limits& limits,
                                             const Isolation& isolation);
 
-/// run_job() in a process of its own. Throws what that throws, and WorkerCrashed.
+/// run_job() in a process of its own. Throws what that throws, and WorkerCrashed; of an exception
+/// that is no Error, its text as a std::runtime_error.
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
                              const api::Limits& limits, const Isolation& isolation);
 

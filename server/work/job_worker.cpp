@@ -143,9 +143,11 @@ std::stop_source stop_at_sigterm() {
   return stop;
 }
 
-void fail_with(ErrorCode code, std::string_view message, std::string_view where) {
+/// reason: for the log of the server alone.
+void fail_with(ErrorCode code, std::string_view message, std::string_view where,
+               std::string_view reason = {}) {
   BytePacker text;
-  text.add_text(message).add_text(where);
+  text.add_text(message).add_text(where).add_text(reason);
   send_frame(send_all, FrameKind::failed, api::error_row(code).name, text.take());
 }
 
@@ -239,8 +241,8 @@ int run_job_worker(const WorkerFunctions& functions) {
     fail_with(
         ErrorCode::memory_limit,
         "The job needed more memory than this server allows for one job; send a smaller mesh.", {});
-  } catch (const std::exception&) {  // the owner learns nothing of our insides
-    fail_with(ErrorCode::internal, "An internal error occurred.", {});
+  } catch (const std::exception& error) {  // the owner learns nothing of our insides
+    fail_with(ErrorCode::internal, "An internal error occurred.", {}, error.what());
   }
   std::_Exit(EXIT_SUCCESS);  // nothing is left to be done, and a thread still waits for a signal
 }

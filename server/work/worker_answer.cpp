@@ -1,9 +1,25 @@
 #include "server/work/worker_answer.hpp"
 
+#include "api/error_table.hpp"
+#include "api/json.hpp"
+#include "server/base/byte_pack.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/work/lambda_selection.hpp"
 
 namespace unwrapd::server::work {
+namespace {
+
+constexpr std::size_t kMaxErrorText = 65536;
+constexpr std::size_t kMaxReason = 1000;
+
+/// The text of an error, which may quote a mesh: invalid UTF-8 is replaced, and a long text is cut.
+std::string readable(std::string_view text) {
+  constexpr auto replace = api::Json::error_handler_t::replace;
+  const std::string json = api::Json(text.substr(0, kMaxErrorText)).dump(-1, ' ', false, replace);
+  return api::Json::parse(json).get<std::string>();
+}
+
+}  // namespace
 
 bool is_of_work(ErrorCode code) {
   using enum ErrorCode;
@@ -70,6 +86,17 @@ bool is_of_work(ErrorCode code) {
       return false;
   }
   return false;
+}
+
+ToldFailure failure_told(const Frame& frame) {
+  ByteUnpacker from(frame.bytes);
+  const std::string message = readable(from.next_text());
+  const std::string where = readable(from.next_text());
+  const std::string reason = readable(from.next_text().substr(0, kMaxReason));
+  const std::optional<ErrorCode> code = api::code_named(frame.name);
+  if (!code || !is_of_work(*code))
+    throw Error(ErrorCode::internal, "Work on a mesh cannot end so.");
+  return {.error = Error(*code, message, where), .reason = reason};
 }
 
 bool is_result_format(std::string_view name) {

@@ -8,12 +8,22 @@
 #include <string_view>
 
 #include "core/base/error.hpp"
+#include "server/work/job_frames.hpp"
 
 namespace unwrapd::server::work {
 
 /// Whether work on a mesh can end with this error. Others are the server's own to tell: of its
 /// store, its queue, its keys.
 [[nodiscard]] bool is_of_work(ErrorCode code);
+
+/// The failure that a worker reports.
+struct ToldFailure {
+  Error error;
+  std::string reason;  ///< of an exception that nobody foresaw: for the log alone; else empty
+};
+
+/// The failure of a frame. Throws Error{internal} if work on a mesh cannot end with it.
+ToldFailure failure_told(const Frame& frame);
 
 /// "glb", "gltf" or "obj".
 [[nodiscard]] bool is_result_format(std::string_view name);

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -88,7 +89,7 @@ void end_within_a_frame() {
 void claim(std::string_view code) {
   std::string text(8, '\0');
   text[0] = 1;
-  send(server::work::FrameKind::failed, code, text + "x" + std::string(8, '\0'));
+  send(server::work::FrameKind::failed, code, text + "x" + std::string(16, '\0'));
   hang();
 }
 
@@ -130,6 +131,7 @@ const std::map<std::string, Deed> kDeeds = {
     {"no_such_code", [](auto&) { claim("no_such_code"); }},
     {"tell_process",
      [](auto&) { throw Error(ErrorCode::solver_failed, std::to_string(::getpid())); }},
+    {"throw", [](auto&) { throw std::runtime_error("the secret of \x80 line 7"); }},
     {"files", write_many},
     {"twice",
      [](auto& output) {
