@@ -101,9 +101,9 @@ Json options_object(const Query& query);
 /// exclude some of them, see yield_to_request().
 JobOptions preset_options(Preset preset);
 
-/// Changes options that come from the preset where the request excludes them: constraints, a
-/// boundary shape and repack_only keep charts whole and where they are. is_given tells whether the
-/// request names an option.
+/// Changes options that come from the preset where the request excludes them: constraints, boundary
+/// shapes that the method has, and repack_only keep charts whole and where they are. is_given tells
+/// whether the request names an option.
 void yield_to_request(JobOptions& options, const std::function<bool(std::string_view)>& is_given);
 
 std::string_view preset_name(Preset preset);

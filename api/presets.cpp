@@ -1,5 +1,6 @@
 // Presets: what an unwrapping is for, as options. A request overrides any of them.
 #include "api/options.hpp"
+#include "core/types/chart_rules.hpp"
 
 namespace unwrapd::api {
 namespace {
@@ -63,8 +64,7 @@ JobOptions preset_options(Preset preset) {
 
 void yield_to_request(JobOptions& options, const std::function<bool(std::string_view)>& is_given) {
   UnwrapOptions& unwrap = options.unwrap;
-  const bool stays_whole = !unwrap.constraints.empty() || unwrap.boundary != BoundaryShape::free;
-  if (!stays_whole && !unwrap.repack_only) return;
+  if (!keeps_whole(unwrap) && !unwrap.repack_only) return;
   if (!is_given("max_distortion")) unwrap.max_distortion.reset();
   if (!is_given("guarantee") && unwrap.guarantee == Guarantee::bijective)
     unwrap.guarantee = Guarantee::flip_free;

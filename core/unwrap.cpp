@@ -23,6 +23,7 @@
 #include "core/segment/segment.hpp"
 #include "core/solve/constrain_chart.hpp"
 #include "core/solve/solve.hpp"
+#include "core/types/chart_rules.hpp"
 
 namespace unwrapd {
 namespace {
@@ -101,8 +102,7 @@ std::vector<Layout> map_charts(const PreparedCharts& prepared, std::span<const S
 
 /// Whether a tighter bound of distortion can lead to other charts.
 bool has_bound(const UnwrapOptions& options) {
-  return options.max_distortion && options.max_charts != 1 && options.constraints.empty() &&
-         options.boundary == BoundaryShape::free;
+  return options.max_distortion && options.max_charts != 1 && !keeps_whole(options);
 }
 
 /// Splits make borders longer. Where charts were split, tighter bounds of distortion are tried, and

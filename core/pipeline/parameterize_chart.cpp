@@ -7,6 +7,7 @@
 #include "core/base/error.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/solve/base/cached.hpp"
+#include "core/types/chart_rules.hpp"
 
 namespace unwrapd::pipeline {
 namespace {
@@ -92,7 +93,7 @@ solve::Solution parameterize_chart(solve::Solver& solver, const ChartJob& job,
                                    const UnwrapOptions& options, double lambda,
                                    const ChartProgress& progress) {
   bool is_new = false;
-  const bool may_repeat = job.page.empty() && options.boundary == BoundaryShape::free;
+  const bool may_repeat = job.page.empty() && !shapes_boundary(options);
   const Running by{
       {may_repeat ? job.disk.core : nullptr, progress.stop()}, job, options.stop, progress, is_new};
   const double used_lambda = options.method == Method::hybrid ? lambda : 0;

@@ -10,19 +10,18 @@
 #include "core/pipeline/chart_progress.hpp"
 #include "core/segment/segment_charts.hpp"
 #include "core/solve/base/cached.hpp"
+#include "core/types/chart_rules.hpp"
 
 namespace unwrapd::pipeline {
 namespace {
 
 constexpr double kSegmentEnd = 0.50;  // of the job, where something is segmented
 
-/// Constraints and boundary shapes are about whole components.
 segment::SegmentOptions segment_options(const UnwrapOptions& options) {
-  return {
-      .max_distortion = options.max_distortion,
-      .max_charts = options.max_charts,
-      .effort = options.effort,
-      .one_chart_each = !options.constraints.empty() || options.boundary != BoundaryShape::free};
+  return {.max_distortion = options.max_distortion,
+          .max_charts = options.max_charts,
+          .effort = options.effort,
+          .one_chart_each = keeps_whole(options)};
 }
 
 std::vector<solve::Disk> disks_of(const charts::Charts& surface, Executor& executor) {

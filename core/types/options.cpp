@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/error.hpp"
+#include "core/types/chart_rules.hpp"
 
 namespace unwrapd {
 namespace {
@@ -43,12 +44,11 @@ void require_packing(const UnwrapOptions& options) {
 
 /// Constraints and boundary shapes are about components that stay whole.
 void require_charts(const UnwrapOptions& options) {
-  const bool whole = !options.constraints.empty() || options.boundary != BoundaryShape::free;
   require(!options.max_distortion ||
               (*options.max_distortion >= kMinDistortion && std::isfinite(*options.max_distortion)),
           "max_distortion must be a number of at least 2.0001; 2 means no distortion",
           "/max_distortion");
-  require(!options.max_distortion || !whole,
+  require(!options.max_distortion || !keeps_whole(options),
           "max_distortion can split a mesh into charts, which constraints and a boundary shape "
           "exclude; leave one of them out",
           "/max_distortion");

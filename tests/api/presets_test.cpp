@@ -66,6 +66,19 @@ TEST(Presets, YieldToRequestsThatKeepChartsWhole) {
   EXPECT_EQ(error.where(), "/max_distortion");
 }
 
+TEST(Presets, YieldToABoundaryWhereTheMethodHasOne) {
+  const auto boundary = [](std::string_view method) {
+    return resolved(R"({"boundary":"circle","method":")" + std::string(method) + R"("})");
+  };
+  for (const std::string_view method : find_option("method")->choices) {
+    const Json options = boundary(method);
+    const bool yields = method == "asap" || method == "arap" || method == "hybrid";
+    EXPECT_EQ(options.at("max_distortion").is_null(), yields) << method;
+    EXPECT_EQ(options.at("guarantee"), yields ? "flip_free" : "bijective") << method;
+    EXPECT_EQ(parse_options(options, kLimits).notes.empty(), yields) << method;
+  }
+}
+
 TEST(Presets, PaperIsTenPlainIterationsOfOneChart) {
   const UnwrapOptions options = parse_options_text(R"({"preset":"paper"})", kLimits).unwrap;
   EXPECT_EQ(options.stop.iterations, 10);
