@@ -3,12 +3,14 @@
 #include "api/options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "api/option_values.hpp"
 #include "core/base/error.hpp"
+#include "core/types/chart_rules.hpp"
 
 namespace unwrapd::api {
 namespace {
@@ -100,6 +102,40 @@ void settle_textures(JobOptions& options) {
           "needs a place for every island; leave out stack_identical.");
 }
 
+/// Options of which one takes the effect from others.
+struct Excluder {
+  std::string_view reason;
+  bool (*is_on)(const JobOptions&);
+  std::array<std::string_view, 2> excluded;
+
+  [[nodiscard]] bool excludes(std::string_view name, const JobOptions& options) const {
+    return std::ranges::find(excluded, name) != excluded.end() && is_on(options);
+  }
+};
+
+using J = const JobOptions&;
+
+constexpr std::array kExcluders = {
+    Excluder{"with stop.iterations",
+             [](J job) { return job.unwrap.stop.iterations.has_value(); },
+             {"stop.tolerance", "stop.max_iterations"}},
+    Excluder{"without compression=draco",
+             [](J job) { return job.asset.compression != Compression::draco; },
+             {"draco_bits"}},
+    Excluder{"with weld=exact",
+             [](J job) { return job.unwrap.welding.mode == WeldMode::exact; },
+             {"weld_distance"}},
+    Excluder{"with guarantee=none",
+             [](J job) { return job.unwrap.guarantee == Guarantee::none; },
+             {"repair"}},
+    Excluder{"with constraints, which determine the charts and their places",
+             [](J job) { return !job.unwrap.constraints.empty(); },
+             {"max_charts", "effort"}},
+    Excluder{"with a boundary shape, which every component gets as one chart",
+             [](J job) { return shapes_boundary(job.unwrap); },
+             {"max_charts"}},
+};
+
 /// The options so far, and the rows that were given.
 struct PartialOptions {
   PartialOptions(Preset preset, const Limits& server)
@@ -142,20 +178,21 @@ struct PartialOptions {
     }
   }
 
-  [[nodiscard]] bool changes_nothing(const OptionRow& row) const {
-    if (!has_effect(row, options.unwrap.method)) return true;
-    if (row.name == "draco_bits")
-      return options.asset.compression != Compression::draco &&
-             row.get(options) != option_default(row, limits, options.preset);
-    const bool plain = options.unwrap.stop.iterations.has_value();
-    return plain && (row.name == "stop.tolerance" || row.name == "stop.max_iterations");
-  }
-
-  /// Of an option that changes nothing.
+  /// Why an option has no effect with the others; empty if it has one.
   [[nodiscard]] std::string reason_against(const OptionRow& row) const {
     if (!has_effect(row, options.unwrap.method))
       return "with the method " + std::string(method_name(options.unwrap.method));
-    return row.name == "draco_bits" ? "without compression=draco" : "with stop.iterations";
+    const auto excluder = std::ranges::find_if(
+        kExcluders, [&](const Excluder& one) { return one.excludes(row.name, options); });
+    return excluder == kExcluders.end() ? "" : std::string(excluder->reason);
+  }
+
+  /// Whether the option is as it would be if it were not given. A lambda and the like always say
+  /// something.
+  [[nodiscard]] bool is_as_by_default(const OptionRow& row) const {
+    const bool is_by_preset = row.name == "draco_bits" || row.name == "max_charts";
+    return (!row.nullable || is_by_preset) &&
+           row.get(options) == option_default(row, limits, options.preset);
   }
 
   [[nodiscard]] bool is_given(std::string_view name) const {
@@ -168,11 +205,10 @@ struct PartialOptions {
     settle_textures(options);
     validate(options.unwrap, limits.max_iterations);
     for (const OptionRow* row : given) {
-      if (!changes_nothing(*row)) continue;
-      if (!row->nullable && row->get(options) == option_default(*row, limits, options.preset))
-        continue;
-      options.notes.push_back("The option " + std::string(row->name) + " has no effect " +
-                              reason_against(*row) + ".");
+      const std::string reason = reason_against(*row);
+      if (reason.empty() || is_as_by_default(*row)) continue;
+      options.notes.push_back("The option " + std::string(row->name) + " has no effect " + reason +
+                              ".");
     }
     return std::move(options);
   }

@@ -88,9 +88,20 @@ void note_overlaps(Layout& layout, std::span<const Surface> surfaces) {
            described(layout, surfaces, worst) + ". Send guarantee=bijective to prevent overlaps."});
 }
 
+void note_absent_uvs(Layout& layout, std::span<const Surface> surfaces,
+                     const UnwrapOptions& options) {
+  const auto has_none = [](const Surface& surface) { return surface.corner_uv.empty(); };
+  if (options.seams != SeamMode::uv0 || !std::ranges::all_of(surfaces, has_none)) return;
+  layout.report.notes.push_back(
+      {NoteCode::option_unused,
+       "The option seams=uv0 has no effect without texture coordinates in the asset; the cuts are "
+       "those of seams=auto."});
+}
+
 }  // namespace
 
 void note_faults(Layout& layout, std::span<const Surface> surfaces, const UnwrapOptions& options) {
+  note_absent_uvs(layout, surfaces, options);
   note_distortion(layout, surfaces, options);
   note_overlaps(layout, surfaces);
 }

@@ -280,20 +280,5 @@ TEST(Options, RefuseAnythingButAnObject) {
     EXPECT_EQ(refusal(std::string(text)).code(), ErrorCode::malformed_request) << text;
 }
 
-TEST(Options, NoteWhatWasGivenButHasNoEffect) {
-  EXPECT_THAT(parse_options(Query{{"lambda", "0.1"}}, kLimits).notes,
-              testing::ElementsAre("The option lambda has no effect with the method arap."));
-  EXPECT_THAT(
-      parse_options_text(R"({"stop":{"iterations":99},"method":"asap"})", kLimits).notes,
-      testing::ElementsAre("The option stop.iterations has no effect with the method asap."));
-  const Query both = {{"stop.iterations", "5"}, {"stop.tolerance", "1e-3"}};
-  EXPECT_THAT(
-      parse_options(both, kLimits).notes,
-      testing::ElementsAre("The option stop.tolerance has no effect with stop.iterations."));
-  EXPECT_EQ(parse_options_text(R"({"draco_bits": 12})", kLimits).notes.size(), 1U);
-  EXPECT_TRUE(parse_options(Query{{"method", "hybrid"}, {"lambda", "2"}}, kLimits).notes.empty());
-  EXPECT_TRUE(parse_options(to_json(parse_options_text("{}", kLimits)), kLimits).notes.empty());
-}
-
 }  // namespace
 }  // namespace unwrapd::api

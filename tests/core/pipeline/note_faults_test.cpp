@@ -39,6 +39,17 @@ TEST(NoteFaults, TellTheWorstChartAndItsPlace) {
   EXPECT_NE(notes[0]->text.find("max_distortion=2.02"), std::string::npos);
 }
 
+TEST(NoteFaults, TellSeamsAtUvsThatThereAreNot) {
+  Surface surface = shapes::surface_of(shapes::grid(2, 2));
+  const auto told = [&](SeamMode seams) {
+    return notes_of(unwrapped(surface, {.seams = seams}), NoteCode::option_unused).size();
+  };
+  EXPECT_EQ(told(SeamMode::uv0), 1U);
+  EXPECT_EQ(told(SeamMode::automatic), 0U);
+  surface.corner_uv.assign(surface.mesh.faces.size(), {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)});
+  EXPECT_EQ(told(SeamMode::uv0), 0U);
+}
+
 /// A plate, and a tube beside it.
 TEST(NoteFaults, NameTheWorstOfSeveralCharts) {
   const std::array meshes{shapes::grid(8, 8), shapes::moved(cylinder().mesh, Vec3(40, 0, 0)),
