@@ -89,20 +89,25 @@ function someOptions(properties) {
 /** What the schema cannot say: which options go together. */
 function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary = 'free',
                      constraints = [], repack_only = false, texels_per_unit = null, max_pages = 1,
-                     stack_identical = false, max_distortion = null, guarantee = 'flip_free',
+                     stack_identical = false, max_distortion = null, guarantee = null,
                      rotation = 'any', group = 'scene', width = null, height = null,
-                     straighten = 'off'}) {
+                     straighten = 'off', preset = 'texture', textures = 'keep'}) {
   const free = boundary === 'free';
   const unpacked = !repack_only && texels_per_unit === null && max_pages === 1 &&
       !stack_identical && rotation === 'any' && group === 'scene';
-  const held = ['asap', 'arap', 'hybrid'].includes(method) && free && unpacked;
+  const placed = ['asap', 'arap', 'hybrid'].includes(method);  // where it is told to lie
+  const held = placed && free && unpacked;
   const loose = constraints.length === 0;
+  const bijective = ['texture', 'lightmap'].includes(preset) && loose && (free || !placed);
+  const apart = guarantee === null ? bijective : guarantee === 'bijective';
   const shorter = Math.min(width ?? resolution, height ?? resolution);
   return 4 * padding <= shorter && (max_pages === 1 || group === 'scene') &&
       (straighten === 'off' || (loose && free && !repack_only)) &&
       (loose || held) && (free || !repack_only) &&
       (guarantee !== 'bijective' || !repack_only) &&
-      (max_distortion === null || (loose && free));
+      (max_distortion === null || (loose && free)) &&
+      (textures === 'keep' || ((repack_only || apart) && max_pages === 1 && group === 'scene' &&
+          (width ?? resolution) === (height ?? resolution) && !stack_identical));
 }
 
 function expectVerdict(answer, allowed) {
