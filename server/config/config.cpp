@@ -89,11 +89,15 @@ void Reading::declare(CLI::App& app) {
       "Check that the server running with these options answers; exit with 0 if it does, else 1");
   each_row([&](const ConfigGroup& group, const ConfigRow& row) {
     const std::string flag = "--" + std::string(row.heading.name);
-    const bool is_switch = row.kind == ConfigKind::on_off || row.kind == ConfigKind::switch_of_text;
-    CLI::Option* option = is_switch ? app.add_flag(flag) : app.add_option(flag);
+    const bool is_flag = row.kind == ConfigKind::on_off;
+    CLI::Option* option = is_flag ? app.add_flag(flag) : app.add_option(flag);
     option->description(std::string(row.heading.what))->group(std::string(group.title));
-    if (is_switch) return;
-    option->type_name(std::string(row.heading.takes))->default_str(row.get(config_));
+    if (is_flag) return;
+    option->type_name(std::string(row.heading.takes));
+    if (row.kind == ConfigKind::switch_of_text)
+      option->expected(0, 1);
+    else
+      option->default_str(row.get(config_));
   });
 }
 
@@ -172,7 +176,10 @@ void Reading::read_flags(const CLI::App& app) {
   each_row([&](const ConfigGroup&, const ConfigRow& row) {
     const std::string flag = "--" + std::string(row.heading.name);
     const CLI::Option* option = app.get_option(flag);
-    if (option->count() > 0) set(row, option->results().back(), flag);
+    if (option->count() == 0) return;
+    const std::string& given = option->results().back();
+    const bool is_bare = row.kind == ConfigKind::switch_of_text && given.empty();
+    set(row, is_bare ? "true" : given, flag);
   });
 }
 

@@ -187,10 +187,16 @@ TEST(Config, IsolationIsASwitchThatMayHaveAValue) {
                                                     {"off", Isolate::off},
                                                     {"false", Isolate::off}}) {
     EXPECT_EQ(parse({("--isolate=" + std::string(text)).c_str()}).config.isolate, meaning) << text;
+    const std::string apart(text);
+    EXPECT_EQ(parse({"--isolate", apart.c_str(), "--workers", "1"}).config.isolate, meaning)
+        << text;
     const Environment variable("UNWRAPD_ISOLATE", std::string(text).c_str());
     EXPECT_EQ(parse({}).config.isolate, meaning) << text;
   }
-  EXPECT_THAT(mistake({"--isolate=maybe"}), HasSubstr("auto, on, off"));
+  EXPECT_EQ(parse({"--isolate"}).config.isolate, Isolate::on);
+  for (const std::vector<const char*>& flags :
+       std::vector<std::vector<const char*>>{{"--isolate=maybe"}, {"--isolate", "maybe"}})
+    EXPECT_THAT(mistake(flags), HasSubstr("auto, on, off"));
 }
 
 TEST(Config, QuestionsAreAnsweredAndEndTheProgramWithSuccess) {
