@@ -46,6 +46,10 @@ void refuse_unknown(const std::string& name) {
   refuse_parameter(name, "There is no parameter of this name here; see /openapi.yaml.");
 }
 
+void refuse_all(const Request& request) {
+  if (!request.query.empty()) refuse_unknown(request.query.begin()->first);
+}
+
 void check_once(const Request& request, const std::string& name) {
   if (request.query.count(name) > 1)
     refuse_parameter(name, "The parameter is given twice; give it once.");

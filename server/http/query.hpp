@@ -18,6 +18,8 @@ std::multimap<std::string, std::string> parse_query(std::string_view text);
 
 [[noreturn]] void refuse_parameter(const std::string& name, const std::string& what);
 [[noreturn]] void refuse_unknown(const std::string& name);
+/// For calls without parameters.
+void refuse_all(const Request& request);
 void check_once(const Request& request, const std::string& name);
 
 /// A number from 1 to most.

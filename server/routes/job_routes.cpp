@@ -68,6 +68,7 @@ http::Response post_job(const JobServices& services, const http::Request& reques
 }
 
 http::Response delete_job(const JobServices& services, const http::Request& request) {
+  http::refuse_all(request);
   static_cast<void>(find_job(services.store, request));
   const bool was_live = services.queue.cancel_or_remove(request.id);
   if (was_live) return job_response(202, stored_job(services.store, request.id), services.events);
@@ -262,12 +263,14 @@ void add_job_routes(std::vector<http::Route>& routes, const JobServices& service
                       return get_link(find(request), services.links, request);
                     }});
   routes.push_back({"GET", "/v1/jobs/{id}", [services, find](const http::Request& request) {
+                      http::refuse_all(request);
                       return job_response(200, find(request), services.events);
                     }});
   routes.push_back({"DELETE", "/v1/jobs/{id}", [services](const http::Request& request) {
                       return delete_job(services, request);
                     }});
   routes.push_back({"GET", "/v1/jobs/{id}/events", [services, find](const http::Request& request) {
+                      http::refuse_all(request);
                       return services.streams.open(find(request), request);
                     }});
   add_files(routes, services);

@@ -68,6 +68,16 @@ TEST_F(Events, TellEveryNoteOfTheReportBeforeTheEnd) {
   EXPECT_LT(at, story.find("event: succeeded"));
 }
 
+TEST_F(Events, RefuseParametersThatTheyDoNotKnow) {
+  start();
+  const std::string id = submit();
+  await_state(id, "succeeded");
+  for (const std::string path : {"/events", ""})
+    expect_problem(client().Get("/v1/jobs/" + id + path + "?lambda=1"), 422, "invalid_option");
+  expect_problem(client().Delete("/v1/jobs/" + id + "?lambda=1"), 422, "invalid_option");
+  EXPECT_EQ(state(id), "succeeded") << "it is not removed";
+}
+
 TEST_F(Events, AreResumedAfterTheLastOneSeen) {
   start();
   const std::string id = submit("?stop.iterations=3");
