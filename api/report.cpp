@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "core/base/error.hpp"
+
 namespace unwrapd::api {
 namespace {
 
@@ -158,6 +160,22 @@ std::optional<NoteCode> note_code_named(std::string_view name) {
 }
 
 Json to_json(const Note& note) { return {{"code", code_name(note.code)}, {"text", note.text}}; }
+
+std::vector<Note> notes_of_report(std::string_view text) {
+  const auto only_notes = [](int depth, Json::parse_event_t event, const Json& name) {
+    return depth != 1 || event != Json::parse_event_t::key || name == "notes";
+  };
+  try {
+    const Json report = Json::parse(text, only_notes);
+    std::vector<Note> notes;
+    for (const Json& note : report.at("notes"))
+      notes.push_back({note_code_named(note.at("code").get<std::string>()).value(),
+                       note.at("text").get<std::string>()});
+    return notes;
+  } catch (const std::exception&) {
+    throw Error(ErrorCode::storage_corrupt, "A stored report is none; send the mesh again.");
+  }
+}
 
 Json to_json(const InputReport& input, const std::vector<Repair>& repairs,
              std::span<const FileRepair> file_repairs) {

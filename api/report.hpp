@@ -37,6 +37,10 @@ std::string_view code_name(NoteCode code);
 std::optional<NoteCode> note_code_named(std::string_view name);
 Json to_json(const Note& note);
 
+/// The notes of a report's JSON text, whose other members are not kept in memory. Throws
+/// Error{storage_corrupt} for what is no report.
+std::vector<Note> notes_of_report(std::string_view text);
+
 /// The report with finite numbers; an infinite one becomes the largest double.
 Json to_json(const Report& report, const ReportContext& context);
 

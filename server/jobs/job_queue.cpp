@@ -92,7 +92,8 @@ store::JobRecord JobQueue::submit(Submission submission) {
   return std::move(job);
 }
 
-void JobQueue::enqueue(store::JobRecord& job, const Submission& submission, const Answer& answer) {
+void JobQueue::enqueue(store::JobRecord& job, const Submission& submission,
+                       const std::optional<Answer>& answer) {
   const std::lock_guard lock(mutex_);
   check_open();
   door_.check_place({.who = submission.sender, .owner = job.owner}, share_, at_work());
@@ -102,27 +103,6 @@ void JobQueue::enqueue(store::JobRecord& job, const Submission& submission, cons
   give_up_excess();
   job.seq = store_.insert(job);
   if (!answer || !answer_from_store(job, *answer)) wait_again(job);
-}
-
-/// Shares the files of the answer with this job if all of them match their digests, and counts
-/// them. Reads all of them.
-JobQueue::Answer JobQueue::find_answer(store::JobRecord& job) {
-  Answer same = store_.find_same(job.owner, job.content_key);
-  if (same && (!same->unreadable.empty() || !blobs_.adopt(job.id, same->id))) same.reset();
-  if (same) job.stored_bytes = blobs_.bytes(job.id);
-  return same;
-}
-
-bool JobQueue::answer_from_store(const store::JobRecord& job, const store::JobRecord& answer) {
-  events_.open(job.id, job.attempt);
-  try {
-    end_job(
-        job,
-        {.result_format = answer.result_format, .problem = {}, .stored_bytes = job.stored_bytes});
-    return true;
-  } catch (const Error&) {  // the job is stored and waits, as it would without the answer
-    return false;
-  }
 }
 
 /// False when the queue is closed.

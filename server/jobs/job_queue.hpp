@@ -137,10 +137,17 @@ class JobQueue {
   void check_open() const;
   [[nodiscard]] std::vector<AtWork> at_work() const;
   [[nodiscard]] std::optional<store::JobRecord> same_name(const store::JobRecord& job);
-  using Answer = std::optional<store::JobRecord>;  // the job that has had the same question
-  [[nodiscard]] Answer find_answer(store::JobRecord& job);
-  void enqueue(store::JobRecord& job, const Submission& submission, const Answer& answer);
-  [[nodiscard]] bool answer_from_store(const store::JobRecord& job, const store::JobRecord& answer);
+  /// Of the job that has had the same question.
+  struct Answer {
+    std::string format;
+    std::vector<Note> notes;  ///< of its report
+  };
+  [[nodiscard]] std::optional<Answer> find_answer(store::JobRecord& job);
+  [[nodiscard]] std::optional<Answer> adopt_answer(const std::string& id,
+                                                   const store::JobRecord& same);
+  void enqueue(store::JobRecord& job, const Submission& submission,
+               const std::optional<Answer>& answer);
+  [[nodiscard]] bool answer_from_store(const store::JobRecord& job, const Answer& answer);
   enum class Found { lapsed, by_death, not_stopping };
   [[nodiscard]] bool is_poison(const store::JobRecord& job, Found found) const;
   void wait_or_end(const store::JobRecord& job);

@@ -11,6 +11,7 @@
 
 #include "api/result.hpp"
 #include "contract_text.hpp"
+#include "error_of.hpp"
 
 namespace unwrapd::api {
 namespace {
@@ -139,6 +140,19 @@ TEST(Report, JoinsTheNotesOfCoreAndOfTheOptions) {
   EXPECT_EQ(totals_json(sample(), context).at("notes"),
             (Json::array({"distorted", "option_unused"})));
   EXPECT_TRUE(to_json(Report{}, {}).at("notes").is_array());
+}
+
+TEST(Report, HasItsNotesReadBack) {
+  const ReportContext context{.notes = {{NoteCode::option_unused, "the \"notes\": []"}}};
+  Json json = to_json(sample(), context);
+  json["input"]["notes"] = "of another";
+  const std::vector<Note> notes = notes_of_report(json.dump());
+  ASSERT_EQ(notes.size(), 2U);
+  for (std::size_t k = 0; k < notes.size(); ++k) EXPECT_EQ(to_json(notes[k]), json["notes"][k]);
+  EXPECT_TRUE(notes_of_report(to_json(Report{}, {}).dump()).empty());
+  for (const char* none : {"", "{", "[]", "{}", R"({"notes":1})", R"({"notes":["text"]})",
+                           R"({"notes":[{"code":"unheard_of","text":""}]})"})
+    EXPECT_EQ(error_of([&] { notes_of_report(none); }).code(), ErrorCode::storage_corrupt) << none;
 }
 
 TEST(Report, WritesNoFigureThatJsonCannotHold) {

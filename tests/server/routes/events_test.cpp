@@ -68,6 +68,28 @@ TEST_F(Events, TellEveryNoteOfTheReportBeforeTheEnd) {
   EXPECT_LT(at, story.find("event: succeeded"));
 }
 
+TEST_F(Events, OfAnAnswerFromTheStoreTellItsNotes) {
+  start();
+  const auto send = [&] {
+    const auto answer = client().Post("/v1/jobs?compression=draco&lambda=2&output=glb",
+                                      {{"Prefer", "wait=60"}}, grid_obj(3), "model/obj");
+    return api::Json::parse(answer->body);
+  };
+  send();
+  const api::Json again = send();
+  ASSERT_EQ(again.at("attempt"), 0) << "answered from the store";
+  const std::string id = again.at("id");
+  const auto notes = api::Json::parse(get(id, "report")->body).at("notes");
+  ASSERT_GE(notes.size(), 2U);
+  std::string story;
+  for (std::size_t k = 0; k < notes.size(); ++k)
+    story += "id: " + std::to_string(k + 1) + "\nevent: note\ndata: " + notes[k].dump() + "\n\n";
+  EXPECT_THAT(events(id), StartsWith(story + "id: " + std::to_string(notes.size() + 1) +
+                                     "\nevent: succeeded\n"));
+  restart();
+  EXPECT_THAT(events(id), StartsWith("id: " + std::to_string(notes.size()) + "\nevent: gap\n"));
+}
+
 TEST_F(Events, RefuseParametersThatTheyDoNotKnow) {
   start();
   const std::string id = submit();
