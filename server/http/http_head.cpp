@@ -69,14 +69,21 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-/// Whether a comma-separated list has this word.
-bool lists(std::string_view list, std::string_view word) {
+/// The trimmed elements of a comma-separated list.
+std::vector<std::string_view> elements(std::string_view list) {
+  std::vector<std::string_view> found;
   while (true) {
     const std::size_t comma = list.find(',');
-    if (same(trim(list.substr(0, comma)), word)) return true;
-    if (comma == std::string_view::npos) return false;
+    found.push_back(trim(list.substr(0, comma)));
+    if (comma == std::string_view::npos) return found;
     list.remove_prefix(comma + 1);
   }
+}
+
+/// Whether a comma-separated list has this word.
+bool lists(std::string_view list, std::string_view word) {
+  return std::ranges::any_of(elements(list),
+                             [&](std::string_view element) { return same(element, word); });
 }
 
 std::int64_t length_of(std::string_view digits) {
@@ -165,12 +172,18 @@ void vet_host(std::string_view value, Framing& framing, Counts& counts) {
     malformed("The Host header is not a valid host; check the client.");
 }
 
-/// One gzip, or nothing.
-void vet_coding(std::string_view value, Framing& framing) {
-  if (same(value, "identity")) return;
-  const bool is_gzip = same(value, "gzip") || same(value, "x-gzip");
+void vet_coding(std::string_view coding, Framing& framing) {
+  if (same(coding, "identity")) return;
+  const bool is_gzip = same(coding, "gzip") || same(coding, "x-gzip");
   framing.unknown_coding = framing.unknown_coding || !is_gzip || framing.gzip;
   framing.gzip = framing.gzip || is_gzip;
+}
+
+/// One gzip, or nothing. All fields of this name are one list, whose empty elements do not count
+/// (RFC 9110, 5.3 and 5.6.1).
+void vet_codings(std::string_view value, Framing& framing) {
+  for (const std::string_view coding : elements(value))
+    if (!coding.empty() || value.empty()) vet_coding(coding, framing);
   if (framing.unknown_coding)
     refuse(framing, ErrorCode::unsupported_media_type,
            "The Content-Encoding of the body must be gzip, once; send it so or uncompressed.");
@@ -194,7 +207,7 @@ void vet_field(std::string_view name, std::string_view value, Framing& framing, 
     framing.last = framing.last || lists(value, "close");
     counts.stays = counts.stays || value == "Keep-Alive";  // as httplib spells it
   }
-  if (same(name, "content-encoding")) vet_coding(value, framing);
+  if (same(name, "content-encoding")) vet_codings(value, framing);
 }
 
 void vet_counts(const Counts& counts, std::string_view method, Framing& framing) {
