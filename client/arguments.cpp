@@ -30,6 +30,7 @@ constexpr const char* kFooter = R"(Examples:
   unwrap bust.obj -o bust.uv.obj --method hybrid --lambda 0.1 --layout bust.svg
   unwrap bust.glb --method hybrid --lambda 1,0.1   writes bust.uv.1.glb and bust.uv.0.1.glb
   unwrap chair.glb --json --quiet | jq .distortion
+  curl -s $URL | unwrap - --output glb > chair.uv.glb
   unwrap --sample shell.glb                        writes a mesh to try these commands with
 
 For servers that require an API key, set the environment variable UNWRAP_API_KEY.
@@ -127,14 +128,17 @@ void add_picture_flags(CLI::App& app, Arguments& arguments) {
 void add_flags(CLI::App& app, RawArguments& raw) {
   Arguments& arguments = raw.arguments;
   app.add_option("FILE", arguments.file,
-                 "The mesh: .glb, .gltf, .obj, .stl, .ply or .off, or a .zip with one of them")
+                 "The mesh: .glb, .gltf, .obj, .stl, .ply or .off, or a .zip with one of them; "
+                 "- reads standard input")
       ->type_name("");
   app.add_option(
          "-o,--out", arguments.out,
          "File to write the result to. Its extension selects the format unless --output "
          "does; GLB, glTF and OBJ are written. Default: the name of FILE with \".uv\" before the "
-         "extension, which becomes .glb for .stl, .ply, .off and .zip. A list of "
-         "lambdas writes one file for each, with the lambda before the extension")
+         "extension, which becomes .glb for .stl, .ply, .off and .zip; - (standard output) if FILE "
+         "is "
+         "- or a pipe. A list of lambdas writes one file for each, with the lambda before the "
+         "extension")
       ->type_name("OUT");
   app.add_option("--report", arguments.report, "Write the report (JSON) to PATH")
       ->type_name("PATH");
@@ -226,19 +230,20 @@ Arguments complete(RawArguments raw) {
   arguments.lambdas = lambdas_of(arguments.options);
   const auto output = arguments.options.find("output");
   const bool output_given = output != arguments.options.end();
-  if (arguments.out.empty()) {
+  const bool is_named = !arguments.out.empty() && !is_standard(arguments.out);
+  const std::string format = is_named                 ? format_of(arguments.out)
+                             : is_zip(arguments.file) ? "glb"
+                                                      : "auto";
+  if (arguments.out.empty())
     arguments.out = default_out(arguments.file, output_given ? output->second : "auto");
-    if (!output_given && is_zip(arguments.file)) arguments.options["output"] = "glb";
-  } else if (const std::string format = format_of(arguments.out);
-             !output_given && format != "auto") {
-    arguments.options["output"] = format;
-  }
+  if (!output_given && format != "auto") arguments.options["output"] = format;
   return std::move(arguments);
 }
 
 }  // namespace
 
 fs::path default_out(const fs::path& file, const std::string& output) {
+  if (is_stream(file)) return "-";
   fs::path out = file;
   const bool keep = output.empty() || output == "auto";
   std::string extension = keep ? file.extension().string() : "." + output;

@@ -37,9 +37,9 @@ struct Message {
 
 std::variant<Arguments, Message> parse_arguments(int argc, const char* const* argv);
 
-/// "folder/mesh.glb" becomes "folder/mesh.uv.glb". output ("obj") changes the extension; "auto" or
-/// an empty text keeps it, unless the format is only read (STL, PLY, OFF, a zip archive): then it
-/// is "glb".
+/// "-" for a stream (files.hpp). "folder/mesh.glb" becomes "folder/mesh.uv.glb". output ("obj")
+/// changes the extension; "auto" or an empty text keeps it, unless the format is only read (STL,
+/// PLY, OFF, a zip archive): then it is "glb".
 std::filesystem::path default_out(const std::filesystem::path& file, const std::string& output);
 
 }  // namespace unwrapd::client

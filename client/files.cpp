@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cstdio>
 #include <iterator>
 
 #include "client/failure.hpp"
@@ -33,16 +34,6 @@ bool is_below(const fs::path& path, const char* folder) {
   return path.string().starts_with(folder);
 }
 
-/// Whether path is a pipe, a device, or a name for an open file, as /dev/stdout is one: no new file
-/// may take its place.
-bool is_stream(const fs::path& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  if (!fs::exists(status) || fs::is_directory(status)) return false;
-  return !fs::is_regular_file(status) ||
-         (fs::is_symlink(path, ignored) && (is_below(path, "/dev/") || is_below(path, "/proc/")));
-}
-
 /// The file that path leads to, through symbolic links.
 fs::path target_of(fs::path path) {
   constexpr int kMostLinks = 40;  // Linux follows no more
@@ -53,6 +44,22 @@ fs::path target_of(fs::path path) {
 }
 
 }  // namespace
+
+bool is_stream(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (is_standard(path)) return true;
+  if (!fs::exists(status) || fs::is_directory(status)) return false;
+  return !fs::is_regular_file(status) ||
+         (fs::is_symlink(path, ignored) && (is_below(path, "/dev/") || is_below(path, "/proc/")));
+}
+
+fs::path file_behind(const fs::path& path) {
+  std::error_code error;
+  const fs::path target = target_of(path);
+  const fs::path whole = fs::weakly_canonical(fs::absolute(target, error), error);
+  return error ? target : whole;
+}
 
 NewFile::NewFile(fs::path path) : path_(std::move(path)) {
   std::error_code ignored;
@@ -71,12 +78,20 @@ NewFile::~NewFile() {
 }
 
 void NewFile::append(std::string_view bytes) {
+  if (is_standard(path_)) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size()) fail();
+    return;
+  }
   if (!stream_.is_open()) stream_.open(path_, std::ios::binary | std::ios::app);
   stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!stream_) fail();
 }
 
 void NewFile::commit() {
+  if (is_standard(path_)) {
+    if (std::fflush(stdout) != 0) fail();
+    return;
+  }
   stream_.close();
   if (!stream_) fail();
   if (temporary_.empty()) return;
@@ -86,6 +101,7 @@ void NewFile::commit() {
 }
 
 void NewFile::fail() const {
+  if (is_standard(path_)) throw Failure(ExitCode::file, "Standard output cannot be written.");
   throw Failure(
       ExitCode::file,
       path_.string() + " cannot be written; check its folder, permissions and free space.");

@@ -14,9 +14,19 @@ std::string read_file(const std::filesystem::path& path);
 /// Throws Failure{file} unless path is a readable regular file.
 std::uintmax_t file_bytes(const std::filesystem::path& path);
 
+/// "-": standard input, or standard output.
+inline bool is_standard(const std::filesystem::path& path) { return path == "-"; }
+
+/// Whether path is standard input or output, a pipe, a device, or a name for an open file, as
+/// /dev/stdout is one: no new file may take its place, and its size is not known.
+bool is_stream(const std::filesystem::path& path);
+
+/// The file that a path leads to, through symbolic links: the same for all paths to one file.
+std::filesystem::path file_behind(const std::filesystem::path& path);
+
 /// Collects bytes under a temporary name beside path; commit() renames it. Without commit() the
 /// temporary file is removed and an older file of that name stays. A symbolic link stays: the file
-/// that it leads to is replaced. A pipe or a device gets the bytes as they come.
+/// that it leads to is replaced. A stream gets the bytes as they come.
 class NewFile {
  public:
   /// Throws Failure{file} if the folder is not writable, or path is a folder.
@@ -32,7 +42,7 @@ class NewFile {
   [[noreturn]] void fail() const;
 
   std::filesystem::path path_;
-  std::filesystem::path target_, temporary_;  ///< empty for a pipe or a device
+  std::filesystem::path target_, temporary_;  ///< empty for a stream
   std::ofstream stream_;
 };
 

@@ -1,5 +1,9 @@
 #include "client/outputs.hpp"
 
+#include <algorithm>
+#include <map>
+#include <string_view>
+
 namespace unwrapd::client {
 namespace {
 
@@ -18,6 +22,37 @@ std::string append_query(const std::string& path, const std::string& query) {
   return path + (path.find('?') == std::string::npos ? "?" : "&") + query;
 }
 
+struct Output {
+  std::string_view flag;
+  fs::path path;
+};
+
+std::vector<Output> outputs_of(const Arguments& arguments) {
+  std::vector<Output> all;
+  const auto add = [&](std::string_view flag, const fs::path& path, const std::string& lambda) {
+    if (!path.empty()) all.push_back({flag, map_path(path, lambda)});
+  };
+  const std::vector<std::string> one_map = {""};
+  for (const std::string& lambda : arguments.lambdas.empty() ? one_map : arguments.lambdas) {
+    add("--out", arguments.out, lambda);
+    add("--layout", arguments.layout, lambda);
+    add("--preview", arguments.preview, lambda);
+  }
+  add("--report", arguments.report, "");
+  return all;
+}
+
+[[noreturn]] void refuse(const std::string& what) { throw Failure(ExitCode::usage, what); }
+
+void check_standard_output(const Arguments& arguments, const std::vector<Output>& outputs) {
+  const auto count = std::ranges::count_if(outputs, is_standard, &Output::path);
+  if (count > 1)
+    refuse("Standard output (-) takes one file, and " + std::to_string(count) +
+           " would be written to it; name the others.");
+  if (count == 1 && arguments.json)
+    refuse("--json prints the report on standard output, where another file goes; name that file.");
+}
+
 std::string layout_of(const Arguments& arguments) {
   std::string path = arguments.layout.extension() == ".png" ? "/layout.png" : "/layout.svg";
   if (!arguments.layout_colour.empty()) path += "?colour=" + arguments.layout_colour;
@@ -27,14 +62,35 @@ std::string layout_of(const Arguments& arguments) {
 }  // namespace
 
 fs::path map_path(const fs::path& path, const std::string& lambda) {
-  if (lambda.empty()) return path;
+  if (lambda.empty() || is_standard(path)) return path;
   fs::path named = path;
   named.replace_filename(path.stem().string() + "." + lambda + path.extension().string());
   return named;
 }
 
+bool writes_to_standard_output(const Arguments& arguments) {
+  return std::ranges::any_of(outputs_of(arguments), is_standard, &Output::path);
+}
+
+void check_outputs(const Arguments& arguments) {
+  const std::vector<Output> outputs = outputs_of(arguments);
+  check_standard_output(arguments, outputs);
+  std::map<fs::path, std::string_view> taken;
+  if (!is_stream(arguments.file)) taken.emplace(file_behind(arguments.file), "");
+  for (const auto& [flag, path] : outputs) {
+    if (is_stream(path)) continue;
+    const auto [before, is_new] = taken.emplace(file_behind(path), flag);
+    if (is_new) continue;
+    if (before->second.empty())
+      refuse(std::string(flag) + " names the input, " + path.string() + "; name another file.");
+    refuse(std::string(before->second) + " and " + std::string(flag) + " name the same file, " +
+           path.string() + "; name one for each.");
+  }
+}
+
 Outputs::Map::Map(const Arguments& arguments, const std::string& lambda)
-    : name(map_path(arguments.out, lambda).string()),
+    : name(is_standard(arguments.out) ? "standard output"
+                                      : map_path(arguments.out, lambda).string()),
       query(lambda_query(lambda)),
       layout_path(layout_of(arguments)),
       result(map_path(arguments.out, lambda)) {

@@ -13,8 +13,15 @@
 
 namespace unwrapd::client {
 
-/// "folder/bust.glb" and "0.1" become "folder/bust.0.1.glb"; without a lambda the path stays.
+/// "folder/bust.glb" and "0.1" become "folder/bust.0.1.glb"; without a lambda, and for
+/// standard output, the path stays.
 std::filesystem::path map_path(const std::filesystem::path& path, const std::string& lambda);
+
+/// Whether the result, the report or a picture goes to standard output.
+bool writes_to_standard_output(const Arguments& arguments);
+
+/// Throws Failure{usage} where two outputs would be one file, or one would be the input.
+void check_outputs(const Arguments& arguments);
 
 /// The output of one map, for the summary.
 struct WrittenMap {
@@ -23,6 +30,7 @@ struct WrittenMap {
 };
 
 /// Opens the files before anything is sent, so that an unwritable file is reported at once.
+/// Requires check_outputs().
 class Outputs {
  public:
   explicit Outputs(const Arguments& arguments);

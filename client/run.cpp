@@ -9,23 +9,25 @@
 #include "api/options.hpp"
 #include "client/files.hpp"
 #include "client/gltf_buffers.hpp"
+#include "client/input_file.hpp"
 #include "client/outputs.hpp"
 #include "client/sample.hpp"
 
 namespace unwrapd::client {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// Short options go into the query; lists of objects, and buffers, need a multipart request.
-api::Job submit(JobClient& client, const Arguments& arguments) {
-  const auto buffers = external_buffers(arguments.file);
+api::Job submit(JobClient& client, const Arguments& arguments, const fs::path& file) {
+  const auto buffers = external_buffers(file);
   const bool is_long = std::ranges::any_of(arguments.options, [](const auto& option) {
     return api::find_option(option.first)->type == api::OptionType::objects;
   });
-  if (buffers.empty() && !is_long)
-    return client.submit(raw_upload(arguments.file), arguments.options);
+  if (buffers.empty() && !is_long) return client.submit(raw_upload(file), arguments.options);
   const api::Query given(arguments.options.begin(), arguments.options.end());
   const std::string options = api::options_object(given).dump();
-  return client.submit(multipart_upload(options, arguments.file, buffers), {});
+  return client.submit(multipart_upload(options, file, buffers), {});
 }
 
 api::Job follow(JobClient& client, const std::string& job_id, const Console& console) {
@@ -85,15 +87,14 @@ std::string summary(const std::string& name, const api::Json& report) {
 }
 
 /// Prints a line for each map, then the notes, which are the same for all.
-void tell_maps(const std::vector<WrittenMap>& maps, const Console& console) {
+void tell_maps(const std::vector<WrittenMap>& maps, std::ostream& out) {
   try {
-    for (const WrittenMap& map : maps)
-      console.out << summary(map.result, api::Json::parse(map.report));
+    for (const WrittenMap& map : maps) out << summary(map.result, api::Json::parse(map.report));
     const api::Json report = api::Json::parse(maps.front().report);
     for (const api::Json& note : report.at("notes"))
-      console.out << "note (" << note.at("code").get<std::string>()
-                  << "): " << note.at("text").get<std::string>() << "\n";
-    console.out << std::flush;
+      out << "note (" << note.at("code").get<std::string>()
+          << "): " << note.at("text").get<std::string>() << "\n";
+    out << std::flush;
   } catch (const api::Json::exception&) {
     throw Failure(ExitCode::unreachable,
                   "The report is not of this version; use a server of the same version as unwrap.");
@@ -104,7 +105,7 @@ void tell(const Arguments& arguments, const std::vector<WrittenMap>& maps, const
   if (arguments.json) {
     console.out << maps.front().report << std::endl;
   } else if (!arguments.quiet) {
-    tell_maps(maps, console);
+    tell_maps(maps, writes_to_standard_output(arguments) ? console.err : console.out);
   }
 }
 
@@ -115,10 +116,11 @@ void run(const Arguments& arguments, const Console& console, const std::stop_tok
     write_file(arguments.sample, sample_glb());
     return;
   }
-  file_bytes(arguments.file);
+  check_outputs(arguments);
+  const InputFile input(arguments.file, stop);
   Outputs outputs(arguments);
   JobClient client(arguments.server, stop);
-  const api::Job job = submit(client, arguments);
+  const api::Job job = submit(client, arguments, input.path());
   finish_job(client, arguments, job.id, console);
   tell(arguments, outputs.fill(client, job.id), console);
 }

@@ -9,7 +9,8 @@
 
 namespace unwrapd::client {
 
-/// The output streams: results go to out, progress and notes to err.
+/// The output streams: the summary goes to out, or to err where a file goes to standard output;
+/// progress goes to err.
 struct Console {
   std::ostream& out;
   std::ostream& err;

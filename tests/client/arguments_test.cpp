@@ -46,6 +46,17 @@ TEST(Arguments, AResultIsWrittenBesideTheFileWhenNoNameIsGiven) {
   EXPECT_EQ(accepted({"chair.zip"}).options.at("output"), "glb");
 }
 
+TEST(Arguments, ADashIsStandardInputAndOutput) {
+  EXPECT_EQ(accepted({"-"}).file, "-");
+  EXPECT_EQ(accepted({"-"}).out, "-");
+  EXPECT_EQ(accepted({"/dev/null"}).out, "-");
+  EXPECT_EQ(accepted({"-", "-o", "b.glb"}).out, "b.glb");
+  EXPECT_EQ(accepted({"a.obj", "-o", "-"}).options.count("output"), 0);
+  EXPECT_EQ(accepted({"a.zip", "-o", "-"}).options.at("output"), "glb");
+  EXPECT_EQ(accepted({"-", "-o", "-", "--output", "glb"}).options.at("output"), "glb");
+  EXPECT_EQ(accepted({"a.obj", "--report", "-"}).report, "-");
+}
+
 TEST(Arguments, PicturesHaveNamesAndTheLayoutAColour) {
   const Arguments arguments =
       accepted({"a.glb", "--layout", "l.png", "--layout-colour", "area", "--preview", "p.png"});

@@ -74,6 +74,16 @@ TEST(NewFile, WritesThroughAPipe) {
   EXPECT_EQ(folder.file_count(), 1);
 }
 
+TEST(NewFile, OfADashIsStandardOutput) {
+  testing::internal::CaptureStdout();
+  NewFile file("-");
+  file.append("new, ");
+  file.append("whole");
+  file.commit();
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "new, whole");
+  EXPECT_FALSE(std::filesystem::exists("-"));
+}
+
 TEST(NewFile, WritesIntoAFileThatIsOpenByItsName) {
   const TemporaryFolder folder;
   const auto path = folder.write("log", "before, ");

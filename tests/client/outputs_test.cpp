@@ -11,6 +11,8 @@
 namespace unwrapd::client {
 namespace {
 
+using testing::HasSubstr;
+
 /// Answers every GET with its own path and query.
 class Echo {
  public:
@@ -80,6 +82,59 @@ TEST(Outputs, ThatCannotBeWrittenAreRefusedBeforeAnythingIsFetched) {
   arguments.preview = folder.file("missing") / "preview.png";
   expect_failure(ExitCode::file, [&] { const Outputs outputs(arguments); });
   EXPECT_EQ(folder.file_count(), 0U);
+}
+
+/// The message of the refusal; empty if there is none.
+std::string refusal(const Arguments& arguments) {
+  try {
+    check_outputs(arguments);
+    return {};
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::usage);
+    return failure.what();
+  }
+}
+
+TEST(Outputs, AreDifferentFilesAndNotTheInput) {
+  const TemporaryFolder folder;
+  Arguments arguments = everything(folder);
+  arguments.file = folder.write("bust.glb", "mesh");
+  EXPECT_EQ(refusal(arguments), "");
+  std::filesystem::create_symlink("bust.glb", folder.file("link.glb"));
+  for (const std::string same : {"bust.glb", "./bust.glb", "link.glb"}) {
+    arguments.out = folder.file(same);
+    EXPECT_THAT(refusal(arguments), HasSubstr("--out names the input")) << same;
+  }
+  for (const std::string same : {"report.json", "none/../report.json"}) {
+    arguments.out = folder.file(same);
+    EXPECT_THAT(refusal(arguments), HasSubstr("--out and --report name the same file")) << same;
+  }
+  arguments.out = folder.file("bust.uv.glb");
+  arguments.lambdas = {"1", "0.1"};
+  EXPECT_EQ(refusal(arguments), "");
+  arguments.report = folder.file("layout.0.1.png");
+  EXPECT_THAT(refusal(arguments), HasSubstr("--layout and --report name the same file"));
+  arguments.report = arguments.layout = "/dev/null";
+  EXPECT_EQ(refusal(arguments), "") << "a device takes all";
+  arguments.layout = arguments.preview = "";
+  EXPECT_EQ(refusal(arguments), "") << "what is not written has no name";
+}
+
+TEST(Outputs, OnStandardOutputAreOne) {
+  const TemporaryFolder folder;
+  Arguments arguments = everything(folder);
+  EXPECT_FALSE(writes_to_standard_output(arguments));
+  arguments.preview = "-";
+  EXPECT_TRUE(writes_to_standard_output(arguments));
+  EXPECT_EQ(refusal(arguments), "");
+  arguments.json = true;
+  EXPECT_THAT(refusal(arguments), HasSubstr("--json"));
+  arguments.json = false;
+  arguments.report = "-";
+  EXPECT_THAT(refusal(arguments), HasSubstr("Standard output (-) takes one file"));
+  arguments.report.clear();
+  arguments.lambdas = {"1", "0.1"};
+  EXPECT_THAT(refusal(arguments), HasSubstr("2 would be written"));
 }
 
 }  // namespace

@@ -109,6 +109,46 @@ test("an OBJ comes back as an OBJ with vt", async () => {
   assert.match(text, /# kept/);
 });
 
+/** Runs unwrap with these bytes at its standard input. */
+function piped(bytes, ...words) {
+  const env = { ...process.env, UNWRAPD_SERVER: address };
+  const child = spawn(join(bin, "unwrap"), words, { env, cwd: folder, stdio: "pipe" });
+  const out = [];
+  let err = "";
+  child.stdout.on("data", (block) => out.push(block));
+  child.stderr.on("data", (text) => (err += text));
+  child.stdin.end(bytes);
+  return new Promise((resolve) => child.once("close", (code) => resolve({ out: Buffer.concat(out), err, code })));
+}
+
+test("a dash is standard input and standard output", async () => {
+  const triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  writeFileSync(at("triangle.obj"), triangle);
+  const named = await unwrap(at("triangle.obj"), "-o", at("triangle.uv.obj"));
+  assert.equal(named.code, 0, named.err);
+  const expected = readFileSync(at("triangle.uv.obj"));
+  for (const words of [["-"], ["/dev/stdin", "-o", "-"], ["triangle.obj", "-o", "-"]]) {
+    const { out, err, code } = await piped(words[0] === "triangle.obj" ? "" : triangle, ...words);
+    assert.equal(code, 0, err);
+    assert.deepEqual(out, expected, words.join(" "));
+    assert.match(err, /\nstandard output: 1 faces, 1 chart, /);
+  }
+  const glb = await piped(triangle, "-", "--output", "glb", "-q");
+  assert.deepEqual([glb.code, glb.err, glb.out.toString("latin1", 0, 4)], [0, "", "glTF"]);
+  assert.equal(existsSync(at("-")), false);
+});
+
+test("two outputs of one name, or one of the input's, are refused before anything is sent", async () => {
+  const before = readFileSync(at("shell.glb"));
+  for (const words of [["-o", at("x.glb"), "--report", at("x.glb")], ["-o", at("shell.glb")]]) {
+    const run = await unwrapWith({ UNWRAPD_SERVER: "http://127.0.0.1:1" }, [at("shell.glb"), ...words]);
+    assert.equal(run.code, 2, run.err);
+    assert.match(run.err, /name the same file|names the input/);
+  }
+  assert.deepEqual(readFileSync(at("shell.glb")), before);
+  assert.equal(existsSync(at("x.glb")), false);
+});
+
 test("an STL comes back as a GLB, whose report says so", async () => {
   const corner = (x, y) => `vertex ${x} ${y} ${(x * y) / 4}`;
   const facet = (...corners) =>
