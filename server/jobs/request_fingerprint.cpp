@@ -32,6 +32,10 @@ std::string request_fingerprint(const api::Json& options, const store::JobRecord
   return hash.finish();
 }
 
+std::string content_fingerprint(const store::JobRecord& job) {
+  return request_fingerprint({{"options", job.options}, {"notes", job.notes}}, job);
+}
+
 bool is_same_request(const store::JobRecord& stored, const store::JobRecord& sent) {
   if (sent.request_key == sent.id && stored.id != sent.id) return false;
   if (!stored.asked.empty()) return stored.asked == sent.asked;

@@ -53,7 +53,7 @@ struct JobRecord {
   int urgency = kUsualUrgency;    ///< 0 (first) to 7, among the jobs of its owner
   std::string request_key;        ///< the sender's own name of the request, empty without one
   std::string asked;              ///< the same for the same request; empty when 0.1.0 stored it
-  std::string content_key;        ///< the same for the same answer: mesh, resolved options, version
+  std::string content_key;        ///< the same for the same answer: mesh, options, notes, version
   std::int64_t stored_bytes = 0;  ///< of its files, as far as quotas count them
   std::string webhook;            ///< called at its end, empty for none
   std::string trace;              ///< id of the trace that it came in and all is done in

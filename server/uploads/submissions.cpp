@@ -207,7 +207,7 @@ void Submissions::receive(const http::Request& request, store::JobRecord& job, U
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);
   job.asked = jobs::request_fingerprint(asked, job);
-  job.content_key = UNWRAPD_VERSION " " + jobs::request_fingerprint(job.options, job);
+  job.content_key = UNWRAPD_VERSION " " + jobs::content_fingerprint(job);
   store::shorten_options(job, folder);
 }
 

@@ -55,5 +55,24 @@ TEST_F(Repeats, OfALargeMeshLeaveOthersTheirResults) {
   EXPECT_LT(stored_bytes(), once);
 }
 
+TEST_F(Repeats, HaveTheNotesOfTheirOwnOptions) {
+  start();
+  const auto answer = [&](const std::string& query) {
+    const auto sent =
+        client().Post("/v1/jobs?" + query, {{"Prefer", "wait=60"}}, grid_obj(3), "model/obj");
+    const api::Json job = api::Json::parse(sent->body);
+    const api::Json report = api::Json::parse(get(job.at("id"), "report")->body);
+    std::string unused;
+    for (const api::Json& note : report.at("notes"))
+      if (note.at("code") == "option_unused") unused += note.at("text").get<std::string>();
+    return std::pair(job.at("attempt").get<int>(), unused);
+  };
+  const std::string lambda = "The option lambda has no effect with the method arap.";
+  EXPECT_EQ(answer("lambda=3"), std::pair(1, lambda));
+  EXPECT_EQ(answer(""), std::pair(1, std::string()));
+  EXPECT_EQ(answer("lambda=4"), std::pair(0, lambda)) << "the same answer and notes: stored";
+  EXPECT_EQ(answer("resolution=1024"), std::pair(0, std::string()));
+}
+
 }  // namespace
 }  // namespace unwrapd::server::uploads
