@@ -7,6 +7,7 @@
 
 #include "core/charts/outline.hpp"
 #include "core/guarantee/keep_guarantee.hpp"
+#include "core/measure/page_area.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/measure/seam_length.hpp"
 #include "core/pipeline/analyse.hpp"
@@ -71,6 +72,15 @@ void add_totals(Report& report) {
       report.overlaps.reset();
   }
   report.seam_ratio = report.seam_length / std::sqrt(report.area);
+}
+
+/// The area of the page that triangles cover, at most all of it: some may lie on others.
+double covered_page(const Layout& layout) {
+  double area = 0;
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k)
+      area += measure::page_area(layout.charts[s][k]->mesh.faces, layout.islands[s][k]);
+  return std::min(area, 1.0);
 }
 
 /// Uses the prepared vertex plan unless charts were split.
@@ -195,9 +205,8 @@ void measure_maps(Layout& layout, const UnwrapOptions& options, Executor& execut
     }
   const measure::DistortionSums& sums = layout.sums;
   layout.report.distortion = measure::distortion(sums);
-  const PageSize page = options.page_size();
-  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * page.width;
-  if (!options.constraints.empty()) layout.report.fill = sums.uv_area / page.aspect();
+  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * options.page_size().width;
+  if (!options.constraints.empty()) layout.report.fill = covered_page(layout);
 }
 
 Unwrapped assemble_surfaces(std::span<const Surface> surfaces, Layout layout,

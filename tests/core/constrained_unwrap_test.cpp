@@ -279,5 +279,33 @@ TEST(ConstrainedUnwrap, HoldsRealMeshes) {
   }
 }
 
+/// Two opposite corners of a square are enough to place it.
+double fill_of_square(const Vec2& low, const Vec2& high) {
+  const TriMesh mesh = shapes::grid(6, 6);
+  return unwrapped({mesh}, {.constraints = {pin(0, low.x(), low.y()),
+                                            pin(mesh.vertex_count() - 1, high.x(), high.y())}})
+      .report.fill;
+}
+
+TEST(ConstrainedUnwrap, FillIsTheShareOfThePageThatIsCovered) {
+  EXPECT_NEAR(fill_of_square({0.25, 0.25}, {0.75, 0.75}), 0.25, 1e-6);
+  EXPECT_NEAR(fill_of_square({0.5, 0.5}, {1.5, 1.5}), 0.25, 1e-6);
+  EXPECT_NEAR(fill_of_square({-0.75, 0.25}, {0.25, 1.25}), 0.25 * 0.75, 1e-6);
+  EXPECT_NEAR(fill_of_square({-1, -1}, {2, 2}), 1, 1e-6);
+  EXPECT_NEAR(fill_of_square({0, 0}, {1e30, 1e30 / 3}), 0.75, 1e-6);  // aslant
+  EXPECT_EQ(fill_of_square({2, 2}, {3, 3}), 0);
+}
+
+TEST(ConstrainedUnwrap, FillIsAtMostThePageWhereChartsLieOnEachOther) {
+  const TriMesh mesh = shapes::grid(4, 4);
+  UnwrapOptions options;
+  for (const Index surface : {0, 1})
+    for (const auto& [vertex, place] : {std::pair(Index{0}, 0.0), {mesh.vertex_count() - 1, 1.0}}) {
+      options.constraints.push_back(pin(vertex, place, place));
+      options.constraints.back().surface = surface;
+    }
+  EXPECT_EQ(unwrapped({mesh, mesh}, options).report.fill, 1);
+}
+
 }  // namespace
 }  // namespace unwrapd
