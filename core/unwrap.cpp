@@ -159,7 +159,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> given, const Unwrap
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
   for (Layout& layout : layouts) {
-    measure_maps(layout, options, job);
+    measure_maps(layout, surfaces, given, options, job);
     note_faults(layout, surfaces, options);
   }
   std::vector<Unwrapped> maps;

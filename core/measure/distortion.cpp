@@ -166,4 +166,15 @@ Distortion distortion(const DistortionSums& sums) {
           .degenerate = sums.degenerate};
 }
 
+DistortionSums distortion_sums(const TriMesh& mesh, std::span<const Vec2> uv, Executor& executor) {
+  std::vector<Triangle> faces;
+  for (const Triangle& face : mesh.faces)
+    if (face_area(mesh, face) > 0) faces.push_back(face);
+  DistortionSums sums;
+  if (!faces.empty())
+    sums = distortion_sums(flatten(mesh.positions, faces, executor), faces, uv, executor);
+  sums.degenerate += static_cast<Index>(mesh.faces.size() - faces.size());
+  return sums;
+}
+
 }  // namespace unwrapd::measure

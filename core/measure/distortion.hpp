@@ -40,6 +40,10 @@ inline constexpr double kMinSingularValue = 1e-6;
 DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                                std::span<const Vec2> uv, Executor& executor);
 
+/// The same for all faces of a mesh, of which some may have no area and so no metric: they count as
+/// degenerate.
+DistortionSums distortion_sums(const TriMesh& mesh, std::span<const Vec2> uv, Executor& executor);
+
 /// The same on the calling thread.
 DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                                std::span<const Vec2> uv, const std::stop_token& stop = {});

@@ -95,6 +95,24 @@ UnwrappedSurface assemble_surface(const Surface& surface, std::size_t s, const L
   return assemble(plan_vertices(surface, whole, charts, stop), layout.islands[s]);
 }
 
+/// The sums over a chart's triangles as the file has them, with corners that welding has not moved.
+measure::DistortionSums sums_in_file(const charts::Chart& chart, const UvMap& uv,
+                                     std::span<const Vec3> given, std::span<const Triangle> faces,
+                                     Executor& executor) {
+  TriMesh mesh;
+  UvMap corner_uv;
+  for (std::size_t t = 0; t < chart.face_source.size(); ++t) {
+    const Triangle& face = faces[static_cast<std::size_t>(chart.face_source[t])];
+    const auto first = static_cast<Index>(corner_uv.size());
+    mesh.faces.push_back({first, first + 1, first + 2});
+    for (std::size_t k = 0; k < 3; ++k) {
+      mesh.positions.push_back(given[static_cast<std::size_t>(face[k])]);
+      corner_uv.push_back(uv[static_cast<std::size_t>(chart.mesh.faces[t][k])]);
+    }
+  }
+  return measure::distortion_sums(mesh, corner_uv, executor);
+}
+
 CurvePoint curve_point(double lambda, const Report& report) {
   CurvePoint point{.lambda = lambda, .distortion = report.distortion};
   double area = 0;
@@ -189,20 +207,27 @@ void quantize_maps(Layout& layout, const UnwrapOptions& options, const std::stop
     }
 }
 
-void measure_maps(Layout& layout, const UnwrapOptions& options, Executor& executor) {
+void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<const Surface> given,
+                  const UnwrapOptions& options, Executor& executor) {
   auto report = layout.report.charts.begin();
-  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+  for (std::size_t s = 0; s < layout.islands.size(); ++s) {
+    const TriMesh& used = surfaces[s].mesh;
+    const bool is_moved = &used != &given[s].mesh && used.positions != given[s].mesh.positions;
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
-      const TriMesh& mesh = layout.charts[s][k]->mesh;
-      UvMap map = layout.islands[s][k];
-      to_page_widths(map, options.page_size());
-      measure::DistortionSums own = measure::distortion_sums(
-          measure::flatten(mesh.positions, mesh.faces, executor), mesh.faces, map, executor);
+      const charts::Chart& chart = *layout.charts[s][k];
+      UvMap uv = layout.islands[s][k];
+      to_page_widths(uv, options.page_size());
+      measure::DistortionSums own =
+          is_moved ? sums_in_file(chart, uv, given[s].mesh.positions, used.faces, executor)
+                   : measure::distortion_sums(
+                         measure::flatten(chart.mesh.positions, chart.mesh.faces, executor),
+                         chart.mesh.faces, uv, executor);
       own.flipped = report->distortion.flipped;  // by exact signs
       report->area = own.area;
       report->distortion = measure::distortion(own);
       layout.sums += own;
     }
+  }
   const measure::DistortionSums& sums = layout.sums;
   layout.report.distortion = measure::distortion(sums);
   layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * options.page_size().width;

@@ -50,8 +50,10 @@ void pack_charts(Layout& layout, std::span<const Surface> surfaces, const Unwrap
 /// Error{guarantee_failed, cancelled}.
 void quantize_maps(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop);
 
-/// Distortion and texel density of the triangles as they are written, rounding included.
-void measure_maps(Layout& layout, const UnwrapOptions& options, Executor& executor);
+/// Distortion and texel density of the triangles as they are written, rounding included. surfaces:
+/// those that were unwrapped; given: the same as they came, with the positions that are written.
+void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<const Surface> given,
+                  const UnwrapOptions& options, Executor& executor);
 
 /// The surfaces with their UVs, and the complete report. Throws Error{cancelled}.
 Unwrapped assemble_surfaces(std::span<const Surface> surfaces, Layout layout,

@@ -46,6 +46,9 @@ std::string advice_on_distortion(const UnwrapOptions& options) {
   if (!options.max_distortion) return " Send max_distortion=2.02 to split such charts.";
   if (options.method != Method::arap)
     return " The bound holds for maps of method=arap; other methods trade areas for angles.";
+  if (options.welding.mode == WeldMode::distance)
+    return " Charts keep the bound where corners are welded, not on those of the file: send a "
+           "smaller weld_distance.";
   return options.max_charts ? " max_charts leaves no room for the bound." : "";
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/measure/rest_triangle.hpp"
 #include "core/pipeline/analyse.hpp"
 #include "core/unwrap.hpp"
 #include "tests/core/rounded.hpp"
@@ -149,6 +150,37 @@ TEST(CarelessMesh, NeedsAWeldDistanceWithItsMode) {
   EXPECT_THROW(unwrapped(mesh, {.welding = {.distance = 1.0}}), Error);
   EXPECT_THROW(unwrapped(mesh, {.welding = {WeldMode::distance, -1.0}}), Error);
   EXPECT_THROW(unwrapped(mesh, {.welding = {WeldMode::distance, std::nan("")}}), Error);
+}
+
+/// D_angle of Sec. 6 by the formula |J|^2 / det J, over the triangles of the mesh.
+double angle_distortion(const TriMesh& mesh, const UnwrappedSurface& out) {
+  double sum = 0, area = 0;
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    const auto at = [&](std::size_t k) { return mesh.positions[std::size_t(mesh.faces[t][k])]; };
+    const auto uv = [&](std::size_t k) { return out.uv[std::size_t(out.faces[t][k])]; };
+    const Vec3 x = at(1) - at(0), y = at(2) - at(0);
+    const Vec2 u = uv(1) - uv(0), v = uv(2) - uv(0);
+    const double twice = x.cross(y).norm(), det = u.x() * v.y() - u.y() * v.x();
+    const double norm = u.dot(u) * y.dot(y) - 2 * u.dot(v) * x.dot(y) + v.dot(v) * x.dot(x);
+    sum += twice * norm / (twice * std::abs(det));
+    area += twice;
+  }
+  return sum / area;
+}
+
+TEST(CarelessMesh, IsMeasuredWhereTheFileHasItsCorners) {
+  const double noise = 0.02;
+  const Rounded soup = shapes::rounded_soup(shapes::grid(5, 5), noise, 5);
+  const double area = measure::surface_area(soup.mesh);
+  const Welding welding{WeldMode::distance, 4 * noise * shapes::diagonal(soup.mesh)};
+  const Unwrapped out =
+      unwrapped(soup.mesh, {.max_distortion = 2.02, .effort = Effort::fast, .welding = welding});
+  EXPECT_NEAR(out.report.distortion.angle, angle_distortion(soup.mesh, out.surfaces[0]), 1e-9);
+  EXPECT_GT(out.report.distortion.angle, 2.021);
+  EXPECT_NEAR(out.report.area, area, 1e-9 * area);
+  ASSERT_FALSE(out.report.notes.empty());
+  EXPECT_EQ(out.report.notes[0].code, NoteCode::distorted);
+  EXPECT_NE(out.report.notes[0].text.find("weld_distance"), std::string::npos);
 }
 
 }  // namespace
