@@ -89,11 +89,26 @@ void add_floored(const Faces& faces, double floor, DistortionSums& sums) {
 }
 
 /// What kMinSingularValue comes to. The mean stretch is the root mean square of the singular
-/// values, which a map onto a line has, too: its UV area is 0. A map onto a point has none.
+/// values, which a map onto a line has, too: its UV area is 0. A map onto a point has none: 0.
 double floor_of(const std::vector<Block>& blocks) {
   double squares = 0, measured = 0;
   for (const Block& block : blocks) squares += block.squares, measured += block.sums.measured;
-  return squares > 0 ? kMinSingularValue * std::sqrt(squares / (2 * measured)) : 1;
+  return squares > 0 ? kMinSingularValue * std::sqrt(squares / (2 * measured)) : 0;
+}
+
+/// A map onto a point has no scale: what it comes to depends on the maps that it is summed up with.
+DistortionSums sums_of_point(const std::vector<Block>& blocks) {
+  DistortionSums sums;
+  for (const Block& block : blocks) {
+    sums.area += block.sums.area;
+    sums.uv_area += block.sums.uv_area;
+    sums.measured += block.sums.measured;
+    sums.flipped += block.sums.flipped;
+    sums.degenerate += block.sums.degenerate;
+  }
+  sums.collapsed = sums.measured;
+  sums.angle = sums.measured * (1 / kMinSingularValue + kMinSingularValue);
+  return sums;
 }
 
 }  // namespace
@@ -106,6 +121,7 @@ DistortionSums& DistortionSums::operator+=(const DistortionSums& other) {
   angle += other.angle;
   inverse += other.inverse;
   stretch += other.stretch;
+  collapsed += other.collapsed;
   flipped += other.flipped;
   degenerate += other.degenerate;
   return *this;
@@ -136,6 +152,7 @@ DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<con
     blocks[k] = sum_up(all.part(begin, end));
   });
   const double floor = floor_of(blocks);
+  if (floor == 0) return sums_of_point(blocks);
   const auto is_above = [&](const Block& block) { return block.is_above(floor); };
   if (!std::ranges::all_of(blocks, is_above))
     for_each_part(faces.size(), executor, [&](std::size_t k, std::size_t begin, std::size_t end) {
@@ -149,6 +166,17 @@ DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<con
   return sums;
 }
 
+DistortionSums distortion_sums(const TriMesh& mesh, std::span<const Vec2> uv, Executor& executor) {
+  std::vector<Triangle> faces;
+  for (const Triangle& face : mesh.faces)
+    if (face_area(mesh, face) > 0) faces.push_back(face);
+  DistortionSums sums;
+  if (!faces.empty())
+    sums = distortion_sums(flatten(mesh.positions, faces, executor), faces, uv, executor);
+  sums.degenerate += static_cast<Index>(mesh.faces.size() - faces.size());
+  return sums;
+}
+
 DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                                std::span<const Vec2> uv, const std::stop_token& stop) {
   SerialExecutor serial;
@@ -159,22 +187,12 @@ DistortionSums distortion_sums(std::span<const RestTriangle> rest, std::span<con
 Distortion distortion(const DistortionSums& sums) {
   if (!(sums.measured > 0)) return {.flipped = sums.flipped, .degenerate = sums.degenerate};
   const double scale2 = sums.measured_uv / sums.measured;  // square of the mean stretch
+  const double lost = sums.collapsed / sums.measured / (kMinSingularValue * kMinSingularValue);
   return {.angle = std::max(2.0, sums.angle / sums.measured),
-          .area = std::max(2.0, 1 + scale2 * sums.inverse / sums.measured),
-          .stretch = std::sqrt(scale2 * sums.stretch / sums.measured),
+          .area = std::max(2.0, 1 + scale2 * sums.inverse / sums.measured + lost),
+          .stretch = std::sqrt(scale2 * sums.stretch / sums.measured + lost),
           .flipped = sums.flipped,
           .degenerate = sums.degenerate};
-}
-
-DistortionSums distortion_sums(const TriMesh& mesh, std::span<const Vec2> uv, Executor& executor) {
-  std::vector<Triangle> faces;
-  for (const Triangle& face : mesh.faces)
-    if (face_area(mesh, face) > 0) faces.push_back(face);
-  DistortionSums sums;
-  if (!faces.empty())
-    sums = distortion_sums(flatten(mesh.positions, faces, executor), faces, uv, executor);
-  sums.degenerate += static_cast<Index>(mesh.faces.size() - faces.size());
-  return sums;
 }
 
 }  // namespace unwrapd::measure

@@ -19,6 +19,7 @@ struct DistortionSums {
   double angle = 0;        ///< sum of A_t (sigma_max / |sigma_min| + |sigma_min| / sigma_max)
   double inverse = 0;      ///< sum of A_t / |sigma_max sigma_min|
   double stretch = 0;      ///< sum of A_t (1 / sigma_max^2 + 1 / sigma_min^2) / 2
+  double collapsed = 0;    ///< measured area of maps onto a point: in no sum but angle
   Index flipped = 0;       ///< triangles with sigma_min <= 0
   Index degenerate = 0;    ///< triangles thinner than kMeasurable
 
@@ -32,7 +33,8 @@ inline constexpr double kMeasurable = 1e-5;
 
 /// A collapsed image has no finite D: each singular value counts as at least this share of the root
 /// mean square of all. So D_angle stays below 1.5e6, D_area below 1e12 + 1, stretch below 1e6; a
-/// chart that reaches the floor shows D_angle in the thousands.
+/// chart that reaches the floor shows D_angle in the thousands. A map onto a point has D_angle 1e6,
+/// D_area 1e12 and stretch 1e6.
 inline constexpr double kMinSingularValue = 1e-6;
 
 /// faces index uv; rest has one entry a face. The same bits for any executor. Throws

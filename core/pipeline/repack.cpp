@@ -10,7 +10,6 @@
 #include "core/charts/uv_islands.hpp"
 #include "core/guarantee/quantize_uvs.hpp"
 #include "core/measure/distortion.hpp"
-#include "core/measure/rest_triangle.hpp"
 #include "core/measure/seam_length.hpp"
 #include "core/pack/pack.hpp"
 #include "core/pipeline/assemble.hpp"
@@ -36,15 +35,9 @@ std::vector<charts::UvIslands> find_islands(std::span<const Surface> surfaces,
   return all;
 }
 
-/// Faces without area have no metric: they are counted, as degenerate.
 measure::DistortionSums sums_of(const charts::Chart& chart, const UvMap& uv) {
-  TriMesh mesh{chart.mesh.positions, {}};
-  for (const Triangle& face : chart.mesh.faces)
-    if (measure::face_area(chart.mesh, face) > 0) mesh.faces.push_back(face);
-  measure::DistortionSums sums;
-  if (!mesh.faces.empty()) sums = measure::distortion_sums(measure::flatten(mesh), mesh.faces, uv);
-  sums.degenerate += chart.mesh.face_count() - mesh.face_count();
-  return sums;
+  SerialExecutor serial;
+  return measure::distortion_sums(chart.mesh, uv, serial);
 }
 
 /// Each island at the size at which its UV area is its area in space.
@@ -110,6 +103,26 @@ void note_faces_without(const std::vector<charts::UvIslands>& all, Report& repor
              "page: they lie on an edge or a point of a neighbour, or at (0, 0)."});
 }
 
+bool has_area(const charts::Chart& chart, const UvMap& uv) {
+  return std::ranges::any_of(chart.mesh.faces, [&](const Triangle& face) {
+    const auto at = [&](std::size_t k) { return uv[static_cast<std::size_t>(face[k])]; };
+    const Vec2 a = at(1) - at(0), b = at(2) - at(0);
+    return a.x() * b.y() != a.y() * b.x();
+  });
+}
+
+void note_islands_without_area(const std::vector<charts::UvIslands>& all, Report& report) {
+  std::size_t count = 0;
+  for (const charts::UvIslands& islands : all)
+    for (std::size_t k = 0; k < islands.maps.size(); ++k)
+      count += has_area(islands.charts.charts[k], islands.maps[k]) ? 0 : 1;
+  if (count > 0)
+    report.notes.push_back({NoteCode::distorted,
+                            std::to_string(count) +
+                                " islands have no area on the page: their texture coordinates lie "
+                                "on a line or a point. Leave out repack_only to unwrap them."});
+}
+
 void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIslands>& all,
              const UnwrapOptions& options, Unwrapped& out) {
   measure::DistortionSums total;
@@ -152,6 +165,7 @@ Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options
   place(surfaces, all, options, executor, out.report);
   announce(Stage::measure, 0.9);
   note_faces_without(all, out.report);
+  note_islands_without_area(all, out.report);
   measure(surfaces, all, options, out);
   return out;
 }

@@ -108,11 +108,25 @@ TEST(Distortion, CountsFlipsAndNeverFallsBelowTwo) {
   EXPECT_GE(d.area, 2);
 }
 
-TEST(Distortion, OfACollapsedMapIsFinite) {
+TEST(Distortion, OfAMapOntoAPointIsFarFromIdealAndFinite) {
+  const TriMesh mesh = shapes::grid(3, 3);
+  const UvMap point(mesh.positions.size(), Vec2(0.3, 0.7));
+  const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, point));
+  EXPECT_NEAR(d.angle, 1e6, 1);
+  EXPECT_NEAR(d.area, 1e12, 1e6);
+  EXPECT_NEAR(d.stretch, 1e6, 1);
+  EXPECT_EQ(d.flipped, mesh.face_count());
+}
+
+/// Beside an isometry of the same area, a point is at the floor of the scale of both.
+TEST(Distortion, OfAPointCountsByItsArea) {
   const TriMesh mesh = shapes::grid(3, 3);
   const UvMap point(mesh.positions.size(), Vec2(0, 0));
-  const Distortion d = distortion(distortion_sums(flatten(mesh), mesh.faces, point));
-  EXPECT_TRUE(std::isfinite(d.angle) && std::isfinite(d.area) && std::isfinite(d.stretch));
+  DistortionSums sums = distortion_sums(flatten(mesh), mesh.faces, flattened(mesh));
+  sums += distortion_sums(flatten(mesh), mesh.faces, point);
+  const Distortion d = distortion(sums);
+  EXPECT_NEAR(d.angle, (2 + 1e6) / 2, 1);
+  EXPECT_NEAR(d.area, 1e12 / 2, 1e6);
   EXPECT_EQ(d.flipped, mesh.face_count());
 }
 

@@ -98,6 +98,21 @@ TEST(Repack, StacksMirroredQuadsOnlyOnTheirLike) {
   EXPECT_GT(side(u.surfaces[0], 0), 0.4);
 }
 
+TEST(Repack, TellsThatIslandsOnAPointOrALineHaveNoArea) {
+  for (const double height : {0.0, 0.1}) {
+    Surface surface = quads(1);
+    for (std::array<Vec2, 3>& corners : surface.corner_uv)
+      for (Vec2& uv : corners) uv = Vec2(0.5, 0.25 + height * uv.y());
+    const Report report = repacked(surface).report;
+    EXPECT_GT(report.distortion.angle, 1000);
+    EXPECT_EQ(report.distortion.flipped, 2);
+    ASSERT_EQ(report.notes.size(), 1U);
+    EXPECT_EQ(report.notes[0].code, NoteCode::distorted);
+    EXPECT_TRUE(report.notes[0].text.starts_with("1 islands have no area"));
+  }
+  EXPECT_TRUE(repacked(quads(2)).report.notes.empty());
+}
+
 TEST(Repack, RefusesWhatHasNoUvs) {
   Surface surface = quads(2);
   surface.corner_uv.clear();
