@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, 5> kFileRepairKinds = {
     "line_ends_replaced", "empty_indices_ignored", "normals_replaced", "chunks_padded",
     "shared_nodes_kept"};
 
-constexpr std::array<std::string_view, 23> kNoteCodes = {
+constexpr std::array<std::string_view, 24> kNoteCodes = {
     "option_unused",     "overlaps",           "distorted",
     "set_chosen",        "textures_lost",      "textures_transferred",
     "charts_exceeded",   "surface_noisy",      "chart_remapped",
@@ -32,8 +32,8 @@ constexpr std::array<std::string_view, 23> kNoteCodes = {
     "faces_without_uvs", "tangents_changed",   "transform_reset",
     "materials_copied",  "morph_targets_lost", "sets_filled",
     "images_separate",   "polygons_split",     "format_changed",
-    "data_dropped",      "positions_rounded"};
-static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::positions_rounded) + 1);
+    "data_dropped",      "positions_rounded",  "origin_moved"};
+static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::origin_moved) + 1);
 
 /// The stages of timings_ms, in the order of a job.
 constexpr std::array kTimings = {"queue", "read",     "setup",   "segment", "merge", "factor",

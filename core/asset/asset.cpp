@@ -11,6 +11,7 @@
 #include "core/asset/compress.hpp"
 #include "core/asset/convert.hpp"
 #include "core/asset/document.hpp"
+#include "core/asset/float_frame.hpp"
 #include "core/asset/obj_materials.hpp"
 #include "core/asset/obj_polygons.hpp"
 #include "core/asset/patch.hpp"
@@ -268,6 +269,11 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
   if (const std::optional<int> bits = rounding_bits(document.options, output))
     notes.push_back(note_on_rounding(document.surfaces, *bits));
   std::vector<Note> more;
+  FloatFrame frame;
+  if (output != Format::obj && !std::holds_alternative<Gltf>(document.source))
+    frame = float_frame(document.surfaces.front().mesh, {});
+  const std::vector<Note> on_floats = notes_on(frame);
+  notes.insert(notes.end(), on_floats.begin(), on_floats.end());
   if (const Obj* obj = std::get_if<Obj>(&document.source)) {
     more =
         output == Format::obj ? note_on_polygons(*obj, unwrapped.front()) : note_on_materials(*obj);

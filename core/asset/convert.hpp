@@ -12,7 +12,8 @@
 namespace unwrapd::asset {
 
 /// A minimal glTF: one node, one mesh, one primitive for each material that has faces, with its
-/// name and looks. keeps_texcoords: see there.
+/// name and looks. keeps_texcoords: see there. Positions are in the float_frame() of the mesh.
+/// Throws Error{zero_area, cancelled}.
 std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
                         bool keeps_texcoords, Format output);
 

@@ -9,6 +9,7 @@
 #include "core/asset/as_size.hpp"
 #include "core/asset/bytes.hpp"
 #include "core/asset/convert.hpp"
+#include "core/asset/float_frame.hpp"
 #include "core/asset/grow.hpp"
 #include "core/asset/obj_materials.hpp"
 #include "core/asset/patch.hpp"
@@ -25,7 +26,6 @@ Float3 as_floats(const Vec3& v) {
 }
 
 struct Vertices {
-  std::vector<Float3> positions;
   std::vector<Float3> normals;  ///< empty unless every corner has one
   std::vector<std::array<float, 2>> uv;
   std::vector<std::array<float, 2>> old_uv;     ///< of the input; empty unless they are kept
@@ -72,11 +72,9 @@ class Combiner {
   Index number_of(const Key& key) {
     const auto [vertex, normal, texcoord] = key;
     const auto [found, is_new] =
-        numbers_.try_emplace(key, static_cast<Index>(vertices_.positions.size()));
+        numbers_.try_emplace(key, static_cast<Index>(vertices_.sources.size()));
     if (!is_new) return found->second;
-    const Index source = parts_.unwrapped.source[as_size(vertex)];
-    vertices_.sources.push_back(source);
-    vertices_.positions.push_back(as_floats(parts_.surface.mesh.positions[as_size(source)]));
+    vertices_.sources.push_back(parts_.unwrapped.source[as_size(vertex)]);
     const Vec2& uv = parts_.unwrapped.uv[as_size(vertex)];
     vertices_.uv.push_back({static_cast<float>(uv.x()), static_cast<float>(1 - uv.y())});
     if (normal != kNoNormal) {
@@ -139,6 +137,16 @@ Vertices vertices_of(const MeshFile& file, const Surface& surface,
   return combiner.take();
 }
 
+/// The positions of the vertices relative to an origin.
+std::vector<Float3> positions_from(const Vec3& origin, const TriMesh& mesh,
+                                   const std::vector<Index>& sources) {
+  std::vector<Float3> positions;
+  positions.reserve(sources.size());
+  for (const Index source : sources)
+    positions.push_back(as_floats(mesh.positions[as_size(source)] - origin));
+  return positions;
+}
+
 std::string_view bytes_of(const std::vector<Float3>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Float3)};
 }
@@ -162,9 +170,10 @@ void add_primitives(const Vertices& vertices, const Json& attributes, const Gltf
 }
 
 /// Adds the accessors of all vertices. Returns the attributes of primitives.
-Json add_vertices(const Vertices& vertices, const Gltf& empty, NewViews& views, Json& accessors) {
-  accessors.push_back(vec3_accessor(vertices.positions, views));
-  set_bounds(accessors.back(), bytes_of(vertices.positions), sizeof(Float3), 3);
+Json add_vertices(const std::vector<Float3>& positions, const Vertices& vertices, const Gltf& empty,
+                  NewViews& views, Json& accessors) {
+  accessors.push_back(vec3_accessor(positions, views));
+  set_bounds(accessors.back(), bytes_of(positions), sizeof(Float3), 3);
   accessors.push_back(texcoord_accessor(empty, std::nullopt, vertices.uv, views));
   Json attributes = {{"POSITION", 0}, {"TEXCOORD_0", 1}};
   if (!vertices.normals.empty()) {
@@ -180,8 +189,10 @@ Json add_vertices(const Vertices& vertices, const Gltf& empty, NewViews& views, 
 }
 
 /// obj: null for a format without materials.
-std::string write_gltf(const Vertices& vertices, const Obj* obj, const std::stop_token& stop,
-                       Format output) {
+std::string write_gltf(const TriMesh& mesh, const Vertices& vertices, const Obj* obj,
+                       const std::stop_token& stop, Format output) {
+  const Vec3 origin = float_frame(mesh, stop).origin;
+  const std::vector<Float3> positions = positions_from(origin, mesh, vertices.sources);
   Gltf empty;
   empty.stop = stop;
   PatchedDocument document{Json::parse(R"({
@@ -189,8 +200,11 @@ std::string write_gltf(const Vertices& vertices, const Obj* obj, const std::stop
     "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
     "meshes": [{"primitives": []}], "accessors": [], "bufferViews": [], "buffers": []})"),
                            {}};
+  if (origin != Vec3::Zero())
+    document.json["nodes"][0]["translation"] = {origin.x(), origin.y(), origin.z()};
   NewViews views(document, 0);
-  const Json attributes = add_vertices(vertices, empty, views, document.json["accessors"]);
+  const Json attributes =
+      add_vertices(positions, vertices, empty, views, document.json["accessors"]);
   add_primitives(vertices, attributes, empty, views, document.json);
   std::vector<Index> parts;
   for (const auto& [part, corners] : vertices.corners) parts.push_back(part);
@@ -212,12 +226,14 @@ std::vector<Index> sources_in_gltf(const MeshFile& file, const Surface& surface,
 
 std::string obj_as_gltf(const Obj& obj, const Surface& surface, const UnwrappedSurface& unwrapped,
                         bool keeps_texcoords, Format output) {
-  return write_gltf(vertices_of(obj, surface, unwrapped, keeps_texcoords), &obj, obj.stop, output);
+  return write_gltf(surface.mesh, vertices_of(obj, surface, unwrapped, keeps_texcoords), &obj,
+                    obj.stop, output);
 }
 
 std::string mesh_file_as_gltf(const MeshFile& file, const Surface& surface,
                               const UnwrappedSurface& unwrapped, Format output) {
-  return write_gltf(vertices_of(file, surface, unwrapped), nullptr, file.stop, output);
+  return write_gltf(surface.mesh, vertices_of(file, surface, unwrapped), nullptr, file.stop,
+                    output);
 }
 
 }  // namespace unwrapd::asset

@@ -29,7 +29,8 @@ enum class NoteCode {
   polygons_split,        ///< polygons are written as triangles
   format_changed,        ///< the format of the input is not written
   data_dropped,          ///< materials or properties of the input are not in the result
-  positions_rounded,     ///< Draco rounds positions and normals
+  positions_rounded,     ///< positions are rounded: by Draco, or to floats that cannot hold a face
+  origin_moved,          ///< positions are relative to the translation of the node
 };
 
 struct Note {
