@@ -138,18 +138,21 @@ std::optional<int> rounding_bits(const AssetOptions& options, Format output) {
   return is_draco ? options.draco_bits : std::nullopt;
 }
 
-Note note_on_rounding(std::span<const Surface> surfaces, int bits) {
-  double side = 0;
+/// origin: what positions are relative to when they are rounded.
+Note note_on_rounding(std::span<const Surface> surfaces, const Vec3& origin, int bits) {
+  constexpr double kRoundUp = 1.005;  // so that three digits are no less
+  double bound = 0;
   for (const Surface& surface : surfaces) {
+    if (surface.mesh.positions.empty()) continue;
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
     for (const Vec3& point : surface.mesh.positions) {
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
+      low = low.cwiseMin(point - origin);
+      high = high.cwiseMax(point - origin);
     }
-    if (!surface.mesh.positions.empty()) side = std::max(side, (high - low).maxCoeff());
+    bound = std::max(bound, draco_position_error(low, high, bits));
   }
   std::array<char, 32> error{};
-  std::snprintf(error.data(), error.size(), "%.3g", draco_position_error(side, bits));
+  std::snprintf(error.data(), error.size(), "%.3g", kRoundUp * bound);
   return {NoteCode::positions_rounded,
           "Draco rounds positions to " + std::to_string(bits) + " bits, by at most " +
               error.data() + " in the units of the mesh, and normals to " +
@@ -266,14 +269,14 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
   if (output == Format::obj && document.options.textures == TextureMode::transfer)
     notes.push_back(
         {NoteCode::option_unused, "An OBJ has no images; the option textures has no effect."});
-  if (const std::optional<int> bits = rounding_bits(document.options, output))
-    notes.push_back(note_on_rounding(document.surfaces, *bits));
-  std::vector<Note> more;
   FloatFrame frame;
   if (output != Format::obj && !std::holds_alternative<Gltf>(document.source))
     frame = float_frame(document.surfaces.front().mesh, {});
   const std::vector<Note> on_floats = notes_on(frame);
   notes.insert(notes.end(), on_floats.begin(), on_floats.end());
+  if (const std::optional<int> bits = rounding_bits(document.options, output))
+    notes.push_back(note_on_rounding(document.surfaces, frame.origin, *bits));
+  std::vector<Note> more;
   if (const Obj* obj = std::get_if<Obj>(&document.source)) {
     more =
         output == Format::obj ? note_on_polygons(*obj, unwrapped.front()) : note_on_materials(*obj);

@@ -19,8 +19,10 @@ PatchedDocument draco_compressed(const Gltf& gltf, bool with_fallback,
 
 inline constexpr int kDracoNormalBits = 10;  ///< of each octahedral coordinate: 0.25 degrees
 
-/// The most that rounding moves a coordinate of a mesh whose box has this largest side.
-double draco_position_error(double side, int position_bits);
+/// The most that rounding moves a coordinate of a mesh with this box: half a step, and what floats
+/// add. Draco's arithmetic in them costs 3 units of 2^-23 of the box, and the result, as well as
+/// positions that came in doubles, half a unit of the coordinate's last digit.
+double draco_position_error(const Vec3& low, const Vec3& high, int position_bits);
 
 /// Compresses every buffer view that has only vertices or indices by EXT_meshopt_compression, or by
 /// KHR_ as style says. bytes are those of buffer 0, the only one, and become the compressed ones.

@@ -255,8 +255,12 @@ class DracoPacker {
 
 }  // namespace
 
-double draco_position_error(double side, int position_bits) {
-  return side / (std::ldexp(1.0, position_bits) - 1) / 2;
+double draco_position_error(const Vec3& low, const Vec3& high, int position_bits) {
+  const double side = (high - low).maxCoeff();
+  const double half_step = side / (std::ldexp(1.0, position_bits) - 1) / 2;
+  const double farthest = low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
+  const double last_digit = farthest > 0 ? std::ldexp(1.0, std::ilogb(farthest) - 23) : 0;
+  return half_step + std::ldexp(3 * side, -23) + last_digit;
 }
 
 PatchedDocument draco_compressed(const Gltf& gltf, bool with_fallback,
