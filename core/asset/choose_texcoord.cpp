@@ -17,12 +17,13 @@ std::optional<int> first_outside(const TexcoordSets& taken) {
   return std::nullopt;
 }
 
-int chosen_set(const Gltf& gltf, TexcoordChoice choice) {
+int chosen_set(Gltf& gltf, TexcoordChoice choice) {
   const TexcoordSets sampled = sampled_sets(gltf);
   if (choice == TexcoordChoice::automatic && gltf.transfer)
     return first_outside(~sampled).value_or(0);
   if (choice == TexcoordChoice::automatic && !sampled.test(0)) return 0;
   if (const auto free = first_outside(sampled | present_sets(gltf))) return *free;
+  gltf.has_no_free_texcoord = true;
   if (const auto unsampled = first_outside(sampled)) return *unsampled;
   throw Error(ErrorCode::invalid_option,
               "textures sample every set of texture coordinates; name the one to overwrite, for "

@@ -88,6 +88,7 @@ struct Gltf {
   std::string texcoord = "TEXCOORD_0";  ///< the attribute that is replaced
   std::string uvs_from = "TEXCOORD_0";  ///< the attribute that existing UVs are read from
   bool is_texcoord_chosen = false;      ///< by choose_texcoord(), not by the caller
+  bool has_no_free_texcoord = false;    ///< so that the chosen set replaces one that was there
   Compression came_as = Compression::none;
   bool came_with_fallback =
       false;  ///< uncompressed data was in the input too, for readers without came_as

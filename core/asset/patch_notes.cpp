@@ -99,7 +99,12 @@ std::vector<Note> side_effects_of_patch(const Gltf& gltf,
   const auto add = [&](bool holds, NoteCode code, std::string text) {
     if (holds) notes.push_back({code, std::move(text)});
   };
-  add(gltf.is_texcoord_chosen && gltf.texcoord != gltf.uvs_from, NoteCode::set_chosen,
+  add(gltf.has_no_free_texcoord, NoteCode::set_chosen,
+      "The asset has all eight sets of texture coordinates. The new ones replace " + gltf.texcoord +
+          ", the first that no texture samples; its values are lost. Name another set to keep "
+          "them, for example texcoord=7.");
+  add(gltf.is_texcoord_chosen && !gltf.has_no_free_texcoord && gltf.texcoord != gltf.uvs_from,
+      NoteCode::set_chosen,
       "The new texture coordinates are " + gltf.texcoord +
           ", and the existing sets stay, so that textures of the asset keep fitting. Send "
           "texcoord=0 to overwrite the first set.");

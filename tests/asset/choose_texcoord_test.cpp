@@ -1,4 +1,6 @@
 // Which set of texture coordinates is written where the caller names none.
+#include <tuple>
+
 #include "core/base/error.hpp"
 #include "tests/asset/support.hpp"
 
@@ -102,6 +104,20 @@ TEST(ChooseTexcoord, WhenAllAreThereItIsOneThatNoTextureSamples) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::invalid_option);
     EXPECT_EQ(error.where(), "/texcoord");
+  }
+}
+
+TEST(ChooseTexcoord, ASetThatHadToMakeRoomIsNamed) {
+  for (const auto& [sampled, options, set] :
+       {std::tuple(0, kAutomatic, 1), {0, kFree, 1}, {3, kFree, 0}}) {
+    const Asset asset = read_file(textured(kSets, sampled).glb(), options);
+    EXPECT_EQ(asset.texcoord(), set);
+    const std::vector<Note> notes = side_effects(asset, split_nowhere(asset), Format::glb);
+    ASSERT_EQ(notes.size(), 1U) << sampled;
+    EXPECT_EQ(notes[0].code, NoteCode::set_chosen);
+    const std::string name = "TEXCOORD_" + std::to_string(set);
+    EXPECT_NE(notes[0].text.find("replace " + name), std::string::npos) << notes[0].text;
+    EXPECT_EQ(notes[0].text.find("existing sets stay"), std::string::npos) << notes[0].text;
   }
 }
 
