@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "core/asset/gltf_steps.hpp"
@@ -124,6 +125,8 @@ class ZipReader {
     if (stat.encryption_method != ZIP_EM_NONE) refuse_zip(quoted_name(stat.name) + " is encrypted");
     if (stat.comp_method != ZIP_CM_STORE && stat.comp_method != ZIP_CM_DEFLATE)
       refuse_zip(quoted_name(stat.name) + " is neither stored nor deflated");
+    if (!names_.insert(stat.name).second)
+      refuse_zip("the archive has " + quoted_name(stat.name) + " twice");
     entries_.push_back({number, stat.name, static_cast<std::size_t>(stat.size)});
   }
 
@@ -139,6 +142,7 @@ class ZipReader {
   std::size_t bytes_left_;
   std::stop_token stop_;
   std::vector<ZipEntry> entries_;
+  std::set<std::string> names_;  ///< of them: readers of archives differ in which of two they take
 };
 
 const ZipEntry& find_document(const std::vector<ZipEntry>& entries, std::string_view archive) {

@@ -98,6 +98,20 @@ TEST(Zip, OneAssetIsExpected) {
   }
 }
 
+TEST(Zip, ANameIsThereOnce) {
+  std::vector<Packed> files = square_in_parts("");
+  files.push_back({"parts/the other1.bin", std::string(files[1].bytes.size(), '\0')});
+  for (const char* given : {"parts/the square.bin", "parts/the other1.bin"}) {
+    std::string archive = zip_of(files);
+    const std::string other = given == files[1].name ? files[2].name : files[1].name;
+    for (std::size_t at = archive.find(other); at != std::string::npos; at = archive.find(other))
+      archive.replace(at, other.size(), given);
+    const Error error = error_of(archive);
+    EXPECT_EQ(error.code(), ErrorCode::malformed_mesh);
+    EXPECT_THAT(error.what(), HasSubstr("\"" + std::string(given) + "\" twice"));
+  }
+}
+
 TEST(Zip, PathsThatLeadOutAreRefusedAndLinksIgnored) {
   for (const char* name : {"../a.bin", "/etc/a.bin", "b/../../a.bin", "b\\..\\a.bin", "c:a.bin"}) {
     std::vector<Packed> files = square_in_parts("");
