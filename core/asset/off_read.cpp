@@ -1,5 +1,6 @@
 // OFF, as Geomview defines it: counts, then one line for each vertex and each face. Whatever
-// follows the position or the corners on a line is a normal, a colour or a texture coordinate.
+// follows the position on a line is a normal, a colour or a texture coordinate; what follows the
+// corners of a face is its colour.
 #include <limits>
 
 #include "core/asset/mesh_file.hpp"
@@ -54,7 +55,8 @@ class OffReader {
     read_vertices(vertices);
     read_faces(faces, vertices);
     if (keyword_.has_texcoords) file_.dropped.emplace_back("texture coordinates");
-    if (keyword_.has_colours) file_.dropped.emplace_back("colours");
+    if (keyword_.has_colours || has_vertex_colours_) file_.dropped.emplace_back("vertex colours");
+    if (has_face_colours_) file_.dropped.emplace_back("face colours");
     add_faces(polygons_, limits_, surface_, file_);
     return std::move(file_);
   }
@@ -80,7 +82,7 @@ class OffReader {
       surface_.mesh.positions.push_back(read_vec3());
       if (!is_position(surface_.mesh.positions.back())) refuse_position(reader_.place());
       if (keyword_.has_normals) file_.normals.push_back(read_vec3());
-      reader_.skip_line();
+      has_vertex_colours_ |= reader_.skip_line() && !keyword_.has_texcoords;
     }
   }
 
@@ -91,7 +93,7 @@ class OffReader {
       for (std::int64_t k = 0; k < corners; ++k)
         polygons_.corners.push_back(static_cast<Index>(reader_.whole(0, vertices - 1)));
       polygons_.ends.push_back(polygons_.corners.size());
-      reader_.skip_line();
+      has_face_colours_ |= reader_.skip_line();
     }
   }
 
@@ -101,6 +103,7 @@ class OffReader {
   Surface& surface_;
   MeshFile file_;
   PolygonList polygons_;
+  bool has_vertex_colours_ = false, has_face_colours_ = false;  ///< on any line
 };
 
 }  // namespace

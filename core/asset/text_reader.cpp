@@ -55,10 +55,12 @@ std::string_view TextReader::next() {
   return text_.substr(word_, next_ - word_);
 }
 
-void TextReader::skip_line() {
+bool TextReader::skip_line() {
   const std::size_t begin = next_;
   while (next_ < text_.size() && !is_line_end(text_[next_])) ++next_;
   pace_.add(1 + (next_ - begin) / 16);
+  const auto* first = std::find_if_not(text_.begin() + begin, text_.begin() + next_, is_gap);
+  return first != text_.begin() + next_ && (comment_ == '\0' || *first != comment_);
 }
 
 double TextReader::number() {

@@ -30,8 +30,8 @@ class TextReader {
   /// Empty at the end of the text.
   std::string_view next();
 
-  /// Continues after the end of the latest word's line.
-  void skip_line();
+  /// Continues after the end of the latest word's line. Whether that had more words.
+  bool skip_line();
 
   /// Throws Error{malformed_mesh} if the next word is no number. It may be infinite or undefined.
   double number();

@@ -192,5 +192,24 @@ TEST(Off, VariantsAreRead) {
   EXPECT_EQ(read_naively(answer)[0].faces[0].at("NORMAL")[2], (std::vector<double>{0, 0, 1}));
 }
 
+TEST(Off, WhatFollowsOnALineIsToldAsLeftOut) {
+  const auto dropped = [](const std::string& file) {
+    std::string text;
+    const Asset asset = read_file(file);
+    for (const Note& note : side_effects(asset, split_everywhere(asset), Format::glb))
+      if (note.code == NoteCode::data_dropped) text += note.text;
+    return text;
+  };
+  const std::string vertices = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0", face = "\n3 0 1 2";
+  EXPECT_THAT(dropped(vertices + face + " 255 0 0\n"), HasSubstr(": face colours."));
+  EXPECT_THAT(dropped(vertices + face + " 7"), HasSubstr(": face colours."));
+  EXPECT_THAT(dropped(vertices + " 1 0 0 1" + face), HasSubstr(": vertex colours."));
+  EXPECT_THAT(dropped("C" + vertices + " 1 0 0 1" + face + " 3"),
+              HasSubstr(": vertex colours, face colours."));
+  for (const char* end : {"", "\n", "\r\n", " \t \n", "  # red\n", " \r# red\n"})
+    EXPECT_EQ(dropped(vertices + face + end), "") << end;
+  EXPECT_EQ(dropped(vertices + " # red" + face), "");
+}
+
 }  // namespace
 }  // namespace unwrapd::asset::test
