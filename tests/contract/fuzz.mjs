@@ -105,7 +105,7 @@ function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary =
       (straighten === 'off' || (loose && free && !repack_only)) &&
       (loose || held) && (free || !repack_only) &&
       (guarantee !== 'bijective' || !repack_only) &&
-      (max_distortion === null || (loose && free)) &&
+      (max_distortion === null || (loose && (free || !placed))) &&
       (textures === 'keep' || ((repack_only || apart) && max_pages === 1 && group === 'scene' &&
           (width ?? resolution) === (height ?? resolution) && !stack_identical));
 }
