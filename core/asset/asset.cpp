@@ -138,28 +138,6 @@ std::optional<int> rounding_bits(const AssetOptions& options, Format output) {
   return is_draco ? options.draco_bits : std::nullopt;
 }
 
-/// origin: what positions are relative to when they are rounded.
-Note note_on_rounding(std::span<const Surface> surfaces, const Vec3& origin, int bits) {
-  constexpr double kRoundUp = 1.005;  // so that three digits are no less
-  double bound = 0;
-  for (const Surface& surface : surfaces) {
-    if (surface.mesh.positions.empty()) continue;
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-    for (const Vec3& point : surface.mesh.positions) {
-      low = low.cwiseMin(point - origin);
-      high = high.cwiseMax(point - origin);
-    }
-    bound = std::max(bound, draco_position_error(low, high, bits));
-  }
-  std::array<char, 32> error{};
-  std::snprintf(error.data(), error.size(), "%.3g", kRoundUp * bound);
-  return {NoteCode::positions_rounded,
-          "Draco rounds positions to " + std::to_string(bits) + " bits, by at most " +
-              error.data() + " in the units of the mesh, and normals to " +
-              std::to_string(kDracoNormalBits) +
-              " bits. Texture coordinates stay exact. draco_bits=none keeps all values."};
-}
-
 /// The GLB or glTF of a document that was none. make: the uncompressed one, in a format.
 template <class Make>
 std::string write_gltf(const Document& document, const std::stop_token& stop, Format output,

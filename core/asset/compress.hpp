@@ -2,10 +2,12 @@
 // Compresses the geometry of a document before it is written.
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/asset/gltf.hpp"
 #include "core/asset/patch.hpp"
+#include "core/types/note.hpp"
 
 namespace unwrapd::asset {
 
@@ -23,6 +25,9 @@ inline constexpr int kDracoNormalBits = 10;  ///< of each octahedral coordinate:
 /// add. Draco's arithmetic in them costs 3 units of 2^-23 of the box, and the result, as well as
 /// positions that came in doubles, half a unit of the coordinate's last digit.
 double draco_position_error(const Vec3& low, const Vec3& high, int position_bits);
+
+/// Tells that bound for the largest mesh. origin: what positions are relative to when rounded.
+Note note_on_rounding(std::span<const Surface> surfaces, const Vec3& origin, int bits);
 
 /// Compresses every buffer view that has only vertices or indices by EXT_meshopt_compression, or by
 /// KHR_ as style says. bytes are those of buffer 0, the only one, and become the compressed ones.

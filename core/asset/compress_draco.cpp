@@ -8,6 +8,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <map>
 #include <memory>
 #include <tuple>
@@ -268,6 +270,27 @@ PatchedDocument draco_compressed(const Gltf& gltf, bool with_fallback,
   DracoPacker packer(gltf, with_fallback, position_bits);
   for (const Primitive& primitive : gltf.primitives) packer.pack(primitive);
   return packer.finish();
+}
+
+Note note_on_rounding(std::span<const Surface> surfaces, const Vec3& origin, int bits) {
+  constexpr double kRoundUp = 1.005;  // so that three digits are no less
+  double bound = 0;
+  for (const Surface& surface : surfaces) {
+    if (surface.mesh.positions.empty()) continue;
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Vec3& point : surface.mesh.positions) {
+      low = low.cwiseMin(point - origin);
+      high = high.cwiseMax(point - origin);
+    }
+    bound = std::max(bound, draco_position_error(low, high, bits));
+  }
+  std::array<char, 32> error{};
+  std::snprintf(error.data(), error.size(), "%.3g", kRoundUp * bound);
+  return {NoteCode::positions_rounded,
+          "Draco rounds positions to " + std::to_string(bits) + " bits, by at most " +
+              error.data() + " in the units of the mesh, and normals to " +
+              std::to_string(kDracoNormalBits) +
+              " bits. Texture coordinates stay exact. draco_bits=none keeps all values."};
 }
 
 }  // namespace unwrapd::asset

@@ -174,20 +174,6 @@ TEST(ConstrainedUnwrap, FillsCircleAndSquareAndPacksThem) {
   }
 }
 
-TEST(ConstrainedUnwrap, LeavesABoundaryAloneWhereTheMethodChoosesIt) {
-  for (const Method method : {Method::slim, Method::bff}) {
-    UnwrapOptions options{.method = method, .max_distortion = 2.02};
-    const Unwrapped free = unwrapped({shapes::cube()}, options);
-    options.boundary = BoundaryShape::circle;
-    const Unwrapped other = unwrapped({shapes::cube()}, options);
-    EXPECT_EQ(other.report.charts.size(), free.report.charts.size());
-    EXPECT_EQ(other.surfaces[0].uv, free.surfaces[0].uv);
-  }
-  EXPECT_THROW(
-      unwrapped({shapes::cube()}, {.max_distortion = 2.02, .boundary = BoundaryShape::circle}),
-      Error);
-}
-
 /// Triangles of the written floats that are not counter-clockwise.
 Index flips(const UnwrappedSurface& s) {
   Index count = 0;
