@@ -1,9 +1,6 @@
 #include "core/asset/asset.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cstdio>
 #include <limits>
 #include <utility>
 #include <variant>
