@@ -19,14 +19,14 @@ namespace {
 constexpr double kMostMoved = 1e-5;    // of the diagonal
 constexpr double kKeptEdge = 0x1p-22;  // of it: floats about the centre keep such edges
 
-struct Box {
+struct Extent {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
 
   [[nodiscard]] double diagonal() const { return (high - low).stableNorm(); }
 };
 
-Box box_of(const TriMesh& mesh, Pace& pace) {
-  Box box;
+Extent box_of(const TriMesh& mesh, Pace& pace) {
+  Extent box;
   for (const Triangle& face : mesh.faces) {
     pace.add(1);
     for (const Index v : face) {
@@ -64,7 +64,7 @@ Rounding rounding_about(const Vec3& origin, const TriMesh& mesh, Pace& pace) {
   return rounding;
 }
 
-Vec3 origin_in(const Box& box) {
+Vec3 origin_in(const Extent& box) {
   const double step = std::ldexp(1.0, std::ilogb(box.diagonal()));
   const Vec3 centre = box.low / 2 + box.high / 2;
   const auto rounded = [step](double x) { return std::round(x / step) * step + 0.0; };
@@ -88,7 +88,7 @@ std::string shown(double length) {
 
 FloatFrame float_frame(const TriMesh& mesh, const std::stop_token& stop) {
   Pace pace(stop);
-  const Box box = box_of(mesh, pace);
+  const Extent box = box_of(mesh, pace);
   const double diagonal = box.diagonal();
   const Rounding in_place = rounding_about(Vec3::Zero(), mesh, pace);
   const auto is_lossy = [&](const Rounding& rounding) {
