@@ -8,7 +8,7 @@
 namespace unwrapd {
 namespace {
 
-Unwrapped unwrapped(const TriMesh& mesh, const UnwrapOptions& options) {
+Unwrapped answer_of(const TriMesh& mesh, const UnwrapOptions& options) {
   SerialExecutor serial;
   return unwrap(std::vector{shapes::surface_of(mesh)}, options, {}, serial);
 }
@@ -16,14 +16,14 @@ Unwrapped unwrapped(const TriMesh& mesh, const UnwrapOptions& options) {
 TEST(BoundaryWithoutEffect, ChangesNothing) {
   for (const Method method : {Method::slim, Method::bff}) {
     UnwrapOptions options{.method = method, .max_distortion = 2.02};
-    const Unwrapped free = unwrapped(shapes::cube(), options);
+    const Unwrapped free = answer_of(shapes::cube(), options);
     options.boundary = BoundaryShape::circle;
-    const Unwrapped other = unwrapped(shapes::cube(), options);
+    const Unwrapped other = answer_of(shapes::cube(), options);
     EXPECT_EQ(other.report.charts.size(), free.report.charts.size());
     EXPECT_EQ(other.surfaces[0].uv, free.surfaces[0].uv);
   }
   EXPECT_THROW(
-      unwrapped(shapes::cube(), {.max_distortion = 2.02, .boundary = BoundaryShape::circle}),
+      answer_of(shapes::cube(), {.max_distortion = 2.02, .boundary = BoundaryShape::circle}),
       Error);
 }
 
