@@ -18,6 +18,7 @@ const kFlags = ['--admin-listen=off', '--workers=1', '--threads=1', '--solver-ca
 const kAsked = 1.05;     // at 20,000 faces
 const kUntilSpare = 80;  // ms after a job: the next process has started, and its time counts
 const kWarm = 3;         // jobs that do not count
+const kTick = 10;        // ms: the least that the system tells of processor time
 
 const [binary, out, repetitions = '20', ...files] = process.argv.slice(2);
 const works = [
@@ -33,7 +34,7 @@ const work = (file) => {
 /** Of a server and what it has started and waited for: processor time in ms. */
 function processorMs(pid) {
   const fields = readFileSync(`/proc/${pid}/stat`, 'utf8').replace(/^.*\) /s, '').split(' ');
-  return fields.slice(11, 15).reduce((sum, ticks) => sum + Number(ticks) * 10, 0);
+  return fields.slice(11, 15).reduce((sum, ticks) => sum + Number(ticks) * kTick, 0);
 }
 
 /** Of the processes that wait for jobs: what their starts have taken, ms. */
@@ -66,7 +67,8 @@ async function compared(servers, one) {
       if (job >= 0) times[mode].push(ms);
     }
   }
-  const processor = (mode) => (processorMs(servers[mode].pid) - before[mode]) / Number(repetitions);
+  const spent = (mode) => processorMs(servers[mode].pid) - before[mode];
+  const processor = (mode) => Math.max(kTick, spent(mode)) / Number(repetitions);
   return {off: {times: times.off, processor: processor('off'), starts: 0},
           on: {times: times.on, processor: processor('on'), starts}};
 }

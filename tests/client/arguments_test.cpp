@@ -99,7 +99,7 @@ TEST(Arguments, EveryOptionOfTheApiIsAFlag) {
       continue;
     }
     const api::Json value = api::option_default(row, {});
-    const std::string text = value.is_null()     ? "7"
+    const std::string text = value.is_null()     ? "16"
                              : value.is_string() ? value.get<std::string>()
                                                  : value.dump();
     EXPECT_EQ(accepted({"a.glb", flag.c_str(), text.c_str()}).options.at(std::string(row.name)),
