@@ -109,7 +109,8 @@ TEST(PageSize, ConstraintsAreUvs) {
   EXPECT_LT((s.uv[0] - Vec2(0.25, 0.1)).norm(), 1e-7);
   EXPECT_LT((s.uv[4] - Vec2(0.5, 0.1)).norm(), 1e-7);
   EXPECT_LT(most_stretched(surface, u, options.page_size()), 1e-3);
-  EXPECT_NEAR(u.report.fill, 0.25 * 1.0, 1e-3);  // a square of 256 texels on 1024 x 256
+  // A square of 256 texels on 1024 x 256, a tenth of it above the page.
+  EXPECT_NEAR(u.report.fill, 0.9 * 0.25, 1e-3);
 }
 
 TEST(PageSize, RepackingTakesTheUvsForThoseOfSuchATexture) {
