@@ -35,17 +35,13 @@ void take_bytes(png_structp png, png_bytep to, std::size_t count) {
 
 class Reader {
  public:
-  explicit Reader(const ImageFile& file)
-      : file_(file),
-        rest_(file.bytes),
-        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, leave, ignore)),
-        info_(png_create_info_struct(png_)) {
+  explicit Reader(const ImageFile& file) : Reader(file, file.bytes) {
     require(completes(png_, [this] {
       png_set_read_fn(png_, &rest_, take_bytes);
       png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // head_of() tells which
       png_set_chunk_malloc_max(png_, kMaxChunkBytes);
       png_read_info(png_, info_);
-    }));
+    }));  // what throws here finds the object made, so that its destructor runs
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
@@ -77,6 +73,12 @@ class Reader {
   }
 
  private:
+  Reader(const ImageFile& file, std::string_view rest)
+      : file_(file),
+        rest_(rest),
+        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, leave, ignore)),
+        info_(png_create_info_struct(png_)) {}
+
   void require(bool completed) const {
     if (!completed) refuse_broken(file_, "PNG");
   }
