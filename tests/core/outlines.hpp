@@ -1,6 +1,7 @@
 #pragma once
-// Outlines to pack.
+// Outlines to pack, and brute force to see where they lie.
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -14,6 +15,10 @@ inline charts::Outline polygon(const UvMap& points) {
   for (std::size_t k = 0; k < points.size(); ++k)
     outline.push_back({points[k], points[(k + 1) % points.size()]});
   return outline;
+}
+
+inline charts::Outline square(double side, const Vec2& at = Vec2::Zero()) {
+  return polygon({at, at + Vec2(side, 0), at + Vec2(side, side), at + Vec2(0, side)});
 }
 
 inline charts::Outline star(std::mt19937& rng) {
@@ -44,6 +49,42 @@ inline charts::Outline net(double a, double b, double angle) {
     turned.emplace_back(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
                         std::sin(angle) * p.x() + std::cos(angle) * p.y());
   return polygon(turned);
+}
+
+/// Signed.
+inline double area(const charts::Outline& outline) {
+  double twice = 0;
+  for (const auto& [a, b] : outline) twice += a.x() * b.y() - a.y() * b.x();
+  return twice / 2;
+}
+
+/// The outline where its placement puts it.
+inline charts::Outline placed(charts::Outline outline, const pack::Placement& placement) {
+  for (auto& side : outline)
+    for (Vec2& p : side) p = placement(p);
+  return outline;
+}
+
+inline double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (p - a - t * (b - a)).norm();
+}
+
+inline bool contains(const charts::Outline& outline, const Vec2& p) {
+  bool odd = false;
+  for (const auto& [a, b] : outline)
+    if ((a.y() > p.y()) != (b.y() > p.y()))
+      odd ^= p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+  return odd;
+}
+
+/// Between two simple polygons, from their corners: exact where they do not overlap.
+inline double gap(const charts::Outline& one, const charts::Outline& other) {
+  double least = 1e300;
+  for (const auto& [p, q] : one)
+    for (const auto& [a, b] : other)
+      least = std::min({least, distance(p, a, b), distance(a, p, q)});
+  return contains(one, other.front()[0]) || contains(other, one.front()[0]) ? 0 : least;
 }
 
 /// On this thread alone.

@@ -13,17 +13,13 @@
 namespace unwrapd::pack {
 namespace {
 
+using shapes::area;
+using shapes::gap;
 using shapes::net;
 using shapes::pack_alone;
 using shapes::polygon;
 using shapes::star;
 using shapes::stars;
-
-double area(const charts::Outline& outline) {
-  double sum = 0;
-  for (const auto& [a, b] : outline) sum += a.x() * b.y() - a.y() * b.x();
-  return sum / 2;
-}
 
 double fill(const std::vector<charts::Outline>& islands, const std::vector<Placement>& placements) {
   double sum = 0;
@@ -32,35 +28,12 @@ double fill(const std::vector<charts::Outline>& islands, const std::vector<Place
   return sum;
 }
 
-double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (p - a - t * (b - a)).norm();
-}
-
-bool inside(const charts::Outline& outline, const Vec2& p) {
-  bool odd = false;
-  for (const auto& [a, b] : outline)
-    if ((a.y() > p.y()) != (b.y() > p.y()))
-      odd ^= p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-  return odd;
-}
-
-/// Between two simple polygons, from their corners: exact where they do not overlap.
-double gap(const charts::Outline& one, const charts::Outline& other) {
-  double least = 1e300;
-  for (const auto& [p, q] : one)
-    for (const auto& [a, b] : other)
-      least = std::min({least, distance(p, a, b), distance(a, p, q)});
-  return inside(one, other.front()[0]) || inside(other, one.front()[0]) ? 0 : least;
-}
-
 /// Returns the share of the page that they fill.
 double expect_apart(const std::vector<charts::Outline>& islands, const PageOptions& page) {
   const std::vector<Placement> placements = pack_alone(islands, page).placements;
-  std::vector<charts::Outline> placed = islands;
-  for (std::size_t k = 0; k < placed.size(); ++k)
-    for (auto& segment : placed[k])
-      for (Vec2& p : segment) p = placements[k](p);
+  std::vector<charts::Outline> placed;
+  for (std::size_t k = 0; k < islands.size(); ++k)
+    placed.push_back(shapes::placed(islands[k], placements[k]));
   const double padding = double(page.padding) / page.resolution;
   for (std::size_t k = 0; k < placed.size(); ++k) {
     EXPECT_EQ(placements[k].scale, placements[0].scale);

@@ -13,10 +13,7 @@ namespace {
 
 using shapes::pack_alone;
 using shapes::polygon;
-
-charts::Outline square(double side) {
-  return polygon({{0, 0}, {side, 0}, {side, side}, {0, side}});
-}
+using shapes::square;
 
 /// A corner cut off, so that no turn maps it onto itself; moved, and turned by an angle.
 charts::Outline flag(double size, double angle, const Vec2& at) {
