@@ -9,7 +9,8 @@
 
 namespace unwrapd::texture {
 
-inline constexpr int kMaxSide = 16384;  ///< texels; no larger image is decoded
+inline constexpr int kMaxSide = 16384;      ///< texels; no larger image is decoded
+inline constexpr int kMaxWebpSide = 16383;  ///< texels; the format has no room for more
 
 enum class Codec { png, jpeg, webp };
 

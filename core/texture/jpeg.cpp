@@ -86,8 +86,8 @@ class Reader {
   [[nodiscard]] ImageHead head() const {
     if (info_.num_components != 1 && info_.num_components != 3)
       throw Error(ErrorCode::unsupported_image,
-                  "the JPEG image is in CMYK, which textures=transfer cannot resample; convert it "
-                  "to RGB",
+                  "the JPEG image is neither grey nor of three channels (but CMYK, say), which "
+                  "textures=transfer cannot resample; convert it to RGB",
                   file_.where);
     return {.codec = Codec::jpeg,
             .width = static_cast<int>(info_.image_width),
@@ -129,6 +129,7 @@ class Writer {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
   ~Writer() {
+    if (bytes_ != nullptr) info_.dest->term_destination(&info_);  // else it names a freed buffer
     jpeg_destroy_compress(&info_);
     std::free(bytes_);  // NOLINT(cppcoreguidelines-no-malloc): jpeg_mem_dest() allocates it
   }

@@ -4,6 +4,7 @@
 
 #include <csetjmp>
 #include <cstring>
+#include <new>
 
 #include "core/base/cancel.hpp"
 #include "core/texture/codecs.hpp"
@@ -36,6 +37,7 @@ void take_bytes(png_structp png, png_bytep to, std::size_t count) {
 class Reader {
  public:
   explicit Reader(const ImageFile& file) : Reader(file, file.bytes) {
+    if (png_ == nullptr || info_ == nullptr) throw std::bad_alloc();
     require(completes(png_, [this] {
       png_set_read_fn(png_, &rest_, take_bytes);
       png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // head_of() tells which
@@ -101,22 +103,26 @@ class Reader {
 };
 
 void append_bytes(png_structp png, png_bytep bytes, std::size_t count) {
-  static_cast<std::string*>(png_get_io_ptr(png))
-      ->append(reinterpret_cast<const char*>(bytes), count);
+  try {
+    static_cast<std::string*>(png_get_io_ptr(png))
+        ->append(reinterpret_cast<const char*>(bytes), count);
+    return;
+  } catch (const std::bad_alloc&) {  // must not pass through libpng
+  }
+  png_error(png, "out of memory");
 }
 
 class Writer {
  public:
   Writer()
       : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, leave, ignore)),
-        info_(png_create_info_struct(png_)) {
-    png_set_write_fn(png_, &bytes_, append_bytes, nullptr);
-  }
+        info_(png_create_info_struct(png_)) {}
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
   ~Writer() { png_destroy_write_struct(&png_, &info_); }
 
   std::string write(const Image& image, const ImageHead& head, const std::stop_token& stop) {
+    if (png_ == nullptr || info_ == nullptr) throw std::bad_alloc();
     const int type = (head.is_grey ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB) |
                      (head.has_alpha ? PNG_COLOR_MASK_ALPHA : 0);
     require(completes(png_, [&] { begin(image, type); }));
@@ -140,6 +146,7 @@ class Writer {
   }
 
   void begin(const Image& image, int type) {
+    png_set_write_fn(png_, &bytes_, append_bytes, nullptr);
     png_set_IHDR(png_, info_, static_cast<png_uint_32>(image.width),
                  static_cast<png_uint_32>(image.height), 8, type, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);

@@ -96,23 +96,33 @@ Texel Texture::texel(const Image& image, int x, int y) const {
   return {colour[rgba[0]], colour[rgba[1]], colour[rgba[2]], decoded(false)[rgba[3]]};
 }
 
-/// Each texel is the mean of four; at an odd end, of those that there are.
+/// Each texel is the mean of four; the last of a row or column takes in an odd one, too.
 Image Texture::halved(const Image& image, const std::stop_token& stop) const {
   Image half{std::max(image.width / 2, 1), std::max(image.height / 2, 1), {}};
   half.rgba.reserve(4 * static_cast<std::size_t>(half.width) *
                     static_cast<std::size_t>(half.height));
   for (int y = 0; y < half.height; ++y) {
     throw_if_cancelled(stop);
-    const int below = std::min(2 * y + 1, image.height - 1);
+    const int rows_end = y + 1 == half.height ? image.height : 2 * y + 2;
     for (int x = 0; x < half.width; ++x) {
-      const int right = std::min(2 * x + 1, image.width - 1);
-      const Texel top = mixed(texel(image, 2 * x, 2 * y), texel(image, right, 2 * y), 0.5F);
-      const Texel bottom = mixed(texel(image, 2 * x, below), texel(image, right, below), 0.5F);
-      const Texel mean = mixed(top, bottom, 0.5F);
+      const int columns_end = x + 1 == half.width ? image.width : 2 * x + 2;
+      const Texel mean = mean_of(image, {2 * x, columns_end}, {2 * y, rows_end});
       for (std::size_t c = 0; c < 4; ++c) half.rgba.push_back(stored(mean[c], is_srgb_ && c < 3));
     }
   }
   return half;
+}
+
+Texel Texture::mean_of(const Image& image, Range columns, Range rows) const {
+  Texel sum{};
+  for (int y = rows.begin; y < rows.end; ++y)
+    for (int x = columns.begin; x < columns.end; ++x) {
+      const Texel one = texel(image, x, y);
+      for (std::size_t c = 0; c < 4; ++c) sum[c] += one[c];
+    }
+  const auto count = static_cast<float>((columns.end - columns.begin) * (rows.end - rows.begin));
+  for (float& channel : sum) channel /= count;
+  return sum;
 }
 
 Texel Texture::sample(const Vec2& uv, int level, const Sampling& sampling) const {

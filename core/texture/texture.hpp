@@ -38,6 +38,10 @@ class Texture {
 
  private:
   [[nodiscard]] Texel texel(const Image& image, int x, int y) const;
+  struct Range {
+    int begin, end;
+  };
+  [[nodiscard]] Texel mean_of(const Image& image, Range columns, Range rows) const;
   [[nodiscard]] Image halved(const Image& image, const std::stop_token& stop) const;
 
   std::vector<Image> levels_;

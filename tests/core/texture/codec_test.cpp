@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "core/base/error.hpp"
 #include "core/texture/codec.hpp"
 #include "tests/core/texture/pictures.hpp"
@@ -84,14 +87,14 @@ TEST(Codec, EveryCutOfAFileIsRefused) {
 TEST(Codec, AHugeImageIsRefusedByItsHead) {
   std::string png = encode(noise(4, 4), {Codec::png, 4, 4, false, false, true}, {});
   png.replace(16, 8, std::string("\x00\x01\x00\x00\x00\x01\x00\x00", 8));  // 65536 x 65536
+  png.replace(29, 4, "\xe3\xe6\xa7\xb4");                                  // and its checksum
+  EXPECT_EQ(code_of(png), ErrorCode::too_much_memory);
   const std::string jpeg = encode(noise(4, 4), {Codec::jpeg, 4, 4, false, false, false}, {});
   std::string large = jpeg;
   const std::size_t frame = jpeg.find("\xff\xc0");
   ASSERT_NE(frame, std::string::npos);
   large.replace(frame + 5, 4, "\xff\xdc\xff\xdc");  // 65500 x 65500
   EXPECT_EQ(code_of(large), ErrorCode::too_much_memory);
-  const ErrorCode code = code_of(png);  // its checksum no longer fits, either
-  EXPECT_TRUE(code == ErrorCode::too_much_memory || code == ErrorCode::malformed_image);
 }
 
 TEST(Codec, OtherFormatsAreRefusedByName) {
@@ -131,6 +134,25 @@ TEST(Codec, AStopEndsDecodingAndEncoding) {
       }
     }
   }
+}
+
+/// Under the address sanitizer: what an encoder holds in the middle of its work is freed once.
+TEST(Codec, AStopEndsEncodingWhereverItComes) {
+  const Image image = noise(1500, 1500);
+  for (const Codec codec : {Codec::png, Codec::jpeg})
+    for (const int ms : {2, 5, 10, 20, 40}) {
+      std::stop_source source;
+      std::jthread later([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+        source.request_stop();
+      });
+      try {
+        EXPECT_FALSE(
+            encode(image, {codec, 1500, 1500, false, false, false}, source.get_token()).empty());
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::cancelled);
+      }
+    }
 }
 
 }  // namespace

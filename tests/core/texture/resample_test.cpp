@@ -88,6 +88,14 @@ TEST(Resample, ATexelIsTheMeanOfAllThatLiesUnderIt) {
   }
 }
 
+TEST(Resample, TheLastColumnOfAnOddWidthCounts) {
+  const Image image = picture(63, 64, [](int x, int) {
+    return x == 62 ? Rgba{255, 255, 255, 255} : Rgba{0, 0, 0, 255};
+  });
+  const Texture texture(image, false, {});
+  EXPECT_NEAR(texture.sample({0.999, 0.5}, 1, kClamped)[0], 1.0 / 3, 0.01);  // of three columns
+}
+
 TEST(Resample, AnElongatedFootprintIsAveragedAlongItsLengthOnly) {
   const Image stripes = picture(64, 64, [](int x, int y) {
     return Rgba{x % 2 * 255, y < 32 ? 0 : 255, 0, 255};
