@@ -20,15 +20,14 @@ constexpr std::array<Kind, 5> kKinds = {{{0, "\x89PNG\r\n", "image/png"},
                                          {4, "ftypavif", "image/avif"},
                                          {0, "\xabKTX 20\xbb", "image/ktx2"}}};
 
-/// The type by the first bytes; empty for a type that a buffer view must not have.
+}  // namespace
+
 std::string_view media_type(std::string_view image) {
   for (const Kind& kind : kKinds)
     if (image.size() >= kind.offset && image.substr(kind.offset).starts_with(kind.magic))
       return kind.media_type;
   return {};
 }
-
-}  // namespace
 
 void embed_images(const Gltf& gltf, Json& document, NewViews& views) {
   for (const auto& [number, bytes] : gltf.sent_images) {

@@ -34,7 +34,8 @@ MapStatement read_map(Words words) {
       Words value = ahead;
       const std::string_view word = value.next();
       if (k > 0 && !is_number(word)) break;
-      if (option == "-bm") map.scale = number_in(word).value_or(1);
+      if (const auto scale = number_in(word); option == "-bm" && scale && std::isfinite(*scale))
+        map.scale = *scale;
       ahead = value;
     }
     words = ahead;
@@ -43,10 +44,15 @@ MapStatement read_map(Words words) {
   return map;
 }
 
+std::string in_lower_case(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
 /// Whether a map_Bump names a map of normals rather than of heights: the statement is for both.
 bool names_normals(std::string_view path) {
-  std::string name(path.substr(path.rfind('/') + 1));
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string name = in_lower_case(path.substr(path.rfind('/') + 1));
   const std::string stem = name.substr(0, name.rfind('.'));
   const auto has = [&](std::string_view part) { return stem.find(part) != std::string::npos; };
   return has("norm") || has("nrm") || has("nmap") || stem.ends_with("_n") || stem.ends_with("_nor");
@@ -68,12 +74,6 @@ void read_colour(Words words, std::array<double, 3>& colour) {
     read[k] = std::clamp(*number, 0.0, 1.0);
   }
   colour = read;
-}
-
-std::string in_lower_case(std::string_view word) {
-  std::string lower(word);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
 }
 
 void read_normals(const std::string& keyword, const Words& words, MtlMaterial& material) {

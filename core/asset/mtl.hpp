@@ -25,7 +25,7 @@ struct MtlMaterial {
   std::string normal_map;                      ///< norm, or map_Bump where its name says so
   double normal_scale = 1;                     ///< -bm
   std::string alpha_map;                       ///< map_d
-  std::vector<std::string> dropped;            ///< other statements of images: "map_Ks"
+  std::vector<std::string> dropped;            ///< other statements of images: "map_ks"
 };
 
 using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;

@@ -48,7 +48,7 @@ struct Obj {
   std::vector<std::string> materials;  ///< [part]: the name after usemtl, empty before the first
   std::vector<std::string> libraries;  ///< after mtllib, as written
   MtlLibrary looks;                    ///< materials of those that were sent
-  std::map<std::string, std::string> images;  ///< sent ones that these use, by the paths in the MTL
+  std::map<std::string, std::string> images;  ///< sent ones that these use, by their paths
   std::vector<FileRepair> repairs;
   std::stop_token stop;  ///< of the job, for reading and writing
 

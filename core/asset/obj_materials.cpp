@@ -8,32 +8,38 @@
 #include <set>
 
 #include "core/asset/as_size.hpp"
+#include "core/asset/images.hpp"
 #include "core/asset/obj_words.hpp"
 
 namespace unwrapd::asset {
 namespace {
 
-/// The files of the request by their plain paths.
-std::map<std::string, std::string_view> sent_files(const Input& input) {
-  std::map<std::string, std::string_view> files;
-  for (const auto& [uri, bytes] : input.buffers) files.emplace(plain_path(uri), bytes);
-  return files;
-}
-
 std::string name_of(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
-/// The file of this path, or else the only one of its name in any folder.
-const std::string_view* find_file(const std::map<std::string, std::string_view>& files,
-                                  const std::string& path) {
-  if (const auto found = files.find(path); found != files.end()) return &found->second;
-  const std::string_view* only = nullptr;
-  for (const auto& [other, bytes] : files) {
-    if (name_of(other) != name_of(path)) continue;
-    if (only != nullptr) return nullptr;
-    only = &bytes;
+/// The files of the request by their plain paths.
+class SentFiles {
+ public:
+  using File = std::pair<const std::string, std::string_view>;
+
+  explicit SentFiles(const Input& input) {
+    for (const auto& [uri, bytes] : input.buffers) by_path_.emplace(plain_path(uri), bytes);
+    for (const File& file : by_path_) {
+      const auto [known, is_new] = by_name_.try_emplace(name_of(file.first), &file);
+      if (!is_new) known->second = nullptr;
+    }
   }
-  return only;
-}
+
+  /// The file of this path, or else the only one of its name in any folder.
+  [[nodiscard]] const File* find(const std::string& path) const {
+    if (const auto found = by_path_.find(path); found != by_path_.end()) return &*found;
+    const auto only = by_name_.find(name_of(path));
+    return only == by_name_.end() ? nullptr : only->second;
+  }
+
+ private:
+  std::map<std::string, std::string_view> by_path_;
+  std::map<std::string, const File*> by_name_;  ///< null: several
+};
 
 std::array<const std::string*, 3> maps_of(const MtlMaterial& look) {
   return {&look.colour_map, &look.emission_map, &look.normal_map};
@@ -56,12 +62,12 @@ bool has_ending(const std::string& path, std::string_view ending) {
 /// The type by the first bytes; of an image that was not sent by its name. Empty: not for a glTF.
 std::string_view media_type(const Obj& obj, const std::string& path) {
   const auto sent = obj.images.find(path);
-  const bool is_sent = sent != obj.images.end();
-  const std::string_view bytes = is_sent ? std::string_view(sent->second) : std::string_view();
-  if (is_sent ? bytes.starts_with("\x89PNG\r\n") : has_ending(path, ".png")) return "image/png";
-  const bool is_jpeg = is_sent ? bytes.starts_with("\xff\xd8\xff")
-                               : has_ending(path, ".jpg") || has_ending(path, ".jpeg");
-  return is_jpeg ? "image/jpeg" : "";
+  if (sent != obj.images.end()) {
+    const std::string_view type = asset::media_type(sent->second);
+    return type == "image/png" || type == "image/jpeg" ? type : "";
+  }
+  if (has_ending(path, ".png")) return "image/png";
+  return has_ending(path, ".jpg") || has_ending(path, ".jpeg") ? "image/jpeg" : "";
 }
 
 bool is_usable(const Obj& obj, const std::string& path) {
@@ -155,7 +161,7 @@ class MaterialWriter {
   std::map<std::string, std::size_t> textures_;
 };
 
-/// "map_Ks" and such, of all materials, each once.
+/// "map_ks" and such, of all materials, each once.
 std::string dropped_statements(const Obj& obj) {
   std::set<std::string> dropped;
   for_each_look(obj, [&](const MtlMaterial& look) {
@@ -179,27 +185,42 @@ std::set<std::string> images_beside(const Obj& obj) {
   return beside;
 }
 
+/// Takes the images that were sent, each once, and names them in the materials by the paths of
+/// their files: an OBJ may have many paths to one.
+void take_images(const SentFiles& files, Obj& obj) {
+  const std::set<std::string> names(obj.materials.begin(), obj.materials.end());
+  for (const std::string& name : names) {
+    const auto look = obj.looks.find(name);
+    if (look == obj.looks.end()) continue;
+    MtlMaterial& own = look->second;
+    for (std::string* map : {&own.colour_map, &own.emission_map, &own.normal_map, &own.alpha_map}) {
+      const SentFiles::File* file = map->empty() ? nullptr : files.find(*map);
+      if (file == nullptr) continue;
+      *map = file->first;
+      if (map != &own.alpha_map) obj.images.try_emplace(file->first, file->second);
+    }
+  }
+}
+
 }  // namespace
 
 void read_materials(const Input& input, Obj& obj) {
-  const auto files = sent_files(input);
+  const SentFiles files(input);
   Pace pace(input.stop);
+  std::set<const SentFiles::File*> done;
   const auto read = [&](const std::string& path) {
-    const std::string_view* file = find_file(files, path);
-    if (file != nullptr) read_mtl(*file, pace, obj.looks);
+    const SentFiles::File* file = files.find(path);
+    if (file != nullptr && done.insert(file).second) read_mtl(file->second, pace, obj.looks);
     return file != nullptr;
   };
   for (const std::string& library : obj.libraries) {
+    pace.add(1);
     if (read(plain_path(library))) continue;
     Words words(library);  // several files, or one with spaces in its name
     for (std::string_view word = words.next(); !word.empty(); word = words.next())
       read(plain_path(word));
   }
-  for_each_look(obj, [&](const MtlMaterial& look) {
-    for (const std::string* map : maps_of(look))
-      if (const std::string_view* file = map->empty() ? nullptr : find_file(files, *map))
-        obj.images.emplace(*map, *file);
-  });
+  take_images(files, obj);
 }
 
 bool keeps_texcoords(const Obj& obj, const AssetOptions& options) {
@@ -228,7 +249,7 @@ std::vector<Note> note_on_materials(const Obj& obj) {
   for (const std::string& name : obj.materials) count += name.empty() ? 0 : 1;
   for_each_look(obj, [&](const MtlMaterial&) { ++read; });
   std::vector<Note> notes;
-  if (read < count || (count == 0 && !obj.libraries.empty()))
+  if (read < count || (count == 0 && !obj.libraries.empty() && obj.looks.empty()))
     notes.push_back({NoteCode::data_dropped,
                      "The result has the names of the OBJ's materials (" +
                          std::to_string(count - read) +
@@ -237,8 +258,8 @@ std::vector<Note> note_on_materials(const Obj& obj) {
                          "of a form or in a zip archive."});
   if (const std::string dropped = dropped_statements(obj); !dropped.empty())
     notes.push_back({NoteCode::data_dropped,
-                     "The result lacks these parts of the OBJ's materials, which a glTF cannot "
-                     "have: " +
+                     "The result lacks these parts of the OBJ's materials, which are not "
+                     "converted: " +
                          dropped + "."});
   const std::set<std::string> beside = images_beside(obj);
   if (!beside.empty())

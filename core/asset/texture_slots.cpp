@@ -16,17 +16,19 @@ namespace {
 using texture::Content;
 using texture::Wrap;
 
-constexpr std::array<std::string_view, 6> kColours = {
-    "baseColorTexture",  "emissiveTexture",      "diffuseTexture",
-    "sheenColorTexture", "specularColorTexture", "specularGlossinessTexture"};
-constexpr std::string_view kDiffuseTransmission = "diffuseTransmissionColorTexture";
+constexpr std::array<std::string_view, 7> kColours = {"baseColorTexture",
+                                                      "emissiveTexture",
+                                                      "diffuseTexture",
+                                                      "sheenColorTexture",
+                                                      "specularColorTexture",
+                                                      "specularGlossinessTexture",
+                                                      "diffuseTransmissionColorTexture"};
 constexpr std::array<std::string_view, 2> kNormals = {"normalTexture", "clearcoatNormalTexture"};
 constexpr std::string_view kAnisotropy = "anisotropyTexture";
 constexpr std::string_view kPackedNormals = "normalRoughnessMetallicTexture";
 
 Content content_of(const std::string& key) {
-  if (std::ranges::find(kColours, key) != kColours.end() || key == kDiffuseTransmission)
-    return Content::colour;
+  if (std::ranges::find(kColours, key) != kColours.end()) return Content::colour;
   if (std::ranges::find(kNormals, key) != kNormals.end()) return Content::normals;
   return key == kAnisotropy ? Content::directions : Content::values;
 }
@@ -169,7 +171,14 @@ void check_textures(const Gltf& gltf) {
   for (const std::size_t image : images) {
     std::string storage;
     const texture::ImageFile file = image_file(gltf, image, storage);
-    if (texture::decoding_bytes(texture::head_of(file)) > gltf.transfer->max_bytes / 2)
+    const texture::ImageHead head = texture::head_of(file);
+    const int least = gltf.transfer->least_side;
+    if (head.codec == texture::Codec::webp && least > texture::kMaxWebpSide)
+      throw Error(ErrorCode::unsupported_image,
+                  "a WebP image has at most 16383 texels a side; lower the resolution or convert "
+                  "the image to PNG",
+                  file.where);
+    if (texture::decoding_bytes(head) > gltf.transfer->max_bytes / 2)
       throw Error(ErrorCode::too_much_memory,
                   "the image takes more memory than a job may; send a smaller one", file.where);
   }

@@ -96,9 +96,15 @@ void transfer_textures(const Gltf& gltf, std::span<const UnwrappedSurface> unwra
   const TransferPlan plan = plan_transfer(gltf, unwrapped);
   const ImagePainter painter(gltf, unwrapped, tangents);
   std::vector<Json> images;
+  std::size_t bytes = 0;
   for (const NewImage& image : plan.images) {
+    std::string file = painter.paint(image);
+    if ((bytes += file.size()) > gltf.transfer->max_bytes / 4)
+      throw Error(ErrorCode::too_much_memory,
+                  "the resampled images take more memory than a job may; send fewer of them, or a "
+                  "lower resolution");
     Json entry = {{"mimeType", texture::media_type(image.head.codec)},
-                  {"bufferView", views.add(painter.paint(image), 0, 0)}};
+                  {"bufferView", views.add(std::move(file), 0, 0)}};
     images.push_back(std::move(entry));
   }
   write_entries(gltf, plan, std::move(images), document);

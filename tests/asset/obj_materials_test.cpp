@@ -208,12 +208,25 @@ TEST(ObjMaterials, EveryEncodingOfTheResultHasThem) {
   }
 }
 
+TEST(ObjMaterials, AnImageThatManyPathsLeadToIsTakenOnce) {
+  std::string mtl, obj = "mtllib a.mtl\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int k = 0; k < 50; ++k) {
+    const std::string name = "m" + std::to_string(k);
+    mtl += "newmtl " + name + "\nmap_Kd folder" + std::to_string(k) + "/wood.png\n";
+    obj += "usemtl " + name + "\nf 1 2 3\n";
+  }
+  const Asset asset = read_with({{"a.mtl", mtl}, {"wood.png", kPng}}, kAutomatic, obj);
+  const Json json = json_of(write(asset, split_nowhere(asset), Format::glb));
+  EXPECT_EQ(json["materials"].size(), 50U);
+  EXPECT_EQ(json["images"].size(), 1U);
+}
+
 TEST(Mtl, ReadsWhatExportersWrite) {
   MtlLibrary library;
   Pace pace({});
   read_mtl(
       "newmtl a b\r\nKd 0.5\r\nTr 0.25\r\nPr .3\r\nPm 1\r\nmap_Kd C:\\tex\\a.png\r\n"
-      "newmtl c\nKd spectral x.rfl\nKd 9 -1 nan\nd -halo 0.5\nnorm -clamp on n.png\n"
+      "newmtl c\nKd spectral x.rfl\nKd 9 -1 nan\nd -halo 0.5\nnorm -bm inf -clamp on n.png\n"
       "map_d ../up.png\nnewmtl a b\nKd 0 0 0\n",
       pace, library);
   ASSERT_EQ(library.size(), 2U);
@@ -226,6 +239,7 @@ TEST(Mtl, ReadsWhatExportersWrite) {
   EXPECT_EQ(c.colour, (std::array<double, 3>{1, 1, 1}));
   EXPECT_EQ(c.alpha, 0.5);
   EXPECT_EQ(c.normal_map, "n.png");
+  EXPECT_EQ(c.normal_scale, 1);
   EXPECT_EQ(c.alpha_map, "up.png");
 }
 
