@@ -1,10 +1,11 @@
-// Corners are sorted by position and UV, so that equal ones are neighbours. Islands are the sets
-// that faces join them to (union-find, Tarjan 1975). Faces on top of each other stay there, since
-// an artist who mirrored half a model meant it.
+// Corners are sorted by position, UV and material, so that equal ones are neighbours. Islands are
+// the sets that faces join them to (union-find, Tarjan 1975). Faces on top of each other stay
+// there, since an artist who mirrored half a model meant it.
 #include "core/charts/uv_islands.hpp"
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <tuple>
 
 #include "core/mesh/disjoint_sets.hpp"
@@ -29,18 +30,23 @@ struct Places {
 
 Places find_places(const Surface& surface) {
   const std::vector<Index> welded = weld(surface.mesh.positions);
+  const auto material_of = [&](Index face) {
+    return surface.materials.empty() ? std::string_view()
+                                     : std::string_view(surface.materials[surface.part[face]]);
+  };
   struct Corner {
     Index vertex;
     double u, v;
+    std::string_view material;
     Index at;
-    auto key() const { return std::tuple(vertex, u, v); }
+    auto key() const { return std::tuple(vertex, u, v, material); }
   };
   std::vector<Corner> corners;
   for (Index c = 0; c < static_cast<Index>(3 * surface.mesh.faces.size()); ++c) {
     const CornerUv& uv = surface.corner_uv[c / 3];
     if (has_uvs(uv))
-      corners.push_back(
-          {welded[surface.mesh.faces[c / 3][c % 3]], uv[c % 3].x(), uv[c % 3].y(), c});
+      corners.push_back({welded[surface.mesh.faces[c / 3][c % 3]], uv[c % 3].x(), uv[c % 3].y(),
+                         material_of(c / 3), c});
   }
   std::stable_sort(corners.begin(), corners.end(),
                    [](const Corner& a, const Corner& b) { return a.key() < b.key(); });

@@ -17,7 +17,8 @@ struct UvIslands {
       outlines;  ///< one an island: the area of its faces, whatever their orientation
 };
 
-/// Faces belong to one island if they share a corner: a position with a UV. Empty for a surface
+/// Faces belong to one island if they share a corner: a position with a UV, and with
+/// a material where the surface names them. Empty for a surface
 /// without corner_uv.
 UvIslands uv_islands(const Surface& surface);
 

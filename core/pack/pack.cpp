@@ -93,17 +93,19 @@ class Packer {
     const double page_per_unit = texels_per_unit / page_.resolution;
     if (is_too_large(page_per_unit))
       refuse(
-          "An island at this density is larger than a page; lower texels_per_unit, or raise "
-          "resolution.");
+          "An island at this density is larger than a page; lower texels_per_unit, or ask for a "
+          "larger page.");
     placer_.set_scale(page_per_unit / grid_.cell(side), grid_.padding(side));
     Budget budget{work(kFineWork), stop_};
     const CellPacking found =
         fewest_pages(placer_, usual_arrangements(placer_),
                      {side, rows_of(side, grid_.ratio()), page_.packing.max_pages}, budget);
     if (found.side == 0)
-      refuse(
-          "The islands at this density do not fit on the pages; raise max_pages or resolution, or "
-          "lower texels_per_unit.");
+      refuse(page_.packing.group == PageGroup::scene
+                 ? "The islands at this density do not fit on the pages; raise max_pages, ask for "
+                   "larger pages, or lower texels_per_unit."
+                 : "The islands of a group at this density do not fit on its page; ask for larger "
+                   "pages, or lower texels_per_unit.");
     return to_result(found);
   }
 

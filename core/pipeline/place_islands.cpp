@@ -25,7 +25,7 @@ void note_padding(const pack::PackResult& packed, int asked, Report& report) {
       {NoteCode::padding_reduced,
        "Padding for so many islands would fill most of the page. The padding is " +
            std::to_string(packed.padding) + " texels instead of " + std::to_string(asked) +
-           "; raise resolution for the full padding."});
+           "; ask for a larger page to have the full padding."});
 }
 
 void note_stacks(const pack::PackResult& packed, Report& report) {

@@ -94,13 +94,30 @@ TEST(PageGroups, EveryMeshHasAPageAtOneDensity) {
   EXPECT_LT(u.report.distortion.area, 2.03);  // after one scale for both
 }
 
-TEST(PageGroups, OfASceneAreAsEver) {
-  const Surface ball = patched_ball(3);
-  Surface plain = ball;
+TEST(PageGroups, OfASceneHaveNoNamesAndOneGroupIsPackedAsTheScene) {
+  Surface plain = patched_ball(3);
   plain.materials.clear();
-  const Unwrapped u = unwrapped({plain}, PageGroup::scene);
-  EXPECT_TRUE(u.report.page_names.empty());
-  EXPECT_EQ(u.report.pages, 1);
+  const Unwrapped scene = unwrapped({plain}, PageGroup::scene);
+  EXPECT_TRUE(scene.report.page_names.empty());
+  EXPECT_EQ(scene.report.pages, 1);
+  EXPECT_EQ(unwrapped({plain}, PageGroup::material).surfaces[0].uv, scene.surfaces[0].uv);
+}
+
+TEST(PageGroups, RepackedIslandsEndWhereMaterialsDo) {
+  Surface sheet = shapes::surface_of(shapes::grid(4, 4));
+  for (std::size_t t = 0; t < sheet.mesh.faces.size(); ++t) {
+    CornerUv& uv = sheet.corner_uv.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i)
+      uv[i] = sheet.mesh.positions[sheet.mesh.faces[t][i]].head<2>();
+    sheet.part[t] = t < sheet.mesh.faces.size() / 2 ? 0 : 1;
+  }
+  sheet.materials = {"a", "b"};
+  SerialExecutor serial;
+  const UnwrapOptions options{.packing = {.group = PageGroup::material}, .repack_only = true};
+  const Unwrapped u = unwrap(std::vector{sheet}, options, {}, serial);
+  for (const auto& [name, pages] : pages_by_material(sheet, u.surfaces[0]))
+    EXPECT_EQ(pages.size(), 1U) << name;
+  EXPECT_EQ(u.report.pages, 2);
 }
 
 TEST(PageGroups, MoreThanTenAreRefusedAndSoAreMorePages) {
