@@ -51,17 +51,25 @@ std::string uri_of(const nlohmann::json& buffer) {
 
 }  // namespace
 
-std::vector<ExternalBuffer> external_buffers(const fs::path& document) {
+std::vector<ExternalBuffer> external_buffers(const fs::path& document, bool with_images) {
   if (document.extension() != ".gltf") return {};
   const auto json = nlohmann::json::parse(read_file(document), nullptr, false);
-  if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return {};
   std::vector<ExternalBuffer> buffers;
-  for (const nlohmann::json& entry : json["buffers"]) {
-    const std::string uri = uri_of(entry);
-    if (uri.empty() || uri.starts_with("data:")) continue;
-    if (std::ranges::find(buffers, uri, &ExternalBuffer::uri) != buffers.end()) continue;
-    buffers.push_back(locate(uri, document.parent_path()));
-  }
+  const auto take = [&](const char* list, bool must_exist) {
+    if (!json.is_object() || !json.contains(list) || !json[list].is_array()) return;
+    for (const nlohmann::json& entry : json[list]) {
+      const std::string uri = uri_of(entry);
+      if (uri.empty() || uri.starts_with("data:")) continue;
+      if (std::ranges::find(buffers, uri, &ExternalBuffer::uri) != buffers.end()) continue;
+      try {
+        buffers.push_back(locate(uri, document.parent_path()));
+      } catch (const Failure&) {
+        if (must_exist) throw;
+      }
+    }
+  };
+  take("buffers", true);
+  if (with_images) take("images", false);
   return buffers;
 }
 

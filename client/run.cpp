@@ -18,9 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Short options go into the query; lists of objects, and buffers, need a multipart request.
+/// Short options go into the query; lists of objects, and files beside the mesh, need a multipart
+/// request.
 api::Job submit(JobClient& client, const Arguments& arguments, const fs::path& file) {
-  const auto buffers = external_buffers(file);
+  const auto textures = arguments.options.find("textures");
+  const bool with_images = textures != arguments.options.end() && textures->second == "transfer";
+  const auto buffers = external_buffers(file, with_images);
   const bool is_long = std::ranges::any_of(arguments.options, [](const auto& option) {
     return api::find_option(option.first)->type == api::OptionType::objects;
   });

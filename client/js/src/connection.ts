@@ -1,5 +1,5 @@
 // One request to the server, and when to send it again.
-import {UNREACHABLE, UnwrapdError, errorOf, unreachable} from './error.js';
+import {UNREACHABLE, UnwrapdError, errorOf, unexpected, unreachable} from './error.js';
 
 /** Where the server is, and how long to be patient with it. */
 export interface Connection {
@@ -21,7 +21,9 @@ const GATEWAYS = [502, 504]; // a proxy without a server behind it
 
 function addressOf({server}: Connection): string {
   const own = typeof location === 'undefined' ? 'http://127.0.0.1:8080' : location.origin;
-  return (server ?? own).replace(/\/$/, '');
+  const address = server ?? own;
+  if (!/^https?:\/\//i.test(address)) throw new RangeError(`server is an address with http:// or https://, not ${address}`);
+  return address.replace(/\/$/, '');
 }
 
 /** Awaits what the network does: TypeErrors of fetch and of broken bodies become UnwrapdErrors. */
@@ -42,6 +44,16 @@ export async function call(connection: Connection, path: string, init: RequestIn
   const answer = await reach(connection, fetch(addressOf(connection) + path, {signal, ...init, headers}));
   if (!answer.ok) throw await errorOf(answer);
   return answer;
+}
+
+/** The JSON of an answer; a proxy may have sent a page of its own. */
+export async function jsonOf<T>(connection: Connection, answer: Response): Promise<T> {
+  const text = await reach(connection, answer.text());
+  try {
+    return JSON.parse(text) as T;
+  } catch {
+    throw unexpected(answer.status);
+  }
 }
 
 function wait(seconds: number, signal: AbortSignal | undefined): Promise<void> {

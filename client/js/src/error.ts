@@ -36,10 +36,22 @@ export class UnwrapdError extends Error {
 /** The error that an answer tells. */
 export async function errorOf(answer: Response): Promise<UnwrapdError> {
   const seconds = Number(answer.headers.get('Retry-After'));
-  const document = await answer.json().catch(() => undefined);
-  if (typeof document?.code === 'string') return new UnwrapdError(document, seconds || undefined);
-  const detail = `Status ${answer.status} is not an answer of unwrapd; check the address.`;
-  return new UnwrapdError({code: UNEXPECTED_ANSWER, status: answer.status, detail}, seconds || undefined);
+  const text = await answer.text().catch((error: unknown) => {
+    throw unreachable(error);
+  });
+  try {
+    const document = JSON.parse(text);
+    if (typeof document?.code === 'string') return new UnwrapdError(document, seconds || undefined);
+  } catch {
+    // no JSON: said below
+  }
+  return unexpected(answer.status, seconds || undefined);
+}
+
+/** An answer that is none of the server's. */
+export function unexpected(status: number, retryAfter?: number): UnwrapdError {
+  const detail = `Status ${status} is not an answer of unwrapd; check the address.`;
+  return new UnwrapdError({code: UNEXPECTED_ANSWER, status, detail}, retryAfter);
 }
 
 /** A connection that could not be made, or broke. */

@@ -12,6 +12,21 @@ function eventOf(block: string): JobEvent | undefined {
   return {...id, event: fields['event'], data: JSON.parse(fields['data'])} as JobEvent;
 }
 
+const SILENCE = 60_000; // ms; the server says something more often
+
+/** What is read, or an error if nothing comes: a connection may have died without a word. */
+async function heard<T>(reading: Promise<T>): Promise<T> {
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  const silence = new Promise<never>((_, reject) => {
+    timer = setTimeout(() => reject(new TypeError('the server is silent')), SILENCE);
+  });
+  try {
+    return await Promise.race([reading, silence]);
+  } finally {
+    clearTimeout(timer);
+  }
+}
+
 /** The events of one connection, as they arrive. */
 export async function* eventsOf(body: ReadableStream<Uint8Array>): AsyncGenerator<JobEvent> {
   const reader = body.getReader();
@@ -19,7 +34,7 @@ export async function* eventsOf(body: ReadableStream<Uint8Array>): AsyncGenerato
   let rest = '';
   try {
     for (;;) {
-      const {value, done} = await reader.read();
+      const {value, done} = await heard(reader.read());
       if (done) return;
       const blocks = (rest + decoder.decode(value, {stream: true})).split('\n\n');
       rest = blocks.pop()!;

@@ -1,4 +1,5 @@
 import type {Asset} from './asset.js';
+import {jsonOf} from './connection.js';
 import {type Call, download, runJob} from './job.js';
 import type {Job, Options, Report} from './types.js';
 
@@ -18,7 +19,7 @@ export interface Unwrapped {
 /** Unwraps an asset: a glTF, OBJ, STL, PLY or OFF. Throws UnwrapdError, or the signal's reason. */
 export async function unwrap(asset: Asset, options: Options = {}, settings: Call = {}): Promise<Unwrapped> {
   const job = await runJob(asset, options, settings);
-  const report = await download(job.links.report, settings, (answer) => answer.json() as Promise<Report>);
+  const report = await download(job.links.report, settings, (answer) => jsonOf<Report>(settings, answer));
   return {asset: await download(job.links.result, settings, (answer) => answer.blob()), report, job};
 }
 

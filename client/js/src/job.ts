@@ -1,6 +1,6 @@
 // A job from its submission to its end, over connections that break and servers that are full.
 import {type Asset, formOf} from './asset.js';
-import {type Connection, Patience, call, patiently, reach} from './connection.js';
+import {type Connection, Patience, call, jsonOf, patiently, reach} from './connection.js';
 import {UnwrapdError, unreachable} from './error.js';
 import {eventsOf} from './events.js';
 import type {Job, JobEvent, Options} from './types.js';
@@ -31,13 +31,13 @@ function submit(asset: Asset, options: Options, settings: Call): Promise<Job> {
   const body = formOf(asset, options);
   return patiently(settings, async () => {
     const answer = await call(settings, '/v1/jobs', {method: 'POST', headers, body});
-    return (await reach(settings, answer.json())) as Job;
+    return jsonOf<Job>(settings, answer);
   });
 }
 
 async function stateOf(job: Job, connection: Connection): Promise<Job> {
   const answer = await call(connection, job.links.self);
-  return (await reach(connection, answer.json())) as Job;
+  return jsonOf<Job>(connection, answer);
 }
 
 /** Reads events where the last connection ended. */

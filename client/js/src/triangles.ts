@@ -1,4 +1,5 @@
 // Plain triangles as a GLB for the server, and its answer as plain triangles.
+import {jsonOf} from './connection.js';
 import {type Call, download, runJob} from './job.js';
 import type {Options, Report, Result} from './types.js';
 
@@ -70,7 +71,7 @@ export async function unwrapTriangles(meshes: Triangles[], options: Options, set
     Promise<{meshes: MappedTriangles[]; report: Report}> {
   const job = await runJob(glbOf(meshes), options, settings);
   const path = `${job.links.result}.json`;
-  const result = await download(path, settings, (answer) => answer.json() as Promise<Result>);
+  const result = await download(path, settings, (answer) => jsonOf<Result>(settings, answer));
   const mapped = result.meshes.map(({uv, faces, vertex_map}) => ({
     uv: Float32Array.from(uv), indices: Uint32Array.from(faces), sources: Uint32Array.from(vertex_map),
   }));

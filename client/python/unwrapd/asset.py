@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import secrets
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -36,7 +37,10 @@ def asset_at(path: Path) -> Asset:
 
 
 def _size(part: Path | bytes) -> int:
-    return part.stat().st_size if isinstance(part, Path) else len(part)
+    if isinstance(part, bytes):
+        return len(part)
+    with part.open("rb") as file:  # what cannot be read is the caller's error, not the network's
+        return os.fstat(file.fileno()).st_size
 
 
 class Form:

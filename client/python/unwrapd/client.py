@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import uuid
 from collections.abc import Mapping
@@ -12,7 +11,7 @@ from typing import Any
 
 from .asset import Asset, Form, asset_at
 from .connection import Connection, default_server
-from .job import Job, OnProgress, download, run_job
+from .job import OK, Job, OnProgress, download, json_of, run_job
 from .mesh import MappedMesh, MeshLike, glb_of, mapped
 
 
@@ -56,8 +55,8 @@ def unwrap(
     form = Form(_asset_of(asset), options or {})
     job = run_job(connection, form, idempotency_key or str(uuid.uuid4()), on_progress)
     links = job["links"]
-    report = json.loads(download(connection, links["report"]))
+    report = json_of(OK, download(connection, links["report"]))
     mesh = None
     if not isinstance(asset, str | os.PathLike | bytes | bytearray | memoryview):
-        mesh = mapped(json.loads(download(connection, links["result"] + ".json")))
+        mesh = mapped(json_of(OK, download(connection, links["result"] + ".json")))
     return Unwrapped(download(connection, links["result"]), report, job, mesh)

@@ -58,6 +58,10 @@ class Connection:
     key: str | None = None
     retries: int = 10
 
+    def __post_init__(self) -> None:
+        if not self.server.lower().startswith(("http://", "https://")):
+            raise ValueError(f"server is an address with http:// or https://, not {self.server}")
+
     @contextmanager
     def call(
         self,

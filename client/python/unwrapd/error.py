@@ -36,8 +36,13 @@ def error_of(status: int, retry_after: str | None, body: bytes) -> UnwrapdError:
         problem = json.loads(body)
         return UnwrapdError(problem, seconds)
     except (ValueError, KeyError, TypeError):
-        detail = f"Status {status} is not an answer of unwrapd; check the address."
-        return UnwrapdError({"code": UNEXPECTED_ANSWER, "status": status, "detail": detail}, seconds)
+        return unexpected(status, seconds)
+
+
+def unexpected(status: int, retry_after: int | None = None) -> UnwrapdError:
+    """An answer that is none of the server's."""
+    detail = f"Status {status} is not an answer of unwrapd; check the address."
+    return UnwrapdError({"code": UNEXPECTED_ANSWER, "status": status, "detail": detail}, retry_after)
 
 
 def unreachable(cause: object) -> UnwrapdError:

@@ -9,9 +9,10 @@ from typing import Any
 
 from .asset import Form
 from .connection import Connection, Patience, lines, patiently, read
-from .error import UnwrapdError, unreachable
+from .error import UnwrapdError, unexpected, unreachable
 from .events import Event, events_of
 
+OK = 200
 FINAL = ("succeeded", "failed", "cancelled")
 
 Job = dict[str, Any]
@@ -27,6 +28,14 @@ class Progress:
 
 
 OnProgress = Callable[[Progress], None]
+
+
+def json_of(status: int, body: bytes) -> Any:
+    """The JSON of an answer; a proxy may have sent a page of its own."""
+    try:
+        return json.loads(body)
+    except ValueError:
+        raise unexpected(status) from None
 
 
 def download(connection: Connection, path: str) -> bytes:
@@ -45,7 +54,7 @@ def submit(connection: Connection, form: Form, name: str) -> Job:
 
     def attempt() -> Job:
         with connection.call("POST", "/v1/jobs", headers, form) as answer:
-            return json.loads(read(answer))
+            return json_of(answer.status, read(answer))
 
     return patiently(connection, attempt)
 
@@ -91,7 +100,7 @@ def follow(connection: Connection, job: Job, on_progress: OnProgress | None) -> 
             follower.patience.after(error)
             if error.code != "too_many_streams":
                 continue
-        now: Job = json.loads(download(connection, job["links"]["self"]))
+        now: Job = json_of(OK, download(connection, job["links"]["self"]))
         if now["state"] in FINAL:
             return now
         follower.patience.renew()

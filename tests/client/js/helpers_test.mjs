@@ -77,6 +77,7 @@ test("the transform writes UVs and keeps all else", async () => {
   const before = cornersOf(plain);
   await document.transform(unwrapd({ server: server.base }));
   assert.deepEqual(cornersOf(plain), before);
+  assert.deepEqual(cornersOf(strip), cornersOf(primitiveOf(new Document(), { shift: 5 })));
   for (const other of [lines, empty]) assert.equal(other.getAttribute("TEXCOORD_0"), null);
   for (const accessor of [empty.getIndices(), ...empty.listAttributes()]) accessor.dispose();
   empty.dispose(); // which no valid file has

@@ -118,6 +118,9 @@ test("patience ends, and what is refused for good is not asked again", async (t)
   assert.equal(asked, 1);
   const stranger = (request, response) => response.writeHead(404).end("<html>");
   await assert.rejects(unwrapBy(t, { "POST /v1/jobs": stranger }), { code: "unexpected_answer", status: 404 });
+  const welcome = (request, response) => response.writeHead(200).end("<html>");
+  await assert.rejects(unwrapBy(t, { "POST /v1/jobs": welcome }), { code: "unexpected_answer", status: 200 });
+  await assert.rejects(unwrapBy(t, {}, { server: "localhost:8080" }), RangeError);
 });
 
 test("the key is sent with each request; what onProgress throws is the caller's, and cancels", async (t) => {

@@ -262,8 +262,7 @@ class FakeServer(unittest.TestCase):
 
     def test_events_continue_after_the_last_one_that_arrived(self) -> None:
         broken = b": a comment\n\n" + frame(6, "queued", {"position": 0}) + frame(7, "stage", {"fraction": 0.5})
-        told: list[tuple[str, float]] = []
-        events = JOB["links"]["events"]
+        told, events = [], JOB["links"]["events"]
         _, seen = self.unwrap_by(
             {events: [(200, {"Content-Length": "999"}, broken), (200, {}, frame(8, "succeeded", DONE))]},
             on_progress=lambda progress: told.append((progress.event, progress.fraction)),
@@ -287,9 +286,14 @@ class FakeServer(unittest.TestCase):
         with self.assertRaises(UnwrapdError) as full:
             self.unwrap_by({"/v1/jobs": [busy("queue_full", 429)]}, retries=1)
         self.assertEqual((full.exception.code, full.exception.retry_after), ("queue_full", 1))
-        with self.assertRaises(UnwrapdError) as stranger:
-            self.unwrap_by({"/v1/jobs": [(404, {}, b"<html>")]})
-        self.assertEqual((stranger.exception.code, stranger.exception.status), ("unexpected_answer", 404))
+        for status in (404, 200):
+            with self.assertRaises(UnwrapdError) as other:
+                self.unwrap_by({"/v1/jobs": [(status, {}, b"<html>")]})
+            self.assertEqual((other.exception.code, other.exception.status), ("unexpected_answer", status))
+
+    def test_what_the_caller_got_wrong_is_no_failure_of_the_network(self) -> None:
+        for wrong, given, server in ((IsADirectoryError, "/", "http://127.0.0.1:1"), (ValueError, b"v", "localhost:8080")):
+            self.assertRaises(wrong, unwrap, given, server=server)
 
 
 if __name__ == "__main__":
