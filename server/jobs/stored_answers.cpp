@@ -22,7 +22,8 @@ std::optional<JobQueue::Answer> JobQueue::adopt_answer(const std::string& id,
     const std::string report = blobs_.read(same.id, work::map_file(store::kReportFile, 0));
     Answer answer{.format = same.result_format, .notes = api::notes_of_report(report)};
     if (blobs_.adopt(id, same.id)) return answer;
-  } catch (const Error&) {  // its report is gone or damaged
+  } catch (const Error& error) {  // its report is gone or damaged: the job is run like any other
+    log_.warning("stored answer not used", {{"job", same.id}, {"reason", error.what()}});
   }
   return std::nullopt;
 }

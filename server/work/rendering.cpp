@@ -22,13 +22,19 @@ namespace {
 
 using Surfaces = std::vector<UnwrappedSurface>;
 
-/// Stretches UVs to the shape of the page, whose longer side becomes 1. Returns its sides.
+/// Stretches UVs to the shape of the page, whose longer side becomes 1. Returns the sides of the
+/// page; of the square, where UVs lie beyond the page: then it has no margins.
 Vec2 shape_page(const PageSize& page, Surfaces& unwrapped) {
+  constexpr double kSlack = 1e-6;
   const Vec2 sides = Vec2(page.width, page.height) / std::max(page.width, page.height);
-  if (sides != Vec2::Ones())
-    for (UnwrappedSurface& surface : unwrapped)
-      for (Vec2& uv : surface.uv) uv = uv.cwiseProduct(sides);
-  return sides;
+  if (sides == Vec2::Ones()) return sides;
+  bool is_beyond = false;
+  for (UnwrappedSurface& surface : unwrapped)
+    for (Vec2& uv : surface.uv) {
+      is_beyond = is_beyond || uv.minCoeff() < -kSlack || uv.maxCoeff() > 1 + kSlack;
+      uv = uv.cwiseProduct(sides);
+    }
+  return is_beyond ? Vec2(Vec2::Ones()) : sides;
 }
 
 std::string draw(const Picture& picture, const asset::Asset& asset, const PageSize& page,
