@@ -84,7 +84,8 @@ void settle_welding(Welding& welding) {
     welding.mode = welding.distance ? WeldMode::distance : WeldMode::automatic;
 }
 
-/// Each texel of a new texture belongs to one place of the surface, on the page.
+/// The least side of new textures, and what textures=transfer excludes: a texel of a new texture
+/// belongs to one place of the surface, on the page.
 void settle_textures(JobOptions& options) {
   const UnwrapOptions& unwrap = options.unwrap;
   options.asset.resolution = unwrap.page_size().width;
@@ -94,6 +95,8 @@ void settle_textures(JobOptions& options) {
   };
   require(unwrap.repack_only || unwrap.guarantee == Guarantee::bijective,
           "needs guarantee=bijective: overlapping triangles would share texels.");
+  require(unwrap.constraints.empty(),
+          "needs places that packing keeps apart; leave out constraints.");
   require(unwrap.packing.max_pages == 1, "writes one page; leave out max_pages.");
   require(unwrap.packing.group == PageGroup::scene, "writes one page; leave out group.");
   require(unwrap.page_size().width == unwrap.page_size().height,
@@ -122,6 +125,9 @@ constexpr std::array kExcluders = {
     Excluder{"without compression=draco",
              [](J job) { return job.asset.compression != Compression::draco; },
              {"draco_bits"}},
+    Excluder{"with width and height",
+             [](J job) { return job.unwrap.width && job.unwrap.height; },
+             {"resolution"}},
     Excluder{"with weld=exact",
              [](J job) { return job.unwrap.welding.mode == WeldMode::exact; },
              {"weld_distance"}},

@@ -172,9 +172,10 @@ std::vector<Note> notes_of_report(std::string_view text) {
       notes.push_back({note_code_named(note.at("code").get<std::string>()).value(),
                        note.at("text").get<std::string>()});
     return notes;
-  } catch (const std::exception&) {
-    throw Error(ErrorCode::storage_corrupt, "A stored report is none; send the mesh again.");
+  } catch (const Json::exception&) {
+  } catch (const std::bad_optional_access&) {  // a code of no note
   }
+  throw Error(ErrorCode::storage_corrupt, "A stored report is none; send the mesh again.");
 }
 
 Json to_json(const InputReport& input, const std::vector<Repair>& repairs,

@@ -101,7 +101,7 @@ void validate(const UnwrapOptions& options, int max_iterations) {
   const bool is_straightened = options.straighten != Straighten::off;
   require(!is_straightened || options.constraints.empty(),
           "constraints determine the maps; leave out straighten", "/straighten");
-  require(!is_straightened || options.boundary == BoundaryShape::free,
+  require(!is_straightened || !shapes_boundary(options),
           "boundary determines the shape of charts; leave out straighten", "/straighten");
   require(!is_straightened || !options.repack_only,
           "repack_only keeps the islands as they are; leave out straighten", "/straighten");

@@ -40,11 +40,14 @@ TEST(OptionNotes, NameWhatOtherOptionsTakeTheEffectFrom) {
     return std::vector<std::string>{"The option " + name};
   };
   EXPECT_EQ(unused({{"weld", "exact"}, {"weld_distance", "0.1"}}), the("weld_distance"));
+  EXPECT_EQ(unused({{"width", "512"}, {"height", "256"}, {"resolution", "2048"}}),
+            the("resolution"));
   EXPECT_EQ(unused({{"guarantee", "none"}, {"repair", "virtual_boundary"}}), the("repair"));
   EXPECT_EQ(unused({{"boundary", "circle"}, {"max_charts", "3"}}), the("max_charts"));
   EXPECT_EQ(unused({{"constraints", pin}, {"max_charts", "3"}}), the("max_charts"));
   EXPECT_EQ(unused({{"constraints", pin}, {"effort", "best"}}), the("effort"));
   for (const Query& with_effect : std::vector<Query>{{{"weld_distance", "0.1"}},
+                                                     {{"width", "512"}, {"resolution", "2048"}},
                                                      {{"repair", "virtual_boundary"}},
                                                      {{"guarantee", "none"}},
                                                      {{"boundary", "circle"}, {"effort", "best"}},

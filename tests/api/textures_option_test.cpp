@@ -24,7 +24,7 @@ TEST(TexturesOption, NeedsAPlaceOfItsOwnForEveryTexel) {
   for (const std::string members :
        {R"("guarantee":"flip_free")", R"("preset":"chart")", R"("max_pages":2)",
         R"("stack_identical":true)", R"("boundary":"circle")", R"("group":"material")",
-        R"("height":512)"}) {
+        R"("guarantee":"bijective","constraints":[{"vertex":0,"uv":[0,0]}])", R"("height":512)"}) {
     SCOPED_TRACE(members);
     try {
       parse_options_text(with(members), kLimits);

@@ -102,11 +102,11 @@ function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary =
   const apart = guarantee === null ? bijective : guarantee === 'bijective';
   const shorter = Math.min(width ?? resolution, height ?? resolution);
   return 4 * padding <= shorter && (max_pages === 1 || group === 'scene') &&
-      (straighten === 'off' || (loose && free && !repack_only)) &&
+      (straighten === 'off' || (loose && (free || !placed) && !repack_only)) &&
       (loose || held) && (free || !repack_only) &&
       (guarantee !== 'bijective' || !repack_only) &&
       (max_distortion === null || (loose && (free || !placed))) &&
-      (textures === 'keep' || ((repack_only || apart) && max_pages === 1 && group === 'scene' &&
+      (textures === 'keep' || ((repack_only || apart) && loose && max_pages === 1 && group === 'scene' &&
           (width ?? resolution) === (height ?? resolution) && !stack_identical));
 }
 

@@ -22,6 +22,9 @@ TEST(BoundaryWithoutEffect, ChangesNothing) {
     EXPECT_EQ(other.report.charts.size(), free.report.charts.size());
     EXPECT_EQ(other.surfaces[0].uv, free.surfaces[0].uv);
   }
+  EXPECT_NO_THROW(answer_of(shapes::cube(), {.method = Method::bff,
+                                             .boundary = BoundaryShape::circle,
+                                             .straighten = Straighten::automatic}));
   EXPECT_THROW(
       answer_of(shapes::cube(), {.max_distortion = 2.02, .boundary = BoundaryShape::circle}),
       Error);

@@ -136,5 +136,19 @@ TEST(DegenerateReport, HasSensibleNumbersForUvsThatCameIn) {
   }
 }
 
+TEST(DegenerateReport, HasSensibleNumbersBesideAMeshOfAnyOtherSize) {
+  SerialExecutor serial;
+  for (const double scale : {1e-30, 1e-80, 1e-120, 1e-200}) {
+    SCOPED_TRACE(scale);
+    const std::vector<Surface> both{shapes::surface_of(shapes::sphere(1)),
+                                    shapes::surface_of(at_scale(shapes::sphere(1), scale))};
+    try {
+      expect_sensible(unwrap(both, {.effort = Effort::fast}, {}, serial).report);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::zero_area) << e.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace unwrapd
