@@ -129,7 +129,11 @@ TEST_F(Pictures, RefuseWhatTheyDoNotHave) {
     expect_problem(answer, 422, "invalid_option");
     EXPECT_EQ(api::Json::parse(answer->body).at("pointer"), pointer) << what;
   }
-  EXPECT_EQ(get(id, "layout.png?size=4096")->status, 200);
+}
+
+TEST_F(Pictures, MayHave4096PixelsASide) {
+  start();
+  EXPECT_EQ(get(succeeded(), "layout.png?size=4096")->status, 200);
 }
 
 TEST_F(Pictures, AreNotThereBeforeTheEndNorForAStranger) {

@@ -12,10 +12,14 @@ namespace {
 
 using testing::HasSubstr;
 
+constexpr int kHeld = 72;  // vertices of the sheet's first row: their text is a file of its own
+constexpr int kVertices = (kHeld + 1) * (kHeld + 1);
+
 /// So many vertices are held on a line, and a last one that may not be there.
 std::string long_options(int vertices, int last) {
   api::Json held = api::Json::array();
-  for (int v = 0; v < vertices; ++v) held.push_back({{"vertex", v}, {"uv", {0.01 * v, 0.0}}});
+  for (int v = 0; v < vertices; ++v)
+    held.push_back({{"vertex", v}, {"uv", {v / 64.0 / 3, 1.0 / 3}}});
   held.push_back({{"vertex", last}, {"uv", {0.5, 0.5}}});
   return api::Json({{"constraints", held}, {"stop", {{"iterations", 3}}}}).dump();
 }
@@ -25,7 +29,7 @@ class LongOptions : public RunningServer {
   httplib::Result send(const std::string& options) {
     return client().Post("/v1/jobs", httplib::MultipartFormDataItems{
                                          {"options", options, "", "application/json"},
-                                         {"mesh", grid_obj(128), "grid.obj", "model/obj"}});
+                                         {"mesh", grid_obj(kHeld), "grid.obj", "model/obj"}});
   }
   std::string accepted(const std::string& options) {
     const auto answer = send(options);
@@ -34,16 +38,14 @@ class LongOptions : public RunningServer {
   }
 };
 
-constexpr int kVertices = 129 * 129;
-
 TEST_F(LongOptions, AreKeptToBeHeldThoughTheyAreNotRepeated) {
   config_.workers = 1;
   config_.drain_seconds = 0;
   start();
   const std::string ahead = submit_endless();
   await_state(ahead, "running");
-  const std::string id = accepted(long_options(128, kVertices - 1));
-  const std::string wrong = accepted(long_options(128, kVertices));
+  const std::string id = accepted(long_options(kHeld, kVertices - 1));
+  const std::string wrong = accepted(long_options(kHeld, kVertices));
   EXPECT_FALSE(job(id).at("options").contains("constraints"));
   EXPECT_EQ(job(id).at("options").at("stop").at("iterations"), 3);
   restart();
@@ -51,7 +53,7 @@ TEST_F(LongOptions, AreKeptToBeHeldThoughTheyAreNotRepeated) {
   await_state(id, "succeeded");
   await_state(wrong, "failed");
   EXPECT_EQ(job(wrong).at("problem").at("code"), "invalid_constraint");
-  EXPECT_EQ(job(wrong).at("problem").at("pointer"), "/constraints/128");
+  EXPECT_EQ(job(wrong).at("problem").at("pointer"), "/constraints/" + std::to_string(kHeld));
   const std::string seen = client().Get("/v1/jobs/" + id + "/events")->body;
   EXPECT_THAT(seen, HasSubstr("event: succeeded"));
   EXPECT_THAT(seen, testing::Not(HasSubstr("vertex\":")));
@@ -62,7 +64,7 @@ TEST_F(LongOptions, ThatAreDamagedFailTheJobRatherThanHoldNothing) {
   start();
   const std::string ahead = submit_endless();
   await_state(ahead, "running");
-  const std::string id = accepted(long_options(128, kVertices - 1));
+  const std::string id = accepted(long_options(kHeld, kVertices - 1));
   std::filesystem::remove(dir_.path() / "blobs" / id / kOptionsFile);
   client().Delete("/v1/jobs/" + ahead);
   await_state(id, "failed");
@@ -72,11 +74,11 @@ TEST_F(LongOptions, ThatAreDamagedFailTheJobRatherThanHoldNothing) {
 
 TEST_F(LongOptions, TellQuestionsApart) {
   start();
-  const std::string id = accepted(long_options(128, kVertices - 1));
+  const std::string id = accepted(long_options(kHeld, kVertices - 1));
   await_state(id, "succeeded");
-  EXPECT_EQ(job(accepted(long_options(128, kVertices - 1))).at("attempt"), 0)
+  EXPECT_EQ(job(accepted(long_options(kHeld, kVertices - 1))).at("attempt"), 0)
       << "answered from the store";
-  const std::string other = accepted(long_options(128, kVertices - 2));
+  const std::string other = accepted(long_options(kHeld, kVertices - 2));
   await_state(other, "succeeded");
   EXPECT_EQ(job(other).at("attempt"), 1);
 }
