@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -18,11 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxTimeoutSeconds = 1e6;
+constexpr const char* kUsualServer = "http://127.0.0.1:8080";
 
 constexpr const char* kAbout =
     "unwrap computes UV coordinates for a triangle mesh: it sends FILE (glTF, GLB, OBJ, STL, "
-    "PLY or OFF) to an unwrapd server, shows the progress, and writes the same asset with texture "
-    "coordinates.";
+    "PLY or OFF) to an unwrapd server, or does its work where there is none, shows the progress, "
+    "and writes the same asset with texture coordinates.";
 
 constexpr const char* kFooter = R"(Examples:
   unwrap chair.glb                                 writes chair.uv.glb
@@ -30,6 +32,7 @@ constexpr const char* kFooter = R"(Examples:
   unwrap bust.obj -o bust.uv.obj --method hybrid --lambda 0.1 --layout bust.svg
   unwrap bust.glb --method hybrid --lambda 1,0.1   writes bust.uv.1.glb and bust.uv.0.1.glb
   unwrap chair.glb --json --quiet | jq .distortion
+  unwrap chair.glb --local --preset lightmap       works without a server
   curl -s $URL | unwrap - --output glb > chair.uv.glb
   unwrap --sample shell.glb                        writes a mesh to try these commands with
 
@@ -107,7 +110,8 @@ void add_option_flags(CLI::App& app, OptionTexts& options) {
 /// The raw values of the command line's flags.
 struct RawArguments {
   Arguments arguments;
-  std::string server = "http://127.0.0.1:8080";
+  std::string server;
+  bool local = false;
   double timeout_seconds = 0;
 };
 
@@ -145,10 +149,13 @@ void add_flags(CLI::App& app, RawArguments& raw) {
   add_picture_flags(app, arguments);
   app.add_flag("--json", arguments.json, "Print only the report (JSON) on stdout");
   app.add_flag("-q,--quiet", arguments.quiet, "Print no progress and no summary");
-  app.add_option("--server", raw.server, "Address of the server")
+  app.add_option("--server", raw.server,
+                 std::string("Address of the server. Default: ") + kUsualServer +
+                     "; if none answers there, the job runs in this process")
       ->type_name("URL")
-      ->envname("UNWRAPD_SERVER")
-      ->capture_default_str();
+      ->envname("UNWRAPD_SERVER");
+  app.add_flag("--local", raw.local,
+               "Run the job in this process, without a server, whatever --server says");
   app.add_option("--timeout", raw.timeout_seconds,
                  "Cancel the job and give up after this many seconds; 0: never")
       ->type_name("SECONDS")
@@ -224,7 +231,11 @@ Arguments complete(RawArguments raw) {
   if (!(raw.timeout_seconds >= 0 && raw.timeout_seconds <= kMaxTimeoutSeconds))
     throw Failure(ExitCode::usage, "--timeout: it must be a number of seconds, at most a million.");
   if (arguments.file.empty()) throw Failure(ExitCode::usage, "FILE is missing; name a mesh.");
-  arguments.server = parse_server_url(raw.server);
+  if (!raw.server.empty()) arguments.place = Place::server;
+  if (raw.local) arguments.place = Place::here;
+  arguments.server = parse_server_url(raw.server.empty() ? kUsualServer : raw.server);
+  // Only from the environment, since all users of the machine can see a command line.
+  if (const char* key = std::getenv("UNWRAP_API_KEY")) arguments.server.key = key;
   arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));
   check_options(arguments.options);
   arguments.lambdas = lambdas_of(arguments.options);

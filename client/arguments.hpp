@@ -12,6 +12,13 @@
 
 namespace unwrapd::client {
 
+/// Where the job runs (workplace.hpp).
+enum class Place {
+  any,     ///< at the usual address, or else in this process
+  server,  ///< at the address that is named
+  here,    ///< in this process
+};
+
 struct Arguments {
   std::filesystem::path file;  ///< input; empty with sample
   std::filesystem::path out;   ///< output; never empty unless sample is given
@@ -20,7 +27,8 @@ struct Arguments {
   std::string layout_colour;      ///< quantity to colour by; empty: the server's default
   std::filesystem::path preview;  ///< the textured mesh, PNG
   std::filesystem::path sample;   ///< only write the sample mesh here
-  ServerUrl server;
+  Place place = Place::any;
+  ServerUrl server;                  ///< with the key of the environment
   OptionTexts options;               ///< as given, with output set; checked
   std::vector<std::string> lambdas;  ///< of a list with the method hybrid, as given; else empty
   std::chrono::milliseconds timeout{0};

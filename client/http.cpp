@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <exception>
 
 #include "client/bounded_http.hpp"
@@ -23,13 +22,12 @@ constexpr std::size_t kMostText = std::size_t{64}
 constexpr std::string_view kPlain = "http://", kTls = "https://";
 
 template <class Client>
-void prepare(Client& client) {
+void prepare(Client& client, const std::string& key) {
   client.set_connection_timeout(kConnectSeconds);
   client.set_read_timeout(kSilenceSeconds);
   client.set_write_timeout(kSilenceSeconds);
   client.set_tcp_nodelay(true);
-  // Only from the environment, since all users of the machine can see a command line.
-  if (const char* key = std::getenv("UNWRAP_API_KEY")) client.set_bearer_token_auth(key);
+  if (!key.empty()) client.set_bearer_token_auth(key);
 }
 
 /// "host:port", the host in brackets or not, the port given or not.
@@ -80,7 +78,7 @@ class Guard {
 template <class Client, class Send>
 httplib::Result perform(Client&& client, const ServerUrl& server, const std::stop_token& stop,
                         const Guard& guard, Send&& send) {
-  prepare(client);
+  prepare(client, server.key);
   const std::stop_callback on_stop(stop, [&] { client.stop(); });
   if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
   httplib::Result result = send(client);

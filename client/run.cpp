@@ -12,6 +12,7 @@
 #include "client/input_file.hpp"
 #include "client/outputs.hpp"
 #include "client/sample.hpp"
+#include "client/workplace.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -43,9 +44,9 @@ api::Job follow(JobClient& client, const std::string& job_id, const Console& con
 }
 
 /// Cancels the job of a stopped client, by another client, and returns the outcome as text.
-std::string cancel(const Arguments& arguments, const std::string& job_id) {
+std::string cancel(const ServerUrl& server, const std::string& job_id) {
   try {
-    JobClient(arguments.server, {}).cancel(job_id);
+    JobClient(server, {}).cancel(job_id);
     return "Stopped; the job " + job_id + " is cancelled.";
   } catch (const Failure& failure) {
     return "Stopped; the job " + job_id + " could not be cancelled: " + failure.what();
@@ -53,7 +54,7 @@ std::string cancel(const Arguments& arguments, const std::string& job_id) {
 }
 
 /// Follows the job to its end, or cancels it if the wait ends before.
-void finish_job(JobClient& client, const Arguments& arguments, const std::string& job_id,
+void finish_job(JobClient& client, const ServerUrl& server, const std::string& job_id,
                 const Console& console) {
   try {
     const api::Job job = follow(client, job_id, console);
@@ -63,7 +64,7 @@ void finish_job(JobClient& client, const Arguments& arguments, const std::string
                                             : "The job was cancelled by someone else.");
   } catch (const Failure& failure) {
     if (failure.code() != ExitCode::interrupted) throw;
-    throw Failure(ExitCode::interrupted, cancel(arguments, job_id));
+    throw Failure(ExitCode::interrupted, cancel(server, job_id));
   }
 }
 
@@ -122,9 +123,13 @@ void run(const Arguments& arguments, const Console& console, const std::stop_tok
   check_outputs(arguments);
   const InputFile input(arguments.file, stop);
   Outputs outputs(arguments);
-  JobClient client(arguments.server, stop);
+  const Workplace workplace(arguments, stop);
+  if (workplace.is_here() && arguments.place == Place::any && !arguments.quiet)
+    console.err << "No server answers at " << arguments.server.origin
+                << ": the job runs in this process." << std::endl;
+  JobClient client(workplace.server(), stop);
   const api::Job job = submit(client, arguments, input.path());
-  finish_job(client, arguments, job.id, console);
+  finish_job(client, workplace.server(), job.id, console);
   tell(arguments, outputs.fill(client, job.id), console);
 }
 

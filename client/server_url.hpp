@@ -7,10 +7,12 @@
 namespace unwrapd::client {
 
 /// origin: "http://host:port", as in an Origin header; prefix: the path under which a proxy
-/// publishes the service, "" or "/tools/unwrapd", without a slash at its end.
+/// publishes the service, "" or "/tools/unwrapd", without a slash at its end; key: the API key to
+/// send, empty: none.
 struct ServerUrl {
   std::string origin;
   std::string prefix;
+  std::string key = {};
 };
 
 /// Reads "http://host[:port][/prefix]", "https://…" or bare "host[:port]" (then http). IPv6

@@ -175,8 +175,11 @@ TEST(Arguments, TheServerComesFromTheEnvironmentUnlessGiven) {
   setenv("UNWRAPD_SERVER", "http://farm:99", 1);
   EXPECT_EQ(accepted({"a.glb"}).server.origin, "http://farm:99");
   EXPECT_EQ(accepted({"a.glb", "--server", "here:1"}).server.origin, "http://here:1");
+  EXPECT_EQ(accepted({"a.glb"}).place, Place::server);
+  EXPECT_EQ(accepted({"a.glb", "--local"}).place, Place::here);
   unsetenv("UNWRAPD_SERVER");
   EXPECT_EQ(accepted({"a.glb"}).server.origin, "http://127.0.0.1:8080");
+  EXPECT_EQ(accepted({"a.glb"}).place, Place::any);
 }
 
 TEST(Arguments, ASampleNeedsNoFile) {

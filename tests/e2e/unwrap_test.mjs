@@ -95,6 +95,29 @@ test("the sample comes back with UVs, a report and a picture", async () => {
   assert.ok(!/[\r\x1b]/.test(run.err), "plain lines where there is no terminal");
 });
 
+test("without a server the job runs in the process of unwrap, with the same bytes", async () => {
+  const expected = await unwrap(at("shell.glb"), ...kChart, "-o", at("there.glb"));
+  assert.equal(expected.code, 0, expected.err);
+  const temporary = mkdtempSync(join(folder, "tmp_"));
+  const here = { TMPDIR: temporary, UNWRAP_API_KEY: "of another server" };
+  const run = await unwrapWith(here, [at("shell.glb"), "--local", ...kChart, "-o", at("here.glb")]);
+  assert.equal(run.code, 0, run.err);
+  assert.deepEqual(readFileSync(at("here.glb")), readFileSync(at("there.glb")));
+  assert.equal(run.out.replace("here", "there"), expected.out);
+  const usual = await new Promise((resolve) => {
+    const probe = createServer().once("error", () => resolve(false)); // another server is there
+    probe.listen(8080, "127.0.0.1", () => probe.close(() => resolve(true)));
+  });
+  if (usual) {
+    const found = await unwrapWith({ ...here, UNWRAPD_SERVER: "" }, [at("shell.glb"), ...kChart, "-o", at("here.glb")]);
+    assert.match(found.err, /^No server answers at http:\/\/127\.0\.0\.1:8080: the job runs in this process\.$/m);
+    assert.equal(found.code, 0);
+  }
+  const stopped = await unwrapWith(here, [at("shell.glb"), "--local", "--timeout", "0.01"]);
+  assert.equal(stopped.code, 3, stopped.err);
+  assert.deepEqual(readdirSync(temporary), []);
+});
+
 test("an OBJ comes back as an OBJ with vt", async () => {
   const grid = [];
   for (let y = 0; y < 3; y += 1) for (let x = 0; x < 3; x += 1) grid.push(`v ${x} ${y} ${(x * y) / 4}`);

@@ -35,7 +35,6 @@ export const ROOMS = [
   ["client/web", "the page at `/`, embedded in the program", []],
   ["client/js", "the npm package", []],
   ["client/python", "the Python package", []],
-  ["client", "the program `unwrap`: uploads, follows, downloads", ["api"]],
   ["server/base", "files, clocks, log, metrics, waiting", ["core/base", "api"]],
   ["server/http", "the edge: connections, TLS, limits, framing, routing", ["core/base", "api", "server/base"]],
   ["server/store", "jobs in SQLite, their files, quotas, sweeping", ["core/asset", ...STORED]],
@@ -49,6 +48,7 @@ export const ROOMS = [
   ["server/uploads", "meshes and jobs as they arrive", [...STORED, "server/http", "server/jobs", "server/webhooks", "server/results"]],
   ["server/routes", "the handlers of all paths", [...STORED, "client/web", "server/http", "server/work", "server/jobs", "server/access", "server/results", "server/uploads"]],
   ["server", "the program `unwrapd`", [...STORED, "server/http", "server/work", "server/jobs", "server/access", "server/webhooks", "server/backup", "server/config", "server/routes"]],
+  ["client", "the program `unwrap`: uploads, follows, downloads", ["core/base", "api", "server"]],
 ].map(([folder, duty, includes]) => ({ folder, duty, includes: [...new Set(includes)].filter((room) => room !== folder) }));
 
 /** The room of a file or header; undefined for tests, which may include everything. */

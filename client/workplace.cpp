@@ -1,0 +1,43 @@
+#include "client/workplace.hpp"
+
+#include "client/failure.hpp"
+#include "client/http.hpp"
+#include "core/base/error.hpp"
+#include "server/private_server.hpp"
+
+namespace unwrapd::client {
+namespace {
+
+bool answers(const ServerUrl& server, const std::stop_token& stop) {
+  try {
+    static_cast<void>(Http(server, stop).get("/healthz"));
+    return true;
+  } catch (const Failure& failure) {
+    if (failure.code() == ExitCode::unreachable) return false;
+    throw;
+  }
+}
+
+std::unique_ptr<server::PrivateServer> server_of_its_own() {
+  try {
+    return std::make_unique<server::PrivateServer>();
+  } catch (const Error& error) {
+    throw Failure(ExitCode::file, std::string("The job cannot run here: ") + error.what());
+  }
+}
+
+}  // namespace
+
+Workplace::Workplace(const Arguments& arguments, const std::stop_token& stop)
+    : server_(arguments.server) {
+  const bool is_elsewhere =
+      arguments.place == Place::server || (arguments.place == Place::any && answers(server_, stop));
+  if (is_elsewhere) return;
+  own_ = server_of_its_own();
+  server_ = parse_server_url(own_->url());
+  server_.key = own_->key();
+}
+
+Workplace::~Workplace() = default;
+
+}  // namespace unwrapd::client
