@@ -8,10 +8,14 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "api/error_table.hpp"
 #include "api/options.hpp"
 #include "client/files.hpp"
+#include "client/formats.hpp"
+#include "client/nearest.hpp"
+#include "client/option_flags.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -19,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxTimeoutSeconds = 1e6;
+constexpr int kMaxJobs = 256;
 constexpr const char* kUsualServer = "http://127.0.0.1:8080";
 
 constexpr const char* kAbout =
@@ -33,6 +38,7 @@ constexpr const char* kFooter = R"(Examples:
   unwrap bust.glb --method hybrid --lambda 1,0.1   writes bust.uv.1.glb and bust.uv.0.1.glb
   unwrap chair.glb --json --quiet | jq .distortion
   unwrap chair.glb --local --preset lightmap       works without a server
+  unwrap meshes --out done -j 8 --resume           all meshes below the folder meshes
   curl -s $URL | unwrap - --output glb > chair.uv.glb
   unwrap --sample shell.glb                        writes a mesh to try these commands with
 
@@ -40,72 +46,12 @@ For servers that require an API key, set the environment variable UNWRAP_API_KEY
 
 Exit codes:
     0  done
-    1  the server refused the job, or the job failed; the problem is printed on stderr
+    1  the server refused the job, or the job failed; the problem is printed on stderr. Of several
+       meshes: one failed, and the others are done
     2  the command line is wrong
     3  the server cannot be reached, does not answer in time, or is not unwrapd
     4  a file cannot be read or written
   130  interrupted (Ctrl-C): the job is cancelled)";
-
-std::string flag_name(std::string_view option) {
-  std::string flag(option);
-  std::ranges::replace(flag, '_', '-');
-  std::ranges::replace(flag, '.', '-');
-  return "--" + flag;
-}
-
-std::string value_text(const api::Json& value) {
-  if (value.is_null()) return "unset";
-  if (value.is_array()) return "empty";
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
-constexpr double kMostDigits = 1e9;  // larger numbers have an exponent
-
-/// "asap|arap|hybrid", "INT >= 1", "NUMBER[,NUMBER...] >= 0", "INT in [16, 16384]".
-std::string range_text(const api::OptionRow& row) {
-  if (row.type == api::OptionType::objects) return "FILE.json";
-  if (row.type == api::OptionType::names) return "NAME[,NAME...]";
-  if (row.type == api::OptionType::choice) {
-    std::string text;
-    for (const std::string_view choice : row.choices)
-      text += (text.empty() ? "" : "|") + std::string(choice);
-    return text;
-  }
-  std::string kind = row.type == api::OptionType::integer ? "INT" : "NUMBER";
-  if (row.type == api::OptionType::numbers) kind += "[,NUMBER...]";
-  const auto figure = [](double value) {
-    const bool is_whole = std::trunc(value) == value && std::abs(value) < kMostDigits;
-    return is_whole ? std::to_string(std::lround(value)) : api::Json(value).dump();
-  };
-  std::string text = kind + " >= " + figure(row.minimum);
-  if (row.maximum) text = kind + " in [" + figure(row.minimum) + ", " + figure(*row.maximum) + "]";
-  for (const std::string_view word : row.choices) text += "|" + std::string(word);
-  return can_unset(row) ? text + "|none" : text;
-}
-
-/// Adds one flag for every row of the API's table; their values go to options.
-void add_option_flags(CLI::App& app, OptionTexts& options) {
-  for (const api::OptionRow& row : api::option_table()) {
-    const std::string name(row.name);
-    const std::string text = std::string(row.description) +
-                             " Default: " + value_text(api::option_default(row, {})) + ".";
-    const bool is_file = row.type == api::OptionType::objects;
-    if (row.type == api::OptionType::flag) {
-      app.add_flag_callback(
-             flag_name(row.name), [&options, name] { options[name] = "true"; }, text)
-          ->group("Options of the job");
-      continue;
-    }
-    app.add_option_function<std::string>(
-           flag_name(row.name),
-           [&options, name, is_file](const std::string& value) {
-             options[name] = is_file ? read_file(value) : value;
-           },
-           text)
-        ->type_name(range_text(row))
-        ->group("Options of the job");
-  }
-}
 
 /// The raw values of the command line's flags.
 struct RawArguments {
@@ -131,9 +77,10 @@ void add_picture_flags(CLI::App& app, Arguments& arguments) {
 
 void add_flags(CLI::App& app, RawArguments& raw) {
   Arguments& arguments = raw.arguments;
-  app.add_option("FILE", arguments.file,
+  app.add_option("FILE", arguments.inputs,
                  "The mesh: .glb, .gltf, .obj, .stl, .ply or .off, or a .zip with one of them; "
-                 "- reads standard input")
+                 "- reads standard input. Several files, a pattern in quotes, or a folder, for all "
+                 "meshes below it, are unwrapped side by side and told in a table")
       ->type_name("");
   app.add_option(
          "-o,--out", arguments.out,
@@ -141,13 +88,15 @@ void add_flags(CLI::App& app, RawArguments& raw) {
          "does; GLB, glTF and OBJ are written. Default: the name of FILE with \".uv\" before the "
          "extension, which becomes .glb for .stl, .ply, .off and .zip; - (standard output) if FILE "
          "is "
-         "- or a pipe. A list of lambdas writes one file for each, with the lambda before the "
+         "- or a pipe. With several meshes the folder for their results. A list of lambdas writes "
+         "one file for each, with the lambda before the "
          "extension")
       ->type_name("OUT");
   app.add_option("--report", arguments.report, "Write the report (JSON) to PATH")
       ->type_name("PATH");
   add_picture_flags(app, arguments);
-  app.add_flag("--json", arguments.json, "Print only the report (JSON) on stdout");
+  app.add_flag("--json", arguments.json,
+               "Print only the report (JSON) on stdout; of several meshes a line of JSON for each");
   app.add_flag("-q,--quiet", arguments.quiet, "Print no progress and no summary");
   app.add_option("--server", raw.server,
                  std::string("Address of the server. Default: ") + kUsualServer +
@@ -156,6 +105,14 @@ void add_flags(CLI::App& app, RawArguments& raw) {
       ->envname("UNWRAPD_SERVER");
   app.add_flag("--local", raw.local,
                "Run the job in this process, without a server, whatever --server says");
+  app.add_option("-j,--jobs", arguments.jobs, "Of several meshes, unwrap so many at once")
+      ->check(CLI::Range(1, kMaxJobs).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_flag("--resume", arguments.resume,
+               "Leave out meshes whose results are there and newer than they are");
+  app.add_flag("--watch", arguments.watch,
+               "Go on with meshes that come into the folder, or change, until Ctrl-C");
   app.add_option("--timeout", raw.timeout_seconds,
                  "Cancel the job and give up after this many seconds; 0: never")
       ->type_name("SECONDS")
@@ -165,38 +122,6 @@ void add_flags(CLI::App& app, RawArguments& raw) {
       ->type_name("OUT.glb");
   app.set_version_flag("--version", "unwrap " UNWRAPD_VERSION);
 }
-
-constexpr std::array<std::string_view, 3> kWritten = {"glb", "gltf", "obj"};
-constexpr std::array<std::string_view, 3> kOnlyRead = {"stl", "ply", "off"};
-constexpr std::array<std::string_view, 10> kForeign = {"zip",  "fbx",  "dae", "usd", "usda",
-                                                       "usdc", "usdz", "3mf", "3ds", "blend"};
-
-bool is_among(std::span<const std::string_view> names, std::string_view name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
-/// The extension in small letters, without its dot.
-std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return extension.empty() ? extension : extension.substr(1);
-}
-
-/// The format of a file name: "glb", "gltf", "obj", or "auto" for any other. Throws Failure for the
-/// name of a format that is not written.
-std::string format_of(const fs::path& path) {
-  const std::string extension = extension_of(path);
-  if (is_among(kWritten, extension)) return extension;
-  if (is_among(kOnlyRead, extension) || is_among(kForeign, extension))
-    throw Failure(ExitCode::usage,
-                  "--out: ." + extension + " is not written" +
-                      (extension == "stl" ? ", because STL has no place for UVs" : "") +
-                      "; name a .glb, .gltf or .obj.");
-  return "auto";
-}
-
-/// An archive's asset may have any format, so that the format of its result is to be named.
-bool is_zip(const fs::path& path) { return extension_of(path) == "zip"; }
 
 /// Checks the options without a server's limits, which the server checks itself.
 void check_options(const OptionTexts& options) {
@@ -224,13 +149,37 @@ std::vector<std::string> lambdas_of(const OptionTexts& options) {
   return CLI::detail::split(lambda->second, ',');
 }
 
+bool is_batch(const Arguments& arguments) {
+  const fs::path& first = arguments.inputs.front();
+  const bool is_pattern =
+      first.string().find_first_of("*?[") != std::string::npos && !fs::exists(first);
+  return arguments.inputs.size() > 1 || fs::is_directory(first) || is_pattern || arguments.resume ||
+         arguments.watch;
+}
+
+void check_batch(const Arguments& arguments) {
+  const std::array<std::pair<const char*, const fs::path&>, 3> of_one = {
+      {{"--report", arguments.report},
+       {"--layout", arguments.layout},
+       {"--preview", arguments.preview}}};
+  for (const auto& [flag, path] : of_one)
+    if (!path.empty())
+      throw Failure(ExitCode::usage,
+                    std::string(flag) + " writes one file; leave it out, or name one FILE.");
+  if (!arguments.out.empty() && fs::exists(arguments.out) && !fs::is_directory(arguments.out))
+    throw Failure(ExitCode::usage, "--out: " + arguments.out.string() +
+                                       " is a file; name a folder for the results.");
+  if (arguments.resume && !arguments.lambdas.empty())
+    throw Failure(ExitCode::usage, "--resume knows one result of each mesh; name one --lambda.");
+}
+
 /// Checks what the parser cannot, and derives the remaining values.
 Arguments complete(RawArguments raw) {
   Arguments& arguments = raw.arguments;
   if (!arguments.sample.empty()) return std::move(arguments);
   if (!(raw.timeout_seconds >= 0 && raw.timeout_seconds <= kMaxTimeoutSeconds))
     throw Failure(ExitCode::usage, "--timeout: it must be a number of seconds, at most a million.");
-  if (arguments.file.empty()) throw Failure(ExitCode::usage, "FILE is missing; name a mesh.");
+  if (arguments.inputs.empty()) throw Failure(ExitCode::usage, "FILE is missing; name a mesh.");
   if (!raw.server.empty()) arguments.place = Place::server;
   if (raw.local) arguments.place = Place::here;
   arguments.server = parse_server_url(raw.server.empty() ? kUsualServer : raw.server);
@@ -239,6 +188,11 @@ Arguments complete(RawArguments raw) {
   arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));
   check_options(arguments.options);
   arguments.lambdas = lambdas_of(arguments.options);
+  if (is_batch(arguments)) {
+    check_batch(arguments);
+    return std::move(arguments);
+  }
+  arguments.file = std::exchange(arguments.inputs, {}).front();
   const auto output = arguments.options.find("output");
   const bool output_given = output != arguments.options.end();
   const bool is_named = !arguments.out.empty() && !is_standard(arguments.out);
@@ -251,17 +205,19 @@ Arguments complete(RawArguments raw) {
   return std::move(arguments);
 }
 
-}  // namespace
-
-fs::path default_out(const fs::path& file, const std::string& output) {
-  if (is_stream(file)) return "-";
-  fs::path out = file;
-  const bool keep = output.empty() || output == "auto";
-  std::string extension = keep ? file.extension().string() : "." + output;
-  if (keep && (is_among(kOnlyRead, extension_of(file)) || is_zip(file))) extension = ".glb";
-  out.replace_filename(file.stem().string() + ".uv" + extension);
-  return out;
+/// "; did you mean --method?" after a flag that is not known and nearly one that is.
+std::string hint(const CLI::App& app) {
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+  for (const std::string& given : app.remaining())
+    if (given.starts_with("--"))
+      if (const auto* flag = nearest(given.substr(0, given.find('=')), flags))
+        return "; did you mean " + *flag + "?";
+  return {};
 }
+
+}  // namespace
 
 std::variant<Arguments, Message> parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kAbout, "unwrap");
@@ -276,6 +232,9 @@ std::variant<Arguments, Message> parse_arguments(int argc, const char* const* ar
     return Message{ExitCode::ok, app.help()};
   } catch (const CLI::CallForVersion& version) {
     return Message{ExitCode::ok, std::string(version.what()) + "\n"};
+  } catch (const CLI::ExtrasError& error) {
+    return Message{ExitCode::usage,
+                   std::string("unwrap: ") + error.what() + hint(app) + "\nSee unwrap --help.\n"};
   } catch (const CLI::ParseError& error) {
     return Message{ExitCode::usage,
                    std::string("unwrap: ") + error.what() + "\nSee unwrap --help.\n"};

@@ -20,8 +20,13 @@ enum class Place {
 };
 
 struct Arguments {
-  std::filesystem::path file;  ///< input; empty with sample
-  std::filesystem::path out;   ///< output; never empty unless sample is given
+  std::filesystem::path file;  ///< input; empty with sample and inputs
+  std::filesystem::path out;   ///< output; never empty unless sample or inputs are given
+  /// Several files, patterns or folders, and the folder of their results in `out`; empty: one file.
+  std::vector<std::filesystem::path> inputs;
+  int jobs = 4;         ///< of inputs, at once
+  bool resume = false;  ///< leave out inputs whose results are there
+  bool watch = false;   ///< go on with inputs that come or change
   std::filesystem::path report;
   std::filesystem::path layout;   ///< a PNG if its extension says so, else an SVG
   std::string layout_colour;      ///< quantity to colour by; empty: the server's default
@@ -44,10 +49,5 @@ struct Message {
 };
 
 std::variant<Arguments, Message> parse_arguments(int argc, const char* const* argv);
-
-/// "-" for a stream (files.hpp). "folder/mesh.glb" becomes "folder/mesh.uv.glb". output ("obj")
-/// changes the extension; "auto" or an empty text keeps it, unless the format is only read (STL,
-/// PLY, OFF, a zip archive): then it is "glb".
-std::filesystem::path default_out(const std::filesystem::path& file, const std::string& output);
 
 }  // namespace unwrapd::client

@@ -18,9 +18,9 @@ bool answers(const ServerUrl& server, const std::stop_token& stop) {
   }
 }
 
-std::unique_ptr<server::PrivateServer> server_of_its_own() {
+std::unique_ptr<server::PrivateServer> server_of_its_own(int jobs) {
   try {
-    return std::make_unique<server::PrivateServer>();
+    return std::make_unique<server::PrivateServer>(jobs);
   } catch (const Error& error) {
     throw Failure(ExitCode::file, std::string("The job cannot run here: ") + error.what());
   }
@@ -33,7 +33,7 @@ Workplace::Workplace(const Arguments& arguments, const std::stop_token& stop)
   const bool is_elsewhere =
       arguments.place == Place::server || (arguments.place == Place::any && answers(server_, stop));
   if (is_elsewhere) return;
-  own_ = server_of_its_own();
+  own_ = server_of_its_own(arguments.inputs.empty() ? 1 : arguments.jobs);
   server_ = parse_server_url(own_->url());
   server_.key = own_->key();
 }

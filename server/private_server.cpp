@@ -29,15 +29,17 @@ fs::path new_folder() {
 }
 
 /// The one caller's own machine has no other jobs to protect: time and bytes are as good as free.
-config::Config config_in(const fs::path& folder) {
+config::Config config_in(const fs::path& folder, int jobs) {
   config::Config config;
   config.listen = {"127.0.0.1", 0};
   config.data = folder;
-  config.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  config.workers = std::clamp(jobs, 1, cores);
+  config.threads = cores / config.workers;
   config.isolate = config::Isolate::off;
   config.access.require_keys = true;
-  config.edge.max_requests = 8;
-  config.edge.max_connections = config.edge.max_idle_connections = 64;
+  config.edge.max_requests = 64;
+  config.edge.max_connections = config.edge.max_idle_connections = 1024;
   config.limits.max_body_bytes = std::int64_t{4} << 30;
   config.limits.max_job_seconds = 7 * 24 * 60 * 60;
   return config;
@@ -54,10 +56,10 @@ std::string new_key(const fs::path& folder) {
 
 /// Folder, first to come and last to go, and what lies in it.
 struct PrivateServer::Parts {
-  Parts() : folder(new_folder()) {
+  explicit Parts(int jobs) : folder(new_folder()) {
     try {
       key = new_key(folder);
-      service.emplace(config_in(folder), log);
+      service.emplace(config_in(folder, jobs), log);
     } catch (...) {
       remove();
       throw;
@@ -80,7 +82,7 @@ struct PrivateServer::Parts {
   std::optional<Service> service;
 };
 
-PrivateServer::PrivateServer() : parts_(std::make_unique<Parts>()) {}
+PrivateServer::PrivateServer(int jobs) : parts_(std::make_unique<Parts>(jobs)) {}
 PrivateServer::~PrivateServer() = default;
 
 std::string PrivateServer::url() const {

@@ -10,8 +10,9 @@ namespace unwrapd::server {
 /// goes with it.
 class PrivateServer {
  public:
-  /// Throws Error where no temporary folder or no port can be had.
-  PrivateServer();
+  /// jobs: that run at once; they share the cores. Throws Error where no temporary folder or no
+  /// port can be had.
+  explicit PrivateServer(int jobs = 1);
   PrivateServer(const PrivateServer&) = delete;
   PrivateServer& operator=(const PrivateServer&) = delete;
   ~PrivateServer();

@@ -10,7 +10,7 @@
 namespace unwrapd::client {
 namespace {
 
-using testing::HasSubstr;
+using testing::HasSubstr, testing::Not;
 
 std::variant<Arguments, Message> parse(std::vector<const char*> words) {
   words.insert(words.begin(), "unwrap");
@@ -148,7 +148,6 @@ TEST(Arguments, AreCheckedBeforeAnythingIsSent) {
         {"a.glb", "--timeout", "-1"},
         {"a.glb", "--timeout", "nan"},
         {"a.glb", "--server", "ftp://x"},
-        {"a.glb", "b.glb"},
         {"--methd", "arap"},
         {"a.glb", "--lambda"},
         {}}) {
@@ -180,6 +179,31 @@ TEST(Arguments, TheServerComesFromTheEnvironmentUnlessGiven) {
   unsetenv("UNWRAPD_SERVER");
   EXPECT_EQ(accepted({"a.glb"}).server.origin, "http://127.0.0.1:8080");
   EXPECT_EQ(accepted({"a.glb"}).place, Place::any);
+}
+
+TEST(Arguments, SeveralMeshesOrAFolderAreABatch) {
+  const TemporaryFolder folder;
+  folder.write("a.obj", "x");
+  EXPECT_EQ(accepted({"a.glb"}).file, "a.glb");
+  EXPECT_TRUE(accepted({"a.glb"}).inputs.empty());
+  EXPECT_EQ(accepted({"a.glb", "b.glb", "-o", "out", "-j", "3"}).inputs.size(), 2U);
+  EXPECT_EQ(accepted({"a.glb", "b.glb", "-j", "3"}).jobs, 3);
+  const std::string all = folder.file("").string(), one = folder.file("a.obj").string();
+  EXPECT_EQ(accepted({all.c_str()}).inputs.size(), 1U);
+  EXPECT_EQ(accepted({"*.glb"}).inputs.size(), 1U);
+  EXPECT_EQ(accepted({"a.glb", "--resume"}).inputs.size(), 1U);
+  for (const char* flag : {"--report", "--layout", "--preview"})
+    EXPECT_THAT(refused({"a.glb", "b.glb", flag, "x.png"}).text, HasSubstr(flag));
+  EXPECT_THAT(refused({"a.glb", "b.glb", "-o", one.c_str()}).text, HasSubstr("is a file"));
+  EXPECT_THAT(refused({"a.glb", "--resume", "--method", "hybrid", "--lambda", "1,2"}).text,
+              HasSubstr("--lambda"));
+  refused({"a.glb", "b.glb", "-j", "0"});
+}
+
+TEST(Arguments, AMistypedFlagIsAnsweredWithTheOneThatIsMeant) {
+  EXPECT_THAT(refused({"a.glb", "--metod", "arap"}).text, HasSubstr("did you mean --method?"));
+  EXPECT_THAT(refused({"a.glb", "--max-chart=3"}).text, HasSubstr("did you mean --max-charts?"));
+  EXPECT_THAT(refused({"a.glb", "--nothing-like-it"}).text, Not(HasSubstr("did you mean")));
 }
 
 TEST(Arguments, ASampleNeedsNoFile) {

@@ -1,0 +1,216 @@
+#include "client/batch.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <iomanip>
+#include <map>
+#include <mutex>
+#include <ostream>
+#include <sstream>
+#include <thread>
+
+#include "client/batch_files.hpp"
+#include "client/printable.hpp"
+
+namespace unwrapd::client {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kLook{1};  // between two looks of --watch
+
+/// What became of one mesh.
+struct Row {
+  BatchFile item;
+  std::string report;   ///< JSON text; empty if it failed
+  std::string failure;  ///< empty if it did not
+  double seconds = 0;
+};
+
+/// Shared by the threads that take the meshes one after the other.
+class Batch {
+ public:
+  Batch(const Arguments& arguments, const ServerUrl& server, const Console& console,
+        const std::stop_token& stop)
+      : arguments_(arguments), server_(server), console_(console), stop_(stop) {}
+
+  /// Rows in the order of the items. Throws what ends all of them: unreachable, interrupted.
+  std::vector<Row> run(std::vector<BatchFile> items);
+
+ private:
+  void work();
+  Row unwrapped(const BatchFile& item) const;
+  void tell(const Row& row) const;
+
+  const Arguments& arguments_;
+  const ServerUrl& server_;
+  const Console& console_;
+  const std::stop_token stop_;
+  std::mutex mutex_;
+  std::vector<BatchFile> items_;
+  std::vector<Row> rows_;
+  std::size_t next_ = 0, ended_ = 0;
+  std::exception_ptr end_;
+};
+
+/// The arguments of one mesh.
+Arguments arguments_of(const Arguments& batch, const BatchFile& item) {
+  Arguments one = batch;
+  one.file = item.file;
+  one.out = item.out;
+  return one;
+}
+
+Row Batch::unwrapped(const BatchFile& item) const {
+  Row row{item, {}, {}, 0};
+  const Clock::time_point began = Clock::now();
+  try {
+    if (item.out.has_parent_path()) fs::create_directories(item.out.parent_path());
+    const Arguments one = arguments_of(arguments_, item);
+    check_outputs(one);
+    std::ostringstream ignored;
+    const Console silent{ignored, ignored, ProgressStyle::none};
+    row.report = unwrap_file(one, server_, silent, stop_).front().report;
+  } catch (const Failure& failure) {
+    if (failure.code() == ExitCode::unreachable || failure.code() == ExitCode::interrupted) throw;
+    row.failure = failure.what();
+  } catch (const fs::filesystem_error& error) {
+    row.failure = error.what();
+  }
+  row.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+  return row;
+}
+
+/// With --json a line of JSON for each mesh on standard output, else one for people.
+void Batch::tell(const Row& row) const {
+  if (arguments_.json) {
+    api::Json line = {{"file", row.item.file.string()}};
+    if (row.failure.empty()) {
+      line["out"] = row.item.out.string();
+      line["report"] = api::Json::parse(row.report, nullptr, false);
+    } else {
+      line["failure"] = row.failure;
+    }
+    console_.out << line.dump(-1, ' ', false, api::Json::error_handler_t::replace) << std::endl;
+  }
+  if (console_.style != ProgressStyle::none)
+    console_.err << "[" << ended_ << "/" << items_.size() << "] "
+                 << printable(row.item.file.string() +
+                              (row.failure.empty() ? "" : ": " + row.failure))
+                 << std::endl;
+}
+
+void Batch::work() {
+  std::unique_lock lock(mutex_);
+  while (next_ < items_.size() && !end_) {
+    const std::size_t mine = next_++;
+    lock.unlock();
+    try {
+      Row row = unwrapped(items_[mine]);
+      lock.lock();
+      ++ended_;
+      tell(row);
+      rows_[mine] = std::move(row);
+    } catch (...) {
+      if (!lock.owns_lock()) lock.lock();
+      if (!end_) end_ = std::current_exception();
+    }
+  }
+}
+
+std::vector<Row> Batch::run(std::vector<BatchFile> items) {
+  items_ = std::move(items);
+  rows_.assign(items_.size(), {});
+  next_ = ended_ = 0;
+  {
+    const std::size_t most = std::min<std::size_t>(items_.size(), std::size_t(arguments_.jobs));
+    std::vector<std::jthread> threads;
+    for (std::size_t k = 0; k < most; ++k) threads.emplace_back([this] { work(); });
+  }
+  if (end_) std::rethrow_exception(end_);
+  return std::move(rows_);
+}
+
+/// "chair.glb      3    2.002   2.002        0         0  0.71      1.2"
+void print_row(const Row& row, int width, std::ostream& out) {
+  out << std::left << std::setw(width) << printable(row.item.file.string()) << std::right;
+  if (!row.failure.empty()) {
+    out << "  " << printable(row.failure.substr(0, row.failure.find('\n'))) << "\n";
+    return;
+  }
+  const api::Json report = api::Json::parse(row.report);
+  const api::Json &distortion = report.at("distortion"), &overlaps = report.at("overlaps");
+  out << std::fixed << std::setprecision(3) << std::setw(8) << report.at("charts").size()
+      << std::setw(9) << distortion.at("angle").get<double>() << std::setw(8)
+      << distortion.at("area").get<double>() << std::setw(9) << distortion.at("flipped").get<long>()
+      << std::setw(10) << (overlaps.is_null() ? "?" : overlaps.dump()) << std::setprecision(2)
+      << std::setw(6) << report.at("fill").get<double>() << std::setprecision(1) << std::setw(9)
+      << row.seconds << "\n";
+}
+
+std::ptrdiff_t failures(const std::vector<Row>& rows) {
+  return std::ranges::count_if(rows, [](const Row& row) { return !row.failure.empty(); });
+}
+
+void print_table(const std::vector<Row>& rows, std::size_t kept, std::ostream& out) {
+  std::size_t width = 4;
+  for (const Row& row : rows) width = std::max(width, row.item.file.string().size());
+  out << std::left << std::setw(static_cast<int>(width)) << "file" << std::right
+      << "  charts  D_angle  D_area  flipped  overlaps  fill  seconds\n";
+  for (const Row& row : rows) print_row(row, static_cast<int>(width), out);
+  const auto failed = failures(rows);
+  out << static_cast<std::ptrdiff_t>(rows.size()) - failed << " done, " << failed << " failed";
+  if (kept > 0) out << ", " << kept << " there already";
+  out << std::endl;
+}
+
+/// Waits for the next look, or until it is stopped.
+void pause(const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  std::unique_lock lock(mutex);
+  ended.wait_for(lock, stop, kLook, [] { return false; });
+  if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
+}
+
+/// Leaves out what was tried since it was written, and what may still be growing.
+void keep_new(std::vector<BatchFile>& items, std::map<fs::path, fs::file_time_type>& tried) {
+  std::erase_if(items, [&](const BatchFile& item) {
+    std::error_code error;
+    const auto written = fs::last_write_time(item.file, error);
+    if (error || fs::file_time_type::clock::now() - written < kLook) return true;
+    const bool is_same = tried.contains(item.file) && tried.at(item.file) == written;
+    tried[item.file] = written;
+    return is_same;
+  });
+}
+
+}  // namespace
+
+void run_batch(const Arguments& arguments, const ServerUrl& server, const Console& console,
+               const std::stop_token& stop) {
+  const auto output = arguments.options.find("output");
+  const std::string format = output == arguments.options.end() ? "auto" : output->second;
+  std::map<fs::path, fs::file_time_type> tried;  // when what was sent had been written
+  Batch batch(arguments, server, console, stop);
+  for (bool first = true; first || arguments.watch; first = false) {
+    if (!first) pause(stop);
+    std::vector<BatchFile> items = batch_files(arguments.inputs, arguments.out, format);
+    if (items.empty() && !arguments.watch)
+      throw Failure(ExitCode::file, "There is no mesh there; name files, or folders with some.");
+    const std::size_t all = items.size();
+    if (arguments.resume && first) std::erase_if(items, is_done);
+    const std::size_t kept = all - items.size();
+    if (arguments.watch) keep_new(items, tried);
+    if (items.empty() && !first) continue;
+    const std::vector<Row> rows = batch.run(std::move(items));
+    if (!arguments.json && !arguments.quiet) print_table(rows, kept, console.out);
+    if (!arguments.watch && failures(rows) > 0)
+      throw Failure(ExitCode::job_failed, "Not all meshes were unwrapped.");
+  }
+}
+
+}  // namespace unwrapd::client

@@ -1,0 +1,76 @@
+#include "client/unwrap_file.hpp"
+
+#include <algorithm>
+
+#include "api/options.hpp"
+#include "client/files.hpp"
+#include "client/gltf_buffers.hpp"
+#include "client/input_file.hpp"
+
+namespace unwrapd::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Short options go into the query; lists of objects, and files beside the mesh, need a multipart
+/// request.
+api::Job submit(JobClient& client, const Arguments& arguments, const fs::path& file) {
+  const auto textures = arguments.options.find("textures");
+  const bool with_images = textures != arguments.options.end() && textures->second == "transfer";
+  const auto buffers = external_buffers(file, with_images);
+  const bool is_long = std::ranges::any_of(arguments.options, [](const auto& option) {
+    return api::find_option(option.first)->type == api::OptionType::objects;
+  });
+  if (buffers.empty() && !is_long) return client.submit(raw_upload(file), arguments.options);
+  const api::Query given(arguments.options.begin(), arguments.options.end());
+  const std::string options = api::options_object(given).dump();
+  return client.submit(multipart_upload(options, file, buffers), {});
+}
+
+api::Job follow(JobClient& client, const std::string& job_id, const Console& console) {
+  ProgressView view(console.err, console.style, console.width);
+  ProgressState state;
+  return client.follow(job_id, [&](const SseEvent& event) {
+    state = advance(state, event.name, api::Json::parse(event.data, nullptr, false));
+    view.show(state, ProgressView::Clock::now());
+  });
+}
+
+/// Cancels the job of a stopped client, by another client, and returns the outcome as text.
+std::string cancel(const ServerUrl& server, const std::string& job_id) {
+  try {
+    JobClient(server, {}).cancel(job_id);
+    return "Stopped; the job " + job_id + " is cancelled.";
+  } catch (const Failure& failure) {
+    return "Stopped; the job " + job_id + " could not be cancelled: " + failure.what();
+  }
+}
+
+/// Follows the job to its end, or cancels it if the wait ends before.
+void finish_job(JobClient& client, const ServerUrl& server, const std::string& job_id,
+                const Console& console) {
+  try {
+    const api::Job job = follow(client, job_id, console);
+    if (job.state == api::JobState::succeeded) return;
+    throw Failure(ExitCode::job_failed, job.problem.is_object()
+                                            ? problem_text(job.problem)
+                                            : "The job was cancelled by someone else.");
+  } catch (const Failure& failure) {
+    if (failure.code() != ExitCode::interrupted) throw;
+    throw Failure(ExitCode::interrupted, cancel(server, job_id));
+  }
+}
+
+}  // namespace
+
+std::vector<WrittenMap> unwrap_file(const Arguments& arguments, const ServerUrl& server,
+                                    const Console& console, const std::stop_token& stop) {
+  const InputFile input(arguments.file, stop);
+  Outputs outputs(arguments);
+  JobClient client(server, stop);
+  const api::Job job = submit(client, arguments, input.path());
+  finish_job(client, server, job.id, console);
+  return outputs.fill(client, job.id);
+}
+
+}  // namespace unwrapd::client
