@@ -64,6 +64,8 @@ Job read_job(const Json& json) {
           .options = json.at("options"),
           .progress = {},
           .problem = {}};
+  job.finished = json.value("finished", "");
+  if (json.contains("duration")) job.duration = json.at("duration").get<double>();
   if (json.contains("progress")) job.progress = progress_from_json(json.at("progress"));
   if (json.contains("problem")) job.problem = json.at("problem");
   return job;
@@ -88,11 +90,11 @@ std::optional<Stage> stage_named(std::string_view name) {
 std::string job_path(std::string_view id) { return "/v1/jobs/" + std::string(id); }
 
 Json to_json(const Job& job) {
-  Json json = {{"id", job.id},
-               {"state", state_name(job.state)},
-               {"created", job.created},
-               {"attempt", job.attempt},
-               {"options", job.options}};
+  Json json = {{"id", job.id}, {"state", state_name(job.state)}, {"created", job.created}};
+  if (!job.finished.empty()) json["finished"] = job.finished;
+  if (job.duration) json["duration"] = *job.duration;
+  json["attempt"] = job.attempt;
+  json["options"] = job.options;
   if (job.progress) json["progress"] = to_json(*job.progress);
   if (!job.problem.is_null()) json["problem"] = job.problem;
   json["links"] = links(job.id);

@@ -33,8 +33,10 @@ struct JobProgress {
 struct Job {
   std::string id = {};
   JobState state = JobState::queued;
-  std::string created = {};  ///< RFC 3339, UTC
-  int attempt = 0;           ///< number of times that a worker has started it
+  std::string created = {};             ///< RFC 3339, UTC
+  std::string finished = {};            ///< the same; empty until the job is final
+  std::optional<double> duration = {};  ///< seconds between both, waiting included
+  int attempt = 0;                      ///< number of times that a worker has started it
   Json options = Json::object();
   std::optional<JobProgress> progress = {};  ///< set while it runs
   Json problem = nullptr;                    ///< null unless failed or cancelled

@@ -1,18 +1,26 @@
 #include "server/store/job_record.hpp"
 
+#include <algorithm>
+
 #include "server/base/clock.hpp"
 #include "server/store/blob_store.hpp"
 
 namespace unwrapd::server::store {
 
 api::Job to_job(const JobRecord& record) {
-  return {.id = record.id,
-          .state = record.state,
-          .created = rfc3339(record.created_ms),
-          .attempt = record.attempt,
-          .options = record.options,
-          .progress = {},
-          .problem = record.problem};
+  api::Job job{.id = record.id,
+               .state = record.state,
+               .created = rfc3339(record.created_ms),
+               .attempt = record.attempt,
+               .options = record.options,
+               .problem = record.problem};
+  if (record.finished_ms == 0) return job;
+  job.finished = rfc3339(record.finished_ms);
+  constexpr double kSecond = 1000;
+  const std::int64_t passed = record.finished_ms - record.created_ms;
+  job.duration =
+      static_cast<double>(std::max<std::int64_t>(passed, 0)) / kSecond;  // clocks are set back
+  return job;
 }
 
 Digests digests_of(const JobInput& input) {

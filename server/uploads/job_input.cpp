@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
 constexpr std::size_t kMaxBuffers = 1000;
+constexpr std::size_t kMaxFieldBytes =
+    std::size_t{64} * 1024;                                    // of all of a form, with their names
 constexpr std::string_view kSentOptionsFile = "options.sent";  // until they are read
 
 /// A file that is written in large pieces.
@@ -56,20 +58,24 @@ class PartWriter {
   void start(const http::Part& part) {
     finish_file();
     in_options_ = part.name == "options";
-    in_document_ = part.name == "mesh";
+    in_document_ = part.name == "mesh" || part.name == "file";
+    field_ = nullptr;
     if (in_options_) {
       start_options();
     } else if (in_document_) {
       start_document();
     } else if (part.name == "buffer") {
       start_buffer(part);
+    } else if (part.filename.empty()) {
+      start_field(part.name);
     } else {
-      malformed("A part is not named \"options\", \"mesh\" or \"buffer\"; use one of these names.");
+      malformed("A file is not named \"mesh\", \"file\" or \"buffer\"; use one of these names.");
     }
   }
 
   void append(std::string_view bytes) {
     if (in_options_) return append_option_text(bytes);
+    if (field_ != nullptr) return append_field_text(bytes);
     hash_->add(bytes);
     upload_.input.bytes += static_cast<std::int64_t>(bytes.size());
     file_->append(bytes);
@@ -78,6 +84,9 @@ class PartWriter {
   Upload finish() {
     finish_file();
     if (!has_document_) malformed("The form has no part named \"mesh\"; send the asset in it.");
+    if (upload_.options && !upload_.fields.empty())
+      malformed(
+          "The form has options in the part \"options\" and in parts of their own; use one way.");
     return std::move(upload_);
   }
 
@@ -93,8 +102,26 @@ class PartWriter {
     upload_.options->append(bytes);
   }
 
+  void start_field(const std::string& name) {
+    take_field_bytes(name.size());
+    field_ = &upload_.fields.emplace(name, "")->second;
+  }
+
+  void append_field_text(std::string_view bytes) {
+    take_field_bytes(bytes.size());
+    field_->append(bytes);
+  }
+
+  void take_field_bytes(std::size_t bytes) {
+    field_bytes_ += bytes;
+    if (field_bytes_ > kMaxFieldBytes)
+      throw Error(ErrorCode::body_too_large,
+                  "Options in parts of their own exceed 64 KiB; send them as JSON in the part "
+                  "\"options\".");
+  }
+
   void start_document() {
-    if (has_document_) malformed("The form has two parts named \"mesh\"; send one.");
+    if (has_document_) malformed("The form has two meshes; send one.");
     has_document_ = true;
     open(store::kDocumentFile, upload_.input.sha256);
   }
@@ -132,6 +159,8 @@ class PartWriter {
   std::optional<Sha256> hash_;
   std::string* digest_ = nullptr;  // of the open file
   std::optional<GrowingFile> file_;
+  std::string* field_ = nullptr;  // of the present part, if it is an option
+  std::size_t field_bytes_ = 0;
   bool in_options_ = false;
   bool in_document_ = false;
   bool has_document_ = false;

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "api/options.hpp"
 #include "server/http/http.hpp"
 #include "server/store/job_record.hpp"
 #include "server/store/upload_meter.hpp"
@@ -14,14 +15,16 @@ namespace unwrapd::server::uploads {
 struct Upload {
   store::JobInput input;
   std::unique_ptr<SpooledText> options;  ///< JSON text of the part `options`, where there is one
+  api::Query fields;                     ///< options in parts of their own, unchecked
 };
 
 /// The whole body is the document. Throws what BodyReader throws, and unknown_format when it is
 /// empty.
 Upload receive_asset(http::BodyReader& body, const store::UploadFolder& folder);
 
-/// Parts: options (optional), mesh, and any number whose filename is a buffer's URI. Throws
-/// malformed_request when a part is missing, given twice or without a filename.
+/// Parts: mesh, which may be called file; any number of parts buffer, whose filename is its URI;
+/// and options as JSON, or each option in a part of its name, as text like that of a query. Throws
+/// malformed_request when a part is missing, given twice or without a filename, and body_too_large.
 Upload receive_parts(http::BodyReader& body, const store::UploadFolder& folder);
 
 }  // namespace unwrapd::server::uploads

@@ -165,7 +165,10 @@ Submissions::Sent Submissions::bring(const http::Request& request,
                                               : receive_parts(*request.body, folder);
   job.input = std::move(came.input);
   job.stored_bytes = job.input.bytes;
-  return came.options ? read_whole(*came.options) : Sent();
+  if (came.options) return read_whole(*came.options);
+  Sent sent;
+  if (!came.fields.empty()) sent.options = api::options_object(came.fields).dump();
+  return sent;
 }
 
 Submissions::Sent Submissions::bring_reference(const http::Request& request,

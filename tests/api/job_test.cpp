@@ -24,6 +24,7 @@ Job random_job(std::mt19937& rng) {
   job.id = kId;
   job.state = static_cast<JobState>(small(rng) % 5);
   job.created = "2026-01-31T23:59:58.123Z";
+  if (is_final(job.state)) job.finished = "2026-02-01T00:00:01.456Z", job.duration = 3.333;
   job.attempt = small(rng);
   job.options = to_json(JobOptions{});
   if (small(rng) % 2 == 0) {

@@ -55,6 +55,8 @@ TEST_F(Jobs, AFormBringsOptionsMeshAndBuffers) {
   const api::Json job = api::Json::parse(answer->body);
   EXPECT_EQ(job.at("state"), "succeeded") << job;
   EXPECT_EQ(job.at("options").at("method"), "asap");
+  EXPECT_GT(job.at("finished"), job.at("created"));
+  EXPECT_GT(job.at("duration"), 0);
   EXPECT_THAT(get(job.at("id"), "result")->body, StartsWith("glTF"));
 }
 
@@ -84,6 +86,27 @@ TEST_F(Jobs, AFormWithoutItsMeshOrWithAnythingTwiceIsRefused) {
     expect_problem(client().Post("/v1/jobs", parts), 400, "malformed_request");
   const httplib::MultipartFormDataItems both = {options, mesh};
   expect_problem(client().Post("/v1/jobs?method=arap", both), 422, "invalid_option");
+}
+
+TEST_F(Jobs, AFormMayBringEachOptionInAPartOfItsName) {
+  start();
+  using Parts = httplib::MultipartFormDataItems;
+  const httplib::MultipartFormData mesh = {"file", grid_obj(4), "grid.obj", "model/obj"};
+  const httplib::MultipartFormData method = {"method", "asap", "", ""};
+  const Parts parts = {method, mesh, {"stop.iterations", "3", "", ""}};
+  const auto answer = client().Post("/v1/jobs", {{"Prefer", "wait=60"}}, parts);
+  ASSERT_EQ(answer->status, 200) << answer->body;
+  const api::Json options = api::Json::parse(answer->body).at("options");
+  EXPECT_EQ(options.at("method"), "asap");
+  EXPECT_EQ(options.at("stop").at("iterations"), 3);
+  for (const httplib::MultipartFormData& wrong :
+       Parts{{"metod", "arap", "", ""}, {"method", "x", "", ""}, method})
+    expect_problem(client().Post("/v1/jobs", Parts{mesh, method, wrong}), 422, "invalid_option");
+  expect_problem(client().Post("/v1/jobs?pins=spectral", parts), 422, "invalid_option");
+  const Parts both = {mesh, method, {"options", "{}", "", ""}};
+  expect_problem(client().Post("/v1/jobs", both), 400, "malformed_request");
+  const Parts large = {{"materials", std::string(65'536, 'a'), "", ""}, mesh};
+  expect_problem(client().Post("/v1/jobs", large), 413, "body_too_large");
 }
 
 TEST_F(Jobs, WaitingIsAnsweredEarlyWhenTheJobIsNotDone) {
