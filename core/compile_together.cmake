@@ -1,6 +1,6 @@
-# compile_together(TARGET [FILE...]): the files of a room (a folder) together, ten at a time, but for
-# those named, whose local names clash with others. Reading headers is most of the work on small
-# files. Not in the preset dev, where one file changes at a time.
+# compile_together(TARGET [FILE...]): the files of a target together, thirty at a time, but for those
+# named, whose local names clash with others. Templates that several files use are compiled once.
+# Not in the preset dev, where one file changes at a time.
 # (Eigen comes before httplib, whose headers define a macro that breaks it.)
 function(compile_together target)
   if(CMAKE_BUILD_TYPE STREQUAL Debug)
@@ -9,12 +9,12 @@ function(compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP
     UNITY_BUILD_CODE_BEFORE_INCLUDE "#include <Eigen/Core>")
   get_target_property(sources ${target} SOURCES)
+  set(group 1)
   set(place 0)
   foreach(source ${sources})
     get_filename_component(source ${source} ABSOLUTE)
-    get_filename_component(room ${source} DIRECTORY)
     file(RELATIVE_PATH name ${CMAKE_CURRENT_SOURCE_DIR} ${source})
-    if(NOT room STREQUAL last OR place EQUAL 10)
+    if(place EQUAL 30)
       set(place 0)
       math(EXPR group "${group} + 1")
     endif()
@@ -22,7 +22,6 @@ function(compile_together target)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
       math(EXPR place "${place} + 1")
     endif()
-    set(last ${room})
   endforeach()
 endfunction()
 

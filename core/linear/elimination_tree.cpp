@@ -14,8 +14,6 @@
 namespace unwrapd::linear {
 namespace {
 
-constexpr Index kNoParent = -1;
-
 std::vector<Index> inverse(std::span<const Index> order) {
   std::vector<Index> position(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) position[at(order[k])] = static_cast<Index>(k);

@@ -15,23 +15,23 @@ namespace {
 
 constexpr std::size_t kFew = 16;  // entries that are sorted by insertion, without a buffer
 
-struct Entry {
+struct OffDiagonal {
   Index row;
   double value;
 };
 
 /// Off-diagonal entries of each column of the lower triangle, unmerged, and the diagonal.
-struct Columns {
+struct ColumnLists {
   std::vector<Index> begin;
-  std::vector<Entry> entries;
+  std::vector<OffDiagonal> entries;
   std::vector<double> diagonal;
 };
 
-Columns scatter(std::span<const Triangle> faces, Index vertex_count, std::span<const double> weight,
-                const std::stop_token& stop) {
+ColumnLists scatter(std::span<const Triangle> faces, Index vertex_count,
+                    std::span<const double> weight, const std::stop_token& stop) {
   const auto n = static_cast<std::size_t>(vertex_count);
-  Columns c{std::vector<Index>(n + 1, 0), std::vector<Entry>(3 * faces.size()),
-            std::vector<double>(n, 0.0)};
+  ColumnLists c{std::vector<Index>(n + 1, 0), std::vector<OffDiagonal>(3 * faces.size()),
+                std::vector<double>(n, 0.0)};
   const auto ends = [&](std::size_t h) {
     const Triangle& f = faces[h / 3];
     return std::minmax(f[h % 3], f[(h + 1) % 3]);
@@ -54,8 +54,8 @@ Columns scatter(std::span<const Triangle> faces, Index vertex_count, std::span<c
 }
 
 /// Stable, by row. A column usually has about six entries; one may have all.
-void sort_by_row(std::span<Entry> column) {
-  const auto is_lower = [](const Entry& a, const Entry& b) { return a.row < b.row; };
+void sort_by_row(std::span<OffDiagonal> column) {
+  const auto is_lower = [](const OffDiagonal& a, const OffDiagonal& b) { return a.row < b.row; };
   if (column.size() > kFew) {
     std::stable_sort(column.begin(), column.end(), is_lower);
     return;
@@ -66,10 +66,10 @@ void sort_by_row(std::span<Entry> column) {
 }
 
 /// Adds up entries of the same row, in ascending order; returns how many are left.
-std::size_t merge(std::span<Entry> column) {
+std::size_t merge(std::span<OffDiagonal> column) {
   sort_by_row(column);
   std::size_t kept = 0;
-  for (const Entry& entry : column) {
+  for (const OffDiagonal& entry : column) {
     if (kept > 0 && column[kept - 1].row == entry.row)
       column[kept - 1].value += entry.value;
     else
@@ -83,7 +83,7 @@ std::size_t merge(std::span<Entry> column) {
 SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count,
                              std::span<const double> weight, Executor& executor) {
   assert(weight.size() == 3 * faces.size());
-  Columns columns = scatter(faces, vertex_count, weight, executor.stop());
+  ColumnLists columns = scatter(faces, vertex_count, weight, executor.stop());
   const auto n = static_cast<std::size_t>(vertex_count);
   const auto column = [&](std::size_t j) {
     return std::span(columns.entries.begin() + columns.begin[j],
@@ -104,7 +104,7 @@ SparseMatrix lower_laplacian(std::span<const Triangle> faces, Index vertex_count
         lower.innerIndexPtr()[to] = row, lower.valuePtr()[to++] = value;
       };
       put(static_cast<Index>(j), columns.diagonal[j]);
-      for (const Entry& e : column(j).first(static_cast<std::size_t>(begin[j + 1] - to)))
+      for (const OffDiagonal& e : column(j).first(static_cast<std::size_t>(begin[j + 1] - to)))
         put(e.row, e.value);
     }
   });

@@ -22,12 +22,12 @@ constexpr int kRefinements = 12;             // bisections after a scale fits
 constexpr double kSlack = 1 - 1e-9;          // of the scale, for rounding
 
 /// In texels, without the padding at its left and lower border.
-struct Page {
+struct RowPage {
   Vec2 size = Vec2::Zero();
   double padding = 0;
 };
 
-Page page_of(const PageOptions& options, std::size_t island_count) {
+RowPage page_of(const PageOptions& options, std::size_t island_count) {
   const double padding = std::max(kept_padding(options, island_count), kLeastPadding);
   const double height = options.height.value_or(options.resolution);
   return {Vec2(options.resolution - padding, height - padding), padding};
@@ -37,7 +37,7 @@ Page page_of(const PageOptions& options, std::size_t island_count) {
 /// islands by falling height.
 template <class Place>
 bool fill_rows(const std::vector<Box>& boxes, const std::vector<Index>& order, double scale,
-               const Page& page, Place place) {
+               const RowPage& page, Place place) {
   double x = 0, y = 0, row_height = 0;
   for (Index k : order) {
     const Vec2 need = scale * boxes[k].size + Vec2::Constant(page.padding);
@@ -60,12 +60,12 @@ struct Layout {
   double scale = 0;  ///< texels a unit of the islands
 };
 
-bool fits(const Layout& layout, double scale, const Page& page) {
+bool fits(const Layout& layout, double scale, const RowPage& page) {
   return fill_rows(layout.boxes, layout.order, scale, page, [](Index, const Vec2&) {});
 }
 
 /// A scale that this page can hold barely or not at all.
-double scale_bound(const std::vector<Box>& boxes, const Page& page) {
+double scale_bound(const std::vector<Box>& boxes, const RowPage& page) {
   double area = 0;
   Vec2 longest = Vec2::Zero();
   for (const Box& box : boxes) {
@@ -81,7 +81,7 @@ double scale_bound(const std::vector<Box>& boxes, const Page& page) {
 }
 
 /// The largest scale at which the rows fit, among those tried.
-Layout lay_rows(std::vector<Box> boxes, const Page& page) {
+Layout lay_rows(std::vector<Box> boxes, const RowPage& page) {
   Layout layout{std::move(boxes), {}, 0};
   layout.order.resize(layout.boxes.size());
   std::iota(layout.order.begin(), layout.order.end(), 0);
@@ -104,7 +104,7 @@ Layout lay_rows(std::vector<Box> boxes, const Page& page) {
 
 std::vector<Placement> pack_boxes(const std::vector<std::vector<Box>>& ways,
                                   const PageOptions& options) {
-  const Page page = page_of(options, ways.front().size());
+  const RowPage page = page_of(options, ways.front().size());
   Layout best;
   for (const std::vector<Box>& boxes : ways) {
     Layout own = lay_rows(boxes, page);

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t kSecretBytes = 32;
 constexpr mode_t kOwnerOnly = 0600;
-constexpr std::int64_t kMsPerSecond = 1000;
 
 [[noreturn]] void refuse(const char* what) { throw Error(ErrorCode::invalid_link, what); }
 

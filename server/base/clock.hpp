@@ -7,6 +7,9 @@
 
 namespace unwrapd::server {
 
+inline constexpr std::int64_t kMsPerSecond = 1000;
+inline constexpr std::int64_t kNsPerMs = 1'000'000;
+
 /// Milliseconds since 1970-01-01 UTC.
 std::int64_t now_ms();
 

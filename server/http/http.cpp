@@ -25,6 +25,12 @@ std::string bounded(const std::string& text) {
 
 }  // namespace
 
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
 bool IgnoreCase::operator()(std::string_view left, std::string_view right) const {
   return std::ranges::lexicographical_compare(left, right, {}, lower, lower);
 }

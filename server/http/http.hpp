@@ -128,6 +128,9 @@ struct Exchanged {
 };
 using Observer = std::function<void(const Exchanged&)>;
 
+/// Without spaces and tabs at its ends (OWS of RFC 9110, 5.6.3).
+std::string_view trim(std::string_view text);
+
 /// An answer with a JSON body.
 Response json_response(int status, std::string_view json);
 

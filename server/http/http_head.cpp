@@ -63,12 +63,6 @@ bool is_field(std::string_view line) {
          std::ranges::none_of(line.substr(colon), is_control);
 }
 
-std::string_view trim(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
-
 /// The trimmed elements of a comma-separated list.
 std::vector<std::string_view> elements(std::string_view list) {
   std::vector<std::string_view> found;

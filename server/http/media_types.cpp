@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "server/http/http.hpp"
 
 namespace unwrapd::server::http {
 namespace {
@@ -26,12 +27,6 @@ constexpr std::array kRepresentations = {
 constexpr std::array<std::string_view, 8> kAssetTypes = {
     "model/gltf-binary", "model/gltf+json", "model/obj",       "model/stl",
     "model/ply",         "model/off",       "application/zip", "application/octet-stream"};
-
-std::string_view trim(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> items;

@@ -7,7 +7,6 @@ namespace unwrapd::server::store {
 namespace {
 
 constexpr std::int64_t kSettledMs = 2000;
-constexpr std::int64_t kNsPerMs = 1'000'000;
 
 }  // namespace
 

@@ -7,15 +7,13 @@
 #include <system_error>
 #include <tuple>
 
+#include "server/base/clock.hpp"
 #include "server/base/files.hpp"
 
 namespace unwrapd::server::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::int64_t kMsPerSecond = 1000;
-constexpr std::int64_t kNsPerMs = 1'000'000;
 
 /// Of itself, where it is a symbolic link.
 std::int64_t time_of(const fs::path& path) {

@@ -8,7 +8,7 @@
 namespace unwrapd::api {
 namespace {
 
-const Limits kLimits;
+const Limits kDefaultLimits;
 
 std::string with(const std::string& members) {
   return R"({"textures":"transfer")" + (members.empty() ? "" : "," + members) + "}";
@@ -17,7 +17,7 @@ std::string with(const std::string& members) {
 TEST(TexturesOption, IsKeepUnlessItIsAskedFor) {
   for (const Preset preset : {Preset::texture, Preset::lightmap, Preset::chart, Preset::paper})
     EXPECT_EQ(preset_options(preset).asset.textures, TextureMode::keep);
-  EXPECT_EQ(parse_options_text(with(""), kLimits).asset.textures, TextureMode::transfer);
+  EXPECT_EQ(parse_options_text(with(""), kDefaultLimits).asset.textures, TextureMode::transfer);
 }
 
 TEST(TexturesOption, NeedsAPlaceOfItsOwnForEveryTexel) {
@@ -27,7 +27,7 @@ TEST(TexturesOption, NeedsAPlaceOfItsOwnForEveryTexel) {
         R"("guarantee":"bijective","constraints":[{"vertex":0,"uv":[0,0]}])", R"("height":512)"}) {
     SCOPED_TRACE(members);
     try {
-      parse_options_text(with(members), kLimits);
+      parse_options_text(with(members), kDefaultLimits);
       ADD_FAILURE() << "accepted";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::invalid_option);
@@ -37,12 +37,12 @@ TEST(TexturesOption, NeedsAPlaceOfItsOwnForEveryTexel) {
   for (const std::string members :
        {R"("repack_only":true)", R"("preset":"chart","guarantee":"bijective")",
         R"("boundary":"circle","guarantee":"bijective")"})
-    EXPECT_NO_THROW(parse_options_text(with(members), kLimits)) << members;
+    EXPECT_NO_THROW(parse_options_text(with(members), kDefaultLimits)) << members;
 }
 
 TEST(TexturesOption, PaintsAtLeastAtTheResolutionOfThePage) {
   for (const char* members : {R"("resolution":512)", R"("width":512,"height":512)"})
-    EXPECT_EQ(parse_options_text(with(members), kLimits).asset.resolution, 512) << members;
+    EXPECT_EQ(parse_options_text(with(members), kDefaultLimits).asset.resolution, 512) << members;
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ const AssetOptions kFree = {.texcoord = TexcoordChoice::free, .compression = Com
 Json texture_of(int set) { return {{"index", 0}, {"texCoord", set}}; }
 
 /// A square that has the sets below `present`, and a material whose texture samples `sampled`.
-Builder textured(int present, int sampled) {
+Builder with_sets(int present, int sampled) {
   Builder b = square();
   Json& primitive = b.json["meshes"][0]["primitives"][0];
   for (int set = 0; set < present; ++set)
@@ -36,7 +36,7 @@ std::vector<NoteCode> codes(const Asset& asset) {
 }
 
 TEST(ChooseTexcoord, IsZeroWhereNoTextureSamplesIt) {
-  for (const std::string& file : {square().glb(), textured(2, 1).glb()}) {
+  for (const std::string& file : {square().glb(), with_sets(2, 1).glb()}) {
     const Asset asset = read_file(file, kAutomatic);
     EXPECT_EQ(asset.texcoord(), 0);
     EXPECT_TRUE(codes(asset).empty());
@@ -44,7 +44,7 @@ TEST(ChooseTexcoord, IsZeroWhereNoTextureSamplesIt) {
 }
 
 TEST(ChooseTexcoord, IsTheFirstFreeOneWhereATextureSamplesZero) {
-  const Builder b = textured(2, 0);
+  const Builder b = with_sets(2, 0);
   const Asset asset = read_file(b.glb(), kAutomatic);
   EXPECT_EQ(asset.texcoord(), 2);
   EXPECT_EQ(codes(asset), std::vector{NoteCode::set_chosen});
@@ -54,12 +54,12 @@ TEST(ChooseTexcoord, IsTheFirstFreeOneWhereATextureSamplesZero) {
 }
 
 TEST(ChooseTexcoord, FollowsTheSetOfAnExtensionAndOfVariants) {
-  Builder moved = textured(2, 1);
+  Builder moved = with_sets(2, 1);
   Json& info = moved.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
   info["extensions"]["KHR_texture_transform"] = {{"texCoord", 0}};
   moved.json["extensionsUsed"] = {"KHR_texture_transform"};
   EXPECT_EQ(read_file(moved.glb(), kAutomatic).texcoord(), 2);
-  Builder variant = textured(2, 1);
+  Builder variant = with_sets(2, 1);
   variant.json["materials"].push_back({{"normalTexture", texture_of(0)}});
   variant.json["extensionsUsed"] = {"KHR_materials_variants"};
   variant.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "other"}}};
@@ -69,11 +69,11 @@ TEST(ChooseTexcoord, FollowsTheSetOfAnExtensionAndOfVariants) {
 }
 
 TEST(ChooseTexcoord, IsZeroWhereTheTextureHasNoCoordinatesToFit) {
-  EXPECT_EQ(read_file(textured(0, 0).glb(), kAutomatic).texcoord(), 0);
+  EXPECT_EQ(read_file(with_sets(0, 0).glb(), kAutomatic).texcoord(), 0);
 }
 
 TEST(ChooseTexcoord, LooksAtWhatIsUnwrappedAlone) {
-  Builder b = textured(1, 0);
+  Builder b = with_sets(1, 0);
   Json plain = b.json["meshes"][0]["primitives"][0];
   plain.erase("material");
   b.json["meshes"][0]["primitives"].push_back(plain);
@@ -85,16 +85,16 @@ TEST(ChooseTexcoord, LooksAtWhatIsUnwrappedAlone) {
 
 TEST(ChooseTexcoord, AFreeSetIsOneThatNothingHas) {
   EXPECT_EQ(read_file(square().glb(), kFree).texcoord(), 0);
-  EXPECT_EQ(read_file(textured(1, 1).glb(), kFree).texcoord(), 1);
-  const Asset asset = read_file(textured(3, 0).glb(), kFree);
+  EXPECT_EQ(read_file(with_sets(1, 1).glb(), kFree).texcoord(), 1);
+  const Asset asset = read_file(with_sets(3, 0).glb(), kFree);
   EXPECT_EQ(asset.texcoord(), 3);
   EXPECT_EQ(codes(asset), std::vector{NoteCode::set_chosen});
 }
 
 TEST(ChooseTexcoord, WhenAllAreThereItIsOneThatNoTextureSamples) {
-  const Asset asset = read_file(textured(kSets, 0).glb(), kAutomatic);
+  const Asset asset = read_file(with_sets(kSets, 0).glb(), kAutomatic);
   EXPECT_EQ(asset.texcoord(), 1);
-  Builder b = textured(kSets, 0);
+  Builder b = with_sets(kSets, 0);
   for (int set = 1; set < kSets; ++set)
     b.json["materials"][0]["extensions"]["KHR_x"]["t" + std::to_string(set) + "Texture"] =
         texture_of(set);
@@ -110,7 +110,7 @@ TEST(ChooseTexcoord, WhenAllAreThereItIsOneThatNoTextureSamples) {
 TEST(ChooseTexcoord, ASetThatHadToMakeRoomIsNamed) {
   for (const auto& [sampled, options, set] :
        {std::tuple(0, kAutomatic, 1), {0, kFree, 1}, {3, kFree, 0}}) {
-    const Asset asset = read_file(textured(kSets, sampled).glb(), options);
+    const Asset asset = read_file(with_sets(kSets, sampled).glb(), options);
     EXPECT_EQ(asset.texcoord(), set);
     const std::vector<Note> notes = side_effects(asset, split_nowhere(asset), Format::glb);
     ASSERT_EQ(notes.size(), 1U) << sampled;
@@ -122,7 +122,7 @@ TEST(ChooseTexcoord, ASetThatHadToMakeRoomIsNamed) {
 }
 
 TEST(ChooseTexcoord, ANamedSetThatTexturesSampleIsToldAsALoss) {
-  const Asset asset = read_file(textured(1, 0).glb());
+  const Asset asset = read_file(with_sets(1, 0).glb());
   EXPECT_EQ(asset.texcoord(), 0);
   EXPECT_EQ(codes(asset), std::vector{NoteCode::textures_lost});
 }
@@ -139,7 +139,7 @@ TEST(ChooseTexcoord, AnObjWithMaterialsAndCoordinatesLosesTheFitOfItsImages) {
 }
 
 TEST(ChooseTexcoord, ExistingUvsAreReadFromTheFirstSet) {
-  Asset asset = read_file(textured(2, 0).glb(), kAutomatic);
+  Asset asset = read_file(with_sets(2, 0).glb(), kAutomatic);
   read_uvs(asset);
   ASSERT_FALSE(asset.surfaces()[0].corner_uv.empty());
   EXPECT_TRUE(asset.surfaces()[0].corner_uv[0][0].allFinite());

@@ -12,7 +12,7 @@ TEST(Recognition, GoesByContent) {
   EXPECT_EQ(read_file("# a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").format(), Format::obj);
 }
 
-std::string repeated(const std::string& text, int times) {
+std::string many(const std::string& text, int times) {
   std::string result;
   for (int i = 0; i < times; ++i) result += text;
   return result;
@@ -22,26 +22,26 @@ std::string repeated(const std::string& text, int times) {
 TEST(Recognition, ReadsAnObjAfterAnyLengthOfCommentsAndEmptyLines) {
   const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   for (const std::string& before :
-       {repeated("# exported by a program that has much to say\n", 50'000),
+       {many("# exported by a program that has much to say\n", 50'000),
         "#" + std::string(3'000'000, 'x') + "\n", std::string(200'000, '\n'),
-        repeated("# of an old Mac\r", 20'000), repeated("# a\r\n \t\r\n", 20'000),
-        "\xef\xbb\xbf" + repeated("#\n", 100'000), repeated("vt 0.25 0.5\n", 20'000),
-        repeated("vn 0 0 1\n", 20'000), std::string("mtllib a.mtl\no x\ng y\ns off\n"),
-        std::string("f 1 3 2\n") + repeated("vt .5 .5\n", 20'000)})
+        many("# of an old Mac\r", 20'000), many("# a\r\n \t\r\n", 20'000),
+        "\xef\xbb\xbf" + many("#\n", 100'000), many("vt 0.25 0.5\n", 20'000),
+        many("vn 0 0 1\n", 20'000), std::string("mtllib a.mtl\no x\ng y\ns off\n"),
+        std::string("f 1 3 2\n") + many("vt .5 .5\n", 20'000)})
     EXPECT_EQ(read_file(before + mesh).format(), Format::obj) << before.substr(0, 50);
 }
 
 TEST(Recognition, ReadsGltfAfterAnyLengthOfSpace) {
-  const std::string spaces = repeated(" \t\r\n", 100'000);
+  const std::string spaces = many(" \t\r\n", 100'000);
   EXPECT_EQ(read_file(spaces + square().gltf()).format(), Format::gltf);
   EXPECT_EQ(read_file("\xef\xbb\xbf" + spaces + square().gltf()).format(), Format::gltf);
 }
 
 TEST(Recognition, TakesNoProseForAnObj) {
   for (const std::string& file :
-       {repeated("# a remark\n", 200'000), repeated("p. 7 of a book\n", 200'000),
-        repeated("f is a function\n", 200'000), std::string(1'000'000, ' '),
-        repeated("word\n", 200'000) + "v 0 0 0\n", std::string("v"), std::string("f\n1 2 3\n")})
+       {many("# a remark\n", 200'000), many("p. 7 of a book\n", 200'000),
+        many("f is a function\n", 200'000), std::string(1'000'000, ' '),
+        many("word\n", 200'000) + "v 0 0 0\n", std::string("v"), std::string("f\n1 2 3\n")})
     EXPECT_EQ(error_of(file).code(), ErrorCode::unknown_format) << file.substr(0, 50);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kPng = "\x89PNG\r\n\x1a\n and so on", kJpeg = "\xff\xd8\xff\xe0 and so on";
+const std::string kSomePng = "\x89PNG\r\n\x1a\n and so on", kJpeg = "\xff\xd8\xff\xe0 and so on";
 
 /// Two quads, wood and glass, with texture coordinates of their own.
 const std::string kObj = R"(mtllib chair.mtl
@@ -51,19 +51,19 @@ bump heights.png
 using Files = std::map<std::string, std::string>;
 
 const Files kAll = {{"chair.mtl", kMtl},
-                    {"img/my wood.png", kPng + "1"},
+                    {"img/my wood.png", kSomePng + "1"},
                     {"img/wood_normal.jpg", kJpeg},
-                    {"glow.png", kPng + "2"}};
+                    {"glow.png", kSomePng + "2"}};
 
-const AssetOptions kAutomatic = {.texcoord = TexcoordChoice::automatic,
-                                 .compression = Compression::none};
+const AssetOptions kAutomaticSet = {.texcoord = TexcoordChoice::automatic,
+                                    .compression = Compression::none};
 
-Asset read_with(const Files& files, const AssetOptions& options = kAutomatic,
+Asset read_with(const Files& files, const AssetOptions& options = kAutomaticSet,
                 const std::string& obj = kObj) {
   return read(input_of(obj, files), {}, options);
 }
 
-std::string glb_with(const Files& files, const AssetOptions& options = kAutomatic) {
+std::string glb_with(const Files& files, const AssetOptions& options = kAutomaticSet) {
   const Asset asset = read_with(files, options);
   return write(asset, split_nowhere(asset), Format::glb);
 }
@@ -101,7 +101,7 @@ TEST(ObjMaterials, ColoursAndTexturesAreThoseOfTheMtl) {
   EXPECT_EQ(wood["pbrMetallicRoughness"]["metallicFactor"], 0.0);
   EXPECT_EQ(
       image_bytes(json, glb, image_of(json, wood["pbrMetallicRoughness"]["baseColorTexture"])),
-      kPng + "1");
+      kSomePng + "1");
   EXPECT_EQ(image_bytes(json, glb, image_of(json, wood["normalTexture"])), kJpeg);
   EXPECT_EQ(json["images"][image_of(json, wood["normalTexture"])]["mimeType"], "image/jpeg");
   EXPECT_EQ(wood["normalTexture"]["scale"], 0.5);
@@ -109,7 +109,7 @@ TEST(ObjMaterials, ColoursAndTexturesAreThoseOfTheMtl) {
   EXPECT_EQ(glass["pbrMetallicRoughness"]["baseColorFactor"], Json({0.1, 0.2, 0.3, 0.25}));
   EXPECT_EQ(glass["pbrMetallicRoughness"]["roughnessFactor"], 0.25);  // sqrt(2 / 32)
   EXPECT_EQ(glass["emissiveFactor"], Json({1.0, 0.5, 0.0}));
-  EXPECT_EQ(image_bytes(json, glb, image_of(json, glass["emissiveTexture"])), kPng + "2");
+  EXPECT_EQ(image_bytes(json, glb, image_of(json, glass["emissiveTexture"])), kSomePng + "2");
   EXPECT_EQ(glass["alphaMode"], "BLEND");
   EXPECT_FALSE(glass.contains("normalTexture"));  // a map of heights
   EXPECT_EQ(json["images"].size(), 3);
@@ -146,7 +146,7 @@ TEST(ObjMaterials, ASetThatIsNamedIsReplaced) {
 }
 
 TEST(ObjMaterials, WithoutTheMtlNamesStayAndANoteTellsTheRest) {
-  for (const Files& files : {Files{}, Files{{"other.mtl", kMtl}, {"glow.png", kPng}}}) {
+  for (const Files& files : {Files{}, Files{{"other.mtl", kMtl}, {"glow.png", kSomePng}}}) {
     const Asset asset = read_with(files);
     const Json json = json_of(write(asset, split_nowhere(asset), Format::glb));
     EXPECT_EQ(json["materials"], Json::parse(R"([{"name": "wood"}, {"name": "glass"}])"));
@@ -215,7 +215,7 @@ TEST(ObjMaterials, AnImageThatManyPathsLeadToIsTakenOnce) {
     mtl += "newmtl " + name + "\nmap_Kd folder" + std::to_string(k) + "/wood.png\n";
     obj += "usemtl " + name + "\nf 1 2 3\n";
   }
-  const Asset asset = read_with({{"a.mtl", mtl}, {"wood.png", kPng}}, kAutomatic, obj);
+  const Asset asset = read_with({{"a.mtl", mtl}, {"wood.png", kSomePng}}, kAutomaticSet, obj);
   const Json json = json_of(write(asset, split_nowhere(asset), Format::glb));
   EXPECT_EQ(json["materials"].size(), 50U);
   EXPECT_EQ(json["images"].size(), 1U);

@@ -12,9 +12,9 @@
 namespace unwrapd::solve::repair {
 namespace {
 
-constexpr int kMostTurning = 90;       // Newton steps under the regularised barrier
-constexpr int kPatience = 15;          // steps in which the flips must halve, after the first ones
-constexpr std::size_t kLarge = 4096;   // faces; larger patches must show fewer flips by then
+constexpr int kMostTurning = 90;  // Newton steps under the regularised barrier
+constexpr int kPatience = 15;     // steps in which the flips must halve, after the first ones
+constexpr std::size_t kLargePatch = 4096;  // faces; larger patches must show fewer flips by then
 constexpr double kWholeWall = 3;       // beside an energy; with 1 single flips stay, with 10 steps
 constexpr double kEpsilonShare = 0.2;  // of the worst determinant
 constexpr double kFirstEpsilon = 0.1;  // collapsed triangles open under a large one
@@ -84,7 +84,7 @@ void turn_over(const BarrierMesh& patch, const MapIntent& intent, std::size_t en
     const bool is_slow = flips > std::exchange(last, flips) / 2;
     if (flips <= enough && (flips > 0 ? is_slow : worst > 0)) return;
     if (k > 0 && k % kPatience == 0 && flips > std::exchange(target, flips / 2)) return;
-    if (k == kPatience && mesh.faces.size() > kLarge && flips >= first) return;
+    if (k == kPatience && mesh.faces.size() > kLargePatch && flips >= first) return;
     throw_if_cancelled(intent.stop);
     barrier.epsilon = std::max(floor, -kEpsilonShare * worst);
     if (newton.step(uv, barrier) < kStuck && barrier.epsilon == kLeastEpsilon) return;
