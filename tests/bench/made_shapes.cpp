@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "tests/bench/noisy_body.hpp"
+#include "tests/bench/opened_body.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::bench {
@@ -91,6 +92,7 @@ TriMesh made_shape(const std::string& name) {
   if (family == "hill") return shapes::random_disk(side(faces), seed);
   if (family == "cap") return cap(faces, random);
   if (family == "torus") return torus(faces, random);
+  if (family == "opened") return opened_body(faces, seed);
   return {};
 }
 

@@ -11,7 +11,8 @@ namespace unwrapd::bench {
 /// "FAMILY:FACES:SEED", FAMILY one of body (a smooth closed body of random limbs and rings), noisy
 /// (the same, rough), blocks (a closed hull of random cells, subdivided), boxes (a scene of boxes,
 /// each a component), soup (triangles apart), hill (a bumpy disk), cap (more than half of a sphere,
-/// open), torus. About that many faces. Empty where the name is none of these.
+/// open), torus, opened (a body
+/// cut from limb to limb to a disk). About that many faces. Empty where the name is none of these.
 TriMesh made_shape(const std::string& name);
 
 }  // namespace unwrapd::bench

@@ -49,6 +49,12 @@ test('atlas', async () => {
   assert.equal(table.match(/^\S+( +[\d.]+){13}$/gm)?.length, 3, table);
 });
 
+test('bijective', async () => {
+  const table = await program('bijective', '--pairs=1', sheet, 'made:opened:900:1');
+  assert.match(table, /^sheet +128 +0( +[\d.]+){8}$/m);
+  assert.match(table, /^time: median [\d.]+ .*\n.*\nrise: median [\d.]+ %/m);
+});
+
 test('cancel-latency', async () => {
   assert.match(await program('cancel_latency', 'disk:400'), /\d/);
 });
