@@ -25,23 +25,30 @@ constexpr int kTouch = 3;  // cells beyond the padding: nearer islands touch
 constexpr double kChoice = 100, kChoices = 40'000;  // islands to choose from; choices in all
 constexpr double kHighest = 1.5;                    // in heights of the page
 
+/// Appends the cells of a run that no run of another row covers, at height y.
+void add_bare(const Run& run, std::span<const Run> other, int y, std::vector<Cell>& cells) {
+  int x = run.begin;
+  for (const Run& cover : other) {
+    if (cover.begin >= run.end) break;
+    for (; x < cover.begin; ++x) cells.push_back({x, y});
+    x = std::max(x, cover.end);
+  }
+  for (; x < run.end; ++x) cells.push_back({x, y});
+}
+
 /// The cells around an island, relative to its lower left one, in which others touch it.
 std::vector<Cell> feelers_of(const Mask& mask) {
   const int away = mask.margin + kTouch, height = mask.touched.height();
-  const auto is_own = [&](int x, int y) {
-    if (y < 0 || y >= height) return false;
-    return std::ranges::any_of(mask.touched.row(y),
-                               [&](const Run& run) { return run.begin <= x && x < run.end; });
+  const auto row_at = [&](int y) {
+    return y < 0 || y >= height ? std::span<const Run>() : mask.touched.row(y);
   };
   std::vector<Cell> feelers;
   for (int y = 0; y < height; ++y)
     for (const Run& run : mask.touched.row(y)) {
       feelers.push_back({run.begin - away, y});
       feelers.push_back({run.end - 1 + away, y});
-      for (int x = run.begin; x < run.end; ++x) {
-        if (!is_own(x, y - 1)) feelers.push_back({x, y - away});
-        if (!is_own(x, y + 1)) feelers.push_back({x, y + away});
-      }
+      add_bare(run, row_at(y - 1), y - away, feelers);
+      add_bare(run, row_at(y + 1), y + away, feelers);
     }
   return feelers;
 }
