@@ -34,6 +34,16 @@ struct Extent {
 };
 constexpr std::array kExtents = {Extent{2, 1, .05, .1}, Extent{6, 2, .1, .25}, Extent{6, 2, 1, 1}};
 
+constexpr std::size_t kVeryFew = 3;  // islands that come to the same page from nearly any start
+
+Extent extent_of(std::size_t islands, Effort effort) {
+  Extent extent = kExtents[static_cast<std::size_t>(effort)];
+  if (islands > kVeryFew || effort == Effort::best) return extent;
+  extent.starts = std::min(extent.starts, islands);
+  extent.finished = 1;
+  return extent;
+}
+
 struct Squeeze {
   CompactRules rules;     ///< for 1024 cells a side; the first grid's side is not scaled
   std::int64_t work = 0;  ///< words for each share
@@ -61,7 +71,7 @@ class FewPacker {
       : islands_(islands),
         grid_(grid),
         rotation_(rules.rotation),
-        extent_(kExtents[static_cast<std::size_t>(rules.effort)]),
+        extent_(extent_of(islands.size(), rules.effort)),
         executor_(executor),
         shares_(shares_of(islands)) {}
 
