@@ -11,7 +11,8 @@ namespace unwrapd::guarantee {
 namespace {
 
 constexpr double kLeastLambdaOfSizes = 0.01;
-constexpr double kMostRise = 0.5;  // see GuaranteeRules::most_rise; of a segmented chart
+constexpr double kMostRise = 0.5;        // see GuaranteeRules::most_rise; of a segmented chart
+constexpr double kMostRiseOfOne = 0.05;  // of another one
 
 /// The method's own energy, which a repair raises as little as possible. Methods that compute a map
 /// from angles or scales have the energy of angles.
@@ -42,9 +43,13 @@ solve::repair::OwnEnergy own_energy_of(const solve::Disk& disk, const UnwrapOpti
 }
 
 /// A segmented chart is one of many anyway and has a bound of distortion: splitting it is better
-/// than a new map of much energy.
-double most_rise_of(const charts::Chart& chart) {
-  return chart.least == Guarantee::bijective ? kMostRise : std::numeric_limits<double>::infinity();
+/// than a new map of much energy. Any other chart is split where that keeps the energy low, unless
+/// the number of charts is limited.
+double most_rise_of(const charts::Chart& chart, const UnwrapOptions& options,
+                    solve::repair::OwnEnergy own) {
+  if (chart.least == Guarantee::bijective) return kMostRise;
+  if (own == solve::repair::OwnEnergy::fit && !options.max_charts) return kMostRiseOfOne;
+  return std::numeric_limits<double>::infinity();
 }
 
 /// The guarantee that is asked for, or a stronger one that the chart has by the way it was made.
@@ -100,13 +105,11 @@ double least_energy(const solve::Disk& disk, const solve::repair::MapIntent& int
 GuaranteeRules rules_for(const charts::Chart& chart, const solve::Disk& disk,
                          const UnwrapOptions& options, double lambda) {
   const solve::arap::Rigidity rigidity = rigidity_of(disk, options, lambda);
+  const solve::repair::OwnEnergy own = own_energy_of(disk, options, rigidity);
   return {.guarantee = guarantee_of(chart, options),
           .repair = options.repair,
-          .intent = {.rigidity = rigidity,
-                     .constrained = {},
-                     .stop = disk.stop,
-                     .own = own_energy_of(disk, options, rigidity)},
-          .most_rise = most_rise_of(chart)};
+          .intent = {.rigidity = rigidity, .constrained = {}, .stop = disk.stop, .own = own},
+          .most_rise = most_rise_of(chart, options, own)};
 }
 
 bool rises_too_far(const solve::Disk& disk, const GuaranteeRules& rules, const UvMap& uv,

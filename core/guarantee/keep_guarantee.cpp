@@ -1,28 +1,36 @@
 // A map is first repaired in place: flips are untangled, or the virtual boundary of Sec. 4.4 is
-// used. A chart that overlaps itself gets a new map with a barrier between its boundaries. If
-// neither helps, the chart is split; its parts keep their share of the map, so that the only cost
-// is the seam. A part without the guarantee is treated in the same way. The splitting ends because
-// a single triangle has every guarantee.
+// used. Sheets that lie on each other are pressed apart, or the chart gets a new map with a barrier
+// between its boundaries. Where that costs too much energy, or fails, the chart is split by a short
+// seam between the sheets; its parts keep their share of the map, so that the only cost is the
+// seam. A part without the guarantee is treated in the same way. The splitting ends because a
+// single triangle has every guarantee.
 #include "core/guarantee/keep_guarantee.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
+#include "core/charts/shortest_seam.hpp"
 #include "core/charts/split_chart.hpp"
+#include "core/guarantee/overlapping_sheets.hpp"
 #include "core/guarantee/quantize_uvs.hpp"
 #include "core/guarantee/separate_rounded_boundaries.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
 #include "core/solve/repair/bijective.hpp"
+#include "core/solve/repair/press_apart.hpp"
 #include "core/solve/repair/virtual_patches.hpp"
 
 namespace unwrapd::guarantee {
 namespace {
 
-constexpr std::size_t kMostPairs = 1 << 20;   // of overlapping triangles, counted in one chart
+constexpr std::size_t kMostPairs = 1 << 20;  // of overlapping triangles, counted in one chart
+constexpr std::size_t kMostParts = 8;        // of a chart, before it has a new map instead
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr double kMostPressed = 0.05;         // rise of energy; beyond, a short seam is better
 constexpr Index kMostFacesUnfolded = 50'000;  // a new map of more takes minutes
 
 bool holds_any(const solve::repair::MapIntent& intent) {
@@ -57,32 +65,6 @@ Seeds seeds_at_flips(const charts::Chart& chart, const std::vector<Index>& flipp
   return {std::vector{a}, std::vector{farthest}};
 }
 
-/// The connected components into which a set of faces and what is outside of it fall: one number a
-/// face.
-std::vector<Index> component_numbers(const charts::Chart& chart, const std::vector<char>& in_set) {
-  Halfedges cut = chart.halfedges;
-  for (std::size_t h = 0; h < cut.twin.size(); ++h)
-    if (cut.twin[h] != kNoTwin && in_set[cut.twin[h] / 3] != in_set[h / 3]) cut.twin[h] = kNoTwin;
-  return topology(corner_vertices(cut).faces, cut).component_of;
-}
-
-/// The two whole regions of the first overlap where they are not connected, else its two faces.
-Seeds seeds_at_overlaps(const charts::Chart& chart,
-                        const std::vector<std::array<Index, 2>>& pairs) {
-  std::vector<char> in_set(chart.mesh.faces.size(), 0);
-  for (const auto& [s, t] : pairs) in_set[s] = in_set[t] = 1;
-  const std::vector<Index> number = component_numbers(chart, in_set);
-  const auto apart = std::find_if(pairs.begin(), pairs.end(), [&](const auto& pair) {
-    return number[pair[0]] != number[pair[1]];
-  });
-  if (apart == pairs.end()) return {std::vector{pairs[0][0]}, std::vector{pairs[0][1]}};
-  Seeds seeds;
-  for (std::size_t k : {0U, 1U})
-    for (std::size_t t = 0; t < number.size(); ++t)
-      if (number[t] == number[(*apart)[k]]) seeds[k].push_back(static_cast<Index>(t));
-  return seeds;
-}
-
 std::vector<std::array<Index, 2>> overlaps_of(const charts::Chart& chart, const UvMap& uv,
                                               const std::stop_token& stop) {
   if (measure::is_plainly_injective(chart.mesh.faces, chart.loops, uv, stop)) return {};
@@ -96,16 +78,56 @@ std::vector<std::array<Index, 2>> overlaps_of(const charts::Chart& chart, const 
               "/guarantee");
 }
 
-/// Splits a part in two or more and appends these to `open`.
-void split(const GuaranteedPart& part, const Seeds& seeds, const std::stop_token& stop,
-           std::vector<GuaranteedPart>& open) {
-  throw_if_cancelled(stop);
-  for (charts::ChartPart& piece : charts::split_chart(*part.chart, seeds, stop)) {
+/// Appends the pieces of a part to `open`.
+void append(const GuaranteedPart& part, std::vector<charts::ChartPart> pieces,
+            const std::stop_token& stop, std::vector<GuaranteedPart>& open) {
+  for (charts::ChartPart& piece : pieces) {
     throw_if_cancelled(stop);
     UvMap uv;
     for (Index v : piece.vertex) uv.push_back(part.uv[v]);
     open.push_back({std::make_shared<const charts::Chart>(std::move(piece.chart)), std::move(uv)});
   }
+}
+
+/// What a part needs that has no guarantee: faces that must be in different pieces.
+struct Split {
+  Seeds seeds;
+  bool is_by_shortest_seam = false;
+};
+
+/// Splits a part in two or more and appends these to `open`.
+void split(const GuaranteedPart& part, const Split& how, const std::stop_token& stop,
+           std::vector<GuaranteedPart>& open) {
+  throw_if_cancelled(stop);
+  const charts::Chart& chart = *part.chart;
+  append(part,
+         how.is_by_shortest_seam
+             ? charts::parts_of(chart, charts::cut_between(chart, how.seeds, stop), stop)
+             : charts::split_chart(chart, how.seeds, stop),
+         stop, open);
+}
+
+/// Whether the map may give way to itself as it is: only ARAP's and Hybrid's energy can.
+bool can_press(const solve::repair::MapIntent& intent) {
+  return intent.own == solve::repair::OwnEnergy::fit && intent.soft.empty();
+}
+
+/// Presses sheets of the part apart that lie on each other; false, with the part as it was, if they
+/// do not part at little cost.
+bool press(GuaranteedPart& part, double unit, const GuaranteeRules& rules, Mending& mending) {
+  const solve::repair::MapIntent& intent = rules.intent;
+  const solve::Disk disk = solve::make_disk(part.chart->mesh, part.chart->loops, intent.stop);
+  UvMap before = part.uv;
+  for (Vec2& u : before) u *= unit / disk.unit;
+  UvMap uv = before;
+  if (!solve::repair::press_apart(disk, intent, std::min(rules.most_rise, kMostPressed), uv))
+    return false;
+  const double rise = energy_rise(disk, rules, before, uv);
+  for (Vec2& u : uv) u *= disk.unit / unit;
+  if (!overlaps_of(*part.chart, uv, intent.stop).empty()) return false;
+  mending.energy_rise = std::max(mending.energy_rise, rise);
+  part.uv = std::move(uv);
+  return true;
 }
 
 /// Gives the part a map without overlaps that follows the soft constraints; unit: of the part's
@@ -116,7 +138,7 @@ bool unfold(GuaranteedPart& part, double unit, const GuaranteeRules& rules) {
   const solve::Disk disk = solve::make_disk(part.chart->mesh, part.chart->loops, intent.stop);
   UvMap uv = part.uv;
   if (!solve::repair::map_injectively(disk, intent, uv)) return false;
-  const bool is_bounded = rules.most_rise < std::numeric_limits<double>::infinity();
+  const bool is_bounded = rules.most_rise < kUnbounded;
   UvMap before = is_bounded ? part.uv : UvMap();
   for (Vec2& u : before) u *= unit / disk.unit;
   if (is_bounded && rises_too_far(disk, rules, uv, before)) return false;
@@ -125,21 +147,28 @@ bool unfold(GuaranteedPart& part, double unit, const GuaranteeRules& rules) {
   return overlaps_of(*part.chart, part.uv, intent.stop).empty();
 }
 
-/// The seeds of the split that a part with these flips needs. Both are empty where the part has the
-/// guarantee, perhaps after a new map.
-Seeds seeds_needed(GuaranteedPart& part, const std::vector<Index>& flipped, double unit,
-                   const GuaranteeRules& rules, Mending& mending) {
+/// Parts the sheets of a part that lie on each other, in its map or in a new one.
+bool lay_apart(GuaranteedPart& part, double unit, const GuaranteeRules& rules, Mending& mending) {
+  if (holds_any(rules.intent)) return false;
+  if (can_press(rules.intent) && press(part, unit, rules, mending)) return true;
+  const bool is_small = part.chart->mesh.face_count() <= kMostFacesUnfolded;
+  return is_small && rules.most_rise > kMostPressed && unfold(part, unit, rules);
+}
+
+/// The split that a part with these flips needs; none where it has the guarantee, perhaps after its
+/// map has changed.
+std::optional<Split> split_needed(GuaranteedPart& part, const std::vector<Index>& flipped,
+                                  double unit, const GuaranteeRules& rules, Mending& mending) {
   if (!flipped.empty()) {
     if (part.chart->mesh.face_count() == 1) fail("a triangle has no area in the map");
-    return seeds_at_flips(*part.chart, flipped);
+    return Split{seeds_at_flips(*part.chart, flipped)};
   }
   if (rules.guarantee != Guarantee::bijective) return {};
   const auto pairs = overlaps_of(*part.chart, part.uv, rules.intent.stop);
   if (pairs.empty()) return {};
   mending.overlaps += static_cast<Index>(pairs.size());
-  const bool is_small = part.chart->mesh.face_count() <= kMostFacesUnfolded;
-  if (is_small && !holds_any(rules.intent) && unfold(part, unit, rules)) return {};
-  return seeds_at_overlaps(*part.chart, pairs);
+  if (lay_apart(part, unit, rules, mending)) return {};
+  return Split{overlapping_sheets(*part.chart, pairs), true};
 }
 
 /// The flips of a part of a split chart, after another try to untangle them: a part may succeed
@@ -157,26 +186,49 @@ std::vector<Index> flips_left(GuaranteedPart& part, const solve::repair::MapInte
   return measure::flipped_faces(part.chart->mesh.faces, part.uv);
 }
 
-/// Splits until every part has the guarantee. flipped: the flipped faces of the whole.
+/// Splits until every part has the guarantee; empty if that takes more than `most` parts. flipped:
+/// the flipped faces of the whole.
 std::vector<GuaranteedPart> split_as_needed(GuaranteedPart whole, std::vector<Index> flipped,
                                             double unit, const GuaranteeRules& rules,
-                                            Mending& mending) {
+                                            std::size_t most, Mending& mending) {
   std::vector<GuaranteedPart> open, kept;
+  GuaranteeRules of_part = rules;
+  of_part.intent.global = nullptr;
   open.push_back(std::move(whole));
   for (bool is_whole = true; !open.empty(); is_whole = false) {
     GuaranteedPart part = std::move(open.back());
     open.pop_back();
     throw_if_cancelled(rules.intent.stop);
+    if (open.size() + kept.size() >= most) return {};
     if (!is_whole) flipped = flips_left(part, rules.intent);
-    const Seeds seeds = seeds_needed(part, flipped, unit, rules, mending);
-    if (seeds[0].empty())
+    const std::optional<Split> needed =
+        split_needed(part, flipped, unit, is_whole ? rules : of_part, mending);
+    if (!needed)
       kept.push_back(std::move(part));
     else if (has_a_place(rules.intent))
       fail("the constraints leave no map without flips or overlaps");
     else
-      split(part, seeds, rules.intent.stop, open);
+      split(part, *needed, rules.intent.stop, open);
   }
   return kept;
+}
+
+/// The same for any number of parts. A map that takes more than a few cuts is tangled all over: a
+/// new one is then better, whatever its energy.
+std::vector<GuaranteedPart> with_guarantee(GuaranteedPart whole, std::vector<Index> flipped,
+                                           double unit, GuaranteeRules rules, Mending& mending) {
+  constexpr auto kAny = std::numeric_limits<std::size_t>::max();
+  if (whole.chart->least != Guarantee::bijective && rules.most_rise < kUnbounded) {
+    Mending own = mending;
+    std::vector<GuaranteedPart> parts =
+        split_as_needed(whole, flipped, unit, rules, kMostParts, own);
+    if (!parts.empty()) {
+      mending = own;
+      return parts;
+    }
+    rules.most_rise = kUnbounded;
+  }
+  return split_as_needed(std::move(whole), std::move(flipped), unit, rules, kAny, mending);
 }
 
 }  // namespace
@@ -198,8 +250,8 @@ GuaranteedMap keep_guarantee(std::shared_ptr<const charts::Chart> chart, const s
     if (remove_flips(disk, rules, uv, kept.mending) == 0) kept.mending.energy_rise = rise(uv);
     flipped = measure::flipped_faces(disk.faces, uv);
   }
-  kept.parts = split_as_needed({std::move(chart), std::move(uv)}, std::move(flipped), disk.unit,
-                               rules, kept.mending);
+  kept.parts = with_guarantee({std::move(chart), std::move(uv)}, std::move(flipped), disk.unit,
+                              rules, kept.mending);
   throw_if_cancelled(rules.intent.stop);
   if (kept.mending.overlaps > 0 && kept.parts.size() == 1)
     kept.mending.energy_rise = rise(kept.parts.front().uv);

@@ -25,11 +25,12 @@ struct GuaranteedMap {
 
 /// uv: the solved map of the chart's disk, in disk units. Afterwards no triangle of a part is
 /// flipped (flip_free), and no two of a part overlap (bijective), by exact tests; under
-/// Guarantee::none the map stays as it is. A chart with overlaps has a new map (map_injectively()),
-/// and is split only where none is found. The energy that mending.energy_rise tells of is
-/// intent.own, for angles D_angle; where it fell the rise is 0. Throws Error{guarantee_failed},
-/// where = "/guarantee", where constraints leave no way, or a single triangle has no area in the
-/// map; Error{cancelled}.
+/// Guarantee::none the map stays as it is. A chart with overlaps is pressed apart (press_apart())
+/// or has a new map (map_injectively()), and is split where none is found within rules.most_rise.
+/// The energy that mending.energy_rise tells of is intent.own, for angles D_angle; where it fell
+/// the rise is 0, and of several parts it is the greatest. Throws Error{guarantee_failed}, where =
+/// "/guarantee", where constraints leave no way, or a single triangle has no area in the map;
+/// Error{cancelled}.
 GuaranteedMap keep_guarantee(std::shared_ptr<const charts::Chart> chart, const solve::Disk& disk,
                              UvMap uv, const GuaranteeRules& rules);
 

@@ -151,17 +151,21 @@ void add_chart(Layout& layout, std::size_t surface, MappedChart mapped) {
 }
 
 void note_new_maps(Layout& layout, const UnwrapOptions& options) {
-  const auto is_new = [](const ChartReport& chart) {
-    return chart.mending.overlaps > 0 && chart.mending.parts == 1;
-  };
-  const auto& charts = layout.report.charts;
-  if (const auto count = std::count_if(charts.begin(), charts.end(), is_new); count > 0)
-    layout.report.notes.push_back(
-        {NoteCode::chart_remapped,
-         "Charts that overlapped themselves and got a new map without overlaps: " +
-             std::to_string(count) + ". The new map stays as close as possible to " +
-             kept_energy_of(options.method) +
-             "; energy_rise of the chart's mending tells the cost."});
+  Index moved = 0, cut = 0;
+  for (const ChartReport& chart : layout.report.charts)
+    if (chart.mending.overlaps > 0) ++(chart.mending.parts == 1 ? moved : cut);
+  std::string text;
+  if (moved > 0)
+    text = "Charts that overlapped themselves and got a new map without overlaps: " +
+           std::to_string(moved) + ". The new map stays as close as possible to " +
+           kept_energy_of(options.method) + "; energy_rise of the chart's mending tells the cost.";
+  if (cut > 0)
+    text += (moved > 0 ? " " : "") +
+            ("Charts that overlapped themselves and were cut between the "
+             "sheets, which costs less than a new map: " +
+             std::to_string(cut)) +
+            ".";
+  if (!text.empty()) layout.report.notes.push_back({NoteCode::chart_remapped, text});
 }
 
 bool has_split_charts(const Layout& layout) {

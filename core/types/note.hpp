@@ -15,7 +15,7 @@ enum class NoteCode {
   textures_transferred,  ///< images are painted anew for the new texture coordinates
   charts_exceeded,       ///< more charts than max_charts
   surface_noisy,         ///< noise leaves no room for max_distortion
-  chart_remapped,        ///< a chart overlapped itself and got a new map
+  chart_remapped,        ///< a chart overlapped itself and got a new map, or was cut
   outside_page,          ///< constraints put charts outside the page
   padding_reduced,       ///< there are too many islands for the padding
   islands_stacked,       ///< islands of the same shape lie on each other

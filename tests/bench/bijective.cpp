@@ -60,17 +60,18 @@ Row measured(const std::vector<Surface>& surfaces, const UnwrapOptions& options,
 }
 
 void print(const std::filesystem::path& path, const Row& row) {
-  std::printf("%-26.26s %7d %7zu %8.3f %8.3f %7.2f %8.2f %6zu %4d %8.4f %8.4f\n",
+  std::printf("%-26.26s %7d %7zu %8.3f %8.3f %7.2f %8.2f %6zu %4d %8.4f %8.4f %6.3f\n",
               path.stem().string().c_str(), row.before.input.faces,
               static_cast<std::size_t>(row.before.overlaps.value_or(0)), row.flip_free,
               row.bijective, row.bijective / row.flip_free, row.rise, row.after.charts.size(),
-              row.cut, row.after.distortion.angle, row.after.distortion.area);
+              row.cut, row.after.distortion.angle, row.after.distortion.area, row.after.fill);
   std::fflush(stdout);
 }
 
 int show_all(const std::vector<std::string>& paths, const UnwrapOptions& options, int pairs) {
-  std::printf("%-26s %7s %7s %8s %8s %7s %8s %6s %4s %8s %8s\n", "mesh", "faces", "overlap",
-              "flipfree", "biject", "ratio", "rise, %", "charts", "cut", "D_angle", "D_area");
+  std::printf("%-26s %7s %7s %8s %8s %7s %8s %6s %4s %8s %8s %6s\n", "mesh", "faces", "overlap",
+              "flipfree", "biject", "ratio", "rise, %", "charts", "cut", "D_angle", "D_area",
+              "fill");
   std::vector<double> ratios, rises, ratios_of_overlaps;
   for (const std::string& path : paths)
     for (const std::filesystem::path& mesh : meshes_in(path)) try {

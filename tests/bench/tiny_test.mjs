@@ -51,7 +51,7 @@ test('atlas', async () => {
 
 test('bijective', async () => {
   const table = await program('bijective', '--pairs=1', sheet, 'made:opened:900:1');
-  assert.match(table, /^sheet +128 +0( +[\d.]+){8}$/m);
+  assert.match(table, /^sheet +128 +0( +[\d.]+){9}$/m);
   assert.match(table, /^time: median [\d.]+ .*\n.*\nrise: median [\d.]+ %/m);
 });
 

@@ -135,7 +135,7 @@ TEST(Guarantee, OfInjectivityLeavesNoPairThatOverlaps) {
     const double r = 1 + v, angle = 9 * u;
     return Vec3(r * std::cos(angle), r * std::sin(angle), u);
   });
-  const UnwrapOptions options{.guarantee = Guarantee::bijective};
+  UnwrapOptions options{.guarantee = Guarantee::bijective};
   for (const TriMesh& mesh : {helix, shapes::random_disk(12, 1), shapes::sphere(2)}) {
     const Answer a = answer(obj_text(mesh), options);
     const std::vector<UvTriangle> triangles = triangles_of_glb(a.glb);
@@ -145,6 +145,10 @@ TEST(Guarantee, OfInjectivityLeavesNoPairThatOverlaps) {
         ASSERT_LT(common_area(triangles[s], triangles[t]), 1e-13) << s << ' ' << t;
     for (const ChartReport& chart : a.report.charts) EXPECT_EQ(chart.overlaps, 0);
   }
+  const Report cut = answer(obj_text(helix), options).report;
+  EXPECT_EQ(cut.charts.size(), 2U);  // bent to a spiral it would have many times the energy
+  EXPECT_LT(cut.charts[0].mending.energy_rise, 0.05);
+  options.max_charts = 1;
   const Report parted = answer(obj_text(helix), options).report;
   EXPECT_EQ(parted.charts.size(), 1U);  // its boundaries part, it is not split
   EXPECT_EQ(parted.charts[0].mending.parts, 1);
