@@ -16,7 +16,6 @@
 #include "core/segment/chart_excess.hpp"
 #include "core/segment/coarsen.hpp"
 #include "core/segment/region_charts.hpp"
-#include "core/segment/search_extent.hpp"
 
 namespace unwrapd::segment {
 namespace {
@@ -28,23 +27,26 @@ constexpr double kRoughShare = 0.1, kFirstShare = 0.9;  // of the work, when the
 /// What charts are found, step by step (excess_steps()).
 class Search {
  public:
-  Search(const charts::Chart& component, const SegmentRules& rules, Executor& executor)
+  Search(const charts::Chart& component, const SegmentRules& rules, Index faces, Executor& executor)
       : component_(component),
         rules_(rules),
         executor_(executor),
-        coarse_(coarsen(component.mesh, component.halfedges,
-                        search_extent(rules.effort).coarse_faces, rules.stop)),
+        coarse_(coarsen(component.mesh, component.halfedges, faces, rules.stop)),
         surface_(make_segmentation_mesh(coarse_.mesh, coarse_.halfedges)),
         steps_(excess_steps(rules.max_distortion)) {}
 
   LargeCharts run() {
     measure_hidden();
-    Found best = first();
-    for (std::size_t k = 1; k < steps_.size(); ++k) {
-      std::optional<Found> next = loosen(steps_[k]);
-      if (next && is_better(next->seams, best.seams, rules_.most_regions)) best = std::move(*next);
-    }
-    return {std::move(best.charts), is_rough_};
+    return {loosened(first()), is_rough_};
+  }
+
+  std::optional<std::vector<charts::Chart>> run_within_bound() {
+    const double excess = steps_.front();
+    measure_hidden();
+    if (steps_.front() != excess || is_rough_) return std::nullopt;
+    Found found = first();
+    if (misses(found, excess)) return std::nullopt;
+    return loosened(std::move(found));
   }
 
  private:
@@ -53,6 +55,14 @@ class Search {
     ExcessDistortion small, large;  ///< on either surface, over its area
     SeamsOfCharts seams;  ///< both sides of each, in units of the mesh, and the surface's boundary
   };
+
+  std::vector<charts::Chart> loosened(Found best) {
+    for (std::size_t k = 1; k < steps_.size(); ++k) {
+      std::optional<Found> next = loosen(steps_[k]);
+      if (next && is_better(next->seams, best.seams, rules_.most_regions)) best = std::move(*next);
+    }
+    return std::move(best.charts);
+  }
 
   /// Steps for which the noise leaves no room are left out, unless that is so for all of them.
   void measure_hidden() {
@@ -141,9 +151,16 @@ class Search {
 
 }  // namespace
 
-LargeCharts large_charts(const charts::Chart& component, const SegmentRules& rules,
+LargeCharts large_charts(const charts::Chart& component, const SegmentRules& rules, Index faces,
                          Executor& executor) {
-  return Search(component, rules, executor).run();
+  return Search(component, rules, faces, executor).run();
+}
+
+std::optional<std::vector<charts::Chart>> large_charts_within_bound(const charts::Chart& component,
+                                                                    const SegmentRules& rules,
+                                                                    Index faces,
+                                                                    Executor& executor) {
+  return Search(component, rules, faces, executor).run_within_bound();
 }
 
 }  // namespace unwrapd::segment

@@ -8,6 +8,12 @@
 
 namespace unwrapd::segment {
 
+/// A smaller surface that stands for a large one while charts are sought.
+struct StandIn {
+  Index beyond = 0;  ///< for surfaces of more faces
+  Index faces = 0;   ///< that it has
+};
+
 struct SearchExtent {
   double faces = 0;        ///< that greedy merges and rounds may work on for a whole page
   std::size_t merges = 1;  ///< greedy merges, at most
@@ -15,8 +21,8 @@ struct SearchExtent {
   double rounds = 0;       ///< of large-neighbourhood search, at most
   double idle = 0;         ///< rounds without a gain that end it, in regions of the partition
   double packing = 1;      ///< work of a rough packing, in shares of pack::rough_fill()'s
-  Index most_faces = 0;    ///< beyond, a smaller surface stands for a component
-  Index coarse_faces = 0;  ///< that this has
+  StandIn first = {};      ///< where it shows the bound's room, and the charts keep the bound
+  StandIn second = {};     ///< where the first does not
 };
 
 SearchExtent search_extent(Effort effort);

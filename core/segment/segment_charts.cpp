@@ -65,6 +65,16 @@ class Account {
   double area_ = 0;  ///< in space, of all components
 };
 
+/// Rules whose progress goes from one share of the work to another.
+SegmentRules for_part_of_work(SegmentRules rules, double begin, double end) {
+  if (rules.on_progress)
+    rules.on_progress = [all = std::move(rules.on_progress), begin, end](Stage stage,
+                                                                         double share) {
+      all(stage, begin + share * (end - begin));
+    };
+  return rules;
+}
+
 void note(charts::Charts& surface, RepairKind kind, Index count) {
   if (count > 0) surface.repairs.push_back({kind, 0, count});
 }
@@ -100,10 +110,7 @@ class Cutter {
     rules.most_regions = most;
     if (whole && openness(component) >= kLeastOpenness && keep_whole(component, rules)) return;
     rules.effort = options_.effort;
-    const Index most_faces = search_extent(options_.effort).most_faces;
-    std::vector<charts::Chart> parts = component.mesh.face_count() > most_faces
-                                           ? parts_of_large(component, rules)
-                                           : parts_of_small(component, rules);
+    std::vector<charts::Chart> parts = parts_of(component, std::move(rules));
     segmented += !whole || parts.size() > 1 ? 1 : 0;
     for (charts::Chart& part : parts) charts.push_back(std::move(part));
   }
@@ -118,16 +125,22 @@ class Cutter {
     return true;
   }
 
-  std::vector<charts::Chart> parts_of_small(const charts::Chart& component,
-                                            const SegmentRules& rules) {
-    const SegmentationMesh surface =
-        make_segmentation_mesh(component.mesh, component.halfedges, component.crease);
-    return region_charts(component, segment(surface, rules, executor_));
-  }
-
-  std::vector<charts::Chart> parts_of_large(const charts::Chart& component,
-                                            const SegmentRules& rules) {
-    LargeCharts large = large_charts(component, rules, executor_);
+  /// On a small surface that stands for the component, on a larger one, or on its own.
+  std::vector<charts::Chart> parts_of(const charts::Chart& component, SegmentRules rules) {
+    const SearchExtent extent = search_extent(options_.effort);
+    const Index faces = component.mesh.face_count();
+    if (faces > extent.first.beyond) {
+      auto found = large_charts_within_bound(component, for_part_of_work(rules, 0, kShareOfFirst),
+                                             extent.first.faces, executor_);
+      if (found) return std::move(*found);
+      rules = for_part_of_work(rules, kShareOfFirst, 1);
+    }
+    if (faces <= extent.second.beyond) {
+      const SegmentationMesh surface =
+          make_segmentation_mesh(component.mesh, component.halfedges, component.crease);
+      return region_charts(component, segment(surface, rules, executor_));
+    }
+    LargeCharts large = large_charts(component, rules, extent.second.faces, executor_);
     rough += large.is_rough ? 1 : 0;
     return std::move(large.charts);
   }

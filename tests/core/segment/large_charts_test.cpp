@@ -50,8 +50,8 @@ TEST(LargeCharts, AreTheSameForAnyExecutor) {
       charts::components_of(surface_of(bench::noisy_body(20'000, 0.25)), {});
   SerialExecutor serial;
   TwoThreads two;
-  const auto one = large_charts(whole.charts.front(), {}, serial).charts;
-  const auto other = large_charts(whole.charts.front(), {}, two).charts;
+  const auto one = large_charts(whole.charts.front(), {}, 12000, serial).charts;
+  const auto other = large_charts(whole.charts.front(), {}, 12000, two).charts;
   ASSERT_EQ(one.size(), other.size());
   for (std::size_t k = 0; k < one.size(); ++k) {
     EXPECT_EQ(one[k].face_source, other[k].face_source);
