@@ -60,6 +60,44 @@ TEST(ShortestSeam, GoesAroundACornerIfThatIsShorter) {
   EXPECT_LE(length_of(*owned.chart, cut), 2 + 1e-9);  // around the corner's triangle alone
 }
 
+/// The least length of all ways to put the faces on two sides.
+double least_of_all(const Chart& chart, const Sets& sets) {
+  std::vector<std::array<Index, 2>> sides;
+  std::vector<double> length;
+  for (Index h = 0; h < Index(chart.halfedges.twin.size()); ++h) {
+    const Index twin = chart.halfedges.twin[std::size_t(h)];
+    if (twin < h) continue;
+    sides.push_back({h / 3, twin / 3});
+    length.push_back((chart.mesh.positions[std::size_t(end_of(chart.mesh.faces, h))] -
+                      chart.mesh.positions[std::size_t(start_of(chart.mesh.faces, h))])
+                         .norm());
+  }
+  double least = 1e9;
+  for (unsigned first = 0; first < 1U << unsigned(chart.mesh.face_count()); ++first) {
+    const auto is_first = [&](Index t) { return (first >> unsigned(t) & 1U) != 0; };
+    if (!std::ranges::all_of(sets[0], is_first) || std::ranges::any_of(sets[1], is_first)) continue;
+    double own = 0;
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      if (is_first(sides[k][0]) != is_first(sides[k][1])) own += length[k];
+    least = std::min(least, own);
+  }
+  return least;
+}
+
+TEST(ShortestSeam, IsTheShortestOfAllOnSmallCharts) {
+  std::mt19937 random(7);
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto owned = disk_of(shapes::random_disk(3, seed));
+    Sets sets;
+    for (Index t = 0; t < owned.chart->mesh.face_count(); ++t)
+      if (const auto side = random() % 8; side < 2) sets[side].push_back(t);
+    if (sets[0].empty() || sets[1].empty()) continue;
+    const double least = least_of_all(*owned.chart, sets);
+    EXPECT_NEAR(length_of(*owned.chart, cut_between(*owned.chart, sets)), least, 0.01 * least);
+  }
+}
+
 TEST(ShortestSeam, SeparatesAnySetsAndIsNoLongerThanOthers) {
   std::mt19937 random(3);
   for (unsigned seed = 0; seed < 20; ++seed) {
