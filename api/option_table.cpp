@@ -122,7 +122,8 @@ constexpr std::array kRows = {
               .type = OptionType::numbers,
               .nullable = true,
               .description = "Weight of area against angle. 0 equals asap, larger values approach "
-                             "arap. A list computes one map for each of its values.",
+                             "arap. A list computes one map for each of its values. As they grow, "
+                             "angles are never kept better, nor areas worse.",
               .methods = kOnlyHybrid,
               .get = get_lambda,
               .set = set_lambda},

@@ -10,8 +10,8 @@ namespace unwrapd::api {
 namespace {
 
 // Each in the order of its enumerators.
-constexpr std::array<std::string_view, 5> kStopReasons = {"iterations", "direct", "collapse_guard",
-                                                          "converged", "max_iterations"};
+constexpr std::array<std::string_view, 6> kStopReasons = {
+    "iterations", "direct", "collapse_guard", "converged", "max_iterations", "neighbour"};
 constexpr std::array<std::string_view, 3> kGuarantees = {"none", "flip_free", "bijective"};
 constexpr std::array<std::string_view, 7> kRepairKinds = {"degenerate_faces_set_aside",
                                                           "duplicate_faces_set_aside",
@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, 5> kFileRepairKinds = {
     "line_ends_replaced", "empty_indices_ignored", "normals_replaced", "chunks_padded",
     "shared_nodes_kept"};
 
-constexpr std::array<std::string_view, 24> kNoteCodes = {
+constexpr std::array<std::string_view, 25> kNoteCodes = {
     "option_unused",     "overlaps",           "distorted",
     "set_chosen",        "textures_lost",      "textures_transferred",
     "charts_exceeded",   "surface_noisy",      "chart_remapped",
@@ -32,8 +32,9 @@ constexpr std::array<std::string_view, 24> kNoteCodes = {
     "faces_without_uvs", "tangents_changed",   "transform_reset",
     "materials_copied",  "morph_targets_lost", "sets_filled",
     "images_separate",   "polygons_split",     "format_changed",
-    "data_dropped",      "positions_rounded",  "origin_moved"};
-static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::origin_moved) + 1);
+    "data_dropped",      "positions_rounded",  "origin_moved",
+    "lambda_repeated"};
+static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::lambda_repeated) + 1);
 
 /// The stages of timings_ms, in the order of a job.
 constexpr std::array kTimings = {"queue", "read",     "setup",   "segment", "merge", "factor",

@@ -1,6 +1,5 @@
 // Unwrapping, step by step. unwrap_curve() is the list for all surfaces: prepare charts, map them,
-// pack, quantize, measure, assemble, report. map_chart() is the list for one chart: constrain,
-// parameterize, guarantee, scale.
+// pack, quantize, measure, assemble, report. pipeline::map_chart() is the list for one chart.
 #include "core/unwrap.hpp"
 
 #include <algorithm>
@@ -12,17 +11,15 @@
 #include "core/base/cancel.hpp"
 #include "core/charts/constraints.hpp"
 #include "core/charts/repair_surfaces.hpp"
-#include "core/guarantee/keep_guarantee.hpp"
 #include "core/pipeline/chart_progress.hpp"
 #include "core/pipeline/layout.hpp"
+#include "core/pipeline/map_chart.hpp"
 #include "core/pipeline/note_faults.hpp"
-#include "core/pipeline/parameterize_chart.hpp"
+#include "core/pipeline/order_layouts.hpp"
 #include "core/pipeline/prepare_charts.hpp"
 #include "core/pipeline/repack.hpp"
 #include "core/pipeline/straighten_charts.hpp"
 #include "core/segment/segment.hpp"
-#include "core/solve/constrain_chart.hpp"
-#include "core/solve/solve.hpp"
 #include "core/types/chart_rules.hpp"
 
 namespace unwrapd {
@@ -40,43 +37,6 @@ void announce(const Progress& progress, Stage stage, std::size_t charts, double 
   if (progress.on_stage) progress.on_stage({stage, 0, static_cast<Index>(charts), fraction});
 }
 
-/// The maps of one chart: one for each lambda, in several parts where the guarantee took a split.
-/// The solver analyses and factors the chart once.
-std::vector<std::vector<MappedChart>> map_chart(const pipeline::ChartJob& job,
-                                                const UnwrapOptions& options,
-                                                pipeline::ChartProgress& progress,
-                                                Executor& executor) {
-  solve::Disk disk = job.disk;  // a copy, because jobs share the disk but not the stop token
-  disk.stop = progress.stop();
-  const std::vector<double> lambdas = pipeline::lambdas_of(options);
-  progress.begin_chart(job.chart->mesh.faces.size(), lambdas.size());
-  throw_if_cancelled(disk.stop);
-  const solve::ChartConstraints constraints =
-      solve::constrain_chart(disk, options, job.page, disk.stop, executor);
-  const solve::VertexConstraints& held = constraints.constrained.constraints;
-  solve::Solver solver(
-      disk, options,
-      pipeline::constrained_start(*job.chart, disk, options, constraints.constrained), executor);
-  std::vector<std::vector<MappedChart>> maps;
-  for (const double lambda : lambdas) {
-    progress.begin_run(pipeline::is_curve(options) ? std::optional(lambda) : std::nullopt);
-    solve::Solution solution = pipeline::parameterize_chart(solver, job, options, lambda, progress);
-    if (options.guarantee != Guarantee::none) progress.tell(Stage::untangle);
-    guarantee::GuaranteeRules rules = guarantee::rules_for(*job.chart, disk, options, lambda);
-    rules.intent.constrained = solve::fixed_vertices(disk.positions.size(), held);
-    rules.intent.soft = held.soft;
-    rules.intent.executor = &executor;
-    rules.intent.global = solver.global();
-    guarantee::GuaranteedMap guaranteed =
-        guarantee::keep_guarantee(job.chart, disk, std::move(solution.uv), rules);
-    maps.push_back(
-        pipeline::scale_parts(disk, std::move(guaranteed), constraints, solution, executor));
-    progress.end_run();
-  }
-  progress.end_chart();
-  return maps;
-}
-
 /// The maps of all charts: a layout for each lambda.
 std::vector<Layout> map_charts(const PreparedCharts& prepared, std::span<const Surface> surfaces,
                                const UnwrapOptions& options, const Progress& progress,
@@ -92,7 +52,8 @@ std::vector<Layout> map_charts(const PreparedCharts& prepared, std::span<const S
   for (std::size_t s = 0; s < all.surfaces.size(); ++s)
     for (std::size_t c = 0; c < all.surfaces[s].charts.size(); ++c) {
       const std::shared_ptr<const charts::Chart> chart(prepared.all, &all.surfaces[s].charts[c]);
-      auto maps = map_chart({chart, all.disks[s][c], page[s][c]}, options, watch, executor);
+      auto maps =
+          pipeline::map_chart({chart, all.disks[s][c], page[s][c]}, options, watch, executor);
       for (std::size_t k = 0; k < maps.size(); ++k)
         for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped));
     }
@@ -103,6 +64,17 @@ std::vector<Layout> map_charts(const PreparedCharts& prepared, std::span<const S
 /// Whether a tighter bound of distortion can lead to other charts.
 bool has_bound(const UnwrapOptions& options) {
   return options.max_distortion && options.max_charts != 1 && !keeps_whole(options);
+}
+
+/// Whether some borders are shorter and none longer. All lambdas of a list then have the same
+/// charts, as their order needs.
+bool has_shorter_borders(const std::vector<Layout>& layouts, const std::vector<Layout>& others) {
+  bool is_shorter = false, is_longer = false;
+  for (std::size_t k = 0; k < layouts.size(); ++k) {
+    is_shorter |= border_of(layouts[k]) < border_of(others[k]);
+    is_longer |= border_of(layouts[k]) > border_of(others[k]);
+  }
+  return is_shorter && !is_longer;
 }
 
 /// Splits make borders longer. Where charts were split, tighter bounds of distortion are tried, and
@@ -122,8 +94,7 @@ void try_tighter_bounds(std::span<const Surface> surfaces, UnwrapOptions options
     if (prepared.all->note || std::ranges::none_of(layouts, is_shorter)) return;
     std::vector<Layout> others = map_charts(prepared, surfaces, options, quiet, executor);
     is_split = std::ranges::any_of(others, pipeline::has_split_charts);
-    for (std::size_t k = 0; k < layouts.size(); ++k)
-      if (border_of(others[k]) < border_of(layouts[k])) layouts[k] = std::move(others[k]);
+    if (has_shorter_borders(others, layouts)) layouts = std::move(others);
   }
 }
 
@@ -158,10 +129,9 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> given, const Unwrap
     quantize_maps(layout, options, progress.stop);
   }
   announce(progress, Stage::measure, layouts.front().report.charts.size(), kMeasureBegin);
-  for (Layout& layout : layouts) {
-    measure_maps(layout, surfaces, given, options, job);
-    note_faults(layout, surfaces, options);
-  }
+  for (Layout& layout : layouts) measure_maps(layout, surfaces, given, options, job);
+  pipeline::order_layouts(layouts, options, job);
+  for (Layout& layout : layouts) note_faults(layout, surfaces, options);
   std::vector<Unwrapped> maps;
   for (Layout& layout : layouts)
     maps.push_back(assemble_surfaces(surfaces, std::move(layout), progress.stop));

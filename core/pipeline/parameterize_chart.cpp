@@ -1,7 +1,9 @@
 #include "core/pipeline/parameterize_chart.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "core/base/error.hpp"
@@ -76,6 +78,17 @@ bool is_curve(const UnwrapOptions& options) {
 
 std::vector<double> lambdas_of(const UnwrapOptions& options) {
   return is_curve(options) ? options.lambda_curve : std::vector{options.lambda};
+}
+
+bool keeps_order(const UnwrapOptions& options) {
+  return is_curve(options) && !options.stop.iterations;
+}
+
+std::vector<std::size_t> ascending_order(std::span<const double> lambdas) {
+  std::vector<std::size_t> order(lambdas.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return lambdas[k]; });
+  return order;
 }
 
 solve::ConstrainedStart constrained_start(const charts::Chart& chart, const solve::Disk& disk,

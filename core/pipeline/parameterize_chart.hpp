@@ -2,6 +2,7 @@
 // The steps of one chart that belong to the solver: its start, its solution, and its scale.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/charts/charts.hpp"
@@ -33,6 +34,13 @@ bool is_curve(const UnwrapOptions& options);
 
 /// The values of lambda that are asked for: those of the curve, or one.
 std::vector<double> lambdas_of(const UnwrapOptions& options);
+
+/// Whether the maps of a list are kept in order (lambda_order.hpp). Those of a given number of
+/// iterations are not: they are for comparison.
+bool keeps_order(const UnwrapOptions& options);
+
+/// The indices of the lambdas, smallest first; equal ones keep their order.
+std::vector<std::size_t> ascending_order(std::span<const double> lambdas);
 
 /// The constraints of a chart. A chart without any starts from its own map, if it has one.
 solve::ConstrainedStart constrained_start(const charts::Chart& chart, const solve::Disk& disk,

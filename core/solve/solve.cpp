@@ -242,4 +242,14 @@ Solution Solver::run(double lambda, const SolveWatch& watch) {
   }
 }
 
+Solution Solver::run_from(const UvMap& start, double lambda, int max_iterations) {
+  assert(options_.method == Method::hybrid);
+  factor({});
+  const arap::Rigidity rigidity = rigidity_of(disk_, lambda, options_.lambda_units);
+  arap::Descent descent({disk_, holds_, *global_}, start, rigidity, executor_);
+  const arap::DescentOptions rule{options_.stop.tolerance, max_iterations};
+  const StopReason reason = arap::run(descent, rule, {{}, disk_.stop});
+  return std::move(descent).finish(reason);
+}
+
 }  // namespace unwrapd::solve

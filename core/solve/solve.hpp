@@ -48,6 +48,10 @@ class Solver {
   /// result does not depend on earlier runs. Throws Error{solver_failed, cancelled}.
   Solution run(double lambda, const SolveWatch& watch);
 
+  /// Method::hybrid: descends from a map in which hard constraints hold, silently. Throws
+  /// Error{cancelled}.
+  Solution run_from(const UvMap& start, double lambda, int max_iterations);
+
   /// The system of the iterations; null if no run has needed it yet.
   [[nodiscard]] const arap::GlobalStep* global() const { return global_ ? &*global_ : nullptr; }
 

@@ -31,6 +31,7 @@ enum class NoteCode {
   data_dropped,          ///< materials or properties of the input are not in the result
   positions_rounded,     ///< positions are rounded: by Draco, or to floats that cannot hold a face
   origin_moved,          ///< positions are relative to the translation of the node
+  lambda_repeated,       ///< charts have maps that come from those of another lambda of the list
 };
 
 struct Note {

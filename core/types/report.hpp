@@ -28,6 +28,7 @@ enum class StopReason {
   collapse_guard,  ///< a step would have shrunk the map to almost nothing
   converged,       ///< the energy fell by less than the tolerance over a window
   max_iterations,  ///< the limit came before convergence
+  neighbour,       ///< the map comes from that of another lambda of the list
 };
 
 /// What a guarantee took: what was wrong with the solved map, and what putting it right cost.

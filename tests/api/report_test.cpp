@@ -76,7 +76,7 @@ TEST(Report, NamesItsKindsAsTheContractDoes) {
     EXPECT_EQ(json.at("repairs").size(), 2U);
     kinds.push_back(json.at("repairs").at(0).at("kind"));
   }
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i <= static_cast<int>(StopReason::neighbour); ++i) {
     report.charts[0].stop_reason = static_cast<StopReason>(i);
     reasons.push_back(to_json(report, {}).at("charts").at(0).at("stop_reason"));
   }
@@ -91,7 +91,7 @@ TEST(Report, NamesTheCodesOfNotesAsTheContractDoes) {
   for (const std::string& line : prose)
     if (const auto begin = line.find("- `"); begin != std::string::npos)
       told.push_back(line.substr(begin + 3, line.find('`', begin + 3) - begin - 3));
-  for (int i = 0; i <= static_cast<int>(NoteCode::origin_moved); ++i) {
+  for (int i = 0; i <= static_cast<int>(NoteCode::lambda_repeated); ++i) {
     Report report;
     report.notes = {{static_cast<NoteCode>(i), "why"}};
     own.push_back(to_json(report, {}).at("notes").at(0).at("code"));
