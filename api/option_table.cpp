@@ -1,21 +1,15 @@
 // The table of options. A row reads and writes its own field, and nothing else in the project lists
 // the options by name: a new option needs its field and one row.
-#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
-#include <variant>
-
-#include "api/constraints.hpp"
 #include "api/option_rows.hpp"
-#include "api/seam_paths.hpp"
+#include "api/special_options.hpp"
 
 namespace unwrapd::api {
 namespace {
 
 // Each in the order of its enumerators.
 constexpr std::array<std::string_view, 4> kPresets = {"texture", "lightmap", "chart", "paper"};
-constexpr std::array<std::string_view, 2> kTexcoordChoices = {"auto", "free"};
 constexpr std::array<std::string_view, 9> kMethods = {"asap", "arap", "hybrid", "abf", "linabf",
                                                       "cp",   "bff",  "ic",     "slim"};
 constexpr std::array<std::string_view, 2> kLambdaUnits = {"dimensionless", "paper"};
@@ -49,58 +43,6 @@ constexpr double kMinTexelsPerUnit = 1e-9, kMaxTexelsPerUnit = 1e12;
 constexpr double kMaxDistortion = 1e6, kMaxCharts = 1e6;
 constexpr double kMaxWeldDistance = 1e100;
 constexpr double kMinTolerance = 1e-12, kMaxTolerance = 0.1;
-
-Json get_lambda(const JobOptions& options) {
-  const UnwrapOptions& unwrap = options.unwrap;
-  return unwrap.lambda_curve.empty() ? Json(unwrap.lambda) : Json(unwrap.lambda_curve);
-}
-
-/// null is what resolved options have for other methods than hybrid.
-void set_lambda(JobOptions& options, const Json& value) {
-  if (value.is_null()) return;
-  if (value.is_array()) {
-    options.unwrap.lambda_curve = value.get<std::vector<double>>();
-  } else {
-    options.unwrap.lambda = value.get<double>();
-  }
-}
-
-Json get_texcoord(const JobOptions& options) {
-  if (const int* set = std::get_if<int>(&options.asset.texcoord)) return *set;
-  return kTexcoordChoices[static_cast<std::size_t>(
-      std::get<TexcoordChoice>(options.asset.texcoord))];
-}
-
-void set_texcoord(JobOptions& options, const Json& value) {
-  if (value.is_number()) {
-    options.asset.texcoord = value.get<int>();
-  } else {
-    const auto found = std::ranges::find(kTexcoordChoices, value.get_ref<const std::string&>());
-    options.asset.texcoord = static_cast<TexcoordChoice>(found - kTexcoordChoices.begin());
-  }
-}
-
-/// The distance has an option of its own, see settle_welding().
-Json get_weld(const JobOptions& options) {
-  return options.unwrap.welding.mode == WeldMode::exact ? "exact" : "auto";
-}
-
-void set_weld(JobOptions& options, const Json& value) {
-  options.unwrap.welding.mode = value == "exact" ? WeldMode::exact : WeldMode::automatic;
-}
-
-Json get_constraints(const JobOptions& options) { return to_json(options.unwrap.constraints); }
-
-void set_constraints(JobOptions& options, const Json& value) {
-  options.unwrap.constraints =
-      constraints_from_json(value, std::numeric_limits<int>::max(), "/constraints");
-}
-
-Json get_seam_edges(const JobOptions& options) { return to_json(options.unwrap.seam_edges); }
-
-void set_seam_edges(JobOptions& options, const Json& value) {
-  options.unwrap.seam_edges = seam_paths_from_json(value, "/seam_edges");
-}
 
 using O = UnwrapOptions;
 using A = AssetOptions;
@@ -209,9 +151,20 @@ constexpr std::array kRows = {
         "effort", kEveryMethod,
         "How long charts and their places on the page are searched for. fast: briefly, with more "
         "charts and longer seams; balanced: for most assets; best: much longer."),
-    figure<&O::resolution>("resolution", {kMinResolution, kMaxResolution}, kEveryMethod,
-                           "Side of the square texture, in texels. Set it to the size of the "
-                           "texture that will be painted or baked."),
+    OptionRow{
+        .name = "resolution",
+        .type = OptionType::integer,
+        .choices = kPageSizeChoices,
+        .minimum = kMinResolution,
+        .maximum = kMaxResolution,
+        .description =
+            "Side of the square texture, in texels. Set it to the size of the texture that "
+            "will be painted or baked. auto: with texels_per_unit the smallest multiple of "
+            "four that holds all islands, else 1024; power_of_two: the same with the smallest "
+            "power of two.",
+        .methods = kEveryMethod,
+        .get = get_resolution,
+        .set = set_resolution},
     figure<&O::width>("width", {kMinResolution, kMaxResolution}, kEveryMethod,
                       "Width of the texture, along U, in texels. Unset: resolution."),
     figure<&O::height>("height", {kMinResolution, kMaxResolution}, kEveryMethod,
@@ -224,7 +177,7 @@ constexpr std::array kRows = {
     figure<&Packing::texels_per_unit>(
         "texels_per_unit", {kMinTexelsPerUnit, kMaxTexelsPerUnit}, kEveryMethod,
         "Texels for each unit of length of the mesh, on every island. Unset: as many as fit. Set "
-        "it to give several assets the same texel density."),
+        "it to give several assets the same texel density; resolution is then auto unless given."),
     figure<&Packing::max_pages>(
         "max_pages", {1, kMaxPages}, kEveryMethod,
         "The most pages. Page k is the UDIM tile 1001 + k and lies at U from k to k + 1."),

@@ -84,6 +84,13 @@ void settle_welding(Welding& welding) {
     welding.mode = welding.distance ? WeldMode::distance : WeldMode::automatic;
 }
 
+/// A density without a size asks for the size.
+void settle_page(JobOptions& options, bool is_size_given) {
+  if (!is_size_given && options.unwrap.packing.texels_per_unit &&
+      options.asset.textures == TextureMode::keep)
+    options.unwrap.page_fit = PageFit::multiple_of_four;
+}
+
 /// The least side of new textures, and what textures=transfer excludes: a texel of a new texture
 /// belongs to one place of the surface, on the page.
 void settle_textures(JobOptions& options) {
@@ -97,6 +104,7 @@ void settle_textures(JobOptions& options) {
           "needs guarantee=bijective: overlapping triangles would share texels.");
   require(unwrap.constraints.empty(),
           "needs places that packing keeps apart; leave out constraints.");
+  require(!unwrap.finds_page(), "paints images of a given size; give resolution in texels.");
   require(unwrap.packing.max_pages == 1, "writes one page; leave out max_pages.");
   require(unwrap.packing.group == PageGroup::scene, "writes one page; leave out group.");
   require(unwrap.page_size().width == unwrap.page_size().height,
@@ -208,6 +216,7 @@ struct PartialOptions {
   JobOptions finish() {
     yield_to_request(options, [this](std::string_view name) { return is_given(name); });
     settle_welding(options.unwrap.welding);
+    settle_page(options, is_given("resolution") || is_given("width") || is_given("height"));
     settle_textures(options);
     validate(options.unwrap, limits.max_iterations);
     for (const OptionRow* row : given) {
@@ -253,9 +262,8 @@ JobOptions parse_options(const Query& query, const Limits& limits) {
 }
 
 JobOptions parse_options(const Json& object, const Limits& limits) {
-  if (!object.is_object()) {
+  if (!object.is_object())
     throw Error(ErrorCode::invalid_option, "The options must be a JSON object.");
-  }
   PartialOptions gathering(preset_of(object, limits), limits);
   gathering.add_all(object);
   return gathering.finish();

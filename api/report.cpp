@@ -213,6 +213,7 @@ Json to_json(const Report& report, const ReportContext& context) {
                {"overlaps", report.overlaps ? Json(*report.overlaps) : Json()},
                {"fill", finite(report.fill)},
                {"pages", report.pages},
+               {"page", {{"width", report.page.width}, {"height", report.page.height}}},
                {"page_names", report.page_names},
                {"texel_density", finite(report.texel_density)},
                {"timings_ms", timings_json(context)},

@@ -191,9 +191,10 @@ double border_of(const Layout& layout) {
 void pack_charts(Layout& layout, std::span<const Surface> surfaces, const UnwrapOptions& options,
                  Executor& executor) {
   const bool are_placed = !options.constraints.empty();
+  layout.report.page = options.page_size();
   if (!are_placed) pack_free_charts(layout, surfaces, options, executor);
   for (std::vector<UvMap>& own : layout.islands)
-    for (UvMap& map : own) to_uvs(map, options.page_size());
+    for (UvMap& map : own) to_uvs(map, layout.report.page);
   if (are_placed) note_charts_beyond(layout);
 }
 
@@ -220,7 +221,7 @@ void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<c
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
       const charts::Chart& chart = *layout.charts[s][k];
       UvMap uv = layout.islands[s][k];
-      to_page_widths(uv, options.page_size());
+      to_page_widths(uv, layout.report.page);
       measure::DistortionSums own =
           is_moved ? sums_in_file(chart, uv, given[s].mesh.positions, used.faces, executor)
                    : measure::distortion_sums(
@@ -234,7 +235,7 @@ void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<c
   }
   const measure::DistortionSums& sums = layout.sums;
   layout.report.distortion = measure::distortion(sums);
-  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * options.page_size().width;
+  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * layout.report.page.width;
   if (!options.constraints.empty()) layout.report.fill = covered_page(layout);
 }
 

@@ -21,7 +21,7 @@ Layout for_lambda(double lambda, Layout layout, const UnwrapOptions& options, Ex
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k, ++report) {
       const TriMesh& mesh = layout.charts[s][k]->mesh;
       UvMap uv = layout.islands[s][k];
-      to_page_widths(uv, options.page_size());
+      to_page_widths(uv, layout.report.page);
       const auto rest = measure::flatten(mesh.positions, mesh.faces, executor);
       report->iterations = 0;
       report->stop_reason = StopReason::neighbour;

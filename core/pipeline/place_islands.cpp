@@ -8,6 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "core/pack/pack_groups.hpp"
+#include "core/pipeline/fit_pages.hpp"
 
 namespace unwrapd::pipeline {
 namespace {
@@ -58,14 +59,20 @@ std::vector<Index> pages_of(const std::vector<std::string>& groups, Report& repo
   return pages;
 }
 
-pack::PackResult pack_islands(const IslandsToPlace& islands, const UnwrapOptions& options,
-                              Executor& executor, Report& report) {
+FittedPages pack_islands(const IslandsToPlace& islands, const UnwrapOptions& options,
+                         Executor& executor, Report& report) {
   const PageSize size = options.page_size();
+  const bool is_grouped = options.packing.group != PageGroup::scene;
+  const std::vector<Index> pages =
+      is_grouped ? pages_of(islands.groups, report) : std::vector<Index>();
+  const PackOnce pack = [&](const pack::PageOptions& page) {
+    return is_grouped ? pack::pack_groups(islands.outlines, pages, page, executor)
+                      : pack::pack(islands.outlines, page, executor);
+  };
   const pack::PageOptions page{size.width, options.padding, options.packing, options.effort,
                                size.height};
-  if (options.packing.group == PageGroup::scene)
-    return pack::pack(islands.outlines, page, executor);
-  return pack::pack_groups(islands.outlines, pages_of(islands.groups, report), page, executor);
+  if (!options.finds_page() || islands.outlines.empty()) return {pack(page), size};
+  return fit_pages(islands.outlines, page, options.page_fit, pack);
 }
 
 }  // namespace
@@ -84,7 +91,7 @@ std::string group_of(const Surface& surface, Index face, PageGroup group) {
 
 void place_islands(const IslandsToPlace& islands, const UnwrapOptions& options, Executor& executor,
                    Report& report) {
-  const pack::PackResult packed = pack_islands(islands, options, executor, report);
+  const auto [packed, page] = pack_islands(islands, options, executor, report);
   double covered = 0;
   for (std::size_t k = 0; k < islands.maps.size(); ++k) {
     const pack::Placement& placement = packed.placements[k];
@@ -93,7 +100,8 @@ void place_islands(const IslandsToPlace& islands, const UnwrapOptions& options, 
       covered += area_of(islands.outlines[k]) * placement.scale * placement.scale;
   }
   report.pages = packed.pages;
-  report.fill = covered / packed.pages / options.page_size().aspect();
+  report.page = page;
+  report.fill = covered / packed.pages / page.aspect();
   note_padding(packed, options.padding, report);
   note_stacks(packed, report);
 }

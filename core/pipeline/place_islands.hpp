@@ -24,7 +24,7 @@ struct IslandsToPlace {
 std::string group_of(const Surface& surface, Index face, PageGroup group);
 
 /// Packs the islands; their maps become places on the page,
-/// in units of its width. Fills the report's fill and pages, and notes what could not be had.
+/// in units of its width. Fills the report's fill, pages and page, and notes what could not be had.
 /// Throws Error{does_not_fit, cancelled}.
 void place_islands(const IslandsToPlace& islands, const UnwrapOptions& options, Executor& executor,
                    Report& report);

@@ -73,7 +73,7 @@ void place(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& al
   place_islands(islands, options, executor, report);
   report.fill = std::min(report.fill, 1.0);  // faces on top of each other count each
   for (UvMap* map : islands.maps) {
-    to_uvs(*map, options.page_size());
+    to_uvs(*map, report.page);
     guarantee::round_to_step(*map);
   }
 }
@@ -124,7 +124,7 @@ void note_islands_without_area(const std::vector<charts::UvIslands>& all, Report
 }
 
 void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIslands>& all,
-             const UnwrapOptions& options, Unwrapped& out) {
+             Unwrapped& out) {
   measure::DistortionSums total;
   Report& report = out.report;
   for (std::size_t s = 0; s < all.size(); ++s) {
@@ -135,7 +135,7 @@ void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIsla
     report.input.vertices += charts.input.vertices;
     for (std::size_t k = 0; k < charts.charts.size(); ++k) {
       UvMap map = all[s].maps[k];
-      to_page_widths(map, options.page_size());
+      to_page_widths(map, report.page);
       const measure::DistortionSums sums = sums_of(charts.charts[k], map);
       total += sums;
       report.charts.push_back(report_of(charts.charts[k], sums, s));
@@ -148,7 +148,7 @@ void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIsla
   report.distortion = measure::distortion(total);
   if (!(total.area > 0)) return;
   report.seam_ratio = report.seam_length / std::sqrt(total.area);
-  report.texel_density = std::sqrt(total.uv_area / total.area) * options.page_size().width;
+  report.texel_density = std::sqrt(total.uv_area / total.area) * report.page.width;
 }
 
 }  // namespace
@@ -166,7 +166,7 @@ Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options
   announce(Stage::measure, 0.9);
   note_faces_without(all, out.report);
   note_islands_without_area(all, out.report);
-  measure(surfaces, all, options, out);
+  measure(surfaces, all, out);
   return out;
 }
 

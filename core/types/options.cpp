@@ -42,6 +42,16 @@ void require_packing(const UnwrapOptions& options) {
           "max_pages must lie between 1 and " + std::to_string(kMaxPages), "/max_pages");
 }
 
+void require_page(const UnwrapOptions& options) {
+  const PageSize page = options.page_size();
+  require_side(options.resolution, "resolution");
+  require_side(page.width, "width");
+  require_side(page.height, "height");
+  const int shorter = options.finds_page() ? kMaxResolution : std::min(page.width, page.height);
+  require(options.padding >= 0 && 4 * options.padding <= shorter,
+          "padding must lie between 0 and a quarter of the page's shorter side", "/padding");
+}
+
 /// Constraints and boundary shapes are about components that stay whole.
 void require_charts(const UnwrapOptions& options) {
   require(!options.max_distortion ||
@@ -86,9 +96,6 @@ void validate(const UnwrapOptions& options, int max_iterations) {
           "stop.max_iterations must lie " + range, "/stop/max_iterations");
   require(stop.tolerance > 0 && stop.tolerance < 1, "stop.tolerance must lie between 0 and 1",
           "/stop/tolerance");
-  require_side(options.resolution, "resolution");
-  require_side(options.page_size().width, "width");
-  require_side(options.page_size().height, "height");
   require(options.constraints.empty() || can_hold(options.method),
           "constraints need method asap, arap or hybrid", "/constraints");
   require(options.constraints.empty() || options.boundary == BoundaryShape::free,
@@ -108,9 +115,7 @@ void validate(const UnwrapOptions& options, int max_iterations) {
   require_packing(options);
   require_welding(options.welding);
   require_charts(options);
-  const PageSize page = options.page_size();
-  require(options.padding >= 0 && 4 * options.padding <= std::min(page.width, page.height),
-          "padding must lie between 0 and a quarter of the page's shorter side", "/padding");
+  require_page(options);
 }
 
 }  // namespace unwrapd

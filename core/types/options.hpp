@@ -70,6 +70,11 @@ struct PageSize {
   [[nodiscard]] double aspect() const { return static_cast<double>(height) / width; }
 };
 
+/// How the size of the page is found, see UnwrapOptions::finds_page(). Unless it is given, the page
+/// is square and the smallest that holds all islands at Packing::texels_per_unit: a multiple of
+/// four texels, or a power of two.
+enum class PageFit { given, multiple_of_four, power_of_two };
+
 /// How islands go onto the page, or onto several: page k is the square [k, k+1] x [0, 1], UDIM tile
 /// 1001 + k.
 struct Packing {
@@ -95,6 +100,7 @@ struct UnwrapOptions {
   std::optional<int> max_charts = {};          ///< of the asset, where its topology allows
   int resolution = 1024;                       ///< side of the square page, texels, [16, 16384]
   std::optional<int> width = {}, height = {};  ///< of the page, texels, in place of resolution
+  PageFit page_fit = PageFit::given;
   int padding = 2;                             ///< gap between islands and to the border, texels
   Guarantee guarantee = Guarantee::flip_free;  ///< what holds of the UVs that are written
   RepairMethod repair = RepairMethod::untangle;
@@ -107,6 +113,11 @@ struct UnwrapOptions {
   Effort effort = Effort::balanced;  ///< counted work of the searches, never time (ADR 0045)
   Welding welding = {};              ///< of vertices at different positions
   Straighten straighten = Straighten::off;
+
+  /// Whether the size follows from the density; Report::page then has it.
+  [[nodiscard]] bool finds_page() const {
+    return page_fit != PageFit::given && packing.texels_per_unit && !width && !height;
+  }
 
   [[nodiscard]] PageSize page_size() const {
     return {width.value_or(resolution), height.value_or(resolution)};

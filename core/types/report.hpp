@@ -101,6 +101,7 @@ struct Report {
   std::optional<Index> overlaps = {};        ///< of all charts, where they were counted in each
   double fill = 0;                           ///< UV area covered by islands ÷ area of the pages
   Index pages = 1;                           ///< that the islands take, see Packing
+  PageSize page = {};                        ///< of each page
   double texel_density = 0;                  ///< texels per mesh unit
   Guarantee guarantee = Guarantee::none;     ///< what holds of the UVs that are written
   std::vector<CurvePoint> curve = {};        ///< one for each lambda of a curve, in its order

@@ -136,6 +136,22 @@ TEST(Options, ResolvedOnesCanBeSentAgainAndStayAsTheyAre) {
   }
 }
 
+TEST(Options, ADensityWithoutASizeAsksForTheSize) {
+  const auto fit = [](const char* json) {
+    return parse_options_text(json, kLimits).unwrap.page_fit;
+  };
+  EXPECT_EQ(fit(R"({"texels_per_unit":64})"), PageFit::multiple_of_four);
+  EXPECT_EQ(fit(R"({"texels_per_unit":64,"resolution":"power_of_two"})"), PageFit::power_of_two);
+  for (const char* given :
+       {R"({})", R"({"texels_per_unit":64,"resolution":512})",
+        R"({"texels_per_unit":64,"width":512})", R"({"texels_per_unit":64,"textures":"transfer"})"})
+    EXPECT_EQ(fit(given), PageFit::given) << given;
+  EXPECT_EQ(refusal(std::string(R"({"texels_per_unit":64,"resolution":"auto",)") +
+                    R"("textures":"transfer"})")
+                .where(),
+            "/textures");
+}
+
 TEST(Options, RepackingMakesNothingBijective) {
   const std::string text = R"({"repack_only":true,"guarantee":"bijective"})";
   expect_refused(refusal(text), "guarantee", text.c_str());
@@ -246,7 +262,7 @@ TEST(Options, SayWhatIsAllowed) {
       refusal(Query{{"lambda", "-1"}}).what(),
       "lambda must be a finite number of at least 0, or a list of at most 32 different ones.");
   EXPECT_STREQ(refusal(Query{{"resolution", "8"}}).what(),
-               "resolution must be an integer between 16 and 16384.");
+               "resolution must be an integer between 16 and 16384, or one of auto, power_of_two.");
 }
 
 TEST(Options, GuessWhatAMisspeltNameMeant) {
