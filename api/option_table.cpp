@@ -23,6 +23,7 @@ constexpr std::array<std::string_view, 3> kEfforts = {"fast", "balanced", "best"
 constexpr std::array<std::string_view, 3> kRotations = {"any", "90", "none"};
 constexpr std::array<std::string_view, 3> kGroups = {"scene", "material", "mesh"};
 constexpr std::array<std::string_view, 2> kStraightenings = {"off", "auto"};
+constexpr std::array<std::string_view, 2> kSymmetries = {"off", "auto"};
 constexpr std::array<std::string_view, 3> kBoundaries = {"free", "circle", "square"};
 constexpr std::array<std::string_view, 4> kOutputs = {"auto", "glb", "gltf", "obj"};
 
@@ -147,6 +148,10 @@ constexpr std::array kRows = {
     figure<&O::max_charts>("max_charts", {1, kMaxCharts}, kEveryMethod,
                            "The most charts, at any distortion, where topology allows it. Lower "
                            "values result in fewer charts with more distortion. Unset: unlimited."),
+    choice<&O::symmetry, kSymmetries>(
+        "symmetry", kEveryMethod,
+        "auto: seams of a surface with a mirror plane, which is detected, are symmetric; off: "
+        "charts are searched for without regard to it."),
     choice<&O::effort, kEfforts>(
         "effort", kEveryMethod,
         "How long charts and their places on the page are searched for. fast: briefly, with more "

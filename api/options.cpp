@@ -117,7 +117,7 @@ void settle_textures(JobOptions& options) {
 struct Excluder {
   std::string_view reason;
   bool (*is_on)(const JobOptions&);
-  std::array<std::string_view, 2> excluded;
+  std::array<std::string_view, 3> excluded;
 
   [[nodiscard]] bool excludes(std::string_view name, const JobOptions& options) const {
     return std::ranges::find(excluded, name) != excluded.end() && is_on(options);
@@ -144,10 +144,10 @@ constexpr std::array kExcluders = {
              {"repair"}},
     Excluder{"with constraints, which determine the charts and their places",
              [](J job) { return !job.unwrap.constraints.empty(); },
-             {"max_charts", "effort"}},
+             {"max_charts", "effort", "symmetry"}},
     Excluder{"with a boundary shape, which every component gets as one chart",
              [](J job) { return shapes_boundary(job.unwrap); },
-             {"max_charts"}},
+             {"max_charts", "symmetry"}},
 };
 
 /// The options so far, and the rows that were given.

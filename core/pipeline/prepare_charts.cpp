@@ -21,7 +21,8 @@ segment::SegmentOptions segment_options(const UnwrapOptions& options) {
   return {.max_distortion = options.max_distortion,
           .max_charts = options.max_charts,
           .effort = options.effort,
-          .one_chart_each = keeps_whole(options)};
+          .one_chart_each = keeps_whole(options),
+          .symmetry = options.symmetry};
 }
 
 std::vector<solve::Disk> disks_of(const charts::Charts& surface, Executor& executor) {

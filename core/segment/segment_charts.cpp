@@ -17,6 +17,7 @@
 #include "core/segment/large_charts.hpp"
 #include "core/segment/region_charts.hpp"
 #include "core/segment/search_extent.hpp"
+#include "core/segment/segment_symmetrically.hpp"
 #include "core/segment/whole_chart.hpp"
 
 namespace unwrapd::segment {
@@ -110,7 +111,9 @@ class Cutter {
     rules.most_regions = most;
     if (whole && openness(component) >= kLeastOpenness && keep_whole(component, rules)) return;
     rules.effort = options_.effort;
-    std::vector<charts::Chart> parts = parts_of(component, std::move(rules));
+    std::vector<charts::Chart> parts;
+    if (options_.symmetry == Symmetry::automatic) parts = symmetric_parts(component, rules);
+    if (parts.empty()) parts = parts_of(component, std::move(rules));
     segmented += !whole || parts.size() > 1 ? 1 : 0;
     for (charts::Chart& part : parts) charts.push_back(std::move(part));
   }
@@ -123,6 +126,18 @@ class Cutter {
     charts.back().start = std::move(*uv);
     charts.back().least = Guarantee::bijective;
     return true;
+  }
+
+  /// None where there is no mirror, or where the component is too large to be searched whole.
+  std::vector<charts::Chart> symmetric_parts(const charts::Chart& component,
+                                             const SegmentRules& rules) {
+    if (component.mesh.face_count() / 2 > search_extent(options_.effort).second.beyond) return {};
+    const SegmentationMesh surface =
+        make_segmentation_mesh(component.mesh, component.halfedges, component.crease);
+    const std::optional<Mirror> mirror = find_mirror(surface.mesh, rules.stop);
+    if (!mirror) return {};
+    const auto segments = segment_symmetrically(component, surface, *mirror, rules, executor_);
+    return segments ? region_charts(component, *segments) : std::vector<charts::Chart>();
   }
 
   /// On a small surface that stands for the component, on a larger one, or on its own.

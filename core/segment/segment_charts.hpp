@@ -18,12 +18,13 @@ struct SegmentOptions {
   std::optional<double> max_distortion = {};  ///< empty: none for disks, kDefaultDistortion else
   std::optional<int> max_charts = {};         ///< of all surfaces together; empty: any number
   Effort effort = Effort::balanced;
-  bool one_chart_each = false;  ///< components stay whole: what is no disk is cut to one
+  bool one_chart_each = false;        ///< components stay whole: what is no disk is cut to one
+  Symmetry symmetry = Symmetry::off;  ///< of components that have a mirror plane
 };
 
 inline void describe(CacheKey& key, const SegmentOptions& options) {
-  const auto& [max_distortion, max_charts, effort, one_chart_each] = options;
-  key.add(max_distortion).add(max_charts).add(effort).add(one_chart_each);
+  const auto& [max_distortion, max_charts, effort, one_chart_each, symmetry] = options;
+  key.add(max_distortion).add(max_charts).add(effort).add(one_chart_each).add(symmetry);
 }
 
 /// How the work is watched; calls come from the thread that called.

@@ -58,6 +58,9 @@ struct Welding {
 /// What shares a page; each further page is a UDIM tile of its own.
 enum class PageGroup { scene, material, mesh };
 
+/// Whether seams of a surface with a mirror plane are symmetric.
+enum class Symmetry { off, automatic };  ///< automatic: "auto" on the wire
+
 /// Whether islands that are nearly rectangles become rectangles.
 enum class Straighten { off, automatic };  ///< automatic: "auto" on the wire
 
@@ -113,6 +116,7 @@ struct UnwrapOptions {
   Effort effort = Effort::balanced;  ///< counted work of the searches, never time (ADR 0045)
   Welding welding = {};              ///< of vertices at different positions
   Straighten straighten = Straighten::off;
+  Symmetry symmetry = Symmetry::off;
 
   /// Whether the size follows from the density; Report::page then has it.
   [[nodiscard]] bool finds_page() const {
