@@ -122,8 +122,10 @@ TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyWeld) {
 }
 
 TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyArePacked) {
-  std::vector<UnwrapOptions> jobs(7);
+  std::vector<UnwrapOptions> jobs(8);
   for (UnwrapOptions& options : jobs) options.stop.iterations = 2;
+  jobs[7].page_fit = PageFit::multiple_of_four;
+  jobs[7].packing.texels_per_unit = 100;
   jobs[3].width = 2048;
   jobs[4].height = 2048;
   jobs[5].packing.group = PageGroup::mesh;
@@ -146,9 +148,10 @@ TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyTakeBodiesApart) {
   const Surface disk = shapes::surface_of(shapes::random_disk(4, 3));
   const Surface ball = shapes::surface_of(shapes::sphere(0));
   const Surface other = shapes::surface_of(bent(ball.mesh, 0.3));
-  std::vector<UnwrapOptions> jobs(7);
+  std::vector<UnwrapOptions> jobs(8);
   for (UnwrapOptions& options : jobs) options.stop.iterations = 2;
   jobs[6].effort = Effort::fast;
+  jobs[7].symmetry = Symmetry::automatic;
   jobs[1].max_charts = 1;
   jobs[2].max_charts = 2;
   jobs[3].max_distortion = 2.2;
