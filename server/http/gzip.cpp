@@ -24,8 +24,9 @@ Bytef* input_of(std::string_view bytes) {
 }
 
 bool compresses(std::string_view type) {
-  constexpr std::array<std::string_view, 6> prefixes = {
-      "application/json", "application/yaml", "image/svg+xml", "model/", "text/html", "text/css"};
+  constexpr std::array<std::string_view, 7> prefixes = {
+      "application/json", "application/yaml", "application/wasm", "image/svg+xml",
+      "model/",           "text/html",        "text/css"};
   return type.starts_with("text/javascript") ||
          std::ranges::any_of(prefixes, [&](auto prefix) { return type.starts_with(prefix); });
 }
@@ -41,6 +42,11 @@ void vary_by_encoding(Response& response) {
   for (auto& [name, value] : response.headers)
     if (name == "Vary") return void(value += ", Accept-Encoding");
   response.headers.emplace_back("Vary", "Accept-Encoding");
+}
+
+bool is_encoded(const Response& response) {
+  return std::ranges::any_of(response.headers,
+                             [](const auto& field) { return field.first == "Content-Encoding"; });
 }
 
 }  // namespace
@@ -150,6 +156,7 @@ std::string gzip_etag(std::string_view etag) {
 void encode_answer(const Request& request, Response& response) {
   if (!compresses(response.content_type)) return;
   vary_by_encoding(response);
+  if (is_encoded(response)) return;
   if (response.status != 200 || whole_size(response) < kWorthIt) return;
   if (!accepts_gzip(request.header("Accept-Encoding"))) return;
   for (auto& [name, value] : response.headers)

@@ -159,15 +159,19 @@ std::string choose_format(std::string_view accept, std::string_view usual) {
               "coordinates.");
 }
 
-bool accepts_gzip(std::string_view accept_encoding) {
-  double gzip = -1, any = -1, identity = 0;  // qualities; -1: not named
-  for (const MediaRange& coding : media_ranges(accept_encoding)) {
-    if (coding.type == "gzip" || coding.type == "x-gzip") gzip = coding.quality;
-    if (coding.type == "*") any = coding.quality;
-    if (coding.type == "identity") identity = coding.quality;
+bool accepts_coding(std::string_view accept_encoding, std::string_view coding) {
+  double named = -1, any = -1, identity = 0;  // qualities; -1: not named
+  for (const MediaRange& one : media_ranges(accept_encoding)) {
+    if (one.type == coding || one.type == "x-" + std::string(coding)) named = one.quality;
+    if (one.type == "*") any = one.quality;
+    if (one.type == "identity") identity = one.quality;
   }
-  const double quality = gzip < 0 ? any : gzip;
+  const double quality = named < 0 ? any : named;
   return quality > 0 && quality >= identity;
+}
+
+bool accepts_gzip(std::string_view accept_encoding) {
+  return accepts_coding(accept_encoding, "gzip");
 }
 
 bool prefers_events(std::string_view accept) {

@@ -8,7 +8,10 @@
 
 namespace unwrapd::server::http {
 
-/// Whether a client that sends this Accept-Encoding wants gzip; empty is no.
+/// Whether a client that sends this Accept-Encoding wants a coding, "br"; empty is no.
+bool accepts_coding(std::string_view accept_encoding, std::string_view coding);
+
+/// The same for gzip.
 bool accepts_gzip(std::string_view accept_encoding);
 
 enum class BodyKind { asset, multipart, reference };

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::string_view kIdSegment = "{id}";
 constexpr std::string_view kDigestSegment = "{sha256}";
+constexpr std::string_view kNameSegment = "{name}";
 
 /// Removes and returns the first segment of a path.
 std::string_view take_segment(std::string_view& path) {
@@ -37,7 +38,7 @@ std::optional<PathNames> match(std::string_view route, std::string_view path) {
       names.id = segment;
     } else if (expected == kDigestSegment && is_sha256(segment)) {
       names.sha256 = segment;
-    } else if (expected != segment) {
+    } else if (expected != segment && (expected != kNameSegment || segment.empty())) {
       return std::nullopt;
     }
   }

@@ -12,7 +12,7 @@
 
 namespace unwrapd::server::http {
 
-/// A segment "{id}" of the path matches a job id, "{sha256}" a digest.
+/// A segment "{id}" of the path matches a job id, "{sha256}" a digest, "{name}" any.
 struct Route {
   std::string_view method;
   std::string_view path;

@@ -5,7 +5,7 @@ import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { basename, dirname, join, relative, sep } from "node:path";
 import { fileURLToPath } from "node:url";
 
-import { HOUSES, ROOMS, namespaceOf, roomOf, table, upward } from "./rooms.mjs";
+import { HOUSES, PAGE, PAGE_ROOMS, ROOMS, namespaceOf, roomOf, table, upward } from "./rooms.mjs";
 
 /** A header (or the start of its name) -> where alone it may be included. */
 const ONLY_IN = [
@@ -68,6 +68,18 @@ function includeBreaches(path, header, quoted) {
   return breaches;
 }
 
+/** An import of the page from a folder of it that does not stand before the file's own. */
+function importBreaches(path, line) {
+  const from = path.startsWith(PAGE) && line.match(/(?:from |import\()'(\.[^']*)'/)?.[1];
+  if (!from) return [];
+  const roomIn = (file) => (file.startsWith(PAGE) ? PAGE_ROOMS.indexOf(file.slice(PAGE.length).split("/")[0]) : -1);
+  const target = join(dirname(path), from).split(sep).join("/");
+  if (target.startsWith("client/js/src/")) return [];
+  const own = path.slice(PAGE.length).includes("/") ? roomIn(path) : PAGE_ROOMS.length;
+  const other = roomIn(target);
+  return own >= 0 && other >= 0 && other <= own ? [] : [`${path} may not import ${target}`];
+}
+
 /** A line that opens a namespace other than that of the file's room, or one in it. */
 function namespaceBreaches(path, line) {
   const opened = line.match(/^namespace (unwrapd[\w:]*) \{/)?.[1];
@@ -88,7 +100,7 @@ export function check(path, text) {
     const include = isCode && line.match(/^\s*#\s*include\s+(["<])([^">]+)[">]/);
     const found = include ? includeBreaches(path, include[2], include[1] === '"') : [];
     const words = path.startsWith("tests/layers/") ? [] : FORBIDDEN.filter((word) => word.test(line));
-    const spaces = isCode ? namespaceBreaches(path, line) : [];
+    const spaces = isCode ? namespaceBreaches(path, line) : importBreaches(path, line);
     if (path.startsWith("tests/") && !path.startsWith("tests/layers/") && SHARED_NAMES.test(line))
       found.push("a fixed temporary name; take a fresh folder (mkdtemp)");
     for (const breach of [...found, ...spaces, ...words.map((word) => `forbidden: ${word.source}`)])

@@ -149,3 +149,14 @@ test("tests share no fixed temporary name", () => {
   assert.equal(tells("const server::TempDir own;"), 0);
   assert.equal(tells('mistake({"--config", "/tmp"});'), 0);
 });
+
+test("folders of the page import one way", () => {
+  const tells = (path, from) => check(`client/web/src/${path}`, `import {a} from '${from}';\n`).length;
+  assert.equal(tells("view/solid.ts", "../mesh/model.js"), 0);
+  assert.equal(tells("view/solid.ts", "./stage.js"), 0);
+  assert.equal(tells("view/solid.ts", "three"), 0);
+  assert.equal(tells("job/run.ts", "../../../js/src/job.js"), 0);
+  assert.equal(tells("main.ts", "./app/session.js"), 0);
+  assert.equal(tells("mesh/model.ts", "../view/solid.js"), 1);
+  assert.equal(tells("app/session.ts", "../main.js"), 1);
+});

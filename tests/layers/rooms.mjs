@@ -51,6 +51,10 @@ export const ROOMS = [
   ["client", "the program `unwrap`: uploads, follows, downloads", ["core/base", "api", "server"]],
 ].map(([folder, duty, includes]) => ({ folder, duty, includes: [...new Set(includes)].filter((room) => room !== folder) }));
 
+/** Folders of the page: each imports from itself and from those before it. */
+export const PAGE = "client/web/src/";
+export const PAGE_ROOMS = ["base", "mesh", "files", "analysis", "job", "options", "view", "result", "edit", "share", "app"];
+
 /** The room of a file or header; undefined for tests, which may include everything. */
 export function roomOf(path) {
   const folder = path.slice(0, Math.max(path.lastIndexOf("/"), 0));

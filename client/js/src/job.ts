@@ -80,7 +80,7 @@ class Follower {
 }
 
 /** Follows the job to its end. While no stream is free, its state is asked for. */
-async function follow(job: Job, settings: Call): Promise<Job> {
+export async function follow(job: Job, settings: Call): Promise<Job> {
   const follower = new Follower(settings);
   for (;;) {
     try {

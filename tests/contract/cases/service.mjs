@@ -1,6 +1,7 @@
 // The calls about the server itself, and what every path and method answers.
 import {readFileSync} from 'node:fs';
 import {isDeepStrictEqual} from 'node:util';
+import {brotliDecompressSync, gunzipSync} from 'node:zlib';
 
 import {raw, request} from '../http.mjs';
 import * as meshes from '../meshes.mjs';
@@ -19,13 +20,34 @@ export async function service(run, base) {
   const asJson = await run.json(base, 'getContractAsJson', {status: 200});
   run.expect('the same as JSON', isDeepStrictEqual(asJson, run.contract.document) ? [] : ['it differs']);
   await page(run, base);
-  const texts = ['getContract', 'getContractAsJson', 'getDocs', 'getDocsStyle', 'getPage', 'getPageStyle',
-                 'getPageScript'];
+  const texts = ['getContract', 'getContractAsJson', 'getDocs', 'getDocsStyle', 'getPage'];
   for (const id of texts) {
     const {headers} = await run.call(base, id, {status: 200});
     const same = {'If-None-Match': headers.etag};
     await run.call(base, id, {headers: same, status: 304, name: `${id} that is known`});
   }
+  await filesOfThePage(run, base);
+}
+
+/** What the page at / loads: the same bytes in every coding, to be kept for good. */
+async function filesOfThePage(run, base) {
+  const page = await run.call(base, 'getPage', {status: 200});
+  const paths = [...page.body.toString().matchAll(/(?:src|href)="\.\/(assets\/[^"]+)"/g)].map(([, path]) => path);
+  run.expect('a script and a style', ['.js', '.css'].filter((end) => !paths.some((path) => path.endsWith(end))));
+  for (const path of paths) {
+    const get = async (coding) => {
+      const answer = await request(base, {path: `/${path}`, headers: coding ? {'Accept-Encoding': coding} : {}});
+      run.judge(`${path} as ${coding ?? 'it is'}`, 'getPageFile', answer, 200);
+      run.expectEqual('its coding', answer.headers['content-encoding'], coding);
+      return answer;
+    };
+    const plain = await get(undefined);
+    run.expectEqual('by gzip', gunzipSync((await get('gzip')).body).equals(plain.body), true);
+    run.expectEqual('by Brotli', brotliDecompressSync((await get('br')).body).equals(plain.body), true);
+    run.expectEqual('is kept', plain.headers['cache-control'], 'public, max-age=31536000, immutable');
+  }
+  const away = await request(base, {path: '/assets/index-of-another-version.js'});
+  run.judge('a file of another version', 'getPageFile', away, 404);
 }
 
 /** The page has every call, schema and error, and refers to nothing but itself. */

@@ -278,5 +278,11 @@ TEST(MediaTypes, GzipIsTakenWhereItIsWanted) {
     EXPECT_FALSE(accepts_gzip(no)) << no;
 }
 
+TEST(MediaTypes, OtherCodingsAreTakenInTheSameWay) {
+  EXPECT_TRUE(accepts_coding("gzip, deflate, br", "br"));
+  EXPECT_FALSE(accepts_coding("gzip, br;q=0", "br"));
+  EXPECT_FALSE(accepts_coding("gzip", "br"));
+}
+
 }  // namespace
 }  // namespace unwrapd::server::http

@@ -1,0 +1,143 @@
+// One mesh and its jobs: what is open, what runs, what is shown.
+import {$, present, show} from '../base/dom.js';
+import {count} from '../base/words.js';
+import {hashOf} from '../base/permalink.js';
+import type {Opened} from '../files/read.js';
+import {ProgressView} from '../job/progress.js';
+import {type Job, type OptionValues, SentMesh, UnwrapdError, cancel, ended} from '../job/run.js';
+import {getJson} from '../job/server.js';
+import {listCharts} from '../result/charts.js';
+import {type Kept, listDownloads} from '../result/downloads.js';
+import {showFigures} from '../result/figures.js';
+import {type Loaded, loadResult, sizeOf} from '../result/load.js';
+import {clearProblem, showMessage, showProblem} from './problem.js';
+import type {Viewing} from './viewing.js';
+
+export class Session {
+  opened: Opened | undefined;
+  sent: SentMesh | undefined;
+  job: Job | undefined;
+  loaded: Loaded | undefined;
+  kept: Kept | undefined;
+  /** A result is shown; live: of a drag, which moves no focus. */
+  onResult?: (live: boolean) => void;
+  readonly #viewing: Viewing;
+  readonly #progress = new ProgressView();
+  #running: AbortController | undefined;
+
+  constructor(viewing: Viewing) {
+    this.#viewing = viewing;
+    $('cancel').addEventListener('click', () => void this.#cancel());
+    $('lambda-shown').addEventListener('change', () => {
+      const {job} = this;
+      if (job) void this.#guarded(() => this.#show(job, Number($<HTMLSelectElement>('lambda-shown').value), this.kept?.name ?? job.id));
+    });
+  }
+
+  open(opened: Opened): void {
+    this.opened = opened;
+    this.sent = new SentMesh(opened.blob, opened.mediaType);
+    this.job = this.loaded = this.kept = undefined;
+    clearProblem();
+    show($('result'), false);
+    show($('job'), false);
+    history.replaceState(null, '', location.pathname + location.search);
+  }
+
+  /** Unwraps what is open. */
+  async unwrap(options: OptionValues): Promise<void> {
+    const {sent, opened} = this;
+    if (!sent || !opened) return showMessage('There is no mesh yet', 'Open a mesh first, or drop one on this page.');
+    await this.#guarded(async (signal) => {
+      show($('result'), false);
+      this.#progress.begin('Sending the mesh…');
+      present($('job'));
+      const job = await sent.submit(options, {onSent: (share) => this.#progress.sent(share), signal});
+      await this.#follow(job, opened.name, signal);
+    });
+  }
+
+  /** Shows a job by its address, whatever its state. */
+  async openJob(id: string, name: string): Promise<void> {
+    await this.#guarded(async (signal) => {
+      show($('result'), false);
+      this.#progress.begin('Asking for the job…');
+      present($('job'));
+      await this.#follow(await getJson<Job>(`/v1/jobs/${id}`, signal), name, signal);
+    });
+  }
+
+  async #follow(job: Job, name: string, signal: AbortSignal): Promise<void> {
+    this.job = job;
+    history.replaceState(null, '', hashOf({job: job.id, name}));
+    const end = await ended(job, {signal, onProgress: (progress) => this.#progress.on(progress)});
+    if (end.state === 'cancelled') return this.#tellCancelled();
+    if (end.problem) throw new UnwrapdError(end.problem);
+    this.#progress.tell('Fetching the result…', 1);
+    this.job = end;
+    const lambdas = [end.options.lambda].flat().filter((lambda) => lambda !== null);
+    $('lambda-shown').replaceChildren(...(lambdas.length > 1 ? lambdas : []).map((lambda) => new Option(String(lambda), String(lambda))));
+    show($('lambda-row'), lambdas.length > 1);
+    await this.#show(end, lambdas.length > 1 ? lambdas[0] : undefined, name);
+    present($('result'));
+  }
+
+  async #show(job: Job, lambda: number | undefined, name: string): Promise<void> {
+    const loaded = await loadResult(job, lambda, this.opened?.model);
+    this.take(job, loaded, lambda, name);
+    this.#progress.end(`Done: ${count(loaded.report.charts.length, 'chart')}.`);
+  }
+
+  /** Shows a result; live: the figures alone change. */
+  take(job: Job, loaded: Loaded, lambda: number | undefined, name: string, live = false): void {
+    const {report, model} = loaded;
+    this.job = job;
+    this.loaded = loaded;
+    const {width, height} = sizeOf(report);
+    const what = this.#viewing.result(model, width / height, report.pages);
+    this.kept = {job, report, lambda, what, name};
+    showFigures(report);
+    listCharts(this.#viewing.charts, ({island}) => {
+      this.#viewing.viewer.selectIsland(island);
+      $('views').scrollIntoView({block: 'nearest'});
+    });
+    listDownloads(this.kept, showProblem);
+    this.onResult?.(live);
+  }
+
+  async #cancel(): Promise<void> {
+    const {job} = this;
+    if (!job) return this.#running?.abort(new DOMException('', 'AbortError'));
+    await cancel(job).catch(showProblem);
+  }
+
+  #tellCancelled(): void {
+    show($('job'), false);
+    showMessage('Cancelled', 'The job was stopped, as you asked. The mesh and the options are still here.');
+  }
+
+  /** Runs one thing at a time, with the buttons and messages that belong to it. */
+  async #guarded(action: (signal: AbortSignal) => Promise<void>): Promise<void> {
+    this.#running?.abort(new DOMException('', 'AbortError'));
+    const running = (this.#running = new AbortController());
+    clearProblem();
+    $<HTMLButtonElement>('send').disabled = true;
+    show($('cancel'), true);
+    try {
+      await action(running.signal);
+    } catch (error) {
+      if (running === this.#running) this.#fail(error, running.signal);
+    } finally {
+      if (running === this.#running) {
+        $<HTMLButtonElement>('send').disabled = false;
+        show($('cancel'), false);
+      }
+    }
+  }
+
+  #fail(error: unknown, signal: AbortSignal): void {
+    if (signal.aborted || (error instanceof UnwrapdError && error.code === 'cancelled')) return this.#tellCancelled();
+    show($('job'), false);
+    showProblem(error);
+  }
+}

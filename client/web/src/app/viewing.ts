@@ -1,0 +1,141 @@
+// The views with their tools: what is shown, in which colours, and what is picked.
+import {$, el, show} from '../base/dom.js';
+import {mapped, uvOf} from '../mesh/islands.js';
+import type {Model} from '../mesh/model.js';
+import {type Surface, surfaceOf} from '../mesh/surface.js';
+import {type Chart, chartsOf, describe} from '../result/charts.js';
+import {type Colouring, SCALES, type Shown, shown} from '../view/paint.js';
+import {imageTexture} from '../view/textures.js';
+import {Viewer} from '../view/viewer.js';
+
+const colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** Colours of the page as the views want them: light-dark() is resolved by a property that has it. */
+function resolved(name: string): string {
+  const probe = el('span');
+  probe.style.color = colour(name);
+  document.body.append(probe);
+  const found = getComputedStyle(probe).color;
+  probe.remove();
+  return found;
+}
+
+export class Viewing {
+  readonly viewer: Viewer;
+  #charts: Chart[] = [];
+  #before: Shown | undefined;
+  #after: Shown | undefined;
+
+  constructor(onError: (error: unknown) => void) {
+    this.viewer = new Viewer($<HTMLCanvasElement>('solid'), $<HTMLCanvasElement>('flat'));
+    this.viewer.onPick = (picked) => this.#tellPicked(picked?.island);
+    $('colouring').addEventListener('change', () => this.#choose().catch(onError));
+    $('image').addEventListener('change', () => this.#useImage().catch(onError));
+    for (const id of ['show-seams', 'show-wire']) $(id).addEventListener('change', () => this.#showLines());
+    for (const id of ['before', 'after']) $(id).addEventListener('change', () => this.#showVersion());
+    $('fit').addEventListener('click', () => {
+      this.viewer.solid.fit();
+      this.viewer.flat.fit();
+    });
+    const dark = matchMedia('(prefers-color-scheme: dark)');
+    dark.addEventListener('change', () => this.#useTheme());
+    this.#useTheme();
+  }
+
+  get charts(): Chart[] {
+    return this.#charts;
+  }
+
+  /** A mesh as it came in. */
+  open(model: Model): Surface {
+    const surface = surfaceOf(model);
+    const uv = uvOf(model, 0);
+    this.#before = shown(surface, uv && mapped(surface, uv));
+    this.#after = undefined;
+    this.#show(this.#before);
+    return surface;
+  }
+
+  /** What a job made of it; the view stays if it is the same mesh. */
+  result(model: Model, aspect: number, pages: number): Shown {
+    const last = this.#after ?? this.#before;
+    const surface = isSame(last?.surface, model) ? last!.surface : surfaceOf(model);
+    this.#after = shown(surface, mapped(surface, uvOf(model, 0)!), aspect, pages);
+    $<HTMLInputElement>('after').checked = true;
+    this.#show(this.#after, surface === last?.surface);
+    return this.#after;
+  }
+
+  #show(what: Shown, keepsView = false): void {
+    show($('views'), true);
+    show($('versions'), Boolean(this.#after && this.#before?.map));
+    show($('no-layout'), !what.map);
+    this.#charts = chartsOf(what);
+    this.viewer.show(what, keepsView);
+    this.#legend();
+    this.#showLines();
+  }
+
+  #showVersion(): void {
+    const what = $<HTMLInputElement>('before').checked ? this.#before : this.#after;
+    if (what) this.#show(what, true);
+  }
+
+  #showLines(): void {
+    this.viewer.setVisible($<HTMLInputElement>('show-seams').checked, $<HTMLInputElement>('show-wire').checked);
+  }
+
+  async #choose(): Promise<void> {
+    const colouring = $<HTMLSelectElement>('colouring').value as Colouring;
+    show($('image'), colouring === 'image');
+    if (colouring === 'image' && $<HTMLInputElement>('image').files?.length === 0) $('image').click();
+    this.viewer.colour(colouring);
+    this.#legend();
+  }
+
+  async #useImage(): Promise<void> {
+    const file = $<HTMLInputElement>('image').files?.[0];
+    if (file) this.viewer.colour('image', await imageTexture(file));
+  }
+
+  #legend(): void {
+    const scale = SCALES[$<HTMLSelectElement>('colouring').value as Colouring];
+    show($('legend'), Boolean(scale && this.viewer.what?.map));
+    if (!scale) return;
+    const bar = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+    bar.setAttribute('viewBox', `0 0 ${scale.colours.length} 1`);
+    bar.setAttribute('preserveAspectRatio', 'none');
+    bar.setAttribute('aria-hidden', 'true');
+    scale.colours.forEach((hex, x) => {
+      const square = document.createElementNS('http://www.w3.org/2000/svg', 'rect');
+      for (const [name, value] of Object.entries({x, width: 1.02, height: 1, fill: `#${hex}`})) square.setAttribute(name, String(value));
+      bar.append(square);
+    });
+    $('legend').replaceChildren(bar, el('span', {}, `${scale.ticks.join(' · ')}; 1 is ideal. Flipped triangles are red.`));
+  }
+
+  #tellPicked(island: number | undefined): void {
+    const chart = this.#charts.find((one) => one.island === island);
+    $('picked').textContent = chart ? `Chart ${chart.island + 1} of ${this.#charts.length}: ${describe(chart)}.` : '';
+  }
+
+  #useTheme(): void {
+    this.viewer.setTheme({background: resolved('--soft'), line: resolved('--faint'), seam: resolved('--bad'), mark: resolved('--accent'), pin: resolved('--bad')});
+  }
+}
+
+/** Whether a model has the faces of a surface at the same places. */
+function isSame(surface: Surface | undefined, model: Model): boolean {
+  if (!surface) return false;
+  let f = 0;
+  for (const [number, {faces, positions, places}] of model.parts.entries())
+    for (const place of places) {
+      for (let i = 0; i < faces.length / 3; i += 1, f += 1) {
+        if (surface.part[f] !== number || surface.faceInPart[f] !== i) return false;
+        const v = 3 * faces[3 * i]!;
+        const x = place[0]! * positions[v]! + place[4]! * positions[v + 1]! + place[8]! * positions[v + 2]! + place[12]!;
+        if (Math.abs(surface.positions[9 * f]! - x) > 1e-4 * (1 + Math.abs(x))) return false;
+      }
+    }
+  return f === surface.faces;
+}

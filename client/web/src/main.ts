@@ -1,0 +1,72 @@
+// The page: it opens meshes, has them unwrapped by the server that shows it, and shows what came of it.
+// It uses nothing but the API that everybody has.
+import {connectOpening, showMesh} from './app/opening.js';
+import {showProblem} from './app/problem.js';
+import {Session} from './app/session.js';
+import {Viewing} from './app/viewing.js';
+import {$} from './base/dom.js';
+import {placeOf} from './base/permalink.js';
+import {listJobs} from './job/list.js';
+import {connection, getJson, setKey} from './job/server.js';
+import {connectBalance} from './options/balance.js';
+import {OptionsForm} from './options/form.js';
+import type {Methods} from './options/types.js';
+import {curlOf} from './share/curl.js';
+import {connectSharing} from './share/share.js';
+
+interface Limits {
+  max_sync_faces: number;
+}
+
+async function start(): Promise<void> {
+  const viewing = new Viewing(showProblem);
+  const session = new Session(viewing);
+  connectOpening((opened) => {
+    session.open(opened);
+    showMesh(opened, viewing).catch(showProblem);
+  }, showProblem);
+  $('key').addEventListener('input', () => setKey($<HTMLInputElement>('key').value));
+  const [methods, limits] = await Promise.all([getJson<Methods>('/v1/methods'), getJson<Limits>('/v1/limits')]);
+  const form = new OptionsForm(methods);
+  const showBalance = (method: string) => ($('balance-row').hidden = method !== 'hybrid');
+  form.onMethod = showBalance;
+  showBalance(form.method);
+  connectBalance(() => {});
+  let options: Record<string, unknown> | undefined;
+  const run = () => {
+    try {
+      options = form.chosen();
+      void session.unwrap(options);
+    } catch (error) {
+      showProblem(error);
+    }
+  };
+  $('form').addEventListener('submit', (event) => {
+    event.preventDefault();
+    run();
+  });
+  session.onResult = () => {
+    $('curl-row').hidden = !session.opened || !options;
+    if (session.opened && options) $<HTMLTextAreaElement>('curl').value = commandOf(session, options, limits);
+  };
+  connectSharing(() => session.job, showProblem);
+  $('jobs').addEventListener('toggle', () => $<HTMLDetailsElement>('jobs').open && listJobs().catch(showProblem));
+  const follow = () => {
+    const place = placeOf(location.hash);
+    if (place && place.job !== session.job?.id) void session.openJob(place.job, place.name);
+  };
+  addEventListener('hashchange', follow);
+  follow();
+}
+
+function commandOf({opened, kept}: Session, options: object, {max_sync_faces: most}: Limits): string {
+  const isArchive = opened!.mediaType === 'application/zip';
+  const base = opened!.name.replace(/\.[^.]*$/s, '');
+  return curlOf({
+    server: connection().server!, options, file: isArchive ? `${base}.zip` : opened!.name, mediaType: opened!.mediaType,
+    result: `${base}.uv.${opened!.name.replace(/^.*\./s, '')}`, isSmall: kept!.report.input.faces <= most,
+    needsKey: $<HTMLInputElement>('key').value !== '',
+  });
+}
+
+start().catch(showProblem);

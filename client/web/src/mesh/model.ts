@@ -1,0 +1,41 @@
+// Meshes as the server numbers them: one part for each mesh of the asset, with its vertices and faces
+// in the order of the file.
+
+/** Texture coordinates u, v of all corners, three for each face; V points up. */
+export interface UvSet {
+  name: string;
+  uv: Float32Array;
+}
+
+export interface Part {
+  name: string;
+  /** x, y, z of each vertex. */
+  positions: Float32Array;
+  /** Three vertices of each face. */
+  faces: Uint32Array;
+  uvSets: UvSet[];
+  /** Where the mesh stands in the scene: matrices of 16 numbers, column by column. */
+  places: number[][];
+  /** For each vertex, the one of the input that it is or duplicates. */
+  sources?: Uint32Array;
+}
+
+export interface Model {
+  parts: Part[];
+}
+
+export const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+
+export function faceCount(model: Model): number {
+  return model.parts.reduce((sum, {faces, places}) => sum + (faces.length / 3) * places.length, 0);
+}
+
+/** UVs of vertices as those of corners. */
+export function uvOfCorners(uv: ArrayLike<number>, faces: Uint32Array): Float32Array {
+  const corners = new Float32Array(faces.length * 2);
+  for (let c = 0; c < faces.length; c += 1) {
+    corners[2 * c] = uv[2 * faces[c]!]!;
+    corners[2 * c + 1] = uv[2 * faces[c]! + 1]!;
+  }
+  return corners;
+}

@@ -1,0 +1,43 @@
+// A result as a model: the meshes and the report of a job, in the places where its scene has them.
+import {documentOf, meshesWithTriangles, placesOf} from '../files/scene.js';
+import {type Job, type Report, type Result} from '../job/run.js';
+import {getBlob, getJson} from '../job/server.js';
+import {IDENTITY, type Model, uvOfCorners} from '../mesh/model.js';
+
+export interface Loaded {
+  report: Report;
+  model: Model;
+}
+
+/** Of a list of lambdas: which of them; empty for a single one. */
+export const ofLambda = (lambda: number | undefined) => (lambda === undefined ? '' : `?lambda=${lambda}`);
+
+/** Where meshes stand: as in the file that is open, else as the result's own document says. */
+async function placesIn(job: Job, count: number, open: Model | undefined): Promise<number[][][]> {
+  if (open?.parts.length === count) return open.parts.map(({places}) => places);
+  if (count === 1 && open) return [[IDENTITY]];
+  const asset = await getBlob(job.links.result);
+  if (!/^model\/gltf/.test(asset.type)) return Array.from({length: count}, () => [IDENTITY]);
+  const document = documentOf(await asset.arrayBuffer());
+  const places = placesOf(document);
+  return meshesWithTriangles(document).map((m) => places[m]!);
+}
+
+export async function loadResult(job: Job, lambda: number | undefined, open: Model | undefined): Promise<Loaded> {
+  const {report, meshes} = await getJson<Result>(`${job.links.result}.json${ofLambda(lambda)}`);
+  const places = await placesIn(job, meshes.length, open);
+  const parts = meshes.map(({name, positions, uv, faces, vertex_map: sources}, m) => {
+    const corners = Uint32Array.from(faces);
+    return {
+      name, positions: Float32Array.from(positions), faces: corners, places: places[m] ?? [IDENTITY],
+      uvSets: [{name: `TEXCOORD_${report.texcoord}`, uv: uvOfCorners(uv, corners)}], sources: Uint32Array.from(sources),
+    };
+  });
+  return {report, model: {parts}};
+}
+
+/** The texture, in texels. */
+export function sizeOf({options}: Report): {width: number; height: number} {
+  const {resolution = 1024, width, height} = options;
+  return {width: width ?? resolution, height: height ?? resolution};
+}

@@ -1,0 +1,129 @@
+// What both views have in common: a canvas that draws when something has changed, with triangles,
+// lines and marks in it.
+import {
+  BufferAttribute, BufferGeometry, type Camera, Color, DoubleSide, LineBasicMaterial, LineSegments, type Material, Mesh,
+  MeshBasicMaterial, Points, PointsMaterial, Scene, type Texture, WebGLRenderer,
+} from 'three';
+
+export interface Theme {
+  background: string;
+  line: string;
+  seam: string;
+  mark: string;
+  pin: string;
+}
+
+function geometryOf(positions: Float32Array): BufferGeometry {
+  return new BufferGeometry().setAttribute('position', new BufferAttribute(positions, 3));
+}
+
+export abstract class Stage {
+  readonly scene = new Scene();
+  readonly renderer: WebGLRenderer;
+  protected abstract readonly camera: Camera;
+  /** Called after each picture. */
+  onDrawn?: () => void;
+  readonly #seams = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
+  readonly #marks = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false, linewidth: 2}));
+  readonly #picked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.55, depthTest: false}));
+  readonly #dots = new Points(new BufferGeometry(), new PointsMaterial({size: 9, sizeAttenuation: false, depthTest: false}));
+  readonly #wire: Mesh<BufferGeometry, MeshBasicMaterial>;
+  readonly #mesh: Mesh<BufferGeometry>;
+  #asked = false;
+
+  constructor(readonly canvas: HTMLCanvasElement, protected readonly material: Material & {map: Texture | null}) {
+    this.renderer = new WebGLRenderer({canvas, antialias: true});
+    this.#mesh = new Mesh(new BufferGeometry(), material);
+    const wire = new MeshBasicMaterial({wireframe: true, transparent: true, opacity: 0.35, polygonOffset: true, polygonOffsetFactor: -1});
+    this.#wire = new Mesh(this.#mesh.geometry, wire);
+    this.#wire.visible = false;
+    [this.#mesh, this.#wire, this.#seams, this.#marks, this.#picked, this.#dots].forEach((object, order) => {
+      object.frustumCulled = false;
+      object.renderOrder = order;
+      this.scene.add(object);
+    });
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  protected setTriangles(positions: Float32Array, normals: Float32Array | undefined, uv: Float32Array | undefined): void {
+    this.#mesh.geometry.dispose();
+    const geometry = geometryOf(positions);
+    if (normals) geometry.setAttribute('normal', new BufferAttribute(normals, 3));
+    if (uv) geometry.setAttribute('uv', new BufferAttribute(uv, 2));
+    geometry.setAttribute('color', new BufferAttribute(new Float32Array(positions.length).fill(0.5), 3));
+    this.#mesh.geometry = this.#wire.geometry = geometry;
+    this.draw();
+  }
+
+  setColours(colours: Float32Array, map: Texture | null): void {
+    this.#mesh.geometry.setAttribute('color', new BufferAttribute(colours, 3));
+    if (Boolean(this.material.map) !== Boolean(map)) this.material.needsUpdate = true;
+    this.material.map = map;
+    this.draw();
+  }
+
+  setSeams(lines: Float32Array): void {
+    this.#replace(this.#seams, lines);
+  }
+
+  /** Lines over everything: the island that is picked, paths that are marked. */
+  setMarks(lines: Float32Array): void {
+    this.#replace(this.#marks, lines);
+  }
+
+  setPicked(triangles: Float32Array): void {
+    this.#replace(this.#picked, triangles);
+  }
+
+  setDots(points: Float32Array): void {
+    this.#replace(this.#dots, points);
+  }
+
+  setVisible(seams: boolean, wire: boolean): void {
+    this.#seams.visible = seams;
+    this.#wire.visible = wire;
+    this.draw();
+  }
+
+  setTheme(theme: Theme): void {
+    this.scene.background = new Color(theme.background);
+    this.#seams.material.color.set(theme.seam);
+    this.#wire.material.color.set(theme.line);
+    this.#marks.material.color.set(theme.mark);
+    this.#picked.material.color.set(theme.mark);
+    this.#dots.material.color.set(theme.pin);
+    this.draw();
+  }
+
+  #replace(object: Mesh<BufferGeometry> | LineSegments<BufferGeometry> | Points<BufferGeometry>, positions: Float32Array): void {
+    object.geometry.dispose();
+    object.geometry = geometryOf(positions);
+    object.visible = positions.length > 0;
+    this.draw();
+  }
+
+  /** Asks for a picture. */
+  draw(): void {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => {
+      this.#asked = false;
+      const {clientWidth: width, clientHeight: height} = this.canvas;
+      if (width === 0 || height === 0) return;
+      this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+      this.renderer.setSize(width, height, false);
+      this.shape(width / height);
+      this.renderer.render(this.scene, this.camera);
+      this.onDrawn?.();
+    });
+  }
+
+  /** Fits the camera to the shape of the canvas. */
+  protected abstract shape(aspect: number): void;
+
+  /** Where an event is on the canvas, from -1 to 1. */
+  protected at(event: {clientX: number; clientY: number}): [number, number] {
+    const box = this.canvas.getBoundingClientRect();
+    return [(2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height];
+  }
+}

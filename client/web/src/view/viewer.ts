@@ -1,0 +1,134 @@
+// The mesh and its layout beside each other, coloured alike; what is pointed at in one is shown in both.
+import type {Texture} from 'three';
+
+import {oncePerFrame} from '../base/dom.js';
+import {FlatView, flat} from './flat.js';
+import {borderOf, bothSides, linesOf} from './lines.js';
+import {type Colouring, type Shown, paint} from './paint.js';
+import {SolidView} from './solid.js';
+import type {Theme} from './stage.js';
+import {checkerboard} from './textures.js';
+
+const HOVER_FACES = 600_000; // beyond them a pointer that moves is not followed
+
+export interface Picked {
+  face: number;
+  island: number | undefined;
+}
+
+export class Viewer {
+  readonly solid: SolidView;
+  readonly flat: FlatView;
+  /** A face was picked (or none), by a click, a key or setIsland. */
+  onPick?: (picked: Picked | undefined) => void;
+  /** Takes a click on the mesh for itself. */
+  onClick?: (view: 'solid' | 'flat', event: MouseEvent | undefined) => boolean;
+  onColours?: () => void;
+  readonly #checker: Texture = checkerboard();
+  readonly #checkerFlat: Texture = checkerboard();
+  #image: Texture | undefined;
+  #what: Shown | undefined;
+  #colouring: Colouring = 'checker';
+  #selected: Picked | undefined;
+
+  constructor(solid: HTMLCanvasElement, layout: HTMLCanvasElement) {
+    this.solid = new SolidView(solid);
+    this.flat = new FlatView(layout);
+    this.#listen(solid, (event) => this.solid.hit(event)?.face ?? -1, 'solid');
+    this.#listen(layout, (event) => this.flat.hit(event), 'flat');
+  }
+
+  get what(): Shown | undefined {
+    return this.#what;
+  }
+
+  show(what: Shown, keepsView = false): void {
+    const isOther = this.#what?.surface !== what.surface || this.#what?.map !== what.map;
+    this.#what = what;
+    if (isOther) {
+      this.solid.show(what.surface, what.map?.uv, keepsView);
+      this.flat.show(what.map?.uv, what.aspect, what.pages);
+      const {surface, map} = what;
+      this.solid.setSeams(map ? linesOf(map.seams, surface.positions, 3) : new Float32Array());
+      this.flat.setSeams(map ? flat(linesOf(bothSides(map, surface), map.uv, 2), what.aspect, 1) : new Float32Array());
+      this.select(undefined);
+    }
+    this.colour(this.#colouring);
+  }
+
+  colour(colouring: Colouring, image = this.#image): void {
+    this.#colouring = colouring;
+    this.#image = image;
+    if (!this.#what) return;
+    const colours = paint(colouring, this.#what);
+    const hasMap = Boolean(this.#what.map);
+    const texture = colouring === 'checker' ? this.#checker : colouring === 'image' ? (image ?? null) : null;
+    this.solid.setColours(colours, hasMap ? texture : null);
+    this.flat.setColours(colours, hasMap ? (colouring === 'checker' ? this.#checkerFlat : texture?.clone() ?? null) : null);
+    this.onColours?.();
+  }
+
+  setTheme(theme: Theme): void {
+    this.solid.setTheme(theme);
+    this.flat.setTheme(theme);
+  }
+
+  setVisible(seams: boolean, wire: boolean): void {
+    this.solid.setVisible(seams, wire);
+    this.flat.setVisible(true, wire);
+  }
+
+  /** Picks a whole island, or none. */
+  select(picked: Picked | undefined): void {
+    this.#selected = picked;
+    this.#highlight(picked);
+    this.onPick?.(picked);
+  }
+
+  selectIsland(island: number): void {
+    const face = this.#what?.map?.island.indexOf(island) ?? -1;
+    if (face >= 0) this.select({face, island});
+  }
+
+  get selected(): Picked | undefined {
+    return this.#selected;
+  }
+
+  #pickedAt(face: number): Picked | undefined {
+    return face < 0 ? undefined : {face, island: this.#what?.map?.island[face]};
+  }
+
+  /** The triangle under the pointer, and the border of its island. */
+  #highlight(picked: Picked | undefined): void {
+    const {surface, map, aspect = 1} = this.#what ?? {};
+    const face = picked?.face;
+    const border = map && surface && picked?.island !== undefined ? borderOf(picked.island, map, surface) : [];
+    const triangle = surface && face !== undefined ? surface.positions.subarray(9 * face, 9 * face + 9) : new Float32Array();
+    this.solid.setPicked(triangle.slice());
+    this.solid.setMarks(surface ? linesOf(border, surface.positions, 3) : new Float32Array());
+    this.flat.setPicked(map && face !== undefined ? flat(map.uv.subarray(6 * face, 6 * face + 6), aspect, 2) : new Float32Array());
+    this.flat.setMarks(map ? flat(linesOf(border, map.uv, 2), aspect, 2) : new Float32Array());
+  }
+
+  #listen(canvas: HTMLCanvasElement, faceAt: (event?: MouseEvent) => number, view: 'solid' | 'flat'): void {
+    let pressed = [0, 0];
+    const hover = oncePerFrame((event: PointerEvent) => {
+      if (event.buttons || (this.#what?.surface.faces ?? 0) > HOVER_FACES) return;
+      const face = faceAt(event);
+      this.#highlight(face < 0 ? this.#selected : this.#pickedAt(face));
+    });
+    canvas.addEventListener('pointermove', hover);
+    canvas.addEventListener('pointerleave', () => requestAnimationFrame(() => this.#highlight(this.#selected)));
+    canvas.addEventListener('pointerdown', (event) => (pressed = [event.clientX, event.clientY]));
+    canvas.addEventListener('click', (event) => {
+      if (Math.hypot(event.clientX - pressed[0]!, event.clientY - pressed[1]!) > 4) return;
+      if (!this.onClick?.(view, event)) this.select(this.#pickedAt(faceAt(event)));
+    });
+    canvas.addEventListener('keydown', (event) => {
+      if (event.key === 'Escape') this.select(undefined);
+      if (event.key !== 'Enter' || event.defaultPrevented) return;
+      event.preventDefault();
+      if (!this.onClick?.(view, undefined)) this.select(this.#pickedAt(faceAt()));
+    });
+  }
+}

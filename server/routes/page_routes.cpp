@@ -1,0 +1,68 @@
+// The document is checked each time; what it loads has names that change with their content, and is
+// never asked for twice. The files are in the program compressed, as nearly every browser takes
+// them.
+#include "server/routes/page_routes.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "client/web/page.hpp"
+#include "server/http/gzip.hpp"
+#include "server/http/media_types.hpp"
+#include "server/routes/text_handlers.hpp"
+
+namespace unwrapd::server::routes {
+namespace {
+
+/// The page calls nothing but its own server. blob: and data: are files that people open and what
+/// is in them; decoders of Draco and meshopt are WebAssembly, the former in a worker made of a
+/// blob.
+constexpr std::string_view kPagePolicy =
+    "default-src 'none'; style-src 'self'; script-src 'self' 'wasm-unsafe-eval'; "
+    "worker-src 'self' blob:; connect-src 'self' blob: data:; img-src 'self' data: blob:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+constexpr std::string_view kForGood = "public, max-age=31536000, immutable";
+constexpr std::int64_t kMostBytes = std::int64_t{1} << 26;
+
+std::string unpacked_file(std::string_view gzip) {
+  std::string bytes;
+  http::GzipDecoder decoder(kMostBytes, [&](std::string_view piece) { bytes += piece; });
+  decoder.feed(gzip);
+  decoder.finish();
+  return bytes;
+}
+
+/// The file in the smallest form that the caller takes.
+void encode_file(const web::PageFile& file, std::string_view accepted, http::Response& response) {
+  const bool brotli = http::accepts_coding(accepted, "br");
+  if (!brotli && !http::accepts_coding(accepted, "gzip")) {
+    response.body = unpacked_file(file.gzip);
+    return;
+  }
+  response.headers.emplace_back("Content-Encoding", brotli ? "br" : "gzip");
+  response.body = std::string(brotli ? file.brotli : file.gzip);
+}
+
+http::Response get_page_file(const http::Request& request) {
+  const std::string_view name = std::string_view(request.path).substr(request.path.rfind('/') + 1);
+  const auto file = std::ranges::find(web::page_files(), name, &web::PageFile::name);
+  if (file == web::page_files().end())
+    throw Error(ErrorCode::not_found,
+                "The page of this version has no such file; load the page at / again.");
+  http::Response response;
+  response.content_type = file->type;
+  encode_file(*file, request.header("Accept-Encoding"), response);
+  response.headers.emplace_back("Cache-Control", kForGood);
+  protect(response, kPagePolicy);
+  return response;
+}
+
+}  // namespace
+
+void add_page_routes(std::vector<http::Route>& routes) {
+  routes.push_back(
+      {"GET", "/", page_handler(web::index_html(), "text/html; charset=utf-8", kPagePolicy)});
+  routes.push_back({"GET", "/assets/{name}", get_page_file});
+}
+
+}  // namespace unwrapd::server::routes
