@@ -119,3 +119,34 @@ export async function seen(page, canvas) {
     return { share: (4 * other) / pixels.length, colours: colours.size };
   }, png);
 }
+
+/** A picture of a canvas, once what was asked for is drawn. */
+export async function shot(page, canvas) {
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  return (await page.locator(canvas).screenshot()).toString("base64");
+}
+
+/**
+ * The share of pixels by which two pictures differ visibly, at the size of the first. side: both are
+ * scaled to it before, which takes no notice of half a pixel.
+ */
+export function difference(page, one, other, side) {
+  return page.evaluate(async ([a, b, scaled]) => {
+    const images = await Promise.all([a, b].map(async (bytes) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${bytes}`;
+      await image.decode();
+      return image;
+    }));
+    const { width, height } = scaled ? { width: scaled, height: scaled } : images[0];
+    const [p, q] = images.map((image) => {
+      const pen = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d");
+      pen.drawImage(image, 0, 0, width, height);
+      return pen.getImageData(0, 0, width, height).data;
+    });
+    let differing = 0;
+    for (let i = 0; i < p.length; i += 4)
+      if ([0, 1, 2].some((k) => Math.abs(p[i + k] - q[i + k]) > 48)) differing += 1;
+    return (4 * differing) / p.length;
+  }, [one, other, side]);
+}

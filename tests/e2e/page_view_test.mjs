@@ -1,0 +1,166 @@
+// The views: colours, the link of mesh and layout, before and after; and what can be kept of a result.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { after, before, describe, test } from "node:test";
+
+import { obj } from "../contract/meshes.mjs";
+import { Bench, difference, downloaded, missing, openMesh, real, seen, shot, unwrap } from "./page.mjs";
+
+const bench = new Bench();
+
+/** A cube of quads, with texture coordinates that put all six sides on one place. */
+function cube() {
+  const points = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => `v ${i & 1} ${(i >> 1) & 1} ${i >> 2}`);
+  const sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  const faces = sides.map((side) => `f ${side.map((v, i) => `${v + 1}/${i + 1}`).join(" ")}`);
+  return [...points, "vt 0.1 0.1", "vt 0.9 0.1", "vt 0.9 0.9", "vt 0.1 0.9", ...faces, ""].join("\n");
+}
+
+describe("the views of the page", { skip: missing }, () => {
+  before(() => bench.open());
+  after(() => bench.close());
+
+  const changed = async (page, canvas, old) => (await difference(page, await shot(page, canvas), old)) > 0.0005;
+  const like = async (page, canvas, old) => (await difference(page, await shot(page, canvas), old, 32)) < 0.02;
+  const jobOf = (page) => new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
+
+  test("show a real mesh and its charts in every colouring", { skip: !real("closed/spot_control_mesh.obj") && "the test data is missing" }, async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, real("closed/spot_control_mesh.obj"));
+    const pictures = new Set();
+    for (const colouring of ["plain", "checker", "stretch", "angle", "area", "charts"]) {
+      await page.selectOption("#colouring", colouring);
+      pictures.add(await shot(page, "#solid") + await shot(page, "#flat"));
+      assert.equal(await page.locator("#legend").isVisible(), ["stretch", "angle", "area"].includes(colouring));
+      assert.ok((await seen(page, "#flat")).share > 0.3, `the layout by ${colouring}`);
+    }
+    assert.equal(pictures.size, 6, "each colouring is a picture of its own");
+    await page.selectOption("#colouring", "plain");
+    const plain = await shot(page, "#solid");
+    await page.check("#show-wire");
+    assert.ok(await changed(page, "#solid", plain));
+    assert.deepEqual(page.complaints, []);
+  });
+
+  test("show an image of the person's own, and say what is none", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("grid.obj", obj(4)));
+    const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.selectOption("#colouring", "image")]);
+    const png = await page.evaluate(() => {
+      const canvas = Object.assign(document.createElement("canvas"), { width: 8, height: 8 });
+      const pen = canvas.getContext("2d");
+      pen.fillStyle = "#d00";
+      pen.fillRect(0, 0, 8, 8);
+      return canvas.toDataURL().split(",")[1];
+    });
+    await chooser.setFiles(bench.file("red.png", Buffer.from(png, "base64")));
+    const isRed = async () => page.evaluate(async (bytes) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${bytes}`;
+      await image.decode();
+      const pen = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
+      pen.drawImage(image, 0, 0);
+      const [r, g, b] = pen.getImageData(image.width / 2, image.height / 2, 1, 1).data;
+      return r > 150 && g < 60 && b < 60;
+    }, await shot(page, "#flat"));
+    for (let tries = 0; tries < 50 && !(await isRed()); tries += 1);
+    assert.ok(await isRed(), "the layout shows the image");
+    await page.setInputFiles("#image", bench.file("no.png", "no image"));
+    await page.locator("#problem", { hasText: "not an image" }).waitFor();
+  });
+
+  test("are linked both ways by a click, and let go by Escape", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("cube.obj", cube()));
+    const picked = page.locator("#picked");
+    const [solid, flat] = [await shot(page, "#solid"), await shot(page, "#flat")];
+    await page.click("#solid");
+    await page.locator("#picked", { hasText: /Chart \d+ of \d+: \d+ triangles?, angles 2\./ }).waitFor();
+    await page.mouse.move(5, 5);
+    assert.ok(await changed(page, "#flat", flat), "a click on the mesh shows in the layout");
+    await page.focus("#solid");
+    await page.keyboard.press("Escape");
+    assert.equal(await picked.innerText(), "");
+    assert.ok(await like(page, "#flat", flat));
+    await page.locator("#flat").hover();
+    assert.ok(await changed(page, "#solid", solid), "what is pointed at in the layout shows on the mesh");
+    await page.mouse.move(5, 5);
+    await page.focus("#flat");
+    await page.keyboard.press("Enter");
+    await page.locator("#picked", { hasText: "Chart" }).waitFor();
+  });
+
+  test("turn, move and zoom by keys", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("cube.obj", cube()));
+    for (const canvas of ["#solid", "#flat"]) {
+      await page.focus(canvas);
+      let last = await shot(page, canvas);
+      for (const key of ["ArrowLeft", "ArrowUp", "+", "-"]) {
+        await page.keyboard.press(key);
+        assert.ok(await changed(page, canvas, last), `${key} in ${canvas}`);
+        last = await shot(page, canvas);
+      }
+    }
+  });
+
+  test("show the texture coordinates that came in, beside those that came out", async (t) => {
+    const page = await bench.visit(t);
+    await openMesh(page, bench.file("cube.obj", cube()));
+    assert.match(await page.locator("#analysis").innerText(), /1 set of texture coordinates: vt with \d islands?/);
+    const before = await shot(page, "#flat");
+    await page.click("#send");
+    await page.locator("#result").waitFor();
+    const after = await shot(page, "#flat");
+    assert.ok(await difference(page, after, before, 32) > 0.05);
+    await page.check("#before");
+    assert.ok(await like(page, "#flat", before));
+    await page.check("#after");
+    assert.ok(await like(page, "#flat", after));
+  });
+
+  test("name the worst chart, notes and repairs in words", async (t) => {
+    const page = await bench.visit(t);
+    await page.check("#preset-chart");
+    const doubled = `${cube()}f 1/1 3/2 4/3 2/4\n`;
+    await unwrap(page, bench.file("doubled.obj", doubled));
+    assert.match(await page.locator("#notes").innerText(), /repeated another/);
+    await page.click("#charts-title");
+    const first = page.locator("#charts li").first();
+    await first.locator("button").click();
+    assert.match(await page.locator("#picked").innerText(), /^Chart \d+/);
+  });
+
+  test("of a result give the same bytes as the API, in every format", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("cube.obj", cube()));
+    const links = { GLB: ["result", "model/gltf-binary"], OBJ: ["result", "model/obj"], "Layout (SVG)": ["layout.svg", "*/*"], "Layout (PNG)": ["layout.png", "*/*"] };
+    for (const [label, [path, Accept]] of Object.entries(links)) {
+      const [, bytes] = await downloaded(page, `#downloads button:has-text("${label}")`);
+      const answer = await fetch(`${bench.server.base}/v1/jobs/${jobOf(page)}/${path}`, { headers: { Accept } });
+      assert.ok(Buffer.from(await answer.arrayBuffer()).equals(bytes), label);
+    }
+    const [name, svg] = await downloaded(page, "#downloads button:has-text('Template')");
+    assert.equal(name, "cube.template.svg");
+    assert.match(svg.toString(), /viewBox="0 0 1024 1024"/);
+  });
+
+  test("of a result can be shared by a link and repeated by curl", async (t) => {
+    const page = await bench.visit(t, { permissions: ["clipboard-read", "clipboard-write"] });
+    await page.selectOption("[name=method]", "hybrid");
+    await page.fill("#lambda", "0.25");
+    const path = bench.file("it's cube.obj", cube());
+    await unwrap(page, path);
+    await page.click("#result summary:has-text('Share')");
+    await page.click("#make-link");
+    await page.waitForFunction(() => document.querySelector("#link").value !== "");
+    const linked = Buffer.from(await (await fetch(await page.inputValue("#link"))).arrayBuffer());
+    const [, bytes] = await downloaded(page, "#downloads .primary");
+    assert.ok(linked.equals(bytes));
+    await page.click("#copy-curl");
+    const command = await page.evaluate(() => navigator.clipboard.readText());
+    execFileSync("sh", ["-c", command], { cwd: bench.folder });
+    assert.ok(readFileSync(`${bench.folder}/it's cube.uv.obj`).equals(bytes), command);
+  });
+});
