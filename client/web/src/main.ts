@@ -1,5 +1,7 @@
 // The page: it opens meshes, has them unwrapped by the server that shows it, and shows what came of it.
 // It uses nothing but the API that everybody has.
+import {Balancing} from './app/balancing.js';
+import {Editing} from './app/editing.js';
 import {connectOpening, showMesh} from './app/opening.js';
 import {showProblem} from './app/problem.js';
 import {Session} from './app/session.js';
@@ -21,8 +23,10 @@ interface Limits {
 async function start(): Promise<void> {
   const viewing = new Viewing(showProblem);
   const session = new Session(viewing);
+  let forget = () => {};
   connectOpening((opened) => {
     session.open(opened);
+    forget();
     showMesh(opened, viewing).catch(showProblem);
   }, showProblem);
   $('key').addEventListener('input', () => setKey($<HTMLInputElement>('key').value));
@@ -31,11 +35,24 @@ async function start(): Promise<void> {
   const showBalance = (method: string) => ($('balance-row').hidden = method !== 'hybrid');
   form.onMethod = showBalance;
   showBalance(form.method);
-  connectBalance(() => {});
   let options: Record<string, unknown> | undefined;
+  const balancing = new Balancing(session);
+  const editing = new Editing(viewing, session);
+  const again = (label: string, isDraft: boolean) => {
+    try {
+      const wanted = {...form.chosen(), ...editing.keepingCharts(), ...editing.options()};
+      if (!isDraft) options = wanted;
+      balancing.ask(wanted, label, isDraft);
+    } catch (error) {
+      showProblem(error);
+    }
+  };
+  connectBalance((lambda, isDraft) => again(`λ ${lambda}`, isDraft));
+  forget = () => editing.reset();
+  editing.onPins = () => again('Pins', false);
   const run = () => {
     try {
-      options = form.chosen();
+      options = {...form.chosen(), ...editing.options()};
       void session.unwrap(options);
     } catch (error) {
       showProblem(error);
@@ -46,6 +63,7 @@ async function start(): Promise<void> {
     run();
   });
   session.onResult = () => {
+    editing.ready();
     $('curl-row').hidden = !session.opened || !options;
     if (session.opened && options) $<HTMLTextAreaElement>('curl').value = commandOf(session, options, limits);
   };

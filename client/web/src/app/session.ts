@@ -19,8 +19,8 @@ export class Session {
   job: Job | undefined;
   loaded: Loaded | undefined;
   kept: Kept | undefined;
-  /** A result is shown; live: of a drag, which moves no focus. */
-  onResult?: (live: boolean) => void;
+  /** A result is shown. */
+  onResult?: () => void;
   readonly #viewing: Viewing;
   readonly #progress = new ProgressView();
   #running: AbortController | undefined;
@@ -88,10 +88,11 @@ export class Session {
     this.#progress.end(`Done: ${count(loaded.report.charts.length, 'chart')}.`);
   }
 
-  /** Shows a result; live: the figures alone change. */
-  take(job: Job, loaded: Loaded, lambda: number | undefined, name: string, live = false): void {
+  /** Shows a result. live: what is on the page changes in place; a draft has no address and no files. */
+  take(job: Job, loaded: Loaded, lambda: number | undefined, name: string, kind: 'whole' | 'live' | 'draft' = 'whole'): void {
     const {report, model} = loaded;
-    this.job = job;
+    if (kind !== 'draft') this.job = job;
+    if (kind === 'live') history.replaceState(null, '', hashOf({job: job.id, name}));
     this.loaded = loaded;
     const {width, height} = sizeOf(report);
     const what = this.#viewing.result(model, width / height, report.pages);
@@ -101,8 +102,9 @@ export class Session {
       this.#viewing.viewer.selectIsland(island);
       $('views').scrollIntoView({block: 'nearest'});
     });
-    listDownloads(this.kept, showProblem);
-    this.onResult?.(live);
+    if (kind === 'draft') $('downloads').replaceChildren('A draft is shown; let the slider go for a result.');
+    else listDownloads(this.kept, showProblem);
+    this.onResult?.();
   }
 
   async #cancel(): Promise<void> {

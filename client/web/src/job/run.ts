@@ -19,6 +19,8 @@ export interface Watcher {
   onJob?: (job: Job) => void;
   onProgress?: (progress: Progress) => void;
   signal: AbortSignal;
+  /** Seconds for which the answer to the submission may wait for the job's end. */
+  wait?: number;
 }
 
 /** A mesh that is sent once, however many jobs it has. */
@@ -40,7 +42,7 @@ export class SentMesh {
     if (!wasThere) await patiently(connection(watcher.signal), () => upload(mesh, watcher.onSent ?? (() => {}), watcher.signal));
     this.#isThere = true;
     try {
-      return await submitJob(mesh.sha256, options, watcher.signal);
+      return await submitJob(mesh.sha256, options, watcher);
     } catch (error) {
       if (!wasThere || !(error instanceof UnwrapdError && error.code === 'mesh_not_found')) throw error;
       this.#isThere = false;
@@ -49,10 +51,10 @@ export class SentMesh {
   }
 }
 
-function submitJob(digest: string, options: OptionValues, signal: AbortSignal): Promise<Job> {
+function submitJob(digest: string, options: OptionValues, {signal, wait}: Watcher): Promise<Job> {
   const here = connection(signal);
   const name = Array.from(crypto.getRandomValues(new Uint32Array(4)), (word) => word.toString(36)).join('-');
-  const headers = {'Content-Type': 'application/json', 'Idempotency-Key': name};
+  const headers = {'Content-Type': 'application/json', 'Idempotency-Key': name, ...(wait ? {Prefer: `wait=${wait}`} : {})};
   const init = {method: 'POST', headers, body: JSON.stringify(options)};
   return patiently(here, async () => jsonOf<Job>(here, await request(`/v1/meshes/${digest}/jobs`, init, signal)));
 }

@@ -2,8 +2,8 @@
 import {$} from '../base/dom.js';
 import {SLIDER_STEPS, lambdaOfSlider, lambdaOfText, sliderOfLambda} from './lambda.js';
 
-/** onDrag: λ while the slider moves. */
-export function connectBalance(onDrag: (lambda: number) => void): void {
+/** onMove: λ while the slider moves (a draft will do), and where it is let go. */
+export function connectBalance(onMove: (lambda: number, isDraft: boolean) => void): void {
   const [slider, field, problem] = [$<HTMLInputElement>('balance'), $<HTMLInputElement>('lambda'), $('lambda-problem')];
   slider.max = String(SLIDER_STEPS);
   const spell = (lambda: number) => slider.setAttribute('aria-valuetext', `λ ${lambda}`);
@@ -25,8 +25,9 @@ export function connectBalance(onDrag: (lambda: number) => void): void {
     spell(lambda);
     problem.textContent = '';
     field.removeAttribute('aria-invalid');
-    onDrag(lambda);
+    onMove(lambda, true);
   });
+  slider.addEventListener('change', () => onMove(lambdaOfSlider(Number(slider.value)), false));
   field.addEventListener('input', show);
   show();
 }

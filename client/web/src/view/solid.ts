@@ -33,6 +33,7 @@ export class SolidView extends Stage {
   readonly #controls: OrbitControls;
   readonly #lamp = new DirectionalLight(0xffffff, 2.2);
   #surface: Surface | undefined;
+  #normals: Float32Array | undefined;
   #home = {centre: new Vector3(), radius: 1};
 
   constructor(canvas: HTMLCanvasElement) {
@@ -49,7 +50,8 @@ export class SolidView extends Stage {
   show(surface: Surface, uv: Float32Array | undefined, keepsView = false): void {
     const isNew = this.#surface !== surface;
     this.#surface = surface;
-    this.setTriangles(surface.positions, normalsOf(surface), uv);
+    if (isNew) this.#normals = normalsOf(surface);
+    this.setTriangles(surface.positions, this.#normals, uv);
     if (isNew && !keepsView) {
       this.#home = boxOf(surface.positions);
       this.fit();

@@ -25,6 +25,7 @@ export abstract class Stage {
   onDrawn?: () => void;
   readonly #seams = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   readonly #marks = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false, linewidth: 2}));
+  readonly #edits = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false}));
   readonly #picked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.55, depthTest: false}));
   readonly #dots = new Points(new BufferGeometry(), new PointsMaterial({size: 9, sizeAttenuation: false, depthTest: false}));
   readonly #wire: Mesh<BufferGeometry, MeshBasicMaterial>;
@@ -37,7 +38,7 @@ export abstract class Stage {
     const wire = new MeshBasicMaterial({wireframe: true, transparent: true, opacity: 0.35, polygonOffset: true, polygonOffsetFactor: -1});
     this.#wire = new Mesh(this.#mesh.geometry, wire);
     this.#wire.visible = false;
-    [this.#mesh, this.#wire, this.#seams, this.#marks, this.#picked, this.#dots].forEach((object, order) => {
+    [this.#mesh, this.#wire, this.#seams, this.#marks, this.#edits, this.#picked, this.#dots].forEach((object, order) => {
       object.frustumCulled = false;
       object.renderOrder = order;
       this.scene.add(object);
@@ -71,6 +72,11 @@ export abstract class Stage {
     this.#replace(this.#marks, lines);
   }
 
+  /** Lines that were marked by hand. */
+  setEdits(lines: Float32Array): void {
+    this.#replace(this.#edits, lines);
+  }
+
   setPicked(triangles: Float32Array): void {
     this.#replace(this.#picked, triangles);
   }
@@ -91,6 +97,7 @@ export abstract class Stage {
     this.#wire.material.color.set(theme.line);
     this.#marks.material.color.set(theme.mark);
     this.#picked.material.color.set(theme.mark);
+    this.#edits.material.color.set(theme.pin);
     this.#dots.material.color.set(theme.pin);
     this.draw();
   }

@@ -1,0 +1,173 @@
+// Edits by hand: seams along edges, pins in the layout, and the balance that is dragged.
+import assert from "node:assert/strict";
+import { after, before, describe, test } from "node:test";
+
+import { Bench, difference, figure, missing, openMesh, real, shot, unwrap } from "./page.mjs";
+
+const bench = new Bench();
+
+/** A part of a sphere above a square of n by n quads: one disk. */
+function cap(n = 12) {
+  const lines = [];
+  for (let y = 0; y <= n; y += 1)
+    for (let x = 0; x <= n; x += 1) {
+      const [a, b] = [(2 * x) / n - 1, (2 * y) / n - 1];
+      lines.push(`v ${a} ${b} ${1 - 0.6 * (a * a + b * b)}`);
+    }
+  for (let y = 0; y < n; y += 1)
+    for (let x = 0; x < n; x += 1) {
+      const v = y * (n + 1) + x + 1;
+      lines.push(`f ${v} ${v + 1} ${v + n + 2} ${v + n + 1}`);
+    }
+  return `${lines.join("\n")}\n`;
+}
+
+describe("by hand", { skip: missing }, () => {
+  before(() => bench.open());
+  after(() => bench.close());
+
+  const submission = (page) => page.waitForRequest((one) => /\/v1\/meshes\/[0-9a-f]+\/jobs$/.test(one.url()));
+  const jobOf = (page) => new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
+  const resultOf = async (page) => (await fetch(`${bench.server.base}/v1/jobs/${jobOf(page)}/result.json`)).json();
+
+  /** Clicks a share of a canvas's width and height. */
+  async function clickAt(page, canvas, x, y) {
+    const { width, height } = await page.locator(canvas).boundingBox();
+    await page.click(canvas, { position: { x: x * width, y: y * height } });
+  }
+
+  test("seams are marked from click to click, and cut where they run", async (t) => {
+    const page = await bench.visit(t);
+    await page.check("#preset-chart");
+    await unwrap(page, bench.file("cap.obj", cap()));
+    await page.check("#edit-seams");
+    const bare = await shot(page, "#solid");
+    await clickAt(page, "#solid", 0.4, 0.5);
+    await page.locator("#seam-count", { hasText: "No edges marked. The next click goes on from the last." }).waitFor();
+    await clickAt(page, "#solid", 0.6, 0.5);
+    await page.locator("#seam-count", { hasText: /[1-9]\d* edges? marked in 1 path/ }).waitFor();
+    await page.mouse.move(5, 5);
+    assert.ok(await difference(page, await shot(page, "#solid"), bare) > 0.0003, "the marks are seen");
+    const edges = Number((await page.locator("#seam-count").innerText()).match(/^\d+/)[0]);
+    const [request] = await Promise.all([submission(page), page.click("#send")]);
+    const { seam_edges: sent } = request.postDataJSON();
+    assert.equal(sent.reduce((sum, { vertices }) => sum + vertices.length - 1, 0), edges);
+    await page.waitForFunction(() => !document.querySelector("#send").disabled);
+    const { meshes: [{ vertex_map: map, positions }] } = await resultOf(page);
+    const split = map.filter((v, i) => map.indexOf(v) !== i);
+    assert.ok(split.length > 0 && split.every((v) => sent[0].vertices.includes(v)), "vertices of the path alone are split");
+    assert.ok(positions.length > 0);
+    await page.click("#seam-undo");
+    assert.match(await page.locator("#seam-count").innerText(), /^No edges marked/);
+  });
+
+  test("an edge becomes a ring, which splits the surface", async (t) => {
+    const page = await bench.visit(t);
+    await page.check("#preset-chart");
+    await unwrap(page, bench.file("cap.obj", cap()));
+    assert.equal(await figure(page, "Charts"), "1");
+    await page.check("#edit-seams");
+    await clickAt(page, "#solid", 0.42, 0.5);
+    await clickAt(page, "#solid", 0.58, 0.5);
+    await page.click("#seam-ring");
+    assert.match(await page.locator("#seam-count").innerText(), /in 3 paths/);
+    await page.click("#send");
+    await page.waitForFunction(() => document.querySelector("#figures dd")?.firstChild.textContent === "2");
+  });
+
+  test("marks are made by keyboard, at the middle of the view", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("cap.obj", cap()));
+    await page.check("#edit-seams");
+    await page.focus("#solid");
+    await page.keyboard.press("Enter");
+    for (let turns = 0; turns < 3; turns += 1) await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("Enter");
+    await page.locator("#seam-count", { hasText: "marked in 1 path" }).waitFor();
+  });
+
+  test("a pin that is dragged takes the map along", async (t) => {
+    const page = await bench.visit(t);
+    await page.check("#preset-chart");
+    await unwrap(page, bench.file("cap.obj", cap()));
+    await page.check("#edit-pins");
+    await clickAt(page, "#flat", 0.3, 0.5);
+    await clickAt(page, "#flat", 0.7, 0.5);
+    assert.equal(await page.locator("#pin-list li").count(), 2);
+    const [u, v] = [await page.inputValue("#pin-1-U"), await page.inputValue("#pin-1-V")].map(Number);
+    const { x, y, width, height } = await page.locator("#flat").boundingBox();
+    const at = (a, b) => [x + width * (0.5 + (a - 0.5) / 1.06), y + height * (0.5 - (b - 0.5) / 1.06)];
+    await page.mouse.move(...at(u, v));
+    await page.mouse.down();
+    await page.mouse.move(...at(u + 0.1, v + 0.1), { steps: 4 });
+    const [request] = await Promise.all([submission(page), page.mouse.up()]);
+    const { constraints } = request.postDataJSON();
+    assert.ok(Math.abs(constraints[1].uv[0] - u - 0.1) < 0.02 && Math.abs(constraints[1].uv[1] - v - 0.1) < 0.02, JSON.stringify(constraints));
+    await page.locator("#live", { hasText: "Pins: angles" }).waitFor();
+    const { meshes: [{ uv, vertex_map: map }] } = await resultOf(page);
+    for (const { vertex, uv: wanted } of constraints) {
+      const i = map.indexOf(vertex);
+      for (const k of [0, 1]) assert.ok(Math.abs(uv[2 * i + k] - wanted[k]) < 1e-4, `vertex ${vertex} is at its pin`);
+    }
+  });
+
+  test("a pin is moved by numbers, and one that cannot hold is explained", async (t) => {
+    const page = await bench.visit(t);
+    await page.check("#preset-chart");
+    await unwrap(page, bench.file("cap.obj", cap()));
+    await page.check("#edit-pins");
+    await clickAt(page, "#flat", 0.3, 0.5);
+    await clickAt(page, "#flat", 0.7, 0.5);
+    const [request] = await Promise.all([submission(page), page.fill("#pin-0-U", "0.1").then(() => page.keyboard.press("Tab"))]);
+    assert.equal(request.postDataJSON().constraints[0].uv[0], 0.1);
+    await page.locator("#live", { hasText: "Pins: angles" }).waitFor();
+    for (const field of ["#pin-0-U", "#pin-0-V", "#pin-1-U", "#pin-1-V"]) await page.fill(field, "0.5");
+    await page.keyboard.press("Tab");
+    await page.locator("#live", { hasText: /Pins: .*constraint/ }).waitFor();
+    await page.click("#pin-list button >> nth=0");
+    assert.equal(await page.locator("#pin-list li").count(), 1);
+  });
+
+  const disk = real("disk/demosthenes-low-res.obj");
+  test("the map follows the slider: 50 moves, and the last is what is shown", { skip: !disk && "the test data is missing" }, async (t) => {
+    const page = await bench.visit(t);
+    await page.check("#preset-chart");
+    await page.selectOption("[name=method]", "hybrid");
+    await unwrap(page, disk);
+    const { pictures, last } = await page.evaluate(async () => {
+      const [slider, live] = ["balance", "live"].map((id) => document.getElementById(id));
+      const pictures = [];
+      new MutationObserver(() => pictures.push(Number(live.dataset.ms))).observe(live, { childList: true });
+      for (let i = 0; i < 50; i += 1) {
+        slider.value = String(20 + i);
+        slider.dispatchEvent(new Event("input"));
+        await new Promise((done) => setTimeout(done, 50));
+        while (i === 25 && pictures.length === 0) await new Promise((done) => setTimeout(done, 50));
+      }
+      slider.dispatchEvent(new Event("change"));
+      return { pictures, last: document.getElementById("lambda").value };
+    });
+    await page.locator("#live", { hasText: new RegExp(`^λ ${last}: angles [\\d.]+, areas [\\d.]+\\.$`) }).waitFor();
+    const { options, distortion } = await (await fetch(`${bench.server.base}/v1/jobs/${jobOf(page)}/report`)).json();
+    assert.equal(options.lambda, Number(last));
+    assert.equal(await figure(page, "Angles"), distortion.angle.toFixed(4));
+    assert.ok(pictures.length > 0, "the map is seen on the way");
+    const { jobs } = await (await fetch(`${bench.server.base}/v1/jobs?limit=200`)).json();
+    const drafts = jobs.filter((job) => job.options.guarantee === "none");
+    assert.deepEqual(drafts.map(({ id }) => id), [], "drafts are removed");
+    t.diagnostic(`thumb to picture, ms: ${pictures.join(" ")}`);
+    assert.deepEqual(page.complaints, []);
+  });
+
+  test("another mesh begins without the edits of the last", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("cap.obj", cap()));
+    await page.check("#edit-seams");
+    await clickAt(page, "#solid", 0.4, 0.5);
+    await clickAt(page, "#solid", 0.6, 0.5);
+    await openMesh(page, bench.file("next.obj", cap(6)));
+    assert.equal(await page.locator("#edit").isVisible(), false);
+    const [request] = await Promise.all([submission(page), page.click("#send")]);
+    assert.equal(request.postDataJSON().seam_edges, undefined);
+  });
+});
