@@ -17,7 +17,7 @@ export const missing = (!existsSync(executablePath) && `there is no Chromium at 
   (!playwright && "tests/node_modules is missing: run npm ci in tests/");
 
 /** WebGL without a GPU. */
-const args = ["--no-sandbox", "--disable-quic", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const args = ["--host-resolver-rules=MAP unwrapd.test 127.0.0.1", "--no-sandbox", "--disable-quic", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
 /** The path of a real mesh; undefined where there are none. */
 export function real(name) {
@@ -99,7 +99,7 @@ export async function drop(page, selector, files) {
   await page.dispatchEvent(selector, "drop", { dataTransfer: dropped });
 }
 
-/** What a canvas shows: [share of pixels that differ from its corner, number of distinct colours]. */
+/** What a canvas shows: the share of pixels that differ from its corner, how many colours, and the corner's green. */
 export async function seen(page, canvas) {
   const png = (await page.locator(canvas).screenshot()).toString("base64");
   return page.evaluate(async (bytes) => {
@@ -116,7 +116,7 @@ export async function seen(page, canvas) {
       colours.add(at(i));
       if (at(i) !== at(0)) other += 1;
     }
-    return { share: (4 * other) / pixels.length, colours: colours.size };
+    return { share: (4 * other) / pixels.length, colours: colours.size, ground: pixels[1] };
   }, png);
 }
 

@@ -44,6 +44,13 @@ describe("the page is for everybody", { skip: missing || (!existsSync(axe) && "a
             for (const summary of await page.locator("#result summary, #jobs summary").all()) await summary.click();
             await page.selectOption("#colouring", "stretch");
           },
+          seams: () => page.check("#edit-seams"),
+          pins: async () => {
+            await page.check("#edit-pins");
+            await page.focus("#flat");
+            await page.keyboard.press("Enter");
+            await page.locator("#pin-list li").waitFor();
+          },
         };
         for (const [state, reach] of Object.entries(states)) {
           await reach();
@@ -52,6 +59,8 @@ describe("the page is for everybody", { skip: missing || (!existsSync(axe) && "a
         }
         const [background] = await page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g));
         assert.equal(Number(background) < 128, colorScheme === "dark");
+        for (const canvas of ["#solid", "#flat"])
+          assert.equal((await seen(page, canvas)).ground < 128, colorScheme === "dark", `${canvas} is of the theme`);
         assert.ok((await seen(page, "#flat")).share > 0.1);
       });
 

@@ -212,6 +212,19 @@ describe("a job of the page", { skip: missing }, () => {
     assert.ok(page.url().includes(id));
   });
 
+  test("works where the browser calls the address insecure", async (t) => {
+    const far = await startServer(binary, ["--allowed-hosts", "unwrapd.test"]);
+    t.after(far.stop);
+    const page = await bench.visit(t, { base: far.base.replace("127.0.0.1", "unwrapd.test") });
+    assert.equal(await page.evaluate(() => isSecureContext), false);
+    await unwrap(page, bench.file("grid.obj", obj(6)));
+    assert.equal(await figure(page, "Charts"), "1");
+    await page.click("#result summary:has-text('Share')");
+    await page.click("#copy-curl");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "curl", "the text is selected for copying by hand");
+    assert.deepEqual(page.complaints, []);
+  });
+
   test("asks for the key that the server wants", async (t) => {
     const locked = await startServer(binary, ["--require-keys"]);
     t.after(locked.stop);

@@ -36,6 +36,11 @@ describe("the views of the page", { skip: missing }, () => {
       assert.ok((await seen(page, "#flat")).share > 0.3, `the layout by ${colouring}`);
     }
     assert.equal(pictures.size, 6, "each colouring is a picture of its own");
+    const { charts } = await (await fetch(`${bench.server.base}/v1/jobs/${jobOf(page)}/report`)).json();
+    const [worst] = charts.map(({ distortion }) => distortion).sort((a, b) => b.angle + b.area - a.angle - a.area);
+    const [, angle, area] = (await page.locator("#charts li").first().textContent()).match(/angles ([\d.]+), areas ([\d.]+) \(the worst\)/);
+    for (const [shown, reported] of [[angle, worst.angle], [area, worst.area]])
+      assert.ok(Math.abs(shown - reported) < 0.03, `the page's figure is ${shown}, the report's ${reported}`);
     await page.selectOption("#colouring", "plain");
     const plain = await shot(page, "#solid");
     await page.check("#show-wire");

@@ -13,6 +13,7 @@ import {connection, getJson, setKey} from './job/server.js';
 import {connectBalance} from './options/balance.js';
 import {OptionsForm} from './options/form.js';
 import type {Methods} from './options/types.js';
+import {formatOf} from './result/downloads.js';
 import {curlOf} from './share/curl.js';
 import {connectSharing} from './share/share.js';
 
@@ -82,7 +83,7 @@ function commandOf({opened, kept}: Session, options: object, {max_sync_faces: mo
   const base = opened!.name.replace(/\.[^.]*$/s, '');
   return curlOf({
     server: connection().server!, options, file: isArchive ? `${base}.zip` : opened!.name, mediaType: opened!.mediaType,
-    result: `${base}.uv.${opened!.name.replace(/^.*\./s, '')}`, isSmall: kept!.report.input.faces <= most,
+    result: `${base}.uv.${formatOf(opened!.name, kept!.report.options.output) ?? 'glb'}`, isSmall: kept!.report.input.faces <= most,
     needsKey: $<HTMLInputElement>('key').value !== '',
   });
 }

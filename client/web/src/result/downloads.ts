@@ -36,11 +36,17 @@ function filesOf({job, report, lambda, what}: Kept): File[] {
   ];
 }
 
+/** How the name of a result ends; undefined where only the server knows. */
+export function formatOf(name: string, output: string | undefined): string | undefined {
+  if (output && output !== 'auto') return output;
+  const own = name.replace(/^.*\./s, '').toLowerCase();
+  return ['stl', 'ply', 'off'].includes(own) ? 'glb' : ['glb', 'gltf', 'obj'].find((format) => format === own);
+}
+
 /** The format that the job itself has stands first, as the button that most people want. */
 export function listDownloads(kept: Kept, onError: (error: unknown) => void): void {
-  const format = kept.report.options.output;
   const files = filesOf(kept);
-  const own = files.find(({ending}) => ending === `uv.${format === 'auto' ? kept.name.replace(/^.*\./s, '').toLowerCase() : format}`);
+  const own = files.find(({ending}) => ending === `uv.${formatOf(kept.name, kept.report.options.output)}`);
   const base = kept.name.replace(/\.[^.]*$/s, '');
   const buttons = [...files].sort((a, b) => Number(b === own) - Number(a === own)).map(({label, ending, get}, place) => {
     const button = el('button', {type: 'button', className: place === 0 ? 'primary' : ''}, place === 0 ? `Download ${label}` : label);

@@ -30,6 +30,7 @@ export class Viewer {
   #what: Shown | undefined;
   #colouring: Colouring = 'checker';
   #selected: Picked | undefined;
+  #hovered = -1;
 
   constructor(solid: HTMLCanvasElement, layout: HTMLCanvasElement) {
     this.solid = new SolidView(solid);
@@ -102,6 +103,7 @@ export class Viewer {
   #highlight(picked: Picked | undefined): void {
     const {surface, map, aspect = 1} = this.#what ?? {};
     const face = picked?.face;
+    this.#hovered = face ?? -1;
     const border = map && surface && picked?.island !== undefined ? borderOf(picked.island, map, surface) : [];
     const triangle = surface && face !== undefined ? surface.positions.subarray(9 * face, 9 * face + 9) : new Float32Array();
     this.solid.setPicked(triangle.slice());
@@ -115,7 +117,9 @@ export class Viewer {
     const hover = oncePerFrame((event: PointerEvent) => {
       if (event.buttons || (this.#what?.surface.faces ?? 0) > HOVER_FACES) return;
       const face = faceAt(event);
+      if (face === this.#hovered) return;
       this.#highlight(face < 0 ? this.#selected : this.#pickedAt(face));
+      this.#hovered = face;
     });
     canvas.addEventListener('pointermove', hover);
     canvas.addEventListener('pointerleave', () => requestAnimationFrame(() => this.#highlight(this.#selected)));
