@@ -158,6 +158,20 @@ describe("a job of the page", { skip: missing }, () => {
     assert.equal(await page.locator("#send").isEnabled(), true);
   });
 
+  test("tells how much of the mesh is sent, and cancelled then leaves the job before alone", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("grid.obj", obj(4)));
+    const first = new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
+    const cdp = await page.context().newCDPSession(page);
+    await openMesh(page, bench.file("large.obj", obj(150)));
+    await cdp.send("Network.emulateNetworkConditions", { offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: 100_000 });
+    await page.click("#send");
+    await page.locator("#status", { hasText: /Sending the mesh: [1-9]\d? %/ }).waitFor();
+    await page.click("#cancel");
+    await page.locator("#problem.calm", { hasText: "Cancelled" }).waitFor();
+    assert.equal((await fetch(`${bench.server.base}/v1/jobs/${first}`)).status, 200);
+  });
+
   test("is read on where its connection was cut", async (t) => {
     const door = await doorTo(bench.server.base);
     t.after(door.close);

@@ -4,7 +4,7 @@ import {count} from '../base/words.js';
 import {hashOf} from '../base/permalink.js';
 import type {Opened} from '../files/read.js';
 import {ProgressView} from '../job/progress.js';
-import {type Job, type OptionValues, SentMesh, UnwrapdError, cancel, ended} from '../job/run.js';
+import {type Job, type OptionValues, SentMesh, UnwrapdError, cancel, ended, hasEnded} from '../job/run.js';
 import {getJson} from '../job/server.js';
 import {listCharts} from '../result/charts.js';
 import {type Kept, listDownloads} from '../result/downloads.js';
@@ -49,6 +49,7 @@ export class Session {
     const {sent, opened} = this;
     if (!sent || !opened) return showMessage('There is no mesh yet', 'Open a mesh first, or drop one on this page.');
     await this.#guarded(async (signal) => {
+      this.job = undefined;
       show($('result'), false);
       this.#progress.begin('Sending the mesh…');
       present($('job'));
@@ -60,6 +61,7 @@ export class Session {
   /** Shows a job by its address, whatever its state. */
   async openJob(id: string, name: string): Promise<void> {
     await this.#guarded(async (signal) => {
+      this.job = undefined;
       show($('result'), false);
       this.#progress.begin('Asking for the job…');
       present($('job'));
@@ -109,7 +111,7 @@ export class Session {
 
   async #cancel(): Promise<void> {
     const {job} = this;
-    if (!job) return this.#running?.abort(new DOMException('', 'AbortError'));
+    if (!job || hasEnded(job)) return this.#running?.abort(new DOMException('', 'AbortError'));
     await cancel(job).catch(showProblem);
   }
 
