@@ -77,13 +77,21 @@ describe("by hand", { skip: missing }, () => {
 
   test("marks are made by keyboard, at the middle of the view", async (t) => {
     const page = await bench.visit(t);
-    await unwrap(page, bench.file("cap.obj", cap()));
+    await page.check("#preset-chart");
+    await unwrap(page, bench.file("cap.obj", cap(10)));
     await page.check("#edit-seams");
     await page.focus("#solid");
     await page.keyboard.press("Enter");
     for (let turns = 0; turns < 3; turns += 1) await page.keyboard.press("ArrowRight");
     await page.keyboard.press("Enter");
     await page.locator("#seam-count", { hasText: "marked in 1 path" }).waitFor();
+    const [request] = await Promise.all([submission(page), page.click("#send")]);
+    const { vertices } = request.postDataJSON().seam_edges[0];
+    // From (0.45, 0.35, 1) towards (0, 0, 0.4) the eye meets the cap at (0.24, 0.19): next to (0.2, 0.2).
+    assert.equal(vertices[0], 6 * 11 + 6);
+    const places = vertices.map((v) => [v % 11, Math.floor(v / 11)]);
+    places.slice(1).forEach(([x, y], i) =>
+      assert.ok(Math.abs(x - places[i][0]) <= 1 && Math.abs(y - places[i][1]) <= 1, "each step is an edge"));
   });
 
   test("a pin that is dragged takes the map along", async (t) => {
