@@ -17,6 +17,14 @@ interface Wanted {
   since: number;
 }
 
+/** The picture that was asked for is drawn; pages in the background draw none. */
+function drawn(): Promise<void> {
+  return new Promise((resolve) => {
+    requestAnimationFrame(() => requestAnimationFrame(() => resolve()));
+    setTimeout(resolve, 500);
+  });
+}
+
 export class Balancing {
   readonly #session: Session;
   readonly #latest = new Latest<Wanted>((wanted) => this.#solve(wanted));
@@ -44,13 +52,12 @@ export class Balancing {
       const job = await ended(await sent.submit(options, watcher), watcher);
       if (job.problem) throw new UnwrapdError(job.problem);
       const loaded = await loadResult(job, undefined, opened.model);
-      if (sent !== this.#session.sent) return; // another mesh is open
+      if (sent !== this.#session.sent || this.#session.isBusy) return; // something else was begun
       this.#session.take(job, loaded, undefined, opened.name, isDraft ? 'draft' : 'live');
       const {angle, area} = loaded.report.distortion;
-      requestAnimationFrame(() => requestAnimationFrame(() => {
-        line.dataset['ms'] = String(Math.round(performance.now() - since));
-        line.textContent = `${label}: angles ${fixed(angle, 3)}, areas ${fixed(area, 3)}${isDraft ? ' (draft)' : ''}.`;
-      }));
+      await drawn();
+      line.dataset['ms'] = String(Math.round(performance.now() - since));
+      line.textContent = `${label}: angles ${fixed(angle, 3)}, areas ${fixed(area, 3)}${isDraft ? ' (draft)' : ''}.`;
       if (isDraft) await cancel(job).catch(() => {});
     } catch (error) {
       line.textContent = error instanceof UnwrapdError ? `${label}: ${error.detail}` : `${label}: ${String(error)}`;

@@ -34,6 +34,10 @@ export class Session {
     });
   }
 
+  get isBusy(): boolean {
+    return $<HTMLButtonElement>('send').disabled;
+  }
+
   open(opened: Opened): void {
     this.opened = opened;
     this.sent = new SentMesh(opened.blob, opened.mediaType);
