@@ -24,10 +24,13 @@ export class Session {
   readonly #viewing: Viewing;
   readonly #progress = new ProgressView();
   #running: AbortController | undefined;
+  #last: (signal: AbortSignal) => Promise<void> = async () => {};
 
   constructor(viewing: Viewing) {
     this.#viewing = viewing;
     $('cancel').addEventListener('click', () => void this.#cancel());
+    $('retry').addEventListener('click', () => void this.#guarded(this.#last));
+    $('key').addEventListener('keydown', ({key}) => key === 'Enter' && void this.#guarded(this.#last));
     $('lambda-shown').addEventListener('change', () => {
       const {job} = this;
       if (job) void this.#guarded(() => this.#show(job, Number($<HTMLSelectElement>('lambda-shown').value), this.kept?.name ?? job.id));
@@ -127,6 +130,7 @@ export class Session {
   /** Runs one thing at a time, with the buttons and messages that belong to it. */
   async #guarded(action: (signal: AbortSignal) => Promise<void>): Promise<void> {
     this.#running?.abort(new DOMException('', 'AbortError'));
+    this.#last = action;
     const running = (this.#running = new AbortController());
     clearProblem();
     $<HTMLButtonElement>('send').disabled = true;

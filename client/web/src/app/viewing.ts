@@ -120,7 +120,7 @@ export class Viewing {
   }
 
   #useTheme(): void {
-    this.viewer.setTheme({background: resolved('--soft'), line: resolved('--faint'), seam: resolved('--bad'), mark: resolved('--accent'), pin: resolved('--bad')});
+    this.viewer.setTheme({background: resolved('--soft'), line: resolved('--faint'), seam: resolved('--bad'), mark: resolved('--accent'), pin: resolved('--edit')});
   }
 }
 

@@ -72,9 +72,10 @@ export class SeamMarks {
     return Float32Array.from(ends.flatMap((point) => Array.from(this.#graph.placeOf(point))));
   }
 
-  /** The point where the next path begins. */
+  /** The points of the paths, and the one where the next begins. */
   dots(): Float32Array {
-    return this.#last === undefined ? new Float32Array() : this.#graph.placeOf(this.#last).slice();
+    const points = [...this.#paths.flat(), ...(this.#last === undefined ? [] : [this.#last])];
+    return Float32Array.from(points.flatMap((point) => Array.from(this.#graph.placeOf(point))));
   }
 
   /** As the option seam_edges wants them. */

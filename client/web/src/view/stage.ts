@@ -27,7 +27,7 @@ export abstract class Stage {
   readonly #marks = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false, linewidth: 2}));
   readonly #edits = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false}));
   readonly #picked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.55, depthTest: false}));
-  readonly #dots = new Points(new BufferGeometry(), new PointsMaterial({size: 9, sizeAttenuation: false, depthTest: false}));
+  readonly #dots = new Points(new BufferGeometry(), new PointsMaterial({size: 7, sizeAttenuation: false, depthTest: false}));
   readonly #wire: Mesh<BufferGeometry, MeshBasicMaterial>;
   readonly #mesh: Mesh<BufferGeometry>;
   #asked = false;
