@@ -255,7 +255,9 @@ async function paths(run, base) {
     const path = pathTo(operation.path, segment, segment);
     const answer = await request(base, {method: operation.method, path});
     obey(run, operation.id, answer);
-    if (answer.status !== 404) throw new Error(`status ${answer.status} for an unknown job`);
+    // URLs lose a segment that is a dot, which can make the path of another call.
+    const isOther = ['.', '..'].includes(id) && answer.status === 405;
+    if (answer.status !== 404 && !isOther) throw new Error(`status ${answer.status} for an unknown job`);
   });
   await check(run, 'ids', property, 300);
 }
