@@ -13,7 +13,7 @@
 namespace unwrapd::linear {
 namespace {
 
-constexpr Index kNone = -1;
+constexpr Index kUnset = -1;
 
 /// A dense trapezoid: columns with their rows, the columns' own rows included.
 struct Block {
@@ -81,7 +81,7 @@ class RowLists {
   RowLists(const std::vector<std::size_t>& begin, std::span<const Index> parent)
       : row(begin.back()),
         parent_(parent),
-        reached_(parent.size(), kNone),
+        reached_(parent.size(), kUnset),
         next_(begin.begin(), begin.end() - 1) {}
 
   void start(Index i, Index own_supernode) { reached_[at(own_supernode)] = i; }
@@ -125,7 +125,7 @@ Supernodes analyse(const Graph& graph, std::vector<Index> order, const std::stop
   const std::size_t count = nodes.first.size() - 1;
   nodes.child_count.assign(count, 0);
   nodes.row_begin.assign(count + 1, 0);
-  std::vector<Index> parent(count, kNone);
+  std::vector<Index> parent(count, kUnset);
   for (std::size_t s = 0; s < count; ++s) {
     const std::size_t last = at(nodes.first[s + 1] - 1);
     nodes.row_begin[s + 1] = nodes.row_begin[s] + at(tree.count[last] - 1);
