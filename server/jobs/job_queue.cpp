@@ -196,6 +196,7 @@ void JobQueue::end_job(const store::JobRecord& job, store::JobOutcome outcome,
   store::JobRecord record = job;
   record.state = outcome.state;
   record.problem = outcome.problem;
+  record.finished_ms = outcome.finished_ms;
   if (!job.webhook.empty()) outcome.delivery = store::text_of(api::to_json(store::to_job(record)));
   if (!store_.finish(job, outcome)) return;
   if (stored) stored();
