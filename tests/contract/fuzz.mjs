@@ -87,11 +87,12 @@ function someOptions(properties) {
 }
 
 /** What the schema cannot say: which options go together. */
-function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary = 'free',
-                     constraints = [], repack_only = false, texels_per_unit = null, max_pages = 1,
-                     stack_identical = false, max_distortion = null, guarantee = null,
-                     rotation = 'any', group = 'scene', width = null, height = null,
-                     straighten = 'off', preset = 'texture', textures = 'keep'}) {
+function goTogether(options) {
+  const {padding = 2, resolution = 1024, method = 'arap', boundary = 'free',
+         constraints = [], repack_only = false, texels_per_unit = null, max_pages = 1,
+         stack_identical = false, max_distortion = null, guarantee = null,
+         rotation = 'any', group = 'scene', width = null, height = null,
+         straighten = 'off', preset = 'texture', textures = 'keep'} = options;
   const free = boundary === 'free';
   const unpacked = !repack_only && texels_per_unit === null && max_pages === 1 &&
       !stack_identical && rotation === 'any' && group === 'scene';
@@ -100,7 +101,9 @@ function goTogether({padding = 2, resolution = 1024, method = 'arap', boundary =
   const loose = constraints.length === 0;
   const bijective = ['texture', 'lightmap'].includes(preset) && loose && (free || !placed);
   const apart = guarantee === null ? bijective : guarantee === 'bijective';
-  const shorter = Math.min(width ?? resolution, height ?? resolution);
+  const isSized = ['resolution', 'width', 'height'].some((name) => name in options);
+  const found = texels_per_unit !== null && textures === 'keep' && !isSized;
+  const shorter = found ? 16_384 : Math.min(width ?? resolution, height ?? resolution);
   return 4 * padding <= shorter && (max_pages === 1 || group === 'scene') &&
       (straighten === 'off' || (loose && (free || !placed) && !repack_only)) &&
       (loose || held) && (free || !repack_only) &&
