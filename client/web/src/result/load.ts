@@ -37,7 +37,6 @@ export async function loadResult(job: Job, lambda: number | undefined, open: Mod
 }
 
 /** The texture, in texels. */
-export function sizeOf({options}: Report): {width: number; height: number} {
-  const {resolution = 1024, width, height} = options;
-  return {width: width ?? resolution, height: height ?? resolution};
+export function sizeOf({page}: Report): {width: number; height: number} {
+  return page;
 }
