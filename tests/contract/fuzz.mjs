@@ -101,7 +101,7 @@ function goTogether(options) {
   const loose = constraints.length === 0;
   const bijective = ['texture', 'lightmap'].includes(preset) && loose && (free || !placed);
   const apart = guarantee === null ? bijective : guarantee === 'bijective';
-  const isSized = ['resolution', 'width', 'height'].some((name) => name in options);
+  const isSized = [options.resolution, width, height].some((side) => (side ?? null) !== null);
   const found = texels_per_unit !== null && textures === 'keep' && !isSized;
   const shorter = found ? 16_384 : Math.min(width ?? resolution, height ?? resolution);
   return 4 * padding <= shorter && (max_pages === 1 || group === 'scene') &&
