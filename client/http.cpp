@@ -85,9 +85,10 @@ httplib::Result perform(Client&& client, const ServerUrl& server, const std::sto
   guard.rethrow();
   if (stop.stop_requested()) throw Failure(ExitCode::interrupted, "Stopped.");
   if (!result)
-    throw Failure(ExitCode::unreachable, "The server at " + server.origin + " gave no answer (" +
-                                             httplib::to_string(result.error()) +
-                                             "); start it, or name another with --server.");
+    throw Failure(ExitCode::unreachable,
+                  "The server at " + server.origin + " gave no answer (" +
+                      httplib::to_string(result.error()) +
+                      "); start it, name another with --server, or use --local.");
   return result;
 }
 

@@ -55,9 +55,9 @@ api::Json json_of(const std::string& body) {
 [[noreturn]] void refuse(const Reply& reply) {
   const api::Json problem = json_of(reply.body);
   if (!problem.is_object() || !problem.contains("code"))
-    throw Failure(ExitCode::unreachable, "The server answered with status " +
-                                             std::to_string(reply.status) +
-                                             ", but not like unwrapd; check the address.");
+    throw Failure(ExitCode::unreachable,
+                  "The server answered with status " + std::to_string(reply.status) +
+                      ", but not like unwrapd; check the address, or use --local.");
   throw Failure(ExitCode::job_failed, problem_text(problem));
 }
 
