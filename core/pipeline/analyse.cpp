@@ -48,14 +48,19 @@ std::size_t job_bytes(std::span<const Surface> surfaces) {
 void require_area(std::span<const charts::Charts> parts) {
   constexpr double kLeastArea = 1e-150;  // whose square double precision holds
   double area = 0;
+  bool is_tiny = false;
   for (const charts::Charts& part : parts)
-    for (const charts::Chart& chart : part.charts) area += measure::surface_area(chart.mesh);
+    for (const charts::Chart& chart : part.charts) {
+      const double own = measure::surface_area(chart.mesh);
+      area += own;
+      is_tiny = is_tiny || own < kLeastArea;
+    }
   if (area == 0)
     throw Error(ErrorCode::zero_area, "every triangle has zero area; there is nothing to unwrap");
-  if (area < kLeastArea)
+  if (is_tiny)
     throw Error(ErrorCode::zero_area,
-                "the mesh has less area than can be computed with; scale it to ordinary units and "
-                "try again");
+                "a component has less area than can be computed with; scale it to ordinary units "
+                "and try again");
 }
 
 InputAnalysis analyse(std::span<const Surface> surfaces, const std::stop_token& stop) {

@@ -34,7 +34,7 @@ std::size_t job_bytes(std::span<const Surface> surfaces);
 /// Throws Error: no_triangles, zero_area, not_orientable, cancelled.
 InputAnalysis analyse(std::span<const Surface> surfaces, const std::stop_token& stop = {});
 
-/// Throws Error{zero_area} when the charts have no area, or less than can be computed with.
+/// Throws Error{zero_area} when the charts have no area, or one has less than can be computed with.
 void require_area(std::span<const charts::Charts> parts);
 
 }  // namespace unwrapd::pipeline
