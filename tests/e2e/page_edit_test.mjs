@@ -94,13 +94,19 @@ describe("by hand", { skip: missing }, () => {
       assert.ok(Math.abs(x - places[i][0]) <= 1 && Math.abs(y - places[i][1]) <= 1, "each step is an edge"));
   });
 
-  test("a pin that is dragged takes the map along", async (t) => {
+  /** A visitor who has unwrapped the cap and holds two of its vertices. */
+  async function visitWithTwoPins(t) {
     const page = await bench.visit(t);
     await page.check("#preset-chart");
     await unwrap(page, bench.file("cap.obj", cap()));
     await page.check("#edit-pins");
     await clickAt(page, "#flat", 0.3, 0.5);
     await clickAt(page, "#flat", 0.7, 0.5);
+    return page;
+  }
+
+  test("a pin that is dragged takes the map along", async (t) => {
+    const page = await visitWithTwoPins(t);
     assert.equal(await page.locator("#pin-list li").count(), 2);
     const [u, v] = [await page.inputValue("#pin-1-U"), await page.inputValue("#pin-1-V")].map(Number);
     const { x, y, width, height } = await page.locator("#flat").boundingBox();
@@ -120,12 +126,7 @@ describe("by hand", { skip: missing }, () => {
   });
 
   test("a pin is moved by numbers, and one that cannot hold is explained", async (t) => {
-    const page = await bench.visit(t);
-    await page.check("#preset-chart");
-    await unwrap(page, bench.file("cap.obj", cap()));
-    await page.check("#edit-pins");
-    await clickAt(page, "#flat", 0.3, 0.5);
-    await clickAt(page, "#flat", 0.7, 0.5);
+    const page = await visitWithTwoPins(t);
     const [request] = await Promise.all([submission(page), page.fill("#pin-0-U", "0.1").then(() => page.keyboard.press("Tab"))]);
     assert.equal(request.postDataJSON().constraints[0].uv[0], 0.1);
     await page.locator("#live", { hasText: "Pins: angles" }).waitFor();
