@@ -28,6 +28,7 @@ const LIMITS = [
   ["docs/api.md", "server/http/http_head.hpp", "kMaxLineBytes", (n) => `, ${(n + 2) / KIB} KiB, 100 fields`],
   ["docs/api.md", "server/http/http_head.hpp", "kMaxHeaderFields", (n) => `${n} fields`],
   ["docs/api.md", "server/http/form.hpp", "kMaxPartHead", (n) => `part of a form | ${n / KIB} KiB`],
+  ["docs/api.md", "server/uploads/job_input.cpp", "kMaxFieldBytes", (n) => `${n / KIB} KiB in all`],
   ["docs/api.md", "server/uploads/job_input.cpp", "kMaxBuffers", (n) => `${plain(n)} buffers`],
   ["docs/api.md", "api/options.hpp", "kMaxOptionsBytes", (n) => `options as JSON | ${n / KIB / KIB} MiB`],
   ["docs/api.md", "api/json.hpp", "max_depth", (n) => `${n} levels, 2,000,000 values`],
