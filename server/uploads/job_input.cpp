@@ -14,9 +14,8 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{256} * 1024;
 constexpr std::size_t kMaxBuffers = 1000;
-constexpr std::size_t kMaxFieldBytes =
-    std::size_t{64} * 1024;                                    // of all of a form, with their names
-constexpr std::string_view kSentOptionsFile = "options.sent";  // until they are read
+constexpr std::size_t kMaxFieldBytes = std::size_t{64} * 1024;  // of a form, with their names
+constexpr std::string_view kSentOptionsFile = "options.sent";   // until they are read
 
 /// A file that is written in large pieces.
 class GrowingFile {
