@@ -1,12 +1,10 @@
 #include "client/arguments.hpp"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <span>
 #include <string_view>
 #include <utility>
 
@@ -88,7 +86,8 @@ void add_flags(CLI::App& app, RawArguments& raw) {
          "does; GLB, glTF and OBJ are written. Default: the name of FILE with \".uv\" before the "
          "extension, which becomes .glb for .stl, .ply, .off and .zip; - (standard output) if FILE "
          "is "
-         "- or a pipe. With several meshes the folder for their results. A list of lambdas writes "
+         "- or a pipe. With several meshes, --resume or --watch the folder for their results. A "
+         "list of lambdas writes "
          "one file for each, with the lambda before the "
          "extension")
       ->type_name("OUT");
@@ -149,11 +148,17 @@ std::vector<std::string> lambdas_of(const OptionTexts& options) {
   return CLI::detail::split(lambda->second, ',');
 }
 
+bool is_folder(const fs::path& path) {
+  std::error_code none;
+  return fs::is_directory(path, none);
+}
+
 bool is_batch(const Arguments& arguments) {
   const fs::path& first = arguments.inputs.front();
+  std::error_code none;
   const bool is_pattern =
-      first.string().find_first_of("*?[") != std::string::npos && !fs::exists(first);
-  return arguments.inputs.size() > 1 || fs::is_directory(first) || is_pattern || arguments.resume ||
+      first.string().find_first_of("*?[") != std::string::npos && !fs::exists(first, none);
+  return arguments.inputs.size() > 1 || is_folder(first) || is_pattern || arguments.resume ||
          arguments.watch;
 }
 
@@ -166,11 +171,17 @@ void check_batch(const Arguments& arguments) {
     if (!path.empty())
       throw Failure(ExitCode::usage,
                     std::string(flag) + " writes one file; leave it out, or name one FILE.");
-  if (!arguments.out.empty() && fs::exists(arguments.out) && !fs::is_directory(arguments.out))
-    throw Failure(ExitCode::usage, "--out: " + arguments.out.string() +
-                                       " is a file; name a folder for the results.");
-  if (arguments.resume && !arguments.lambdas.empty())
-    throw Failure(ExitCode::usage, "--resume knows one result of each mesh; name one --lambda.");
+  std::error_code none;
+  const fs::path& out = arguments.out;
+  const bool is_file = is_stream(out) || is_mesh_name(out) || fs::exists(out, none);
+  if (!out.empty() && is_file && !is_folder(out))
+    throw Failure(ExitCode::usage,
+                  "--out: several meshes, --resume and --watch write into a folder, "
+                  "and " +
+                      out.string() + " is none; name one.");
+  if (!arguments.lambdas.empty())
+    throw Failure(ExitCode::usage,
+                  "Of several meshes each has one result; name one --lambda, or one FILE.");
 }
 
 /// Checks what the parser cannot, and derives the remaining values.

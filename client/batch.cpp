@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "client/batch_files.hpp"
+#include "client/figures.hpp"
 #include "client/printable.hpp"
 
 namespace unwrapd::client {
@@ -25,8 +26,9 @@ constexpr std::chrono::seconds kLook{1};  // between two looks of --watch
 /// What became of one mesh.
 struct Row {
   BatchFile item;
-  std::string report;   ///< JSON text; empty if it failed
-  std::string failure;  ///< empty if it did not
+  std::string report = {};   ///< JSON text; empty if it failed
+  Figures figures = {};      ///< of the report
+  std::string failure = {};  ///< empty if it did not fail
   double seconds = 0;
 };
 
@@ -65,7 +67,7 @@ Arguments arguments_of(const Arguments& batch, const BatchFile& item) {
 }
 
 Row Batch::unwrapped(const BatchFile& item) const {
-  Row row{item, {}, {}, 0};
+  Row row{.item = item};
   const Clock::time_point began = Clock::now();
   try {
     if (item.out.has_parent_path()) fs::create_directories(item.out.parent_path());
@@ -74,6 +76,7 @@ Row Batch::unwrapped(const BatchFile& item) const {
     std::ostringstream ignored;
     const Console silent{ignored, ignored, ProgressStyle::none};
     row.report = unwrap_file(one, server_, silent, stop_).front().report;
+    row.figures = read_figures(row.report);
   } catch (const Failure& failure) {
     if (failure.code() == ExitCode::unreachable || failure.code() == ExitCode::interrupted) throw;
     row.failure = failure.what();
@@ -90,7 +93,7 @@ void Batch::tell(const Row& row) const {
     api::Json line = {{"file", row.item.file.string()}};
     if (row.failure.empty()) {
       line["out"] = row.item.out.string();
-      line["report"] = api::Json::parse(row.report, nullptr, false);
+      line["report"] = api::Json::parse(row.report);
     } else {
       line["failure"] = row.failure;
     }
@@ -141,14 +144,12 @@ void print_row(const Row& row, int width, std::ostream& out) {
     out << "  " << printable(row.failure.substr(0, row.failure.find('\n'))) << "\n";
     return;
   }
-  const api::Json report = api::Json::parse(row.report);
-  const api::Json &distortion = report.at("distortion"), &overlaps = report.at("overlaps");
-  out << std::fixed << std::setprecision(3) << std::setw(8) << report.at("charts").size()
-      << std::setw(9) << distortion.at("angle").get<double>() << std::setw(8)
-      << distortion.at("area").get<double>() << std::setw(9) << distortion.at("flipped").get<long>()
-      << std::setw(10) << (overlaps.is_null() ? "?" : overlaps.dump()) << std::setprecision(2)
-      << std::setw(6) << report.at("fill").get<double>() << std::setprecision(1) << std::setw(9)
-      << row.seconds << "\n";
+  const Figures& figures = row.figures;
+  out << std::fixed << std::setprecision(3) << std::setw(8) << figures.charts << std::setw(9)
+      << figures.angle << std::setw(8) << figures.area << std::setw(9) << figures.flipped
+      << std::setw(10) << (figures.overlaps ? std::to_string(*figures.overlaps) : "?")
+      << std::setprecision(2) << std::setw(6) << figures.fill << std::setprecision(1)
+      << std::setw(9) << row.seconds << "\n";
 }
 
 std::ptrdiff_t failures(const std::vector<Row>& rows) {

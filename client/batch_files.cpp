@@ -20,7 +20,11 @@ struct Found {
   fs::path name;
 };
 
-bool is_result(const fs::path& path) { return path.stem().extension() == ".uv"; }
+/// "chair.uv.glb", and "chair.uv.0.1.glb" of a list of lambdas.
+bool is_result(const fs::path& path) {
+  const std::string stem = path.stem().string();
+  return stem.ends_with(".uv") || stem.find(".uv.") != std::string::npos;
+}
 
 void add_folder(const fs::path& folder, const fs::path& results, std::vector<Found>& found) {
   const std::size_t first = found.size();
@@ -41,7 +45,8 @@ void add_folder(const fs::path& folder, const fs::path& results, std::vector<Fou
 
 /// A name that no file has is taken for a pattern.
 std::vector<fs::path> expanded(const fs::path& input) {
-  if (fs::exists(input)) return {input};
+  std::error_code none;
+  if (fs::exists(input, none)) return {input};
   glob_t matches{};
   std::vector<fs::path> paths;
   if (::glob(input.c_str(), 0, nullptr, &matches) == 0)
@@ -55,7 +60,8 @@ std::vector<Found> found_in(std::span<const fs::path> inputs, const fs::path& re
   std::vector<Found> found;
   for (const fs::path& input : inputs)
     for (const fs::path& path : expanded(input)) {
-      if (fs::is_directory(path)) {
+      std::error_code none;
+      if (fs::is_directory(path, none)) {
         add_folder(path, results, found);
       } else {
         found.push_back({path, path.filename()});
@@ -81,10 +87,11 @@ std::vector<BatchFile> batch_files(std::span<const fs::path> inputs, const fs::p
     if (is_stream(mesh.file))
       throw Failure(ExitCode::usage, mesh.file.string() + " is no file; name it alone.");
     BatchFile item{mesh.file, result_of(mesh, folder, output)};
-    const auto [before, is_new] = taken.emplace(fs::weakly_canonical(item.out), item.file);
+    std::error_code none;
+    const auto [before, is_new] = taken.emplace(file_behind(item.out), item.file);
     if (is_new) {
       all.push_back(std::move(item));
-    } else if (!fs::equivalent(before->second, item.file)) {
+    } else if (before->second != item.file && !fs::equivalent(before->second, item.file, none)) {
       throw Failure(ExitCode::usage, before->second.string() + " and " + item.file.string() +
                                          " would both become " + item.out.string() +
                                          "; unwrap them into two folders.");

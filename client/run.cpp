@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/batch.hpp"
+#include "client/figures.hpp"
 #include "client/files.hpp"
 #include "client/sample.hpp"
 #include "client/workplace.hpp"
@@ -14,40 +15,27 @@ namespace unwrapd::client {
 namespace {
 
 /// "2 overlaps"; overlaps that were not counted are told as such.
-std::string overlaps_text(const api::Json& report) {
-  const api::Json& overlaps = report.at("overlaps");
-  if (overlaps.is_null()) return "overlaps not counted";
-  return std::to_string(overlaps.get<long>()) + " overlaps";
+std::string overlaps_text(const Figures& figures) {
+  return figures.overlaps ? std::to_string(*figures.overlaps) + " overlaps"
+                          : "overlaps not counted";
 }
 
 /// "chair.uv.glb: 20164 faces, 3 charts, D_angle 2.002, D_area 2.002, 0 flipped, 0 overlaps, fill
 /// 0.71".
-std::string summary(const std::string& name, const api::Json& report) {
-  const api::Json& distortion = report.at("distortion");
-  const std::size_t charts = report.at("charts").size();
+std::string summary(const std::string& name, const Figures& figures) {
   std::array<char, 256> text;
   std::snprintf(text.data(), text.size(),
                 ": %ld faces, %zu chart%s, D_angle %.3f, D_area %.3f, %ld flipped, %s, fill %.2f\n",
-                report.at("input").at("faces").get<long>(), charts, charts == 1 ? "" : "s",
-                distortion.at("angle").get<double>(), distortion.at("area").get<double>(),
-                distortion.at("flipped").get<long>(), overlaps_text(report).c_str(),
-                report.at("fill").get<double>());
+                figures.faces, figures.charts, figures.charts == 1 ? "" : "s", figures.angle,
+                figures.area, figures.flipped, overlaps_text(figures).c_str(), figures.fill);
   return name + text.data();
 }
 
 /// Prints a line for each map, then the notes, which are the same for all.
 void tell_maps(const std::vector<WrittenMap>& maps, std::ostream& out) {
-  try {
-    for (const WrittenMap& map : maps) out << summary(map.result, api::Json::parse(map.report));
-    const api::Json report = api::Json::parse(maps.front().report);
-    for (const api::Json& note : report.at("notes"))
-      out << "note (" << note.at("code").get<std::string>()
-          << "): " << note.at("text").get<std::string>() << "\n";
-    out << std::flush;
-  } catch (const api::Json::exception&) {
-    throw Failure(ExitCode::unreachable,
-                  "The report is not of this version; use a server of the same version as unwrap.");
-  }
+  for (const WrittenMap& map : maps) out << summary(map.result, read_figures(map.report));
+  for (const std::string& note : read_figures(maps.front().report).notes) out << note << "\n";
+  out << std::flush;
 }
 
 void tell(const Arguments& arguments, const std::vector<WrittenMap>& maps, const Console& console) {

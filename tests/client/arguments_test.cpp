@@ -194,9 +194,12 @@ TEST(Arguments, SeveralMeshesOrAFolderAreABatch) {
   EXPECT_EQ(accepted({"a.glb", "--resume"}).inputs.size(), 1U);
   for (const char* flag : {"--report", "--layout", "--preview"})
     EXPECT_THAT(refused({"a.glb", "b.glb", flag, "x.png"}).text, HasSubstr(flag));
-  EXPECT_THAT(refused({"a.glb", "b.glb", "-o", one.c_str()}).text, HasSubstr("is a file"));
-  EXPECT_THAT(refused({"a.glb", "--resume", "--method", "hybrid", "--lambda", "1,2"}).text,
-              HasSubstr("--lambda"));
+  for (const char* out : {one.c_str(), "-", "new.obj"})
+    EXPECT_THAT(refused({"a.glb", "b.glb", "-o", out}).text, HasSubstr("--out"));
+  EXPECT_EQ(accepted({std::string(5000, 'a').c_str()}).inputs.size(), 0U);
+  for (const char* other : {"b.glb", "--resume"})
+    EXPECT_THAT(refused({"a.glb", other, "--method", "hybrid", "--lambda", "1,2"}).text,
+                HasSubstr("--lambda"));
   refused({"a.glb", "b.glb", "-j", "0"});
 }
 

@@ -22,7 +22,8 @@ std::vector<std::string> names(const std::vector<BatchFile>& items, fs::path Bat
 
 TEST(BatchFiles, AFolderIsItsMeshesByNameWithoutResultsAndOtherFiles) {
   const TemporaryFolder folder;
-  for (const char* name : {"b.obj", "a.GLB", "sub/c.stl", "a.uv.GLB", "a.mtl", "notes.txt"})
+  for (const char* name : {"b.obj", "a.GLB", "sub/c.stl", "a.uv.GLB", "a.uv.0.1.GLB", "b.uv.1.obj",
+                           "a.mtl", "notes.txt"})
     folder.write(name, "x");
   const fs::path base = folder.file("");
   const std::vector<fs::path> inputs{base};
@@ -63,6 +64,17 @@ TEST(BatchFiles, TwoMeshesOfOneResultAreRefusedAndOneNamedTwiceIsOne) {
   const std::vector<fs::path> twice{folder.file("a/x.obj"), folder.file("a"),
                                     folder.file("b/../a")};
   EXPECT_EQ(batch_files(twice, "", "auto").size(), 1U);
+}
+
+TEST(BatchFiles, NamesThatLeadNowhereAreLeftToTheJob) {
+  const TemporaryFolder folder;
+  const fs::path missing = folder.file("x.obj"), loop = folder.file("loop.obj");
+  fs::create_symlink(loop, loop);
+  const fs::path endless = std::string(5000, 'a') + ".obj";
+  for (const fs::path& path : {missing, loop, endless}) {
+    const std::vector<fs::path> twice{path, path};
+    EXPECT_EQ(batch_files(twice, "", "auto").size(), 1U) << path;
+  }
 }
 
 TEST(BatchFiles, AResultIsDoneUnlessItsMeshIsNewer) {

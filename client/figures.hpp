@@ -1,0 +1,25 @@
+#pragma once
+// The figures of a report that people are told.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/json.hpp"
+
+namespace unwrapd::client {
+
+struct Figures {
+  long faces = 0;
+  std::size_t charts = 0;
+  double angle = 2, area = 2;  ///< D_angle, D_area
+  long flipped = 0;
+  std::optional<long> overlaps;  ///< none: they were not counted
+  double fill = 0;
+  std::vector<std::string> notes;  ///< "note (code): text"
+};
+
+/// Throws Failure{unreachable} for a text that is no report of this version.
+Figures read_figures(const std::string& report);
+
+}  // namespace unwrapd::client
