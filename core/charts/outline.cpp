@@ -20,4 +20,10 @@ Outline outline_of(const Chart& chart, std::span<const Vec2> uv) {
   return outline;
 }
 
+double area_of(const Outline& outline) {
+  double twice = 0;
+  for (const auto& [a, b] : outline) twice += a.x() * b.y() - a.y() * b.x();
+  return twice / 2;
+}
+
 }  // namespace unwrapd::charts

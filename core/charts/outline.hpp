@@ -15,4 +15,7 @@ using Outline = std::vector<std::array<Vec2, 2>>;
 /// The chart's boundary loops, and the sides of flipped triangles, which may reach beyond them.
 Outline outline_of(const Chart& chart, std::span<const Vec2> uv);
 
+/// Of all loops, by the shoelace formula: above 0 for those that run counterclockwise.
+double area_of(const Outline& outline);
+
 }  // namespace unwrapd::charts

@@ -2,6 +2,7 @@
 // Dinic's algorithm (1970): all shortest ways at once, by layers, until none is left.
 #include "core/charts/shortest_seam.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>

@@ -6,13 +6,13 @@
 #include "core/base/executor.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/solve/methods/symmetric_dirichlet.hpp"
+#include "core/types/chart_rules.hpp"
 
 namespace unwrapd::guarantee {
 namespace {
 
 constexpr double kLeastLambdaOfSizes = 0.01;
-constexpr double kMostRise = 0.5;        // see GuaranteeRules::most_rise; of a segmented chart
-constexpr double kMostRiseOfOne = 0.05;  // of another one
+constexpr double kMostRise = 0.5;  // see GuaranteeRules::most_rise; of a segmented chart
 
 /// The method's own energy, which a repair raises as little as possible. Methods that compute a map
 /// from angles or scales have the energy of angles.
@@ -44,11 +44,12 @@ solve::repair::OwnEnergy own_energy_of(const solve::Disk& disk, const UnwrapOpti
 
 /// A segmented chart is one of many anyway and has a bound of distortion: splitting it is better
 /// than a new map of much energy. Any other chart is split where that keeps the energy low, unless
-/// the number of charts is limited.
+/// it must stay whole or the number of charts is limited.
 double most_rise_of(const charts::Chart& chart, const UnwrapOptions& options,
                     solve::repair::OwnEnergy own) {
   if (chart.least == Guarantee::bijective) return kMostRise;
-  if (own == solve::repair::OwnEnergy::fit && !options.max_charts) return kMostRiseOfOne;
+  const bool may_split = !options.max_charts && !keeps_whole(options);
+  if (own == solve::repair::OwnEnergy::fit && may_split) return kMostPressed;
   return std::numeric_limits<double>::infinity();
 }
 

@@ -10,6 +10,10 @@
 
 namespace unwrapd::guarantee {
 
+/// The most rise of energy at which sheets that overlap are pressed apart: beyond it a short seam
+/// is better.
+inline constexpr double kMostPressed = 0.05;
+
 /// What a chart's map must have, and how a repair may change the map.
 struct GuaranteeRules {
   Guarantee guarantee = Guarantee::flip_free;
@@ -17,7 +21,8 @@ struct GuaranteeRules {
   /// Hard constraints stay; a chart with hard or soft ones is not split.
   solve::repair::MapIntent intent = {};
   /// A new map is refused, and the chart is split, if its energy above the least possible energy
-  /// exceeds that of the old map by more than this share.
+  /// exceeds that of the old map by more than this share. At kMostPressed none is sought: sheets
+  /// that cannot be pressed apart within it are cut.
   double most_rise = std::numeric_limits<double>::infinity();
 };
 

@@ -30,7 +30,6 @@ namespace {
 constexpr std::size_t kMostPairs = 1 << 20;  // of overlapping triangles, counted in one chart
 constexpr std::size_t kMostParts = 8;        // of a chart, before it has a new map instead
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr double kMostPressed = 0.05;         // rise of energy; beyond, a short seam is better
 constexpr Index kMostFacesUnfolded = 50'000;  // a new map of more takes minutes
 
 bool holds_any(const solve::repair::MapIntent& intent) {

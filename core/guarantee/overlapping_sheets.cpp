@@ -18,8 +18,8 @@ std::vector<Index> regions_of(const charts::Chart& chart, const std::vector<Pair
   for (const auto& [s, t] : pairs) is_open[s] = is_open[t] = 1;
   Index count = 0;
   std::vector<Index> reached;
-  for (const auto& [s, unused] : pairs)
-    for (const Index first : {s, unused}) {
+  for (const auto& [s, t] : pairs)
+    for (const Index first : {s, t}) {
       if (is_open[first] == 0) continue;
       reached.assign(1, first);
       is_open[first] = 0;

@@ -223,19 +223,13 @@ PackResult pack_apart(std::span<const charts::Outline> islands, const PageOption
   return tight.placements.front().scale > rows.placements.front().scale ? tight : rows;
 }
 
-double area_of(const charts::Outline& outline) {
-  double area = 0;
-  for (const auto& [a, b] : outline) area += (a.x() * b.y() - a.y() * b.x()) / 2;
-  return area;
-}
-
 }  // namespace
 
 double rough_fill(std::span<const charts::Outline> islands, const RoughRules& rules,
                   const std::stop_token& stop) {
   if (islands.empty() || !has_extent(points_of(islands))) return 1;
   double area = 0;
-  for (const charts::Outline& island : islands) area += area_of(island);
+  for (const charts::Outline& island : islands) area += charts::area_of(island);
   SerialExecutor serial;
   JobExecutor executor(serial, stop);
   return Packer(islands, {.padding = 0}, executor).rough_fill(area, rules);

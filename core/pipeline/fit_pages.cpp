@@ -23,23 +23,19 @@ constexpr int kPackings = 3;        // at most, for one number of pages
 constexpr int kSmall = 128;         // texels: padding decides, and searches take long
 constexpr int kStep = 4;            // texels: blocks of compressed textures
 
-[[noreturn]] void refuse(double texels) {
+/// Only a scene may have more pages.
+[[noreturn]] void refuse(double texels, PageGroup group) {
   throw Error(ErrorCode::does_not_fit,
               "The islands at this density need pages of " +
                   std::to_string(std::llround(std::min(texels, 1e15))) + " texels a side, and " +
-                  std::to_string(kMaxResolution) +
-                  " are the most; lower texels_per_unit, or raise max_pages.",
+                  std::to_string(kMaxResolution) + " are the most; lower texels_per_unit" +
+                  (group == PageGroup::scene ? ", or raise max_pages." : "."),
               "/texels_per_unit");
 }
 
-/// By the shoelace formula; the sum of all islands.
 double area_of(std::span<const charts::Outline> islands) {
   double area = 0;
-  for (const charts::Outline& outline : islands) {
-    double twice = 0;
-    for (const auto& [a, b] : outline) twice += a.x() * b.y() - a.y() * b.x();
-    area += std::abs(twice) / 2;
-  }
+  for (const charts::Outline& outline : islands) area += std::abs(charts::area_of(outline));
   return area;
 }
 
@@ -81,7 +77,7 @@ class PageFitter {
       width = tight->width;
       if (side_of(width) <= kMaxResolution) return on_page(*tight);
     }
-    refuse(width);
+    refuse(width, page_.packing.group);
   }
 
  private:

@@ -161,10 +161,7 @@ void note_new_maps(Layout& layout, const UnwrapOptions& options) {
            kept_energy_of(options.method) + "; energy_rise of the chart's mending tells the cost.";
   if (cut > 0)
     text += (moved > 0 ? " " : "") +
-            ("Charts that overlapped themselves and were cut between the "
-             "sheets, which costs less than a new map: " +
-             std::to_string(cut)) +
-            ".";
+            ("Charts that overlapped themselves and were cut: " + std::to_string(cut)) + ".";
   if (!text.empty()) layout.report.notes.push_back({NoteCode::chart_remapped, text});
 }
 

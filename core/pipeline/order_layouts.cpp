@@ -42,9 +42,8 @@ void note_other_maps(Layout& layout) {
   layout.report.notes.push_back(
       {NoteCode::lambda_repeated,
        "Charts whose map comes from that of another lambda of the list: " + std::to_string(count) +
-           ". Their own map would have more distortion than a greater lambda's of angles, or than "
-           "a "
-           "smaller one's of areas. A job with this lambda alone returns it."});
+           ". Their own map would have more distortion than a greater lambda's of angles, or "
+           "than a smaller one's of areas. A job with this lambda alone returns it."});
 }
 
 }  // namespace

@@ -13,13 +13,6 @@
 namespace unwrapd::pipeline {
 namespace {
 
-/// By the shoelace formula over all loops.
-double area_of(const charts::Outline& outline) {
-  double twice = 0;
-  for (const auto& [a, b] : outline) twice += a.x() * b.y() - a.y() * b.x();
-  return std::abs(twice) / 2;
-}
-
 void note_padding(const pack::PackResult& packed, int asked, Report& report) {
   if (packed.padding >= asked) return;
   report.notes.push_back(
@@ -97,7 +90,7 @@ void place_islands(const IslandsToPlace& islands, const UnwrapOptions& options, 
     const pack::Placement& placement = packed.placements[k];
     for (Vec2& uv : *islands.maps[k]) uv = placement(uv);
     if (packed.is_stacked.empty() || packed.is_stacked[k] == 0)
-      covered += area_of(islands.outlines[k]) * placement.scale * placement.scale;
+      covered += std::abs(charts::area_of(islands.outlines[k])) * placement.scale * placement.scale;
   }
   report.pages = packed.pages;
   report.page = page;

@@ -23,8 +23,9 @@
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
-constexpr double kShareOfFirst = 0.25;   // of the work, to share charts out
+constexpr double kLeastOpenness = 0.01;   // 1 / 10^2
+constexpr double kShareOfFirst = 0.25;    // of the work, to share charts out
+constexpr double kShareOfStandIn = 0.25;  // of the work, on the first stand-in
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const charts::Chart& component) {
@@ -145,10 +146,10 @@ class Cutter {
     const SearchExtent extent = search_extent(options_.effort);
     const Index faces = component.mesh.face_count();
     if (faces > extent.first.beyond) {
-      auto found = large_charts_within_bound(component, for_part_of_work(rules, 0, kShareOfFirst),
+      auto found = large_charts_within_bound(component, for_part_of_work(rules, 0, kShareOfStandIn),
                                              extent.first.faces, executor_);
       if (found) return std::move(*found);
-      rules = for_part_of_work(rules, kShareOfFirst, 1);
+      rules = for_part_of_work(rules, kShareOfStandIn, 1);
     }
     if (faces <= extent.second.beyond) {
       const SegmentationMesh surface =

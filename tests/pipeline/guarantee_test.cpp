@@ -129,14 +129,17 @@ double common_area(const UvTriangle& a, const UvTriangle& b) {
   return area;
 }
 
-TEST(Guarantee, OfInjectivityLeavesNoPairThatOverlaps) {
-  // ARAP lays this helix of a turn and a half upon itself
-  const TriMesh helix = shapes::mapped_grid(60, 3, shapes::Wrap::none, [](double u, double v) {
+/// A turn and a half, which ARAP lays upon itself.
+TriMesh helix() {
+  return shapes::mapped_grid(60, 3, shapes::Wrap::none, [](double u, double v) {
     const double r = 1 + v, angle = 9 * u;
     return Vec3(r * std::cos(angle), r * std::sin(angle), u);
   });
+}
+
+TEST(Guarantee, OfInjectivityLeavesNoPairThatOverlaps) {
   UnwrapOptions options{.guarantee = Guarantee::bijective};
-  for (const TriMesh& mesh : {helix, shapes::random_disk(12, 1), shapes::sphere(2)}) {
+  for (const TriMesh& mesh : {helix(), shapes::random_disk(12, 1), shapes::sphere(2)}) {
     const Answer a = answer(obj_text(mesh), options);
     const std::vector<UvTriangle> triangles = triangles_of_glb(a.glb);
     EXPECT_EQ(flips(triangles), 0U);
@@ -145,14 +148,25 @@ TEST(Guarantee, OfInjectivityLeavesNoPairThatOverlaps) {
         ASSERT_LT(common_area(triangles[s], triangles[t]), 1e-13) << s << ' ' << t;
     for (const ChartReport& chart : a.report.charts) EXPECT_EQ(chart.overlaps, 0);
   }
-  const Report cut = answer(obj_text(helix), options).report;
+  const Report cut = answer(obj_text(helix()), options).report;
   EXPECT_EQ(cut.charts.size(), 2U);  // bent to a spiral it would have many times the energy
   EXPECT_LT(cut.charts[0].mending.energy_rise, 0.05);
   options.max_charts = 1;
-  const Report parted = answer(obj_text(helix), options).report;
+  const Report parted = answer(obj_text(helix()), options).report;
   EXPECT_EQ(parted.charts.size(), 1U);  // its boundaries part, it is not split
   EXPECT_EQ(parted.charts[0].mending.parts, 1);
   EXPECT_GT(parted.charts[0].mending.overlaps, 0);
+}
+
+TEST(Guarantee, OfInjectivityKeepsChartsWholeThatConstraintsDraw) {
+  UnwrapOptions options{.guarantee = Guarantee::bijective};
+  options.constraints = {{.surface = 0, .vertex = 0, .uv = Vec2(0.2, 0.2), .weight = 1},
+                         {.surface = 0, .vertex = 100, .uv = Vec2(0.6, 0.6), .weight = 1}};
+  const Answer a = answer(obj_text(helix()), options);
+  ASSERT_EQ(a.report.charts.size(), 1U);
+  EXPECT_EQ(a.report.charts[0].mending.parts, 1);
+  EXPECT_EQ(a.report.charts[0].overlaps, 0);
+  EXPECT_GT(a.report.charts[0].mending.overlaps, 0);
 }
 
 TEST(Guarantee, OfNothingReportsWhatIsFlipped) {
