@@ -186,7 +186,6 @@ constexpr std::array<std::string_view, 5> kFiles = {"result", "report", "layout.
                                                     "preview.png"};
 constexpr std::int64_t kUsualSeconds = 3600;
 constexpr std::int64_t kMostSeconds = 7 * 24 * 3600;
-constexpr std::int64_t kMsPerSecond = 1000;
 
 /// A URL that opens one file of a job without an API key, for a time. Parameters: file (default
 /// result) and seconds (1 to 604800; default 3600). Throws Error{invalid_option}.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "client/web/page.hpp"
+#include "core/base/error.hpp"
 #include "server/http/gzip.hpp"
 #include "server/http/media_types.hpp"
 #include "server/routes/text_handlers.hpp"

@@ -16,10 +16,9 @@ api::Job to_job(const JobRecord& record) {
                .problem = record.problem};
   if (record.finished_ms == 0) return job;
   job.finished = rfc3339(record.finished_ms);
-  constexpr double kSecond = 1000;
-  const std::int64_t passed = record.finished_ms - record.created_ms;
-  job.duration =
-      static_cast<double>(std::max<std::int64_t>(passed, 0)) / kSecond;  // clocks are set back
+  const std::int64_t passed_ms =  // clocks are set back
+      std::max<std::int64_t>(record.finished_ms - record.created_ms, 0);
+  job.duration = static_cast<double>(passed_ms) / kMsPerSecond;
   return job;
 }
 

@@ -65,10 +65,12 @@ class PartWriter {
       start_document();
     } else if (part.name == "buffer") {
       start_buffer(part);
-    } else if (part.filename.empty()) {
+    } else if (part.filename.empty() && !part.name.empty()) {
       start_field(part.name);
     } else {
-      malformed("A file is not named \"mesh\", \"file\" or \"buffer\"; use one of these names.");
+      malformed(
+          "A part has no name, or a file is not named \"mesh\", \"file\" or \"buffer\"; use one of "
+          "these names.");
     }
   }
 
@@ -82,7 +84,8 @@ class PartWriter {
 
   Upload finish() {
     finish_file();
-    if (!has_document_) malformed("The form has no part named \"mesh\"; send the asset in it.");
+    if (!has_document_)
+      malformed("The form has no part named \"mesh\" or \"file\"; send the asset in it.");
     if (upload_.options && !upload_.fields.empty())
       malformed(
           "The form has options in the part \"options\" and in parts of their own; use one way.");

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/base/error.hpp"
+#include "server/base/clock.hpp"
 #include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
 #include "server/base/trace.hpp"
@@ -19,7 +20,6 @@ constexpr std::string_view kSecretPrefix = "whsec_";
 constexpr int kMaxTries = 10;
 constexpr int kAtOnce = 16;
 constexpr int kPerReceiver = 2;
-constexpr std::int64_t kMsPerSecond = 1000;
 constexpr std::int64_t kLongestPauseMs = 3'600'000;
 
 std::string base64(std::string_view bytes) {

@@ -62,6 +62,8 @@ function includeBreaches(path, header, quoted) {
     breaches.push(`${header} is in no room`);
   if (quoted && header.startsWith("server/") && /^tests\/(?!(server|fault|fuzz|isolate|bench)\/)/.test(path))
     breaches.push("tests of other parts do not include server");
+  if (quoted && room?.folder === "client" && header.startsWith("server/") && header !== "server/private_server.hpp")
+    breaches.push("client includes server by private_server.hpp alone");
   for (const rule of ONLY_IN)
     if (rule.header.test(header) && !rule.files.test(path))
       breaches.push(`<${header}> may not be included here`);

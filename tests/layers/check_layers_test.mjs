@@ -25,6 +25,7 @@ test("rooms include the rooms before them only", () => {
   refuses("server/jobs/job_queue.cpp", '"server/routes/job_routes.hpp"');
   refuses("server/base/log.cpp", '"server/service.hpp"');
   refuses("tests/core/unwrap_test.cpp", '"server/service.hpp"');
+  refuses("client/run.cpp", '"server/service.hpp"');
   accepts("core/figure/preview.cpp", '"core/measure/jacobian.hpp"');
   accepts("core/solve/arap/global_step.cpp", '"core/linear/cholesky.hpp"');
   accepts("core/charts/charts.cpp", '"core/types/options.hpp"');

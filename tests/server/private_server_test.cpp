@@ -28,8 +28,12 @@ TEST(PrivateServer, AnswersOnlyWhoHasItsKeyAndLeavesNothing) {
     EXPECT_EQ(client.Get("/v1/jobs")->status, 401);
     EXPECT_EQ(status(client, second.key()), 401);
     EXPECT_EQ(status(client, first.key()), 200);
-    for (const auto& entry : std::filesystem::directory_iterator(temporary.path()))
+    int folders = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(temporary.path())) {
       EXPECT_EQ(entry.status().permissions(), std::filesystem::perms::owner_all) << entry;
+      ++folders;
+    }
+    EXPECT_EQ(folders, 2);
   }
   EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
   ::unsetenv("TMPDIR");
