@@ -1,4 +1,4 @@
-# compile_together(TARGET [FILE...]): the files of a target together, thirty at a time, but for those
+# compile_together(TARGET [FILE...]): the files of a target together, sixty at a time, but for those
 # named, whose local names clash with others. Templates that several files use are compiled once.
 # Not in the preset dev, where one file changes at a time.
 # (Eigen comes before httplib, whose headers define a macro that breaks it.)
@@ -14,7 +14,7 @@ function(compile_together target)
   foreach(source ${sources})
     get_filename_component(source ${source} ABSOLUTE)
     file(RELATIVE_PATH name ${CMAKE_CURRENT_SOURCE_DIR} ${source})
-    if(place EQUAL 30)
+    if(place EQUAL 60)
       set(place 0)
       math(EXPR group "${group} + 1")
     endif()

@@ -11,12 +11,6 @@
 namespace unwrapd::asset {
 namespace {
 
-/// Twice the signed area. Exact on the page, where texture coordinates are multiples of 2^-24;
-/// beyond it, where constraints may put them, exact but for triangles a few steps high.
-double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
 /// Whether all corners turn the same way, once around. Corners at one point count as one, since
 /// triangles without area cannot flip.
 bool is_convex(UvMap polygon) {
@@ -27,6 +21,8 @@ bool is_convex(UvMap polygon) {
   int left = 0, right = 0, climbs = 0;  // climbs: edges upward that follow one that is not
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 &a = polygon[i], &b = polygon[(i + 1) % n], &c = polygon[(i + 2) % n];
+    // Exact on the page, where texture coordinates are multiples of 2^-24; beyond it, where
+    // constraints may put them, exact but for triangles a few steps high.
     const double t = turn(a, b, c);
     left += t > 0 ? 1 : 0;
     right += t < 0 ? 1 : 0;

@@ -16,6 +16,11 @@ enum class PolygonFate {
 
 inline constexpr Index kUnset = -1;  ///< texture coordinates of a corner that has none yet
 
+/// Twice the signed area of abc: > 0 where it turns left.
+inline double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
 /// The fate of a face element. texcoords: those of its corners, if it is kept.
 PolygonFate polygon_fate(const Obj& obj, const ObjElement& element,
                          const UnwrappedSurface& unwrapped, std::vector<Index>& texcoords);

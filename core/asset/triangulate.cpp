@@ -9,6 +9,7 @@
 
 #include "core/asset/as_size.hpp"
 #include "core/asset/obj.hpp"
+#include "core/asset/obj_polygons.hpp"
 #include "core/asset/pace.hpp"
 
 namespace unwrapd::asset {
@@ -19,11 +20,6 @@ Vec3 newell_normal(std::span<const Vec3> polygon) {
   for (std::size_t i = 0; i < polygon.size(); ++i)
     normal += (polygon[i] - polygon[0]).cross(polygon[(i + 1) % polygon.size()] - polygon[0]);
   return normal;
-}
-
-/// Twice the signed area of abc.
-double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
 /// The polygon's corners in the plane, turning left around it. A polygon without area lies on a

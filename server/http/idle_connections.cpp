@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kTickMs = 100;  // how late a deadline may be noticed; not sooner: it looks at all
 constexpr int kAcceptsInARow = 64;
-constexpr std::size_t kReadBytes = std::size_t{4} * 1024;
+constexpr std::size_t kPieceBytes = std::size_t{4} * 1024;
 constexpr std::string_view kHeadEnd = "\r\n\r\n";
 
 }  // namespace
@@ -105,7 +105,7 @@ void IdleConnections::drive_out_next_late() {
 /// Reads the bytes that are there. False when the client has left.
 bool IdleConnections::receive(IdleConnection& parked) {
   std::string& received = parked.client.received;
-  std::array<char, kReadBytes> piece;
+  std::array<char, kPieceBytes> piece;
   while (received.size() <= kMaxHeadBytes && !parked.complete) {
     const std::int64_t got = parked.client.transport->receive(piece.data(), piece.size());
     if (got == Transport::kAgain) return true;

@@ -85,13 +85,13 @@ void expect_mirrored_where_turned(const Rounded& soup, const Unwrapped& out) {
   EXPECT_EQ(mirrored, count_of(out.report.repairs, RepairKind::faces_turned));
 }
 
-struct Family {
+struct MeantMesh {
   std::string name;
   TriMesh mesh;
   bool is_closed;  ///< turned outward, as the mesh that was meant
 };
 
-std::vector<Family> families() {
+std::vector<MeantMesh> meant_meshes() {
   return {{"sphere", shapes::sphere(2), true},
           {"cube", shapes::cube(1), true},
           {"torus", shapes::torus(16, 10), true},
@@ -100,7 +100,7 @@ std::vector<Family> families() {
 }
 
 TEST(CarelessMesh, IsUnwrappedAsTheMeshThatWasMeant) {
-  for (const auto& [name, mesh, is_closed] : families()) {
+  for (const auto& [name, mesh, is_closed] : meant_meshes()) {
     const Report clean = unwrapped(shapes::apart(mesh).mesh).report;
     for (const double noise : {1e-7, 1e-6}) {
       Rounded soup = shapes::rounded_soup(mesh, noise, 5);

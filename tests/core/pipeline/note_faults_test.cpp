@@ -5,8 +5,8 @@
 
 #include <array>
 
-#include "core/unwrap.hpp"
 #include "tests/core/shapes.hpp"
+#include "tests/core/unwrapped_surface.hpp"
 
 namespace unwrapd {
 namespace {
@@ -26,13 +26,8 @@ Surface cylinder() {
       }));
 }
 
-Unwrapped unwrapped(const Surface& surface, const UnwrapOptions& options) {
-  SerialExecutor serial;
-  return unwrap(std::vector{surface}, options, {}, serial);
-}
-
 TEST(NoteFaults, TellTheWorstChartAndItsPlace) {
-  const Unwrapped ring = unwrapped(cylinder(), {});
+  const Unwrapped ring = unwrapped_surface(cylinder(), {});
   const auto notes = notes_of(ring, NoteCode::distorted);
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_NE(notes[0]->text.find("chart 0"), std::string::npos);
@@ -42,7 +37,7 @@ TEST(NoteFaults, TellTheWorstChartAndItsPlace) {
 TEST(NoteFaults, TellSeamsAtUvsThatThereAreNot) {
   Surface surface = shapes::surface_of(shapes::grid(2, 2));
   const auto told = [&](SeamMode seams) {
-    return notes_of(unwrapped(surface, {.seams = seams}), NoteCode::option_unused).size();
+    return notes_of(unwrapped_surface(surface, {.seams = seams}), NoteCode::option_unused).size();
   };
   EXPECT_EQ(told(SeamMode::uv0), 1U);
   EXPECT_EQ(told(SeamMode::automatic), 0U);
@@ -54,7 +49,7 @@ TEST(NoteFaults, TellSeamsAtUvsThatThereAreNot) {
 TEST(NoteFaults, NameTheWorstOfSeveralCharts) {
   const std::array meshes{shapes::grid(8, 8), shapes::moved(cylinder().mesh, Vec3(40, 0, 0)),
                           shapes::grid(4, 4)};
-  const Unwrapped all = unwrapped(shapes::surface_of(shapes::merged(meshes)), {});
+  const Unwrapped all = unwrapped_surface(shapes::surface_of(shapes::merged(meshes)), {});
   ASSERT_EQ(all.report.charts.size(), 3U);
   const auto notes = notes_of(all, NoteCode::distorted);
   ASSERT_EQ(notes.size(), 1U);
@@ -66,7 +61,7 @@ TEST(NoteFaults, NameTheWorstOfSeveralCharts) {
 /// No chart is distorted badly, but the bound is a tight one.
 TEST(NoteFaults, TellABoundThatTheMeanMisses) {
   const Surface cap = shapes::surface_of(shapes::sphere_cap(24, 8, 1));
-  const Unwrapped one = unwrapped(cap, {.max_distortion = 2.001, .max_charts = 1});
+  const Unwrapped one = unwrapped_surface(cap, {.max_distortion = 2.001, .max_charts = 1});
   ASSERT_GT(one.report.distortion.angle, 2.002);
   ASSERT_LT(one.report.distortion.area, 2.1);
   const auto notes = notes_of(one, NoteCode::distorted);
@@ -76,7 +71,7 @@ TEST(NoteFaults, TellABoundThatTheMeanMisses) {
 
 TEST(NoteFaults, AreSilentWhereThereIsNone) {
   const Unwrapped slit =
-      unwrapped(cylinder(), {.max_distortion = 2.02, .guarantee = Guarantee::bijective});
+      unwrapped_surface(cylinder(), {.max_distortion = 2.02, .guarantee = Guarantee::bijective});
   EXPECT_LT(slit.report.distortion.angle, 2.02);
   EXPECT_EQ(slit.report.overlaps, 0);
   EXPECT_TRUE(notes_of(slit, NoteCode::distorted).empty());
@@ -89,13 +84,14 @@ TEST(NoteFaults, TellOverlapsAndHowToPreventThem) {
         const double angle = shapes::kTurn * 1.6 * u, radius = 1 + 0.5 * (1 - v);
         return Vec3(radius * std::cos(angle), radius * std::sin(angle), 0.6 * u);
       }));
-  const Unwrapped free = unwrapped(ramp, {});
+  const Unwrapped free = unwrapped_surface(ramp, {});
   ASSERT_GT(free.report.overlaps.value_or(0), 0);
   const auto notes = notes_of(free, NoteCode::overlaps);
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_NE(notes[0]->text.find("guarantee=bijective"), std::string::npos);
   EXPECT_TRUE(
-      notes_of(unwrapped(ramp, {.guarantee = Guarantee::bijective}), NoteCode::overlaps).empty());
+      notes_of(unwrapped_surface(ramp, {.guarantee = Guarantee::bijective}), NoteCode::overlaps)
+          .empty());
 }
 
 }  // namespace

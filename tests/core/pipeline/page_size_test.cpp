@@ -8,16 +8,11 @@
 
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
-#include "core/unwrap.hpp"
 #include "tests/core/shapes.hpp"
+#include "tests/core/unwrapped_surface.hpp"
 
 namespace unwrapd::pipeline {
 namespace {
-
-Unwrapped unwrapped(const Surface& surface, const UnwrapOptions& options) {
-  SerialExecutor serial;
-  return unwrap(std::span(&surface, 1), options, {}, serial);
-}
 
 UnwrapOptions on_page(int width, int height) {
   return {.width = width, .height = height, .guarantee = Guarantee::bijective};
@@ -62,7 +57,7 @@ class PageSizes : public testing::TestWithParam<PageSize> {};
 TEST_P(PageSizes, FlatSurfacesKeepTheirShapesInTexels) {
   const PageSize page = GetParam();
   const Surface sheet = shapes::surface_of(shapes::grid(4, 3, 2, 1));
-  const Unwrapped u = unwrapped(sheet, on_page(page.width, page.height));
+  const Unwrapped u = unwrapped_surface(sheet, on_page(page.width, page.height));
   EXPECT_LT(most_stretched(sheet, u, page), 1e-4);
   EXPECT_NEAR(u.report.distortion.angle, 2, 1e-6);
   EXPECT_NEAR(u.report.distortion.area, 2, 1e-6);
@@ -71,7 +66,7 @@ TEST_P(PageSizes, FlatSurfacesKeepTheirShapesInTexels) {
 TEST_P(PageSizes, FillDensityAndPromisesAreThoseOfWhatIsWritten) {
   const PageSize page = GetParam();
   const Surface ball = shapes::surface_of(shapes::sphere(2));
-  const Unwrapped u = unwrapped(ball, on_page(page.width, page.height));
+  const Unwrapped u = unwrapped_surface(ball, on_page(page.width, page.height));
   const UnwrappedSurface& s = u.surfaces[0];
   const double texels = texels_of(s, page);
   EXPECT_NEAR(u.report.texel_density / std::sqrt(texels / area_of(ball)), 1, 1e-6);
@@ -88,8 +83,8 @@ TEST_P(PageSizes, FillDensityAndPromisesAreThoseOfWhatIsWritten) {
 TEST_P(PageSizes, ChartsAndTheirDistortionAreThoseOfASquarePage) {
   const PageSize page = GetParam();
   const Surface ball = shapes::surface_of(shapes::sphere(2));
-  const Report square = unwrapped(ball, on_page(1024, 1024)).report;
-  const Report own = unwrapped(ball, on_page(page.width, page.height)).report;
+  const Report square = unwrapped_surface(ball, on_page(1024, 1024)).report;
+  const Report own = unwrapped_surface(ball, on_page(page.width, page.height)).report;
   ASSERT_EQ(own.charts.size(), square.charts.size());
   EXPECT_NEAR(own.distortion.angle, square.distortion.angle, 1e-4);
   EXPECT_NEAR(own.distortion.area, square.distortion.area, 1e-4);
@@ -104,7 +99,7 @@ TEST(PageSize, ConstraintsAreUvs) {
   options.guarantee = Guarantee::flip_free;
   options.constraints = {{.vertex = 0, .uv = Vec2(0.25, 0.1)}, {.vertex = 4, .uv = Vec2(0.5, 0.1)}};
   const Surface surface = shapes::surface_of(shapes::grid(4, 4));
-  const Unwrapped u = unwrapped(surface, options);
+  const Unwrapped u = unwrapped_surface(surface, options);
   const UnwrappedSurface& s = u.surfaces[0];
   EXPECT_LT((s.uv[0] - Vec2(0.25, 0.1)).norm(), 1e-7);
   EXPECT_LT((s.uv[4] - Vec2(0.5, 0.1)).norm(), 1e-7);
@@ -121,7 +116,7 @@ TEST(PageSize, RepackingTakesTheUvsForThoseOfSuchATexture) {
       uv[i] = surface.mesh.positions[face[i]].head<2>().cwiseProduct(Vec2(0.2, 0.4));
   }
   UnwrapOptions options{.width = 1024, .height = 512, .padding = 0, .repack_only = true};
-  const Unwrapped u = unwrapped(surface, options);  // squares of 205 texels
+  const Unwrapped u = unwrapped_surface(surface, options);  // squares of 205 texels
   EXPECT_NEAR(u.report.distortion.angle, 2, 1e-6);
   EXPECT_NEAR(u.report.fill, 0.5, 1e-4);
   EXPECT_NEAR(texels_of(u.surfaces[0], options.page_size()), 512 * 512, 10);
