@@ -123,6 +123,17 @@ Segments SurfaceSegmentation::segments_of(Partition best) const {
   return segments;
 }
 
+OnProgress part_of_progress(OnProgress whole, double begin, double end) {
+  if (!whole) return whole;
+  return [whole = std::move(whole), begin, end](Stage stage, double share) {
+    whole(stage, begin + share * (end - begin));
+  };
+}
+
+SeamsOfCharts seams_of(const Segments& segments) {
+  return {segments.regions.size(), segments.seam_length};
+}
+
 bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most) {
   const auto beyond = [&](const SeamsOfCharts& own) {
     return std::max(own.charts, static_cast<std::size_t>(most));
@@ -149,13 +160,11 @@ std::optional<double> tighter_bound(double max_distortion) {
 Segments segment(const SegmentationMesh& surface, const SegmentRules& rules, Executor& executor) {
   const std::vector<double> steps = excess_steps(rules.max_distortion);
   SurfaceSegmentation segmentation(surface, rules, steps.size() - 1, executor);
-  const auto seams = [](const Segments& own) {
-    return SeamsOfCharts{own.regions.size(), own.seam_length};
-  };
   Segments best = segmentation.first(steps.front());
   for (const double excess : std::span(steps).subspan(1)) {
     std::optional<Segments> next = segmentation.loosen(excess);
-    if (next && is_better(seams(*next), seams(best), rules.most_regions)) best = std::move(*next);
+    if (next && is_better(seams_of(*next), seams_of(best), rules.most_regions))
+      best = std::move(*next);
   }
   return best;
 }

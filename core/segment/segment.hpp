@@ -18,13 +18,19 @@ namespace unwrapd::segment {
 /// Of the excess allowed: solving on may shift some between D_angle and D_area.
 inline constexpr double kMarginOfExcess = 0.97;
 
+/// Is told the share of the work that is done, [0, 1]; may be empty.
+using OnProgress = std::function<void(Stage, double)>;
+
+/// Tells `whole` of a part of its work, from one share of it to another.
+OnProgress part_of_progress(OnProgress whole, double begin, double end);
+
 struct SegmentRules {
   double max_distortion = kDefaultDistortion;  ///< of all regions together, D_angle and D_area; > 2
   Index most_regions = std::numeric_limits<Index>::max();  ///< however distorted, if maps allow it
   double page_area = 1;  ///< of all that lies on one page with this surface, in units of its area
   Effort effort = Effort::balanced;
-  bool is_quick = false;                                ///< one merge, no search for the best
-  std::function<void(Stage, double)> on_progress = {};  ///< the share that is done
+  bool is_quick = false;  ///< one merge, no search for the best
+  OnProgress on_progress = {};
   std::stop_token stop = {};
 };
 
@@ -40,6 +46,8 @@ struct SeamsOfCharts {
   std::size_t charts = 0;
   double length = 0;
 };
+
+SeamsOfCharts seams_of(const Segments& segments);
 
 /// Shorter seams are better; first of all, fewer of the charts beyond `most` are.
 bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most);

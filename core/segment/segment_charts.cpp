@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -67,13 +68,8 @@ class Account {
   double area_ = 0;  ///< in space, of all components
 };
 
-/// Rules whose progress goes from one share of the work to another.
 SegmentRules for_part_of_work(SegmentRules rules, double begin, double end) {
-  if (rules.on_progress)
-    rules.on_progress = [all = std::move(rules.on_progress), begin, end](Stage stage,
-                                                                         double share) {
-      all(stage, begin + share * (end - begin));
-    };
+  rules.on_progress = part_of_progress(std::move(rules.on_progress), begin, end);
   return rules;
 }
 
@@ -218,12 +214,16 @@ Quotas shared_out(const Cuts& wanted, Index most) {
   return quotas;
 }
 
-/// The part of the work from one share of it to another.
 SegmentWatch part_of(const SegmentWatch& watch, double begin, double end) {
+  return {part_of_progress(watch.on_progress, begin, end), watch.stop};
+}
+
+/// Searches that found nothing begin anew; the share that was told stays.
+SegmentWatch without_steps_back(const SegmentWatch& watch) {
   if (!watch.on_progress) return watch;
-  return {
-      [=](Stage stage, double share) { watch.on_progress(stage, begin + share * (end - begin)); },
-      watch.stop};
+  return {[tell = watch.on_progress, furthest = std::make_shared<double>(0)](
+              Stage stage, double share) { tell(stage, *furthest = std::max(*furthest, share)); },
+          watch.stop};
 }
 
 /// All surfaces, of which no more than `most` charts shall be made. How these are shared out is
@@ -269,9 +269,10 @@ std::optional<Note> segment_charts(std::vector<charts::Charts>& surfaces,
                                    Executor& executor) {
   const std::size_t components = count_of(surfaces);
   const Index most = options.max_charts.value_or(std::numeric_limits<Index>::max());
-  const Cuts cuts = options.max_charts ? cut_to_most(surfaces, options, watch, executor)
+  const SegmentWatch own = without_steps_back(watch);
+  const Cuts cuts = options.max_charts ? cut_to_most(surfaces, options, own, executor)
                                        : cut_all(surfaces, {std::vector<Index>(components, most)},
-                                                 options, watch, executor);
+                                                 options, own, executor);
   if (cuts.charts() > most) return more_than_asked(cuts.charts(), static_cast<Index>(components));
   if (cuts.rough > 0) return rough_surfaces(cuts.rough);
   return std::nullopt;

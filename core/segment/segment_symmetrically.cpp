@@ -75,15 +75,9 @@ class FrontSearch {
 SegmentRules rules_for(const SegmentRules& rules, std::size_t part, std::size_t count) {
   SegmentRules own = rules;
   own.most_regions = std::max(1, rules.most_regions / 2);
-  own.on_progress = [&rules, part, count](Stage stage, double done) {
-    if (rules.on_progress)
-      rules.on_progress(stage, (static_cast<double>(part) + done) / static_cast<double>(count));
-  };
+  const auto parts = static_cast<double>(count), begin = static_cast<double>(part);
+  own.on_progress = part_of_progress(rules.on_progress, begin / parts, (begin + 1) / parts);
   return own;
-}
-
-SeamsOfCharts seams_of(const Segments& segments) {
-  return {segments.regions.size(), segments.seam_length};
 }
 
 }  // namespace

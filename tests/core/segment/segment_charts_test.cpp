@@ -143,6 +143,20 @@ TEST(SegmentCharts, TellsProgressThatNeverGoesBackAndStopsWhenTold) {
   }
 }
 
+TEST(SegmentCharts, TellsProgressThatNeverGoesBackWhereSymmetryIsGivenUp) {
+  double last = 0;
+  int events = 0;
+  const SegmentOptions options{.max_charts = 2, .symmetry = Symmetry::automatic};
+  cut_up(sphere(2), options,
+         {[&](Stage, double share) {
+            EXPECT_GE(share, last);
+            last = share;
+            ++events;
+          },
+          {}});
+  EXPECT_GT(events, 10);
+}
+
 TEST(SegmentCharts, CutsAlongGivenPathsAndNamesThePathThatLeavesTheMesh) {
   const Surface tube = surface_of(cylinder(12, 4));
   SeamPath along{.surface = 0, .vertices = {}};
