@@ -24,6 +24,7 @@ struct GuaranteeRules {
   /// exceeds that of the old map by more than this share. At kMostPressed none is sought: sheets
   /// that cannot be pressed apart within it are cut.
   double most_rise = std::numeric_limits<double>::infinity();
+  bool is_pressed = false;  ///< in vain; it would be so again
 };
 
 /// The rules for a chart's map under one lambda. The constraints, the executor and the solver's

@@ -107,8 +107,9 @@ void split(const GuaranteedPart& part, const Split& how, const std::stop_token& 
 }
 
 /// Whether the map may give way to itself as it is: only ARAP's and Hybrid's energy can.
-bool can_press(const solve::repair::MapIntent& intent) {
-  return intent.own == solve::repair::OwnEnergy::fit && intent.soft.empty();
+bool can_press(const GuaranteeRules& rules) {
+  return rules.intent.own == solve::repair::OwnEnergy::fit && rules.intent.soft.empty() &&
+         !rules.is_pressed;
 }
 
 /// Presses sheets of the part apart that lie on each other; false, with the part as it was, if they
@@ -149,7 +150,7 @@ bool unfold(GuaranteedPart& part, double unit, const GuaranteeRules& rules) {
 /// Parts the sheets of a part that lie on each other, in its map or in a new one.
 bool lay_apart(GuaranteedPart& part, double unit, const GuaranteeRules& rules, Mending& mending) {
   if (holds_any(rules.intent)) return false;
-  if (can_press(rules.intent) && press(part, unit, rules, mending)) return true;
+  if (can_press(rules) && press(part, unit, rules, mending)) return true;
   const bool is_small = part.chart->mesh.face_count() <= kMostFacesUnfolded;
   return is_small && rules.most_rise > kMostPressed && unfold(part, unit, rules);
 }
@@ -193,6 +194,7 @@ std::vector<GuaranteedPart> split_as_needed(GuaranteedPart whole, std::vector<In
   std::vector<GuaranteedPart> open, kept;
   GuaranteeRules of_part = rules;
   of_part.intent.global = nullptr;
+  of_part.is_pressed = false;
   open.push_back(std::move(whole));
   for (bool is_whole = true; !open.empty(); is_whole = false) {
     GuaranteedPart part = std::move(open.back());
@@ -225,6 +227,7 @@ std::vector<GuaranteedPart> with_guarantee(GuaranteedPart whole, std::vector<Ind
       mending = own;
       return parts;
     }
+    rules.is_pressed = rules.most_rise >= kMostPressed;
     rules.most_rise = kUnbounded;
   }
   return split_as_needed(std::move(whole), std::move(flipped), unit, rules, kAny, mending);

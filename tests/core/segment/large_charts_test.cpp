@@ -59,6 +59,18 @@ TEST(LargeCharts, AreTheSameForAnyExecutor) {
   }
 }
 
+TEST(LargeCharts, OfASmallerStandInCountOnlyWhereTheyKeepTheBound) {
+  SerialExecutor serial;
+  const auto of = [&](const TriMesh& mesh) {
+    const charts::Charts whole = charts::components_of(surface_of(mesh), {});
+    return large_charts_within_bound(whole.charts.front(), {}, 3000, serial);
+  };
+  const auto smooth = of(torus(100, 50));
+  ASSERT_TRUE(smooth);
+  EXPECT_LE(chart_excess(*smooth, serial, {}).worst(), kDefaultDistortion - 2);
+  EXPECT_FALSE(of(bench::noisy_body(10'000, 0.5)));
+}
+
 /// A disk that begins with its shadow.
 charts::Chart chart_of(const TriMesh& mesh) {
   charts::Chart chart = std::move(charts::components_of(surface_of(mesh), {}).charts.front());
