@@ -2,6 +2,7 @@
 // the options by name: a new option needs its field and one row.
 #include <array>
 #include <cstddef>
+
 #include "api/option_rows.hpp"
 #include "api/special_options.hpp"
 
@@ -223,7 +224,7 @@ constexpr std::array kRows = {
         "What becomes of images that sample the set of texture coordinates that is written. keep: "
         "they stay as they are; transfer: they are resampled for the new coordinates, normal maps "
         "turned, and auto writes the set that they sample. Needs guarantee=bijective or "
-        "repack_only, one square page, no constraints and no stacked islands."),
+        "repack_only, one page, no constraints and no stacked islands."),
     plain<&A::materials>(
         "materials", OptionType::names, kEveryMethod,
         "Names of the materials to unwrap; all other surfaces keep their UVs. Empty: all."),

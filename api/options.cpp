@@ -91,11 +91,11 @@ void settle_page(JobOptions& options, bool is_size_given) {
     options.unwrap.page_fit = PageFit::multiple_of_four;
 }
 
-/// The least side of new textures, and what textures=transfer excludes: a texel of a new texture
+/// The least size of new textures, and what textures=transfer excludes: a texel of a new texture
 /// belongs to one place of the surface, on the page.
 void settle_textures(JobOptions& options) {
   const UnwrapOptions& unwrap = options.unwrap;
-  options.asset.resolution = unwrap.page_size().width;
+  options.asset.page = unwrap.page_size();
   if (options.asset.textures != TextureMode::transfer) return;
   const auto require = [](bool holds, const std::string& message) {
     if (!holds) refuse("textures", "textures=transfer " + message);
@@ -107,8 +107,6 @@ void settle_textures(JobOptions& options) {
   require(!unwrap.finds_page(), "paints images of a given size; give resolution in texels.");
   require(unwrap.packing.max_pages == 1, "writes one page; leave out max_pages.");
   require(unwrap.packing.group == PageGroup::scene, "writes one page; leave out group.");
-  require(unwrap.page_size().width == unwrap.page_size().height,
-          "paints square images; ask for a page as wide as high.");
   require(!unwrap.packing.stack_identical,
           "needs a place for every island; leave out stack_identical.");
 }

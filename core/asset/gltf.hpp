@@ -16,6 +16,7 @@
 #include "core/asset/json.hpp"
 #include "core/asset/root.hpp"
 #include "core/mesh/tri_mesh.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd::asset {
 
@@ -77,7 +78,7 @@ struct Piece {
 
 /// How textures are transferred.
 struct Transfer {
-  int least_side = 1024;                 ///< of a new texture, texels
+  PageSize page;                         ///< the least size of a new texture
   std::size_t max_bytes = kNoByteLimit;  ///< of memory for the job
 };
 

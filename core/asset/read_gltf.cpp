@@ -50,8 +50,7 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
   check_nodes(gltf);
   gltf.aside.take_unwritten(gltf.json);
   select_primitives(gltf, options);
-  if (options.textures == TextureMode::transfer)
-    gltf.transfer = {options.resolution, limits.max_bytes};
+  if (options.textures == TextureMode::transfer) gltf.transfer = {options.page, limits.max_bytes};
   choose_texcoord(gltf, options.texcoord);
   check_geometry(gltf, limits);
   surfaces = build_surfaces(gltf, limits);

@@ -172,7 +172,7 @@ void check_textures(const Gltf& gltf) {
     std::string storage;
     const texture::ImageFile file = image_file(gltf, image, storage);
     const texture::ImageHead head = texture::head_of(file);
-    const int least = gltf.transfer->least_side;
+    const int least = std::max(gltf.transfer->page.width, gltf.transfer->page.height);
     if (head.codec == texture::Codec::webp && least > texture::kMaxWebpSide)
       throw Error(ErrorCode::unsupported_image,
                   "a WebP image has at most 16383 texels a side; lower the resolution or convert "

@@ -12,7 +12,7 @@
 namespace unwrapd::asset {
 namespace {
 
-constexpr int kMostSide = 8192;      // of a new texture, unless resolution is larger
+constexpr int kMostSide = 8192;      // of a new texture, unless the page is larger
 constexpr double kTolerated = 1.05;  // texels of the old image for one of the new, along a line
 
 std::size_t uv_accessor_of(const Gltf& gltf, const Primitive& primitive) {
@@ -89,12 +89,13 @@ class Planner {
   std::vector<std::map<std::size_t, Reader>> readers_;  ///< [new image][piece]
 };
 
-/// resolution, doubled until the detail is kept.
-void set_side(NewImage& image, double needed, int resolution) {
-  image.side = resolution;
-  const int most = std::max(kMostSide, resolution);
-  while (image.side * kTolerated < needed && 2 * image.side <= most) image.side *= 2;
-  image.is_reduced = image.side * kTolerated < needed;
+/// The page, doubled until the detail is kept. needed: as a multiple of the page's sides.
+void set_size(NewImage& image, double needed, const texture::Size& page) {
+  const int longer = std::max(page.width, page.height), most = std::max(kMostSide, longer);
+  int scale = 1;
+  while (scale * kTolerated < needed && 2 * scale * longer <= most) scale *= 2;
+  image.size = {scale * page.width, scale * page.height};
+  image.is_reduced = scale * kTolerated < needed;
 }
 
 void size_image(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped, NewImage& image) {
@@ -102,9 +103,9 @@ void size_image(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped, N
   image.head = texture::head_of(image_file(gltf, image.image, storage));
   std::vector<texture::Patch> patches;
   for (const TextureUse& use : image.uses) patches.push_back(patch_of(gltf, unwrapped, use));
-  set_side(image,
-           texture::side_that_keeps_detail(patches, image.head.width, image.head.height, gltf.stop),
-           gltf.transfer->least_side);
+  const texture::Size page{gltf.transfer->page.width, gltf.transfer->page.height};
+  const texture::Size old{image.head.width, image.head.height};
+  set_size(image, texture::scale_that_keeps_detail(patches, page, old, gltf.stop), page);
 }
 
 Eigen::Vector2f downwards(const Vec2& uv) {

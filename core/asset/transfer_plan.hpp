@@ -24,8 +24,8 @@ struct NewImage {
   texture::Content content = texture::Content::values;
   std::vector<TextureUse> uses;
   texture::ImageHead head;  ///< of the old one
-  int side = 0;             ///< texels; 0 if nothing is painted
-  bool is_reduced = false;  ///< its detail would need a larger side
+  texture::Size size;       ///< of the new one
+  bool is_reduced = false;  ///< its detail would need a larger size
 };
 
 /// A new texture: a new image, and the old texture that its other members are from.
@@ -43,7 +43,7 @@ struct TransferPlan {
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> bindings;
 };
 
-/// Requires gltf.transfer. Sides follow from the unwrapped surfaces. Throws Error{cancelled}.
+/// Requires gltf.transfer. Sizes follow from the unwrapped surfaces. Throws Error{cancelled}.
 TransferPlan plan_transfer(const Gltf& gltf, std::span<const UnwrappedSurface> unwrapped);
 
 /// Of every face of a primitive, the numbers of its vertices in the accessors.

@@ -13,16 +13,19 @@ std::size_t texels(int width, int height) {
   return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 
+std::string size_text(int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
+
 /// The old image with its mip chain; the new one with its offsets, and as its encoder keeps it.
 void check_memory(const Gltf& gltf, const NewImage& image, std::size_t faces) {
   constexpr std::size_t kOfFace = sizeof(texture::PlacedTriangle) + sizeof(texture::TurnedFrames);
   const std::size_t bytes = texture::decoding_bytes(image.head) +
                             6 * texels(image.head.width, image.head.height) +
-                            17 * texels(image.side, image.side) + 2 * kOfFace * faces;
+                            17 * texels(image.size.width, image.size.height) + 2 * kOfFace * faces;
   if (bytes > gltf.transfer->max_bytes / 2)
     throw Error(ErrorCode::too_much_memory,
-                "to resample this image to " + std::to_string(image.side) + " x " +
-                    std::to_string(image.side) +
+                "to resample this image to " + size_text(image.size.width, image.size.height) +
                     " texels takes more memory than a job may; send a "
                     "smaller image or a lower resolution",
                 Place().at("images").at(image.image).pointer());
@@ -66,7 +69,7 @@ class ImagePainter {
     const texture::ImageFile file = image_file(gltf_, image.image, storage);
     const texture::Texture old(texture::decode(file, image.head, gltf_.stop),
                                image.content == texture::Content::colour, gltf_.stop);
-    return texture::resample(old, patches, image.side, image.content, gltf_.stop);
+    return texture::resample(old, patches, image.size, image.content, gltf_.stop);
   }
 
   const Gltf& gltf_;
@@ -74,17 +77,13 @@ class ImagePainter {
   const WrittenTangents& tangents_;
 };
 
-std::string size_text(int width, int height) {
-  return std::to_string(width) + " x " + std::to_string(height);
-}
-
 std::string images_text(const TransferPlan& plan) {
   std::string text;
   for (std::size_t i = 0; i < std::min(plan.images.size(), kMostNamed); ++i) {
     const NewImage& image = plan.images[i];
     text += (i == 0 ? "" : ", ") + std::string("image ") + std::to_string(image.image) + " from " +
             size_text(image.head.width, image.head.height) + " to " +
-            size_text(image.side, image.side);
+            size_text(image.size.width, image.size.height);
   }
   return text + (plan.images.size() > kMostNamed ? ", and others" : "");
 }

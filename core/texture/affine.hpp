@@ -19,9 +19,14 @@ struct Affine {
   Mat2 linear;       ///< of the offset from origin, to that from start
 };
 
-/// Empty if the triangle has no area in the new layout, or is not finite.
-inline std::optional<Affine> affine_of(const PlacedTriangle& triangle, double side) {
-  const auto to = [&](std::size_t k) { return Vec2(triangle.to[k].cast<double>() * side); };
+inline Vec2 in_texels(const Eigen::Vector2f& place, const Size& page) {
+  return place.cast<double>().cwiseProduct(Vec2(page.width, page.height));
+}
+
+/// page: of the new layout, whose texels are the unit of length there. Empty if the triangle has no
+/// area in the new layout, or is not finite.
+inline std::optional<Affine> affine_of(const PlacedTriangle& triangle, const Size& page) {
+  const auto to = [&](std::size_t k) { return in_texels(triangle.to[k], page); };
   const auto from = [&](std::size_t k) { return Vec2(triangle.from[k].cast<double>()); };
   Mat2 edges, old;
   edges << to(1) - to(0), to(2) - to(0);

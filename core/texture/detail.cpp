@@ -17,32 +17,32 @@ double largest_stretch(const Mat2& m) {
 }
 
 struct Need {
-  double side = 0;
+  double scale = 0;
   double area = 0;  ///< in texels of the old image
 };
 
 }  // namespace
 
-double side_that_keeps_detail(std::span<const Patch> patches, int width, int height,
-                              const std::stop_token& stop) {
+double scale_that_keeps_detail(std::span<const Patch> patches, const Size& page, const Size& old,
+                               const std::stop_token& stop) {
   std::vector<Need> needs;
   double total = 0;
   for (const Patch& patch : patches)
     for (const PlacedTriangle& triangle : patch.triangles) {
       check_cancelled_every(needs.size(), stop);
-      const std::optional<Affine> map = affine_of(triangle, 1);
+      const std::optional<Affine> map = affine_of(triangle, page);
       if (!map) continue;
-      const Mat2 texels = Vec2(width, height).asDiagonal() * map->linear;
+      const Mat2 texels = Vec2(old.width, old.height).asDiagonal() * map->linear;
       const double area = std::abs(texels.determinant() / map->barycentric.determinant()) / 2;
       if (!std::isfinite(area)) continue;
       needs.push_back({largest_stretch(texels), area});
       total += area;
     }
   std::sort(needs.begin(), needs.end(),
-            [](const Need& a, const Need& b) { return a.side < b.side; });
+            [](const Need& a, const Need& b) { return a.scale < b.scale; });
   double kept = 0;
   for (const Need& need : needs)
-    if ((kept += need.area) >= kShare * total) return need.side;
+    if ((kept += need.area) >= kShare * total) return need.scale;
   return 0;
 }
 

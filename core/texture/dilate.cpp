@@ -22,27 +22,27 @@ std::int64_t squared_length(std::int64_t x, std::int64_t y) { return x * x + y *
 class Sweeper {
  public:
   Sweeper(Painted& painted, const std::stop_token& stop)
-      : painted_(painted), side_(painted.image.width), stop_(stop) {
+      : painted_(painted), width_(painted.image.width), height_(painted.image.height), stop_(stop) {
     offsets_.resize(painted.is_covered.size());
     for (std::size_t i = 0; i < offsets_.size(); ++i)
       if (painted.is_covered[i] != 0) offsets_[i] = {0, 0};
   }
 
   void run() {
-    for (int y = 0; y < side_; ++y) sweep_row(y, -1);
-    for (int y = side_ - 1; y >= 0; --y) sweep_row(y, 1);
-    for (int y = 0; y < side_; ++y) fill_row(y);
+    for (int y = 0; y < height_; ++y) sweep_row(y, -1);
+    for (int y = height_ - 1; y >= 0; --y) sweep_row(y, 1);
+    for (int y = 0; y < height_; ++y) fill_row(y);
   }
 
  private:
   [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) +
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(x);
   }
 
   /// Takes the neighbour's offset where it is shorter.
   void compare(int x, int y, int dx, int dy) {
-    if (x + dx < 0 || x + dx >= side_ || y + dy < 0 || y + dy >= side_) return;
+    if (x + dx < 0 || x + dx >= width_ || y + dy < 0 || y + dy >= height_) return;
     const Offset& other = offsets_[index(x + dx, y + dy)];
     if (other.x == Offset::kNone) return;
     Offset& own = offsets_[index(x, y)];
@@ -54,16 +54,16 @@ class Sweeper {
   /// from: the row that has been done, above (-1) or below (1).
   void sweep_row(int y, int from) {
     throw_if_cancelled(stop_);
-    for (int x = 0; x < side_; ++x) {
+    for (int x = 0; x < width_; ++x) {
       for (int dx = -1; dx <= 1; ++dx) compare(x, y, dx, from);
       compare(x, y, -1, 0);
     }
-    for (int x = side_ - 1; x >= 0; --x) compare(x, y, 1, 0);
+    for (int x = width_ - 1; x >= 0; --x) compare(x, y, 1, 0);
   }
 
   void fill_row(int y) {
     throw_if_cancelled(stop_);
-    for (int x = 0; x < side_; ++x) {
+    for (int x = 0; x < width_; ++x) {
       const Offset& offset = offsets_[index(x, y)];
       if (offset.x == Offset::kNone) return;  // nothing is covered
       const std::uint8_t* source = painted_.image.at(x + offset.x, y + offset.y);
@@ -72,7 +72,7 @@ class Sweeper {
   }
 
   Painted& painted_;
-  int side_;
+  int width_, height_;
   const std::stop_token& stop_;
   std::vector<Offset> offsets_;
 };

@@ -12,6 +12,11 @@ namespace unwrapd::texture {
 inline constexpr int kMaxSide = 16384;      ///< texels; no larger image is decoded
 inline constexpr int kMaxWebpSide = 16383;  ///< texels; the format has no room for more
 
+/// In texels.
+struct Size {
+  int width = 0, height = 0;
+};
+
 enum class Codec { png, jpeg, webp };
 
 /// An image file. where: its place in the asset, for errors.

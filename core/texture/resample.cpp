@@ -118,23 +118,23 @@ struct Rows {
   int first = 0, last = -1;
 };
 
-Rows rows_of(const PlacedTriangle& triangle, int side) {
+Rows rows_of(const PlacedTriangle& triangle, int height) {
   const auto [low, high] =
       std::minmax({triangle.to[0].y(), triangle.to[1].y(), triangle.to[2].y()});
   if (!(low <= 1 && high >= 0)) return {};
   const auto row = [&](float v) {
-    return static_cast<int>(std::clamp(std::floor(double{v} * side), 0.0, side - 1.0));
+    return static_cast<int>(std::clamp(std::floor(double{v} * height), 0.0, height - 1.0));
   };
   return {row(low), row(high)};
 }
 
 class Painter {
  public:
-  Painter(const Texture& texture, std::span<const Patch> patches, int side, Content content,
+  Painter(const Texture& texture, std::span<const Patch> patches, const Size& size, Content content,
           const std::stop_token& stop)
-      : texture_(texture), patches_(patches), side_(side), content_(content), stop_(stop) {
-    const std::size_t texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-    painted_.image = {side, side, std::vector<std::uint8_t>(4 * texels)};
+      : texture_(texture), patches_(patches), size_(size), content_(content), stop_(stop) {
+    const std::size_t texels = row_texels() * static_cast<std::size_t>(size.height);
+    painted_.image = {size.width, size.height, std::vector<std::uint8_t>(4 * texels)};
     painted_.is_covered.resize(texels);
     sort_into_bands();
   }
@@ -143,9 +143,8 @@ class Painter {
     for (std::size_t band = 0; band < bands_.size(); ++band) {
       throw_if_cancelled(stop_);
       first_row_ = static_cast<int>(band) * kBandRows;
-      end_row_ = std::min(first_row_ + kBandRows, side_);
-      sums_.assign(
-          static_cast<std::size_t>(end_row_ - first_row_) * static_cast<std::size_t>(side_), {});
+      end_row_ = std::min(first_row_ + kBandRows, size_.height);
+      sums_.assign(static_cast<std::size_t>(end_row_ - first_row_) * row_texels(), {});
       for (const TriangleId& id : bands_[band]) add(id);
       finish_band();
     }
@@ -153,12 +152,14 @@ class Painter {
   }
 
  private:
+  [[nodiscard]] std::size_t row_texels() const { return static_cast<std::size_t>(size_.width); }
+
   void sort_into_bands() {
-    bands_.resize(static_cast<std::size_t>((side_ + kBandRows - 1) / kBandRows));
+    bands_.resize(static_cast<std::size_t>((size_.height + kBandRows - 1) / kBandRows));
     for (std::uint32_t p = 0; p < patches_.size(); ++p)
       for (std::uint32_t t = 0; t < patches_[p].triangles.size(); ++t) {
         check_cancelled_every(t, stop_);
-        const Rows rows = rows_of(patches_[p].triangles[t], side_);
+        const Rows rows = rows_of(patches_[p].triangles[t], size_.height);
         for (int b = rows.first / kBandRows; rows.last >= 0 && b <= rows.last / kBandRows; ++b)
           bands_[static_cast<std::size_t>(b)].push_back({p, t});
       }
@@ -168,12 +169,12 @@ class Painter {
   void add(const TriangleId& id) {
     const Patch& patch = patches_[id.patch];
     const PlacedTriangle& triangle = patch.triangles[id.triangle];
-    const std::optional<Affine> map = affine_of(triangle, side_);
+    const std::optional<Affine> map = affine_of(triangle, size_);
     if (!map) return;
     const Grid grid = grid_of(*map, texture_);
     const TurnedFrames* frames = patch.frames.empty() ? nullptr : &patch.frames[id.triangle];
     std::array<Vec2, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = triangle.to[k].cast<double>() * side_;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = in_texels(triangle.to[k], size_);
     const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
     const double first = std::max(low, double(first_row_)), end = std::min(high, double(end_row_));
     const auto line_at = [&](double y) { return static_cast<int>(std::ceil(y * grid.down - 0.5)); };
@@ -182,9 +183,10 @@ class Painter {
       const double y = (line + 0.5) / grid.down;
       const Interval interval = interval_at(corners, y);
       const auto column_at = [&](double x) {  // the first at x or beyond
-        return static_cast<int>(std::ceil(std::clamp(x, 0.0, double(side_)) * grid.across - 0.5));
+        return static_cast<int>(
+            std::ceil(std::clamp(x, 0.0, double(size_.width)) * grid.across - 0.5));
       };
-      const int end_column = std::min(column_at(interval.high), side_ * grid.across);
+      const int end_column = std::min(column_at(interval.high), size_.width * grid.across);
       for (int i = column_at(interval.low); i < end_column; ++i)
         add_sample(Vec2((i + 0.5) / grid.across, y), *map, grid, patch.sampling, frames);
     }
@@ -199,17 +201,16 @@ class Painter {
       const Eigen::Vector2f far = (map.barycentric * offset).cast<float>();
       texel = turned_texel(texel, *frames, {1 - far.x() - far.y(), far.x(), far.y()}, content_);
     }
-    Sum& sum = sums_[static_cast<std::size_t>(static_cast<int>(at.y()) - first_row_) *
-                         static_cast<std::size_t>(side_) +
-                     static_cast<std::size_t>(at.x())];
+    Sum& sum =
+        sums_[static_cast<std::size_t>(static_cast<int>(at.y()) - first_row_) * row_texels() +
+              static_cast<std::size_t>(at.x())];
     const float weight = 1 / static_cast<float>(grid.across * grid.down);
     for (std::size_t c = 0; c < 4; ++c) sum.value[c] += weight * texel[c];
     sum.weight += weight;
   }
 
   void finish_band() {
-    const std::size_t first =
-        static_cast<std::size_t>(first_row_) * static_cast<std::size_t>(side_);
+    const std::size_t first = static_cast<std::size_t>(first_row_) * row_texels();
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       Sum& sum = sums_[i];
       if (sum.weight == 0) continue;
@@ -223,7 +224,7 @@ class Painter {
 
   const Texture& texture_;
   std::span<const Patch> patches_;
-  int side_;
+  Size size_;
   Content content_;
   const std::stop_token& stop_;
   Painted painted_;
@@ -235,10 +236,10 @@ class Painter {
 
 }  // namespace
 
-Painted resample(const Texture& texture, std::span<const Patch> patches, int side, Content content,
-                 const std::stop_token& stop) {
-  assert(side > 0 && side <= kMaxSide);
-  return Painter(texture, patches, side, content, stop).run();
+Painted resample(const Texture& texture, std::span<const Patch> patches, const Size& size,
+                 Content content, const std::stop_token& stop) {
+  assert(std::min(size.width, size.height) > 0 && std::max(size.width, size.height) <= kMaxSide);
+  return Painter(texture, patches, size, content, stop).run();
 }
 
 }  // namespace unwrapd::texture

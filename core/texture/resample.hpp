@@ -50,16 +50,16 @@ struct Painted {
 /// Each texel is the mean of samples in its square, in linear light for colours; as many along each
 /// axis as texels of the old image lie under it, up to a bound, beyond which they are read from the
 /// mip chain. Only samples within triangles count. Throws Error{cancelled}.
-Painted resample(const Texture& texture, std::span<const Patch> patches, int side, Content content,
-                 const std::stop_token& stop);
+Painted resample(const Texture& texture, std::span<const Patch> patches, const Size& size,
+                 Content content, const std::stop_token& stop);
 
 /// Gives every uncovered texel the colour of a nearest covered one. Throws Error{cancelled}.
 void dilate(Painted& painted, const std::stop_token& stop);
 
-/// The side of a square texture that has at least as many texels, along every direction, as the old
-/// image of this size has on all but the twentieth of its area that needs most. Throws
-/// Error{cancelled}.
-double side_that_keeps_detail(std::span<const Patch> patches, int width, int height,
-                              const std::stop_token& stop);
+/// How many times as wide and high as `page` a texture must be to have at least as many texels,
+/// along every direction, as the old image of the size `old` has on all but the twentieth of its
+/// area that needs most. Throws Error{cancelled}.
+double scale_that_keeps_detail(std::span<const Patch> patches, const Size& page, const Size& old,
+                               const std::stop_token& stop);
 
 }  // namespace unwrapd::texture

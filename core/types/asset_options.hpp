@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/types/options.hpp"
+
 namespace unwrapd {
 
 /// How the geometry of a glTF is encoded when it is written.
@@ -43,7 +45,7 @@ struct AssetOptions {
   /// Positions in [kMinDracoBits, kMaxDracoBits] where compression is draco; unset: lossless.
   std::optional<int> draco_bits = {};
   TextureMode textures = TextureMode::keep;
-  int resolution = 1024;  ///< that islands are packed for: the least side of a new texture, texels
+  PageSize page = {};       ///< that islands are packed for: the least size of a new texture
   bool vertex_map = false;  ///< the report tells which vertices were copied
   /// Names of materials, and JSON pointers of primitives ("/meshes/0/primitives/1"): only these are
   /// unwrapped, all others keep what they have. Both empty: everything is.

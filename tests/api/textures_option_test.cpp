@@ -24,7 +24,7 @@ TEST(TexturesOption, NeedsAPlaceOfItsOwnForEveryTexel) {
   for (const std::string members :
        {R"("guarantee":"flip_free")", R"("preset":"chart")", R"("max_pages":2)",
         R"("stack_identical":true)", R"("boundary":"circle")", R"("group":"material")",
-        R"("guarantee":"bijective","constraints":[{"vertex":0,"uv":[0,0]}])", R"("height":512)"}) {
+        R"("guarantee":"bijective","constraints":[{"vertex":0,"uv":[0,0]}])"}) {
     SCOPED_TRACE(members);
     try {
       parse_options_text(with(members), kDefaultLimits);
@@ -40,9 +40,14 @@ TEST(TexturesOption, NeedsAPlaceOfItsOwnForEveryTexel) {
     EXPECT_NO_THROW(parse_options_text(with(members), kDefaultLimits)) << members;
 }
 
-TEST(TexturesOption, PaintsAtLeastAtTheResolutionOfThePage) {
-  for (const char* members : {R"("resolution":512)", R"("width":512,"height":512)"})
-    EXPECT_EQ(parse_options_text(with(members), kDefaultLimits).asset.resolution, 512) << members;
+TEST(TexturesOption, PaintsAtLeastAtTheSizeOfThePage) {
+  const auto page = [](const std::string& members) {
+    const PageSize size = parse_options_text(with(members), kDefaultLimits).asset.page;
+    return std::array{size.width, size.height};
+  };
+  EXPECT_EQ(page(R"("resolution":512)"), (std::array{512, 512}));
+  EXPECT_EQ(page(R"("width":512,"height":2048)"), (std::array{512, 2048}));
+  EXPECT_EQ(page(R"("height":2048)"), (std::array{1024, 2048}));
 }
 
 }  // namespace

@@ -17,17 +17,19 @@ inline constexpr int kSide = 16;
 inline const AssetOptions kTransfer = {.texcoord = TexcoordChoice::automatic,
                                        .compression = Compression::none,
                                        .textures = TextureMode::transfer,
-                                       .resolution = kSide};
+                                       .page = {kSide, kSide}};
 
-/// Every texel another colour.
-inline Image chart_of_colours(int side) {
-  Image image{side, side, {}};
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x)
+/// Every texel another colour, of 16 x 16.
+inline Image chart_of_colours(int width, int height) {
+  Image image{width, height, {}};
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
       for (const int value : {16 * x + 7, 16 * y + 3, (x * 7 + y * 13) % 256, 255})
         image.rgba.push_back(static_cast<std::uint8_t>(value));
   return image;
 }
+
+inline Image chart_of_colours(int side) { return chart_of_colours(side, side); }
 
 inline Image constant(int side, std::array<int, 3> rgb) {
   Image image{side, side, {}};

@@ -125,6 +125,24 @@ TEST(Transfer, KeepsWhatOtherPrimitivesRead) {
   EXPECT_EQ(now.images[0].rgba, old.rgba);
 }
 
+TEST(Transfer, PaintsAPageThatIsNotSquare) {
+  const Image old = chart_of_colours(kSide, 2 * kSide);
+  AssetOptions options = kTransfer;
+  options.page = {2 * kSide, kSide};
+  const Asset asset = read_file(textured(file_of(old)).glb(), options);
+  const Written now = written(asset);
+  ASSERT_EQ(now.images[0].width, 2 * kSide);
+  ASSERT_EQ(now.images[0].height, kSide);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < 2 * kSide; ++x)
+      for (int c = 0; c < 4; ++c)
+        EXPECT_EQ(now.images[0].at(x, y)[c], old_texel(old, x, y)[c]) << x << ' ' << y;
+  options.page = {kSide, kSide / 2};
+  const Asset dense = read_file(textured(file_of(old)).glb(), options);
+  const std::string note = side_effects(dense, quarter_turn(dense), Format::glb).at(0).text;
+  EXPECT_NE(note.find("from 16 x 32 to 32 x 16"), std::string::npos) << note;
+}
+
 TEST(Transfer, ASideKeepsTheDetailAndTheNoteTellsIt) {
   const Asset asset = read_file(textured(file_of(chart_of_colours(3 * kSide))).glb(), kTransfer);
   EXPECT_EQ(written(asset).images[0].width, 4 * kSide);

@@ -27,13 +27,16 @@ struct Pair {
 std::string written(const std::string& file, const AssetOptions& options) {
   const asset::Asset asset = asset::read({file, {}}, {}, options);
   SerialExecutor serial;
-  const Unwrapped u = unwrap(asset.surfaces(), kTexture, {}, serial);
+  UnwrapOptions on_page = kTexture;
+  on_page.width = options.page.width;
+  on_page.height = options.page.height;
+  const Unwrapped u = unwrap(asset.surfaces(), on_page, {}, serial);
   return asset::write(asset, u.surfaces, asset::Format::glb);
 }
 
 /// The asset with the new coordinates in another set, and with transferred textures.
-Pair transferred(const std::string& file) {
-  AssetOptions options{.texcoord = 7, .compression = Compression::none};
+Pair transferred(const std::string& file, const PageSize& page = {}) {
+  AssetOptions options{.texcoord = 7, .compression = Compression::none, .page = page};
   const std::string before = written(file, options);
   options.texcoord = TexcoordChoice::automatic;
   options.textures = TextureMode::transfer;
@@ -131,6 +134,14 @@ TEST(TransferredTextures, RepeatedTurnedAndMirroredImagesLookTheSame) {
   const Pair pair = transferred(textured_plate(*data, true));
   expect_same_look(pair, Look::base_colour, "plate");
   expect_same_look(pair, Look::normals, "plate_normals");
+}
+
+TEST(TransferredTextures, LookTheSameOnAPageThatIsNotSquare) {
+  const auto data = asset::test::test_data();
+  if (!data) GTEST_SKIP();
+  const Pair pair = transferred(textured_plate(*data, true), {512, 1536});
+  expect_same_look(pair, Look::base_colour, "plate_on_high_page");
+  expect_same_look(pair, Look::normals, "plate_normals_on_high_page");
 }
 
 TEST(TransferredTextures, NormalMapsFollowTheFramesThatReadersCompute) {

@@ -49,10 +49,15 @@ inline Patch page(const std::function<Eigen::Vector2f(float, float)>& from,
   return patch;
 }
 
+inline Painted paint(const Image& image, const Patch& patch, const Size& size,
+                     Content content = Content::colour) {
+  return resample(Texture(image, content == Content::colour, {}), std::array{patch}, size, content,
+                  {});
+}
+
 inline Painted paint(const Image& image, const Patch& patch, int side,
                      Content content = Content::colour) {
-  return resample(Texture(image, content == Content::colour, {}), std::array{patch}, side, content,
-                  {});
+  return paint(image, patch, {side, side}, content);
 }
 
 }  // namespace unwrapd::texture::test

@@ -26,6 +26,16 @@ TEST(Resample, ALayoutTurnedByNinetyDegreesGivesTheTurnedPicture) {
     for (int x = 0; x < 16; ++x) EXPECT_EQ(at(result, x, y), at(image, y, 15 - x));
 }
 
+TEST(Resample, APageNeedNotBeSquare) {
+  const Image image = noise(24, 80);
+  const auto same = [](float u, float v) { return Eigen::Vector2f(u, v); };
+  EXPECT_EQ(paint(image, page(same), {24, 80}).image.rgba, image.rgba);
+  const auto turned = [](float u, float v) { return Eigen::Vector2f(v, 1 - u); };
+  const Image result = paint(image, page(turned), {80, 24}).image;
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 80; ++x) EXPECT_EQ(at(result, x, y), at(image, y, 79 - x));
+}
+
 TEST(Resample, AMirroredLayoutGivesTheMirroredPicture) {
   const Image image = noise(16, 16);
   const auto mirrored = [](float u, float v) { return Eigen::Vector2f(1 - u, v); };
@@ -142,18 +152,18 @@ TEST(Resample, EndsWhenItIsStopped) {
   std::stop_source source;
   source.request_stop();
   const auto same = [](float u, float v) { return Eigen::Vector2f(u, v); };
-  EXPECT_THROW(resample(Texture(noise(4, 4), true, {}), std::array{page(same)}, 64, Content::colour,
-                        source.get_token()),
+  EXPECT_THROW(resample(Texture(noise(4, 4), true, {}), std::array{page(same)}, {64, 64},
+                        Content::colour, source.get_token()),
                Error);
 }
 
 TEST(Dilate, GivesEveryTexelTheColourOfANearestCoveredOne) {
-  Painted painted{picture(40, 40, [](int x, int y) { return Rgba{x, y, 0, 255}; }), {}};
-  painted.is_covered.assign(1600, 0);
-  const std::array<std::array<int, 2>, 4> islands = {{{3, 4}, {30, 7}, {12, 33}, {39, 39}}};
+  Painted painted{picture(40, 50, [](int x, int y) { return Rgba{x, y, 0, 255}; }), {}};
+  painted.is_covered.assign(2000, 0);
+  const std::array<std::array<int, 2>, 4> islands = {{{3, 4}, {30, 7}, {12, 33}, {39, 49}}};
   for (const auto& [x, y] : islands) painted.is_covered[static_cast<std::size_t>(40 * y + x)] = 1;
   dilate(painted, {});
-  for (int y = 0; y < 40; ++y)
+  for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 40; ++x) {
       double nearest = 1e9;
       for (const auto& [ix, iy] : islands) nearest = std::min(nearest, std::hypot(x - ix, y - iy));
@@ -169,13 +179,14 @@ TEST(Dilate, LeavesAnEmptyPageAsItIs) {
   EXPECT_EQ(at(painted.image, 3, 3), (Rgba{7, 7, 7, 7}));
 }
 
-TEST(Detail, ASideKeepsTheTexelsOfTheImage) {
+TEST(Detail, AScaleKeepsTheTexelsOfTheImage) {
   const auto part = [](float u, float v) { return Eigen::Vector2f(u / 2, v / 4); };
-  EXPECT_DOUBLE_EQ(side_that_keeps_detail(std::array{page(part)}, 1024, 512, {}), 512);
+  EXPECT_DOUBLE_EQ(scale_that_keeps_detail(std::array{page(part)}, {1, 1}, {1024, 512}, {}), 512);
+  EXPECT_DOUBLE_EQ(scale_that_keeps_detail(std::array{page(part)}, {2, 1}, {1024, 512}, {}), 256);
   const auto tiled = [](float u, float v) { return Eigen::Vector2f(3 * u, v); };
-  EXPECT_DOUBLE_EQ(side_that_keeps_detail(std::array{page(tiled)}, 256, 256, {}), 768);
+  EXPECT_DOUBLE_EQ(scale_that_keeps_detail(std::array{page(tiled)}, {1, 1}, {256, 256}, {}), 768);
   const auto point = [](float, float) { return Eigen::Vector2f(0.5F, 0.5F); };
-  EXPECT_EQ(side_that_keeps_detail(std::array{page(point)}, 256, 256, {}), 0);
+  EXPECT_EQ(scale_that_keeps_detail(std::array{page(point)}, {1, 1}, {256, 256}, {}), 0);
 }
 
 TEST(Detail, ATwentiethOfTheImageMayLoseSome) {
@@ -190,8 +201,8 @@ TEST(Detail, ATwentiethOfTheImageMayLoseSome) {
     return std::array{strip(0, 1 - squeezed, 0, 1 - squeezed),
                       strip(1 - squeezed, 1, 1 - squeezed, 1 - squeezed / 2)};
   };
-  EXPECT_NEAR(side_that_keeps_detail(strips(0.04F), 256, 256, {}), 256, 1);
-  EXPECT_NEAR(side_that_keeps_detail(strips(0.06F), 256, 256, {}), 512, 1);
+  EXPECT_NEAR(scale_that_keeps_detail(strips(0.04F), {1, 1}, {256, 256}, {}), 256, 1);
+  EXPECT_NEAR(scale_that_keeps_detail(strips(0.06F), {1, 1}, {256, 256}, {}), 512, 1);
 }
 
 }  // namespace
