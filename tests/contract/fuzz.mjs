@@ -110,7 +110,7 @@ function goTogether(options) {
       (guarantee !== 'bijective' || !repack_only) &&
       (max_distortion === null || (loose && (free || !placed))) &&
       (textures === 'keep' || ((repack_only || apart) && loose && max_pages === 1 && group === 'scene' &&
-          (width ?? resolution) === (height ?? resolution) && !stack_identical));
+          !stack_identical));
 }
 
 function expectVerdict(answer, allowed) {
