@@ -1,6 +1,6 @@
 #pragma once
-// The contract as the server answers it: api/openapi.yaml at build time, and the documents made
-// from it (api/contract/).
+// The contract as the server answers it: api/openapi.yaml at build time, and the same as JSON,
+// with its examples (api/contract/).
 
 #include <string_view>
 
@@ -8,7 +8,5 @@ namespace unwrapd::api {
 
 std::string_view openapi_yaml();
 std::string_view openapi_json();  ///< the same, on one line
-std::string_view docs_html();     ///< the same as a page; it refers to docs.css beside it
-std::string_view docs_css();
 
 }  // namespace unwrapd::api

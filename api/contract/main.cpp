@@ -1,5 +1,5 @@
-// Made at build time of api/openapi.yaml: the same as JSON, and the page for people.
-//   contract DIR_OF_API OPENAPI_JSON DOCS_HTML
+// Writes api/openapi.yaml as JSON at build time, with its examples in place of their files:
+//   contract_maker DIR_OF_API OPENAPI_JSON
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "api/contract/page.hpp"
 #include "api/contract/yaml_json.hpp"
 
 namespace {
@@ -20,6 +19,22 @@ std::string read(const std::string& path) {
   return text.str();
 }
 
+using unwrapd::contract::Json;
+
+/// Every example has its value in place of the file that holds it: JSON, or text.
+void take_in_examples(const std::string& folder, Json& part) {
+  if (const auto file = part.is_object() ? part.find("externalValue") : part.end();
+      file != part.end()) {
+    const auto name = file->get<std::string>();
+    const std::string text = read(folder + "/" + name);
+    part.erase("externalValue");
+    part["value"] = name.ends_with(".json") ? Json::parse(text) : Json(text);
+    return;
+  }
+  if (part.is_structured())
+    for (Json& inner : part) take_in_examples(folder, inner);
+}
+
 void write(const std::string& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text;
@@ -29,17 +44,15 @@ void write(const std::string& path, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::cerr << "usage: contract DIR_OF_API OPENAPI_JSON DOCS_HTML\n";
+  if (argc != 3) {
+    std::cerr << "usage: contract_maker DIR_OF_API OPENAPI_JSON\n";
     return 2;
   }
   const std::string api = argv[1];
   try {
-    const unwrapd::contract::Json contract =
-        unwrapd::contract::json_of_yaml(read(api + "/openapi.yaml"));
-    const auto example = [&](const std::string& file) { return read(api + "/" + file); };
+    Json contract = unwrapd::contract::json_of_yaml(read(api + "/openapi.yaml"));
+    take_in_examples(api, contract);
     write(argv[2], contract.dump() + "\n");
-    write(argv[3], unwrapd::contract::page_of(contract, example));
     return 0;
   } catch (const std::exception& error) {
     std::cerr << api << "/openapi.yaml: " << error.what() << "\n";

@@ -22,7 +22,7 @@ function install() {
   const installed = join(here, 'node_modules/.package-lock.json');
   const lock = join(here, 'package-lock.json');
   if (existsSync(installed) && statSync(installed).mtimeMs >= statSync(lock).mtimeMs) return;
-  execFileSync('npm', ['ci', '--no-audit', '--no-fund', '--loglevel=error'], {cwd: here, stdio: 'inherit'});
+  execFileSync('npm', ['ci', '--ignore-scripts', '--no-audit', '--no-fund', '--loglevel=error'], {cwd: here, stdio: 'inherit'});
 }
 
 /** Bytes as a literal of C++: octal, so that no digit after them is taken for theirs. */
@@ -65,6 +65,10 @@ ${names.map(entry).join(',\n')}}};
 
 std::string_view index_html() {
   return ${literal(readFileSync(join(folder, 'page/index.html')))};
+}
+
+std::string_view docs_html() {
+  return ${literal(readFileSync(join(folder, 'page/docs.html')))};
 }
 
 std::span<const PageFile> page_files() { return kFiles; }

@@ -1,13 +1,13 @@
 #pragma once
-// The page that a server shows to people, as it was at build time: a document, and the files that
-// it loads, under names that change with their content.
+// The pages that a server shows to people, as they were at build time: documents, and the files that
+// they load, under names that change with their content.
 
 #include <span>
 #include <string_view>
 
 namespace unwrapd::web {
 
-/// A file of the page, compressed in two ways.
+/// A file of the pages, compressed in two ways.
 struct PageFile {
   std::string_view name;  ///< without a folder
   std::string_view type;
@@ -16,6 +16,7 @@ struct PageFile {
 };
 
 std::string_view index_html();  ///< loads assets/NAME of the files
+std::string_view docs_html();   ///< the API; loads such files, and openapi.json
 std::span<const PageFile> page_files();
 
 }  // namespace unwrapd::web

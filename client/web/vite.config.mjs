@@ -22,8 +22,11 @@ export default defineConfig({
     assetsInlineLimit: 0,
     modulePreload: {polyfill: false},
     emptyOutDir: true,
-    chunkSizeWarningLimit: 1024,
+    chunkSizeWarningLimit: 2048,
     reportCompressedSize: false,
-    rollupOptions: {output: {manualChunks: {three: ['three']}}},
+    rollupOptions: {
+      input: [`${root}index.html`, `${root}docs.html`],
+      output: {manualChunks: {three: ['three'], swagger: ['swagger-ui-dist/swagger-ui-es-bundle.js']}},
+    },
   },
 });

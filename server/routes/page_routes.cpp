@@ -1,4 +1,4 @@
-// The document is checked each time; what it loads has names that change with their content, and is
+// Documents are checked each time; what they load has names that change with their content, and is
 // never asked for twice. The files are in the program compressed, as nearly every browser takes
 // them.
 #include "server/routes/page_routes.hpp"
@@ -15,7 +15,7 @@
 namespace unwrapd::server::routes {
 namespace {
 
-/// The page calls nothing but its own server. blob: and data: are files that people open and what
+/// The pages call nothing but their own server. blob: and data: are files that people open and what
 /// is in them; decoders of Draco and meshopt are WebAssembly, the former in a worker made of a
 /// blob.
 constexpr std::string_view kPagePolicy =
@@ -61,8 +61,9 @@ http::Response get_page_file(const http::Request& request) {
 }  // namespace
 
 void add_page_routes(std::vector<http::Route>& routes) {
-  routes.push_back(
-      {"GET", "/", page_handler(web::index_html(), "text/html; charset=utf-8", kPagePolicy)});
+  constexpr std::string_view kHtml = "text/html; charset=utf-8";
+  routes.push_back({"GET", "/", page_handler(web::index_html(), kHtml, kPagePolicy)});
+  routes.push_back({"GET", "/docs", page_handler(web::docs_html(), kHtml, kPagePolicy)});
   routes.push_back({"GET", "/assets/{name}", get_page_file});
 }
 

@@ -183,6 +183,17 @@ export class Contract {
     walk(this.document, '#');
     return found;
   }
+
+  /** The document with the value of every example in place of its file. */
+  withExamples() {
+    const text = JSON.stringify(this.document, (_, value) => {
+      if (!value?.externalValue) return value;
+      const {externalValue: name, ...rest} = value;
+      const content = readFileSync(join(dirname(this.path), name), 'utf8');
+      return {...rest, value: name.endsWith('.json') ? JSON.parse(content) : content};
+    });
+    return JSON.parse(text);
+  }
 }
 
 /** The events of a stream as [{id, event, data}]; comments are passed over. */

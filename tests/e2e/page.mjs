@@ -47,8 +47,16 @@ export class Bench {
     return path;
   }
 
-  /** The page as a fresh visitor sees it; complaints are what its console got. */
+  /** The page as a fresh visitor sees it. */
   async visit(t, { base = this.server.base, hash = "", ...options } = {}) {
+    const page = await this.blank(t, base, options);
+    await page.goto(`${base}/${hash}`);
+    await page.locator("#option-method").waitFor();
+    return page;
+  }
+
+  /** A fresh visitor's browser; complaints are what its console got, elsewhere what it asked of others. */
+  async blank(t, base = this.server.base, options = {}) {
     const context = await this.browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
     t.after(() => context.close());
     const page = await context.newPage();
@@ -61,8 +69,6 @@ export class Bench {
       const url = request.url();
       if (!url.startsWith(base) && !/^(blob|data):/.test(url)) page.elsewhere.push(url);
     });
-    await page.goto(`${base}/${hash}`);
-    await page.locator("#option-method").waitFor();
     return page;
   }
 }

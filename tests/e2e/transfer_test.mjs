@@ -18,10 +18,7 @@ const PAGE = `<!doctype html><link rel="icon" href="data:,">
 
 /** How two GLBs look beside each other in look.js. */
 async function comparison(bench, t, ...assets) {
-  const context = await bench.browser.newContext();
-  t.after(() => context.close());
-  const page = await context.newPage();
-  page.on("pageerror", (error) => assert.fail(String(error)));
+  const page = await bench.blank(t, ORIGIN);
   await page.route(`${ORIGIN}/**`, (route) => {
     const { pathname } = new URL(route.request().url());
     if (pathname === "/") return route.fulfill({ contentType: "text/html", body: PAGE });
@@ -30,7 +27,9 @@ async function comparison(bench, t, ...assets) {
   });
   await page.goto(ORIGIN);
   await page.waitForFunction(() => window.compare !== undefined);
-  return page.evaluate(([old, now]) => window.compare(old, now), assets.map((glb) => glb.toString("base64")));
+  const sides = await page.evaluate(([old, now]) => window.compare(old, now), assets.map((glb) => glb.toString("base64")));
+  assert.deepEqual(page.complaints, []);
+  return sides;
 }
 
 /**

@@ -3,3 +3,7 @@ declare module '*?url' {
   const url: string;
   export default url;
 }
+
+declare module 'swagger-ui-dist/swagger-ui-es-bundle.js' {
+  export default function SwaggerUI(options: Record<string, unknown>): unknown;
+}

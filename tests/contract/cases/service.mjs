@@ -18,20 +18,22 @@ export async function service(run, base) {
   run.expectEqual('the contract served is the contract tested', contract.body.toString(),
                   readFileSync(run.contract.path, 'utf8'));
   const asJson = await run.json(base, 'getContractAsJson', {status: 200});
-  run.expect('the same as JSON', isDeepStrictEqual(asJson, run.contract.document) ? [] : ['it differs']);
-  await page(run, base);
-  const texts = ['getContract', 'getContractAsJson', 'getDocs', 'getDocsStyle', 'getPage'];
+  run.expect('the same as JSON', isDeepStrictEqual(asJson, run.contract.withExamples()) ? [] : ['it differs']);
+  const texts = ['getContract', 'getContractAsJson', 'getDocs', 'getPage'];
   for (const id of texts) {
     const {headers} = await run.call(base, id, {status: 200});
     const same = {'If-None-Match': headers.etag};
     await run.call(base, id, {headers: same, status: 304, name: `${id} that is known`});
   }
-  await filesOfThePage(run, base);
+  for (const id of ['getPage', 'getDocs']) await filesOfPage(run, base, id);
+  const away = await request(base, {path: '/assets/index-of-another-version.js'});
+  run.judge('a file of another version', 'getPageFile', away, 404);
 }
 
-/** What the page at / loads: the same bytes in every coding, to be kept for good. */
-async function filesOfThePage(run, base) {
-  const page = await run.call(base, 'getPage', {status: 200});
+/** What a page loads: the same bytes in every coding, to be kept for good. */
+async function filesOfPage(run, base, id) {
+  const page = await run.call(base, id, {status: 200});
+  run.expectEqual('its policy', page.headers['content-security-policy']?.split(';')[0], "default-src 'none'");
   const paths = [...page.body.toString().matchAll(/(?:src|href)="\.\/(assets\/[^"]+)"/g)].map(([, path]) => path);
   run.expect('a script and a style', ['.js', '.css'].filter((end) => !paths.some((path) => path.endsWith(end))));
   for (const path of paths) {
@@ -46,38 +48,6 @@ async function filesOfThePage(run, base) {
     run.expectEqual('by Brotli', brotliDecompressSync((await get('br')).body).equals(plain.body), true);
     run.expectEqual('is kept', plain.headers['cache-control'], 'public, max-age=31536000, immutable');
   }
-  const away = await request(base, {path: '/assets/index-of-another-version.js'});
-  run.judge('a file of another version', 'getPageFile', away, 404);
-}
-
-/** The page has every call, schema and error, and refers to nothing but itself. */
-async function page(run, base) {
-  const answer = await run.call(base, 'getDocs', {status: 200});
-  const html = answer.body.toString();
-  const ids = new Set([...html.matchAll(/ id="([^"]+)"/g)].map((match) => match[1]));
-  const wanted = [...run.contract.operations().map(({id}) => id),
-                  ...Object.keys(run.contract.document.components.schemas).map((name) => `schema-${name}`)];
-  run.expect('what the page has', wanted.filter((id) => !ids.has(id)));
-  run.expect('the errors of the page',
-             run.contract.errorCodes().filter((code) => !html.includes(`<td><code>${code}</code></td>`)));
-  const links = [...html.matchAll(/(?:href|src)="([^"]*)"/g)].map((match) => match[1]);
-  const beside = ['docs.css', 'openapi.yaml', 'openapi.json'];
-  run.expect('the links of the page', links.filter((link) =>
-    !(link.startsWith('#') ? ids.has(link.slice(1)) : beside.includes(link))));
-  run.expect('scripts', html.match(/<script|\son[a-z]+=|style="/gi) ?? []);
-  run.expect('elements that are left open', unbalanced(html));
-  run.expectEqual('its policy', answer.headers['content-security-policy']?.split(';')[0], "default-src 'none'");
-}
-
-/** Elements that are closed in another order than they were opened. */
-function unbalanced(html) {
-  const open = [];
-  for (const [, slash, name] of html.matchAll(/<(\/?)([a-z][a-z0-9]*)[^>]*>/g)) {
-    if (['meta', 'link'].includes(name)) continue;
-    if (!slash) open.push(name);
-    else if (open.pop() !== name) return [`</${name}>`];
-  }
-  return open;
 }
 
 /** HEAD is GET without the body. */
