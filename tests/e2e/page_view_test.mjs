@@ -50,8 +50,9 @@ describe("the views of the page", { skip: missing }, () => {
 
   test("show an image of the person's own, and say what is none", async (t) => {
     const page = await bench.visit(t);
+    const choosing = page.waitForEvent("filechooser"); // long before it is opened
     await unwrap(page, bench.file("grid.obj", obj(4)));
-    const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.selectOption("#colouring", "image")]);
+    await page.selectOption("#colouring", "image");
     const png = await page.evaluate(() => {
       const canvas = Object.assign(document.createElement("canvas"), { width: 8, height: 8 });
       const pen = canvas.getContext("2d");
@@ -59,7 +60,7 @@ describe("the views of the page", { skip: missing }, () => {
       pen.fillRect(0, 0, 8, 8);
       return canvas.toDataURL().split(",")[1];
     });
-    await chooser.setFiles(bench.file("red.png", Buffer.from(png, "base64")));
+    await (await choosing).setFiles(bench.file("red.png", Buffer.from(png, "base64")));
     const isRed = async () => page.evaluate(async (bytes) => {
       const image = new Image();
       image.src = `data:image/png;base64,${bytes}`;
