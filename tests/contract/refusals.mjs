@@ -24,6 +24,9 @@ async function refused(run, base, {id = 'createJob', headers, status, code}) {
 /** The operations that need a key where keys are asked for. */
 const keyed = (run) => run.contract.operations().filter(({responses}) => responses['401']);
 
+/** The others, which anybody may call. */
+const open = (run) => run.contract.operations().filter(({responses}) => !responses['401']);
+
 /** The header fields of the holder of a new key. */
 function holder(binary, data, name, ...flags) {
   const args = ['keys', 'add', '--data', data, '--name', name, ...flags];
@@ -43,6 +46,7 @@ export function keys(run, binary) {
       await call(method === 'GET' ? sends : looks, 403, 'forbidden');
       await call(seldom, 429, 'rate_limited');
     }
+    for (const {id} of open(run)) await run.call(base, id, {name: `${id} without a key`});
     const poor = add('poor', '--max-bytes', '10');
     for (const id of [...kBodies, kOfMesh]) {
       await refused(run, base, {id, headers: poor, status: 507, code: 'quota_exceeded'});
