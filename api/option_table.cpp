@@ -208,6 +208,9 @@ constexpr std::array kRows = {
     plain<&O::repack_only>(
         "repack_only", OptionType::flag, kEveryMethod,
         "true: packs the islands of the existing UVs again, without unwrapping; false: unwraps."),
+    plain<&O::measure_only>("measure_only", OptionType::flag, kEveryMethod,
+                            "true: measures the existing UVs where they are: charts, seams, "
+                            "distortion, flips, overlaps and fill; false: unwraps."),
     OptionRow{.name = "texcoord",
               .type = OptionType::integer,
               .choices = kTexcoordChoices,

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 #include <utility>
 
+#include "api/edit_distance.hpp"
 #include "api/option_values.hpp"
 #include "core/base/error.hpp"
 #include "core/types/chart_rules.hpp"
@@ -20,21 +20,6 @@ constexpr std::size_t kMaxMisspelling = 2;  // edits between a name and the sugg
 
 [[noreturn]] void refuse(std::string_view name, const std::string& message) {
   throw Error(ErrorCode::invalid_option, message, option_pointer(name));
-}
-
-/// The number of single-character edits that turn a into b.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
 }
 
 /// "iterations" of "stop.iterations"; of a name without a group, itself.
@@ -104,6 +89,7 @@ void settle_textures(JobOptions& options) {
           "needs guarantee=bijective: overlapping triangles would share texels.");
   require(unwrap.constraints.empty(),
           "needs places that packing keeps apart; leave out constraints.");
+  require(!unwrap.measure_only, "paints images for other UVs; leave out measure_only.");
   require(!unwrap.finds_page(), "paints images of a given size; give resolution in texels.");
   require(unwrap.packing.max_pages == 1, "writes one page; leave out max_pages.");
   require(unwrap.packing.group == PageGroup::scene, "writes one page; leave out group.");
@@ -115,7 +101,7 @@ void settle_textures(JobOptions& options) {
 struct Excluder {
   std::string_view reason;
   bool (*is_on)(const JobOptions&);
-  std::array<std::string_view, 3> excluded;
+  std::array<std::string_view, 6> excluded;
 
   [[nodiscard]] bool excludes(std::string_view name, const JobOptions& options) const {
     return std::ranges::find(excluded, name) != excluded.end() && is_on(options);
@@ -137,6 +123,9 @@ constexpr std::array kExcluders = {
     Excluder{"with weld=exact",
              [](J job) { return job.unwrap.welding.mode == WeldMode::exact; },
              {"weld_distance"}},
+    Excluder{"with measure_only, which packs nothing",
+             [](J job) { return job.unwrap.measure_only; },
+             {"padding", "rotation", "texels_per_unit", "group", "max_pages", "stack_identical"}},
     Excluder{"with guarantee=none",
              [](J job) { return job.unwrap.guarantee == Guarantee::none; },
              {"repair"}},

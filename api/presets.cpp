@@ -64,7 +64,7 @@ JobOptions preset_options(Preset preset) {
 
 void yield_to_request(JobOptions& options, const std::function<bool(std::string_view)>& is_given) {
   UnwrapOptions& unwrap = options.unwrap;
-  if (!keeps_whole(unwrap) && !unwrap.repack_only) return;
+  if (!keeps_whole(unwrap) && !unwrap.keeps_uvs()) return;
   if (!is_given("max_distortion")) unwrap.max_distortion.reset();
   if (!is_given("guarantee") && unwrap.guarantee == Guarantee::bijective)
     unwrap.guarantee = Guarantee::flip_free;

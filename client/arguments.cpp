@@ -37,6 +37,7 @@ constexpr const char* kFooter = R"(Examples:
   unwrap chair.glb --json --quiet | jq .distortion
   unwrap chair.glb --local --preset lightmap       works without a server
   unwrap meshes --out done -j 8 --resume           all meshes below the folder meshes
+  unwrap compare old.glb new.glb -o both.html      tells the UVs of two files side by side
   curl -s $URL | unwrap - --output glb > chair.uv.glb
   unwrap --sample shell.glb                        writes a mesh to try these commands with
 
@@ -184,6 +185,29 @@ void check_batch(const Arguments& arguments) {
                   "Of several meshes each has one result; name one --lambda, or one FILE.");
 }
 
+/// Whether the first of several words is a command, and no file.
+bool is_comparison(const Arguments& arguments) {
+  std::error_code none;
+  return arguments.inputs.size() > 1 && arguments.inputs.front() == "compare" &&
+         !fs::exists("compare", none);
+}
+
+/// Of `unwrap compare A B`.
+void settle_comparison(Arguments& arguments) {
+  arguments.compares = true;
+  arguments.inputs.erase(arguments.inputs.begin());
+  if (arguments.inputs.size() != 2)
+    throw Failure(ExitCode::usage, "compare takes two meshes; name both.");
+  if (!arguments.out.empty() && arguments.out.extension() != ".html")
+    throw Failure(ExitCode::usage, "--out: compare writes a page; name a file that ends in .html.");
+  if (!arguments.report.empty() || !arguments.layout.empty() || !arguments.preview.empty() ||
+      arguments.resume || arguments.watch)
+    throw Failure(ExitCode::usage,
+                  "compare prints a table, or with --json both reports, and writes a page with -o; "
+                  "leave out --report, --layout, --preview, --resume and --watch.");
+  arguments.options["measure_only"] = "true";
+}
+
 /// Checks what the parser cannot, and derives the remaining values.
 Arguments complete(RawArguments raw) {
   Arguments& arguments = raw.arguments;
@@ -197,7 +221,9 @@ Arguments complete(RawArguments raw) {
   // Only from the environment, since all users of the machine can see a command line.
   if (const char* key = std::getenv("UNWRAP_API_KEY")) arguments.server.key = key;
   arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));
+  if (is_comparison(arguments)) settle_comparison(arguments);
   check_options(arguments.options);
+  if (arguments.compares) return std::move(arguments);
   arguments.lambdas = lambdas_of(arguments.options);
   if (is_batch(arguments)) {
     check_batch(arguments);

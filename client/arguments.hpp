@@ -24,9 +24,10 @@ struct Arguments {
   std::filesystem::path out;   ///< output; never empty unless sample or inputs are given
   /// Several files, patterns or folders, and the folder of their results in `out`; empty: one file.
   std::vector<std::filesystem::path> inputs;
-  int jobs = 4;         ///< of inputs, at once
-  bool resume = false;  ///< leave out inputs whose results are there
-  bool watch = false;   ///< go on with inputs that come or change
+  bool compares = false;  ///< the two inputs as they are; out: a page about them, or empty
+  int jobs = 4;           ///< of inputs, at once
+  bool resume = false;    ///< leave out inputs whose results are there
+  bool watch = false;     ///< go on with inputs that come or change
   std::filesystem::path report;
   std::filesystem::path layout;   ///< a PNG if its extension says so, else an SVG
   std::string layout_colour;      ///< quantity to colour by; empty: the server's default

@@ -12,6 +12,7 @@ Figures figures_of(const api::Json& report) {
                   .angle = distortion.at("angle").get<double>(),
                   .area = distortion.at("area").get<double>(),
                   .flipped = distortion.at("flipped").get<long>(),
+                  .seam_ratio = report.at("seam_ratio").get<double>(),
                   .overlaps = {},
                   .fill = report.at("fill").get<double>(),
                   .notes = {}};

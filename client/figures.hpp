@@ -14,6 +14,7 @@ struct Figures {
   std::size_t charts = 0;
   double angle = 2, area = 2;  ///< D_angle, D_area
   long flipped = 0;
+  double seam_ratio = 0;         ///< length of the seams by the square root of the area
   std::optional<long> overlaps;  ///< none: they were not counted
   double fill = 0;
   std::vector<std::string> notes;  ///< "note (code): text"

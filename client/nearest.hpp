@@ -7,8 +7,8 @@
 
 namespace unwrapd::client {
 
-/// The word that becomes `given` by the fewest letters added, left out or changed (Levenshtein
-/// 1966), of several the first; none if that takes more than two, or all of its letters.
+/// The word that is nearest to `given` by api::edit_distance(), of several the first; none if that
+/// takes more than two letters, or all of those given.
 const std::string* nearest(std::string_view given, std::span<const std::string> words);
 
 }  // namespace unwrapd::client

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/batch.hpp"
+#include "client/compare.hpp"
 #include "client/figures.hpp"
 #include "client/files.hpp"
 #include "client/sample.hpp"
@@ -58,7 +59,9 @@ void run(const Arguments& arguments, const Console& console, const std::stop_tok
   if (workplace.is_here() && arguments.place == Place::any && !arguments.quiet)
     console.err << "No server answers at " << arguments.server.origin
                 << ": the job runs in this process." << std::endl;
-  if (arguments.inputs.empty()) {
+  if (arguments.compares) {
+    compare(arguments, workplace.server(), console, stop);
+  } else if (arguments.inputs.empty()) {
     tell(arguments, unwrap_file(arguments, workplace.server(), console, stop), console);
   } else {
     run_batch(arguments, workplace.server(), console, stop);

@@ -63,14 +63,20 @@ void finish_job(JobClient& client, const ServerUrl& server, const std::string& j
 
 }  // namespace
 
-std::vector<WrittenMap> unwrap_file(const Arguments& arguments, const ServerUrl& server,
-                                    const Console& console, const std::stop_token& stop) {
+std::string finished_job(JobClient& client, const Arguments& arguments, const ServerUrl& server,
+                         const Console& console, const std::stop_token& stop) {
   const InputFile input(arguments.file, stop);
-  Outputs outputs(arguments);
-  JobClient client(server, stop);
   const api::Job job = submit(client, arguments, input.path());
   finish_job(client, server, job.id, console);
-  return outputs.fill(client, job.id);
+  return job.id;
+}
+
+std::vector<WrittenMap> unwrap_file(const Arguments& arguments, const ServerUrl& server,
+                                    const Console& console, const std::stop_token& stop) {
+  Outputs outputs(arguments);
+  JobClient client(server, stop);
+  const std::string job = finished_job(client, arguments, server, console, stop);
+  return outputs.fill(client, job);
 }
 
 }  // namespace unwrapd::client

@@ -112,7 +112,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> given, const Unwrap
   validate(options, std::numeric_limits<int>::max());
   JobExecutor job(executor, progress.stop);
   const std::vector<double> lambdas = pipeline::lambdas_of(options);
-  if (options.repack_only) return {lambdas.size(), pipeline::repack(given, options, progress, job)};
+  if (options.keeps_uvs()) return {lambdas.size(), pipeline::repack(given, options, progress, job)};
 
   announce(progress, Stage::setup, 0, pipeline::kChartsBegin);
   const charts::RepairedSurfaces repaired =

@@ -1,4 +1,5 @@
-// Nothing is solved: islands are found, placed, rounded to what is written, and measured there.
+// Nothing is solved: islands are found, placed, rounded to what is written, and measured there; or
+// they stay where they are, and are measured.
 #include "core/pipeline/repack.hpp"
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 #include "core/charts/uv_islands.hpp"
 #include "core/guarantee/quantize_uvs.hpp"
 #include "core/measure/distortion.hpp"
+#include "core/measure/overlaps.hpp"
+#include "core/measure/page_area.hpp"
 #include "core/measure/seam_length.hpp"
 #include "core/pack/pack.hpp"
 #include "core/pipeline/assemble.hpp"
@@ -18,8 +21,9 @@
 namespace unwrapd::pipeline {
 namespace {
 
+/// name: of the option that wants them.
 std::vector<charts::UvIslands> find_islands(std::span<const Surface> surfaces,
-                                            const std::stop_token& stop) {
+                                            const std::string& name, const std::stop_token& stop) {
   std::vector<charts::UvIslands> all;
   bool are_any = false;
   for (const Surface& surface : surfaces) {
@@ -29,9 +33,9 @@ std::vector<charts::UvIslands> find_islands(std::span<const Surface> surfaces,
   }
   if (!are_any)
     throw Error(ErrorCode::no_texture_coordinates,
-                "The asset lacks the texture coordinates that repack_only packs again; leave out "
-                "repack_only, or select another set with texcoord.",
-                "/repack_only");
+                "The asset lacks the texture coordinates that " + name + " takes; leave out " +
+                    name + ", or select another set with texcoord.",
+                "/" + name);
   return all;
 }
 
@@ -78,6 +82,33 @@ void place(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& al
   }
 }
 
+constexpr std::size_t kMostPairs = 1 << 20;  // of triangles, that are counted
+
+/// The pairs of all faces on the page, also of different islands.
+Index count_overlaps(const std::vector<charts::UvIslands>& all, const std::stop_token& stop) {
+  std::vector<Triangle> faces;
+  UvMap uv;
+  for (const charts::UvIslands& own : all)
+    for (std::size_t k = 0; k < own.maps.size(); ++k) {
+      const auto first = static_cast<Index>(uv.size());
+      for (const Triangle& face : own.charts.charts[k].mesh.faces)
+        faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+      uv.insert(uv.end(), own.maps[k].begin(), own.maps[k].end());
+    }
+  return static_cast<Index>(measure::overlapping_pairs(faces, uv, kMostPairs, stop).size());
+}
+
+void leave_in_place(const std::vector<charts::UvIslands>& all, const UnwrapOptions& options,
+                    const std::stop_token& stop, Report& report) {
+  report.page = options.page_size();
+  report.overlaps = count_overlaps(all, stop);
+  report.fill = 0;
+  for (const charts::UvIslands& own : all)
+    for (std::size_t k = 0; k < own.maps.size(); ++k)
+      report.fill += measure::page_area(own.charts.charts[k].mesh.faces, own.maps[k]);
+  report.fill = std::min(report.fill, 1.0);  // faces on top of each other count each
+}
+
 ChartReport report_of(const charts::Chart& chart, const measure::DistortionSums& sums,
                       std::size_t surface) {
   ChartReport report{.surface = static_cast<Index>(surface),
@@ -120,7 +151,7 @@ void note_islands_without_area(const std::vector<charts::UvIslands>& all, Report
     report.notes.push_back({NoteCode::distorted,
                             std::to_string(count) +
                                 " islands have no area on the page: their texture coordinates lie "
-                                "on a line or a point. Leave out repack_only to unwrap them."});
+                                "on a line or a point. Unwrap the asset to give them some."});
 }
 
 void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIslands>& all,
@@ -159,10 +190,14 @@ Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options
     if (progress.on_stage) progress.on_stage({stage, 0, 0, fraction});
   };
   announce(Stage::setup, 0.05);
-  std::vector<charts::UvIslands> all = find_islands(surfaces, progress.stop);
+  std::vector<charts::UvIslands> all =
+      find_islands(surfaces, options.measure_only ? "measure_only" : "repack_only", progress.stop);
   Unwrapped out;
   announce(Stage::pack, 0.2);
-  place(surfaces, all, options, executor, out.report);
+  if (options.measure_only)
+    leave_in_place(all, options, progress.stop, out.report);
+  else
+    place(surfaces, all, options, executor, out.report);
   announce(Stage::measure, 0.9);
   note_faces_without(all, out.report);
   note_islands_without_area(all, out.report);

@@ -21,12 +21,31 @@ void require_side(int texels, const std::string& name) {
           "/" + name);
 }
 
+std::string name_of_keeping(const UnwrapOptions& options) {
+  return options.measure_only ? "measure_only" : "repack_only";
+}
+
+/// Islands that are kept have their shapes and overlaps already.
+void require_kept_islands(const UnwrapOptions& options) {
+  if (!options.keeps_uvs()) return;
+  const std::string name = name_of_keeping(options);
+  require(!options.repack_only || !options.measure_only,
+          "measure_only leaves the islands where they are; leave out repack_only", "/repack_only");
+  require(options.boundary == BoundaryShape::free,
+          name + " keeps the islands as they are; leave out boundary", "/boundary");
+  require(options.guarantee != Guarantee::bijective,
+          name + " keeps existing overlaps; leave out guarantee=bijective", "/guarantee");
+  require(options.straighten == Straighten::off,
+          name + " keeps the islands as they are; leave out straighten", "/straighten");
+}
+
 /// Constraints say themselves where charts lie.
 void require_packing(const UnwrapOptions& options) {
   const Packing& packing = options.packing;
   const bool is_packed = options.constraints.empty();
   const std::string placed = "constraints determine where charts lie; leave out ";
-  require(is_packed || !options.repack_only, placed + "repack_only", "/repack_only");
+  require(is_packed || !options.keeps_uvs(), placed + name_of_keeping(options),
+          "/" + name_of_keeping(options));
   require(is_packed || !packing.texels_per_unit, placed + "texels_per_unit", "/texels_per_unit");
   require(is_packed || packing.max_pages == 1, placed + "max_pages", "/max_pages");
   require(is_packed || !packing.stack_identical, placed + "stack_identical", "/stack_identical");
@@ -101,17 +120,12 @@ void validate(const UnwrapOptions& options, int max_iterations) {
   require(options.constraints.empty() || options.boundary == BoundaryShape::free,
           "constraints and a boundary shape exclude each other; leave one of them out",
           "/boundary");
-  require(!options.repack_only || options.boundary == BoundaryShape::free,
-          "repack_only keeps the islands as they are; leave out boundary", "/boundary");
-  require(!options.repack_only || options.guarantee != Guarantee::bijective,
-          "repack_only keeps existing overlaps; leave out guarantee=bijective", "/guarantee");
+  require_kept_islands(options);
   const bool is_straightened = options.straighten != Straighten::off;
   require(!is_straightened || options.constraints.empty(),
           "constraints determine the maps; leave out straighten", "/straighten");
   require(!is_straightened || !shapes_boundary(options),
           "boundary determines the shape of charts; leave out straighten", "/straighten");
-  require(!is_straightened || !options.repack_only,
-          "repack_only keeps the islands as they are; leave out straighten", "/straighten");
   require_packing(options);
   require_welding(options.welding);
   require_charts(options);

@@ -113,6 +113,7 @@ struct UnwrapOptions {
       {};  ///< ASAP, ARAP, Hybrid; the page is then theirs
   Packing packing = {};
   bool repack_only = false;          ///< the surfaces' own UVs are packed anew, nothing is solved
+  bool measure_only = false;         ///< the surfaces' own UVs are measured where they are
   Effort effort = Effort::balanced;  ///< counted work of the searches, never time (ADR 0045)
   Welding welding = {};              ///< of vertices at different positions
   Straighten straighten = Straighten::off;
@@ -122,6 +123,9 @@ struct UnwrapOptions {
   [[nodiscard]] bool finds_page() const {
     return page_fit != PageFit::given && packing.texels_per_unit && !width && !height;
   }
+
+  /// Whether the surfaces' own UVs are the maps.
+  [[nodiscard]] bool keeps_uvs() const { return repack_only || measure_only; }
 
   [[nodiscard]] PageSize page_size() const {
     return {width.value_or(resolution), height.value_or(resolution)};

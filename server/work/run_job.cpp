@@ -122,7 +122,7 @@ std::string run_job(const JobTask& task, const asset::Input& input, JobOutput& o
   const SharedCache* core = executor.shared_cache();
   const std::size_t memory = core != nullptr ? core->memory_limit() : asset::kNoByteLimit;
   asset::Asset asset = asset::read(watched, read_limits(record, limits, memory), options.asset);
-  if (options.unwrap.repack_only || options.unwrap.seams == SeamMode::uv0) asset::read_uvs(asset);
+  if (options.unwrap.keeps_uvs() || options.unwrap.seams == SeamMode::uv0) asset::read_uvs(asset);
   if (options.unwrap.packing.group == PageGroup::material) asset::name_materials(asset);
   check_stop(task);
 

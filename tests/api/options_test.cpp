@@ -88,8 +88,8 @@ Json random_values(std::mt19937& rng) {
   }
   if (values["group"] != "scene") values["max_pages"] = 1;
   if (values["boundary"] != "free") values["straighten"] = "off";
-  values["repack_only"] = false;  // goes with few others
-  values["textures"] = "keep";    // likewise
+  values["repack_only"] = values["measure_only"] = false;  // go with few others
+  values["textures"] = "keep";                             // likewise
   if (values["weld"] == "exact") values["weld_distance"] = nullptr;
   if (values["boundary"] != "free") values["max_distortion"] = values["max_charts"] = nullptr;
   if (values["constraints"].empty()) return values;

@@ -46,6 +46,20 @@ TEST(Arguments, AResultIsWrittenBesideTheFileWhenNoNameIsGiven) {
   EXPECT_EQ(accepted({"chair.zip"}).options.at("output"), "glb");
 }
 
+TEST(Arguments, CompareTakesTwoMeshesAndWritesAPage) {
+  const Arguments arguments = accepted({"compare", "a.glb", "b.glb", "-o", "both.html"});
+  EXPECT_TRUE(arguments.compares);
+  EXPECT_THAT(arguments.inputs, testing::ElementsAre("a.glb", "b.glb"));
+  EXPECT_EQ(arguments.options.at("measure_only"), "true");
+  EXPECT_EQ(accepted({"compare", "a.glb", "b.glb"}).out, "");
+  EXPECT_EQ(accepted({"compare"}).file, "compare");  // a mesh of that name
+  for (const std::vector<const char*>& wrong : {std::vector{"compare", "a.glb"},
+                                                {"compare", "a.glb", "b.glb", "c.glb"},
+                                                {"compare", "a.glb", "b.glb", "-o", "b.glb"},
+                                                {"compare", "a.glb", "b.glb", "--watch"}})
+    EXPECT_EQ(refused(wrong).code, ExitCode::usage);
+}
+
 TEST(Arguments, ADashIsStandardInputAndOutput) {
   EXPECT_EQ(accepted({"-"}).file, "-");
   EXPECT_EQ(accepted({"-"}).out, "-");

@@ -8,7 +8,7 @@ namespace unwrapd::client {
 namespace {
 
 constexpr const char* kReport =
-    R"({"input":{"faces":12},"charts":[{},{}],"fill":0.5,"overlaps":null,"notes":[)"
+    R"({"input":{"faces":12},"charts":[{},{}],"seam_ratio":1.5,"fill":0.5,"overlaps":null,"notes":[)"
     R"({"code":"overlaps","text":"two"}],"distortion":{"angle":2.1,"area":2.2,"flipped":3}})";
 
 TEST(Figures, AreThoseOfTheReport) {
@@ -19,6 +19,7 @@ TEST(Figures, AreThoseOfTheReport) {
   EXPECT_EQ(figures.area, 2.2);
   EXPECT_EQ(figures.flipped, 3);
   EXPECT_FALSE(figures.overlaps.has_value());
+  EXPECT_EQ(figures.seam_ratio, 1.5);
   EXPECT_EQ(figures.fill, 0.5);
   EXPECT_EQ(figures.notes, std::vector<std::string>{"note (overlaps): two"});
 }

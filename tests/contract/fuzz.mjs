@@ -89,12 +89,14 @@ function someOptions(properties) {
 /** What the schema cannot say: which options go together. */
 function goTogether(options) {
   const {padding = 2, resolution = 1024, method = 'arap', boundary = 'free',
-         constraints = [], repack_only = false, texels_per_unit = null, max_pages = 1,
+         constraints = [], repack_only = false, measure_only = false,
+         texels_per_unit = null, max_pages = 1,
          stack_identical = false, max_distortion = null, guarantee = null,
          rotation = 'any', group = 'scene', width = null, height = null,
          straighten = 'off', preset = 'texture', textures = 'keep'} = options;
   const free = boundary === 'free';
-  const unpacked = !repack_only && texels_per_unit === null && max_pages === 1 &&
+  const kept = repack_only || measure_only;
+  const unpacked = !kept && texels_per_unit === null && max_pages === 1 &&
       !stack_identical && rotation === 'any' && group === 'scene';
   const placed = ['asap', 'arap', 'hybrid'].includes(method);  // where it is told to lie
   const held = placed && free && unpacked;
@@ -105,11 +107,11 @@ function goTogether(options) {
   const found = texels_per_unit !== null && textures === 'keep' && !isSized;
   const shorter = found ? 16_384 : Math.min(width ?? resolution, height ?? resolution);
   return 4 * padding <= shorter && (max_pages === 1 || group === 'scene') &&
-      (straighten === 'off' || (loose && (free || !placed) && !repack_only)) &&
-      (loose || held) && (free || !repack_only) &&
-      (guarantee !== 'bijective' || !repack_only) &&
+      (straighten === 'off' || (loose && (free || !placed) && !kept)) &&
+      (loose || held) && (free || !kept) && !(repack_only && measure_only) &&
+      (guarantee !== 'bijective' || !kept) &&
       (max_distortion === null || (loose && (free || !placed))) &&
-      (textures === 'keep' || ((repack_only || apart) && loose && max_pages === 1 && group === 'scene' &&
+      (textures === 'keep' || (!measure_only && (repack_only || apart) && loose && max_pages === 1 && group === 'scene' &&
           !stack_identical));
 }
 

@@ -89,3 +89,25 @@ test("--watch unwraps what comes and what changes, each once, until it is stoppe
   assert.equal((await ended).code, 130);
   assert.ok(existsSync(join(home, "watched", "new.obj")));
 });
+
+test("two files are compared as they are, in a table and on a page", async () => {
+  const uv = (scale) => [0, 1, 1, 0].map((u, i) => `vt ${scale * u} ${scale * (i > 1 ? 1 : 0)}\n`).join("");
+  const faces = "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+  writeFileSync(join(folder, "half.obj"), kSheet.replace(/^f .*\n/gm, "") + uv(0.5) + faces);
+  writeFileSync(join(folder, "folded.obj"), kSheet.replace(/^f .*\n/gm, "") + uv(1) + "f 1/1 2/2 3/3\nf 1/1 3/3 4/2\n");
+  const run = await unwrap("compare", "half.obj", "folded.obj", "-o", "both.html");
+  assert.equal(run.code, 0, run.err);
+  assert.match(run.out, /^ +half\.obj +folded\.obj$/m);
+  assert.match(run.out, /^charts +1 +1$/m);
+  assert.match(run.out, /^flipped +0 +1$/m);
+  assert.match(run.out, /^overlaps +0 +1$/m);
+  assert.match(run.out, /^fill +0\.25 +1\.00$/m);
+  const page = readFileSync(join(folder, "both.html"), "utf8");
+  assert.equal(page.match(/<svg/g).length, 2);
+  assert.equal(page.match(/data:image\/png;base64,iVBOR/g).length, 2);
+  const both = JSON.parse((await unwrap("compare", "half.obj", "folded.obj", "--json")).out);
+  assert.deepEqual(both.map(({ distortion }) => distortion.flipped), [0, 1]);
+  const none = await unwrap("compare", "a.obj", "half.obj");
+  assert.equal(none.code, 1);
+  assert.match(none.err, /no_texture_coordinates/);
+});

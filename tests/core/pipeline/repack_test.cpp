@@ -124,6 +124,71 @@ TEST(Repack, RefusesWhatHasNoUvs) {
   }
 }
 
+/// A unit square as two triangles, whose UVs are at `low` and as wide as told.
+void add_square(Surface& surface, const Vec2& low, double width) {
+  const auto first = static_cast<Index>(surface.mesh.positions.size());
+  CornerUv uv;
+  const std::array<Vec2, 4> corners = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
+  for (const Vec2& p : corners) surface.mesh.positions.emplace_back(p.x(), p.y(), 5.0 * first);
+  for (const std::array<Index, 3>& face : {std::array<Index, 3>{0, 1, 2}, {0, 2, 3}}) {
+    surface.mesh.faces.push_back({first + face[0], first + face[1], first + face[2]});
+    for (std::size_t k = 0; k < 3; ++k)
+      uv[k] = low + width * corners[static_cast<std::size_t>(face[k])];
+    surface.corner_uv.push_back(uv);
+  }
+  surface.part.assign(surface.mesh.faces.size(), 0);
+}
+
+Unwrapped measured(const Surface& surface) {
+  SerialExecutor serial;
+  return unwrap(std::span(&surface, 1), {.measure_only = true}, {}, serial);
+}
+
+TEST(MeasureOnly, ChangesNothingAndTellsWhatIsThere) {
+  Surface surface;
+  add_square(surface, {0.1, 0.1}, 0.5);
+  add_square(surface, {0.7, 0.1}, 0.25);
+  const Unwrapped u = measured(surface);
+  ASSERT_EQ(u.surfaces[0].faces.size(), 4U);
+  for (std::size_t t = 0; t < 4; ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(u.surfaces[0].uv[std::size_t(u.surfaces[0].faces[t][k])], surface.corner_uv[t][k]);
+  EXPECT_EQ(u.report.charts.size(), 2U);
+  EXPECT_NEAR(u.report.fill, 0.25 + 0.0625, 1e-12);
+  EXPECT_EQ(u.report.overlaps, 0);
+  EXPECT_NEAR(u.report.distortion.angle, 2, 1e-12);
+  EXPECT_NEAR(u.report.charts[1].distortion.area, 2, 1e-12);  // each on its own scale
+}
+
+TEST(MeasureOnly, CountsOverlapsBetweenChartsAndTrianglesThatAreTurnedOver) {
+  Surface surface;
+  add_square(surface, {0.1, 0.1}, 0.5);
+  add_square(surface, {0.1, 0.1}, 0.5);
+  add_square(surface, {0.9, 0.1}, -0.25);  // overlaps nothing
+  std::swap(surface.corner_uv[4][0], surface.corner_uv[4][1]);
+  const Unwrapped u = measured(surface);
+  EXPECT_EQ(u.report.distortion.flipped, 1);
+  EXPECT_GE(*u.report.overlaps, 2);  // each triangle of the first lies on its like
+}
+
+TEST(MeasureOnly, CountsWhatLiesOnThePageAlone) {
+  Surface surface;
+  add_square(surface, {0.5, 0.5}, 1);
+  EXPECT_NEAR(measured(surface).report.fill, 0.25, 1e-12);
+}
+
+TEST(MeasureOnly, RefusesWhatHasNoUvs) {
+  Surface surface = quads(2);
+  surface.corner_uv.clear();
+  try {
+    measured(surface);
+    ADD_FAILURE() << "it was measured";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::no_texture_coordinates);
+    EXPECT_EQ(error.where(), "/measure_only");
+  }
+}
+
 TEST(Repack, TellsOfFacesWithoutUvs) {
   Surface surface = quads(2);
   surface.corner_uv[3][0] = Vec2(std::nan(""), 0);

@@ -9,7 +9,7 @@ export const NAMES: Record<string, string> = {
   max_distortion: 'Most distortion', max_charts: 'Most charts', effort: 'Effort', resolution: 'Texture size', width: 'Texture width',
   height: 'Texture height', padding: 'Gap between islands', texels_per_unit: 'Fixed texel density', max_pages: 'Most pages (UDIM)',
   straighten: 'Straighten strips', group: 'A page for each', rotation: 'Turn islands', stack_identical: 'Stack identical islands',
-  repack_only: 'Only pack again', texcoord: 'Set to write', textures: 'Existing textures', output: 'File format',
+  repack_only: 'Only pack again', measure_only: 'Only measure', texcoord: 'Set to write', textures: 'Existing textures', output: 'File format',
   compression: 'Compression', draco_bits: 'Draco precision', vertex_map: 'List duplicated vertices',
 };
 
