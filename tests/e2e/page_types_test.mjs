@@ -18,6 +18,6 @@ test("the page is sound in its types", { skip: !existsSync(tools) && "run npm ci
   symlinkSync(tools, join(folder, "node_modules"));
   execFileSync(process.execPath, [join(tools, "openapi-typescript/bin/cli.js"), join(root, "api/openapi.yaml"),
     "--default-non-nullable", "false", "--output", join(folder, "client/js/src/contract.ts")], { stdio: "ignore" });
-  const { stdout } = spawnSync(process.execPath, [join(tools, "typescript/bin/tsc"), "-p", join(folder, "client/web")], { encoding: "utf8" });
-  assert.equal(stdout, "");
+  const { status, stdout, stderr } = spawnSync(process.execPath, [join(tools, "typescript/bin/tsc"), "-p", join(folder, "client/web")], { encoding: "utf8" });
+  assert.deepEqual({ status, stdout, stderr }, { status: 0, stdout: "", stderr: "" });
 });
