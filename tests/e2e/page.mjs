@@ -1,6 +1,7 @@
 // The page at / of a real server in a real Chromium (CHROMIUM, else Debian's), for the tests of its
 // flows. UNWRAPD is the server.
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import net from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -23,6 +24,19 @@ const args = ["--host-resolver-rules=MAP unwrapd.test 127.0.0.1", "--no-sandbox"
 export function real(name) {
   const path = join(data, name);
   return existsSync(path) ? path : undefined;
+}
+
+/** Gives the page pixelsOf(): a picture, as base64, as an ImageData, in its own size or scaled. */
+function definePixelsOf() {
+  window.pixelsOf = async (bytes, { width, height } = {}) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${bytes}`;
+    await image.decode();
+    const size = { width: width ?? image.width, height: height ?? image.height };
+    const pen = Object.assign(document.createElement("canvas"), size).getContext("2d");
+    pen.drawImage(image, 0, 0, size.width, size.height);
+    return pen.getImageData(0, 0, size.width, size.height);
+  };
 }
 
 /** A server, a browser and a folder of files, for the tests of one file. */
@@ -59,6 +73,7 @@ export class Bench {
   async blank(t, base = this.server.base, options = {}) {
     const context = await this.browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
     t.after(() => context.close());
+    await context.addInitScript(definePixelsOf);
     const page = await context.newPage();
     page.setDefaultTimeout(60_000);
     page.complaints = [];
@@ -107,23 +122,16 @@ export async function drop(page, selector, files) {
 
 /** What a canvas shows: the share of pixels that differ from its corner, how many colours, and the corner's green. */
 export async function seen(page, canvas) {
-  const png = (await page.locator(canvas).screenshot()).toString("base64");
   return page.evaluate(async (bytes) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${bytes}`;
-    await image.decode();
-    const pen = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
-    pen.drawImage(image, 0, 0);
-    const { data: pixels } = pen.getImageData(6, 6, image.width - 12, image.height - 12);
-    const at = (i) => (pixels[i] >> 4) * 256 + (pixels[i + 1] >> 4) * 16 + (pixels[i + 2] >> 4);
-    const colours = new Set();
-    let other = 0;
-    for (let i = 0; i < pixels.length; i += 4) {
-      colours.add(at(i));
-      if (at(i) !== at(0)) other += 1;
-    }
-    return { share: (4 * other) / pixels.length, colours: colours.size, ground: pixels[1] };
-  }, png);
+    const { data, width, height } = await pixelsOf(bytes);
+    const at = (x, y) => 4 * (y * width + x);
+    const colourAt = (i) => (data[i] >> 4) * 256 + (data[i + 1] >> 4) * 16 + (data[i + 2] >> 4);
+    const colours = new Map();
+    for (let y = 6; y < height - 6; y += 1)
+      for (let x = 6; x < width - 6; x += 1) colours.set(colourAt(at(x, y)), (colours.get(colourAt(at(x, y))) ?? 0) + 1);
+    const all = (width - 12) * (height - 12);
+    return { share: 1 - colours.get(colourAt(at(6, 6))) / all, colours: colours.size, ground: data[at(6, 6) + 1] };
+  }, (await page.locator(canvas).screenshot()).toString("base64"));
 }
 
 /** A picture of a canvas, once what was asked for is drawn. */
@@ -138,21 +146,50 @@ export async function shot(page, canvas) {
  */
 export function difference(page, one, other, side) {
   return page.evaluate(async ([a, b, scaled]) => {
-    const images = await Promise.all([a, b].map(async (bytes) => {
-      const image = new Image();
-      image.src = `data:image/png;base64,${bytes}`;
-      await image.decode();
-      return image;
-    }));
-    const { width, height } = scaled ? { width: scaled, height: scaled } : images[0];
-    const [p, q] = images.map((image) => {
-      const pen = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d");
-      pen.drawImage(image, 0, 0, width, height);
-      return pen.getImageData(0, 0, width, height).data;
-    });
+    const first = await pixelsOf(a, { width: scaled, height: scaled });
+    const [p, q] = [first.data, (await pixelsOf(b, first)).data];
     let differing = 0;
     for (let i = 0; i < p.length; i += 4)
       if ([0, 1, 2].some((k) => Math.abs(p[i + k] - q[i + k]) > 48)) differing += 1;
     return (4 * differing) / p.length;
   }, [one, other, side]);
+}
+
+/** The job that the page's address names. */
+export const jobOf = (page) => new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
+
+/** The options of the job that is submitted upon an action. */
+export async function submitted(page, action) {
+  const [request] = await Promise.all([page.waitForRequest((one) => /\/v1\/meshes\/[0-9a-f]+\/jobs$/.test(one.url())), action()]);
+  return request.postDataJSON();
+}
+
+/** A part of a sphere above a square of n by n quads: one disk, on which maps of different lambdas differ. */
+export function cap(n = 12) {
+  const lines = [];
+  for (let y = 0; y <= n; y += 1)
+    for (let x = 0; x <= n; x += 1) {
+      const [a, b] = [(2 * x) / n - 1, (2 * y) / n - 1];
+      lines.push(`v ${a} ${b} ${1 - 0.6 * (a * a + b * b)}`);
+    }
+  for (let y = 0; y < n; y += 1)
+    for (let x = 0; x < n; x += 1) {
+      const v = y * (n + 1) + x + 1;
+      lines.push(`f ${v} ${v + 1} ${v + n + 2} ${v + n + 1}`);
+    }
+  return `${lines.join("\n")}\n`;
+}
+
+/** A door before the server that can be shut upon all who have come through it. */
+export async function doorTo(base) {
+  const inside = new Set();
+  const door = net.createServer((near) => {
+    const far = net.connect(Number(new URL(base).port), "127.0.0.1");
+    for (const end of [near, far])
+      inside.add(end.on("error", () => {}).on("close", () => inside.delete(end)));
+    near.pipe(far).pipe(near);
+  });
+  await new Promise((resolve) => door.listen(0, "127.0.0.1", resolve));
+  const shut = () => inside.forEach((end) => end.destroy());
+  return { base: `http://127.0.0.1:${door.address().port}`, shut, close: () => (shut(), door.close()) };
 }

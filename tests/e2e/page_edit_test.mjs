@@ -2,32 +2,14 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 
-import { Bench, difference, figure, missing, openMesh, real, shot, unwrap } from "./page.mjs";
+import { Bench, cap, difference, figure, jobOf, missing, openMesh, real, shot, submitted, unwrap } from "./page.mjs";
 
 const bench = new Bench();
-
-/** A part of a sphere above a square of n by n quads: one disk. */
-function cap(n = 12) {
-  const lines = [];
-  for (let y = 0; y <= n; y += 1)
-    for (let x = 0; x <= n; x += 1) {
-      const [a, b] = [(2 * x) / n - 1, (2 * y) / n - 1];
-      lines.push(`v ${a} ${b} ${1 - 0.6 * (a * a + b * b)}`);
-    }
-  for (let y = 0; y < n; y += 1)
-    for (let x = 0; x < n; x += 1) {
-      const v = y * (n + 1) + x + 1;
-      lines.push(`f ${v} ${v + 1} ${v + n + 2} ${v + n + 1}`);
-    }
-  return `${lines.join("\n")}\n`;
-}
 
 describe("by hand", { skip: missing }, () => {
   before(() => bench.open());
   after(() => bench.close());
 
-  const submission = (page) => page.waitForRequest((one) => /\/v1\/meshes\/[0-9a-f]+\/jobs$/.test(one.url()));
-  const jobOf = (page) => new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
   const resultOf = async (page) => (await fetch(`${bench.server.base}/v1/jobs/${jobOf(page)}/result.json`)).json();
 
   /** Clicks a share of a canvas's width and height. */
@@ -49,8 +31,7 @@ describe("by hand", { skip: missing }, () => {
     await page.mouse.move(5, 5);
     assert.ok(await difference(page, await shot(page, "#solid"), bare) > 0.0003, "the marks are seen");
     const edges = Number((await page.locator("#seam-count").innerText()).match(/^\d+/)[0]);
-    const [request] = await Promise.all([submission(page), page.click("#send")]);
-    const { seam_edges: sent } = request.postDataJSON();
+    const { seam_edges: sent } = await submitted(page, () => page.click("#send"));
     assert.equal(sent.reduce((sum, { vertices }) => sum + vertices.length - 1, 0), edges);
     await page.waitForFunction(() => !document.querySelector("#send").disabled);
     const { meshes: [{ vertex_map: map, positions }] } = await resultOf(page);
@@ -85,8 +66,7 @@ describe("by hand", { skip: missing }, () => {
     for (let turns = 0; turns < 3; turns += 1) await page.keyboard.press("ArrowRight");
     await page.keyboard.press("Enter");
     await page.locator("#seam-count", { hasText: "marked in 1 path" }).waitFor();
-    const [request] = await Promise.all([submission(page), page.click("#send")]);
-    const { vertices } = request.postDataJSON().seam_edges[0];
+    const { vertices } = (await submitted(page, () => page.click("#send"))).seam_edges[0];
     // From (0.45, 0.35, 1) towards (0, 0, 0.4) the eye meets the cap at (0.24, 0.19): next to (0.2, 0.2).
     assert.equal(vertices[0], 6 * 11 + 6);
     const places = vertices.map((v) => [v % 11, Math.floor(v / 11)]);
@@ -114,8 +94,7 @@ describe("by hand", { skip: missing }, () => {
     await page.mouse.move(...at(u, v));
     await page.mouse.down();
     await page.mouse.move(...at(u + 0.1, v + 0.1), { steps: 4 });
-    const [request] = await Promise.all([submission(page), page.mouse.up()]);
-    const { constraints } = request.postDataJSON();
+    const { constraints } = await submitted(page, () => page.mouse.up());
     assert.ok(Math.abs(constraints[1].uv[0] - u - 0.1) < 0.02 && Math.abs(constraints[1].uv[1] - v - 0.1) < 0.02, JSON.stringify(constraints));
     await page.locator("#live", { hasText: "Pins: angles" }).waitFor();
     const { meshes: [{ uv, vertex_map: map }] } = await resultOf(page);
@@ -127,8 +106,8 @@ describe("by hand", { skip: missing }, () => {
 
   test("a pin is moved by numbers, and one that cannot hold is explained", async (t) => {
     const page = await visitWithTwoPins(t);
-    const [request] = await Promise.all([submission(page), page.fill("#pin-0-U", "0.1").then(() => page.keyboard.press("Tab"))]);
-    assert.equal(request.postDataJSON().constraints[0].uv[0], 0.1);
+    const options = await submitted(page, () => page.fill("#pin-0-U", "0.1").then(() => page.keyboard.press("Tab")));
+    assert.equal(options.constraints[0].uv[0], 0.1);
     await page.locator("#live", { hasText: "Pins: angles" }).waitFor();
     for (const field of ["#pin-0-U", "#pin-0-V", "#pin-1-U", "#pin-1-V"]) await page.fill(field, "0.5");
     await page.keyboard.press("Tab");
@@ -176,7 +155,7 @@ describe("by hand", { skip: missing }, () => {
     await clickAt(page, "#solid", 0.6, 0.5);
     await openMesh(page, bench.file("next.obj", cap(6)));
     assert.equal(await page.locator("#edit").isVisible(), false);
-    const [request] = await Promise.all([submission(page), page.click("#send")]);
-    assert.equal(request.postDataJSON().seam_edges, undefined);
+    const options = await submitted(page, () => page.click("#send"));
+    assert.equal(options.seam_edges, undefined);
   });
 });

@@ -1,44 +1,13 @@
 // Jobs from the page: options, progress, ends of every kind, keys, and addresses that lead back.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import net from "node:net";
 import { after, before, describe, test } from "node:test";
 
 import { obj } from "../contract/meshes.mjs";
 import { startServer } from "../contract/server.mjs";
-import { Bench, binary, downloaded, figure, missing, openMesh, unwrap } from "./page.mjs";
+import { Bench, binary, cap, doorTo, downloaded, figure, jobOf, missing, openMesh, submitted, unwrap } from "./page.mjs";
 
 const bench = new Bench();
-
-/** A door before the server that can be shut upon all who have come through it. */
-async function doorTo(base) {
-  const inside = new Set();
-  const door = net.createServer((near) => {
-    const far = net.connect(Number(new URL(base).port), "127.0.0.1");
-    for (const end of [near, far])
-      inside.add(end.on("error", () => {}).on("close", () => inside.delete(end)));
-    near.pipe(far).pipe(near);
-  });
-  await new Promise((resolve) => door.listen(0, "127.0.0.1", resolve));
-  const shut = () => inside.forEach((end) => end.destroy());
-  return { base: `http://127.0.0.1:${door.address().port}`, shut, close: () => (shut(), door.close()) };
-}
-
-/** A part of a sphere, on which maps of different lambdas differ. */
-function cap(n = 8) {
-  const lines = [];
-  for (let y = 0; y <= n; y += 1)
-    for (let x = 0; x <= n; x += 1) {
-      const [a, b] = [(2 * x) / n - 1, (2 * y) / n - 1];
-      lines.push(`v ${a} ${b} ${1.5 - a * a - b * b}`);
-    }
-  for (let y = 0; y < n; y += 1)
-    for (let x = 0; x < n; x += 1) {
-      const v = y * (n + 1) + x + 1;
-      lines.push(`f ${v} ${v + 1} ${v + n + 2} ${v + n + 1}`);
-    }
-  return `${lines.join("\n")}\n`;
-}
 
 /** Opens a mesh whose job takes long, and waits until it iterates. */
 async function unwrapForLong(page, side) {
@@ -53,11 +22,6 @@ async function unwrapForLong(page, side) {
 describe("a job of the page", { skip: missing }, () => {
   before(() => bench.open());
   after(() => bench.close());
-
-  const sent = async (page, press) => {
-    const [request] = await Promise.all([page.waitForRequest((one) => /\/v1\/meshes\/[0-9a-f]+\/jobs$/.test(one.url())), press()]);
-    return request.postDataJSON();
-  };
 
   test("takes an OBJ to its texture coordinates", async (t) => {
     const page = await bench.visit(t);
@@ -90,7 +54,7 @@ describe("a job of the page", { skip: missing }, () => {
     await page.fill("[name='stop.iterations']", "3");
     await page.check("[name=vertex_map]");
     await openMesh(page, bench.file("few.obj", obj(3)));
-    assert.deepEqual(await sent(page, () => page.click("#send")), { stop: { iterations: 3 }, vertex_map: true });
+    assert.deepEqual(await submitted(page, () => page.click("#send")), { stop: { iterations: 3 }, vertex_map: true });
     await page.locator("#result").waitFor();
     const report = JSON.parse((await downloaded(page, "#downloads :text('Report')"))[1]);
     assert.equal(report.charts[0].iterations, 3);
@@ -102,7 +66,7 @@ describe("a job of the page", { skip: missing }, () => {
     assert.equal(await page.inputValue("[name=padding]"), "4");
     await page.fill("[name=resolution]", "512");
     await openMesh(page, bench.file("few.obj", obj(3)));
-    assert.deepEqual(await sent(page, () => page.click("#send")), { preset: "lightmap", resolution: 512 });
+    assert.deepEqual(await submitted(page, () => page.click("#send")), { preset: "lightmap", resolution: 512 });
   });
 
   test("of several lambdas keeps the comma, and shows one map for each", async (t) => {
@@ -110,12 +74,12 @@ describe("a job of the page", { skip: missing }, () => {
     await page.selectOption("[name=method]", "hybrid");
     await page.fill("#lambda", "1,0.1");
     await openMesh(page, bench.file("cap.obj", cap()));
-    assert.deepEqual((await sent(page, () => page.click("#send"))).lambda, [1, 0.1]);
+    assert.deepEqual((await submitted(page, () => page.click("#send"))).lambda, [1, 0.1]);
     await page.locator("#result").waitFor();
     assert.deepEqual(await page.locator("#lambda-shown option").allInnerTexts(), ["1", "0.1"]);
     await page.selectOption("#lambda-shown", "0.1");
     await page.waitForFunction(() => !document.querySelector("#send").disabled);
-    const id = new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
+    const id = jobOf(page);
     const { distortion } = await (await fetch(`${bench.server.base}/v1/jobs/${id}/report?lambda=0.1`)).json();
     assert.equal(await figure(page, "Angles"), distortion.angle.toFixed(4));
     const [, json] = await downloaded(page, "#downloads :text('Report')");
@@ -161,7 +125,7 @@ describe("a job of the page", { skip: missing }, () => {
   test("tells how much of the mesh is sent, and cancelled then leaves the job before alone", async (t) => {
     const page = await bench.visit(t);
     await unwrap(page, bench.file("grid.obj", obj(4)));
-    const first = new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
+    const first = jobOf(page);
     const cdp = await page.context().newCDPSession(page);
     await openMesh(page, bench.file("large.obj", obj(150)));
     await cdp.send("Network.emulateNetworkConditions", { offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: 100_000 });
@@ -194,7 +158,7 @@ describe("a job of the page", { skip: missing }, () => {
   test("is there again after a reload, while it runs and when it is done", async (t) => {
     const page = await bench.visit(t);
     await unwrapForLong(page, 150);
-    const id = new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
+    const id = jobOf(page);
     await page.reload();
     await page.locator("#iteration", { hasText: "Iteration" }).waitFor();
     await page.click("#cancel");
@@ -217,7 +181,7 @@ describe("a job of the page", { skip: missing }, () => {
   test("is in the list, which leads to it", async (t) => {
     const page = await bench.visit(t);
     await unwrap(page, bench.file("listed.obj", obj(5)));
-    const id = new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
+    const id = jobOf(page);
     await page.goto(`${bench.server.base}/`);
     await page.locator("#option-method").waitFor();
     await page.click("#jobs summary");

@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { after, before, describe, test } from "node:test";
 
 import { obj } from "../contract/meshes.mjs";
-import { Bench, difference, downloaded, missing, openMesh, real, seen, shot, unwrap } from "./page.mjs";
+import { Bench, difference, downloaded, jobOf, missing, openMesh, real, seen, shot, unwrap } from "./page.mjs";
 
 const bench = new Bench();
 
@@ -23,7 +23,6 @@ describe("the views of the page", { skip: missing }, () => {
 
   const changed = async (page, canvas, old) => (await difference(page, await shot(page, canvas), old)) > 0.0005;
   const like = async (page, canvas, old) => (await difference(page, await shot(page, canvas), old, 32)) < 0.02;
-  const jobOf = (page) => new URLSearchParams(new URL(page.url()).hash.slice(1)).get("job");
 
   test("show a real mesh and its charts in every colouring", { skip: !real("closed/spot_control_mesh.obj") && "the test data is missing" }, async (t) => {
     const page = await bench.visit(t);
@@ -62,12 +61,8 @@ describe("the views of the page", { skip: missing }, () => {
     });
     await (await choosing).setFiles(bench.file("red.png", Buffer.from(png, "base64")));
     const isRed = async () => page.evaluate(async (bytes) => {
-      const image = new Image();
-      image.src = `data:image/png;base64,${bytes}`;
-      await image.decode();
-      const pen = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
-      pen.drawImage(image, 0, 0);
-      const [r, g, b] = pen.getImageData(image.width / 2, image.height / 2, 1, 1).data;
+      const { data, width, height } = await pixelsOf(bytes);
+      const [r, g, b] = data.subarray(4 * ((height >> 1) * width + (width >> 1)));
       return r > 150 && g < 60 && b < 60;
     }, await shot(page, "#flat"));
     for (let tries = 0; tries < 50 && !(await isRed()); tries += 1);
