@@ -190,6 +190,43 @@ describe("a job of the page", { skip: missing }, () => {
     assert.ok(page.url().includes(id));
   });
 
+  test("of another mesh takes the place of the mesh that is open", async (t) => {
+    const page = await bench.visit(t);
+    await page.selectOption("[name=method]", "hybrid");
+    await page.fill("#lambda", "1, 0.1");
+    await unwrap(page, bench.file("first.obj", cap()));
+    const first = jobOf(page);
+    assert.equal(await page.locator("#lambda-row").isVisible(), true);
+    await page.fill("#lambda", "0.1");
+    await unwrap(page, bench.file("second.obj", obj(5)));
+    assert.equal(await page.locator("#lambda-row").isVisible(), false, "one lambda needs no choice");
+    await page.evaluate((job) => { location.hash = `#job=${job}&name=first.obj`; }, first);
+    await page.locator("#lambda-row").waitFor();
+    await page.locator("#result").waitFor();
+    assert.equal(await page.locator("#opened").isVisible(), false, "the mesh of before is not open any more");
+    assert.equal(await page.locator("#edit").isVisible(), false, "nor can it be edited");
+    assert.equal(await page.locator("#versions").isVisible(), false);
+    await page.click("#send");
+    await page.locator("#problem", { hasText: "There is no mesh yet" }).waitFor();
+    assert.ok(page.url().includes(first));
+  });
+
+  test("that runs is left alone when another mesh is opened", async (t) => {
+    const page = await bench.visit(t);
+    await unwrapForLong(page, 150);
+    const job = jobOf(page);
+    await openMesh(page, bench.file("next.obj", obj(3)));
+    assert.equal(await page.locator("#send").isEnabled(), true);
+    assert.equal(await page.locator("#cancel").isVisible(), false);
+    assert.equal(await page.locator("#problem").isVisible(), false);
+    assert.equal((await (await fetch(`${bench.server.base}/v1/jobs/${job}`)).json()).state, "running");
+    await fetch(`${bench.server.base}/v1/jobs/${job}`, { method: "DELETE" });
+    await page.fill("[name='stop.iterations']", "");
+    await unwrap(page);
+    assert.equal(await page.locator("#problem").isVisible(), false);
+    assert.equal(await page.locator("#mesh-name").innerText(), "next.obj");
+  });
+
   test("works where the browser calls the address insecure", async (t) => {
     const far = await startServer(binary, ["--allowed-hosts", "unwrapd.test"]);
     t.after(far.stop);

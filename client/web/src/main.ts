@@ -24,10 +24,8 @@ interface Limits {
 async function start(): Promise<void> {
   const viewing = new Viewing(showProblem);
   const session = new Session(viewing);
-  let forget = () => {};
   connectOpening((opened) => {
     session.open(opened);
-    forget();
     showMesh(opened, viewing).catch(showProblem);
   }, showProblem);
   $('key').addEventListener('input', () => setKey($<HTMLInputElement>('key').value));
@@ -49,7 +47,7 @@ async function start(): Promise<void> {
     }
   };
   connectBalance((lambda, isDraft) => again(`λ ${lambda}`, isDraft));
-  forget = () => editing.reset();
+  session.onClose = () => editing.reset();
   editing.onPins = () => again('Pins', false);
   const run = () => {
     try {

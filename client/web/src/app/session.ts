@@ -21,6 +21,8 @@ export class Session {
   kept: Kept | undefined;
   /** A result is shown. */
   onResult?: () => void;
+  /** What was open is so no more: nothing that was made of it counts. */
+  onClose?: () => void;
   readonly #viewing: Viewing;
   readonly #progress = new ProgressView();
   #running: AbortController | undefined;
@@ -33,7 +35,8 @@ export class Session {
     $('key').addEventListener('keydown', ({key}) => key === 'Enter' && void this.#guarded(this.#last));
     $('lambda-shown').addEventListener('change', () => {
       const {job} = this;
-      if (job) void this.#guarded(() => this.#show(job, Number($<HTMLSelectElement>('lambda-shown').value), this.kept?.name ?? job.id));
+      const lambda = Number($<HTMLSelectElement>('lambda-shown').value);
+      if (job) void this.#guarded((signal) => this.#show(job, lambda, this.kept?.name ?? job.id, signal));
     });
   }
 
@@ -42,13 +45,29 @@ export class Session {
   }
 
   open(opened: Opened): void {
+    this.#close();
     this.opened = opened;
     this.sent = new SentMesh(opened.blob, opened.mediaType);
-    this.job = this.loaded = this.kept = undefined;
     clearProblem();
-    show($('result'), false);
     show($('job'), false);
     history.replaceState(null, '', location.pathname + location.search);
+  }
+
+  /** What is open is left. A job of it that runs goes on at the server. */
+  #close(): void {
+    this.#abort();
+    this.#running = undefined;
+    this.#setBusy(false);
+    this.opened = this.sent = this.loaded = this.kept = undefined;
+    this.#leaveJob();
+    this.#viewing.close();
+    this.onClose?.();
+  }
+
+  #leaveJob(): void {
+    this.job = undefined;
+    show($('result'), false);
+    show($('lambda-row'), false);
   }
 
   /** Unwraps what is open. */
@@ -56,8 +75,7 @@ export class Session {
     const {sent, opened} = this;
     if (!sent || !opened) return showMessage('There is no mesh yet', 'Open a mesh first, or drop one on this page.');
     await this.#guarded(async (signal) => {
-      this.job = undefined;
-      show($('result'), false);
+      this.#leaveJob();
       this.#progress.begin('Sending the mesh…');
       present($('job'));
       const job = await sent.submit(options, {onSent: (share) => this.#progress.sent(share), signal});
@@ -65,11 +83,12 @@ export class Session {
     });
   }
 
-  /** Shows a job by its address, whatever its state. */
+  /** Shows a job by its address, whatever its state. It may be of another mesh than the one that is open. */
   async openJob(id: string, name: string): Promise<void> {
+    this.#close();
+    show($('opened'), false);
     await this.#guarded(async (signal) => {
-      this.job = undefined;
-      show($('result'), false);
+      this.#leaveJob();
       this.#progress.begin('Asking for the job…');
       present($('job'));
       await this.#follow(await getJson<Job>(`/v1/jobs/${id}`, signal), name, signal);
@@ -87,12 +106,13 @@ export class Session {
     const lambdas = [end.options.lambda].flat().filter((lambda) => lambda !== null);
     $('lambda-shown').replaceChildren(...(lambdas.length > 1 ? lambdas : []).map((lambda) => new Option(String(lambda), String(lambda))));
     show($('lambda-row'), lambdas.length > 1);
-    await this.#show(end, lambdas.length > 1 ? lambdas[0] : undefined, name);
+    await this.#show(end, lambdas.length > 1 ? lambdas[0] : undefined, name, signal);
     present($('result'));
   }
 
-  async #show(job: Job, lambda: number | undefined, name: string): Promise<void> {
-    const loaded = await loadResult(job, lambda, this.opened?.model);
+  async #show(job: Job, lambda: number | undefined, name: string, signal: AbortSignal): Promise<void> {
+    const loaded = await loadResult(job, lambda, this.opened?.model, signal);
+    signal.throwIfAborted();
     this.take(job, loaded, lambda, name);
     this.#progress.end(`Done: ${count(loaded.report.charts.length, 'chart')}.`);
   }
@@ -102,6 +122,7 @@ export class Session {
     const {report, model} = loaded;
     if (kind !== 'draft') this.job = job;
     if (kind === 'live') history.replaceState(null, '', hashOf({job: job.id, name}));
+    if (kind !== 'whole') show($('lambda-row'), false);
     this.loaded = loaded;
     const {width, height} = sizeOf(report);
     const what = this.#viewing.result(model, width / height, report.pages);
@@ -118,8 +139,17 @@ export class Session {
 
   async #cancel(): Promise<void> {
     const {job} = this;
-    if (!job || hasEnded(job)) return this.#running?.abort(new DOMException('', 'AbortError'));
+    if (!job || hasEnded(job)) return this.#abort();
     await cancel(job).catch(showProblem);
+  }
+
+  #abort(): void {
+    this.#running?.abort(new DOMException('', 'AbortError'));
+  }
+
+  #setBusy(isBusy: boolean): void {
+    $<HTMLButtonElement>('send').disabled = isBusy;
+    show($('cancel'), isBusy);
   }
 
   #tellCancelled(): void {
@@ -129,21 +159,17 @@ export class Session {
 
   /** Runs one thing at a time, with the buttons and messages that belong to it. */
   async #guarded(action: (signal: AbortSignal) => Promise<void>): Promise<void> {
-    this.#running?.abort(new DOMException('', 'AbortError'));
+    this.#abort();
     this.#last = action;
     const running = (this.#running = new AbortController());
     clearProblem();
-    $<HTMLButtonElement>('send').disabled = true;
-    show($('cancel'), true);
+    this.#setBusy(true);
     try {
       await action(running.signal);
     } catch (error) {
       if (running === this.#running) this.#fail(error, running.signal);
     } finally {
-      if (running === this.#running) {
-        $<HTMLButtonElement>('send').disabled = false;
-        show($('cancel'), false);
-      }
+      if (running === this.#running) this.#setBusy(false);
     }
   }
 

@@ -46,6 +46,12 @@ export class Viewing {
     return this.#charts;
   }
 
+  /** Nothing is shown until there is another mesh. */
+  close(): void {
+    this.#before = this.#after = undefined;
+    show($('views'), false);
+  }
+
   /** A mesh as it came in. */
   open(model: Model): Surface {
     const surface = surfaceOf(model);

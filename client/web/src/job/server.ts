@@ -26,7 +26,7 @@ export function getJson<T>(path: string, signal?: AbortSignal): Promise<T> {
 }
 
 /** Bytes by GET, the same. */
-export function getBlob(path: string, accept?: string): Promise<Blob> {
+export function getBlob(path: string, accept?: string, signal?: AbortSignal): Promise<Blob> {
   const headers = accept ? {Accept: accept} : {};
-  return patiently(connection(), async () => (await request(path, {headers})).blob());
+  return patiently(connection(signal), async () => (await request(path, {headers}, signal)).blob());
 }

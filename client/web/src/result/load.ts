@@ -13,19 +13,19 @@ export interface Loaded {
 export const ofLambda = (lambda: number | undefined) => (lambda === undefined ? '' : `?lambda=${lambda}`);
 
 /** Where meshes stand: as in the file that is open, else as the result's own document says. */
-async function placesIn(job: Job, count: number, open: Model | undefined): Promise<number[][][]> {
+async function placesIn(job: Job, count: number, open: Model | undefined, signal?: AbortSignal): Promise<number[][][]> {
   if (open?.parts.length === count) return open.parts.map(({places}) => places);
   if (count === 1 && open) return [[IDENTITY]];
-  const asset = await getBlob(job.links.result);
+  const asset = await getBlob(job.links.result, undefined, signal);
   if (!/^model\/gltf/.test(asset.type)) return Array.from({length: count}, () => [IDENTITY]);
   const document = documentOf(await asset.arrayBuffer());
   const places = placesOf(document);
   return meshesWithTriangles(document).map((m) => places[m]!);
 }
 
-export async function loadResult(job: Job, lambda: number | undefined, open: Model | undefined): Promise<Loaded> {
-  const {report, meshes} = await getJson<Result>(`${job.links.result}.json${ofLambda(lambda)}`);
-  const places = await placesIn(job, meshes.length, open);
+export async function loadResult(job: Job, lambda: number | undefined, open: Model | undefined, signal?: AbortSignal): Promise<Loaded> {
+  const {report, meshes} = await getJson<Result>(`${job.links.result}.json${ofLambda(lambda)}`, signal);
+  const places = await placesIn(job, meshes.length, open, signal);
   const parts = meshes.map(({name, positions, uv, faces, vertex_map: sources}, m) => {
     const corners = Uint32Array.from(faces);
     return {
