@@ -180,16 +180,23 @@ export function cap(n = 12) {
   return `${lines.join("\n")}\n`;
 }
 
-/** A door before the server that can be shut upon all who have come through it. */
+/** A door before the server that can be shut upon all who have come through it, now or after so many bytes for them. */
 export async function doorTo(base) {
   const inside = new Set();
+  const shut = () => inside.forEach((end) => end.destroy());
+  let left = Infinity;
   const door = net.createServer((near) => {
     const far = net.connect(Number(new URL(base).port), "127.0.0.1");
     for (const end of [near, far])
       inside.add(end.on("error", () => {}).on("close", () => inside.delete(end)));
     near.pipe(far).pipe(near);
+    far.on("data", ({ length }) => {
+      left -= length;
+      if (left < 0) shut();
+      if (left < 0) left = Infinity;
+    });
   });
   await new Promise((resolve) => door.listen(0, "127.0.0.1", resolve));
-  const shut = () => inside.forEach((end) => end.destroy());
-  return { base: `http://127.0.0.1:${door.address().port}`, shut, close: () => (shut(), door.close()) };
+  const breakAfter = (bytes) => { left = bytes; };
+  return { base: `http://127.0.0.1:${door.address().port}`, shut, breakAfter, broken: () => left === Infinity, close: () => (shut(), door.close()) };
 }

@@ -131,9 +131,41 @@ describe("a job of the page", { skip: missing }, () => {
     await cdp.send("Network.emulateNetworkConditions", { offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: 100_000 });
     await page.click("#send");
     await page.locator("#status", { hasText: /Sending the mesh: [1-9]\d? %/ }).waitFor();
-    await page.click("#cancel");
+    await Promise.all([page.waitForEvent("requestfailed", (one) => one.method() === "PUT"), page.click("#cancel")]);
     await page.locator("#problem.calm", { hasText: "Cancelled" }).waitFor();
     assert.equal((await fetch(`${bench.server.base}/v1/jobs/${first}`)).status, 200);
+  });
+
+  test("cancelled before the mesh is sent sends nothing", async (t) => {
+    const page = await bench.visit(t);
+    const uploads = [];
+    page.on("request", (request) => request.method() === "PUT" && uploads.push(request.url()));
+    await page.evaluate(() => {
+      const digest = crypto.subtle.digest.bind(crypto.subtle);
+      crypto.subtle.digest = async (...given) => {
+        await new Promise((go) => { window.go = go; });
+        return digest(...given);
+      };
+    });
+    await openMesh(page, bench.file("grid.obj", obj(4)));
+    await page.click("#send");
+    await page.click("#cancel");
+    await page.evaluate(() => window.go());
+    await page.locator("#problem.calm", { hasText: "Cancelled" }).waitFor();
+    await page.evaluate(() => fetch("healthz"));
+    assert.deepEqual(uploads, []);
+  });
+
+  test("is downloaded again where the connection breaks within", async (t) => {
+    const door = await doorTo(bench.server.base);
+    t.after(door.close);
+    const page = await bench.visit(t, { base: door.base });
+    await unwrap(page, bench.file("grid.obj", obj(60)));
+    door.breakAfter(20_000);
+    const [, bytes] = await downloaded(page, "#downloads .primary");
+    assert.equal(bytes.toString().match(/^vt /gm).length, 61 * 61);
+    assert.equal(door.broken(), true);
+    assert.equal(await page.locator("#problem").isVisible(), false);
   });
 
   test("is read on where its connection was cut", async (t) => {

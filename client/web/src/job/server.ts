@@ -1,5 +1,5 @@
 // Calls to the server that shows this page, by the client's own code.
-import {call, jsonOf, patiently, type Connection} from '../../../js/src/connection.js';
+import {call, jsonOf, patiently, reach, type Connection} from '../../../js/src/connection.js';
 
 let key: string | undefined;
 
@@ -27,6 +27,7 @@ export function getJson<T>(path: string, signal?: AbortSignal): Promise<T> {
 
 /** Bytes by GET, the same. */
 export function getBlob(path: string, accept?: string, signal?: AbortSignal): Promise<Blob> {
+  const here = connection(signal);
   const headers = accept ? {Accept: accept} : {};
-  return patiently(connection(signal), async () => (await request(path, {headers}, signal)).blob());
+  return patiently(here, async () => reach(here, (await request(path, {headers}, signal)).blob()));
 }

@@ -14,9 +14,14 @@ function answerOf(sent: XMLHttpRequest): Response {
 }
 
 /** Stores the mesh under its digest. onSent: the share that has been sent. Throws UnwrapdError. */
-export function upload({blob, mediaType, sha256}: Uploaded, onSent: (share: number) => void, signal: AbortSignal): Promise<void> {
+export async function upload({blob, mediaType, sha256}: Uploaded, onSent: (share: number) => void, signal: AbortSignal): Promise<void> {
+  signal.throwIfAborted(); // since the digest was begun
   return new Promise((resolve, reject) => {
     const sent = new XMLHttpRequest();
+    const stop = () => {
+      sent.abort();
+      reject(signal.reason);
+    };
     sent.open('PUT', `${connection().server}/v1/meshes/${sha256}`);
     for (const [name, value] of Object.entries({'Content-Type': mediaType, ...keyHeader()})) sent.setRequestHeader(name, value);
     sent.upload.onprogress = ({loaded, total}) => onSent(total > 0 ? loaded / total : 0);
@@ -25,10 +30,8 @@ export function upload({blob, mediaType, sha256}: Uploaded, onSent: (share: numb
       if (sent.status < 300) resolve();
       else errorOf(answerOf(sent)).then((error: UnwrapdError) => reject(error), reject);
     };
-    signal.addEventListener('abort', () => {
-      sent.abort();
-      reject(signal.reason);
-    });
+    sent.onloadend = () => signal.removeEventListener('abort', stop);
+    signal.addEventListener('abort', stop);
     sent.send(blob);
   });
 }
