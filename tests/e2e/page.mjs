@@ -101,6 +101,16 @@ export async function unwrap(page, ...files) {
   await page.locator("#result").waitFor();
 }
 
+/** Opens a mesh whose job takes long, and waits until it iterates. */
+export async function unwrapForLong(page, file) {
+  await page.check("#preset-chart");
+  await page.click("#form summary");
+  await page.fill("[name='stop.iterations']", "10000");
+  await openMesh(page, file);
+  await page.click("#send");
+  await page.locator("#iteration", { hasText: "Iteration" }).waitFor();
+}
+
 /** [name, bytes] of what a button gives. */
 export async function downloaded(page, button) {
   const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);

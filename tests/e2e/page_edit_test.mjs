@@ -147,6 +147,28 @@ describe("by hand", { skip: missing }, () => {
     assert.deepEqual(page.complaints, []);
   });
 
+  test("a draft that nobody waits for any more is removed", async (t) => {
+    const page = await bench.visit(t);
+    await page.selectOption("[name=method]", "hybrid");
+    await unwrap(page, bench.file("cap.obj", cap()));
+    let go;
+    const held = new Promise((resolve) => { go = resolve; });
+    const asked = page.waitForRequest("**/result.json");
+    await page.route("**/result.json", async (route) => {
+      await held;
+      await route.continue();
+    });
+    await page.focus("#balance");
+    await page.evaluate(() => document.getElementById("balance").dispatchEvent(new Event("input")));
+    const draft = new URL((await asked).url()).pathname.replace("/result.json", "");
+    await openMesh(page, bench.file("next.obj", cap(6)));
+    const removed = page.waitForRequest((one) => one.method() === "DELETE" && one.url().endsWith(draft));
+    go();
+    await (await removed).response();
+    assert.equal((await fetch(bench.server.base + draft)).status, 404);
+    assert.equal(await page.locator("#live").innerText(), "");
+  });
+
   test("another mesh begins without the edits of the last", async (t) => {
     const page = await bench.visit(t);
     await unwrap(page, bench.file("cap.obj", cap()));

@@ -1,23 +1,11 @@
-// Jobs from the page: options, progress, ends of every kind, keys, and addresses that lead back.
+// Jobs from the page: options, progress, ends of every kind, and addresses that lead back.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
 import { after, before, describe, test } from "node:test";
 
 import { obj } from "../contract/meshes.mjs";
-import { startServer } from "../contract/server.mjs";
-import { Bench, binary, cap, doorTo, downloaded, figure, jobOf, missing, openMesh, submitted, unwrap } from "./page.mjs";
+import { Bench, cap, downloaded, figure, jobOf, missing, openMesh, submitted, unwrap, unwrapForLong } from "./page.mjs";
 
 const bench = new Bench();
-
-/** Opens a mesh whose job takes long, and waits until it iterates. */
-async function unwrapForLong(page, side) {
-  await page.check("#preset-chart");
-  await page.click("#form summary");
-  await page.fill("[name='stop.iterations']", "10000");
-  await openMesh(page, bench.file("large.obj", obj(side)));
-  await page.click("#send");
-  await page.locator("#iteration", { hasText: "Iteration" }).waitFor();
-}
 
 describe("a job of the page", { skip: missing }, () => {
   before(() => bench.open());
@@ -113,7 +101,7 @@ describe("a job of the page", { skip: missing }, () => {
 
   test("that is cancelled ends calmly", async (t) => {
     const page = await bench.visit(t);
-    await unwrapForLong(page, 150);
+    await unwrapForLong(page, bench.file("large.obj", obj(150)));
     assert.match(await page.locator("#energy").getAttribute("d"), /^M/);
     await page.click("#cancel");
     const message = page.locator("#problem.calm", { hasText: "Cancelled" });
@@ -122,74 +110,32 @@ describe("a job of the page", { skip: missing }, () => {
     assert.equal(await page.locator("#send").isEnabled(), true);
   });
 
-  test("tells how much of the mesh is sent, and cancelled then leaves the job before alone", async (t) => {
+  test("draws the curve of its energy once for each picture", async (t) => {
     const page = await bench.visit(t);
-    await unwrap(page, bench.file("grid.obj", obj(4)));
-    const first = jobOf(page);
-    const cdp = await page.context().newCDPSession(page);
-    await openMesh(page, bench.file("large.obj", obj(150)));
-    await cdp.send("Network.emulateNetworkConditions", { offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: 100_000 });
-    await page.click("#send");
-    await page.locator("#status", { hasText: /Sending the mesh: [1-9]\d? %/ }).waitFor();
-    await Promise.all([page.waitForEvent("requestfailed", (one) => one.method() === "PUT"), page.click("#cancel")]);
-    await page.locator("#problem.calm", { hasText: "Cancelled" }).waitFor();
-    assert.equal((await fetch(`${bench.server.base}/v1/jobs/${first}`)).status, 200);
-  });
-
-  test("cancelled before the mesh is sent sends nothing", async (t) => {
-    const page = await bench.visit(t);
-    const uploads = [];
-    page.on("request", (request) => request.method() === "PUT" && uploads.push(request.url()));
+    await page.check("#preset-chart");
+    await page.click("#form summary");
+    await page.fill("[name='stop.iterations']", "3000");
     await page.evaluate(() => {
-      const digest = crypto.subtle.digest.bind(crypto.subtle);
-      crypto.subtle.digest = async (...given) => {
-        await new Promise((go) => { window.go = go; });
-        return digest(...given);
+      window.drawn = new Map();
+      let frame = 0;
+      const next = () => requestAnimationFrame(() => { frame += 1; next(); });
+      next();
+      const energy = document.getElementById("energy");
+      const set = energy.setAttribute.bind(energy);
+      energy.setAttribute = (...given) => {
+        window.drawn.set(frame, (window.drawn.get(frame) ?? 0) + 1);
+        set(...given);
       };
     });
-    await openMesh(page, bench.file("grid.obj", obj(4)));
-    await page.click("#send");
-    await page.click("#cancel");
-    await page.evaluate(() => window.go());
-    await page.locator("#problem.calm", { hasText: "Cancelled" }).waitFor();
-    await page.evaluate(() => fetch("healthz"));
-    assert.deepEqual(uploads, []);
-  });
-
-  test("is downloaded again where the connection breaks within", async (t) => {
-    const door = await doorTo(bench.server.base);
-    t.after(door.close);
-    const page = await bench.visit(t, { base: door.base });
-    await unwrap(page, bench.file("grid.obj", obj(60)));
-    door.breakAfter(20_000);
-    const [, bytes] = await downloaded(page, "#downloads .primary");
-    assert.equal(bytes.toString().match(/^vt /gm).length, 61 * 61);
-    assert.equal(door.broken(), true);
-    assert.equal(await page.locator("#problem").isVisible(), false);
-  });
-
-  test("is read on where its connection was cut", async (t) => {
-    const door = await doorTo(bench.server.base);
-    t.after(door.close);
-    const page = await bench.visit(t, { base: door.base });
-    const asked = [];
-    page.on("request", (request) => {
-      if (request.url().endsWith("/events")) asked.push(request.headers()["last-event-id"]);
-    });
-    await unwrapForLong(page, 200);
-    const again = page.waitForRequest((request) => request.url().endsWith("/events"));
-    const before = await page.locator("#iteration").textContent();
-    door.shut();
-    await again;
-    assert.ok(Number(asked.at(-1)) > 1, `after the event that it had: ${asked}`);
-    await page.waitForFunction((text) => document.querySelector("#iteration").textContent !== text, before);
-    await page.click("#cancel");
-    await page.locator("#cancel").waitFor({ state: "hidden" });
+    await unwrap(page, bench.file("small.obj", obj(4)));
+    const counts = await page.evaluate(() => [...window.drawn.values()]);
+    assert.ok(counts.length > 1, "it is drawn");
+    assert.ok(Math.max(...counts) <= 2, `${Math.max(...counts)} times in one picture`); // 2: a new job clears it
   });
 
   test("is there again after a reload, while it runs and when it is done", async (t) => {
     const page = await bench.visit(t);
-    await unwrapForLong(page, 150);
+    await unwrapForLong(page, bench.file("large.obj", obj(150)));
     const id = jobOf(page);
     await page.reload();
     await page.locator("#iteration", { hasText: "Iteration" }).waitFor();
@@ -245,7 +191,7 @@ describe("a job of the page", { skip: missing }, () => {
 
   test("that runs is left alone when another mesh is opened", async (t) => {
     const page = await bench.visit(t);
-    await unwrapForLong(page, 150);
+    await unwrapForLong(page, bench.file("large.obj", obj(150)));
     const job = jobOf(page);
     await openMesh(page, bench.file("next.obj", obj(3)));
     assert.equal(await page.locator("#send").isEnabled(), true);
@@ -257,44 +203,5 @@ describe("a job of the page", { skip: missing }, () => {
     await unwrap(page);
     assert.equal(await page.locator("#problem").isVisible(), false);
     assert.equal(await page.locator("#mesh-name").innerText(), "next.obj");
-  });
-
-  test("works where the browser calls the address insecure", async (t) => {
-    const far = await startServer(binary, ["--allowed-hosts", "unwrapd.test"]);
-    t.after(far.stop);
-    const page = await bench.visit(t, { base: far.base.replace("127.0.0.1", "unwrapd.test") });
-    assert.equal(await page.evaluate(() => isSecureContext), false);
-    await unwrap(page, bench.file("grid.obj", obj(6)));
-    assert.equal(await figure(page, "Charts"), "1");
-    await page.click("#result summary:has-text('Share')");
-    await page.click("#copy-curl");
-    assert.equal(await page.evaluate(() => document.activeElement.id), "curl", "the text is selected for copying by hand");
-    assert.deepEqual(page.complaints, []);
-  });
-
-  test("asks for the key that the server wants", async (t) => {
-    const locked = await startServer(binary, ["--require-keys"]);
-    t.after(locked.stop);
-    const key = execFileSync(binary, ["keys", "add", "--data", locked.data, "--name", "page"],
-      { stdio: ["ignore", "pipe", "ignore"] }).toString().trim();
-    const page = await bench.visit(t, { base: locked.base });
-    await openMesh(page, bench.file("grid.obj", obj(4)));
-    assert.equal(await page.locator("#key").isVisible(), false);
-    await page.click("#send");
-    await page.locator("#problem", { hasText: "A key is needed" }).waitFor();
-    assert.equal(await page.evaluate(() => document.activeElement.id), "key");
-    await page.keyboard.type(key);
-    await page.click("#retry");
-    await page.locator("#result").waitFor();
-    assert.equal((await downloaded(page, "#downloads .primary"))[0], "grid.uv.obj");
-    await page.click("#jobs summary");
-    await page.locator("#job-list a").waitFor();
-    assert.ok(!page.url().includes(key));
-    await page.reload();
-    await page.locator("#problem", { hasText: "A key is needed" }).waitFor();
-    await page.keyboard.type(key);
-    await page.keyboard.press("Enter");
-    await page.locator("#result").waitFor();
-    assert.equal(await page.evaluate(() => localStorage.length + sessionStorage.length), 0);
   });
 });

@@ -47,7 +47,10 @@ async function start(): Promise<void> {
     }
   };
   connectBalance((lambda, isDraft) => again(`λ ${lambda}`, isDraft));
-  session.onClose = () => editing.reset();
+  session.onClose = () => {
+    editing.reset();
+    balancing.reset();
+  };
   editing.onPins = () => again('Pins', false);
   const run = () => {
     try {

@@ -3,7 +3,7 @@
 import {$} from '../base/dom.js';
 import {fixed} from '../base/words.js';
 import {Latest} from '../edit/latest.js';
-import {type OptionValues, UnwrapdError, cancel, ended} from '../job/run.js';
+import {type Job, type OptionValues, type SentMesh, UnwrapdError, cancel, ended} from '../job/run.js';
 import {loadResult} from '../result/load.js';
 import type {Session} from './session.js';
 
@@ -37,30 +37,47 @@ export class Balancing {
     return Boolean(this.#session.sent && this.#session.loaded);
   }
 
-  /** A map for these options soon. Drafts are removed from the server once they are shown. */
+  /** A map for these options soon. Drafts are removed from the server once they are shown, or not wanted any more. */
   ask(options: OptionValues, label: string, isDraft: boolean): void {
     if (!this.isPossible) return;
     this.#latest.ask({options: isDraft ? {...options, ...DRAFT} : options, label, isDraft, since: performance.now()});
   }
 
-  async #solve({options, label, isDraft, since}: Wanted): Promise<void> {
-    const {sent, opened} = this.#session;
-    const line = $('live');
-    if (!sent || !opened) return;
+  /** Another mesh: what was asked for of the last is not wanted any more. */
+  reset(): void {
+    this.#latest.drop();
+    $('live').textContent = '';
+  }
+
+  async #solve(wanted: Wanted): Promise<void> {
+    const {sent} = this.#session;
+    if (!sent) return;
     try {
       const watcher = {signal: new AbortController().signal, wait: 10};
-      const job = await ended(await sent.submit(options, watcher), watcher);
-      if (job.problem) throw new UnwrapdError(job.problem);
-      const loaded = await loadResult(job, undefined, opened.model);
-      if (sent !== this.#session.sent || this.#session.isBusy) return; // something else was begun
-      this.#session.take(job, loaded, undefined, opened.name, isDraft ? 'draft' : 'live');
-      const {angle, area} = loaded.report.distortion;
-      await drawn();
-      line.dataset['ms'] = String(Math.round(performance.now() - since));
-      line.textContent = `${label}: angles ${fixed(angle, 3)}, areas ${fixed(area, 3)}${isDraft ? ' (draft)' : ''}.`;
-      if (isDraft) await cancel(job).catch(() => {});
+      const job = await sent.submit(wanted.options, watcher);
+      try {
+        await this.#show(await ended(job, watcher), wanted, sent);
+      } finally {
+        if (wanted.isDraft) await cancel(job).catch(() => {});
+      }
     } catch (error) {
-      line.textContent = error instanceof UnwrapdError ? `${label}: ${error.detail}` : `${label}: ${String(error)}`;
+      if (sent === this.#session.sent) $('live').textContent = `${wanted.label}: ${error instanceof UnwrapdError ? error.detail : String(error)}`;
     }
+  }
+
+  async #show(job: Job, {label, isDraft, since}: Wanted, sent: SentMesh): Promise<void> {
+    const {opened} = this.#session;
+    const isWanted = () => sent === this.#session.sent && !this.#session.isBusy; // nothing else was begun
+    if (job.problem) throw new UnwrapdError(job.problem);
+    if (!isWanted()) return;
+    const loaded = await loadResult(job, undefined, opened!.model);
+    if (!isWanted()) return;
+    this.#session.take(job, loaded, undefined, opened!.name, isDraft ? 'draft' : 'live');
+    const {angle, area} = loaded.report.distortion;
+    await drawn();
+    if (!isWanted()) return;
+    const line = $('live');
+    line.dataset['ms'] = String(Math.round(performance.now() - since));
+    line.textContent = `${label}: angles ${fixed(angle, 3)}, areas ${fixed(area, 3)}${isDraft ? ' (draft)' : ''}.`;
   }
 }

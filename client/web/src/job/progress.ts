@@ -1,5 +1,5 @@
 // A job under way, as it is told by its events: stage, chart, iteration, and the curve of its energy.
-import {$, announce} from '../base/dom.js';
+import {$, announce, oncePerFrame} from '../base/dom.js';
 import {count, fixed, integer} from '../base/words.js';
 import type {JobEvent, Progress} from './run.js';
 
@@ -13,6 +13,7 @@ type Point = {chart: number; i: number; energy: number};
 export class ProgressView {
   #curve: Point[] = [];
   #stage = '';
+  readonly #drawSoon = oncePerFrame(() => this.#draw());
 
   /** A new job: nothing of the one before stays. */
   begin(text: string): void {
@@ -54,7 +55,7 @@ export class ProgressView {
       const {i, energy, angle, area, flipped, chart} = data;
       $('iteration').textContent = `Iteration ${i}: energy ${fixed(energy, 6)}, angles ${fixed(angle, 4)}, areas ${fixed(area, 4)}, ${integer(flipped)} flipped`;
       this.#curve.push({chart, i, energy});
-      this.#draw();
+      this.#drawSoon();
     }
   }
 
