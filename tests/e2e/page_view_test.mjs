@@ -71,6 +71,38 @@ describe("the views of the page", { skip: missing }, () => {
     await page.locator("#problem", { hasText: "not an image" }).waitFor();
   });
 
+  test("free what they have drawn: textures and buffers do not grow", async (t) => {
+    const page = await bench.visit(t);
+    await page.evaluate(() => {
+      window.alive = 0;
+      for (const kind of ["Texture", "Buffer"]) {
+        const gl = WebGL2RenderingContext.prototype;
+        const [make, free] = [gl[`create${kind}`], gl[`delete${kind}`]];
+        gl[`create${kind}`] = function count() { window.alive += 1; return make.call(this); };
+        gl[`delete${kind}`] = function count(it) { window.alive -= 1; return free.call(this, it); };
+      }
+    });
+    const image = bench.file("image.png", await page.locator("header").screenshot());
+    page.on("filechooser", () => {}); // the image is given to its input below
+    await unwrap(page, bench.file("cube.obj", cube()));
+    const round = async () => {
+      for (const colouring of ["plain", "image", "charts", "image", "checker"]) {
+        await page.selectOption("#colouring", colouring);
+        if (colouring === "image") await page.setInputFiles("#image", image);
+        await shot(page, "#flat");
+      }
+      await page.focus("#flat");
+      await page.keyboard.press("Enter");
+      await page.keyboard.press("Escape");
+      await shot(page, "#flat");
+      return page.evaluate(() => window.alive);
+    };
+    await round();
+    const once = await round();
+    for (let rounds = 0; rounds < 4; rounds += 1) await round();
+    assert.equal(await round(), once);
+  });
+
   test("are linked both ways by a click, and let go by Escape", async (t) => {
     const page = await bench.visit(t);
     await unwrap(page, bench.file("cube.obj", cube()));

@@ -101,7 +101,7 @@ export class Viewing {
 
   async #useImage(): Promise<void> {
     const file = $<HTMLInputElement>('image').files?.[0];
-    if (file) this.viewer.colour('image', await imageTexture(file));
+    if (file) this.viewer.showImage(await imageTexture(file));
   }
 
   #legend(): void {

@@ -57,7 +57,9 @@ export abstract class Stage {
   }
 
   setColours(colours: Float32Array, map: Texture | null): void {
-    this.#mesh.geometry.setAttribute('color', new BufferAttribute(colours, 3));
+    const attribute = this.#mesh.geometry.getAttribute('color') as BufferAttribute;
+    attribute.copyArray(colours); // in place: the buffer of a replaced attribute is never freed
+    attribute.needsUpdate = true;
     if (Boolean(this.material.map) !== Boolean(map)) this.material.needsUpdate = true;
     this.material.map = map;
     this.draw();

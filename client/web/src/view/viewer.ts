@@ -23,10 +23,11 @@ export class Viewer {
   onPick?: (picked: Picked | undefined) => void;
   /** Takes a click on the mesh for itself. */
   onClick?: (view: 'solid' | 'flat', event: MouseEvent | undefined) => boolean;
-  onColours?: () => void;
   readonly #checker: Texture = checkerboard();
   readonly #checkerFlat: Texture = checkerboard();
+  /** An image of the person's own, for each view: a texture belongs to one. */
   #image: Texture | undefined;
+  #imageFlat: Texture | undefined;
   #what: Shown | undefined;
   #colouring: Colouring = 'checker';
   #selected: Picked | undefined;
@@ -57,16 +58,25 @@ export class Viewer {
     this.colour(this.#colouring);
   }
 
-  colour(colouring: Colouring, image = this.#image): void {
+  colour(colouring: Colouring): void {
     this.#colouring = colouring;
-    this.#image = image;
     if (!this.#what) return;
     const colours = paint(colouring, this.#what);
-    const hasMap = Boolean(this.#what.map);
-    const texture = colouring === 'checker' ? this.#checker : colouring === 'image' ? (image ?? null) : null;
-    this.solid.setColours(colours, hasMap ? texture : null);
-    this.flat.setColours(colours, hasMap ? (colouring === 'checker' ? this.#checkerFlat : texture?.clone() ?? null) : null);
-    this.onColours?.();
+    const [solid, layout] = this.#what.map ? this.#textures() : [];
+    this.solid.setColours(colours, solid ?? null);
+    this.flat.setColours(this.#what.map ? colours : new Float32Array(), layout ?? null);
+  }
+
+  #textures(): (Texture | undefined)[] {
+    if (this.#colouring === 'checker') return [this.#checker, this.#checkerFlat];
+    return this.#colouring === 'image' ? [this.#image, this.#imageFlat] : [];
+  }
+
+  showImage(image: Texture): void {
+    const old = [this.#image, this.#imageFlat];
+    [this.#image, this.#imageFlat] = [image, image.clone()];
+    this.colour('image');
+    for (const texture of old) texture?.dispose();
   }
 
   setTheme(theme: Theme): void {
@@ -89,10 +99,6 @@ export class Viewer {
   selectIsland(island: number): void {
     const face = this.#what?.map?.island.indexOf(island) ?? -1;
     if (face >= 0) this.select({face, island});
-  }
-
-  get selected(): Picked | undefined {
-    return this.#selected;
   }
 
   #pickedAt(face: number): Picked | undefined {
