@@ -88,6 +88,17 @@ describe("the page is for everybody", { skip: missing || (!existsSync(axe) && "a
     assert.equal(download.suggestedFilename(), "grid.uv.obj");
   });
 
+  test("with the licences of the packages in it", async (t) => {
+    const page = await bench.visit(t);
+    const scripts = [];
+    page.on("response", (answer) => /\.js$/.test(answer.url()) && scripts.push(answer.text()));
+    await page.reload();
+    await page.locator("#option-method").waitFor();
+    const texts = (await Promise.all(scripts)).filter((text) => text.includes("WebGLRenderer"));
+    assert.ok(texts.length > 0);
+    for (const text of texts) assert.ok(/three 0\.[^]*Copyright © 2010-\d+ three\.js authors[^]*Permission is hereby granted/.test(text));
+  });
+
   test("within 300 kB for the first paint, without a word to elsewhere", async (t) => {
     const page = await bench.visit(t);
     const cdp = await page.context().newCDPSession(page);
