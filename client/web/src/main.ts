@@ -8,6 +8,7 @@ import {Session} from './app/session.js';
 import {Viewing} from './app/viewing.js';
 import {$} from './base/dom.js';
 import {placeOf} from './base/permalink.js';
+import {withoutExtension} from './base/words.js';
 import {listJobs} from './job/list.js';
 import {connection, getJson, setKey} from './job/server.js';
 import {connectBalance} from './options/balance.js';
@@ -81,7 +82,7 @@ async function start(): Promise<void> {
 
 function commandOf({opened, kept}: Session, options: object, {max_sync_faces: most}: Limits): string {
   const isArchive = opened!.mediaType === 'application/zip';
-  const base = opened!.name.replace(/\.[^.]*$/s, '');
+  const base = withoutExtension(opened!.name);
   return curlOf({
     server: connection().server!, options, file: isArchive ? `${base}.zip` : opened!.name, mediaType: opened!.mediaType,
     result: `${base}.uv.${formatOf(opened!.name, kept!.report.options.output) ?? 'glb'}`, isSmall: kept!.report.input.faces <= most,

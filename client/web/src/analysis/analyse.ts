@@ -2,7 +2,7 @@
 // analysis, which repairs, counts.
 import {mapped, uvOf} from '../mesh/islands.js';
 import type {Model} from '../mesh/model.js';
-import {type Surface, joined} from '../mesh/surface.js';
+import {type Surface, joined, next} from '../mesh/surface.js';
 import {Groups} from '../mesh/table.js';
 
 export interface Analysis {
@@ -20,8 +20,6 @@ export interface Analysis {
   degenerate: number;
   uvSets: {name: string; islands: number}[];
 }
-
-const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
 
 function boundariesOf({twins, points, pointCount}: Surface): number {
   const ends = new Groups(pointCount);

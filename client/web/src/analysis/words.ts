@@ -23,7 +23,7 @@ export function sentences(analysis: Analysis): string[] {
   const size = `${count(faces, 'triangle')} and ${count(vertices, 'vertex', 'vertices')}${meshes > 1 ? ` in ${count(meshes, 'mesh', 'meshes')}` : ''}.`;
   return [
     size, shape(analysis), uvSentence(analysis),
-    branching > 0 ? `${count(branching, 'half-edge')} at edges with three faces or more: the surface is split there.` : '',
-    degenerate > 0 ? `${count(degenerate, 'triangle')} without area: they get no area on the page.` : '',
+    branching > 0 ? `${count(branching, 'half-edge')} at edges with three or more faces. The surface is split there.` : '',
+    degenerate > 0 ? `${count(degenerate, 'triangle')} without area. They get none on the page.` : '',
   ].filter(Boolean);
 }

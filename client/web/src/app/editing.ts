@@ -36,7 +36,7 @@ export class Editing {
       action();
       this.#draw();
     });
-    onClick('seam-ring', () => this.#marks?.ring() || announce('Mark an edge first: click two points.'));
+    onClick('seam-ring', () => this.#marks?.ring() || announce('Mark an edge first. Click two points.'));
     onClick('seam-lift', () => this.#marks?.lift());
     onClick('seam-undo', () => this.#marks?.undo());
     onClick('seam-clear', () => this.#marks?.clear());
@@ -101,7 +101,7 @@ export class Editing {
     if (!hit || !surface) return;
     this.#marks ??= new SeamMarks(surface);
     const corner = nearestCorner(surface.positions, 3, hit.face, hit.point);
-    if (!this.#marks.add(surface.points[corner]!)) announce('No way along edges leads there: a new path begins.');
+    if (!this.#marks.add(surface.points[corner]!)) announce('No path along edges leads there. A new path begins.');
     this.#draw();
   }
 

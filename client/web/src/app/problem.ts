@@ -6,8 +6,8 @@ import {UnwrapdError} from '../job/run.js';
 /** What to do about errors of the server, where its own words are for programs. */
 const ADVICE: Record<string, string> = {
   unauthorized: 'This server wants an API key. Type it below and try again.',
-  forbidden: 'This key may not do that; ask the operator of the server for another.',
-  not_found: 'There is no such job here: it was removed, or it belongs to another key.',
+  forbidden: 'This key does not permit it. Ask the operator of the server for another one.',
+  not_found: 'There is no such job here. It was removed, or it belongs to another key.',
   result_expired: 'The result is no longer kept. Open the mesh and unwrap it again.',
   unreachable: 'Check your connection, then try again. A job that has begun continues on the server.',
 };

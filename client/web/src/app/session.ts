@@ -9,7 +9,7 @@ import {getJson} from '../job/server.js';
 import {listCharts} from '../result/charts.js';
 import {type Kept, listDownloads} from '../result/downloads.js';
 import {showFigures} from '../result/figures.js';
-import {type Loaded, loadResult, sizeOf} from '../result/load.js';
+import {type Loaded, loadResult} from '../result/load.js';
 import {clearProblem, showMessage, showProblem} from './problem.js';
 import type {Viewing} from './viewing.js';
 
@@ -124,7 +124,7 @@ export class Session {
     if (kind === 'live') history.replaceState(null, '', hashOf({job: job.id, name}));
     if (kind !== 'whole') show($('lambda-row'), false);
     this.loaded = loaded;
-    const {width, height} = sizeOf(report);
+    const {width, height} = report.page;
     const what = this.#viewing.result(model, width / height, report.pages);
     this.kept = {job, report, lambda, what, name};
     showFigures(report);
@@ -132,7 +132,7 @@ export class Session {
       this.#viewing.viewer.selectIsland(island);
       $('views').scrollIntoView({block: 'nearest'});
     });
-    if (kind === 'draft') $('downloads').replaceChildren('A draft is shown; let the slider go for a result.');
+    if (kind === 'draft') $('downloads').replaceChildren('This is a draft. Let the slider go for a result.');
     else listDownloads(this.kept, showProblem);
     this.onResult?.();
   }

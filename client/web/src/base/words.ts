@@ -14,13 +14,16 @@ export function fixed(value: number, digits: number): string {
   return value < Number.MAX_VALUE ? value.toFixed(digits) : 'infinite';
 }
 
-export function bytes(size: number): string {
-  if (size < 1024) return `${size} B`;
-  if (size < 1024 ** 2) return `${(size / 1024).toFixed(0)} KiB`;
-  return `${(size / 1024 ** 2).toFixed(1)} MiB`;
-}
-
 /** "a, b and c". */
 export function list(words: string[]): string {
   return words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words.at(-1)}`;
 }
+
+/** Of a path, the name of its file. */
+export const lastOf = (path: string) => path.replace(/^.*\//s, '');
+
+/** "glb" of "chair.GLB". */
+export const extensionOf = (name: string) => name.replace(/^.*\./s, '').toLowerCase();
+
+/** "chair" of "chair.glb". */
+export const withoutExtension = (name: string) => name.replace(/\.[^.]*$/s, '');

@@ -1,7 +1,6 @@
 // Edges of a surface as a graph: shortest paths between two points, and rings that go straight on.
-import type {Surface} from '../mesh/surface.js';
+import {type Surface, next} from '../mesh/surface.js';
 
-const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
 const STRAIGHT = 0.5; // cosine of the sharpest turn of a ring
 
 /** A heap of points by distance. */

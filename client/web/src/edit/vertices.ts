@@ -1,14 +1,12 @@
 // Vertices as the API names them: a mesh and the index of a vertex in it, as in the input.
 import type {Mapped} from '../mesh/islands.js';
 import type {Model} from '../mesh/model.js';
-import type {Surface} from '../mesh/surface.js';
+import {type Surface, next} from '../mesh/surface.js';
 
 export interface Vertex {
   mesh: number;
   vertex: number;
 }
-
-const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
 
 export function vertexOf(corner: number, {part, faceInPart}: Surface, model: Model): Vertex {
   const face = Math.floor(corner / 3);

@@ -3,13 +3,11 @@
 import {BufferAttribute, type BufferGeometry, type InterleavedBufferAttribute, LoadingManager, type Mesh} from 'three';
 import {GLTFLoader} from 'three/examples/jsm/loaders/GLTFLoader.js';
 
-import {type Model, type Part, uvOfCorners} from '../mesh/model.js';
-import {list} from '../base/words.js';
+import {type Model, type Part, joinedNumbers, uvOfCorners} from '../mesh/model.js';
+import {lastOf, list} from '../base/words.js';
 import {UnreadableError} from './error.js';
 import type {Named} from './pick.js';
 import {type Document, documentOf, meshesWithTriangles, placesOf} from './scene.js';
-
-const last = (path: string) => path.replace(/^.*\//s, '');
 
 /** A document with nothing but geometry; its primitives do not share a material. */
 function geometryOnly(document: Document): Document {
@@ -57,12 +55,6 @@ function uvSetsOf(geometry: BufferGeometry, faces: Uint32Array) {
   });
 }
 
-function joinedNumbers(arrays: Float32Array[]): Float32Array {
-  const all = new Float32Array(arrays.reduce((sum, {length}) => sum + length, 0));
-  arrays.reduce((at, array) => (all.set(array, at), at + array.length), 0);
-  return all;
-}
-
 /** The faces of pieces whose vertices are put after each other. */
 function joinedFaces(pieces: {positions: Float32Array; faces: Uint32Array}[]): Uint32Array {
   const all = new Uint32Array(pieces.reduce((sum, {faces}) => sum + faces.length, 0));
@@ -92,16 +84,16 @@ function partOf(geometries: BufferGeometry[], name: string, places: number[][]):
 function missingFiles(document: Document, names: Set<string>): string[] {
   const buffers = (document['buffers'] ?? []) as {uri?: string}[];
   const uris = buffers.map(({uri}) => uri).filter((uri) => uri !== undefined && !uri.startsWith('data:')) as string[];
-  return uris.map((uri) => last(decodeURIComponent(uri))).filter((name) => !names.has(name));
+  return uris.map((uri) => lastOf(decodeURIComponent(uri))).filter((name) => !names.has(name));
 }
 
 export async function readGltf(bytes: ArrayBuffer, others: Named[]): Promise<Model> {
   const document = geometryOnly(documentOf(bytes));
-  const urls = new Map(others.map(({name, blob}) => [last(name), URL.createObjectURL(blob)]));
+  const urls = new Map(others.map(({name, blob}) => [lastOf(name), URL.createObjectURL(blob)]));
   const absent = missingFiles(document, new Set(urls.keys()));
   if (absent.length > 0) throw new UnreadableError(`This glTF needs ${list(absent)}. Open it together with its parts.`);
   const manager = new LoadingManager();
-  manager.setURLModifier((url) => (/^(data|blob):/.test(url) ? url : urls.get(last(decodeURIComponent(url))) ?? url));
+  manager.setURLModifier((url) => (/^(data|blob):/.test(url) ? url : urls.get(lastOf(decodeURIComponent(url))) ?? url));
   const loader = new GLTFLoader(manager);
   await addDecoders(loader, document);
   try {

@@ -1,5 +1,6 @@
 // Files that people open: one mesh and what belongs to it, as a model to look at and as the bytes to
 // send.
+import {extensionOf, lastOf} from '../base/words.js';
 import type {Model} from '../mesh/model.js';
 import {UnreadableError} from './error.js';
 import {type Named, pickMesh} from './pick.js';
@@ -15,12 +16,10 @@ export interface Opened {
   remarks: string[];
 }
 
-export const MEDIA_TYPES: Record<string, string> = {
+const MEDIA_TYPES: Record<string, string> = {
   glb: 'model/gltf-binary', gltf: 'model/gltf+json', obj: 'model/obj', stl: 'model/stl', ply: 'model/ply', off: 'model/off',
   zip: 'application/zip',
 };
-
-export const extensionOf = (name: string) => name.replace(/^.*\./s, '').toLowerCase();
 
 async function modelOf(mesh: Named, others: Named[]): Promise<Model> {
   const extension = extensionOf(mesh.name);
@@ -49,7 +48,7 @@ function checked(model: Model, name: string): Model {
 async function read(files: Named[], container: Named | undefined): Promise<Opened> {
   const {mesh, others, remarks} = pickMesh(files);
   const model = checked(await modelOf(mesh, others), mesh.name);
-  const name = mesh.name.replace(/^.*\//s, '');
+  const name = lastOf(mesh.name);
   if (container) return {name, model, blob: container.blob, mediaType: MEDIA_TYPES['zip']!, remarks};
   const belongs = ['gltf', 'obj'].includes(extensionOf(name)) ? others : [];
   const ignored = others.filter((file) => !belongs.includes(file)).map((file) => file.name);

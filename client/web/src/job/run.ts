@@ -16,7 +16,6 @@ export type OptionValues = {[name: string]: unknown};
 
 export interface Watcher {
   onSent?: (share: number) => void;
-  onJob?: (job: Job) => void;
   onProgress?: (progress: Progress) => void;
   signal: AbortSignal;
   /** Seconds for which the answer to the submission may wait for the job's end. */

@@ -36,7 +36,7 @@ function block(state: Uint32Array, view: DataView, at: number, w: Uint32Array): 
   [a, b, c, d, e, f, g, h].forEach((value, i) => (state[i] = state[i]! + value));
 }
 
-export function sha256OfBytes(bytes: Uint8Array): Uint8Array {
+function sha256OfBytes(bytes: Uint8Array): Uint8Array {
   const state = fractions(8, 2);
   const view = padded(bytes);
   const w = new Uint32Array(64);

@@ -1,6 +1,6 @@
 // A set of texture coordinates on a surface: its islands, its seams and how it distorts.
-import type {Model} from './model.js';
-import {type Surface, joined} from './surface.js';
+import {type Model, joinedNumbers} from './model.js';
+import {type Surface, joined, next} from './surface.js';
 
 export interface Mapped {
   /** u, v of each corner, six for each face. */
@@ -15,20 +15,12 @@ export interface Mapped {
 /** The UVs of one set, for every face of the surface; undefined if a part lacks the set. */
 export function uvOf(model: Model, set: number): Float32Array | undefined {
   const pieces = model.parts.flatMap((part) => part.places.map(() => part.uvSets[set]?.uv));
-  if (pieces.length === 0 || pieces.some((uv) => !uv)) return undefined;
-  const all = new Float32Array(pieces.reduce((sum, uv) => sum + uv!.length, 0));
-  let at = 0;
-  for (const uv of pieces) {
-    all.set(uv!, at);
-    at += uv!.length;
-  }
-  return all;
+  const known = pieces.filter((uv) => uv !== undefined);
+  return known.length === pieces.length && known.length > 0 ? joinedNumbers(known) : undefined;
 }
 
-const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
-
 /** Whether the faces on both sides have the same UVs at both ends of the edge. */
-export function meets(surface: Surface, uv: Float32Array, h: number, twin: number): boolean {
+function meets(surface: Surface, uv: Float32Array, h: number, twin: number): boolean {
   const same = (a: number, b: number) => uv[2 * a] === uv[2 * b] && uv[2 * a + 1] === uv[2 * b + 1];
   const isAlong = surface.points[h] === surface.points[twin]; // faces wound against each other
   return isAlong ? same(h, twin) && same(next(h), next(twin)) : same(h, next(twin)) && same(next(h), twin);

@@ -26,8 +26,10 @@ export interface Model {
 
 export const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-export function faceCount(model: Model): number {
-  return model.parts.reduce((sum, {faces, places}) => sum + (faces.length / 3) * places.length, 0);
+export function joinedNumbers(arrays: Float32Array[]): Float32Array {
+  const all = new Float32Array(arrays.reduce((sum, {length}) => sum + length, 0));
+  arrays.reduce((at, array) => (all.set(array, at), at + array.length), 0);
+  return all;
 }
 
 /** UVs of vertices as those of corners. */

@@ -16,6 +16,9 @@ export interface Surface {
   faceInPart: Uint32Array;
 }
 
+/** The half-edge after another one in its face; also the corner at its end. */
+export const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
+
 function transformed(part: Part, m: number[], out: Float32Array, at: number): void {
   const {positions: p, faces} = part;
   for (let c = 0; c < faces.length; c += 1) {
@@ -31,7 +34,7 @@ function twinsOf(points: Uint32Array, pointCount: number): Int32Array {
   const twins = new Int32Array(points.length).fill(-1);
   const first = new Int32Array(points.length).fill(-1);
   for (let h = 0; h < points.length; h += 1) {
-    const [a, b] = [points[h]!, points[h % 3 === 2 ? h - 2 : h + 1]!];
+    const [a, b] = [points[h]!, points[next(h)]!];
     const edge = edges.of(Math.min(a, b) * pointCount + Math.max(a, b));
     const other = first[edge]!;
     if (other < 0) first[edge] = h;

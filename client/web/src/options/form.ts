@@ -66,11 +66,6 @@ export class OptionsForm {
     return this.#inputs.get('method')!.value;
   }
 
-  setMethod(method: string): void {
-    this.#inputs.get('method')!.value = method;
-    this.#showWhatCounts();
-  }
-
   #has(name: string): boolean {
     return this.#methods.methods.find((method) => method.name === this.method)!.options.includes(name);
   }

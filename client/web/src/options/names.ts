@@ -1,7 +1,7 @@
 // What people call the options; the API's own name stands beside it. What is not here has the API's
 // name, so that a new option needs no line.
 
-export const NAMES: Record<string, string> = {
+const NAMES: Record<string, string> = {
   method: 'Method', lambda: 'Balance of angles and areas', lambda_units: 'Scale of the balance',
   'stop.iterations': 'Exact number of iterations', 'stop.tolerance': 'Converged below', 'stop.max_iterations': 'Most iterations',
   initial: 'Start from', pins: 'How position is fixed', guarantee: 'Guarantee', repair: 'How flips are repaired',

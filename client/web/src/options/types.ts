@@ -3,4 +3,3 @@ import type {components} from '../../../js/src/contract.js';
 
 export type Methods = components['schemas']['Methods'];
 export type Option = components['schemas']['Option'];
-export type Preset = components['schemas']['PresetDescription'];

@@ -1,9 +1,10 @@
 // Files of a job, as downloads.
 import {$, el, save} from '../base/dom.js';
+import {extensionOf, withoutExtension} from '../base/words.js';
 import type {Job, Report} from '../job/run.js';
 import {getBlob} from '../job/server.js';
 import type {Shown} from '../view/paint.js';
-import {ofLambda, sizeOf} from './load.js';
+import {ofLambda} from './load.js';
 import {templateOf} from './template.js';
 
 interface File {
@@ -19,13 +20,13 @@ export interface Kept {
   report: Report;
   lambda: number | undefined;
   what: Shown;
-  /** Without an ending. */
+  /** Of the mesh's file. */
   name: string;
 }
 
 function filesOf({job, report, lambda, what}: Kept): File[] {
   const {links} = job;
-  const {width, height} = sizeOf(report);
+  const {width, height} = report.page;
   return [
     ...FORMATS.map(([label, ending, type]) => ({label, ending: `uv.${ending}`, get: () => getBlob(links.result + ofLambda(lambda), type)})),
     {label: 'Report (JSON)', ending: 'report.json', get: () => getBlob(links.report + ofLambda(lambda))},
@@ -39,7 +40,7 @@ function filesOf({job, report, lambda, what}: Kept): File[] {
 /** How the name of a result ends; undefined where only the server knows. */
 export function formatOf(name: string, output: string | undefined): string | undefined {
   if (output && output !== 'auto') return output;
-  const own = name.replace(/^.*\./s, '').toLowerCase();
+  const own = extensionOf(name);
   return ['stl', 'ply', 'off'].includes(own) ? 'glb' : ['glb', 'gltf', 'obj'].find((format) => format === own);
 }
 
@@ -47,7 +48,7 @@ export function formatOf(name: string, output: string | undefined): string | und
 export function listDownloads(kept: Kept, onError: (error: unknown) => void): void {
   const files = filesOf(kept);
   const own = files.find(({ending}) => ending === `uv.${formatOf(kept.name, kept.report.options.output)}`);
-  const base = kept.name.replace(/\.[^.]*$/s, '');
+  const base = withoutExtension(kept.name);
   const buttons = [...files].sort((a, b) => Number(b === own) - Number(a === own)).map(({label, ending, get}, place) => {
     const button = el('button', {type: 'button', className: place === 0 ? 'primary' : ''}, place === 0 ? `Download ${label}` : label);
     button.addEventListener('click', () => get().then((blob) => save(blob, `${base}.${ending}`)).catch(onError));

@@ -3,19 +3,21 @@ import {$, el} from '../base/dom.js';
 import {count, fixed, integer} from '../base/words.js';
 import type {Report} from '../job/run.js';
 
+const were = (n: number) => (n === 1 ? 'was' : 'were');
+
 const REPAIRS: Record<string, (n: number) => string> = {
   degenerate_faces_set_aside: (n) => `${count(n, 'triangle')} without area got no area on the page.`,
   duplicate_faces_set_aside: (n) => `${count(n, 'triangle')} repeated another and ${n === 1 ? 'shares' : 'share'} its place.`,
-  non_manifold_edges_split: (n) => `${count(n, 'edge')} with three or more faces: the surface was split there.`,
+  non_manifold_edges_split: (n) => `The surface was split at ${count(n, 'edge')} with three or more faces.`,
   cut_to_disk: (n) => `${count(n, 'piece')} had to be cut open to become flat.`,
-  segmented: (n) => `${count(n, 'piece')} was split into charts of less distortion.`.replace(/^(\d\S* pieces) was/, '$1 were'),
-  vertices_welded_near: (n) => `${count(n, 'vertex', 'vertices')} that rounding had moved apart: taken for one.`,
-  faces_turned: (n) => `${count(n, 'triangle')} wound against the others: turned for the map; the file stays as it is.`,
+  segmented: (n) => `${count(n, 'piece')} ${were(n)} split into charts of less distortion.`,
+  vertices_welded_near: (n) => `${count(n, 'vertex', 'vertices')} that rounding had moved apart ${were(n)} welded.`,
+  faces_turned: (n) => `${count(n, 'triangle')} ${were(n)} wound against the others and turned for the map. The file stays as it is.`,
   line_ends_replaced: (n) => `${count(n, 'line')} ended in CR alone; the result has LF.`,
-  empty_indices_ignored: (n) => `${count(n, 'corner')} with an empty index in the OBJ: ignored.`,
-  normals_replaced: (n) => `${count(n, 'normal')} without a direction in the OBJ: replaced.`,
-  chunks_padded: (n) => `${count(n, 'chunk')} of the GLB with a wrong length: padded.`,
-  shared_nodes_kept: (n) => `${count(n, 'node')} with several parents: kept.`,
+  empty_indices_ignored: (n) => `${count(n, 'corner')} with an empty index in the OBJ ${were(n)} ignored.`,
+  normals_replaced: (n) => `${count(n, 'normal')} without a direction in the OBJ ${were(n)} replaced.`,
+  chunks_padded: (n) => `${count(n, 'chunk')} of the GLB with a wrong length ${were(n)} padded.`,
+  shared_nodes_kept: (n) => `${count(n, 'node')} with several parents ${were(n)} kept.`,
 };
 
 function overlapsIn({overlaps, guarantee}: Report): string {

@@ -35,8 +35,3 @@ export async function loadResult(job: Job, lambda: number | undefined, open: Mod
   });
   return {report, model: {parts}};
 }
-
-/** The texture, in texels. */
-export function sizeOf({page}: Report): {width: number; height: number} {
-  return page;
-}

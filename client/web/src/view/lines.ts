@@ -1,8 +1,6 @@
 // Lines and triangles of a surface, in space and on the page.
 import type {Mapped} from '../mesh/islands.js';
-import type {Surface} from '../mesh/surface.js';
-
-const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
+import {type Surface, next} from '../mesh/surface.js';
 
 /** The ends of half-edges, `size` numbers for each corner. */
 export function linesOf(halfedges: ArrayLike<number>, values: Float32Array, size: 2 | 3): Float32Array {

@@ -26,7 +26,7 @@ export function shown(surface: Surface, map: Mapped | undefined, aspect = 1, pag
 export const SCALES: Partial<Record<Colouring, Scale>> = {stretch: WORSE_SCALE, angle: WORSE_SCALE, area: AREA_SCALE};
 const PLAIN = rgb('c9c7d0');
 const WHITE: Rgb = [1, 1, 1];
-export const FLIPPED = rgb('e0245e');
+const FLIPPED = rgb('e0245e');
 
 function valueOf(colouring: Colouring, {large, small}: Stretches, f: number): number {
   const [s, t] = [large[f]!, small[f]!];

@@ -21,8 +21,6 @@ export abstract class Stage {
   readonly scene = new Scene();
   readonly renderer: WebGLRenderer;
   protected abstract readonly camera: Camera;
-  /** Called after each picture. */
-  onDrawn?: () => void;
   readonly #seams = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   readonly #marks = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false, linewidth: 2}));
   readonly #edits = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false}));
@@ -123,7 +121,6 @@ export abstract class Stage {
       this.renderer.setSize(width, height, false);
       this.shape(width / height);
       this.renderer.render(this.scene, this.camera);
-      this.onDrawn?.();
     });
   }
 
