@@ -56,6 +56,60 @@ describe("by hand", { skip: missing }, () => {
     await page.waitForFunction(() => document.querySelector("#figures dd")?.firstChild.textContent === "2");
   });
 
+  /** A box of n quads along each edge: it has sharp edges alone at the edges of the box. */
+  function box(n) {
+    const [index, points, faces] = [new Map(), [], []];
+    const at = (...p) => {
+      if (!index.has(`${p}`)) index.set(`${p}`, points.push(`v ${p.join(" ")}`));
+      return index.get(`${p}`);
+    };
+    for (const axis of [0, 1, 2])
+      for (const side of [0, n])
+        for (let a = 0; a < n; a += 1)
+          for (let b = 0; b < n; b += 1) {
+            const corner = (i, j) => at(...[0, 1, 2].map((k) => (k === axis ? side : k === (axis + 1) % 3 ? a + i : b + j)));
+            const quad = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            faces.push(`f ${(side ? quad : quad.reverse()).join(" ")}`);
+          }
+    return [...points, ...faces, ""].join("\n");
+  }
+
+  const marked = async (page) => Number((await page.locator("#seam-count").innerText()).match(/^\d+/)?.[0] ?? 0);
+
+  test("all creases are marked at once, and cut into the sides of a box", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("box.obj", box(4)));
+    await page.check("#edit-seams");
+    await page.uncheck("#keep-charts");
+    await page.fill("#crease-angle", "91");
+    await page.click("#seam-creases");
+    assert.equal(await marked(page), 0, "a box bends by 90 degrees");
+    assert.match(await page.locator("#announcement").textContent(), /no edge that sharp/);
+    await page.fill("#crease-angle", "80");
+    await page.click("#seam-creases");
+    assert.match(await page.locator("#seam-count").innerText(), /^48 edges marked in 12 paths/);
+    const { seam_edges: edges } = await submitted(page, () => page.click("#send"));
+    assert.equal(edges.length, 12);
+    await page.waitForFunction(() => document.querySelector("#figures dd")?.firstChild.textContent === "6");
+    await page.click("#seam-undo");
+    assert.equal(await marked(page), 0, "what was one click is undone by one");
+  });
+
+  test("a crease is followed from one of its edges to where it forks", async (t) => {
+    const page = await bench.visit(t);
+    const ridge = cap(8).replace(/^v (\S+) (\S+) \S+/gm, (_, x, y) => `v ${x} ${y} ${-Math.abs(x)}`);
+    await page.check("#preset-chart");
+    await unwrap(page, bench.file("ridge.obj", ridge));
+    await page.check("#edit-seams");
+    await page.click("#seam-crease");
+    assert.match(await page.locator("#announcement").textContent(), /Mark an edge of a crease first/);
+    await clickAt(page, "#solid", 0.436, 0.543); // (0, 0, 0)
+    await clickAt(page, "#solid", 0.436, 0.469);
+    assert.equal(await marked(page), 1);
+    await page.click("#seam-crease");
+    assert.equal(await marked(page), 8, "the whole ridge");
+  });
+
   test("marks are made by keyboard, at the middle of the view", async (t) => {
     const page = await bench.visit(t);
     await page.check("#preset-chart");

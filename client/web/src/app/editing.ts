@@ -37,6 +37,9 @@ export class Editing {
       this.#draw();
     });
     onClick('seam-ring', () => this.#marks?.ring() || announce('Mark an edge first. Click two points.'));
+    const angle = () => Number($<HTMLInputElement>('crease-angle').value);
+    onClick('seam-crease', () => this.#marks?.followCrease(angle()) || announce('Mark an edge of a crease first. Click its two ends.'));
+    onClick('seam-creases', () => this.#ownMarks()?.markCreases(angle()) || announce('The mesh has no edge that sharp. Try fewer degrees.'));
     onClick('seam-lift', () => this.#marks?.lift());
     onClick('seam-undo', () => this.#marks?.undo());
     onClick('seam-clear', () => this.#marks?.clear());
@@ -95,13 +98,16 @@ export class Editing {
     return true;
   }
 
+  #ownMarks(): SeamMarks | undefined {
+    return (this.#marks ??= this.#surface && new SeamMarks(this.#surface));
+  }
+
   #markAt(event: MouseEvent | undefined): void {
     const hit = this.#viewing.viewer.solid.hit(event);
     const surface = this.#surface;
     if (!hit || !surface) return;
-    this.#marks ??= new SeamMarks(surface);
     const corner = nearestCorner(surface.positions, 3, hit.face, hit.point);
-    if (!this.#marks.add(surface.points[corner]!)) announce('No path along edges leads there. A new path begins.');
+    if (!this.#ownMarks()!.add(surface.points[corner]!)) announce('No path along edges leads there. A new path begins.');
     this.#draw();
   }
 

@@ -3,6 +3,13 @@ import {type Surface, next} from '../mesh/surface.js';
 
 const STRAIGHT = 0.5; // cosine of the sharpest turn of a ring
 
+export interface Onward {
+  /** Cosine of the sharpest turn. */
+  least?: number;
+  /** Whether the way may take this edge. */
+  isAllowed?: (a: number, b: number) => boolean;
+}
+
 /** A heap of points by distance. */
 class Queue {
   readonly #items: [number, number][] = [];
@@ -100,22 +107,23 @@ export class EdgeGraph {
     return path;
   }
 
-  /** Straight on from an edge, until it closes, ends at a border or would turn sharply. */
-  ring(a: number, b: number): number[] {
+  /** On from an edge, as straight as it goes, until it closes, ends, or would turn more than `least` has it. */
+  ring(a: number, b: number, {least = STRAIGHT, isAllowed = () => true}: Onward = {}): number[] {
     const path = [a, b];
-    for (let steps = 0; steps < 100_000; steps += 1) {
+    const passed = new Set(path);
+    for (;;) {
       const [last, here] = [path.at(-2)!, path.at(-1)!];
       const along = this.#direction(last, here);
       const cosine = (point: number) => {
         const onward = this.#direction(here, point);
         return along[0]! * onward[0]! + along[1]! * onward[1]! + along[2]! * onward[2]!;
       };
-      const others = [...this.neighbours(here)].filter((point) => point !== last);
+      const others = [...this.neighbours(here)].filter((point) => point !== last && isAllowed(here, point));
       const best = others.reduce<number | undefined>((found, point) => (found === undefined || cosine(point) > cosine(found) ? point : found), undefined);
-      if (best === undefined || cosine(best) < STRAIGHT) return path;
+      if (best === undefined || cosine(best) < least) return path;
       path.push(best);
-      if (path.indexOf(best) < path.length - 1) return path;
+      if (passed.has(best)) return path;
+      passed.add(best);
     }
-    return path;
   }
 }

@@ -1,7 +1,8 @@
 // Seams that are marked by hand: paths along edges from click to click.
 import type {Model} from '../mesh/model.js';
 import type {Surface} from '../mesh/surface.js';
-import {EdgeGraph} from './graph.js';
+import {chained, creasesOf} from './creases.js';
+import {EdgeGraph, type Onward} from './graph.js';
 import {type SeamPath, cornersOf, vertexOf} from './vertices.js';
 
 export class SeamMarks {
@@ -10,6 +11,7 @@ export class SeamMarks {
   readonly #corners: Uint32Array;
   #paths: number[][] = [];
   #last: number | undefined; // where the next path begins
+  #steps: {paths: number[][]; last: number | undefined}[] = []; // to go back to
 
   constructor(surface: Surface) {
     this.#surface = surface;
@@ -24,19 +26,42 @@ export class SeamMarks {
       return true;
     }
     const path = this.#graph.path(this.#last, point);
-    if (path) this.#paths.push(path);
+    if (path) this.#push(path);
     this.#last = point;
     return path !== undefined;
   }
 
+  #push(...paths: number[][]): void {
+    this.#steps.push({paths: this.#paths, last: this.#last});
+    this.#paths = [...this.#paths, ...paths];
+  }
+
   /** Lengthens the last edge to a ring. False if there is none. */
   ring(): boolean {
-    const path = this.#paths.at(-1);
-    if (!path) return false;
-    const [a, b] = [path.at(-2)!, path.at(-1)!];
-    this.#paths.push(this.#graph.ring(a, b), this.#graph.ring(b, a));
+    return this.#lengthen({});
+  }
+
+  /** Lengthens the last edge along the crease that it lies on. False if it is no edge of one. */
+  followCrease(degrees: number): boolean {
+    const keyOf = (a: number, b: number) => `${Math.min(a, b)} ${Math.max(a, b)}`;
+    const creases = new Set(creasesOf(this.#surface, degrees).map(([a, b]) => keyOf(a, b)));
+    return this.#lengthen({least: -1, isAllowed: (a, b) => creases.has(keyOf(a, b))});
+  }
+
+  #lengthen(how: Onward): boolean {
+    const [a, b] = this.#paths.at(-1)?.slice(-2) ?? [];
+    if (a === undefined || b === undefined || how.isAllowed?.(a, b) === false) return false;
+    this.#push(this.#graph.ring(a, b, how), this.#graph.ring(b, a, how));
     this.#last = undefined;
     return true;
+  }
+
+  /** Marks all creases. False if there are none. */
+  markCreases(degrees: number): boolean {
+    const paths = chained(creasesOf(this.#surface, degrees));
+    if (paths.length > 0) this.#push(...paths);
+    this.#last = undefined;
+    return paths.length > 0;
   }
 
   /** The next click begins a new path. */
@@ -45,17 +70,21 @@ export class SeamMarks {
   }
 
   undo(): void {
-    const path = this.#paths.pop();
-    this.#last = path?.[0];
+    const step = this.#steps.pop();
+    this.#paths = step?.paths ?? [];
+    this.#last = step?.last;
   }
 
   clear(): void {
     this.#paths = [];
+    this.#steps = [];
     this.#last = undefined;
   }
 
+  /** Edges that are marked, each counted once. */
   get edges(): number {
-    return this.#paths.reduce((sum, path) => sum + path.length - 1, 0);
+    const marked = this.#paths.flatMap((path) => path.slice(1).map((point, i) => `${Math.min(point, path[i]!)} ${Math.max(point, path[i]!)}`));
+    return new Set(marked).size;
   }
 
   get paths(): number {
