@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { after, before, describe, test } from "node:test";
 
 import { obj } from "../contract/meshes.mjs";
-import { Bench, difference, downloaded, jobOf, missing, openMesh, real, seen, shot, unwrap } from "./page.mjs";
+import { Bench, cap, difference, downloaded, jobOf, missing, openMesh, real, seen, shot, unwrap } from "./page.mjs";
 
 const bench = new Bench();
 
@@ -151,6 +151,43 @@ describe("the views of the page", { skip: missing }, () => {
     assert.ok(await like(page, "#flat", before));
     await page.check("#after");
     assert.ok(await like(page, "#flat", after));
+  });
+
+  /** A strip of three quads whose last lies upon its first in the layout. */
+  const FOLDED = ["v 0 0 0", "v 1 0 0", "v 2 0 0", "v 3 0 0", "v 0 1 0", "v 1 1 0", "v 2 1 0", "v 3 1 0",
+    "vt 0.1 0.1", "vt 0.5 0.1", "vt 0.9 0.1", "vt 0.3 0.2", "vt 0.1 0.5", "vt 0.5 0.5", "vt 0.9 0.5", "vt 0.3 0.6",
+    "f 1/1 2/2 6/6 5/5", "f 2/2 3/3 7/7 6/6", "f 3/3 4/4 8/8 7/7", ""].join("\n");
+
+  test("hatch the triangles that overlap, in space and in the layout", async (t) => {
+    const page = await bench.visit(t);
+    await openMesh(page, bench.file("folded.obj", FOLDED));
+    assert.match(await page.locator("#faults").innerText(), /^6 triangles overlap others of the same chart/);
+    for (const canvas of ["#solid", "#flat"]) {
+      await page.check("#show-overlaps");
+      const hatched = await shot(page, canvas);
+      await page.uncheck("#show-overlaps");
+      assert.ok(await difference(page, await shot(page, canvas), hatched) > 0.005, canvas);
+    }
+    await unwrap(page);
+    assert.equal(await page.locator("#faults").innerText(), "");
+    assert.equal(await page.locator("#overlaps-row").isVisible(), false);
+    await page.check("#before");
+    assert.equal(await page.locator("#overlaps-row").isVisible(), true);
+  });
+
+  test("frame the worst chart, in space and in the layout", async (t) => {
+    const page = await bench.visit(t);
+    await page.check("#preset-chart");
+    await unwrap(page, bench.file("two.obj", `v 3 0 0\nv 4 0 0\nv 4 1 0\nf 1 2 3\n${cap(6).replace(/^f.*$/gm, (line) => line.replace(/\d+/g, (v) => Number(v) + 3))}`));
+    const { charts } = await (await fetch(`${bench.server.base}/v1/jobs/${jobOf(page)}/report`)).json();
+    assert.equal(charts.length, 2);
+    assert.equal(await page.locator("#faults").innerText(), "The frame shows chart 2, the most distorted one.");
+    for (const canvas of ["#solid", "#flat"]) {
+      await page.check("#show-worst");
+      const framed = await shot(page, canvas);
+      await page.uncheck("#show-worst");
+      assert.ok(await difference(page, await shot(page, canvas), framed) > 0.001, canvas);
+    }
   });
 
   test("name the worst chart, notes and repairs in words", async (t) => {

@@ -125,7 +125,7 @@ export class Session {
     if (kind !== 'whole') show($('lambda-row'), false);
     this.loaded = loaded;
     const {width, height} = report.page;
-    const what = this.#viewing.result(model, width / height, report.pages);
+    const what = this.#viewing.result(model, {aspect: width / height, pages: report.pages, mayOverlap: kind !== 'draft' && report.overlaps !== 0});
     this.kept = {job, report, lambda, what, name};
     showFigures(report);
     listCharts(this.#viewing.charts, ({island}) => {

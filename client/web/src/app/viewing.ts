@@ -1,12 +1,16 @@
 // The views with their tools: what is shown, in which colours, and what is picked.
 import {$, el, show} from '../base/dom.js';
+import {count} from '../base/words.js';
 import {mapped, uvOf} from '../mesh/islands.js';
 import type {Model} from '../mesh/model.js';
+import {overlappingFaces} from '../mesh/overlaps.js';
 import {type Surface, surfaceOf} from '../mesh/surface.js';
 import {type Chart, chartsOf, describe} from '../result/charts.js';
 import {type Colouring, SCALES, type Shown, shown} from '../view/paint.js';
 import {imageTexture} from '../view/textures.js';
 import {Viewer} from '../view/viewer.js';
+
+const SEARCHED_FACES = 300_000; // beyond them overlaps of a mesh as it came in are not searched for
 
 const colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -31,7 +35,7 @@ export class Viewing {
     this.viewer.onPick = (picked) => this.#tellPicked(picked?.island);
     $('colouring').addEventListener('change', () => this.#choose().catch(onError));
     $('image').addEventListener('change', () => this.#useImage().catch(onError));
-    for (const id of ['show-seams', 'show-wire']) $(id).addEventListener('change', () => this.#showLines());
+    for (const id of ['show-seams', 'show-wire', 'show-worst', 'show-overlaps']) $(id).addEventListener('change', () => this.#showLines());
     for (const id of ['before', 'after']) $(id).addEventListener('change', () => this.#showVersion());
     $('fit').addEventListener('click', () => {
       this.viewer.solid.fit();
@@ -57,16 +61,18 @@ export class Viewing {
     const surface = surfaceOf(model);
     const uv = uvOf(model, 0);
     this.#before = shown(surface, uv && mapped(surface, uv));
+    if (surface.faces <= SEARCHED_FACES) this.#before.overlapping = this.#before.map && overlappingFaces(this.#before.map);
     this.#after = undefined;
     this.#show(this.#before);
     return surface;
   }
 
-  /** What a job made of it; the view stays if it is the same mesh. */
-  result(model: Model, aspect: number, pages: number): Shown {
+  /** What a job made of it; the view stays if it is the same mesh. mayOverlap: triangles do, or nobody has looked. */
+  result(model: Model, {aspect, pages, mayOverlap}: {aspect: number; pages: number; mayOverlap: boolean}): Shown {
     const last = this.#after ?? this.#before;
     const surface = isSame(last?.surface, model) ? last!.surface : surfaceOf(model);
     this.#after = shown(surface, mapped(surface, uvOf(model, 0)!), aspect, pages);
+    if (mayOverlap) this.#after.overlapping = overlappingFaces(this.#after.map!);
     $<HTMLInputElement>('after').checked = true;
     this.#show(this.#after, surface === last?.surface);
     return this.#after;
@@ -77,9 +83,22 @@ export class Viewing {
     show($('versions'), Boolean(this.#after && this.#before?.map));
     show($('no-layout'), !what.map);
     this.#charts = chartsOf(what);
+    what.worst = this.#charts.length > 1 ? this.#charts[0]!.island : undefined;
     this.viewer.show(what, keepsView);
+    this.#tellFaults(what);
     this.#legend();
     this.#showLines();
+  }
+
+  #tellFaults({worst, overlapping}: Shown): void {
+    const [some, many] = [overlapping?.length ?? 0, worst !== undefined];
+    show($('worst-row'), many);
+    show($('overlaps-row'), some > 0);
+    const texts = [
+      many ? `The frame shows chart ${worst! + 1}, the most distorted one.` : '',
+      some > 0 ? `${count(some, 'triangle')} ${some === 1 ? 'overlaps' : 'overlap'} others of the same chart. They are hatched.` : '',
+    ];
+    $('faults').textContent = texts.filter(Boolean).join(' ');
   }
 
   #showVersion(): void {
@@ -88,7 +107,8 @@ export class Viewing {
   }
 
   #showLines(): void {
-    this.viewer.setVisible($<HTMLInputElement>('show-seams').checked, $<HTMLInputElement>('show-wire').checked);
+    const [seams, wire, worst, overlaps] = ['seams', 'wire', 'worst', 'overlaps'].map((what) => $<HTMLInputElement>(`show-${what}`).checked);
+    this.viewer.setVisible({seams: seams!, wire: wire!, worst: worst!, overlaps: overlaps!});
   }
 
   async #choose(): Promise<void> {
@@ -126,7 +146,7 @@ export class Viewing {
   }
 
   #useTheme(): void {
-    this.viewer.setTheme({background: resolved('--soft'), line: resolved('--faint'), seam: resolved('--bad'), mark: resolved('--accent'), pin: resolved('--edit')});
+    this.viewer.setTheme({background: resolved('--soft'), line: resolved('--faint'), seam: resolved('--bad'), mark: resolved('--accent'), pin: resolved('--edit'), frame: resolved('--text')});
   }
 }
 

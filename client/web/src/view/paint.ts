@@ -12,6 +12,10 @@ export interface Shown {
   /** Absent for a mesh without texture coordinates. */
   map?: Mapped | undefined;
   figures?: Stretches | undefined;
+  /** Faces that overlap others of their island. */
+  overlapping?: Uint32Array | undefined;
+  /** The most distorted island of several. */
+  worst?: number | undefined;
   /** Width / height of the texture. */
   aspect: number;
   /** Pages side by side along U. */

@@ -5,12 +5,23 @@ import {
   MeshBasicMaterial, Points, PointsMaterial, Scene, type Texture, WebGLRenderer,
 } from 'three';
 
+import {Hatching} from './hatching.js';
+
+/** What is shown beside the triangles. */
+export interface Visible {
+  seams: boolean;
+  wire: boolean;
+  worst: boolean;
+  overlaps: boolean;
+}
+
 export interface Theme {
   background: string;
   line: string;
   seam: string;
   mark: string;
   pin: string;
+  frame: string;
 }
 
 function geometryOf(positions: Float32Array): BufferGeometry {
@@ -23,6 +34,8 @@ export abstract class Stage {
   protected abstract readonly camera: Camera;
   readonly #seams = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   readonly #marks = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false, linewidth: 2}));
+  readonly #hatched = new Mesh(new BufferGeometry(), new Hatching());
+  readonly #worst = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   readonly #edits = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false}));
   readonly #picked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.55, depthTest: false}));
   readonly #dots = new Points(new BufferGeometry(), new PointsMaterial({size: 7, sizeAttenuation: false, depthTest: false}));
@@ -36,7 +49,7 @@ export abstract class Stage {
     const wire = new MeshBasicMaterial({wireframe: true, transparent: true, opacity: 0.35, polygonOffset: true, polygonOffsetFactor: -1});
     this.#wire = new Mesh(this.#mesh.geometry, wire);
     this.#wire.visible = false;
-    [this.#mesh, this.#wire, this.#seams, this.#marks, this.#edits, this.#picked, this.#dots].forEach((object, order) => {
+    [this.#mesh, this.#wire, this.#hatched, this.#seams, this.#worst, this.#marks, this.#edits, this.#picked, this.#dots].forEach((object, order) => {
       object.frustumCulled = false;
       object.renderOrder = order;
       this.scene.add(object);
@@ -85,9 +98,21 @@ export abstract class Stage {
     this.#replace(this.#dots, points);
   }
 
-  setVisible(seams: boolean, wire: boolean): void {
+  /** Triangles that overlap others. */
+  setHatched(triangles: Float32Array): void {
+    this.#replace(this.#hatched, triangles);
+  }
+
+  /** The frame of the worst chart. */
+  setFrame(lines: Float32Array): void {
+    this.#replace(this.#worst, lines);
+  }
+
+  setVisible({seams, wire, worst, overlaps}: Visible): void {
     this.#seams.visible = seams;
     this.#wire.visible = wire;
+    this.#worst.visible = worst;
+    this.#hatched.visible = overlaps;
     this.draw();
   }
 
@@ -95,6 +120,8 @@ export abstract class Stage {
     this.scene.background = new Color(theme.background);
     this.#seams.material.color.set(theme.seam);
     this.#wire.material.color.set(theme.line);
+    this.#hatched.material.color.set(theme.seam);
+    this.#worst.material.color.set(theme.frame);
     this.#marks.material.color.set(theme.mark);
     this.#picked.material.color.set(theme.mark);
     this.#edits.material.color.set(theme.pin);

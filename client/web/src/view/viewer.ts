@@ -3,10 +3,10 @@ import type {Texture} from 'three';
 
 import {oncePerFrame} from '../base/dom.js';
 import {FlatView, flat} from './flat.js';
-import {borderOf, bothSides, linesOf} from './lines.js';
+import {borderOf, bothSides, frameOf, linesOf, trianglesOf} from './lines.js';
 import {type Colouring, type Shown, paint} from './paint.js';
 import {SolidView} from './solid.js';
-import type {Theme} from './stage.js';
+import type {Theme, Visible} from './stage.js';
 import {checkerboard} from './textures.js';
 
 const HOVER_FACES = 600_000; // beyond them a pointer that moves is not followed
@@ -53,9 +53,19 @@ export class Viewer {
       const {surface, map} = what;
       this.solid.setSeams(map ? linesOf(map.seams, surface.positions, 3) : new Float32Array());
       this.flat.setSeams(map ? flat(linesOf(bothSides(map, surface), map.uv, 2), what.aspect, 1) : new Float32Array());
+      this.#showFaults(what);
       this.select(undefined);
     }
     this.colour(this.#colouring);
+  }
+
+  /** Triangles that overlap, and the worst chart. */
+  #showFaults({surface, map, overlapping = new Uint32Array(), worst, aspect}: Shown): void {
+    const none = new Float32Array();
+    this.solid.setHatched(trianglesOf(overlapping, surface.positions, 3));
+    this.flat.setHatched(map ? flat(trianglesOf(overlapping, map.uv, 2), aspect, 1) : none);
+    this.solid.setFrame(map && worst !== undefined ? frameOf(worst, map, surface.positions, 3) : none);
+    this.flat.setFrame(map && worst !== undefined ? flat(frameOf(worst, map, map.uv, 2, 0.006), aspect, 2) : none);
   }
 
   colour(colouring: Colouring): void {
@@ -84,9 +94,9 @@ export class Viewer {
     this.flat.setTheme(theme);
   }
 
-  setVisible(seams: boolean, wire: boolean): void {
-    this.solid.setVisible(seams, wire);
-    this.flat.setVisible(true, wire);
+  setVisible(visible: Visible): void {
+    this.solid.setVisible(visible);
+    this.flat.setVisible({...visible, seams: true});
   }
 
   /** Picks a whole island, or none. */
