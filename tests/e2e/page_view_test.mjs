@@ -153,6 +153,63 @@ describe("the views of the page", { skip: missing }, () => {
     assert.ok(await like(page, "#flat", after));
   });
 
+  /** A square of a red and a green half by its image, and a blue one by its factor, as a glTF. */
+  async function painted(page) {
+    const png = await page.evaluate(() => {
+      const canvas = Object.assign(document.createElement("canvas"), { width: 64, height: 64 });
+      const pen = canvas.getContext("2d");
+      [["#f00", 0], ["#0f0", 32]].forEach(([colour, x]) => { pen.fillStyle = colour; pen.fillRect(x, 0, 32, 64); });
+      return canvas.toDataURL();
+    });
+    const floats = Float32Array.from([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 3, 0, 0, 3, 1, 0, 2, 1, 0, 0, 1, 1, 1, 1, 0, 0, 0]);
+    const bytes = Buffer.concat([Buffer.from(floats.buffer), Buffer.from(Uint16Array.from([0, 1, 2, 0, 2, 3]).buffer)]);
+    const accessor = (byteOffset, type, count, more = {}) => [{ buffer: 0, byteOffset, byteLength: count * (type === "VEC3" ? 12 : 8) },
+      { bufferView: 0, componentType: 5126, count, type, ...more }];
+    const parts = [accessor(0, "VEC3", 4, { min: [0, 0, 0], max: [1, 1, 0] }), accessor(48, "VEC3", 4, { min: [2, 0, 0], max: [3, 1, 0] }), accessor(96, "VEC2", 4),
+      [{ buffer: 0, byteOffset: 128, byteLength: 12 }, { componentType: 5123, count: 6, type: "SCALAR" }]];
+    const primitive = (POSITION, material) => ({ attributes: { POSITION, TEXCOORD_0: 2 }, indices: 3, material });
+    return JSON.stringify({
+      asset: { version: "2.0" }, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }], meshes: [{ primitives: [primitive(0, 0), primitive(1, 1)] }],
+      materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }, { pbrMetallicRoughness: { baseColorFactor: [0, 0, 1, 1] } }],
+      textures: [{ source: 0 }], images: [{ uri: png }], bufferViews: parts.map(([view]) => view),
+      accessors: parts.map(([, one], bufferView) => ({ ...one, bufferView })),
+      buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString("base64")}` }],
+    });
+  }
+
+  /** The shares of red, green and blue in a picture of a canvas. */
+  const hues = async (page, canvas) => page.evaluate(async (bytes) => {
+    const { data } = await pixelsOf(bytes);
+    const counts = [0, 0, 0];
+    for (let i = 0; i < data.length; i += 4)
+      for (const k of [0, 1, 2]) if ([0, 1, 2].every((j) => j === k ? data[i + j] > 90 : data[i + j] < 60)) counts[k] += 4 / data.length;
+    return counts;
+  }, await shot(page, canvas));
+
+  test("show materials as they came in, and where new texture coordinates put them", async (t) => {
+    const page = await bench.visit(t);
+    await openMesh(page, bench.file("cube.obj", cube()));
+    assert.equal(await page.locator("#colouring option[value=materials]").isDisabled(), true, "this mesh has none");
+    await openMesh(page, bench.file("painted.gltf", await painted(page)));
+    await page.uncheck("#show-seams");
+    await page.selectOption("#colouring", "materials");
+    const areSeen = async (canvas, least) => {
+      for (let tries = 0; tries < 40; tries += 1) if ((await hues(page, canvas)).every((share) => share > least)) return true;
+      return false;
+    };
+    assert.ok(await areSeen("#solid", 0.02), `${await hues(page, "#solid")}`);
+    await page.click("#form summary");
+    await page.selectOption("[name=textures]", "transfer");
+    await unwrap(page);
+    assert.ok(await areSeen("#solid", 0.02), `after: ${await hues(page, "#solid")}`);
+    assert.ok(await areSeen("#flat", 0.02), `after: ${await hues(page, "#flat")}`);
+    await page.check("#before");
+    assert.ok(await areSeen("#solid", 0.02), `before again: ${await hues(page, "#solid")}`);
+    await page.selectOption("#colouring", "plain");
+    assert.ok((await hues(page, "#solid")).every((share) => share < 0.001), "other colours are without them");
+    assert.deepEqual(page.complaints, []);
+  });
+
   /** A strip of three quads whose last lies upon its first in the layout. */
   const FOLDED = ["v 0 0 0", "v 1 0 0", "v 2 0 0", "v 3 0 0", "v 0 1 0", "v 1 1 0", "v 2 1 0", "v 3 1 0",
     "vt 0.1 0.1", "vt 0.5 0.1", "vt 0.9 0.1", "vt 0.3 0.2", "vt 0.1 0.5", "vt 0.5 0.5", "vt 0.9 0.5", "vt 0.3 0.6",

@@ -9,7 +9,7 @@ import {getJson} from '../job/server.js';
 import {listCharts} from '../result/charts.js';
 import {type Kept, listDownloads} from '../result/downloads.js';
 import {showFigures} from '../result/figures.js';
-import {type Loaded, loadResult} from '../result/load.js';
+import {type Loaded, loadAsset, loadResult} from '../result/load.js';
 import {clearProblem, showMessage, showProblem} from './problem.js';
 import type {Viewing} from './viewing.js';
 
@@ -125,7 +125,10 @@ export class Session {
     if (kind !== 'whole') show($('lambda-row'), false);
     this.loaded = loaded;
     const {width, height} = report.page;
-    const what = this.#viewing.result(model, {aspect: width / height, pages: report.pages, mayOverlap: kind !== 'draft' && report.overlaps !== 0});
+    const what = this.#viewing.result(model, {
+      aspect: width / height, pages: report.pages, mayOverlap: kind !== 'draft' && report.overlaps !== 0,
+      asset: kind === 'draft' ? undefined : () => loadAsset(job, lambda),
+    });
     this.kept = {job, report, lambda, what, name};
     showFigures(report);
     listCharts(this.#viewing.charts, ({island}) => {

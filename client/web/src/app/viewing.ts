@@ -1,5 +1,5 @@
 // The views with their tools: what is shown, in which colours, and what is picked.
-import {$, el, show} from '../base/dom.js';
+import {$, el, once, show} from '../base/dom.js';
 import {count} from '../base/words.js';
 import {mapped, uvOf} from '../mesh/islands.js';
 import type {Model} from '../mesh/model.js';
@@ -7,6 +7,7 @@ import {overlappingFaces} from '../mesh/overlaps.js';
 import {type Surface, surfaceOf} from '../mesh/surface.js';
 import {type Chart, chartsOf, describe} from '../result/charts.js';
 import {type Colouring, SCALES, type Shown, shown} from '../view/paint.js';
+import {type Skin, skinOf} from '../view/skin.js';
 import {imageTexture} from '../view/textures.js';
 import {Viewer} from '../view/viewer.js';
 
@@ -23,6 +24,18 @@ function resolved(name: string): string {
   probe.remove();
   return found;
 }
+
+export interface Result {
+  aspect: number;
+  pages: number;
+  /** Whether triangles overlap, or nobody has looked. */
+  mayOverlap: boolean;
+  /** The file that came out, with its materials; absent if it has those that came in. */
+  asset?: (() => Promise<Model>) | undefined;
+}
+
+/** A skin for the faces of a surface alone. */
+const sameFaces = (skin: Skin | undefined, {faces}: Surface) => (skin?.uv.length === 6 * faces ? skin : undefined);
 
 export class Viewing {
   readonly viewer: Viewer;
@@ -46,6 +59,10 @@ export class Viewing {
     this.#useTheme();
   }
 
+  get #colouring(): Colouring {
+    return $<HTMLSelectElement>('colouring').value as Colouring;
+  }
+
   get charts(): Chart[] {
     return this.#charts;
   }
@@ -61,17 +78,22 @@ export class Viewing {
     const surface = surfaceOf(model);
     const uv = uvOf(model, 0);
     this.#before = shown(surface, uv && mapped(surface, uv));
+    this.#before.skin = once(() => skinOf(model));
+    for (const option of $<HTMLSelectElement>('colouring').options) if (option.value === 'materials') option.hidden = option.disabled = !model.looks;
+    if (!model.looks && this.#colouring === 'materials') $<HTMLSelectElement>('colouring').value = 'checker';
+    this.viewer.colour(this.#colouring);
     if (surface.faces <= SEARCHED_FACES) this.#before.overlapping = this.#before.map && overlappingFaces(this.#before.map);
     this.#after = undefined;
     this.#show(this.#before);
     return surface;
   }
 
-  /** What a job made of it; the view stays if it is the same mesh. mayOverlap: triangles do, or nobody has looked. */
-  result(model: Model, {aspect, pages, mayOverlap}: {aspect: number; pages: number; mayOverlap: boolean}): Shown {
+  /** What a job made of it; the view stays if it is the same mesh. */
+  result(model: Model, {aspect, pages, mayOverlap, asset}: Result): Shown {
     const last = this.#after ?? this.#before;
     const surface = isSame(last?.surface, model) ? last!.surface : surfaceOf(model);
     this.#after = shown(surface, mapped(surface, uvOf(model, 0)!), aspect, pages);
+    this.#after.skin = once(async () => sameFaces(await asset?.().then(skinOf), surface) ?? sameFaces(await this.#before?.skin?.(), surface));
     if (mayOverlap) this.#after.overlapping = overlappingFaces(this.#after.map!);
     $<HTMLInputElement>('after').checked = true;
     this.#show(this.#after, surface === last?.surface);
@@ -112,7 +134,7 @@ export class Viewing {
   }
 
   async #choose(): Promise<void> {
-    const colouring = $<HTMLSelectElement>('colouring').value as Colouring;
+    const colouring = this.#colouring;
     show($('image'), colouring === 'image');
     if (colouring === 'image' && $<HTMLInputElement>('image').files?.length === 0) $('image').click();
     this.viewer.colour(colouring);
@@ -125,7 +147,7 @@ export class Viewing {
   }
 
   #legend(): void {
-    const scale = SCALES[$<HTMLSelectElement>('colouring').value as Colouring];
+    const scale = SCALES[this.#colouring];
     show($('legend'), Boolean(scale && this.viewer.what?.map));
     if (!scale) return;
     const bar = document.createElementNS('http://www.w3.org/2000/svg', 'svg');

@@ -44,6 +44,12 @@ export function save(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(url), 60_000);
 }
 
+/** Computes a value when it is first asked for. */
+export function once<T>(compute: () => T): () => T {
+  let kept: {value: T} | undefined;
+  return () => (kept ??= {value: compute()}).value;
+}
+
 /** Calls at most once for each picture; the latest arguments count. */
 export function oncePerFrame<A extends unknown[]>(action: (...given: A) => void): (...given: A) => void {
   let latest: A | undefined;

@@ -1,5 +1,5 @@
 // glTF and GLB by the loader of three, for its decoders: Draco and meshopt are loaded when a document
-// asks for them. Materials and images are left out, since the page shows its own.
+// asks for them. Materials and images are kept from it: looks.ts reads of them what the page shows.
 import {BufferAttribute, type BufferGeometry, type InterleavedBufferAttribute, LoadingManager, type Mesh} from 'three';
 import {GLTFLoader} from 'three/examples/jsm/loaders/GLTFLoader.js';
 
@@ -7,6 +7,7 @@ import {type Model, type Part, joinedNumbers, uvOfCorners} from '../mesh/model.j
 import {lastOf, list} from '../base/words.js';
 import {UnreadableError} from './error.js';
 import type {Named} from './pick.js';
+import {looksOf} from './looks.js';
 import {type Document, documentOf, meshesWithTriangles, placesOf} from './scene.js';
 
 /** A document with nothing but geometry; its primitives do not share a material. */
@@ -67,7 +68,8 @@ function joinedFaces(pieces: {positions: Float32Array; faces: Uint32Array}[]): U
   return all;
 }
 
-function partOf(geometries: BufferGeometry[], name: string, places: number[][]): Part {
+/** looks: of each geometry. */
+function partOf(geometries: BufferGeometry[], looks: number[], name: string, places: number[][]): Part {
   const pieces = geometries.map((geometry) => {
     const positions = numbersOf(geometry.getAttribute('position'));
     const faces = Uint32Array.from(geometry.index?.array ?? Array.from({length: positions.length / 3}, (_, i) => i));
@@ -77,7 +79,8 @@ function partOf(geometries: BufferGeometry[], name: string, places: number[][]):
   const sets = pieces[0]!.uvSets.map(({name: set}) => set)
     .filter((set) => pieces.every(({uvSets}) => uvSets.some((other) => other.name === set)));
   const uvSets = sets.map((set) => ({name: set, uv: joinedNumbers(pieces.map(({uvSets: own}) => own.find((other) => other.name === set)!.uv))}));
-  return {name, positions: joinedNumbers(pieces.map((piece) => piece.positions)), faces, uvSets, places};
+  const own = Uint16Array.from(pieces.flatMap((piece, i) => new Array<number>(piece.faces.length / 3).fill(looks[i]!)));
+  return {name, positions: joinedNumbers(pieces.map((piece) => piece.positions)), faces, uvSets, places, looks: own};
 }
 
 /** Files that the document names and that were not opened with it. */
@@ -88,7 +91,8 @@ function missingFiles(document: Document, names: Set<string>): string[] {
 }
 
 export async function readGltf(bytes: ArrayBuffer, others: Named[]): Promise<Model> {
-  const document = geometryOnly(documentOf(bytes));
+  const whole = documentOf(bytes);
+  const document = geometryOnly(whole);
   const urls = new Map(others.map(({name, blob}) => [lastOf(name), URL.createObjectURL(blob)]));
   const absent = missingFiles(document, new Set(urls.keys()));
   if (absent.length > 0) throw new UnreadableError(`This glTF needs ${list(absent)}. Open it together with its parts.`);
@@ -104,9 +108,14 @@ export async function readGltf(bytes: ArrayBuffer, others: Named[]): Promise<Mod
       const object = await parser.getDependency('mesh', m);
       const meshes: Mesh[] = [];
       object.traverse((child: Mesh) => child.isMesh && meshes.push(child));
-      return partOf(meshes.slice(0, primitives.length).map(({geometry}) => geometry), document.meshes![m]!.name ?? '', places[m]!);
+      const {name = '', primitives: all} = whole.meshes![m]!;
+      const none = ((whole['materials'] ?? []) as object[]).length;
+      const looks = all.filter(({mode = 4}) => mode >= 4).map(({material = none}) => material as number);
+      return partOf(meshes.slice(0, primitives.length).map(({geometry}) => geometry), looks, name, places[m]!);
     });
-    return {parts: await Promise.all(parts)};
+    const view = (index: number) => parser.getDependency('bufferView', index) as Promise<ArrayBuffer>;
+    const looks = whole['materials'] ? {looks: await looksOf(whole, {view, urlOf: (uri) => urls.get(lastOf(decodeURIComponent(uri)))})} : {};
+    return {parts: await Promise.all(parts), ...looks};
   } finally {
     for (const url of urls.values()) URL.revokeObjectURL(url);
   }

@@ -42,7 +42,7 @@ async function modelOf(mesh: Named, others: Named[]): Promise<Model> {
 function checked(model: Model, name: string): Model {
   const parts = model.parts.filter(({faces}) => faces.length > 0);
   if (parts.length === 0) throw new UnreadableError(`${name} has no triangles. Open a file with a mesh.`);
-  return {parts};
+  return {...model, parts};
 }
 
 async function read(files: Named[], container: Named | undefined): Promise<Opened> {

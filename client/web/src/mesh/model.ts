@@ -7,6 +7,19 @@ export interface UvSet {
   uv: Float32Array;
 }
 
+/** How faces look: the base colour of a material. */
+export interface Look {
+  /** Red, green and blue as light. */
+  factor: [number, number, number];
+  image?: Blob;
+  /** The name of the UvSet by which the image lies on the faces. */
+  set: string;
+  /** Of the image, in the order of UvSet: 6 numbers that make u' = a u + b v + c, v' = d u + e v + f. */
+  transform: number[];
+  /** What lies beside the image, by the numbers of WebGL. */
+  wrap: [number, number];
+}
+
 export interface Part {
   name: string;
   /** x, y, z of each vertex. */
@@ -18,10 +31,13 @@ export interface Part {
   places: number[][];
   /** For each vertex, the one of the input that it is or duplicates. */
   sources?: Uint32Array;
+  /** For each face, its look in Model.looks. */
+  looks?: Uint16Array;
 }
 
 export interface Model {
   parts: Part[];
+  looks?: Look[];
 }
 
 export const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];

@@ -35,3 +35,9 @@ export async function loadResult(job: Job, lambda: number | undefined, open: Mod
   });
   return {report, model: {parts}};
 }
+
+/** The file of a result, with its materials. */
+export async function loadAsset(job: Job, lambda: number | undefined): Promise<Model> {
+  const blob = await getBlob(job.links.result + ofLambda(lambda), 'model/gltf-binary');
+  return (await import('../files/gltf.js')).readGltf(await blob.arrayBuffer(), []);
+}

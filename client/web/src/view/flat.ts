@@ -15,6 +15,7 @@ export function flat(uv: ArrayLike<number>, aspect: number, height = 0): Float32
 }
 
 export class FlatView extends Stage {
+  protected readonly isLit = false;
   protected readonly camera = new OrthographicCamera(-1, 1, 1, -1, -10, 10);
   /** Takes a gesture for itself: dragging begins at a point of the page. */
   onGrab?: (event: PointerEvent) => boolean;

@@ -2,9 +2,10 @@
 import type {Mapped} from '../mesh/islands.js';
 import {type Stretches, stretches} from '../mesh/distortion.js';
 import type {Surface} from '../mesh/surface.js';
+import type {Skin} from './skin.js';
 import {AREA_SCALE, type Rgb, type Scale, WORSE_SCALE, chartColour, rgb} from './colours.js';
 
-export type Colouring = 'plain' | 'checker' | 'image' | 'stretch' | 'angle' | 'area' | 'charts';
+export type Colouring = 'plain' | 'checker' | 'image' | 'materials' | 'stretch' | 'angle' | 'area' | 'charts';
 
 /** A surface with what one set of texture coordinates makes of it. */
 export interface Shown {
@@ -14,6 +15,8 @@ export interface Shown {
   figures?: Stretches | undefined;
   /** Faces that overlap others of their island. */
   overlapping?: Uint32Array | undefined;
+  /** Its materials, which take a while to load; undefined where there are none. */
+  skin?: (() => Promise<Skin | undefined>) | undefined;
   /** The most distorted island of several. */
   worst?: number | undefined;
   /** Width / height of the texture. */
@@ -40,7 +43,7 @@ function valueOf(colouring: Colouring, {large, small}: Stretches, f: number): nu
 
 function colourOf(colouring: Colouring, {map, figures}: Shown): (f: number) => Rgb {
   if (colouring === 'checker' || colouring === 'image') return map ? () => WHITE : () => PLAIN;
-  if (!map || !figures || colouring === 'plain') return () => PLAIN;
+  if (!map || !figures || colouring === 'plain' || colouring === 'materials') return () => PLAIN;
   if (colouring === 'charts') {
     const colours = Array.from({length: map.islandCount}, (_, i) => chartColour(i));
     return (f) => colours[map.island[f]!]!;

@@ -29,6 +29,7 @@ function boxOf(positions: Float32Array): {centre: Vector3; radius: number} {
 }
 
 export class SolidView extends Stage {
+  protected readonly isLit = true;
   protected readonly camera = new PerspectiveCamera(35, 1, 0.01, 100);
   readonly #controls: OrbitControls;
   readonly #lamp = new DirectionalLight(0xffffff, 2.2);

@@ -6,6 +6,7 @@ import {
 } from 'three';
 
 import {Hatching} from './hatching.js';
+import {type Skin, materialsOf} from './skin.js';
 
 /** What is shown beside the triangles. */
 export interface Visible {
@@ -32,6 +33,7 @@ export abstract class Stage {
   readonly scene = new Scene();
   readonly renderer: WebGLRenderer;
   protected abstract readonly camera: Camera;
+  protected abstract readonly isLit: boolean;
   readonly #seams = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   readonly #marks = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false, linewidth: 2}));
   readonly #hatched = new Mesh(new BufferGeometry(), new Hatching());
@@ -40,7 +42,9 @@ export abstract class Stage {
   readonly #picked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.55, depthTest: false}));
   readonly #dots = new Points(new BufferGeometry(), new PointsMaterial({size: 7, sizeAttenuation: false, depthTest: false}));
   readonly #wire: Mesh<BufferGeometry, MeshBasicMaterial>;
-  readonly #mesh: Mesh<BufferGeometry>;
+  readonly #mesh: Mesh<BufferGeometry, Material | Material[]>;
+  #materials: (Material & {map: Texture | null})[] = [];
+  #uv: Float32Array = new Float32Array();
   #asked = false;
 
   constructor(readonly canvas: HTMLCanvasElement, protected readonly material: Material & {map: Texture | null}) {
@@ -61,7 +65,8 @@ export abstract class Stage {
     this.#mesh.geometry.dispose();
     const geometry = geometryOf(positions);
     if (normals) geometry.setAttribute('normal', new BufferAttribute(normals, 3));
-    if (uv) geometry.setAttribute('uv', new BufferAttribute(uv, 2));
+    this.#uv = uv ?? new Float32Array((positions.length / 3) * 2);
+    geometry.setAttribute('uv', new BufferAttribute(this.#uv.slice(), 2));
     geometry.setAttribute('color', new BufferAttribute(new Float32Array(positions.length).fill(0.5), 3));
     this.#mesh.geometry = this.#wire.geometry = geometry;
     this.draw();
@@ -73,6 +78,24 @@ export abstract class Stage {
     attribute.needsUpdate = true;
     if (Boolean(this.material.map) !== Boolean(map)) this.material.needsUpdate = true;
     this.material.map = map;
+    this.draw();
+  }
+
+  /** Shows the triangles in their materials, or without a skin by colours again. */
+  setSkin(skin: Skin | undefined): void {
+    if (!skin && this.#materials.length === 0) return;
+    const {geometry} = this.#mesh;
+    for (const material of this.#materials) {
+      material.map?.dispose();
+      material.dispose();
+    }
+    this.#materials = skin ? materialsOf(skin, this.isLit) : [];
+    geometry.clearGroups();
+    for (const {start, count, look} of skin?.runs ?? []) geometry.addGroup(3 * start, 3 * count, look);
+    this.#mesh.material = skin ? this.#materials : this.material;
+    const uv = geometry.getAttribute('uv') as BufferAttribute;
+    uv.copyArray(skin && uv.count > 0 ? skin.uv : this.#uv);
+    uv.needsUpdate = true;
     this.draw();
   }
 

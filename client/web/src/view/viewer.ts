@@ -5,6 +5,7 @@ import {oncePerFrame} from '../base/dom.js';
 import {FlatView, flat} from './flat.js';
 import {borderOf, bothSides, frameOf, linesOf, trianglesOf} from './lines.js';
 import {type Colouring, type Shown, paint} from './paint.js';
+import type {Skin} from './skin.js';
 import {SolidView} from './solid.js';
 import type {Theme, Visible} from './stage.js';
 import {checkerboard} from './textures.js';
@@ -75,6 +76,19 @@ export class Viewer {
     const [solid, layout] = this.#what.map ? this.#textures() : [];
     this.solid.setColours(colours, solid ?? null);
     this.flat.setColours(this.#what.map ? colours : new Float32Array(), layout ?? null);
+    this.#wear(undefined);
+    if (colouring === 'materials') void this.#dress(this.#what);
+  }
+
+  #wear(skin: Skin | undefined): void {
+    this.solid.setSkin(skin);
+    this.flat.setSkin(skin);
+  }
+
+  /** The materials, once they are there. */
+  async #dress(what: Shown): Promise<void> {
+    const skin = await what.skin?.();
+    if (what === this.#what && this.#colouring === 'materials') this.#wear(skin);
   }
 
   #textures(): (Texture | undefined)[] {
