@@ -72,6 +72,30 @@ describe("a job of the page", { skip: missing }, () => {
     assert.equal(await figure(page, "Angles"), distortion.angle.toFixed(4));
     const [, json] = await downloaded(page, "#downloads :text('Report')");
     assert.deepEqual(JSON.parse(json).distortion, distortion);
+    await page.fill("#lambda", "0.2");
+    await unwrap(page);
+    assert.equal(await page.locator("#lambdas-row").isVisible(), false);
+  });
+
+  test("of several lambdas shows the maps beside each other, and each in the views", async (t) => {
+    const page = await bench.visit(t);
+    await page.selectOption("[name=method]", "hybrid");
+    await page.fill("#lambda", "0.001, 0.1, 100");
+    await unwrap(page, bench.file("cap.obj", cap()));
+    const reports = await Promise.all([0.001, 0.1, 100].map(async (lambda) =>
+      (await fetch(`${bench.server.base}/v1/jobs/${jobOf(page)}/report?lambda=${lambda}`)).json()));
+    assert.deepEqual(await page.locator("#lambdas button").allInnerTexts(), reports.map(({ distortion: { angle, area } }, i) =>
+      `λ ${[0.001, 0.1, 100][i]}: angles ${angle.toFixed(3)}, areas ${area.toFixed(3)}`));
+    await page.waitForFunction(() => [...document.querySelectorAll("#lambdas img")].every((image) => image.naturalWidth === 320));
+    const sources = await page.evaluate(() => Promise.all([...document.querySelectorAll("#lambdas img")].map(async ({ src }) => (await (await fetch(src)).text()))));
+    assert.equal(new Set(sources).size, 6, "each picture is of a map of its own");
+    assert.equal(await page.locator("#lambdas button").first().getAttribute("aria-pressed"), "true");
+    await page.click("#lambdas button >> nth=2");
+    await page.waitForFunction(() => !document.querySelector("#send").disabled);
+    assert.equal(await figure(page, "Angles"), reports[2].distortion.angle.toFixed(4));
+    assert.equal(await page.inputValue("#lambda-shown"), "100");
+    assert.equal(await page.locator("#lambdas button >> nth=2").getAttribute("aria-pressed"), "true");
+    assert.deepEqual(page.complaints, []);
   });
 
   test("is not made of a lambda that is none, and the page says why", async (t) => {

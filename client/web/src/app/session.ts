@@ -9,6 +9,7 @@ import {getJson} from '../job/server.js';
 import {listCharts} from '../result/charts.js';
 import {type Kept, listDownloads} from '../result/downloads.js';
 import {showFigures} from '../result/figures.js';
+import {LambdaGallery} from '../result/lambdas.js';
 import {type Loaded, loadAsset, loadResult} from '../result/load.js';
 import {clearProblem, showMessage, showProblem} from './problem.js';
 import type {Viewing} from './viewing.js';
@@ -25,6 +26,7 @@ export class Session {
   onClose?: () => void;
   readonly #viewing: Viewing;
   readonly #progress = new ProgressView();
+  readonly #gallery = new LambdaGallery();
   #running: AbortController | undefined;
   #last: (signal: AbortSignal) => Promise<void> = async () => {};
 
@@ -34,9 +36,7 @@ export class Session {
     $('retry').addEventListener('click', () => void this.#guarded(this.#last));
     $('key').addEventListener('keydown', ({key}) => key === 'Enter' && void this.#guarded(this.#last));
     $('lambda-shown').addEventListener('change', () => {
-      const {job} = this;
-      const lambda = Number($<HTMLSelectElement>('lambda-shown').value);
-      if (job) void this.#guarded((signal) => this.#show(job, lambda, this.kept?.name ?? job.id, signal));
+      this.#choose(Number($<HTMLSelectElement>('lambda-shown').value));
     });
   }
 
@@ -64,8 +64,17 @@ export class Session {
     this.onClose?.();
   }
 
+  /** Shows the map of another lambda of the job. */
+  #choose(lambda: number): void {
+    const {job} = this;
+    if (!job) return;
+    $<HTMLSelectElement>('lambda-shown').value = String(lambda);
+    void this.#guarded((signal) => this.#show(job, lambda, this.kept?.name ?? job.id, signal));
+  }
+
   #leaveJob(): void {
     this.job = undefined;
+    this.#gallery.hide();
     show($('result'), false);
     show($('lambda-row'), false);
   }
@@ -114,6 +123,7 @@ export class Session {
     const loaded = await loadResult(job, lambda, this.opened?.model, signal);
     signal.throwIfAborted();
     this.take(job, loaded, lambda, name);
+    this.#gallery.show(job, loaded.report, lambda, (other) => this.#choose(other));
     this.#progress.end(`Done: ${count(loaded.report.charts.length, 'chart')}.`);
   }
 
@@ -122,7 +132,10 @@ export class Session {
     const {report, model} = loaded;
     if (kind !== 'draft') this.job = job;
     if (kind === 'live') history.replaceState(null, '', hashOf({job: job.id, name}));
-    if (kind !== 'whole') show($('lambda-row'), false);
+    if (kind !== 'whole') {
+      show($('lambda-row'), false);
+      this.#gallery.hide();
+    }
     this.loaded = loaded;
     const {width, height} = report.page;
     const what = this.#viewing.result(model, {
