@@ -26,7 +26,7 @@ export class LambdaGallery {
       this.#job = job.id;
       const cards = curve.map(({lambda, distortion: {angle, area}}) => {
         const pictures = [el('img', {alt: '', width: SIZE, height: SIZE}), el('img', {alt: '', width: SIZE, height: SIZE})] as const;
-        const button = el('button', {type: 'button', value: String(lambda)}, ...pictures, `λ ${lambda}: angles ${fixed(angle, 3)}, areas ${fixed(area, 3)}`);
+        const button = el('button', {type: 'button', value: String(lambda)}, ...pictures, el('span', {}, `λ ${lambda}: angles ${fixed(angle, 3)}, areas ${fixed(area, 3)}`));
         button.addEventListener('click', () => onChoose(lambda));
         return {lambda, button, pictures};
       });
