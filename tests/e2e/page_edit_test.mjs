@@ -201,20 +201,45 @@ describe("by hand", { skip: missing }, () => {
     assert.deepEqual(page.complaints, []);
   });
 
+  test("a draft is read from its file, and looks like the result that follows", async (t) => {
+    const page = await bench.visit(t);
+    await page.check("#preset-chart");
+    await page.selectOption("[name=method]", "hybrid");
+    await page.fill("#lambda", "0");
+    await unwrap(page, bench.file("cap.obj", cap()));
+    const first = await shot(page, "#flat");
+    const asked = [];
+    page.on("request", (one) => asked.push(new URL(one.url()).pathname.split("/").at(-1)));
+    const move = (event) => page.evaluate((kind) => {
+      const slider = document.getElementById("balance");
+      slider.value = "100";
+      slider.dispatchEvent(new Event(kind));
+    }, event);
+    await move("input");
+    await page.locator("#live", { hasText: "(draft)" }).waitFor();
+    const draft = await shot(page, "#flat");
+    assert.ok(asked.includes("result") && !asked.includes("result.json"), asked.join());
+    await move("change");
+    await page.locator("#live", { hasText: /^λ 100: angles [\d.]+, areas [\d.]+\.$/ }).waitFor();
+    const last = await shot(page, "#flat");
+    const [near, far] = [await difference(page, draft, last, 64), await difference(page, first, last, 64)];
+    assert.ok(near < far / 2, `${near} of the draft, ${far} of the map before`);
+  });
+
   test("a draft that nobody waits for any more is removed", async (t) => {
     const page = await bench.visit(t);
     await page.selectOption("[name=method]", "hybrid");
     await unwrap(page, bench.file("cap.obj", cap()));
     let go;
     const held = new Promise((resolve) => { go = resolve; });
-    const asked = page.waitForRequest("**/result.json");
-    await page.route("**/result.json", async (route) => {
+    const asked = page.waitForRequest("**/jobs/*/result");
+    await page.route("**/jobs/*/result", async (route) => {
       await held;
       await route.continue();
     });
     await page.focus("#balance");
     await page.evaluate(() => document.getElementById("balance").dispatchEvent(new Event("input")));
-    const draft = new URL((await asked).url()).pathname.replace("/result.json", "");
+    const draft = new URL((await asked).url()).pathname.replace("/result", "");
     await openMesh(page, bench.file("next.obj", cap(6)));
     const removed = page.waitForRequest((one) => one.method() === "DELETE" && one.url().endsWith(draft));
     go();

@@ -4,11 +4,14 @@ import {$} from '../base/dom.js';
 import {fixed} from '../base/words.js';
 import {Latest} from '../edit/latest.js';
 import {type Job, type OptionValues, type SentMesh, UnwrapdError, cancel, ended} from '../job/run.js';
-import {loadResult} from '../result/load.js';
+import {loadDraft, loadResult} from '../result/load.js';
 import type {Session} from './session.js';
 
 /** Iterations of a map that is shown while the slider moves: no more can be told by the eye. */
 const DRAFT = {guarantee: 'none', stop: {iterations: 10}};
+
+/** The file that is read the fastest. */
+const PLAIN = {output: 'glb', compression: 'none'};
 
 interface Wanted {
   options: OptionValues;
@@ -37,10 +40,15 @@ export class Balancing {
     return Boolean(this.#session.sent && this.#session.loaded);
   }
 
+  /** Whether files of the mesh are small: they have no images in them. */
+  get #isLight(): boolean {
+    return !this.#session.opened?.model.looks?.some(({image}) => image);
+  }
+
   /** A map for these options soon. Drafts are removed from the server once they are shown, or not wanted any more. */
   ask(options: OptionValues, label: string, isDraft: boolean): void {
     if (!this.isPossible) return;
-    this.#latest.ask({options: isDraft ? {...options, ...DRAFT} : options, label, isDraft, since: performance.now()});
+    this.#latest.ask({options: isDraft ? {...options, ...DRAFT, ...(this.#isLight ? PLAIN : {})} : options, label, isDraft, since: performance.now()});
   }
 
   /** Another mesh: what was asked for of the last is not wanted any more. */
@@ -58,7 +66,7 @@ export class Balancing {
       try {
         await this.#show(await ended(job, watcher), wanted, sent);
       } finally {
-        if (wanted.isDraft) await cancel(job).catch(() => {});
+        if (wanted.isDraft) cancel(job).catch(() => {}); // the next one need not wait for it
       }
     } catch (error) {
       if (sent === this.#session.sent) $('live').textContent = `${wanted.label}: ${error instanceof UnwrapdError ? error.detail : String(error)}`;
@@ -70,7 +78,7 @@ export class Balancing {
     const isWanted = () => sent === this.#session.sent && !this.#session.isBusy; // nothing else was begun
     if (job.problem) throw new UnwrapdError(job.problem);
     if (!isWanted()) return;
-    const loaded = await loadResult(job, undefined, opened!.model);
+    const loaded = isDraft && this.#isLight ? await loadDraft(job) : await loadResult(job, undefined, opened!.model);
     if (!isWanted()) return;
     this.#session.take(job, loaded, undefined, opened!.name, isDraft ? 'draft' : 'live');
     const {angle, area} = loaded.report.distortion;

@@ -130,26 +130,28 @@ export class Session {
   /** Shows a result. live: what is on the page changes in place; a draft has no address and no files. */
   take(job: Job, loaded: Loaded, lambda: number | undefined, name: string, kind: 'whole' | 'live' | 'draft' = 'whole'): void {
     const {report, model} = loaded;
-    if (kind !== 'draft') this.job = job;
     if (kind === 'live') history.replaceState(null, '', hashOf({job: job.id, name}));
     if (kind !== 'whole') {
       show($('lambda-row'), false);
       this.#gallery.hide();
     }
-    this.loaded = loaded;
     const {width, height} = report.page;
     const what = this.#viewing.result(model, {
       aspect: width / height, pages: report.pages, mayOverlap: kind !== 'draft' && report.overlaps !== 0,
       asset: kind === 'draft' ? undefined : () => loadAsset(job, lambda),
     });
-    this.kept = {job, report, lambda, what, name};
+    if (kind !== 'draft') {
+      this.job = job;
+      this.loaded = loaded;
+      this.kept = {job, report, lambda, what, name};
+    }
     showFigures(report);
     listCharts(this.#viewing.charts, ({island}) => {
       this.#viewing.viewer.selectIsland(island);
       $('views').scrollIntoView({block: 'nearest'});
     });
     if (kind === 'draft') $('downloads').replaceChildren('This is a draft. Let the slider go for a result.');
-    else listDownloads(this.kept, showProblem);
+    else listDownloads(this.kept!, showProblem);
     this.onResult?.();
   }
 

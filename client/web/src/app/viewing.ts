@@ -92,7 +92,7 @@ export class Viewing {
   result(model: Model, {aspect, pages, mayOverlap, asset}: Result): Shown {
     const last = this.#after ?? this.#before;
     const surface = isSame(last?.surface, model) ? last!.surface : surfaceOf(model);
-    this.#after = shown(surface, mapped(surface, uvOf(model, 0)!), aspect, pages);
+    this.#after = shown(surface, mapped(surface, uvOf(model, 0)!, surface === last?.surface ? last.map : undefined), aspect, pages);
     this.#after.skin = once(async () => sameFaces(await asset?.().then(skinOf), surface) ?? sameFaces(await this.#before?.skin?.(), surface));
     if (mayOverlap) this.#after.overlapping = overlappingFaces(this.#after.map!);
     $<HTMLInputElement>('after').checked = true;

@@ -49,15 +49,16 @@ export function stretches(positions: Float32Array, uv: Float32Array, aspect = 1)
   return result;
 }
 
-/** D_angle and D_area of the faces that count: 2 is ideal. */
-export function deviation({large, small, area}: Stretches, counts: (face: number) => boolean): {angle: number; area: number} {
-  let [weight, angle, both] = [0, 0, 0];
-  for (let f = 0; f < area.length; f += 1) {
-    if (!counts(f) || !(area[f]! > 0)) continue;
+/** D_angle and D_area of each island: 2 is ideal. */
+export function deviations({large, small, area}: Stretches, island: Uint32Array, islandCount: number): {angle: number; area: number}[] {
+  const [weights, angles, areas] = [new Float64Array(islandCount), new Float64Array(islandCount), new Float64Array(islandCount)];
+  island.forEach((which, f) => {
+    const a = area[f]!;
+    if (!(a > 0)) return;
     const [s, t] = [large[f]!, Math.max(small[f]!, 1e-6)];
-    weight += area[f]!;
-    angle += area[f]! * (s / t + t / s);
-    both += area[f]! * (s * t + 1 / (s * t));
-  }
-  return weight > 0 ? {angle: angle / weight, area: both / weight} : {angle: 2, area: 2};
+    weights[which] = weights[which]! + a;
+    angles[which] = angles[which]! + a * (s / t + t / s);
+    areas[which] = areas[which]! + a * (s * t + 1 / (s * t));
+  });
+  return Array.from(weights, (weight, i) => (weight > 0 ? {angle: angles[i]! / weight, area: areas[i]! / weight} : {angle: 2, area: 2}));
 }

@@ -26,12 +26,14 @@ function meets(surface: Surface, uv: Float32Array, h: number, twin: number): boo
   return isAlong ? same(h, twin) && same(next(h), next(twin)) : same(h, next(twin)) && same(next(h), twin);
 }
 
-export function mapped(surface: Surface, uv: Float32Array): Mapped {
+/** last: another map of the surface, whose islands are taken where the seams are the same. */
+export function mapped(surface: Surface, uv: Float32Array, last?: Mapped): Mapped {
   const across = (h: number, twin: number) => meets(surface, uv, h, twin);
-  const {of: island, count: islandCount} = joined(surface, across);
   const seams: number[] = [];
   surface.twins.forEach((twin, h) => {
     if (twin < 0 || (h < twin && !across(h, twin))) seams.push(h);
   });
+  if (last?.seams.length === seams.length && seams.every((h, i) => h === last.seams[i])) return {...last, uv};
+  const {of: island, count: islandCount} = joined(surface, across);
   return {uv, island, islandCount, seams: Uint32Array.from(seams)};
 }

@@ -1,7 +1,7 @@
 // The charts of a layout as a list: the worst first, each a button that shows it in both views.
 import {$, el} from '../base/dom.js';
 import {count, fixed} from '../base/words.js';
-import {deviation} from '../mesh/distortion.js';
+import {deviations} from '../mesh/distortion.js';
 import type {Shown} from '../view/paint.js';
 
 const MOST = 100;
@@ -14,21 +14,13 @@ export interface Chart {
   flipped: number;
 }
 
-function facesOf({map}: Shown): number[][] {
-  const faces: number[][] = Array.from({length: map!.islandCount}, () => []);
-  map!.island.forEach((island, f) => faces[island]!.push(f));
-  return faces;
-}
-
 /** Charts, the most distorted first. */
-export function chartsOf(what: Shown): Chart[] {
-  if (!what.map || !what.figures) return [];
-  const {large, small, area, flipped} = what.figures;
-  const charts = facesOf(what).map((faces, island) => {
-    const of = <T extends Float32Array | Uint8Array>(values: T) => values.constructor as unknown as {from(list: number[]): T};
-    const picked = <T extends Float32Array | Uint8Array>(values: T): T => of(values).from(faces.map((f) => values[f]!));
-    const own = {large: picked(large), small: picked(small), area: picked(area), flipped: picked(flipped)};
-    return {island, faces: faces.length, ...deviation(own, () => true), flipped: own.flipped.reduce((sum, f) => sum + f, 0)};
+export function chartsOf({map, figures}: Shown): Chart[] {
+  if (!map || !figures) return [];
+  const charts = deviations(figures, map.island, map.islandCount).map((figure, island) => ({island, faces: 0, flipped: 0, ...figure}));
+  map.island.forEach((which, f) => {
+    charts[which]!.faces += 1;
+    charts[which]!.flipped += figures.flipped[f]!;
   });
   return charts.sort((a, b) => b.angle + b.area - a.angle - a.area);
 }

@@ -2,7 +2,7 @@
 import {documentOf, meshesWithTriangles, placesOf} from '../files/scene.js';
 import {type Job, type Report, type Result} from '../job/run.js';
 import {getBlob, getJson} from '../job/server.js';
-import {IDENTITY, type Model, uvOfCorners} from '../mesh/model.js';
+import {IDENTITY, type Model, type UvSet, uvOfCorners} from '../mesh/model.js';
 
 export interface Loaded {
   report: Report;
@@ -40,4 +40,11 @@ export async function loadResult(job: Job, lambda: number | undefined, open: Mod
 export async function loadAsset(job: Job, lambda: number | undefined): Promise<Model> {
   const blob = await getBlob(job.links.result + ofLambda(lambda), 'model/gltf-binary');
   return (await import('../files/gltf.js')).readGltf(await blob.arrayBuffer(), []);
+}
+
+/** A result that is soon replaced: read from the file itself, which is there when the job ends; JSON is made when asked for. */
+export async function loadDraft(job: Job): Promise<Loaded> {
+  const [report, {parts}] = await Promise.all([getJson<Report>(job.links.report), loadAsset(job, undefined)]);
+  const isWritten = ({name}: UvSet) => name === `TEXCOORD_${report.texcoord}`;
+  return {report, model: {parts: parts.map((part) => ({...part, uvSets: part.uvSets.filter(isWritten)}))}};
 }

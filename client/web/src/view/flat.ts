@@ -10,7 +10,11 @@ const MARGIN = 1.06;
 /** Points of the page as points of the scene: U counts the width of a texture that is not square. */
 export function flat(uv: ArrayLike<number>, aspect: number, height = 0): Float32Array {
   const positions = new Float32Array((uv.length / 2) * 3);
-  for (let c = 0; c < uv.length / 2; c += 1) positions.set([uv[2 * c]! * aspect, uv[2 * c + 1]!, height], 3 * c);
+  for (let c = 0; c < uv.length / 2; c += 1) {
+    positions[3 * c] = uv[2 * c]! * aspect;
+    positions[3 * c + 1] = uv[2 * c + 1]!;
+    positions[3 * c + 2] = height;
+  }
   return positions;
 }
 

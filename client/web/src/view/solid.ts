@@ -52,7 +52,8 @@ export class SolidView extends Stage {
     const isNew = this.#surface !== surface;
     this.#surface = surface;
     if (isNew) this.#normals = normalsOf(surface);
-    this.setTriangles(surface.positions, this.#normals, uv);
+    if (isNew || !uv) this.setTriangles(surface.positions, this.#normals, uv);
+    else this.setUv(uv);
     if (isNew && !keepsView) {
       this.#home = boxOf(surface.positions);
       this.fit();

@@ -2,7 +2,7 @@
 // lines and marks in it.
 import {
   BufferAttribute, BufferGeometry, type Camera, Color, DoubleSide, LineBasicMaterial, LineSegments, type Material, Mesh,
-  MeshBasicMaterial, Points, PointsMaterial, Scene, type Texture, WebGLRenderer,
+  MeshBasicMaterial, Points, PointsMaterial, Scene, Sphere, type Texture, WebGLRenderer,
 } from 'three';
 
 import {Hatching} from './hatching.js';
@@ -26,7 +26,9 @@ export interface Theme {
 }
 
 function geometryOf(positions: Float32Array): BufferGeometry {
-  return new BufferGeometry().setAttribute('position', new BufferAttribute(positions, 3));
+  const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(positions, 3));
+  geometry.boundingSphere = new Sphere(); // else it is computed to sort what is drawn, which has an order of its own
+  return geometry;
 }
 
 export abstract class Stage {
@@ -69,6 +71,15 @@ export abstract class Stage {
     geometry.setAttribute('uv', new BufferAttribute(this.#uv.slice(), 2));
     geometry.setAttribute('color', new BufferAttribute(new Float32Array(positions.length).fill(0.5), 3));
     this.#mesh.geometry = this.#wire.geometry = geometry;
+    this.draw();
+  }
+
+  /** Other texture coordinates for the same triangles. */
+  protected setUv(uv: Float32Array): void {
+    this.#uv = uv;
+    const attribute = this.#mesh.geometry.getAttribute('uv') as BufferAttribute;
+    attribute.copyArray(uv);
+    attribute.needsUpdate = true;
     this.draw();
   }
 
