@@ -138,9 +138,10 @@ std::string to_text(const Scopes& scopes) {
 }
 
 KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::path& given)
-    : database_(file_in(data)), given_(given.empty() ? "" : sha256(key_in(given))) {
-  database_.check();
-  database_.run(kSchema);
+    : database_(store::DatabaseAddress(file_in(data)).open()),
+      given_(given.empty() ? "" : sha256(key_in(given))) {
+  database_->check(false);
+  database_->run(kSchema);
 }
 
 std::string KeyStore::add(ApiKey key) {
@@ -148,13 +149,15 @@ std::string KeyStore::add(ApiKey key) {
   const std::string digits = random_hex(kIdDigits / 2);
   const std::string text = std::string(kPrefix) + digits + "_" + random_hex(kSecretDigits / 2);
   const std::lock_guard lock(mutex_);
-  store::Statement(
-      database_,
-      "INSERT INTO keys (id, name, sha256, scopes, requests_per_minute, max_jobs, max_bytes,"
-      " created_ms) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
-      .with("k_" + digits, key.name, sha256(text), to_text(key.scopes), key.requests_per_minute,
-            key.quota.max_jobs, key.quota.max_bytes, now_ms())
-      .run();
+  database_->change([&] {
+    store::Statement(
+        *database_,
+        "INSERT INTO keys (id, name, sha256, scopes, requests_per_minute, max_jobs, max_bytes,"
+        " created_ms) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+        .with("k_" + digits, key.name, sha256(text), to_text(key.scopes), key.requests_per_minute,
+              key.quota.max_jobs, key.quota.max_bytes, now_ms())
+        .run();
+  });
   return text;
 }
 
@@ -165,7 +168,7 @@ std::optional<ApiKey> KeyStore::find(std::string_view text) {
   if (!of_form) return std::nullopt;
   const std::string id = "k_" + std::string(text.substr(kPrefix.size(), kIdDigits));
   const std::lock_guard lock(mutex_);
-  store::Statement statement(database_, std::string(kSelect) + "WHERE id = ?");
+  store::Statement statement(*database_, std::string(kSelect) + "WHERE id = ?");
   if (!statement.with(id).step()) return std::nullopt;
   if (!same(statement.text(kDigestColumn), sha256(text))) return std::nullopt;
   return key_of(statement);
@@ -176,14 +179,14 @@ bool KeyStore::has_any() { return !given_.empty() || !all().empty(); }
 std::optional<ApiKey> KeyStore::with_id(std::string_view id) {
   if (!given_.empty() && id == kGivenKeyId) return given_key(given_);
   const std::lock_guard lock(mutex_);
-  store::Statement statement(database_, std::string(kSelect) + "WHERE id = ?");
+  store::Statement statement(*database_, std::string(kSelect) + "WHERE id = ?");
   if (!statement.with(id).step()) return std::nullopt;
   return key_of(statement);
 }
 
 std::vector<ApiKey> KeyStore::all() {
   const std::lock_guard lock(mutex_);
-  store::Statement statement(database_, std::string(kSelect) + "ORDER BY seq");
+  store::Statement statement(*database_, std::string(kSelect) + "ORDER BY seq");
   std::vector<ApiKey> keys;
   while (statement.step()) keys.push_back(key_of(statement));
   return keys;
@@ -191,8 +194,10 @@ std::vector<ApiKey> KeyStore::all() {
 
 bool KeyStore::remove(std::string_view id) {
   const std::lock_guard lock(mutex_);
-  store::Statement(database_, "DELETE FROM keys WHERE id = ?").with(id).run();
-  return database_.changes() == 1;
+  return database_->change([&] {
+    store::Statement(*database_, "DELETE FROM keys WHERE id = ?").with(id).run();
+    return database_->changes() == 1;
+  });
 }
 
 }  // namespace unwrapd::server::access

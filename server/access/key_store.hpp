@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@
 #include <vector>
 
 #include "server/http/http.hpp"
-#include "server/store/database.hpp"
+#include "server/store/database_address.hpp"
 
 namespace unwrapd::server::access {
 
@@ -68,7 +69,7 @@ class KeyStore {
 
  private:
   std::mutex mutex_;
-  store::Database database_;
+  const std::unique_ptr<store::Database> database_;
   const std::string given_;  // SHA-256; empty: none
 };
 

@@ -16,6 +16,7 @@
 #include "server/store/data_directory.hpp"
 #include "server/store/job_rows.hpp"
 #include "server/store/schema.hpp"
+#include "server/store/sqlite_database.hpp"
 
 namespace unwrapd::server::backup {
 namespace {
@@ -73,7 +74,7 @@ api::Json copy_beside(const fs::path& data, const fs::path& to) {
   for (const char* file : {access::kSecretFile, kNotedFile})
     if (fs::exists(data / file)) digests[file] = copy_private(data / file, to / file);
   if (fs::exists(data / access::kKeysFile))
-    store::Database(data / access::kKeysFile).copy_to(to / access::kKeysFile);
+    store::SqliteDatabase(data / access::kKeysFile).copy_to(to / access::kKeysFile);
   for (const char* file : {store::kStoreFile, access::kKeysFile}) {
     if (!fs::exists(to / file)) continue;
     fs::permissions(to / file, fs::perms::owner_read | fs::perms::owner_write);
@@ -83,10 +84,10 @@ api::Json copy_beside(const fs::path& data, const fs::path& to) {
 }
 
 void make_backup(const fs::path& data, const fs::path& to, StoreReport& report) {
-  const store::Database live(data / store::kStoreFile);
+  const store::SqliteDatabase live(data / store::kStoreFile);
   live.copy_to(to / store::kStoreFile);
   {
-    store::Database copied(to / store::kStoreFile);
+    store::SqliteDatabase copied(to / store::kStoreFile);
     copied.check(true);
     copy_folders(live, copied, data, to, report);
     copied.run("UPDATE jobs SET state = 'queued', lease_ms = 0 WHERE state = 'running'");
@@ -134,7 +135,8 @@ bool was_told(const api::Json& manifest, const std::string& damage) {
 void check_backup(const fs::path& backup) {
   const api::Json manifest = read_manifest(backup);
   check_beside(backup, manifest);
-  const store::Database store(backup / store::kStoreFile, store::Database::Access::read);
+  const store::SqliteDatabase store(backup / store::kStoreFile,
+                                    store::SqliteDatabase::Access::read);
   store::refuse_newer(store);
   store.check(true);
   FolderCopy look(backup / kBlobs);
@@ -175,7 +177,7 @@ void note_unknown(const fs::path& data, const store::Database& store, StoreRepor
   if (lost > 0) report.notices.push_back(std::to_string(lost) + " folders are set aside in lost");
 }
 
-void check_database(const store::Database& database, StoreReport& report) {
+void check_database(const store::SqliteDatabase& database, StoreReport& report) {
   try {
     database.check(true);
   } catch (const Error& error) {
@@ -209,7 +211,7 @@ StoreReport back_up(const fs::path& data, const fs::path& to) {
                 to.string() +
                     " lies in the data directory, and the server removes unknown files there; name "
                     "a folder outside of it.");
-  store::require_current(store::Database(data / store::kStoreFile));
+  store::require_current(store::SqliteDatabase(data / store::kStoreFile));
   const fs::path part = fs::path(to) += ".part";
   for (const fs::path& there : {to, part}) {
     if (!fs::exists(fs::symlink_status(there))) continue;
@@ -238,7 +240,8 @@ StoreReport restore(const fs::path& backup, const fs::path& data) {
   StoreReport report;
   make_directories(data / kBlobs);
   FolderCopy copy(backup / kBlobs, data / kBlobs);
-  const store::Database store(backup / store::kStoreFile, store::Database::Access::read);
+  const store::SqliteDatabase store(backup / store::kStoreFile,
+                                    store::SqliteDatabase::Access::read);
   for (const KnownFolder& folder : known_folders(store))
     for (std::string& what : copy.take(folder)) report.damaged.push_back(std::move(what));
   add_counts(copy, report);
@@ -253,12 +256,13 @@ StoreReport check_store(const fs::path& data) {
   require_store(data);
   StoreReport report;
   const bool is_backup = fs::exists(data / kManifestFile);
-  const auto access = is_backup ? store::Database::Access::read : store::Database::Access::write;
+  const auto access =
+      is_backup ? store::SqliteDatabase::Access::read : store::SqliteDatabase::Access::write;
   if (is_backup) check_beside(data, read_manifest(data));
-  const store::Database store(data / store::kStoreFile, access);
+  const store::SqliteDatabase store(data / store::kStoreFile, access);
   check_database(store, report);
   if (fs::exists(data / access::kKeysFile))
-    check_database(store::Database(data / access::kKeysFile, access), report);
+    check_database(store::SqliteDatabase(data / access::kKeysFile, access), report);
   if (!report.damaged.empty()) return report;  // what it says of the files means nothing
   store::require_current(store);
   check_rows(store, report);

@@ -8,6 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "server/store/schema.hpp"
+#include "server/store/sqlite_database.hpp"
 
 namespace unwrapd::server::store {
 namespace {
@@ -45,7 +46,7 @@ std::filesystem::path store_in(const std::filesystem::path& data, const BlobStor
   if (folders == 0) return file;
   std::error_code none;  // what is opened to be written may lose a -wal file that is damaged
   const bool is_empty = std::filesystem::file_size(file, none) == 0 || none;
-  if (!is_empty && has_tables(Database(file, Database::Access::read))) return file;
+  if (!is_empty && has_tables(SqliteDatabase(file, SqliteDatabase::Access::read))) return file;
   throw Error(ErrorCode::storage_failed,
               "The file " + file.string() + " is missing or empty, and " +
                   (data / "blobs").string() + " has the files of " + std::to_string(folders) +

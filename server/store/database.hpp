@@ -1,78 +1,114 @@
 #pragma once
-// SQLite with values that clean up after themselves: a connection, a statement, a transaction.
-// Every failure is InsideError{storage_failed}, whose message tells clients nothing of SQLite, or
+// Where rows are kept, behind one interface: a database with its transactions, a prepared
+// statement. Nothing above it knows which engine there is. Every failure is
+// InsideError{storage_failed}, whose message tells clients nothing of the engine, or
 // Error{storage_full} when there is no room to write.
 
-#include <atomic>
 #include <cstdint>
-#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-
-struct sqlite3;
-struct sqlite3_stmt;
+#include <type_traits>
+#include <utility>
 
 namespace unwrapd::server::store {
 
-/// One connection, in WAL mode with synchronous FULL: a commit survives a loss of power.
-/// Not for use by two threads at once.
-class Database {
- public:
-  enum class Access { write, read };
+/// What engines call by different names in one SQL text.
+struct Dialect {
+  std::string_view least;     ///< the function for the smaller of two values
+  std::string_view greatest;  ///< and the larger
+  bool has_index_hints = false;
 
-  /// To write: made when it is missing.
-  explicit Database(const std::filesystem::path& path, Access access = Access::write);
-
-  /// Reads the whole file. Throws when it is damaged. indices: whether they say the same as the
-  /// tables, too, which takes longer.
-  void check(bool indices = false) const;
-  /// Makes a file of the state of one moment, while others write (SQLite's backup API). It has no
-  /// -wal file beside it, and is on the disk on return.
-  void copy_to(const std::filesystem::path& to) const;
-  /// Runs statements that return nothing.
-  void run(const char* sql);
-  /// Rows that the last INSERT, UPDATE or DELETE touched.
-  [[nodiscard]] int changes() const;
-  [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
-  /// Whether a page of the file was found damaged since it was opened. Thread-safe.
-  [[nodiscard]] bool is_damaged() const { return damaged_; }
-  /// Throws what the last failure of this connection was.
-  [[noreturn]] void fail() const;
-
- private:
-  struct Close {
-    void operator()(sqlite3* handle) const;
-  };
-  std::string name_;  // of the file
-  std::unique_ptr<sqlite3, Close> handle_;
-  mutable std::atomic<bool> damaged_ = false;
+  /// What follows the name of a table that is to be read by this index.
+  [[nodiscard]] std::string by_index(std::string_view name) const {
+    return has_index_hints ? " INDEXED BY " + std::string(name) : std::string();
+  }
 };
 
-/// Changes that are made together or, when it goes without commit(), not at all.
-class Transaction {
+/// One engine's prepared statement; see Statement.
+class Cursor {
  public:
-  explicit Transaction(Database& database) : database_(database) {
-    database.run("BEGIN IMMEDIATE");
+  Cursor() = default;
+  Cursor(const Cursor&) = delete;
+  Cursor& operator=(const Cursor&) = delete;
+  virtual ~Cursor() = default;
+
+  virtual void bind(int position, std::string_view text) = 0;
+  virtual void bind(int position, std::int64_t number) = 0;
+  virtual bool step() = 0;
+  [[nodiscard]] virtual std::int64_t number(int column) const = 0;
+  [[nodiscard]] virtual std::string text(int column) const = 0;
+};
+
+/// How many statements a change consists of.
+enum class Extent { one, several };
+
+/// One connection, whose commits survive a loss of power. Not for use by two threads at once.
+class Database {
+ public:
+  Database() = default;
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+  virtual ~Database() = default;
+
+  /// Runs statements that return nothing.
+  virtual void run(const std::string& sql) = 0;
+  [[nodiscard]] virtual std::unique_ptr<Cursor> prepare(std::string_view sql) const = 0;
+  /// Rows that the last INSERT, UPDATE or DELETE touched.
+  [[nodiscard]] virtual int changes() const = 0;
+  [[nodiscard]] virtual const Dialect& dialect() const = 0;
+
+  /// The version of the tables, 0 before the first; and the statements that lead to each version
+  /// from the one before. An empty step has nothing to do.
+  [[nodiscard]] virtual std::int64_t version() const = 0;
+  [[nodiscard]] virtual std::string step_to(std::int64_t version) const = 0;
+  /// Notes it, within the transaction of the step.
+  virtual void set_version(std::int64_t version) = 0;
+
+  /// Throws when what it has stored is found damaged. indices: whether they say the same as the
+  /// tables, too, which takes longer.
+  virtual void check(bool indices) const = 0;
+  /// Whether it was found damaged since it was opened. Thread-safe.
+  [[nodiscard]] virtual bool is_damaged() const { return false; }
+
+  /// Makes a change of one statement; returns what make() does. make() may be called again, when it
+  /// is known that nothing of the first time remains.
+  template <class Make>
+  auto change(const Make& make) {
+    return apply(Extent::one, make);
   }
-  Transaction(const Transaction&) = delete;
-  Transaction& operator=(const Transaction&) = delete;
-  ~Transaction();
-  void commit();
+  /// The same of several statements: all are made or, where something is thrown, none.
+  template <class Make>
+  auto transact(const Make& make) {
+    return apply(Extent::several, make);
+  }
 
  private:
-  Database& database_;
-  bool committed_ = false;
+  virtual void apply_all(Extent extent, const std::function<void()>& make) = 0;
+
+  template <class Make>
+  auto apply(Extent extent, const Make& make) {
+    using Result = std::invoke_result_t<const Make&>;
+    if constexpr (std::is_void_v<Result>) {
+      apply_all(extent, make);
+    } else {
+      std::optional<Result> result;
+      apply_all(extent, [&] { result.emplace(make()); });
+      return std::move(*result);
+    }
+  }
 };
 
 /// A prepared statement, which must not outlive its database. Values are bound by position from 1;
 /// columns are read from 0.
 class Statement {
  public:
-  Statement(const Database& database, std::string_view sql);
+  Statement(const Database& database, std::string_view sql) : cursor_(database.prepare(sql)) {}
 
-  void bind(int position, std::string_view text);
-  void bind(int position, std::int64_t number);
+  void bind(int position, std::string_view text) { cursor_->bind(position, text); }
+  void bind(int position, std::int64_t number) { cursor_->bind(position, number); }
 
   /// Binds all values in order, from position 1.
   template <class... Values>
@@ -83,19 +119,18 @@ class Statement {
   }
 
   /// True when there is a row to read, false at the end.
-  bool step();
+  bool step() { return cursor_->step(); }
   /// Runs to the end, ignoring rows.
-  void run();
+  void run() {
+    while (step()) {
+    }
+  }
 
-  [[nodiscard]] std::int64_t number(int column) const;
-  [[nodiscard]] std::string text(int column) const;
+  [[nodiscard]] std::int64_t number(int column) const { return cursor_->number(column); }
+  [[nodiscard]] std::string text(int column) const { return cursor_->text(column); }
 
  private:
-  struct Finalize {
-    void operator()(sqlite3_stmt* statement) const;
-  };
-  const Database* database_;
-  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  std::unique_ptr<Cursor> cursor_;
 };
 
 }  // namespace unwrapd::server::store

@@ -44,10 +44,11 @@ JobOutcome ended(JobState state, const Error& why, std::string_view job) {
   return outcome;
 }
 
-JobStore::JobStore(const std::filesystem::path& path, RetentionClock::Read read) : database_(path) {
-  database_.check();
-  migrate(database_);
-  Statement noted(database_, "SELECT set_by_ms, noted_ms, noted_elapsed_ms, boot FROM written");
+JobStore::JobStore(const DatabaseAddress& address, RetentionClock::Read read)
+    : database_(address.open()) {
+  database_->check(false);
+  migrate(*database_);
+  Statement noted(*database_, "SELECT set_by_ms, noted_ms, noted_elapsed_ms, boot FROM written");
   if (noted.step())
     noted_ = {.times = {noted.number(1), noted.number(2), noted.text(3)},
               .set_by_ms = noted.number(0)};
@@ -57,7 +58,6 @@ JobStore::JobStore(const std::filesystem::path& path, RetentionClock::Read read)
 }
 
 std::int64_t JobStore::note_time() {
-  const Writing writing(*this);
   const Times clocks = time_->clocks();
   const std::int64_t set_by_ms = now().set_by_ms;
   const std::int64_t by_ms = set_by_ms - noted_.set_by_ms;
@@ -65,26 +65,23 @@ std::int64_t JobStore::note_time() {
   const bool is_noted = noted_.times.of_day_ms != 0 && noted_.times.boot == clocks.boot &&
                         clocks.elapsed_ms - noted_.times.elapsed_ms < kNotePauseMs;
   if (is_noted && !was_set) return 0;
-  Statement(database_,
-            "UPDATE written SET set_by_ms = ?, noted_ms = ?, noted_elapsed_ms = ?, boot = ?")
-      .with(set_by_ms, clocks.of_day_ms, clocks.elapsed_ms, clocks.boot)
-      .run();
+  update("UPDATE written SET set_by_ms = ?, noted_ms = ?, noted_elapsed_ms = ?, boot = ?",
+         set_by_ms, clocks.of_day_ms, clocks.elapsed_ms, clocks.boot);
   noted_ = {.times = clocks, .set_by_ms = set_by_ms};
   return was_set ? by_ms : 0;
 }
 
 void JobStore::check_writable() {
-  if (database_.is_damaged()) {
+  if (database_->is_damaged()) {
     throw Error(ErrorCode::storage_failed,
                 "The server's store is damaged; the operator must repair it.");
   }
   if (!write_failed_) return;
   try {
-    const Writing writing(*this);
-    Transaction both(database_);
-    database_.run("UPDATE jobs SET lease_ms = 0 WHERE seq < 0");
-    database_.run("UPDATE written SET times = times + 1");
-    both.commit();
+    transact([&] {
+      database_->run("UPDATE jobs SET lease_ms = 0 WHERE seq < 0");
+      database_->run("UPDATE written SET times = times + 1");
+    });
   } catch (const Error& error) {  // results are read from a full disk, too, and removed from it
     if (error.code() != ErrorCode::storage_full) throw;
   }
@@ -93,24 +90,25 @@ void JobStore::check_writable() {
 template <class... Values>
 std::optional<JobRecord> JobStore::first(std::string_view rest, const Values&... values) {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_, select_jobs(rest));
+  Statement statement(*database_, select_jobs(rest));
   std::vector<JobRecord> found = job_rows(statement.with(values...));
   if (found.empty()) return std::nullopt;
   return std::move(found.front());
 }
 
 std::int64_t JobStore::insert(const JobRecord& job) {
-  const Writing writing(*this);
-  Statement statement(database_, insert_statement());
-  statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, text_of(job.options),
-                 text_of(job.notes), job.input.sha256, job.input.bytes,
-                 text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
-                 job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace,
-                 job.asked);
-  statement.step();
-  const std::int64_t seq = statement.number(0);
-  statement.run();
-  return seq;
+  return change([&] {
+    Statement statement(*database_, insert_statement());
+    statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, text_of(job.options),
+                   text_of(job.notes), job.input.sha256, job.input.bytes,
+                   text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
+                   job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace,
+                   job.asked);
+    statement.step();
+    const std::int64_t seq = statement.number(0);
+    statement.run();
+    return seq;
+  });
 }
 
 std::optional<JobRecord> JobStore::find(std::string_view id) { return first("WHERE id = ?", id); }
@@ -121,25 +119,25 @@ std::optional<JobRecord> JobStore::find_request(std::string_view owner,
 }
 
 std::optional<JobRecord> JobStore::find_same(std::string_view owner, std::string_view content_key) {
-  return first(
-      "INDEXED BY jobs_by_content"
-      " WHERE owner = ? AND content_key = ? AND state = 'succeeded' AND expired = 0"
-      " ORDER BY seq DESC LIMIT 1",
-      owner, content_key);
+  return first(database_->dialect().by_index("jobs_by_content") +
+                   " WHERE owner = ? AND content_key = ? AND state = 'succeeded' AND expired = 0"
+                   " ORDER BY seq DESC LIMIT 1",
+               owner, content_key);
 }
 
 std::vector<JobRecord> JobStore::unfinished() {
   const std::lock_guard lock(mutex_);
   Statement statement(
-      database_,
-      select_jobs("WHERE seq IN (SELECT seq FROM jobs INDEXED BY jobs_in_state"
+      *database_,
+      select_jobs("WHERE seq IN (SELECT seq FROM jobs" +
+                  database_->dialect().by_index("jobs_in_state") +
                   " WHERE state NOT IN ('succeeded', 'failed', 'cancelled')) ORDER BY seq"));
   return job_rows(statement);
 }
 
 std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_, list_statement(filter));
+  Statement statement(*database_, list_statement(filter));
   const std::string state(filter.state ? state_name(*filter.state) : "");
   const std::int64_t before = filter.before_seq > 0 ? filter.before_seq : kAnySeq;
   return job_rows(
@@ -147,53 +145,50 @@ std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
 }
 
 std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t lease_ms) {
-  const Writing writing(*this);
-  Statement statement(database_,
-                      "UPDATE jobs SET state = 'running', attempt = attempt + 1, lease_ms = ?2"
-                      " WHERE seq = (SELECT seq FROM jobs WHERE state = 'queued' AND owner = ?1"
-                      " ORDER BY urgency, seq LIMIT 1)" +
-                          returning_jobs());
-  std::vector<JobRecord> taken = job_rows(statement.with(owner, lease_ms));
-  if (taken.empty()) return std::nullopt;
-  return std::move(taken.front());
+  return change([&]() -> std::optional<JobRecord> {
+    Statement statement(*database_,
+                        "UPDATE jobs SET state = 'running', attempt = attempt + 1, lease_ms = ?2"
+                        " WHERE seq = (SELECT seq FROM jobs WHERE state = 'queued' AND owner = ?1"
+                        " ORDER BY urgency, seq LIMIT 1)" +
+                            returning_jobs());
+    std::vector<JobRecord> taken = job_rows(statement.with(owner, lease_ms));
+    if (taken.empty()) return std::nullopt;
+    return std::move(taken.front());
+  });
 }
 
 void JobStore::renew(std::string_view id, std::int64_t lease_ms) {
-  const Writing writing(*this);
-  Statement(database_, "UPDATE jobs SET lease_ms = ?2 WHERE id = ?1 AND state = 'running'")
-      .with(id, lease_ms)
-      .run();
+  update("UPDATE jobs SET lease_ms = ?2 WHERE id = ?1 AND state = 'running'", id, lease_ms);
 }
 
 std::vector<JobRecord> JobStore::lapsed(std::int64_t now_ms) {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_,
+  Statement statement(*database_,
                       select_jobs("WHERE state = 'running' AND lease_ms < ? ORDER BY seq"));
   return job_rows(statement.with(now_ms));
 }
 
 bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
-  const Writing writing(*this);
   const std::int64_t kept_since_ms = outcome.finished_ms - outcome.set_by_ms;
-  Transaction both(database_);
-  Statement statement(database_,
-                      "UPDATE jobs SET state = ?4, result_format = ?5, problem = ?6,"
-                      " last_event = ?7, finished_ms = ?8, kept_since_ms = ?10, stored_bytes = ?9"
-                      " WHERE id = ?1 AND attempt = ?2 AND state = ?3");
-  statement
-      .with(known.id, std::int64_t{known.attempt}, state_name(known.state),
-            state_name(outcome.state), outcome.result_format, text_of(outcome.problem),
-            outcome.last_event, outcome.finished_ms, outcome.stored_bytes, kept_since_ms)
-      .run();
-  if (database_.changes() != 1) return false;
-  queue_delivery(known, outcome);
-  both.commit();
-  return true;
+  return transact([&] {
+    Statement statement(*database_,
+                        "UPDATE jobs SET state = ?4, result_format = ?5, problem = ?6,"
+                        " last_event = ?7, finished_ms = ?8, kept_since_ms = ?10, stored_bytes = ?9"
+                        " WHERE id = ?1 AND attempt = ?2 AND state = ?3");
+    statement
+        .with(known.id, std::int64_t{known.attempt}, state_name(known.state),
+              state_name(outcome.state), outcome.result_format, text_of(outcome.problem),
+              outcome.last_event, outcome.finished_ms, outcome.stored_bytes, kept_since_ms)
+        .run();
+    if (database_->changes() != 1) return false;
+    queue_delivery(known, outcome);
+    return true;
+  });
 }
 
 void JobStore::queue_delivery(const JobRecord& job, const JobOutcome& outcome) {
   if (job.webhook.empty()) return;
-  Statement(database_,
+  Statement(*database_,
             "INSERT INTO deliveries (job, owner, trace, url, body, due_ms)"
             " VALUES (?, ?, ?, ?, ?, ?)")
       .with(job.id, job.owner, job.trace, job.webhook, outcome.delivery,
@@ -202,41 +197,33 @@ void JobStore::queue_delivery(const JobRecord& job, const JobOutcome& outcome) {
 }
 
 void JobStore::set_aside(const JobRecord& unreadable, const JobOutcome& outcome) {
-  const Writing writing(*this);
-  Transaction both(database_);
-  Statement(database_,
-            "UPDATE jobs SET state = ?2, problem = ?3, finished_ms = ?4, kept_since_ms = ?5,"
-            " options = '{}', notes = '[]', buffers = '[]', attempt = ?6, crashes = 0, "
-            "process_ends = 0, urgency = ?7,"
-            " stored_bytes = 0 WHERE seq = ?1")
-      .with(unreadable.seq, state_name(outcome.state), text_of(outcome.problem),
-            outcome.finished_ms, outcome.finished_ms - outcome.set_by_ms,
-            std::int64_t{std::max(0, unreadable.attempt)}, std::int64_t{kUsualUrgency})
-      .run();
-  queue_delivery(unreadable, outcome);
-  both.commit();
+  transact([&] {
+    Statement(*database_,
+              "UPDATE jobs SET state = ?2, problem = ?3, finished_ms = ?4, kept_since_ms = ?5,"
+              " options = '{}', notes = '[]', buffers = '[]', attempt = ?6, crashes = 0, "
+              "process_ends = 0, urgency = ?7,"
+              " stored_bytes = 0 WHERE seq = ?1")
+        .with(unreadable.seq, state_name(outcome.state), text_of(outcome.problem),
+              outcome.finished_ms, outcome.finished_ms - outcome.set_by_ms,
+              std::int64_t{std::max(0, unreadable.attempt)}, std::int64_t{kUsualUrgency})
+        .run();
+    queue_delivery(unreadable, outcome);
+  });
 }
 
 void JobStore::request_cancel(std::string_view id) {
-  const Writing writing(*this);
-  Statement(database_, "UPDATE jobs SET cancel_requested = 1 WHERE id = ?").with(id).run();
+  update("UPDATE jobs SET cancel_requested = 1 WHERE id = ?", id);
 }
 
 void JobStore::note_process_end(std::string_view id) {
-  const Writing writing(*this);
-  Statement(database_,
-            "UPDATE jobs SET process_ends = process_ends + 1 WHERE id = ? AND state = 'running'")
-      .with(id)
-      .run();
+  update("UPDATE jobs SET process_ends = process_ends + 1 WHERE id = ? AND state = 'running'", id);
 }
 
 void JobStore::requeue(std::string_view id, bool crashed) {
-  const Writing writing(*this);
-  Statement(database_,
-            "UPDATE jobs SET state = 'queued', crashes = crashes + ?2"
-            " WHERE id = ?1 AND state = 'running'")
-      .with(id, std::int64_t{crashed})
-      .run();
+  update(
+      "UPDATE jobs SET state = 'queued', crashes = crashes + ?2 WHERE id = ?1 AND state = "
+      "'running'",
+      id, std::int64_t{crashed});
 }
 
 }  // namespace unwrapd::server::store

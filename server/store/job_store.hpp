@@ -1,7 +1,6 @@
 #pragma once
 // The jobs table: every change of a job's state is one transaction here, guarded by the state it
-// must come from, so that two threads (or a late worker) can never both win. SQLite was chosen over
-// files per job for these transactions, over a server process for being embedded.
+// must come from, so that two threads (or a late worker) can never both win.
 //
 // A running job is on lease to this process, on the clock of elapsed time: setting the time of day
 // neither ends a lease nor prolongs it.
@@ -9,7 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
-#include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -19,7 +18,7 @@
 #include "core/base/error.hpp"
 #include "server/base/retention_clock.hpp"
 #include "server/store/blob_store.hpp"
-#include "server/store/database.hpp"
+#include "server/store/database_address.hpp"
 #include "server/store/job_record.hpp"
 
 namespace unwrapd::server::store {
@@ -58,7 +57,7 @@ struct OwnerUsage {
 class JobStore {
  public:
   /// Throws when it cannot be written. read: the clocks.
-  explicit JobStore(const std::filesystem::path& path, RetentionClock::Read read = read_clocks);
+  explicit JobStore(const DatabaseAddress& address, RetentionClock::Read read = read_clocks);
 
   [[nodiscard]] Moment now() const { return time_->now(); }
   /// By how much the time of day was set since the last call, or the last one of the server before;
@@ -122,19 +121,6 @@ class JobStore {
   void remove(std::string_view id);
 
  private:
-  /// The first row of `SELECT ... WHERE`, with these values bound.
-  template <class... Values>
-  std::optional<JobRecord> first(std::string_view rest, const Values&... values);
-
-  void mend_sums();
-  void queue_delivery(const JobRecord& job, const JobOutcome& outcome);
-
-  std::mutex mutex_;
-  Database database_;
-  NotedTime noted_;
-  std::optional<const RetentionClock> time_;
-  std::atomic<bool> write_failed_ = true;  // or was not tried
-
   /// The store while it is written: it remembers whether that came about.
   class Writing {
    public:
@@ -149,6 +135,36 @@ class JobStore {
     const std::lock_guard<std::mutex> lock_;
     const int errors_;
   };
+
+  /// The first row of `SELECT ... WHERE`, with these values bound.
+  template <class... Values>
+  std::optional<JobRecord> first(std::string_view rest, const Values&... values);
+
+  /// A change by one statement whose rows nobody asks for.
+  template <class... Values>
+  void update(std::string_view sql, const Values&... values) {
+    change([&] { Statement(*database_, sql).with(values...).run(); });
+  }
+  /// Database::change() and transact() of this store, which remembers whether that came about.
+  template <class Make>
+  auto change(const Make& make) {
+    const Writing writing(*this);
+    return database_->change(make);
+  }
+  template <class Make>
+  auto transact(const Make& make) {
+    const Writing writing(*this);
+    return database_->transact(make);
+  }
+
+  void mend_sums();
+  void queue_delivery(const JobRecord& job, const JobOutcome& outcome);
+
+  std::mutex mutex_;
+  const std::unique_ptr<Database> database_;
+  NotedTime noted_;
+  std::optional<const RetentionClock> time_;
+  std::atomic<bool> write_failed_ = true;  // or was not tried
 };
 
 }  // namespace unwrapd::server::store

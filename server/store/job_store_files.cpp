@@ -7,7 +7,7 @@ namespace unwrapd::server::store {
 
 OwnerUsage JobStore::usage(std::string_view owner) {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_,
+  Statement statement(*database_,
                       "SELECT (SELECT COUNT(*) FROM jobs"
                       " WHERE owner = ?1 AND state IN ('queued', 'running')),"
                       " COALESCE((SELECT bytes FROM stored WHERE owner = ?1), 0)"
@@ -18,7 +18,7 @@ OwnerUsage JobStore::usage(std::string_view owner) {
 
 std::int64_t JobStore::evictable_bytes() {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_,
+  Statement statement(*database_,
                       "SELECT (SELECT COALESCE(SUM(bytes), 0) FROM stored)"
                       " - (SELECT COALESCE(SUM(stored_bytes), 0) FROM jobs"
                       " WHERE state IN ('queued', 'running'))"
@@ -33,15 +33,14 @@ std::int64_t JobStore::evictable_bytes() {
 void JobStore::mend_sums() {
   const std::string right = "SELECT owner, SUM(stored_bytes), COUNT(*) FROM jobs GROUP BY owner";
   const std::string noted = "SELECT owner, bytes, jobs FROM stored";
-  const Writing writing(*this);
-  Statement wrong(database_, "SELECT * FROM (" + right + " EXCEPT " + noted +
-                                 ") UNION ALL SELECT * FROM (" + noted +
-                                 " WHERE bytes <> 0 OR jobs <> 0 EXCEPT " + right + ") LIMIT 1");
+  Statement wrong(*database_, "SELECT * FROM (" + right + " EXCEPT " + noted +
+                                  ") UNION ALL SELECT * FROM (" + noted +
+                                  " WHERE bytes <> 0 OR jobs <> 0 EXCEPT " + right + ") LIMIT 1");
   if (!wrong.step()) return;
-  Transaction both(database_);
-  database_.run("DELETE FROM stored");
-  database_.run(("INSERT INTO stored " + right).c_str());
-  both.commit();
+  transact([&] {
+    database_->run("DELETE FROM stored");
+    database_->run("INSERT INTO stored " + right);
+  });
 }
 
 FolderFate JobStore::fate_of(std::string_view id) {
@@ -54,7 +53,7 @@ FolderFate JobStore::fate_of(std::string_view id) {
 
 std::vector<std::string> JobStore::finished_before(std::int64_t epoch_ms, int limit) {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_,
+  Statement statement(*database_,
                       "SELECT id FROM jobs WHERE state IN ('succeeded', 'failed', 'cancelled')"
                       " AND expired = 0 AND kept_since_ms < ? ORDER BY kept_since_ms, seq LIMIT ?");
   statement.with(epoch_ms, std::int64_t{limit});
@@ -65,7 +64,7 @@ std::vector<std::string> JobStore::finished_before(std::int64_t epoch_ms, int li
 
 std::int64_t JobStore::job_count() {
   const std::lock_guard lock(mutex_);
-  Statement statement(database_, "SELECT COALESCE(SUM(jobs), 0) FROM stored");
+  Statement statement(*database_, "SELECT COALESCE(SUM(jobs), 0) FROM stored");
   statement.step();
   return statement.number(0);
 }
@@ -81,51 +80,40 @@ std::optional<std::string> JobStore::first_to_go() {
         " FROM stored)"
         " SELECT id FROM jobs WHERE seq = (SELECT seq FROM firsts WHERE seq IS NOT NULL"
         " ORDER BY jobs DESC, owner LIMIT 1)"}) {
-    Statement statement(database_, sql);
+    Statement statement(*database_, sql);
     if (statement.step()) return statement.text(0);
   }
   return std::nullopt;
 }
 
 void JobStore::set_stored_bytes(std::string_view id, std::int64_t bytes) {
-  const Writing writing(*this);
-  Statement(database_, "UPDATE jobs SET stored_bytes = ?2 WHERE id = ?1 AND expired = 0")
-      .with(id, bytes)
-      .run();
+  update("UPDATE jobs SET stored_bytes = ?2 WHERE id = ?1 AND expired = 0", id, bytes);
 }
 
 void JobStore::mend_stored_bytes(const std::vector<std::pair<std::string, std::int64_t>>& jobs) {
   try {
-    const Writing writing(*this);
-    Transaction all(database_);
-    for (const auto& [id, bytes] : jobs) {
-      Statement(database_,
-                "UPDATE jobs SET stored_bytes = ?2 WHERE id = ?1 AND stored_bytes <> ?2"
-                " AND state = 'succeeded' AND expired = 0")
-          .with(id, bytes)
-          .run();
-    }
-    all.commit();
+    transact([&] {
+      for (const auto& [id, bytes] : jobs) {
+        Statement(*database_,
+                  "UPDATE jobs SET stored_bytes = ?2 WHERE id = ?1 AND stored_bytes <> ?2"
+                  " AND state = 'succeeded' AND expired = 0")
+            .with(id, bytes)
+            .run();
+      }
+    });
   } catch (const Error& error) {  // a later start mends them
     if (error.code() != ErrorCode::storage_full) throw;
   }
 }
 
 void JobStore::set_expired(std::string_view id) {
-  const Writing writing(*this);
-  Statement(database_, "UPDATE jobs SET expired = 1, stored_bytes = 0 WHERE id = ?").with(id).run();
+  update("UPDATE jobs SET expired = 1, stored_bytes = 0 WHERE id = ?", id);
 }
 
 void JobStore::forget_before(std::int64_t epoch_ms) {
-  const Writing writing(*this);
-  Statement(database_, "DELETE FROM jobs WHERE expired = 1 AND kept_since_ms < ?")
-      .with(epoch_ms)
-      .run();
+  update("DELETE FROM jobs WHERE expired = 1 AND kept_since_ms < ?", epoch_ms);
 }
 
-void JobStore::remove(std::string_view id) {
-  const Writing writing(*this);
-  Statement(database_, "DELETE FROM jobs WHERE id = ?").with(id).run();
-}
+void JobStore::remove(std::string_view id) { update("DELETE FROM jobs WHERE id = ?", id); }
 
 }  // namespace unwrapd::server::store

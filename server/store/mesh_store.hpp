@@ -3,14 +3,14 @@
 // document in its folder (blob_store.hpp); the name of the folder is never published.
 
 #include <cstdint>
-#include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "server/store/database.hpp"
+#include "server/store/database_address.hpp"
 
 namespace unwrapd::server::store {
 
@@ -28,8 +28,8 @@ struct MeshRecord {
 /// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
 class MeshStore {
  public:
-  /// store: the file of the jobs, whose tables are there already.
-  explicit MeshStore(const std::filesystem::path& store) : database_(store) {}
+  /// store: the database of the jobs, whose tables are there already.
+  explicit MeshStore(const DatabaseAddress& store) : database_(store.open()) {}
 
   /// Replaces the owner's mesh of this digest, if there is one.
   void put(const MeshRecord& mesh);
@@ -44,8 +44,15 @@ class MeshStore {
   void remove(std::string_view id);
 
  private:
+  /// A change by one statement.
+  template <class... Values>
+  void update(std::string_view sql, const Values&... values) {
+    const std::lock_guard lock(mutex_);
+    database_->change([&] { Statement(*database_, sql).with(values...).run(); });
+  }
+
   std::mutex mutex_;
-  Database database_;
+  const std::unique_ptr<Database> database_;
 };
 
 }  // namespace unwrapd::server::store

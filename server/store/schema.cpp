@@ -1,154 +1,15 @@
 #include "server/store/schema.hpp"
 
-#include <array>
-
 #include "core/base/error.hpp"
+#include "server/store/schema_steps.hpp"
 
 namespace unwrapd::server::store {
-namespace {
 
-/// Step k turns version k into version k + 1. Released steps are never edited.
-constexpr std::array<const char*, 10> kSteps = {
-    R"sql(
-CREATE TABLE jobs (
-  seq INTEGER PRIMARY KEY AUTOINCREMENT,
-  id TEXT NOT NULL UNIQUE,
-  state TEXT NOT NULL,
-  created_ms INTEGER NOT NULL,
-  finished_ms INTEGER NOT NULL DEFAULT 0,
-  attempt INTEGER NOT NULL DEFAULT 0,
-  crashes INTEGER NOT NULL DEFAULT 0,
-  cancel_requested INTEGER NOT NULL DEFAULT 0,
-  synchronous INTEGER NOT NULL,
-  expired INTEGER NOT NULL DEFAULT 0,
-  options TEXT NOT NULL,
-  notes TEXT NOT NULL,
-  sha256 TEXT NOT NULL,
-  bytes INTEGER NOT NULL,
-  buffers TEXT NOT NULL,
-  result_format TEXT NOT NULL DEFAULT '',
-  problem TEXT NOT NULL DEFAULT 'null',
-  last_event INTEGER NOT NULL DEFAULT 0
-) STRICT;
-CREATE INDEX jobs_by_state ON jobs (state, seq);
-)sql",
-    R"sql(
-ALTER TABLE jobs ADD COLUMN owner TEXT NOT NULL DEFAULT '';
-ALTER TABLE jobs ADD COLUMN urgency INTEGER NOT NULL DEFAULT 3;
-ALTER TABLE jobs ADD COLUMN request_key TEXT;
-ALTER TABLE jobs ADD COLUMN content_key TEXT NOT NULL DEFAULT '';
-ALTER TABLE jobs ADD COLUMN lease_ms INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE jobs ADD COLUMN kept_since_ms INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE jobs ADD COLUMN stored_bytes INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE jobs ADD COLUMN webhook TEXT NOT NULL DEFAULT '';
-UPDATE jobs SET kept_since_ms = finished_ms, stored_bytes = bytes;
-DROP INDEX jobs_by_state;
-CREATE INDEX jobs_by_state ON jobs (state, owner, urgency, seq);
-CREATE INDEX jobs_by_owner ON jobs (owner, seq);
-CREATE INDEX jobs_by_content ON jobs (owner, content_key) WHERE state = 'succeeded';
-CREATE UNIQUE INDEX jobs_by_request ON jobs (owner, request_key) WHERE request_key IS NOT NULL;
-CREATE TABLE deliveries (
-  seq INTEGER PRIMARY KEY AUTOINCREMENT,
-  job TEXT NOT NULL,
-  url TEXT NOT NULL,
-  body TEXT NOT NULL,
-  tries INTEGER NOT NULL DEFAULT 0,
-  due_ms INTEGER NOT NULL
-) STRICT;
-CREATE INDEX deliveries_by_time ON deliveries (due_ms);
-)sql",
-    R"sql(
-ALTER TABLE jobs ADD COLUMN trace TEXT NOT NULL DEFAULT '';
-ALTER TABLE deliveries ADD COLUMN trace TEXT NOT NULL DEFAULT '';
-ALTER TABLE deliveries ADD COLUMN owner TEXT NOT NULL DEFAULT '';
-UPDATE deliveries SET owner = COALESCE((SELECT owner FROM jobs WHERE id = job), '');
-)sql",
-    R"sql(
-CREATE TABLE meshes (
-  seq INTEGER PRIMARY KEY AUTOINCREMENT,
-  id TEXT NOT NULL UNIQUE,
-  owner TEXT NOT NULL,
-  sha256 TEXT NOT NULL,
-  bytes INTEGER NOT NULL,
-  media_type TEXT NOT NULL,
-  created_ms INTEGER NOT NULL,
-  kept_since_ms INTEGER NOT NULL,
-  stored_bytes INTEGER NOT NULL,
-  UNIQUE (owner, sha256)
-) STRICT;
-CREATE INDEX meshes_by_time ON meshes (kept_since_ms);
-)sql",
-    R"sql(
-CREATE INDEX jobs_by_bytes ON jobs (state, stored_bytes) WHERE expired = 0;
-CREATE INDEX jobs_of_owner ON jobs (owner, state, stored_bytes);
-)sql",
-    R"sql(
-DROP INDEX jobs_by_bytes;
-DROP INDEX jobs_of_owner;
-CREATE INDEX jobs_of_owner ON jobs (owner, state, seq);
-CREATE INDEX jobs_in_state ON jobs (state, seq);
-CREATE INDEX jobs_by_end ON jobs (expired, kept_since_ms);
-CREATE TABLE written (times INTEGER NOT NULL) STRICT;
-INSERT INTO written VALUES (0);
-CREATE TABLE stored (
-  owner TEXT PRIMARY KEY,
-  bytes INTEGER NOT NULL
-) STRICT, WITHOUT ROWID;
-INSERT INTO stored SELECT owner, SUM(stored_bytes) FROM jobs GROUP BY owner;
-CREATE TRIGGER jobs_stored AFTER INSERT ON jobs BEGIN
-  INSERT INTO stored VALUES (NEW.owner, NEW.stored_bytes)
-    ON CONFLICT (owner) DO UPDATE SET bytes = bytes + excluded.bytes;
-END;
-CREATE TRIGGER jobs_changed AFTER UPDATE OF stored_bytes ON jobs BEGIN
-  UPDATE stored SET bytes = bytes + NEW.stored_bytes - OLD.stored_bytes WHERE owner = NEW.owner;
-END;
-CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
-  UPDATE stored SET bytes = bytes - OLD.stored_bytes WHERE owner = OLD.owner;
-END;
-)sql",
-    R"sql(
-ALTER TABLE jobs ADD COLUMN asked TEXT NOT NULL DEFAULT '';
-)sql",
-    R"sql(
-ALTER TABLE written ADD COLUMN set_by_ms INTEGER NOT NULL DEFAULT 0;
-)sql",
-    // Answers that were given before may be another method's map: none is given to a new question.
-    R"sql(
-UPDATE jobs SET content_key = '' WHERE state = 'succeeded';
-)sql",
-    R"sql(
-ALTER TABLE jobs ADD COLUMN process_ends INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE written ADD COLUMN noted_ms INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE written ADD COLUMN noted_elapsed_ms INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE written ADD COLUMN boot TEXT NOT NULL DEFAULT '';
-ALTER TABLE stored ADD COLUMN jobs INTEGER NOT NULL DEFAULT 0;
-UPDATE stored SET jobs = (SELECT COUNT(*) FROM jobs WHERE jobs.owner = stored.owner);
-DROP TRIGGER jobs_stored;
-DROP TRIGGER jobs_removed;
-CREATE TRIGGER jobs_stored AFTER INSERT ON jobs BEGIN
-  INSERT INTO stored VALUES (NEW.owner, NEW.stored_bytes, 1)
-    ON CONFLICT (owner) DO UPDATE SET bytes = bytes + excluded.bytes, jobs = jobs + 1;
-END;
-CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
-  UPDATE stored SET bytes = bytes - OLD.stored_bytes, jobs = jobs - 1 WHERE owner = OLD.owner;
-END;
-)sql"};
-
-constexpr auto kVersion = static_cast<std::int64_t>(kSteps.size());
-
-std::int64_t version_of(const Database& database) {
-  Statement version(database, "PRAGMA user_version");
-  version.step();
-  return version.number(0);
-}
-
-}  // namespace
-
-bool has_tables(const Database& database) { return version_of(database) > 0; }
+bool has_tables(const Database& database) { return database.version() > 0; }
 
 void refuse_newer(const Database& database) {
-  const std::int64_t found = version_of(database);
-  if (found >= 0 && found <= kVersion) return;
+  const std::int64_t found = database.version();
+  if (found >= 0 && found <= kSchemaVersion) return;
   throw Error(ErrorCode::storage_failed,
               "The job store is of another version (schema " + std::to_string(found) +
                   "): start the version that wrote it, or choose another --data directory.");
@@ -156,7 +17,7 @@ void refuse_newer(const Database& database) {
 
 void require_current(const Database& database) {
   refuse_newer(database);
-  if (const std::int64_t found = version_of(database); found < kVersion) {
+  if (const std::int64_t found = database.version(); found < kSchemaVersion) {
     throw Error(ErrorCode::storage_failed, "The job store is of an older version (schema " +
                                                std::to_string(found) +
                                                "): start this version's server on it once.");
@@ -165,12 +26,13 @@ void require_current(const Database& database) {
 
 void migrate(Database& database, std::optional<std::int64_t> last) {
   refuse_newer(database);
-  for (std::int64_t version = version_of(database); version < last.value_or(kVersion); ++version) {
-    Transaction step(database);
-    database.run(kSteps.at(static_cast<std::size_t>(version)));
-    database.run(("PRAGMA user_version = " + std::to_string(version + 1)).c_str());
-    step.commit();
-  }
+  const std::int64_t end = last.value_or(kSchemaVersion);
+  while (database.version() < end)
+    database.transact([&] {
+      const std::int64_t next = database.version() + 1;
+      database.run(database.step_to(next));
+      database.set_version(next);
+    });
 }
 
 }  // namespace unwrapd::server::store

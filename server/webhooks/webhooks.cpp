@@ -79,13 +79,13 @@ std::int64_t webhook_pause_ms(int first_seconds, int failed_before, const Webhoo
   return std::min(std::max(own_ms, asked_s * kMsPerSecond), kLongestPauseMs);
 }
 
-Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret,
+Webhooks::Webhooks(const store::DatabaseAddress& store, std::string server_secret,
                    WebhookConfig config, const Log& log, std::function<Moment()> now)
     : secret_(std::move(server_secret)),
       config_(std::move(config)),
       log_(log),
       now_(std::move(now)),
-      database_(store),
+      database_(store.open()),
       pool_(kAtOnce, kPerReceiver, [this] { go_on(); }) {
   if (!config_.allowed_hosts.empty()) CurlLibrary::loaded();  // tells at the start if it is missing
   try {
@@ -98,17 +98,18 @@ Webhooks::Webhooks(const std::filesystem::path& store, std::string server_secret
 
 /// Makes calls due that were put off when the clock was set back while no server ran.
 void Webhooks::put_forward() {
-  const std::string latest = "?1 + MIN(?2 << MAX(tries - 1, 0), ?3)";
-  store::Statement(database_,
-                   "UPDATE deliveries SET due_ms = " + latest + " WHERE due_ms > " + latest)
-      .with(now_().kept_ms(), config_.retry_seconds * kMsPerSecond, kLongestPauseMs)
-      .run();
+  const store::Dialect& sql = database_->dialect();
+  const std::string failed = std::string(sql.greatest) + "(tries - 1, 0)";
+  const std::string latest =
+      "?1 + " + std::string(sql.least) + "(?2 << CAST(" + failed + " AS INTEGER), ?3)";
+  update("UPDATE deliveries SET due_ms = " + latest + " WHERE due_ms > " + latest, now_().kept_ms(),
+         config_.retry_seconds * kMsPerSecond, kLongestPauseMs);
 }
 
 /// The calls that are due and not being made, in the order of their turns.
 std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
   store::Statement statement(
-      database_, "SELECT seq, owner, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
+      *database_, "SELECT seq, owner, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
   statement.with(now_ms);
   std::vector<Due> found;
   std::map<std::string, int> turns;
@@ -128,7 +129,7 @@ std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
 
 Webhooks::Delivery Webhooks::load(std::int64_t seq) {
   store::Statement statement(
-      database_, "SELECT job, owner, trace, url, body, tries FROM deliveries WHERE seq = ?");
+      *database_, "SELECT job, owner, trace, url, body, tries FROM deliveries WHERE seq = ?");
   statement.with(seq).step();
   return {.seq = seq,
           .job = statement.text(0),
@@ -165,12 +166,11 @@ void Webhooks::settle(const Delivery& delivery, const WebhookAnswer& answer, std
   const std::string& failure = answer.failure;
   const bool is_last = tries >= kMaxTries || answer.is_gone;
   if (failure.empty() || is_last) {
-    store::Statement(database_, "DELETE FROM deliveries WHERE seq = ?").with(delivery.seq).run();
+    update("DELETE FROM deliveries WHERE seq = ?", delivery.seq);
   } else {
-    store::Statement(database_, "UPDATE deliveries SET tries = ?2, due_ms = ?3 WHERE seq = ?1")
-        .with(delivery.seq, std::int64_t{tries},
-              now_ms + webhook_pause_ms(config_.retry_seconds, delivery.tries, answer))
-        .run();
+    update("UPDATE deliveries SET tries = ?2, due_ms = ?3 WHERE seq = ?1", delivery.seq,
+           std::int64_t{tries},
+           now_ms + webhook_pause_ms(config_.retry_seconds, delivery.tries, answer));
   }
   if (failure.empty()) {
     log_.info("webhook called", {{"job", delivery.job}, {"tries", tries}});

@@ -7,8 +7,8 @@
 // trace. Sixteen calls at once, two to one receiver (webhook_pool.hpp); owners take turns.
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <stop_token>
@@ -18,7 +18,7 @@
 
 #include "server/base/log.hpp"
 #include "server/base/retention_clock.hpp"
-#include "server/store/database.hpp"
+#include "server/store/database_address.hpp"
 #include "server/webhooks/webhook_http.hpp"
 #include "server/webhooks/webhook_pool.hpp"
 #include "server/webhooks/webhook_url.hpp"
@@ -41,8 +41,8 @@ std::int64_t webhook_pause_ms(int first_seconds, int failed_before, const Webhoo
 /// start.
 class Webhooks {
  public:
-  /// store: the file of the jobs, whose tables are there already. now: JobStore::now().
-  Webhooks(const std::filesystem::path& store, std::string server_secret, WebhookConfig config,
+  /// store: the database of the jobs, whose tables are there already. now: JobStore::now().
+  Webhooks(const store::DatabaseAddress& store, std::string server_secret, WebhookConfig config,
            const Log& log, std::function<Moment()> now);
 
   /// Begins the calls that are due as far as there is room. The owner with the fewest calls comes
@@ -52,6 +52,12 @@ class Webhooks {
  private:
   struct Due;
   struct Delivery;
+
+  /// A change by one statement.
+  template <class... Values>
+  void update(std::string_view sql, const Values&... values) {
+    database_->change([&] { store::Statement(*database_, sql).with(values...).run(); });
+  }
 
   void put_forward();
   std::vector<Due> due(std::int64_t now_ms);
@@ -67,7 +73,7 @@ class Webhooks {
   const Log& log_;
   const std::function<Moment()> now_;
   std::mutex mutex_;  // of the next two
-  store::Database database_;
+  const std::unique_ptr<store::Database> database_;
   std::set<std::int64_t> being_made_;  // seq
   WebhookPool pool_;                   // last: its threads use the others
 };

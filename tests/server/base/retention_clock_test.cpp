@@ -6,6 +6,7 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/job_store.hpp"
 #include "server/store/mesh_store.hpp"
+#include "server/store/sqlite_database.hpp"
 #include "server/store/sweeper.hpp"
 #include "tests/server/temp_dir.hpp"
 
@@ -52,7 +53,7 @@ class ClockThatIsSet : public testing::Test {
   }
 
   std::int64_t due_ms() const {
-    const store::Database deliveries(path());
+    const store::SqliteDatabase deliveries(path());
     store::Statement due(deliveries, "SELECT due_ms FROM deliveries");
     return due.step() ? due.number(0) : 0;
   }
@@ -87,7 +88,7 @@ TEST_F(ClockThatIsSet, KeepsForTheirTimeResultsThatCameBeforeThatWasNoted) {
     EXPECT_EQ(due_ms(), store_.now().kept_ms()) << "a call is due at once";
     expect_kept_for_100_s();
     store_.remove("j_1");
-    store::Database(path()).run("DELETE FROM deliveries");
+    store::SqliteDatabase(path()).run("DELETE FROM deliveries");
   }
 }
 

@@ -13,7 +13,7 @@
 #include "server/base/trace.hpp"
 #include "server/http/http_probe.hpp"
 #include "server/store/data_directory.hpp"
-#include "server/store/database.hpp"
+#include "server/store/sqlite_database.hpp"
 
 namespace unwrapd::server::routes {
 namespace {
@@ -108,7 +108,7 @@ TEST_F(Operations, TheAdminPortAnswersProbesAndNothingElse) {
 
 TEST_F(Operations, TheServerIsNotReadyWhileNothingCanBeStored) {
   start();
-  store::Database behind(config_.data / store::kStoreFile);
+  store::SqliteDatabase behind(config_.data / store::kStoreFile);
   behind.run("ALTER TABLE jobs RENAME TO away");
   const httplib::Headers bypass_cache = {{"Cache-Control", "no-cache"}};
   expect_problem(client().Post("/v1/jobs", bypass_cache, grid_obj(2), "model/obj"), 500,

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "server/store/data_directory.hpp"
-#include "server/store/database.hpp"
 #include "server/store/job_store.hpp"
+#include "server/store/sqlite_database.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/running_server.hpp"
 
@@ -46,7 +46,7 @@ class Damage : public RunningServer {
     return id;
   }
   void damage_table(const std::string& name) const {
-    Database database(store());
+    SqliteDatabase database(store());
     database.run("PRAGMA wal_checkpoint(TRUNCATE)");
     Statement page(database,
                    "SELECT rootpage, (SELECT page_size FROM pragma_page_size)"
@@ -80,7 +80,8 @@ TEST_F(Damage, ThatComesLaterIsSeenByReadinessAndToldToClientsWithoutItsReason) 
   const std::string id = succeeded();
   EXPECT_EQ(client().Get("/readyz")->status, 200);
   damage_table("jobs");
-  Database(store()).run("UPDATE written SET times = times + 1");  // so that pages are read anew
+  SqliteDatabase(store()).run(
+      "UPDATE written SET times = times + 1");  // so that pages are read anew
   const auto answer = client().Get("/v1/jobs/" + id);
   expect_problem(answer, 500, "storage_failed");
   EXPECT_THAT(answer->body,
@@ -91,7 +92,7 @@ TEST_F(Damage, ThatComesLaterIsSeenByReadinessAndToldToClientsWithoutItsReason) 
 
 TEST_F(Damage, TheLogHasTheReasonThatClientsAreNotTold) {
   const std::string started = start_and_hear();
-  Database(store()).run("ALTER TABLE jobs RENAME TO away");
+  SqliteDatabase(store()).run("ALTER TABLE jobs RENAME TO away");
   testing::internal::CaptureStderr();
   const auto answer = client().Get("/v1/jobs");
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("no such table"));
@@ -164,9 +165,10 @@ TEST_F(Damage, ARowThatCannotBeReadIsSetAsideAndNamedAndTheOthersGoOn) {
     const std::string waiting = submit("?resolution=64");
     const std::string whole = submit("?resolution=128");
     stop();
-    Database(store()).run(("UPDATE jobs SET " + std::string(damage) + " WHERE id IN ('" + done +
-                           "', '" + waiting + "'); UPDATE stored SET bytes = -5000000000")
-                              .c_str());
+    SqliteDatabase(store()).run(("UPDATE jobs SET " + std::string(damage) + " WHERE id IN ('" +
+                                 done + "', '" + waiting +
+                                 "'); UPDATE stored SET bytes = -5000000000")
+                                    .c_str());
     EXPECT_THAT(start_and_hear(), AllOf(HasSubstr(done), HasSubstr(waiting))) << damage;
     const bool has_ended =
         client().Delete("/v1/jobs/" + ahead)->status == 204;  // on a slow machine
@@ -190,7 +192,8 @@ TEST_F(Damage, ARowDamagedWhileItWaitsIsPassedOver) {
   await_state(ahead, "running");
   const std::string waiting = submit("?resolution=64");
   const std::string whole = submit("?resolution=128");
-  Database(store()).run(("UPDATE jobs SET options = '{' WHERE id = '" + waiting + "'").c_str());
+  SqliteDatabase(store()).run(
+      ("UPDATE jobs SET options = '{' WHERE id = '" + waiting + "'").c_str());
   client().Delete("/v1/jobs/" + ahead);
   await_state(whole, "succeeded");
   EXPECT_EQ(job(waiting).at("state"), "failed");
@@ -203,7 +206,7 @@ TEST_F(Damage, AnIdThatIsAPathTakesNothingWithIt) {
   stop();
   const fs::path outside = dir_.path() / "outside";
   write_file(outside, "x");
-  Database database(store());
+  SqliteDatabase database(store());
   for (const char* path : {"", ".", "..", "../outside"}) {
     database.run(("INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256,"
                   " bytes, buffers) VALUES ('" +

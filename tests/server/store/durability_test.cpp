@@ -13,6 +13,7 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/digests.hpp"
 #include "server/store/job_store.hpp"
+#include "server/store/sqlite_database.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
 
@@ -62,7 +63,7 @@ class Durability : public testing::Test {
 
 TEST_F(Durability, AFileOfTheFirstVersionIsBroughtToThisOne) {
   std::filesystem::create_directories(dir_.path());
-  Database(path()).run(kVersion1);
+  SqliteDatabase(path()).run(kVersion1);
   for (int opening = 0; opening < 2; ++opening) {
     JobStore store(path());
     const JobRecord waiting = *store.find("j_1");

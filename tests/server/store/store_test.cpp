@@ -9,6 +9,7 @@
 #include "core/base/error.hpp"
 #include "server/base/files.hpp"
 #include "server/jobs/job_queue.hpp"
+#include "server/store/sqlite_database.hpp"
 #include "server/store/sweeper.hpp"
 #include "tests/server/temp_dir.hpp"
 
@@ -197,7 +198,7 @@ TEST_F(Store, RemembersARequestToCancelOverAReopening) {
 
 TEST_F(Store, RefusesAFileOfAnotherSchema) {
   store_.reset();
-  Database(path()).run("PRAGMA user_version = 99");
+  SqliteDatabase(path()).run("PRAGMA user_version = 99");
   EXPECT_THROW(JobStore{path()}, Error);
 }
 

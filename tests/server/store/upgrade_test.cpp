@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "server/store/database.hpp"
 #include "server/store/schema.hpp"
+#include "server/store/sqlite_database.hpp"
 #include "tests/server/temp_dir.hpp"
 
 namespace unwrapd::server::store {
@@ -27,7 +27,7 @@ class Upgrade : public RunningServer {
   void restart_with(const std::string& sql) {
     service_->drain();
     service_.reset();
-    Database(dir_.path() / "jobs.sqlite").run(sql.c_str());
+    SqliteDatabase(dir_.path() / "jobs.sqlite").run(sql.c_str());
     start();
   }
   httplib::Result send(const std::string& name, int size, const std::string& query = "") {
@@ -85,7 +85,7 @@ TEST_F(Upgrade, ARequestIsKnownAgainByItsName) {
 /// answered stays under its name.
 TEST(Schema, AnswersOfVersionEightAreGivenToNoNewQuestion) {
   TempDir dir;
-  Database database(dir.path() / "jobs.sqlite");
+  SqliteDatabase database(dir.path() / "jobs.sqlite");
   migrate(database, 8);
   for (const char* state : {"succeeded", "queued"})
     database.run(("INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256, "
