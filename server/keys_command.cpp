@@ -15,6 +15,7 @@ namespace {
 
 struct Asked {
   std::string data = "data";
+  std::string database;
   access::ApiKey key;
   std::string scopes = "submit,read";
   std::string id;
@@ -24,17 +25,22 @@ struct Asked {
   throw Error(ErrorCode::not_found, "There is no key " + id + "; see unwrapd keys list.");
 }
 
+access::KeyStore store_of(const Asked& asked) {
+  return access::KeyStore(asked.data, {}, {.url = asked.database});
+}
+
 void add_key(const Asked& asked) {
   access::ApiKey key = asked.key;
   key.scopes = access::parse_scopes(asked.scopes);
-  std::printf("%s\n", access::KeyStore(asked.data).add(key).c_str());
+  std::printf("%s\n", store_of(asked).add(key).c_str());
   std::fprintf(stderr, "This is the key. It is not stored and cannot be shown again.\n");
 }
 
 /// Opens the keys of an existing data directory: a misspelt one is not created.
 access::KeyStore opened(const Asked& asked) {
+  if (!asked.database.empty()) return store_of(asked);
   const std::filesystem::path file = std::filesystem::path(asked.data) / access::kKeysFile;
-  if (std::filesystem::exists(file)) return access::KeyStore(asked.data);
+  if (std::filesystem::exists(file)) return store_of(asked);
   throw Error(ErrorCode::not_found,
               "There is no " + file.string() + "; give the --data directory of a server.");
 }
@@ -67,6 +73,10 @@ CLI::App* command(CLI::App& app, const std::string& name, const std::string& wha
   found->add_option("--data", asked.data, "Directory of jobs and results")
       ->envname("UNWRAPD_DATA")
       ->capture_default_str();
+  found
+      ->add_option("--database", asked.database,
+                   "URL of the PostgreSQL database, where one is used")
+      ->envname("UNWRAPD_DATABASE");
   return found;
 }
 

@@ -37,21 +37,21 @@ struct Service::Parts {
         isolation(config::isolation_of(config, solver_cache, functions)),
         lock(config.data),
         blobs(config.data, config.disk),
-        store(store::store_in(config.data, blobs)),
-        mesh_store(config.data / store::kStoreFile),
+        store(store::store_in(config.data, config.database, blobs)),
+        mesh_store(store::address_in(config.data, config.database)),
         queue(store, blobs, events, log,
               {.max_queue = config.limits.max_queue,
                .workers = config.workers,
                .max_stored = config.max_stored_jobs,
                .stop = config::most_stopping(config)}),
         streams(events, config.limits.max_streams),
-        keys(config.data, config.access.key_file),
+        keys(config.data, config.access.key_file, config.database),
         secret(access::secret_in(config.data / access::kSecretFile)),
         links(secret),
         access(keys, links, access::asks_for_keys(config.access, config.listen.host)),
         cors(config.cors_origins),
         sites(config.allowed_hosts, cors),
-        webhooks(config.data / store::kStoreFile, secret, config.webhooks, log,
+        webhooks(store::address_in(config.data, config.database), secret, config.webhooks, log,
                  [this] { return store.now(); }),
         renderer(blobs, config.limits, log, isolation,
                  config::render_limits(config, solver_cache.memory_limit()), functions),
@@ -74,7 +74,7 @@ struct Service::Parts {
       };
       admin.emplace(config::admin_config(*config.admin), uses(told, log, LogLevel::debug), log);
     }
-    warn_without_keys(log);
+    config::warn_without_keys(config, keys.has_any(), log);
     tell_state();
     config::tell_isolation(isolation, config, log, metrics);
     queue.recover(isolation.possible);
@@ -107,14 +107,6 @@ struct Service::Parts {
     metrics.tell(Metric::lost_threads, {}, [this] { return workers->lost(); });
     serving = std::jthread([this] { http.serve(); });
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
-  }
-
-  /// Warns if no client can use the server, which would look as if it worked.
-  void warn_without_keys(const Log& log) {
-    if (!access::asks_for_keys(config.access, config.listen.host) || keys.has_any()) return;
-    log.warning("API keys are required and none exists yet; add one",
-                {{"command", "unwrapd keys add --data " + config.data.string() +
-                                 " --name NAME --scopes submit,read"}});
   }
 
   /// The quota of an owner in bytes; 0: none.
@@ -170,6 +162,8 @@ struct Service::Parts {
         log);
     renewing.emplace(
         "prolonging leases", 10s, [this] { queue.renew_leases(); }, log);
+    mending.emplace(
+        "mending after a loss of the database", 1s, [this] { queue.mend(); }, log);
     calling.emplace(
         "calling webhooks", 1s, [this] { webhooks.call_due(); }, log);
     trimming.emplace(  // what large jobs leave free in the heaps of their threads
@@ -256,13 +250,14 @@ struct Service::Parts {
   results::ResultStore results;
   store::Sweeper sweeper;
   results::PictureStore pictures;
-  const routes::Readiness readiness{queue, store, config.data,
-                                    [this] { return !workers || workers->are_left(); }};
+  const routes::Readiness readiness{
+      queue, store, [this] { return store::is_whole(config.data, config.database); },
+      [this] { return !workers || workers->are_left(); }};
   http::Router router;
   http::HttpServer http;
   http::Router admin_router;
   std::optional<http::HttpServer> admin;
-  std::optional<Periodic> sweeping, renewing, calling, trimming;
+  std::optional<Periodic> sweeping, renewing, mending, calling, trimming;
   std::optional<jobs::WorkerPool> workers;
   std::jthread serving, serving_admin;
 };

@@ -9,6 +9,7 @@
 #include "server/base/clock.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
+#include "server/store/schema.hpp"
 
 namespace unwrapd::server::access {
 namespace {
@@ -38,9 +39,18 @@ constexpr std::string_view kSelect =
     " FROM keys ";
 constexpr int kDigestColumn = 7;
 
-std::filesystem::path file_in(const std::filesystem::path& data) {
+std::unique_ptr<store::Database> opened(const std::filesystem::path& data,
+                                        const store::PostgresAddress& database) {
   make_directories(data);
-  return data / kKeysFile;
+  if (!database.url.empty()) {
+    auto all = store::DatabaseAddress(database).open();
+    store::migrate(*all);
+    return all;
+  }
+  auto keys = store::DatabaseAddress(data / kKeysFile).open();
+  keys->check(false);
+  keys->run(kSchema);
+  return keys;
 }
 
 ApiKey key_of(const store::Statement& row) {
@@ -137,12 +147,9 @@ std::string to_text(const Scopes& scopes) {
   return text;
 }
 
-KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::path& given)
-    : database_(store::DatabaseAddress(file_in(data)).open()),
-      given_(given.empty() ? "" : sha256(key_in(given))) {
-  database_->check(false);
-  database_->run(kSchema);
-}
+KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::path& given,
+                   const store::PostgresAddress& database)
+    : database_(opened(data, database)), given_(given.empty() ? "" : sha256(key_in(given))) {}
 
 std::string KeyStore::add(ApiKey key) {
   check_name(key.name);

@@ -1,9 +1,10 @@
 #pragma once
 // API keys, in DIR/keys.sqlite: of their own, so that `unwrapd keys` may write it while the server
-// runs, and a copy of the jobs holds no keys. A key is "unw_<id>_<secret>" with 256 random bits of
-// secret; only its SHA-256 is stored. A slow hash was rejected: it makes guessing hard where there
-// are few passwords, and 2^256 secrets need no help. One more key may be given as a file, as
-// containers are given secrets: it is not stored, and goes when the file does.
+// runs, and a copy of the jobs holds no keys. With --database they are a table there. A key is
+// "unw_<id>_<secret>" with 256 random bits of secret; only its SHA-256 is stored. A slow hash was
+// rejected: it makes guessing hard where there are few passwords, and 2^256 secrets need no help.
+// One more key may be given as a file, as containers are given secrets: it is not stored, and goes
+// when the file does.
 
 #include <cstdint>
 #include <filesystem>
@@ -49,10 +50,12 @@ std::string to_text(const Scopes& scopes);
 /// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
 class KeyStore {
  public:
-  /// data: the data directory, made when missing. given: the file of a key of the operator's own,
-  /// of the scope admin and the id kGivenKeyId; empty: none. Throws Error{invalid_option} when that
-  /// holds no key: 32 to 512 letters, digits and -._~+/=, and white space around them.
-  explicit KeyStore(const std::filesystem::path& data, const std::filesystem::path& given = {});
+  /// data: the data directory, made when missing. database: without a URL, a file there. given: the
+  /// file of a key of the operator's own, of the scope admin and the id kGivenKeyId; empty: none.
+  /// Throws Error{invalid_option} when that holds no key: 32 to 512 letters, digits and -._~+/=,
+  /// and white space around them.
+  explicit KeyStore(const std::filesystem::path& data, const std::filesystem::path& given = {},
+                    const store::PostgresAddress& database = {});
 
   /// Stores a key with a new id and returns what its holder sends; it cannot be had again. Throws
   /// Error{invalid_option} for a name with control characters, which a list could not show.

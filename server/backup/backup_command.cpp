@@ -8,6 +8,7 @@
 #include <exception>
 #include <string>
 
+#include "core/base/error.hpp"
 #include "server/backup/backup.hpp"
 #include "server/base/errors.hpp"
 
@@ -20,6 +21,7 @@ constexpr int kDamaged = 3;
 
 struct Asked {
   std::string data = "data";
+  std::string database;
   std::string backup;
 };
 
@@ -28,7 +30,20 @@ CLI::App* command(CLI::App& app, const std::string& name, const std::string& wha
   found->add_option("--data", asked.data, "Directory of jobs and results")
       ->envname("UNWRAPD_DATA")
       ->capture_default_str();
+  found->add_option("--database", asked.database, "Of a server with a PostgreSQL database: refused")
+      ->envname("UNWRAPD_DATABASE");
   return found;
+}
+
+/// The files of a data directory are half of such a store.
+void require_sqlite(const Asked& asked) {
+  if (asked.database.empty()) return;
+  throw Error(
+      ErrorCode::invalid_option,
+      "The rows of this store are in PostgreSQL, which has its own tools. To back up: first "
+      "pg_dump --format=custom the database, then copy the data directory. To restore: "
+      "pg_restore into an empty database, and put the directory back. To check: "
+      "pg_amcheck. See docs/postgresql.md.");
 }
 
 int tell(const std::string& done, const StoreReport& report) {
@@ -59,17 +74,26 @@ int run_backup_command(int argc, const char* const* argv) {
                              asked);
   backup->add_option("DEST", asked.backup, "Folder of the new backup; it must not exist")
       ->required();
-  backup->callback([&] { code = tell("backed up", back_up(asked.data, asked.backup)); });
+  backup->callback([&] {
+    require_sqlite(asked);
+    code = tell("backed up", back_up(asked.data, asked.backup));
+  });
   CLI::App* restoring = command(
       app, "restore",
       "Create a data directory from a complete backup; --data must be empty or missing", asked);
   restoring->add_option("BACKUP", asked.backup, "Folder made by unwrapd backup")->required();
-  restoring->callback([&] { code = tell("restored", restore(asked.backup, asked.data)); });
+  restoring->callback([&] {
+    require_sqlite(asked);
+    code = tell("restored", restore(asked.backup, asked.data));
+  });
   command(app, "check",
           "Read every file of a data directory, also while a server runs on it, or of a backup; "
           "exits with 3 if anything is damaged",
           asked)
-      ->callback([&] { code = tell("checked", check_store(asked.data)); });
+      ->callback([&] {
+        require_sqlite(asked);
+        code = tell("checked", check_store(asked.data));
+      });
   try {
     app.parse(argc, argv);
     return code;

@@ -9,11 +9,21 @@ namespace unwrapd::server {
 namespace {
 
 constexpr int kDrainRetrySeconds = 5;
+constexpr int kAwayRetrySeconds = 2;
 
 }  // namespace
 
+StoreAway::StoreAway(std::string reason, bool in_doubt)
+    : RetryLater(ErrorCode::storage_failed,
+                 "The server's database cannot be reached; send the request again after "
+                 "Retry-After.",
+                 kAwayRetrySeconds),
+      reason_("The database of --database cannot be reached (" + std::move(reason) + ")."),
+      in_doubt_(in_doubt) {}
+
 std::string reason_of(const std::exception& error) {
   if (const auto* inside = dynamic_cast<const InsideError*>(&error)) return inside->reason();
+  if (const auto* away = dynamic_cast<const StoreAway*>(&error)) return away->reason();
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
     return "There is too little memory; raise its limit (ulimit -v, MemoryMax).";
   const auto* refused = dynamic_cast<const std::system_error*>(&error);

@@ -22,6 +22,20 @@ class RetryLater : public Error {
   int seconds_;
 };
 
+/// The database of the store cannot be reached, which passes. reason: for the log of the operator.
+class StoreAway : public RetryLater {
+ public:
+  StoreAway(std::string reason, bool in_doubt);
+
+  [[nodiscard]] const std::string& reason() const noexcept { return reason_; }
+  /// Whether the change may yet have come about.
+  [[nodiscard]] bool in_doubt() const { return in_doubt_; }
+
+ private:
+  std::string reason_;
+  bool in_doubt_;
+};
+
 /// An error with two texts: one for the client, and the reason for the log of the operator, which
 /// may name files and quote libraries.
 class InsideError : public Error {

@@ -79,6 +79,14 @@ void tell_isolation(const work::Isolation& isolation, const Config& config, cons
   if (wanted) log.warning("jobs run in the server's process", {{"reason", isolation.why_not}});
 }
 
+void warn_without_keys(const Config& config, bool has_keys, const Log& log) {
+  if (!access::asks_for_keys(config.access, config.listen.host) || has_keys) return;
+  log.warning("API keys are required and none exists yet; add one",
+              {{"command", "unwrapd keys add --data " + config.data.string() +
+                               (config.database.url.empty() ? "" : " --database URL") +
+                               " --name NAME --scopes submit,read"}});
+}
+
 results::RenderLimits render_limits(const Config& config, std::size_t memory_bytes) {
   return {.places = std::max(kLeastMakers, config.workers),
           .waiting = most_waiting(config),

@@ -24,6 +24,9 @@ std::chrono::seconds most_stopping(const Config& config);
 void tell_isolation(const work::Isolation& isolation, const Config& config, const Log& log,
                     Metrics& metrics);
 
+/// Warns if no client can use the server, which would look as if it worked.
+void warn_without_keys(const Config& config, bool has_keys, const Log& log);
+
 /// Processes for all jobs if they can be had, of which this makes sure; when they are turned off,
 /// for the suspects alone. Throws Error where they are asked for and cannot be had.
 work::Isolation isolation_of(const Config& config, const work::SolverCache& cache,

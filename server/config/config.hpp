@@ -13,6 +13,7 @@
 #include "server/base/log.hpp"
 #include "server/http/addresses.hpp"
 #include "server/store/disk_budget.hpp"
+#include "server/store/postgres_address.hpp"
 #include "server/webhooks/webhook_url.hpp"
 #include "server/work/solver_cache.hpp"
 
@@ -39,6 +40,7 @@ struct Config {
   /// after that of listen, on loopback, where nothing else is asked for.
   std::optional<http::Address> admin;
   std::filesystem::path data = "data";
+  store::PostgresAddress database;  ///< without a URL: SQLite in data
   int workers = 1;
   int threads = 1;  ///< for each job
   int keep_seconds = 7 * 24 * 60 * 60;

@@ -127,10 +127,30 @@ ConfigGroup working() {
                      {0, kMaxCount}, &Config::drain_seconds)}};
 }
 
+ConfigRow database_row() {
+  return {
+      .heading = {.name = "database",
+                  .takes = "URL",
+                  .what = "PostgreSQL database of the jobs, meshes, keys and webhooks, "
+                          "postgres://user@host/name; their files stay in --data. Unset: SQLite "
+                          "in --data",
+                  .is_secret = true},
+      .kind = ConfigKind::text,
+      .set =
+          [](Config& config, const std::string& text) {
+            const bool is_url =
+                text.starts_with("postgres://") || text.starts_with("postgresql://");
+            if (!text.empty() && !is_url) expected("a URL like postgres://user@host/name");
+            config.database.url = text;
+          },
+      .get = [](const Config& config) { return config.database.url; }};
+}
+
 ConfigGroup storing() {
   return {
       .title = "Storage",
-      .rows = {number({"keep-seconds", "N", "Seconds that results are kept"}, {1, kMaxCount},
+      .rows = {database_row(),
+               number({"keep-seconds", "N", "Seconds that results are kept"}, {1, kMaxCount},
                       &Config::keep_seconds),
                number({"max-stored-jobs", "N",
                        "Most ended jobs that are stored; beyond it, expired jobs are deleted "

@@ -11,6 +11,9 @@
 namespace unwrapd::server::http {
 namespace {
 
+constexpr int kInternal = 500;
+constexpr int kUnavailable = 503;
+
 constexpr std::size_t kMaxProblemText = 500;  // bytes of a detail, or of a pointer
 
 char lower(char letter) {
@@ -21,6 +24,12 @@ char lower(char letter) {
 std::string bounded(const std::string& text) {
   if (text.size() <= kMaxProblemText) return text;
   return std::string(within_bytes(text, kMaxProblemText)) + "...";
+}
+
+/// What fails now and passes is no fault of the server.
+int status_of(ErrorCode code, bool passes) {
+  const int status = api::error_row(code).status;
+  return passes && status == kInternal ? kUnavailable : status;
 }
 
 }  // namespace
@@ -56,14 +65,16 @@ Response error_response(const Error& error, std::string_view job) {
   api::Json problem = api::problem(error, job);
   for (const char* member : {"detail", "pointer"})
     if (problem.contains(member)) problem[member] = bounded(problem[member]);
+  const auto* later = dynamic_cast<const RetryLater*>(&error);
+  const int status = status_of(error.code(), later != nullptr);
+  problem["status"] = status;
   Response response =
-      json_response(api::error_row(error.code()).status,
-                    problem.dump(-1, ' ', false, api::Json::error_handler_t::replace));
+      json_response(status, problem.dump(-1, ' ', false, api::Json::error_handler_t::replace));
   response.content_type = "application/problem+json";
   response.problem = api::error_row(error.code()).name;
   if (error.code() == ErrorCode::unauthorized)
     response.headers.emplace_back("WWW-Authenticate", "Bearer");
-  if (const auto* later = dynamic_cast<const RetryLater*>(&error))
+  if (later != nullptr)
     response.headers.emplace_back("Retry-After", std::to_string(later->seconds()));
   return response;
 }

@@ -36,6 +36,11 @@ void FairShare::remove(const std::string& owner) {
   --waiting_;
 }
 
+void FairShare::forget_waiting() {
+  for (auto& [owner, account] : accounts_) account.waiting = 0;
+  waiting_ = 0;
+}
+
 std::string FairShare::next() const {
   assert(waiting_ > 0);
   const std::string* chosen = nullptr;

@@ -21,6 +21,8 @@ class FairShare {
   void add(const std::string& owner);
   /// A waiting job of this owner is gone without having run.
   void remove(const std::string& owner);
+  /// Forgets all that wait: they are counted anew.
+  void forget_waiting();
   /// The owner whose turn it is. Some job must wait.
   [[nodiscard]] std::string next() const;
   /// A job of this owner runs now.

@@ -1,11 +1,16 @@
 #include "server/jobs/feed_output.hpp"
 
+#include <chrono>
+#include <thread>
+
 #include "api/events.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::jobs {
 namespace {
 
 constexpr double kStep = 0.005;  // of the fraction
+constexpr std::chrono::milliseconds kPauseForStore{200};
 
 bool is_news(const StageEvent& event, const StageEvent& told) {
   return event.stage != told.stage || event.chart != told.chart ||
@@ -59,11 +64,22 @@ void FeedOutput::result(std::string_view format, std::string_view bytes) {
 void FeedOutput::file(std::string_view name, std::string_view bytes) { keep(name, bytes); }
 
 void FeedOutput::keep(std::string_view name, std::string_view bytes) {
+  while (!try_keep(name, bytes)) std::this_thread::sleep_for(kPauseForStore);
+}
+
+/// False when the store cannot say whether there is room for it.
+bool FeedOutput::try_keep(std::string_view name, std::string_view bytes) {
   const std::lock_guard lock(job_.output);
   if (job_.has_ended) throw Error(ErrorCode::cancelled, "The job was given up in the meantime.");
-  room_.reservation.add(static_cast<std::int64_t>(bytes.size()),
-                        room_.most_bytes(job_.record.owner));
+  try {
+    room_.reservation.add(static_cast<std::int64_t>(bytes.size()),
+                          room_.most_bytes(job_.record.owner));
+  } catch (const StoreAway&) {
+    if (!job_.stop.stop_requested()) return false;
+    throw Error(ErrorCode::cancelled, "The job was stopped before its files could be counted.");
+  }
   blobs_.write_unsealed(job_.record.id, name, bytes);
+  return true;
 }
 
 }  // namespace unwrapd::server::jobs

@@ -20,7 +20,8 @@ struct ResultClaim {
   const std::function<std::int64_t(const std::string& owner)>& most_bytes;
 };
 
-/// Files of a job that has ended meanwhile throw Error{cancelled}; its events are dropped.
+/// Files of a job that has ended meanwhile throw Error{cancelled}; its events are dropped. Files
+/// wait for a store that cannot be reached, until the job is stopped.
 class FeedOutput final : public work::JobOutput {
  public:
   /// Gives up what an earlier attempt has reserved, as its files are replaced.
@@ -36,6 +37,7 @@ class FeedOutput final : public work::JobOutput {
 
  private:
   void keep(std::string_view name, std::string_view bytes);
+  [[nodiscard]] bool try_keep(std::string_view name, std::string_view bytes);
 
   const RunningJob& job_;
   store::BlobStore& blobs_;

@@ -8,13 +8,7 @@
 #include "server/store/job_rows.hpp"
 
 namespace unwrapd::server::jobs {
-namespace {
-
 using api::JobState;
-
-constexpr int kMaxAttemptsWhenFull = 20;
-
-}  // namespace
 
 JobQueue::JobQueue(store::JobStore& store, store::BlobStore& blobs, EventFeed& events,
                    const Log& log, const QueueConfig& config)
@@ -67,6 +61,7 @@ std::optional<store::JobRecord> JobQueue::same_name(const store::JobRecord& job)
   const std::lock_guard lock(mutex_);  // what is being removed is gone with its files
   std::optional<store::JobRecord> known = store_.find_request(job.owner, job.request_key);
   if (!known) known = store_.find(job.id);
+  if (!known && doubted_.erase(job.id) > 0) blobs_.remove(job.id);  // it was not stored
   if (known && known->owner != job.owner) throw unknown_job();
   if (known && !is_same_request(*known, job)) throw another_question();
   return known;
@@ -84,6 +79,9 @@ store::JobRecord JobQueue::submit(Submission submission) {
   blobs_.keep_upload(submission.upload, job.id, store::digests_of(job.input));
   try {
     enqueue(job, submission, submission.bypass_cache ? std::nullopt : find_answer(job));
+  } catch (const StoreAway& away) {
+    if (!away.in_doubt()) blobs_.remove(job.id);
+    throw;
   } catch (...) {
     blobs_.remove(job.id);
     throw;
@@ -101,7 +99,7 @@ void JobQueue::enqueue(store::JobRecord& job, const Submission& submission,
     door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
   door_.leave(submission.sender);
   give_up_excess();
-  job.seq = store_.insert(job);
+  job.seq = noting_doubt(job.id, [&] { return store_.insert(job); });
   if (!answer || !answer_from_store(job, *answer)) wait_again(job);
 }
 
@@ -149,66 +147,6 @@ std::shared_ptr<RunningJob> JobQueue::begin(store::JobRecord record) {
   return job;
 }
 
-/// Whether a job whose results found no room waits until there is some.
-bool JobQueue::wait_for_room(const RunningJob& job, const store::JobOutcome& outcome) {
-  const bool full = outcome.state == JobState::failed &&
-                    api::error_from_problem(outcome.problem).code() == ErrorCode::storage_full;
-  const bool again = full && !closed_ && job.record.attempt < kMaxAttemptsWhenFull;
-  pause_.note(again);
-  if (!again) return false;
-  log_.warning("the disk is full, the job waits", {{"job", job.record.id}});
-  wait_or_end(job.record);
-  return true;
-}
-
-/// The success that it is, if its files can be noted.
-store::JobOutcome JobQueue::sealed(const std::string& id, store::JobOutcome outcome) {
-  try {
-    outcome.stored_bytes = blobs_.seal(id);
-    return outcome;
-  } catch (const Error& error) {
-    return store::ended(JobState::failed, error, id);
-  }
-}
-
-void JobQueue::finish(const RunningJob& job, store::JobOutcome outcome,
-                      const std::function<void()>& stored) {
-  if (outcome.state == JobState::succeeded) outcome = sealed(job.record.id, std::move(outcome));
-  const std::lock_guard lock(mutex_);
-  running_.erase(job.record.id);
-  changed_.notify_all();
-  share_.end(job.record.owner, job.seconds());
-  if (outcome.state == JobState::cancelled && job.cause == StopCause::draining) {
-    wait_or_end(job.record);  // its readers are told so
-    return;
-  }
-  if (wait_for_room(job, outcome)) return;
-  end_job(job.record, std::move(outcome), stored);
-}
-
-void JobQueue::end_job(const store::JobRecord& job, store::JobOutcome outcome,
-                       const std::function<void()>& stored) {
-  const std::shared_ptr<JobFeed> feed = events_.find(job.id);
-  outcome.last_event = feed->next_seq();
-  const Moment now = store_.now();
-  outcome.finished_ms = now.of_day_ms;
-  outcome.set_by_ms = now.set_by_ms;
-  store::JobRecord record = job;
-  record.state = outcome.state;
-  record.problem = outcome.problem;
-  record.finished_ms = outcome.finished_ms;
-  if (!job.webhook.empty()) outcome.delivery = store::text_of(api::to_json(store::to_job(record)));
-  if (!store_.finish(job, outcome)) return;
-  if (stored) stored();
-  feed->publish([&](std::int64_t seq) { return api::final_event(seq, store::to_job(record)); });
-  events_.retire(job.id);
-  if (outcome.state != JobState::succeeded) blobs_.remove(job.id);
-  log_.info("job ended", {{"job", job.id},
-                          {"state", api::state_name(outcome.state)},
-                          {"attempt", job.attempt},
-                          {"problem", outcome.problem}});
-}
-
 bool JobQueue::cancel_or_remove(const std::string& id) {
   const std::lock_guard lock(mutex_);
   const std::optional<store::JobRecord> job = store_.find(id);
@@ -243,6 +181,7 @@ void JobQueue::cancel_live(const store::JobRecord& job) {
 void JobQueue::note_process_end(const RunningJob& job) {
   try {
     store_.note_process_end(job.record.id);
+  } catch (const StoreAway&) {    // it counts as long as this server runs
   } catch (const Error& error) {  // the job goes on
     if (error.code() != ErrorCode::storage_full) throw;
   }

@@ -4,7 +4,8 @@
 // and events. A full queue refuses at once rather than let requests pile up.
 //
 // A running job is on lease, which renew_leases() prolongs. A job whose end could not be stored
-// because the disk is full keeps its lease until it expires, and then runs again.
+// because the disk is full keeps its lease until it expires, and then runs again. Where the store
+// cannot be reached, the end waits for it.
 
 #include <atomic>
 #include <chrono>
@@ -16,6 +17,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -114,6 +116,10 @@ class JobQueue {
   /// Remembers, over the end of this server, too, that a job has ended a process of its own.
   void note_process_end(const RunningJob& job);
 
+  /// Where the store could not be reached for a while: does what was not done, takes up what was
+  /// done unknown to this queue, and counts anew.
+  void mend();
+
   /// Prolongs the leases of the jobs at work, queues those whose lease has ended, and gives up
   /// ended jobs beyond max_stored.
   void renew_leases();
@@ -162,6 +168,24 @@ class JobQueue {
   [[nodiscard]] bool await_turn(std::unique_lock<std::mutex>& lock);
   [[nodiscard]] store::JobOutcome sealed(const std::string& id, store::JobOutcome outcome);
   [[nodiscard]] bool wait_for_room(const RunningJob& job, const store::JobOutcome& outcome);
+  /// Makes a change of a job in the store, and notes where its outcome is not known.
+  template <class Change>
+  auto noting_doubt(const std::string& id, const Change& change) {
+    try {
+      auto result = change();
+      doubted_.erase(id);
+      return result;
+    } catch (const StoreAway& away) {
+      if (away.in_doubt()) doubted_.insert(id);
+      throw;
+    }
+  }
+  void settle_end(const RunningJob& job, const store::JobOutcome& outcome,
+                  const std::function<void()>& stored);
+  [[nodiscard]] bool has_ended(const store::JobRecord& job, api::JobState state);
+  void settle_doubt(const std::string& id);
+  void mend_waiting(const store::JobRecord& job);
+  void tell_end(const store::JobRecord& job);
   void cancel_live(const store::JobRecord& job);
   void end_job(const store::JobRecord& job, store::JobOutcome outcome,
                const std::function<void()>& stored = {});
@@ -182,6 +206,7 @@ class JobQueue {
   DiskFullBackoff pause_;
   std::deque<std::string> left_;  // by the last process, and not taken up yet
   bool tried_apart_ = false;
+  std::set<std::string> doubted_;  // jobs whose row or end may have been stored or not
   std::map<std::string, std::shared_ptr<RunningJob>, std::less<>> running_;
 };
 

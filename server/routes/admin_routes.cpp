@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "server/base/errors.hpp"
-#include "server/store/data_directory.hpp"
 
 namespace unwrapd::server::routes {
 namespace {
@@ -19,8 +18,7 @@ http::Response answer(const Readiness& readiness) {
   if (const std::optional<RetryLater> shortage = readiness.queue.shortage()) throw *shortage;
   if (!readiness.has_workers())
     throw Error(ErrorCode::internal, "Jobs that do not stop hold every worker.");
-  if (!std::filesystem::exists(readiness.data / store::kStoreFile) ||
-      !std::filesystem::is_directory(readiness.data / "blobs"))
+  if (!readiness.has_files())
     throw Error(ErrorCode::storage_failed,
                 "Files of the store are missing; the operator must restore them.");
   return http::json_response(200, kOk);

@@ -3,7 +3,6 @@
 // have an address of their own, so that they answer when the service itself is full, and need no
 // key.
 
-#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -18,7 +17,7 @@ namespace unwrapd::server::routes {
 struct Readiness {
   const jobs::JobQueue& queue;
   store::JobStore& store;
-  std::filesystem::path data;
+  std::function<bool()> has_files;  ///< whether those of the store are there
   std::function<bool()> has_workers;
 };
 

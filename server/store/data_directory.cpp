@@ -21,6 +21,13 @@ constexpr mode_t kFileMode = 0640;
                   "); the server's user must be able to write in the data directory.");
 }
 
+/// Opened to be read: what is opened to be written may lose a -wal file that is damaged.
+bool has_tables_in(const std::filesystem::path& file) {
+  std::error_code none;
+  const bool is_empty = std::filesystem::file_size(file, none) == 0 || none;
+  return !is_empty && has_tables(SqliteDatabase(file, SqliteDatabase::Access::read));
+}
+
 int open_lock(const std::filesystem::path& data) {
   std::error_code failed;
   std::filesystem::create_directories(data, failed);
@@ -40,18 +47,32 @@ DataLock::DataLock(const std::filesystem::path& data) : file_(open_lock(data)) {
                   " cannot be locked; stop any other unwrapd that uses it.");
 }
 
-std::filesystem::path store_in(const std::filesystem::path& data, const BlobStore& blobs) {
-  std::filesystem::path file = data / kStoreFile;
+DatabaseAddress address_in(const std::filesystem::path& data, const PostgresAddress& database) {
+  if (database.url.empty()) return data / kStoreFile;
+  return database;
+}
+
+DatabaseAddress store_in(const std::filesystem::path& data, const PostgresAddress& database,
+                         const BlobStore& blobs) {
+  DatabaseAddress address = address_in(data, database);
   const int folders = blobs.folder_count();
-  if (folders == 0) return file;
-  std::error_code none;  // what is opened to be written may lose a -wal file that is damaged
-  const bool is_empty = std::filesystem::file_size(file, none) == 0 || none;
-  if (!is_empty && has_tables(SqliteDatabase(file, SqliteDatabase::Access::read))) return file;
-  throw Error(ErrorCode::storage_failed,
-              "The file " + file.string() + " is missing or empty, and " +
-                  (data / "blobs").string() + " has the files of " + std::to_string(folders) +
-                  " jobs and meshes that only it lists; restore it (with its -wal file, if there "
-                  "is one), or remove the folder blobs to start empty.");
+  if (folders == 0) return address;
+  const bool in_file = database.url.empty();
+  if (in_file ? has_tables_in(data / kStoreFile) : has_tables(*address.open())) return address;
+  const std::string which =
+      in_file ? "The file " + (data / kStoreFile).string() + " is missing or empty"
+              : "The database of --database has no tables of unwrapd";
+  const std::string how = in_file ? "restore it (with its -wal file, if there is one)"
+                                  : "load its dump (psql or pg_restore)";
+  throw Error(ErrorCode::storage_failed, which + ", and " + (data / "blobs").string() +
+                                             " has the files of " + std::to_string(folders) +
+                                             " jobs and meshes that only it lists; " + how +
+                                             ", or remove the folder blobs to start empty.");
+}
+
+bool is_whole(const std::filesystem::path& data, const PostgresAddress& database) {
+  return std::filesystem::is_directory(data / "blobs") &&
+         (!database.url.empty() || std::filesystem::exists(data / kStoreFile));
 }
 
 }  // namespace unwrapd::server::store

@@ -6,6 +6,7 @@
 
 #include "server/base/files.hpp"
 #include "server/store/blob_store.hpp"
+#include "server/store/database_address.hpp"
 
 namespace unwrapd::server::store {
 
@@ -22,9 +23,15 @@ class DataLock {
 
 inline constexpr const char* kStoreFile = "jobs.sqlite";
 
-/// The path of kStoreFile in the data directory. Throws Error{storage_failed} when that file has no
-/// tables although there are files of jobs: the sweep at the start would remove them all, as no row
-/// names them.
-std::filesystem::path store_in(const std::filesystem::path& data, const BlobStore& blobs);
+/// The rows of a data directory: kStoreFile, or the database with this URL where there is one.
+DatabaseAddress address_in(const std::filesystem::path& data, const PostgresAddress& database);
+
+/// The same. Throws Error{storage_failed} when that has no tables although there are files of jobs:
+/// the sweep at the start would remove them all, as no row names them.
+DatabaseAddress store_in(const std::filesystem::path& data, const PostgresAddress& database,
+                         const BlobStore& blobs);
+
+/// Whether what the server has made in its data directory is there.
+bool is_whole(const std::filesystem::path& data, const PostgresAddress& database);
 
 }  // namespace unwrapd::server::store

@@ -73,6 +73,14 @@ class Database {
   /// Whether it was found damaged since it was opened. Thread-safe.
   [[nodiscard]] virtual bool is_damaged() const { return false; }
 
+  /// Throws StoreAway when it cannot be reached now.
+  virtual void check_reachable() const {}
+  /// Whether a call has thrown StoreAway since this was asked last.
+  [[nodiscard]] virtual bool was_away() { return false; }
+  /// Keeps every other server out of this store while this exists; a file is locked elsewhere
+  /// (DataLock). Throws InsideError{storage_failed} when another has done so.
+  virtual void claim() {}
+
   /// Makes a change of one statement; returns what make() does. make() may be called again, when it
   /// is known that nothing of the first time remains.
   template <class Make>

@@ -1,11 +1,16 @@
 #include "server/store/database_address.hpp"
 
+#include "server/store/postgres_database.hpp"
 #include "server/store/sqlite_database.hpp"
 
 namespace unwrapd::server::store {
 
-std::unique_ptr<Database> DatabaseAddress::open() const {
-  return std::make_unique<SqliteDatabase>(file_);
-}
+DatabaseAddress::DatabaseAddress(std::filesystem::path file)
+    : open_([file = std::move(file)] { return std::make_unique<SqliteDatabase>(file); }) {}
+
+DatabaseAddress::DatabaseAddress(PostgresAddress postgres)
+    : open_([address = std::move(postgres)] {
+        return std::make_unique<PostgresDatabase>(address);
+      }) {}
 
 }  // namespace unwrapd::server::store

@@ -1,25 +1,30 @@
 #pragma once
-// Which database: a file of SQLite.
+// Which database: a file of SQLite, or one of PostgreSQL.
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <utility>
 
 #include "server/store/database.hpp"
+#include "server/store/postgres_address.hpp"
 
 namespace unwrapd::server::store {
 
 class DatabaseAddress {
  public:
-  /// A file, which is made when it is missing.
-  DatabaseAddress(std::filesystem::path file)  // NOLINT(google-explicit-constructor)
-      : file_(std::move(file)) {}
+  using Open = std::function<std::unique_ptr<Database>()>;
 
-  /// A connection of its own.
-  [[nodiscard]] std::unique_ptr<Database> open() const;
+  /// A file, which is made when it is missing.
+  DatabaseAddress(std::filesystem::path file);  // NOLINT(google-explicit-constructor)
+  DatabaseAddress(PostgresAddress postgres);    // NOLINT(google-explicit-constructor)
+  explicit DatabaseAddress(Open open) : open_(std::move(open)) {}
+
+  /// A connection of its own. Throws as Database does.
+  [[nodiscard]] std::unique_ptr<Database> open() const { return open_(); }
 
  private:
-  std::filesystem::path file_;
+  Open open_;
 };
 
 }  // namespace unwrapd::server::store

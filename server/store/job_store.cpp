@@ -46,6 +46,7 @@ JobOutcome ended(JobState state, const Error& why, std::string_view job) {
 
 JobStore::JobStore(const DatabaseAddress& address, RetentionClock::Read read)
     : database_(address.open()) {
+  database_->claim();
   database_->check(false);
   migrate(*database_);
   Statement noted(*database_, "SELECT set_by_ms, noted_ms, noted_elapsed_ms, boot FROM written");
@@ -76,7 +77,10 @@ void JobStore::check_writable() {
     throw Error(ErrorCode::storage_failed,
                 "The server's store is damaged; the operator must repair it.");
   }
-  if (!write_failed_) return;
+  if (!write_failed_) {
+    const std::lock_guard lock(mutex_);
+    return database_->check_reachable();
+  }
   try {
     transact([&] {
       database_->run("UPDATE jobs SET lease_ms = 0 WHERE seq < 0");

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -65,8 +66,14 @@ class JobStore {
   std::int64_t note_time();
 
   /// Writes to it when the last write has failed, or none was tried; does not throw storage_full.
-  /// Throws where the file was found damaged since the start.
+  /// Throws where it was found damaged since the start, or cannot be reached.
   void check_writable();
+  /// Whether it could not be reached since this was asked last, so that changes failed or are in
+  /// doubt.
+  [[nodiscard]] bool was_away() {
+    const std::lock_guard lock(mutex_);
+    return database_->was_away();
+  }
 
   /// Adds a queued job and returns its seq.
   std::int64_t insert(const JobRecord& job);
@@ -110,7 +117,8 @@ class JobStore {
   FolderFate fate_of(std::string_view id);
   /// Final jobs that ended before this time (of Moment::kept_ms(), like all below) and still have
   /// their files, the oldest first.
-  std::vector<std::string> finished_before(std::int64_t epoch_ms, int limit = -1);
+  std::vector<std::string> finished_before(std::int64_t epoch_ms,
+                                           int limit = std::numeric_limits<int>::max());
   void set_stored_bytes(std::string_view id, std::int64_t bytes);
   /// The same of many succeeded jobs, in one transaction; what is right stays as it is. Does not
   /// throw storage_full.

@@ -34,8 +34,9 @@ void JobStore::mend_sums() {
   const std::string right = "SELECT owner, SUM(stored_bytes), COUNT(*) FROM jobs GROUP BY owner";
   const std::string noted = "SELECT owner, bytes, jobs FROM stored";
   Statement wrong(*database_, "SELECT * FROM (" + right + " EXCEPT " + noted +
-                                  ") UNION ALL SELECT * FROM (" + noted +
-                                  " WHERE bytes <> 0 OR jobs <> 0 EXCEPT " + right + ") LIMIT 1");
+                                  ") AS wrong UNION ALL SELECT * FROM (" + noted +
+                                  " WHERE bytes <> 0 OR jobs <> 0 EXCEPT " + right +
+                                  ") AS left_over LIMIT 1");
   if (!wrong.step()) return;
   transact([&] {
     database_->run("DELETE FROM stored");
@@ -76,7 +77,8 @@ std::optional<std::string> JobStore::first_to_go() {
        {"SELECT id FROM jobs WHERE expired = 1 ORDER BY kept_since_ms LIMIT 1",
         "WITH ended (state) AS (VALUES ('succeeded'), ('failed'), ('cancelled')),"
         " firsts AS (SELECT jobs, owner, (SELECT MIN(seq) FROM (SELECT (SELECT MIN(seq) FROM jobs"
-        " WHERE jobs.owner = stored.owner AND jobs.state = ended.state) AS seq FROM ended)) AS seq"
+        " WHERE jobs.owner = stored.owner AND jobs.state = ended.state) AS seq FROM ended) AS "
+        "of_state) AS seq"
         " FROM stored)"
         " SELECT id FROM jobs WHERE seq = (SELECT seq FROM firsts WHERE seq IS NOT NULL"
         " ORDER BY jobs DESC, owner LIMIT 1)"}) {

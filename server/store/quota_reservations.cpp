@@ -16,7 +16,13 @@ std::int64_t QuotaReservations::add(const std::string& owner, std::int64_t bytes
 bool QuotaReservation::try_set(std::int64_t bytes, std::int64_t most, std::int64_t known_bytes) {
   if (most == 0) return true;
   const std::int64_t all = reservations_.add(owner_, bytes - bytes_);
-  const std::int64_t left = most - reservations_.store_.usage(owner_).stored_bytes;
+  std::int64_t left = most;
+  try {
+    left -= reservations_.store_.usage(owner_).stored_bytes;
+  } catch (...) {
+    reservations_.add(owner_, bytes_ - bytes);
+    throw;
+  }
   const bool comes_again = known_bytes > 0 && bytes <= known_bytes;
   const std::int64_t new_bytes = comes_again ? all - bytes : all;
   if (new_bytes <= left || (comes_again && new_bytes == 0)) {

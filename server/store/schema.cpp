@@ -10,9 +10,10 @@ bool has_tables(const Database& database) { return database.version() > 0; }
 void refuse_newer(const Database& database) {
   const std::int64_t found = database.version();
   if (found >= 0 && found <= kSchemaVersion) return;
-  throw Error(ErrorCode::storage_failed,
-              "The job store is of another version (schema " + std::to_string(found) +
-                  "): start the version that wrote it, or choose another --data directory.");
+  throw Error(
+      ErrorCode::storage_failed,
+      "The job store is of another version (schema " + std::to_string(found) +
+          "): start the version that wrote it, or choose another --data directory or --database.");
 }
 
 void require_current(const Database& database) {
@@ -30,7 +31,7 @@ void migrate(Database& database, std::optional<std::int64_t> last) {
   while (database.version() < end)
     database.transact([&] {
       const std::int64_t next = database.version() + 1;
-      database.run(database.step_to(next));
+      if (const std::string step = database.step_to(next); !step.empty()) database.run(step);
       database.set_version(next);
     });
 }

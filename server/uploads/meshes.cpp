@@ -101,6 +101,9 @@ SentMesh Meshes::settle(const http::Request& request, store::MeshRecord mesh,
   blobs_.keep_upload(upload, mesh.id, {{std::string(store::kDocumentFile), mesh.sha256}});
   try {
     store_.put(mesh);
+  } catch (const StoreAway& away) {
+    if (!away.in_doubt()) blobs_.remove(mesh.id);
+    throw;
   } catch (...) {
     blobs_.remove(mesh.id);
     throw;

@@ -52,7 +52,8 @@ export class Server {
     servers.add(server);
     server.exited = once(server.process, "exit");
     const lines = createInterface({ input: server.process.stdout });
-    const [line] = await once(lines, "line");
+    const [line] = await Promise.race([once(lines, "line"), server.exited]);
+    assert.equal(typeof line, "string", `the server ended before it told its address: ${server.log}`);
     server.url = line.replace("unwrapd listening on ", "");
     return server;
   }

@@ -37,7 +37,7 @@ export const ROOMS = [
   ["client/python", "the Python package", []],
   ["server/base", "files, clocks, log, metrics, waiting", ["core/base", "api"]],
   ["server/http", "the edge: connections, TLS, limits, framing, routing", ["core/base", "api", "server/base"]],
-  ["server/store", "jobs in SQLite, their files, quotas, sweeping", ["core/asset", ...STORED]],
+  ["server/store", "jobs in SQLite or PostgreSQL, their files, quotas, sweeping", ["core/asset", ...STORED]],
   ["server/work", "one job from input bytes to output bytes, in its own process", [...TERMS, ...STORED, "core", "core/asset", "core/figure", "core/pipeline"]],
   ["server/jobs", "the queue, fair turns, workers, events", [...STORED, "server/http", "server/work"]],
   ["server/access", "API keys, signed links", [...STORED, "core/figure", "server/http", "server/jobs"]],

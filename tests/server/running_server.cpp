@@ -6,6 +6,8 @@
 #include <thread>
 #include <vector>
 
+#include "tests/server/test_database.hpp"
+
 namespace unwrapd::server {
 namespace {
 
@@ -115,6 +117,7 @@ void await(const std::function<bool()>& condition) {
 RunningServer::RunningServer() {
   config_.listen.port = 0;
   config_.data = dir_.path();
+  config_.database = postgres_of(dir_.path());
   config_.workers = 2;
   config_.threads = 2;
   config_.limits.max_streams = 8;

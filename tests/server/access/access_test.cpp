@@ -13,6 +13,7 @@
 #include "server/webhooks/webhooks.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
+#include "tests/server/test_database.hpp"
 
 namespace unwrapd::server::access {
 namespace {
@@ -54,7 +55,7 @@ class Keys : public testing::Test {
   }
 
   TempDir dir_;
-  KeyStore keys_{dir_.path()};
+  KeyStore keys_{dir_.path(), {}, postgres_of(dir_.path())};
   LinkSigner links_{"secret"};
   Access access_{keys_, links_, true};
 };

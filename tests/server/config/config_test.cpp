@@ -215,6 +215,16 @@ std::string without_sources(const std::string& text) {
   return kept;
 }
 
+TEST(Config, TheDatabaseIsAUrlThatNobodyIsTold) {
+  constexpr const char* url = "postgres://unwrapd:hush@db/unwrapd";
+  EXPECT_EQ(parse({"--database", url}).config.database.url, url);
+  EXPECT_TRUE(parse({}).config.database.url.empty());
+  EXPECT_THAT(answer({"--database", url, "--print-config"}),
+              AllOf(HasSubstr("database = \"********\""), Not(HasSubstr("hush"))));
+  EXPECT_THAT(mistake({"--database", "hush.sqlite"}),
+              AllOf(HasSubstr("postgres://"), Not(HasSubstr("hush"))));
+}
+
 TEST_F(ConfigFile, APrintedConfigReadAsAFileIsTheSameConfig) {
   const std::string odd = R"(a "b"\#c, d)";
   const std::string printed = answer({"--print-config", "--data", odd.c_str(), "--listen",
@@ -233,8 +243,9 @@ TEST(Config, EveryOptionTellsItselfWithoutItsSecret) {
       row.set(config, row.get(config));  // takes what it tells
       if (!row.heading.is_secret) continue;
       const std::string flag = "--" + std::string(row.heading.name);
-      EXPECT_THAT(answer({"--print-config", flag.c_str(), "0123456789abcdef0123456789abcdef"}),
-                  AllOf(HasSubstr("********"), Not(HasSubstr("0123456789"))));
+      EXPECT_THAT(
+          answer({"--print-config", flag.c_str(), "postgres://0123456789abcdef/0123456789"}),
+          AllOf(HasSubstr("********"), Not(HasSubstr("0123456789"))));
     }
 }
 

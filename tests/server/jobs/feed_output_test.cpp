@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "server/base/errors.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
+#include "tests/server/test_database.hpp"
 
 namespace unwrapd::server::jobs {
 namespace {
@@ -22,7 +24,7 @@ class FeedOutputs : public testing::Test {
 
   TempDir dir_;
   store::BlobStore blobs_{dir_.path()};
-  store::JobStore store_{dir_.path() / "jobs.sqlite"};
+  store::JobStore store_{database_in(dir_.path())};
   store::QuotaReservations reservations_{store_};
   store::QuotaReservation reservation_{reservations_, "his"};
   std::int64_t most_ = 0;
@@ -55,6 +57,21 @@ TEST_F(FeedOutputs, WriteNothingBeyondTheQuota) {
   output_.file("uv.bin", "1234");
   FeedOutput again(job_, blobs_, {reservation_, most_bytes_});
   again.result("obj", "1234567890");
+}
+
+TEST_F(FeedOutputs, WaitForAStoreThatCannotBeReachedUntilTheJobIsStopped) {
+  int asked = 0;
+  const std::function<std::int64_t(const std::string&)> away =
+      [&](const std::string&) -> std::int64_t {
+    if (++asked < 3 || job_.stop.stop_requested()) throw StoreAway("gone", false);
+    return 0;
+  };
+  FeedOutput patient(job_, blobs_, {reservation_, away});
+  patient.file("uv.bin", "1234");
+  EXPECT_EQ(asked, 3);
+  EXPECT_TRUE(std::filesystem::exists(blobs_.path("j_1", "uv.bin")));
+  job_.request_stop(StopCause::cancelled);
+  EXPECT_EQ(error_of([&] { patient.file("more.bin", "1"); }).code(), ErrorCode::cancelled);
 }
 
 }  // namespace

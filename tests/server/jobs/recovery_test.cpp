@@ -6,6 +6,7 @@
 
 #include "server/jobs/job_queue.hpp"
 #include "tests/server/temp_dir.hpp"
+#include "tests/server/test_database.hpp"
 
 namespace unwrapd::server::jobs {
 namespace {
@@ -32,7 +33,7 @@ class Recovery : public testing::Test {
 
   TempDir dir_;
   std::unique_ptr<store::JobStore> store_ =
-      std::make_unique<store::JobStore>(dir_.path() / "jobs.sqlite");
+      std::make_unique<store::JobStore>(database_in(dir_.path()));
   store::BlobStore blobs_{dir_.path()};
   EventFeed events_;
   const Log log_{LogLevel::off};

@@ -125,7 +125,7 @@ TEST_F(Answers, ThatNobodyCanHaveForWantOfAKeyAreToldOfAtTheStart) {
   access::ApiKey key;
   key.name = "ci";
   key.scopes.read = true;
-  access::KeyStore(dir_.path()).add(key);
+  access::KeyStore(dir_.path(), {}, config_.database).add(key);
   EXPECT_THAT(told(), Not(HasSubstr("keys add")));
 }
 

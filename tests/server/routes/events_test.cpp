@@ -147,7 +147,7 @@ TEST_F(Events, StreamsAreLimitedAndStarveNoOtherRequest) {
 TEST_F(Events, OfOneKeyLeaveHalfOfTheStreamsToOthers) {
   config_.access.require_keys = true;
   start();
-  access::KeyStore keys(config_.data);
+  access::KeyStore keys(config_.data, {}, config_.database);
   const auto holder = [&] {
     access::ApiKey key;
     key.scopes = {.submit = true, .read = true};

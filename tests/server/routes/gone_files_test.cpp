@@ -4,6 +4,7 @@
 #include "server/routes/job_routes.hpp"
 #include "server/store/job_store.hpp"
 #include "tests/server/temp_dir.hpp"
+#include "tests/server/test_database.hpp"
 
 namespace unwrapd::server::routes {
 namespace {
@@ -38,7 +39,7 @@ class GoneFiles : public testing::Test {
   }
 
   TempDir dir_;
-  store::JobStore jobs_{dir_.path() / "jobs.sqlite"};
+  store::JobStore jobs_{database_in(dir_.path())};
 };
 
 TEST_F(GoneFiles, AreToldAsExpiredWhenTheResultHasExpiredMeanwhile) {

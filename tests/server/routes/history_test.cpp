@@ -8,6 +8,7 @@
 
 #include "server/store/job_store.hpp"
 #include "tests/server/temp_dir.hpp"
+#include "tests/server/test_database.hpp"
 
 namespace unwrapd::server::routes {
 namespace {
@@ -30,7 +31,7 @@ class History : public testing::Test {
  protected:
   History() {
     sqlite3_auto_extension(reinterpret_cast<void (*)()>(watch));
-    store_.emplace(dir_.path() / "jobs.sqlite");
+    store_.emplace(database_in(dir_.path()));
   }
   ~History() override { sqlite3_reset_auto_extension(); }
 
@@ -112,7 +113,7 @@ TEST_F(History, BytesAreThoseOfAllRowsWhateverBecomesOfThem) {
   expect(250, 110, 350);
   store_->forget_before(std::numeric_limits<std::int64_t>::max());
   expect(250, 110, 350);
-  store_.emplace(dir_.path() / "jobs.sqlite");
+  store_.emplace(database_in(dir_.path()));
   expect(250, 110, 350);
 }
 

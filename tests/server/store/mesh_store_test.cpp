@@ -8,6 +8,7 @@
 #include "server/store/job_store.hpp"
 #include "server/store/sweeper.hpp"
 #include "tests/server/temp_dir.hpp"
+#include "tests/server/test_database.hpp"
 
 namespace unwrapd::server::store {
 namespace {
@@ -50,8 +51,9 @@ class StoreOfMeshes : public testing::Test {
   static constexpr const char* kOne = "m_11111111111111111111111111111111";
   static constexpr const char* kTwo = "m_22222222222222222222222222222222";
   TempDir dir_;
-  JobStore jobs_{dir_.path() / "jobs.sqlite"};
-  MeshStore meshes_{dir_.path() / "jobs.sqlite"};
+  const DatabaseAddress database_ = database_in(dir_.path());
+  JobStore jobs_{database_};
+  MeshStore meshes_{database_};
   BlobStore blobs_{dir_.path()};
 };
 

@@ -9,9 +9,9 @@
 #include "core/base/error.hpp"
 #include "server/base/files.hpp"
 #include "server/jobs/job_queue.hpp"
-#include "server/store/sqlite_database.hpp"
 #include "server/store/sweeper.hpp"
 #include "tests/server/temp_dir.hpp"
+#include "tests/server/test_database.hpp"
 
 namespace unwrapd::server::store {
 namespace {
@@ -33,10 +33,9 @@ JobRecord some_job(const std::string& id) {
 
 class Store : public testing::Test {
  protected:
-  std::filesystem::path path() const { return dir_.path() / "jobs.sqlite"; }
   void reopen() {
     store_.reset();
-    store_ = std::make_unique<JobStore>(path());
+    store_ = std::make_unique<JobStore>(database_);
   }
   JobOutcome succeeded(std::int64_t finished_ms = 2000) const {
     return {.state = JobState::succeeded,
@@ -47,7 +46,8 @@ class Store : public testing::Test {
   }
 
   TempDir dir_;
-  std::unique_ptr<JobStore> store_ = std::make_unique<JobStore>(path());
+  const DatabaseAddress database_ = database_in(dir_.path());
+  std::unique_ptr<JobStore> store_ = std::make_unique<JobStore>(database_);
 };
 
 TEST_F(Store, KeepsEveryFieldOverAReopening) {
@@ -196,18 +196,18 @@ TEST_F(Store, RemembersARequestToCancelOverAReopening) {
   EXPECT_TRUE(store_->find("j_1")->cancel_requested);
 }
 
-TEST_F(Store, RefusesAFileOfAnotherSchema) {
+TEST_F(Store, RefusesTablesOfAnotherSchema) {
   store_.reset();
-  SqliteDatabase(path()).run("PRAGMA user_version = 99");
-  EXPECT_THROW(JobStore{path()}, Error);
+  const std::unique_ptr<Database> newer = database_.open();
+  newer->transact([&] { newer->set_version(99); });
+  EXPECT_THROW(JobStore{database_}, Error);
 }
 
-TEST_F(Store, RefusesAFileThatIsNoDatabase) {
-  store_.reset();
-  std::filesystem::remove_all(dir_.path());
-  std::filesystem::create_directories(dir_.path());
-  write_file(path(), std::string(5000, 'x'));
-  EXPECT_THROW(JobStore{path()}, Error);
+TEST(AFileThatIsNoDatabase, IsRefused) {
+  const TempDir dir;
+  const std::filesystem::path path = dir.path() / "jobs.sqlite";
+  write_file(path, std::string(5000, 'x'));
+  EXPECT_THROW(JobStore{path}, Error);
 }
 
 TEST_F(Store, FilesExpireFirstAndTheJobAfterAsLongAgain) {

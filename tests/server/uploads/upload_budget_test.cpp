@@ -7,6 +7,7 @@
 #include "server/uploads/spooled_text.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
+#include "tests/server/test_database.hpp"
 
 namespace unwrapd::server::uploads {
 namespace {
@@ -45,7 +46,7 @@ class RoomOfAnUpload : public testing::Test {
   static ErrorCode refusal(const std::function<void()>& act) { return error_of(act).code(); }
 
   TempDir dir_;
-  store::JobStore store_{dir_.path() / "jobs.sqlite"};
+  store::JobStore store_{database_in(dir_.path())};
   store::DiskBudget disk_{dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0}};
   store::QuotaReservations reservations_{store_};
   const UploadRooms rooms_{reservations_, disk_};
@@ -158,7 +159,7 @@ TEST_F(RoomOfAnUpload, IsEnoughToSendTheSameAgain) {
 }
 
 TEST_F(RoomOfAnUpload, CanBeMadeOfWhatNoLiveJobNeeds) {
-  store::MeshStore meshes(dir_.path() / "jobs.sqlite");
+  store::MeshStore meshes(database_in(dir_.path()));
   meshes.put({.id = "m_1", .owner = "his", .sha256 = "j_1", .media_type = "", .stored_bytes = 5});
   meshes.put({.id = "m_2", .owner = "his", .sha256 = "ab", .media_type = "", .stored_bytes = 2});
   add("j_1", 70);

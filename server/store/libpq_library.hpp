@@ -1,0 +1,35 @@
+#pragma once
+// libpq, loaded when the first PostgreSQL database is opened. Linked, it would bring Kerberos and
+// LDAP into every worker process, and into servers that use SQLite.
+
+#include <postgresql/libpq-fe.h>
+
+namespace unwrapd::server::store {
+
+/// The functions of libpq that are used here, by their names without "PQ".
+class LibpqLibrary {
+ public:
+  /// Loads it once. Throws InsideError{internal} when it is not installed.
+  static const LibpqLibrary& loaded();
+
+  decltype(&::PQconnectdbParams) connect;
+  decltype(&::PQfinish) finish;
+  decltype(&::PQstatus) status;
+  decltype(&::PQerrorMessage) error_message;
+  decltype(&::PQparameterStatus) parameter_status;
+  decltype(&::PQexec) exec;
+  decltype(&::PQprepare) prepare;
+  decltype(&::PQexecPrepared) exec_prepared;
+  decltype(&::PQresultStatus) result_status;
+  decltype(&::PQresultErrorField) result_error_field;
+  decltype(&::PQcmdTuples) cmd_tuples;
+  decltype(&::PQntuples) row_count;
+  decltype(&::PQgetvalue) value;
+  decltype(&::PQgetlength) length;
+  decltype(&::PQclear) clear;
+
+ private:
+  LibpqLibrary();
+};
+
+}  // namespace unwrapd::server::store

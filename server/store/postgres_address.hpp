@@ -1,0 +1,15 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace unwrapd::server::store {
+
+/// Where a PostgreSQL database is.
+struct PostgresAddress {
+  std::string url;  ///< "postgres://user@host/name"; may have a password
+  /// How long a call waits for a connection that was lost while it used it.
+  std::chrono::milliseconds patience = std::chrono::seconds(5);
+};
+
+}  // namespace unwrapd::server::store

@@ -1,0 +1,121 @@
+// The tables as PostgreSQL has them. Those of version 10 are the first; later steps come in both
+// engines' words.
+#include "server/store/schema_steps.hpp"
+
+namespace unwrapd::server::store {
+namespace {
+
+constexpr std::int64_t kFirstVersion = 10;
+constexpr const char* kFirstTables = R"sql(
+CREATE TABLE jobs (
+  seq BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+  id TEXT NOT NULL UNIQUE,
+  state TEXT NOT NULL,
+  created_ms BIGINT NOT NULL,
+  finished_ms BIGINT NOT NULL DEFAULT 0,
+  attempt BIGINT NOT NULL DEFAULT 0,
+  crashes BIGINT NOT NULL DEFAULT 0,
+  cancel_requested BIGINT NOT NULL DEFAULT 0,
+  synchronous BIGINT NOT NULL,
+  expired BIGINT NOT NULL DEFAULT 0,
+  options TEXT NOT NULL,
+  notes TEXT NOT NULL,
+  sha256 TEXT NOT NULL,
+  bytes BIGINT NOT NULL,
+  buffers TEXT NOT NULL,
+  result_format TEXT NOT NULL DEFAULT '',
+  problem TEXT NOT NULL DEFAULT 'null',
+  last_event BIGINT NOT NULL DEFAULT 0,
+  owner TEXT NOT NULL DEFAULT '',
+  urgency BIGINT NOT NULL DEFAULT 3,
+  request_key TEXT,
+  content_key TEXT NOT NULL DEFAULT '',
+  lease_ms BIGINT NOT NULL DEFAULT 0,
+  kept_since_ms BIGINT NOT NULL DEFAULT 0,
+  stored_bytes BIGINT NOT NULL DEFAULT 0,
+  webhook TEXT NOT NULL DEFAULT '',
+  trace TEXT NOT NULL DEFAULT '',
+  asked TEXT NOT NULL DEFAULT '',
+  process_ends BIGINT NOT NULL DEFAULT 0
+);
+CREATE INDEX jobs_by_state ON jobs (state, owner, urgency, seq);
+CREATE INDEX jobs_by_owner ON jobs (owner, seq);
+CREATE INDEX jobs_by_content ON jobs (owner, content_key) WHERE state = 'succeeded';
+CREATE UNIQUE INDEX jobs_by_request ON jobs (owner, request_key) WHERE request_key IS NOT NULL;
+CREATE INDEX jobs_of_owner ON jobs (owner, state, seq);
+CREATE INDEX jobs_in_state ON jobs (state, seq);
+CREATE INDEX jobs_by_end ON jobs (expired, kept_since_ms);
+CREATE TABLE deliveries (
+  seq BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+  job TEXT NOT NULL,
+  url TEXT NOT NULL,
+  body TEXT NOT NULL,
+  tries BIGINT NOT NULL DEFAULT 0,
+  due_ms BIGINT NOT NULL,
+  trace TEXT NOT NULL DEFAULT '',
+  owner TEXT NOT NULL DEFAULT ''
+);
+CREATE INDEX deliveries_by_time ON deliveries (due_ms);
+CREATE TABLE meshes (
+  seq BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+  id TEXT NOT NULL UNIQUE,
+  owner TEXT NOT NULL,
+  sha256 TEXT NOT NULL,
+  bytes BIGINT NOT NULL,
+  media_type TEXT NOT NULL,
+  created_ms BIGINT NOT NULL,
+  kept_since_ms BIGINT NOT NULL,
+  stored_bytes BIGINT NOT NULL,
+  UNIQUE (owner, sha256)
+);
+CREATE INDEX meshes_by_time ON meshes (kept_since_ms);
+CREATE TABLE written (
+  times BIGINT NOT NULL,
+  set_by_ms BIGINT NOT NULL DEFAULT 0,
+  noted_ms BIGINT NOT NULL DEFAULT 0,
+  noted_elapsed_ms BIGINT NOT NULL DEFAULT 0,
+  boot TEXT NOT NULL DEFAULT ''
+);
+INSERT INTO written (times) VALUES (0);
+CREATE TABLE stored (
+  owner TEXT PRIMARY KEY,
+  bytes BIGINT NOT NULL,
+  jobs BIGINT NOT NULL DEFAULT 0
+);
+CREATE FUNCTION note_stored() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+  IF TG_OP = 'INSERT' THEN
+    INSERT INTO stored VALUES (NEW.owner, NEW.stored_bytes, 1)
+      ON CONFLICT (owner) DO UPDATE
+      SET bytes = stored.bytes + excluded.bytes, jobs = stored.jobs + 1;
+  ELSIF TG_OP = 'UPDATE' THEN
+    UPDATE stored SET bytes = bytes + NEW.stored_bytes - OLD.stored_bytes WHERE owner = NEW.owner;
+  ELSE
+    UPDATE stored SET bytes = bytes - OLD.stored_bytes, jobs = jobs - 1 WHERE owner = OLD.owner;
+  END IF;
+  RETURN NULL;
+END $$;
+CREATE TRIGGER jobs_stored AFTER INSERT OR DELETE ON jobs
+  FOR EACH ROW EXECUTE FUNCTION note_stored();
+CREATE TRIGGER jobs_changed AFTER UPDATE OF stored_bytes ON jobs
+  FOR EACH ROW EXECUTE FUNCTION note_stored();
+CREATE TABLE keys (
+  seq BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+  id TEXT NOT NULL UNIQUE,
+  name TEXT NOT NULL,
+  sha256 TEXT NOT NULL,
+  scopes TEXT NOT NULL,
+  requests_per_minute BIGINT NOT NULL,
+  max_jobs BIGINT NOT NULL,
+  max_bytes BIGINT NOT NULL,
+  created_ms BIGINT NOT NULL
+);
+)sql";
+
+}  // namespace
+
+std::string postgres_step(std::int64_t version) {
+  return version == kFirstVersion ? kFirstTables : "";
+}
+
+}  // namespace unwrapd::server::store

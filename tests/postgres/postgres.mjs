@@ -1,0 +1,93 @@
+// A PostgreSQL server of a test's own, in a temporary folder and on a Unix socket there; and a proxy
+// before it that loses what it is told to lose. As root it runs as the user postgres: PostgreSQL
+// refuses root.
+import { execFileSync } from "node:child_process";
+import { chownSync, existsSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
+import { connect, createServer } from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+const DEBIAN = "/usr/lib/postgresql";
+export const NOT_INSTALLED = "PostgreSQL is not installed (Debian package postgresql)";
+
+/** Where its programs are: of the newest version; undefined where there is none. */
+function programs() {
+  const versions = existsSync(DEBIAN) ? readdirSync(DEBIAN).sort((a, b) => b - a) : [];
+  return versions.map((version) => join(DEBIAN, version, "bin")).find((bin) => existsSync(join(bin, "initdb")));
+}
+
+export function isInstalled() {
+  return programs() !== undefined;
+}
+
+const idOf = (flag) => Number(execFileSync("id", [flag, "postgres"], { encoding: "utf8" }));
+
+export class Postgres {
+  /** Starts one. sync: false where only processes end, not machines. */
+  constructor({ sync = true } = {}) {
+    this.bin = programs();
+    this.folder = mkdtempSync(join(tmpdir(), "unwrapd-postgres-"));
+    this.data = join(this.folder, "data");
+    this.user = process.getuid() === 0 ? { uid: idOf("-u"), gid: idOf("-g") } : {};
+    this.sync = sync ? "on" : "off";
+    if (this.user.uid) chownSync(this.folder, this.user.uid, this.user.gid);
+    const asked = ["-D", this.data, "-U", "postgres", "-A", "trust", "-E", "UTF8", "--locale=C.UTF-8", "--no-sync"];
+    this.run("initdb", asked);
+    this.start();
+  }
+
+  run(program, args) {
+    const options = { ...this.user, cwd: this.folder, encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] };
+    return execFileSync(join(this.bin, program), args, options);
+  }
+
+  start() {
+    const options = `-k ${this.folder} -c listen_addresses= -c fsync=${this.sync} -c max_connections=40`;
+    this.run("pg_ctl", ["-D", this.data, "-l", join(this.folder, "log"), "-o", options, "-w", "-t", "60", "start"]);
+  }
+
+  /** As a crash ends it: nothing is said to clients, and the next start recovers. */
+  kill() {
+    this.run("pg_ctl", ["-D", this.data, "-m", "immediate", "-w", "stop"]);
+  }
+
+  /** Its URL, or that of another socket in its folder. */
+  url(port = 5432) {
+    return `postgres://postgres@/postgres?host=${encodeURIComponent(this.folder)}&port=${port}`;
+  }
+
+  /** What a query answers: lines of values with | between. */
+  query(sql) {
+    return this.run("psql", ["-h", this.folder, "-U", "postgres", "-qAtX", "-c", sql, "postgres"]).trim();
+  }
+
+  remove() {
+    try {
+      this.kill();
+    } catch {} // it is stopped
+    rmSync(this.folder, { recursive: true, force: true });
+  }
+}
+
+/**
+ * A proxy on another port of the server's folder. fate(count) says what becomes of the COMMIT of this
+ * number: "pass", "lose" (it never arrives) or "lose answer"; both end the session.
+ */
+export function commitProxy(postgres, port, fate) {
+  let count = 0;
+  const server = createServer((client) => {
+    const upstream = connect(join(postgres.folder, ".s.PGSQL.5432"));
+    let isCut = false;
+    const end = () => [client, upstream].forEach((socket) => socket.destroy());
+    for (const socket of [client, upstream]) socket.on("error", end).on("close", end);
+    client.on("data", (piece) => {
+      const what = piece.includes("COMMIT\0") ? fate(++count) : "pass";
+      if (what === "lose") return end();
+      isCut = what === "lose answer";
+      upstream.write(piece);
+    });
+    upstream.on("data", (piece) => (isCut ? end() : client.write(piece)));
+  });
+  server.listen(join(postgres.folder, `.s.PGSQL.${port}`));
+  return server;
+}
