@@ -55,6 +55,10 @@ test('bijective', async () => {
   assert.match(table, /^time: median [\d.]+ .*\n.*\nrise: median [\d.]+ %/m);
 });
 
+test('store', async () => {
+  assert.match(await program('store', '10'), /^sqlite +\d+ inserts\/s +\d+ taken and finished\/s$/m);
+});
+
 test('cancel-latency', async () => {
   assert.match(await program('cancel_latency', 'disk:400'), /\d/);
 });
