@@ -71,7 +71,7 @@ export class Bench {
 
   /** A fresh visitor's browser; complaints are what its console got, elsewhere what it asked of others. */
   async blank(t, base = this.server.base, options = {}) {
-    const context = await this.browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
+    const context = await this.browser.newContext({ viewport: { width: 1280, height: 900 }, reducedMotion: "reduce", ...options });
     t.after(() => context.close());
     await context.addInitScript(definePixelsOf);
     const page = await context.newPage();
