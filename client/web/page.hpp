@@ -1,6 +1,6 @@
 #pragma once
-// The pages that a server shows to people, as they were at build time: documents, and the files that
-// they load, under names that change with their content.
+// The pages that a server shows to people, as they were at build time: documents, and the files
+// that they load, under names that change with their content.
 
 #include <span>
 #include <string_view>

@@ -17,8 +17,8 @@ constexpr double kSecondsPerMinute = 60;
 constexpr double kMegapixel = 1024.0 * 1024.0;
 // Open to everybody: what the server is and whether it is well, and no job.
 constexpr auto kPublic = std::to_array<std::string_view>(
-    {"/", "/assets/{name}", "/docs", "/openapi.yaml", "/openapi.json", "/v1/methods",
-     "/v1/limits", "/healthz", "/readyz"});
+    {"/", "/assets/{name}", "/docs", "/openapi.yaml", "/openapi.json", "/v1/methods", "/v1/limits",
+     "/healthz", "/readyz"});
 
 /// Schemes have no case (RFC 9110, 11.1).
 bool is_bearer(std::string_view field) {
