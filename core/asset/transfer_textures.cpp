@@ -9,23 +9,23 @@ namespace {
 
 constexpr std::size_t kMostNamed = 8;  // images that a note names
 
-std::size_t texels(int width, int height) {
-  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+std::size_t texels(const texture::Size& size) {
+  return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
 }
 
-std::string size_text(int width, int height) {
-  return std::to_string(width) + " x " + std::to_string(height);
+std::string size_text(const texture::Size& size) {
+  return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
 /// The old image with its mip chain; the new one with its offsets, and as its encoder keeps it.
 void check_memory(const Gltf& gltf, const NewImage& image, std::size_t faces) {
   constexpr std::size_t kOfFace = sizeof(texture::PlacedTriangle) + sizeof(texture::TurnedFrames);
   const std::size_t bytes = texture::decoding_bytes(image.head) +
-                            6 * texels(image.head.width, image.head.height) +
-                            17 * texels(image.size.width, image.size.height) + 2 * kOfFace * faces;
+                            6 * texels({image.head.width, image.head.height}) +
+                            17 * texels(image.size) + 2 * kOfFace * faces;
   if (bytes > gltf.transfer->max_bytes / 2)
     throw Error(ErrorCode::too_much_memory,
-                "to resample this image to " + size_text(image.size.width, image.size.height) +
+                "to resample this image to " + size_text(image.size) +
                     " texels takes more memory than a job may; send a "
                     "smaller image or a lower resolution",
                 Place().at("images").at(image.image).pointer());
@@ -82,8 +82,7 @@ std::string images_text(const TransferPlan& plan) {
   for (std::size_t i = 0; i < std::min(plan.images.size(), kMostNamed); ++i) {
     const NewImage& image = plan.images[i];
     text += (i == 0 ? "" : ", ") + std::string("image ") + std::to_string(image.image) + " from " +
-            size_text(image.head.width, image.head.height) + " to " +
-            size_text(image.size.width, image.size.height);
+            size_text({image.head.width, image.head.height}) + " to " + size_text(image.size);
   }
   return text + (plan.images.size() > kMostNamed ? ", and others" : "");
 }

@@ -27,8 +27,7 @@
 namespace unwrapd::guarantee {
 namespace {
 
-constexpr std::size_t kMostPairs = 1 << 20;  // of overlapping triangles, counted in one chart
-constexpr std::size_t kMostParts = 8;        // of a chart, before it has a new map instead
+constexpr std::size_t kMostParts = 8;  // of a chart, before it has a new map instead
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr Index kMostFacesUnfolded = 50'000;  // a new map of more takes minutes
 
@@ -68,7 +67,7 @@ std::vector<std::array<Index, 2>> overlaps_of(const charts::Chart& chart, const 
                                               const std::stop_token& stop) {
   if (measure::is_plainly_injective(chart.mesh.faces, chart.loops, uv, stop)) return {};
   throw_if_cancelled(stop);
-  return measure::overlapping_pairs(chart.mesh.faces, chart.loops, uv, kMostPairs, stop);
+  return measure::overlapping_pairs(chart.mesh.faces, chart.loops, uv, measure::kMostPairs, stop);
 }
 
 [[noreturn]] void fail(const std::string& why) {

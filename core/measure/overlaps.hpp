@@ -10,6 +10,8 @@
 
 namespace unwrapd::measure {
 
+inline constexpr std::size_t kMostPairs = 1 << 20;  ///< of overlapping triangles, that are counted
+
 /// Whether the interiors of two triangles of the plane meet. Exact (see orientation()). A triangle
 /// without area has no interior; a clockwise one counts as its mirror image.
 bool overlap(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b);

@@ -82,8 +82,6 @@ void place(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& al
   }
 }
 
-constexpr std::size_t kMostPairs = 1 << 20;  // of triangles, that are counted
-
 /// The pairs of all faces on the page, also of different islands.
 Index count_overlaps(const std::vector<charts::UvIslands>& all, const std::stop_token& stop) {
   std::vector<Triangle> faces;
@@ -95,7 +93,8 @@ Index count_overlaps(const std::vector<charts::UvIslands>& all, const std::stop_
         faces.push_back({face[0] + first, face[1] + first, face[2] + first});
       uv.insert(uv.end(), own.maps[k].begin(), own.maps[k].end());
     }
-  return static_cast<Index>(measure::overlapping_pairs(faces, uv, kMostPairs, stop).size());
+  return static_cast<Index>(
+      measure::overlapping_pairs(faces, uv, measure::kMostPairs, stop).size());
 }
 
 void leave_in_place(const std::vector<charts::UvIslands>& all, const UnwrapOptions& options,

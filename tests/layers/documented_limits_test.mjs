@@ -55,6 +55,7 @@ const LIMITS = [
   ["docs/api.md", "core/asset/meshopt.cpp", "kMaxDecodedBytes", (n) => `${n / KIB / KIB / KIB} GiB in all`],
   ["docs/api.md", "core/texture/image.hpp", "kMaxSide", (n) => `${plain(n)} texels;`],
   ["docs/api.md", "core/texture/jpeg.cpp", "kMaxScans", (n) => `${n} scans |`],
+  ["api/openapi.yaml", "core/measure/overlaps.hpp", "kMostPairs", (n) => `most ${plain(n)} are counted`],
   ["docs/options.md", "core/asset/transfer_plan.cpp", "kMostSide", (n) => `up to ${n} a side`],
   ["docs/options.md", "core/types/options.hpp", "kMinResolution", (n) => `1024 (${n} to 16384)`],
   ["docs/options.md", "core/types/options.hpp", "kMaxResolution", (n) => `to ${n})`],
