@@ -105,7 +105,9 @@ void JobQueue::tell_end(const store::JobRecord& job) {
 
 /// Whether the store has this end of this attempt.
 bool JobQueue::has_ended(const store::JobRecord& job, JobState state) {
+  doubted_.insert(job.id);  // until that is read
   const std::optional<store::JobRecord> stored = store_.find(job.id);
+  doubted_.erase(job.id);
   return stored && stored->attempt == job.attempt && stored->state == state;
 }
 

@@ -9,26 +9,40 @@ namespace unwrapd::server::jobs {
 
 using api::JobState;
 
+namespace {
+
+bool waits(const store::JobRecord& job) {
+  return job.unreadable.empty() && job.state == JobState::queued && !job.cancel_requested;
+}
+
+}  // namespace
+
 void JobQueue::mend() {
-  if (!store_.was_away()) return;
   const std::lock_guard lock(mutex_);
+  must_mend_ |= store_.was_away();
+  if (!must_mend_) return;
   const std::vector<store::JobRecord> unfinished = store_.unfinished();
   share_.forget_waiting();
-  for (const store::JobRecord& job : unfinished) mend_waiting(job);
+  for (const store::JobRecord& job : unfinished)  // before what may fail
+    if (waits(job) && !is_known_elsewhere(job) && events_.find(job.id)) share_.add(job.owner);
+  changed_.notify_all();
+  for (const store::JobRecord& job : unfinished) mend_row(job);
   const std::set<std::string> doubted = doubted_;
   for (const std::string& id : doubted) settle_doubt(id);
+  must_mend_ = false;
   log_.info("the store is reached again", {{"unfinished", unfinished.size()}});
 }
 
+/// By its worker, or for take_up_left().
+bool JobQueue::is_known_elsewhere(const store::JobRecord& job) const {
+  return running_.contains(job.id) || std::ranges::find(left_, job.id) != left_.end();
+}
+
 /// A job that runs in the store alone was taken by a call that never heard of it.
-void JobQueue::mend_waiting(const store::JobRecord& job) {
-  if (running_.contains(job.id) || std::ranges::find(left_, job.id) != left_.end()) return;
-  const bool waits =
-      job.unreadable.empty() && job.state == JobState::queued && !job.cancel_requested;
-  if (!waits) return take_up(job, Found::lapsed);
-  if (!events_.find(job.id)) return wait_again(job);
-  share_.add(job.owner);
-  changed_.notify_all();
+void JobQueue::mend_row(const store::JobRecord& job) {
+  if (is_known_elsewhere(job)) return;
+  if (!waits(job)) return take_up(job, Found::lapsed);
+  if (!events_.find(job.id)) wait_again(job);
 }
 
 /// A running job's end is settled by its worker.

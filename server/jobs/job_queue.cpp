@@ -210,11 +210,18 @@ bool JobQueue::drain(std::chrono::seconds patience) {
     job->request_stop(StopCause::draining);
   }
   if (changed_.wait_for(lock, config_.stop, idle)) return true;
-  for (const auto& [id, job] : running_) {
+  for (const auto& [id, job] : running_) take_up_stuck(id);
+  return false;
+}
+
+void JobQueue::take_up_stuck(const std::string& id) {
+  try {
     const std::optional<store::JobRecord> stored = store_.find(id);
     if (stored && stored->state == JobState::running) take_up(*stored, Found::not_stopping);
+  } catch (const Error& error) {  // the next start finds it
+    log_.warning("job that does not stop could not be queued again",
+                 {{"job", id}, {"reason", reason_of(error)}});
   }
-  return false;
 }
 
 }  // namespace unwrapd::server::jobs

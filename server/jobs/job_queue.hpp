@@ -184,7 +184,9 @@ class JobQueue {
                   const std::function<void()>& stored);
   [[nodiscard]] bool has_ended(const store::JobRecord& job, api::JobState state);
   void settle_doubt(const std::string& id);
-  void mend_waiting(const store::JobRecord& job);
+  void take_up_stuck(const std::string& id);
+  [[nodiscard]] bool is_known_elsewhere(const store::JobRecord& job) const;
+  void mend_row(const store::JobRecord& job);
   void tell_end(const store::JobRecord& job);
   void cancel_live(const store::JobRecord& job);
   void end_job(const store::JobRecord& job, store::JobOutcome outcome,
@@ -206,6 +208,7 @@ class JobQueue {
   DiskFullBackoff pause_;
   std::deque<std::string> left_;  // by the last process, and not taken up yet
   bool tried_apart_ = false;
+  bool must_mend_ = false;         // the store was away since mend() came to its end
   std::set<std::string> doubted_;  // jobs whose row or end may have been stored or not
   std::map<std::string, std::shared_ptr<RunningJob>, std::less<>> running_;
 };
