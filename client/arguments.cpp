@@ -76,27 +76,29 @@ void add_picture_flags(CLI::App& app, Arguments& arguments) {
 
 void add_flags(CLI::App& app, RawArguments& raw) {
   Arguments& arguments = raw.arguments;
-  app.add_option("FILE", arguments.inputs,
-                 "The mesh: .glb, .gltf, .obj, .stl, .ply or .off, or a .zip with one of them; "
-                 "- reads standard input. Several files, a pattern in quotes, or a folder, for all "
-                 "meshes below it, are unwrapped side by side and told in a table")
+  app.add_option(
+         "FILE", arguments.inputs,
+         "The mesh: .glb, .gltf, .obj, .stl, .ply or .off, or a .zip with one of them; "
+         "- reads standard input. Several files, a pattern in quotes, or a folder, for all "
+         "meshes below it, are unwrapped side by side and told in a table. compare A B: the UVs "
+         "that two meshes have, side by side")
       ->type_name("");
   app.add_option(
          "-o,--out", arguments.out,
          "File to write the result to. Its extension selects the format unless --output "
          "does; GLB, glTF and OBJ are written. Default: the name of FILE with \".uv\" before the "
          "extension, which becomes .glb for .stl, .ply, .off and .zip; - (standard output) if FILE "
-         "is "
-         "- or a pipe. With several meshes, --resume or --watch the folder for their results. A "
-         "list of lambdas writes "
-         "one file for each, with the lambda before the "
-         "extension")
+         "is - or a pipe. With several meshes, --resume or --watch the folder for their results. A "
+         "list of lambdas writes one file for each, with the lambda before the extension. compare "
+         "writes a page (.html)")
       ->type_name("OUT");
   app.add_option("--report", arguments.report, "Write the report (JSON) to PATH")
       ->type_name("PATH");
   add_picture_flags(app, arguments);
-  app.add_flag("--json", arguments.json,
-               "Print only the report (JSON) on stdout; of several meshes a line of JSON for each");
+  app.add_flag(
+      "--json", arguments.json,
+      "Print only the report (JSON) on stdout; of several meshes a line of JSON for each, of "
+      "compare a list of both");
   app.add_flag("-q,--quiet", arguments.quiet, "Print no progress and no summary");
   app.add_option("--server", raw.server,
                  std::string("Address of the server. Default: ") + kUsualServer +
@@ -201,10 +203,10 @@ void settle_comparison(Arguments& arguments) {
   if (!arguments.out.empty() && arguments.out.extension() != ".html")
     throw Failure(ExitCode::usage, "--out: compare writes a page; name a file that ends in .html.");
   if (!arguments.report.empty() || !arguments.layout.empty() || !arguments.preview.empty() ||
-      arguments.resume || arguments.watch)
+      arguments.resume || arguments.watch || arguments.options.contains("measure_only"))
     throw Failure(ExitCode::usage,
                   "compare prints a table, or with --json both reports, and writes a page with -o; "
-                  "leave out --report, --layout, --preview, --resume and --watch.");
+                  "leave out --report, --layout, --preview, --resume, --watch and --measure-only.");
   arguments.options["measure_only"] = "true";
 }
 

@@ -147,9 +147,8 @@ void print_row(const Row& row, int width, std::ostream& out) {
   const Figures& figures = row.figures;
   out << std::fixed << std::setprecision(3) << std::setw(8) << figures.charts << std::setw(9)
       << figures.angle << std::setw(8) << figures.area << std::setw(9) << figures.flipped
-      << std::setw(10) << (figures.overlaps ? std::to_string(*figures.overlaps) : "?")
-      << std::setprecision(2) << std::setw(6) << figures.fill << std::setprecision(1)
-      << std::setw(9) << row.seconds << "\n";
+      << std::setw(10) << overlaps_of(figures) << std::setprecision(2) << std::setw(6)
+      << figures.fill << std::setprecision(1) << std::setw(9) << row.seconds << "\n";
 }
 
 std::ptrdiff_t failures(const std::vector<Row>& rows) {

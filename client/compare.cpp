@@ -5,17 +5,21 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <optional>
 #include <ostream>
 
 #include "client/figures.hpp"
 #include "client/files.hpp"
+#include "client/outputs.hpp"
+#include "client/printable.hpp"
 
 namespace unwrapd::client {
 namespace {
 
 struct Measured {
-  std::string name, report;
-  std::string layout, preview;  ///< SVG and PNG, where a page is asked for
+  std::string name;
+  std::string report = {};
+  std::string layout = {}, preview = {};  ///< SVG and PNG, where a page is asked for
 };
 
 /// A row of the table: what is told, and of either mesh.
@@ -28,13 +32,18 @@ Measured measured(const Arguments& arguments, std::size_t which, const ServerUrl
                   const Console& console, const std::stop_token& stop) {
   Arguments own = arguments;
   own.file = arguments.inputs[which];
-  JobClient client(server, stop);
-  const std::string job = finished_job(client, own, server, console, stop);
-  Measured mesh{own.file.string(), client.fetch(job, "/report"), {}, {}};
-  if (arguments.out.empty()) return mesh;
-  mesh.layout = client.fetch(job, "/layout.svg");
-  mesh.preview = client.fetch(job, "/preview.png");
-  return mesh;
+  Measured mesh{.name = printable(own.file.string())};
+  try {
+    JobClient client(server, stop);
+    const std::string job = finished_job(client, own, server, console, stop);
+    mesh.report = client.fetch(job, "/report");
+    if (arguments.out.empty()) return mesh;
+    mesh.layout = client.fetch(job, layout_of(arguments));
+    mesh.preview = client.fetch(job, "/preview.png");
+    return mesh;
+  } catch (const Failure& failure) {
+    throw Failure(failure.code(), mesh.name + ": " + failure.what());
+  }
 }
 
 std::string number(double value, int decimals) {
@@ -56,7 +65,7 @@ std::vector<TableRow> rows_of(const std::array<Measured, 2>& meshes) {
   add("D_angle", [](const Figures& f) { return number(f.angle, 3); });
   add("D_area", [](const Figures& f) { return number(f.area, 3); });
   add("flipped", [](const Figures& f) { return std::to_string(f.flipped); });
-  add("overlaps", [](const Figures& f) { return std::to_string(f.overlaps.value_or(0)); });
+  add("overlaps", [](const Figures& f) { return overlaps_of(f); });
   add("fill", [](const Figures& f) { return number(f.fill, 2); });
   return rows;
 }
@@ -84,6 +93,8 @@ std::string escaped(const std::string& text) {
       html += "&lt;";
     else if (c == '&')
       html += "&amp;";
+    else if (c == '"')
+      html += "&quot;";
     else
       html += c;
   }
@@ -97,6 +108,14 @@ std::string base64(const std::string& bytes) {
                                      static_cast<int>(bytes.size()));
   text.resize(static_cast<std::size_t>(length));
   return text;
+}
+
+/// Without what stands before it in a file of its own.
+std::string svg_of(const Measured& mesh) {
+  const std::size_t begin = mesh.layout.find("<svg");
+  if (begin == std::string::npos)
+    throw Failure(ExitCode::unreachable, mesh.name + ": the layout that came is no SVG.");
+  return mesh.layout.substr(begin);
 }
 
 /// One file without scripts, the pictures within it.
@@ -114,8 +133,7 @@ std::string page_of(const std::array<Measured, 2>& meshes, const std::vector<Tab
     html += "</tr>\n";
   }
   html += "</table>\n<div class=\"both\">\n";
-  for (const Measured& mesh : meshes)
-    html += "<div>" + mesh.layout.substr(mesh.layout.find("<svg")) + "</div>\n";
+  for (const Measured& mesh : meshes) html += "<div>" + svg_of(mesh) + "</div>\n";
   for (const Measured& mesh : meshes)
     html += "<img alt=\"" + escaped(mesh.name) +
             " with a checkerboard\" src=\"data:image/png;base64," + base64(mesh.preview) + "\">\n";
@@ -126,14 +144,18 @@ std::string page_of(const std::array<Measured, 2>& meshes, const std::vector<Tab
 
 void compare(const Arguments& arguments, const ServerUrl& server, const Console& console,
              const std::stop_token& stop) {
+  std::optional<NewFile> page;  // tried before anything is sent
+  if (!arguments.out.empty()) page.emplace(arguments.out);
   const std::array<Measured, 2> meshes = {measured(arguments, 0, server, console, stop),
                                           measured(arguments, 1, server, console, stop)};
   const std::vector<TableRow> rows = rows_of(meshes);
-  if (!arguments.out.empty()) write_file(arguments.out, page_of(meshes, rows));
   if (arguments.json)
     console.out << "[" << meshes[0].report << "," << meshes[1].report << "]" << std::endl;
-  else
+  else if (!arguments.quiet)
     console.out << table_of(rows) << std::flush;
+  if (!page) return;
+  page->append(page_of(meshes, rows));
+  page->commit();
 }
 
 }  // namespace unwrapd::client

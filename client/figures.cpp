@@ -25,6 +25,10 @@ Figures figures_of(const api::Json& report) {
 
 }  // namespace
 
+std::string overlaps_of(const Figures& figures) {
+  return figures.overlaps ? std::to_string(*figures.overlaps) : "?";
+}
+
 Figures read_figures(const std::string& report) {
   try {
     return figures_of(api::Json::parse(report));

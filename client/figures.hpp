@@ -20,6 +20,9 @@ struct Figures {
   std::vector<std::string> notes;  ///< "note (code): text"
 };
 
+/// The number, or "?" where they were not counted.
+std::string overlaps_of(const Figures& figures);
+
 /// Throws Failure{unreachable} for a text that is no report of this version.
 Figures read_figures(const std::string& report);
 

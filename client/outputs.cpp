@@ -53,13 +53,13 @@ void check_standard_output(const Arguments& arguments, const std::vector<Output>
     refuse("--json prints the report on standard output, where another file goes; name that file.");
 }
 
+}  // namespace
+
 std::string layout_of(const Arguments& arguments) {
   std::string path = arguments.layout.extension() == ".png" ? "/layout.png" : "/layout.svg";
   if (!arguments.layout_colour.empty()) path += "?colour=" + arguments.layout_colour;
   return path;
 }
-
-}  // namespace
 
 fs::path map_path(const fs::path& path, const std::string& lambda) {
   if (lambda.empty() || is_standard(path)) return path;

@@ -17,6 +17,9 @@ namespace unwrapd::client {
 /// standard output, the path stays.
 std::filesystem::path map_path(const std::filesystem::path& path, const std::string& lambda);
 
+/// What shows the layout in the colours that are asked for: an SVG, unless --layout names a PNG.
+std::string layout_of(const Arguments& arguments);
+
 /// Whether the result, the report or a picture goes to standard output.
 bool writes_to_standard_output(const Arguments& arguments);
 

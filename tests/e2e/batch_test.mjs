@@ -1,7 +1,7 @@
 // Several meshes in one command. UNWRAPD_BIN is the folder of the programs.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, utimesSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync, statSync, utimesSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, beforeEach, test } from "node:test";
@@ -95,9 +95,10 @@ test("two files are compared as they are, in a table and on a page", async () =>
   const faces = "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
   writeFileSync(join(folder, "half.obj"), kSheet.replace(/^f .*\n/gm, "") + uv(0.5) + faces);
   writeFileSync(join(folder, "folded.obj"), kSheet.replace(/^f .*\n/gm, "") + uv(1) + "f 1/1 2/2 3/3\nf 1/1 3/3 4/2\n");
-  const run = await unwrap("compare", "half.obj", "folded.obj", "-o", "both.html");
+  renameSync(join(folder, "folded.obj"), join(folder, 'a"<&.obj'));
+  const run = await unwrap("compare", "half.obj", 'a"<&.obj', "-o", "both.html", "--layout-colour", "area");
   assert.equal(run.code, 0, run.err);
-  assert.match(run.out, /^ +half\.obj +folded\.obj$/m);
+  assert.match(run.out, /^ +half\.obj +a"<&\.obj$/m);
   assert.match(run.out, /^charts +1 +1$/m);
   assert.match(run.out, /^flipped +0 +1$/m);
   assert.match(run.out, /^overlaps +0 +1$/m);
@@ -105,9 +106,14 @@ test("two files are compared as they are, in a table and on a page", async () =>
   const page = readFileSync(join(folder, "both.html"), "utf8");
   assert.equal(page.match(/<svg/g).length, 2);
   assert.equal(page.match(/data:image\/png;base64,iVBOR/g).length, 2);
-  const both = JSON.parse((await unwrap("compare", "half.obj", "folded.obj", "--json")).out);
+  assert.match(page, /alt="a&quot;&lt;&amp;\.obj with a checkerboard"/);
+  assert.match(page, />area</);
+  const both = JSON.parse((await unwrap("compare", "half.obj", 'a"<&.obj', "--json")).out);
   assert.deepEqual(both.map(({ distortion }) => distortion.flipped), [0, 1]);
   const none = await unwrap("compare", "a.obj", "half.obj");
   assert.equal(none.code, 1);
-  assert.match(none.err, /no_texture_coordinates/);
+  assert.match(none.err, /a\.obj: .*no_texture_coordinates/s);
+  const nowhere = await unwrap("compare", "half.obj", "half.obj", "-o", "nowhere/both.html");
+  assert.equal(nowhere.code, 4, nowhere.err);
+  assert.equal((await unwrap("compare", "half.obj", "half.obj", "--quiet")).out, "");
 });
