@@ -5,7 +5,7 @@ import { after, before, describe, test } from "node:test";
 
 import { obj } from "../contract/meshes.mjs";
 import { startServer } from "../contract/server.mjs";
-import { Bench, binary, doorTo, downloaded, figure, jobOf, missing, openMesh, unwrap, unwrapForLong } from "./page.mjs";
+import { Bench, binary, doorTo, downloaded, figure, jobOf, missing, openMesh, real, unwrap, unwrapForLong } from "./page.mjs";
 
 const bench = new Bench();
 
@@ -25,6 +25,21 @@ describe("a job of the page", { skip: missing }, () => {
     await Promise.all([page.waitForEvent("requestfailed", (one) => one.method() === "PUT"), page.click("#cancel")]);
     await page.locator("#problem.calm", { hasText: "Cancelled" }).waitFor();
     assert.equal((await fetch(`${bench.server.base}/v1/jobs/${first}`)).status, 200);
+  });
+
+  const tree = real("gltf/sharpgltf/tests/Assets/tree.glb");
+  test("offers its materials by its address, too, and tells where they cannot be read", { skip: !tree && "the test data is missing" }, async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, tree);
+    const again = await bench.visit(t, { hash: `#job=${jobOf(page)}&name=tree.glb` });
+    await again.locator("#result").waitFor();
+    assert.equal(await again.locator("#colouring option[value=materials]").isDisabled(), false);
+    const gone = { code: "result_expired", title: "Gone", status: 410, detail: "The result is gone." };
+    await again.route(/\/result(\?|$)/, (route) => route.fulfill({ status: 410, contentType: "application/problem+json", body: JSON.stringify(gone) }));
+    await again.selectOption("#colouring", "materials");
+    await again.locator("#problem", { hasText: "The result is gone." }).waitFor();
+    await unwrap(again, bench.file("plain.obj", obj(2)));
+    assert.equal(await again.locator("#colouring").inputValue(), "checker", "an OBJ has none");
   });
 
   test("cancelled before the mesh is sent sends nothing", async (t) => {

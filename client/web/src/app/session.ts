@@ -138,7 +138,7 @@ export class Session {
     const {width, height} = report.page;
     const what = this.#viewing.result(model, {
       aspect: width / height, pages: report.pages, mayOverlap: kind !== 'draft' && report.overlaps !== 0,
-      asset: kind === 'draft' ? undefined : () => loadAsset(job, lambda),
+      asset: kind !== 'draft' && /\.(glb|gltf)$/i.test(name) ? () => loadAsset(job, lambda) : undefined,
     });
     if (kind !== 'draft') {
       this.job = job;

@@ -30,7 +30,7 @@ export interface Result {
   pages: number;
   /** Whether triangles overlap, or nobody has looked. */
   mayOverlap: boolean;
-  /** The file that came out, with its materials; absent if it has those that came in. */
+  /** The file that came out, with its materials; absent if it has none, or those that came in. */
   asset?: (() => Promise<Model>) | undefined;
 }
 
@@ -42,8 +42,10 @@ export class Viewing {
   #charts: Chart[] = [];
   #before: Shown | undefined;
   #after: Shown | undefined;
+  readonly #onError: (error: unknown) => void;
 
   constructor(onError: (error: unknown) => void) {
+    this.#onError = onError;
     this.viewer = new Viewer($<HTMLCanvasElement>('solid'), $<HTMLCanvasElement>('flat'));
     this.viewer.onPick = (picked) => this.#tellPicked(picked?.island);
     $('colouring').addEventListener('change', () => this.#choose().catch(onError));
@@ -78,10 +80,7 @@ export class Viewing {
     const surface = surfaceOf(model);
     const uv = uvOf(model, 0);
     this.#before = shown(surface, uv && mapped(surface, uv));
-    this.#before.skin = once(() => skinOf(model));
-    for (const option of $<HTMLSelectElement>('colouring').options) if (option.value === 'materials') option.hidden = option.disabled = !model.looks;
-    if (!model.looks && this.#colouring === 'materials') $<HTMLSelectElement>('colouring').value = 'checker';
-    this.viewer.colour(this.#colouring);
+    if (model.looks) this.#before.skin = once(() => skinOf(model));
     if (surface.faces <= SEARCHED_FACES) this.#before.overlapping = this.#before.map && overlappingFaces(this.#before.map);
     this.#after = undefined;
     this.#show(this.#before);
@@ -93,15 +92,36 @@ export class Viewing {
     const last = this.#after ?? this.#before;
     const surface = isSame(last?.surface, model) ? last!.surface : surfaceOf(model);
     this.#after = shown(surface, mapped(surface, uvOf(model, 0)!, surface === last?.surface ? last.map : undefined), aspect, pages);
-    this.#after.skin = once(async () => sameFaces(await asset?.().then(skinOf), surface) ?? sameFaces(await this.#before?.skin?.(), surface));
+    const before = this.#before?.skin;
+    if (asset ?? before) this.#after.skin = once(async () => sameFaces(await this.#skinOf(asset), surface) ?? sameFaces(await before?.(), surface));
     if (mayOverlap) this.#after.overlapping = overlappingFaces(this.#after.map!);
     $<HTMLInputElement>('after').checked = true;
     this.#show(this.#after, surface === last?.surface);
     return this.#after;
   }
 
+  /** The materials of a file; where it cannot be read, that is told. */
+  async #skinOf(asset: (() => Promise<Model>) | undefined): Promise<Skin | undefined> {
+    try {
+      return asset && await skinOf(await asset());
+    } catch (error) {
+      this.#onError(error);
+      return undefined;
+    }
+  }
+
+  /** Materials can be chosen where there may be some. */
+  #offerMaterials({skin}: Shown): void {
+    const colourings = $<HTMLSelectElement>('colouring');
+    for (const option of colourings.options) if (option.value === 'materials') option.hidden = option.disabled = !skin;
+    if (skin || this.#colouring !== 'materials') return;
+    colourings.value = 'checker';
+    this.viewer.colour('checker');
+  }
+
   #show(what: Shown, keepsView = false): void {
     show($('views'), true);
+    this.#offerMaterials(what);
     show($('versions'), Boolean(this.#after && this.#before?.map));
     show($('no-layout'), !what.map);
     this.#charts = chartsOf(what);
