@@ -14,10 +14,13 @@ namespace unwrapd::server::store {
 namespace {
 
 /// The session writes in transactions alone, which say so: a change outside of one, which would not
-/// be healed, is an error. A commit is on the disk before it is answered.
+/// be healed, is an error. A commit is on the disk before it is answered. The server finds out in
+/// some seconds, too, that a link is cut: until then the old session has its locks.
 constexpr const char* kSession =
     "SET default_transaction_read_only = on; SET synchronous_commit = on;"
-    " SET idle_in_transaction_session_timeout = '30s'; SET client_min_messages = error";
+    " SET idle_in_transaction_session_timeout = '30s'; SET client_min_messages = error;"
+    " SET tcp_keepalives_idle = 5; SET tcp_keepalives_interval = 2; SET tcp_keepalives_count = 3;"
+    " SET tcp_user_timeout = '10s'";
 
 std::string line_of(const char* message) {
   std::string line(message);
