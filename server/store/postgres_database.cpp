@@ -1,15 +1,14 @@
 #include "server/store/postgres_database.hpp"
 
-#include <charconv>
+#include <algorithm>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "api/json.hpp"
 #include "core/base/error.hpp"
 #include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
-#include "server/base/utf8.hpp"
+#include "server/store/postgres_cursor.hpp"
 #include "server/store/schema_steps.hpp"
 
 namespace unwrapd::server::store {
@@ -28,57 +27,13 @@ constexpr const char* kOwnTables =
     " at TIMESTAMPTZ NOT NULL DEFAULT now())";
 constexpr const char* kForgetWriters = "DELETE FROM writers WHERE at < now() - interval '1 day'";
 constexpr const char* kLock = "SELECT pg_try_advisory_lock(1431193452, hashtext(current_schema()))";
-
-/// PostgreSQL has neither NUL nor what is not UTF-8.
-std::string as_text(std::string_view bytes) {
-  std::string text(bytes);
-  if (is_utf8_text(text) && text.find('\0') == std::string::npos) return text;
-  for (char& c : text)
-    if (c == '\0') c = '\xff';
-  const api::Json json(std::move(text));
-  return api::Json::parse(json.dump(-1, ' ', false, api::Json::error_handler_t::replace));
-}
-
-/// All rows are there after the first step.
-class PostgresCursor final : public Cursor {
- public:
-  PostgresCursor(const PostgresDatabase& database, std::string_view sql)
-      : database_(database), sql_(sql) {}
-
-  void bind(int position, std::string_view text) override {
-    value_at(position) = {.text = as_text(text), .type = kTextType};
-  }
-  void bind(int position, std::int64_t number) override {
-    value_at(position) = {.text = std::to_string(number), .type = kNumberType};
-  }
-
-  bool step() override {
-    if (!rows_) rows_ = database_.execute(sql_, values_);
-    return ++row_ < rows_->rows();
-  }
-
-  [[nodiscard]] std::int64_t number(int column) const override {
-    const std::string text = rows_->text(row_, column);
-    std::int64_t number = 0;
-    std::from_chars(text.data(), text.data() + text.size(), number);
-    return number;
-  }
-
-  [[nodiscard]] std::string text(int column) const override { return rows_->text(row_, column); }
-
- private:
-  BoundValue& value_at(int position) {
-    const auto count = static_cast<std::size_t>(position);
-    if (values_.size() < count) values_.resize(count, {.text = "", .type = kTextType});
-    return values_[count - 1];
-  }
-
-  const PostgresDatabase& database_;
-  const std::string sql_;
-  std::vector<BoundValue> values_;
-  std::optional<PostgresResult> rows_;
-  int row_ = -1;
-};
+constexpr const char* kOwnSession =
+    "SELECT pid || ' of ' || backend_start FROM pg_stat_activity WHERE pid = pg_backend_pid()";
+/// One that is committing is left to end by itself: ended while it waits for a standby, it would
+/// have committed here alone.
+constexpr const char* kEndSession =
+    "SELECT pg_terminate_backend(pid, 1000) FROM pg_stat_activity"
+    " WHERE pid || ' of ' || backend_start = ? AND state LIKE 'idle%'";
 
 }  // namespace
 
@@ -104,12 +59,20 @@ void PostgresDatabase::make_tables() {
   });
 }
 
+/// Where the link was cut, the session before may not know it, and keep its locks: it is ended.
 void PostgresDatabase::try_link() const {
   link_.reset();
   auto link = std::make_unique<PostgresLink>(address_.url);
+  if (!session_.empty()) link->run(kEndSession, {{.text = session_, .type = kTextType}});
   if (claimed_ && link->run(kLock).text(0, 0) != "t")
     throw LinkLost{"another unwrapd uses it; stop that one"};
+  session_ = link->run(kOwnSession).text(0, 0);
   link_ = std::move(link);
+}
+
+void PostgresDatabase::be_away(bool in_doubt) const {
+  was_away_ = true;
+  throw StoreAway(why_away_, in_doubt);
 }
 
 /// Throws StoreAway when it cannot be reached until then.
@@ -123,8 +86,7 @@ void PostgresDatabase::link_until(Clock::time_point end, bool in_doubt) const {
     const Clock::time_point now = Clock::now();
     if (now >= end) {
       next_try_ = now + kPauseWhileAway;
-      was_away_ = true;
-      throw StoreAway(why_away_, in_doubt);
+      be_away(in_doubt);
     }
     std::this_thread::sleep_for(kPauseBetweenTries);
   }
@@ -133,24 +95,30 @@ void PostgresDatabase::link_until(Clock::time_point end, bool in_doubt) const {
 /// The session. While there is none, one call in a while tries to make one.
 PostgresLink& PostgresDatabase::link() const {
   if (link_) return *link_;
-  if (Clock::now() >= next_try_) {
-    link_until(Clock::now(), false);
-    return *link_;
-  }
-  was_away_ = true;
-  throw StoreAway(why_away_, false);
+  if (Clock::now() < next_try_) be_away(false);
+  link_until(Clock::now(), false);
+  return *link_;
+}
+
+/// end: that of the patience of a call, which begins with its first loss. Throws StoreAway then.
+void PostgresDatabase::lose_link(const LinkLost& lost, Clock::time_point& end,
+                                 bool in_doubt) const {
+  link_.reset();
+  why_away_ = lost.reason;
+  const Clock::time_point now = Clock::now();
+  if (now >= end) be_away(in_doubt);
+  end = std::min(end, now + address_.patience);
 }
 
 void PostgresDatabase::patiently(const Attempt& attempt) const {
   link();
-  const Clock::time_point end = Clock::now() + address_.patience;
-  while (true) {
+  for (Clock::time_point end = Clock::time_point::max();;) {
     try {
+      if (!link_) link_until(end, false);
       return attempt(*link_);
     } catch (const LinkLost& lost) {
-      why_away_ = lost.reason;
+      lose_link(lost, end, false);
     }
-    link_until(end, false);
   }
 }
 
@@ -177,7 +145,7 @@ void PostgresDatabase::run(const std::string& sql) {
 }
 
 std::unique_ptr<Cursor> PostgresDatabase::prepare(std::string_view sql) const {
-  return std::make_unique<PostgresCursor>(*this, sql);
+  return postgres_cursor(*this, sql);
 }
 
 const Dialect& PostgresDatabase::dialect() const { return kPostgresDialect; }
@@ -223,12 +191,17 @@ void PostgresDatabase::attempt(std::int64_t number, const std::function<void()>&
   }
   in_doubt = false;
   make();
-  in_doubt = true;
-  link_->run("COMMIT");
+  try {
+    link_->run("COMMIT");
+  } catch (const LinkLost&) {
+    in_doubt = true;
+    throw;
+  }
 }
 
 /// Where the session is lost, there is nothing to roll back.
 void PostgresDatabase::roll_back() noexcept {
+  if (!link_) return;
   try {
     link_->run("ROLLBACK");
   } catch (...) {
@@ -236,25 +209,39 @@ void PostgresDatabase::roll_back() noexcept {
   }
 }
 
+/// Throws what was caught or, where a commit may have come about, that it is in doubt: whatever
+/// kept it from being found out.
+void PostgresDatabase::fail(bool in_doubt) const {
+  if (!in_doubt) throw;
+  try {
+    throw;
+  } catch (const StoreAway&) {
+    throw;
+  } catch (const std::exception& error) {
+    why_away_ = reason_of(error);
+  }
+  be_away(true);
+}
+
 void PostgresDatabase::apply_all(Extent /*extent*/, const std::function<void()>& make) {
   link();
   const std::int64_t number = ++number_;
-  const Clock::time_point end = Clock::now() + address_.patience;
+  Clock::time_point end = Clock::time_point::max();
   for (bool in_doubt = false;;) {
-    in_transaction_ = true;
     try {
+      if (!link_) link_until(end, in_doubt);
+      in_transaction_ = true;
       attempt(number, make, in_doubt);
       in_transaction_ = false;
       return;
     } catch (const LinkLost& lost) {
-      why_away_ = lost.reason;
       in_transaction_ = false;
+      lose_link(lost, end, in_doubt);
     } catch (...) {
       in_transaction_ = false;
       roll_back();
-      throw;
+      fail(in_doubt);
     }
-    link_until(end, in_doubt);
   }
 }
 

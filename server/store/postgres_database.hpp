@@ -51,11 +51,14 @@ class PostgresDatabase final : public Database {
   void apply_all(Extent extent, const std::function<void()>& make) override;
   void attempt(std::int64_t number, const std::function<void()>& make, bool& in_doubt);
   void roll_back() noexcept;
+  [[noreturn]] void fail(bool in_doubt) const;
   void make_tables();
   void patiently(const Attempt& attempt) const;
   PostgresLink& link() const;
   void link_until(Clock::time_point end, bool in_doubt) const;
   void try_link() const;
+  void lose_link(const LinkLost& lost, Clock::time_point& end, bool in_doubt) const;
+  [[noreturn]] void be_away(bool in_doubt) const;
 
   const PostgresAddress address_;
   const std::string writer_;  // the id of this connection's row
@@ -63,6 +66,7 @@ class PostgresDatabase final : public Database {
   bool claimed_ = false;
   bool in_transaction_ = false;
   mutable std::unique_ptr<PostgresLink> link_;
+  mutable std::string session_;  // that of the link, or of the one before
   mutable std::string why_away_;
   mutable bool was_away_ = false;
   mutable Clock::time_point next_try_{};

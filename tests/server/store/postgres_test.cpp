@@ -2,11 +2,20 @@
 // the suites of the store know no engine.
 #include <gtest/gtest.h>
 
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "core/base/error.hpp"
 #include "server/access/key_store.hpp"
+#include "server/base/errors.hpp"
+#include "server/base/files.hpp"
 #include "server/store/job_store.hpp"
 #include "server/store/numbered_places.hpp"
 #include "server/store/schema.hpp"
@@ -22,6 +31,43 @@ TEST(PostgresTexts, HaveTheirPlacesInDollars) {
   EXPECT_EQ(with_dollars("a = ? AND b = ? AND c = '?'"), "a = $1 AND b = $2 AND c = '?'");
   EXPECT_EQ(with_dollars("a = ?2 OR b = ?1 OR c = ?10"), "a = $2 OR b = $1 OR c = $10");
 }
+
+/// What the operator reads of the failure.
+template <class Action>
+std::string reason_for(const Action& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    return reason_of(error);
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return "";
+}
+
+std::set<int> open_sockets() {
+  std::set<int> sockets;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    const std::string what = std::filesystem::read_symlink(entry.path(), gone).string();
+    if (what.starts_with("socket:")) sockets.insert(std::stoi(entry.path().filename().string()));
+  }
+  return sockets;
+}
+
+/// Cuts a link on this side alone: the server does not know it while this exists.
+class CutLink {
+ public:
+  explicit CutLink(int link) : kept_(::dup(link)) {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+    ::close(ends[1]);
+    ::dup2(ends[0], link);
+    ::close(ends[0]);
+  }
+
+ private:
+  File kept_;
+};
 
 class Postgres : public testing::Test {
  protected:
@@ -91,6 +137,43 @@ TEST_F(Postgres, MakesNothingOfAChangeThatFails) {
   EXPECT_EQ(added(), 1);
 }
 
+TEST_F(Postgres, TellsTheDoubtWhereTheNextTryFailsInAnotherWay) {
+  other_->transact([&] {
+    other_->run(R"sql(
+      CREATE SEQUENCE tries;
+      CREATE FUNCTION end_session() RETURNS trigger LANGUAGE plpgsql AS
+        $$ BEGIN PERFORM pg_terminate_backend(pg_backend_pid()); RETURN NULL; END $$;
+      CREATE CONSTRAINT TRIGGER lost_in_commit AFTER INSERT ON deliveries
+        DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION end_session();
+      CREATE FUNCTION refuse_second() RETURNS trigger LANGUAGE plpgsql AS
+        $$ BEGIN IF nextval('tries') > 1 THEN RAISE 'no more'; END IF; RETURN NEW; END $$;
+      CREATE TRIGGER refused BEFORE INSERT ON writers
+        FOR EACH ROW EXECUTE FUNCTION refuse_second();)sql");
+  });
+  try {
+    database_->change([&] { add("j_1"); });
+    FAIL() << "nothing was thrown";
+  } catch (const StoreAway& away) {
+    EXPECT_TRUE(away.in_doubt());
+    EXPECT_NE(away.reason().find("no more"), std::string::npos) << away.reason();
+    EXPECT_GT(away.seconds(), 0);
+  }
+  EXPECT_TRUE(database_->was_away());
+}
+
+TEST_F(Postgres, LosesPatienceWithWhatEndsEachSession) {
+  PostgresAddress hasty = address_;
+  hasty.patience = std::chrono::milliseconds(50);
+  const std::unique_ptr<Database> database = DatabaseAddress(hasty).open();
+  EXPECT_THROW(Statement(*database, "SELECT pg_terminate_backend(pg_backend_pid())").step(),
+               StoreAway);
+  EXPECT_THROW(database->change([&] {
+    Statement(*database, "SELECT pg_terminate_backend(pg_backend_pid())").step();
+  }),
+               StoreAway);
+  EXPECT_TRUE(database->was_away());
+}
+
 TEST_F(Postgres, RefusesAChangeThatWouldNotBeHealed) { EXPECT_THROW(add("j_1"), Error); }
 
 TEST_F(Postgres, TellsClientsToComeBackWhereNobodyAnswers) {
@@ -105,7 +188,25 @@ TEST_F(Postgres, LetsOneServerHaveTheStore) {
   const JobStore first(address_);
   PostgresAddress hasty = address_;
   hasty.patience = std::chrono::milliseconds(10);
-  EXPECT_THROW(JobStore{hasty}, Error);
+  EXPECT_NE(reason_for([&] { JobStore{hasty}; }).find("another unwrapd uses it"),
+            std::string::npos);
+}
+
+TEST_F(Postgres, HasItsStoreAgainAfterACutThatTheServerDoesNotKnow) {
+  const std::set<int> before = open_sockets();
+  const std::unique_ptr<Database> holder = open();
+  std::set<int> links = open_sockets();
+  for (const int other : before) links.erase(other);
+  ASSERT_EQ(links.size(), 1);
+  holder->claim();
+  const CutLink cut(*links.begin());
+  holder->change([] {});
+  EXPECT_FALSE(holder->was_away());
+  PostgresAddress hasty = address_;
+  hasty.patience = std::chrono::milliseconds(10);
+  EXPECT_NE(
+      reason_for([&] { DatabaseAddress(hasty).open()->claim(); }).find("another unwrapd uses it"),
+      std::string::npos);
 }
 
 TEST_F(Postgres, FindsNothingUnderWhatIsNoText) {
