@@ -27,6 +27,9 @@ LibpqLibrary::LibpqLibrary() {
     if (function == nullptr) cannot_load(std::string("it has no ") + name);
   };
   find(connect, "PQconnectdbParams");
+  find(parse, "PQconninfoParse");
+  find(free_parsed, "PQconninfoFree");
+  find(free_text, "PQfreemem");
   find(finish, "PQfinish");
   find(status, "PQstatus");
   find(error_message, "PQerrorMessage");

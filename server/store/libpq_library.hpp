@@ -13,6 +13,9 @@ class LibpqLibrary {
   static const LibpqLibrary& loaded();
 
   decltype(&::PQconnectdbParams) connect;
+  decltype(&::PQconninfoParse) parse;
+  decltype(&::PQconninfoFree) free_parsed;
+  decltype(&::PQfreemem) free_text;
   decltype(&::PQfinish) finish;
   decltype(&::PQstatus) status;
   decltype(&::PQerrorMessage) error_message;

@@ -9,6 +9,7 @@
 #include "server/base/errors.hpp"
 #include "server/base/files.hpp"
 #include "server/store/numbered_places.hpp"
+#include "server/store/postgres_url.hpp"
 
 namespace unwrapd::server::store {
 namespace {
@@ -55,6 +56,7 @@ std::string PostgresResult::text(int row, int column) const {
 
 /// What stands before the URL is a default of ours, which it may set otherwise.
 PostgresLink::PostgresLink(const std::string& url) {
+  check_url(url);
   const auto keywords =
       std::to_array<const char*>({"connect_timeout", "tcp_user_timeout", "keepalives_idle",
                                   "keepalives_interval", "keepalives_count", "target_session_attrs",
@@ -65,7 +67,7 @@ PostgresLink::PostgresLink(const std::string& url) {
   session_.reset(pq_.connect(keywords.data(), values.data(), 1));
   if (session_ == nullptr) throw LinkLost{"out of memory"};
   if (pq_.status(session_.get()) != CONNECTION_OK)
-    throw LinkLost{line_of(pq_.error_message(session_.get()))};
+    throw LinkLost{without_pieces_of_url(line_of(pq_.error_message(session_.get())))};
   const char* encoding = pq_.parameter_status(session_.get(), "server_encoding");
   if (encoding == nullptr || std::strcmp(encoding, "UTF8") != 0)
     throw InsideError(ErrorCode::storage_failed, "The server's store failed.",

@@ -1,6 +1,6 @@
 // What only PostgreSQL has: sessions that are lost while they are used. Run by server.on_postgres;
 // the suites of the store know no engine.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <sys/socket.h>
 #include <unistd.h>
@@ -27,6 +27,8 @@
 namespace unwrapd::server::store {
 namespace {
 
+using testing::HasSubstr;
+
 TEST(PostgresTexts, HaveTheirPlacesInDollars) {
   EXPECT_EQ(with_dollars("a = ? AND b = ? AND c = '?'"), "a = $1 AND b = $2 AND c = '?'");
   EXPECT_EQ(with_dollars("a = ?2 OR b = ?1 OR c = ?10"), "a = $2 OR b = $1 OR c = $10");
@@ -42,6 +44,28 @@ std::string reason_for(const Action& action) {
   }
   ADD_FAILURE() << "nothing was thrown";
   return "";
+}
+
+std::string reason_for_url(const std::string& url) {
+  return reason_for([&] {
+    static_cast<void>(
+        DatabaseAddress(PostgresAddress{.url = url, .patience = std::chrono::milliseconds(1)})
+            .open());
+  });
+}
+
+TEST(PostgresUrl, IsNotQuotedWhereAPieceOfItMayBeAPassword) {
+  for (const char* secret : {"hush%zz", "hush/b", "1/hush", "hush@b", "hush#b@c/d"}) {
+    const std::string reason =
+        reason_for_url(std::string("postgres://user:") + secret + "@127.0.0.1:1/none");
+    EXPECT_EQ(reason.find("hush"), std::string::npos) << reason;
+    EXPECT_NE(reason.find("%2F"), std::string::npos) << reason;
+  }
+  for (const char* url : {"postgres://user:hush/none", "postgres://user:hush?a@127.0.0.1:1/none",
+                          "postgres://user:a?b@hush@127.0.0.1:1/none"}) {
+    const std::string reason = reason_for_url(url);
+    EXPECT_EQ(reason.find("hush"), std::string::npos) << reason;
+  }
 }
 
 std::set<int> open_sockets() {
@@ -188,8 +212,7 @@ TEST_F(Postgres, LetsOneServerHaveTheStore) {
   const JobStore first(address_);
   PostgresAddress hasty = address_;
   hasty.patience = std::chrono::milliseconds(10);
-  EXPECT_NE(reason_for([&] { JobStore{hasty}; }).find("another unwrapd uses it"),
-            std::string::npos);
+  EXPECT_THAT(reason_for([&] { JobStore{hasty}; }), HasSubstr("another unwrapd uses it"));
 }
 
 TEST_F(Postgres, HasItsStoreAgainAfterACutThatTheServerDoesNotKnow) {
