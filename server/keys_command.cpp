@@ -25,22 +25,24 @@ struct Asked {
   throw Error(ErrorCode::not_found, "There is no key " + id + "; see unwrapd keys list.");
 }
 
-access::KeyStore store_of(const Asked& asked) {
-  return access::KeyStore(asked.data, {}, {.url = asked.database});
+using Tables = access::KeyStore::Tables;
+
+access::KeyStore store_of(const Asked& asked, Tables tables) {
+  return access::KeyStore(asked.data, {}, {.url = asked.database}, tables);
 }
 
 void add_key(const Asked& asked) {
   access::ApiKey key = asked.key;
   key.scopes = access::parse_scopes(asked.scopes);
-  std::printf("%s\n", store_of(asked).add(key).c_str());
+  std::printf("%s\n", store_of(asked, Tables::made).add(key).c_str());
   std::fprintf(stderr, "This is the key. It is not stored and cannot be shown again.\n");
 }
 
-/// Opens the keys of an existing data directory: a misspelt one is not created.
+/// Opens the keys of an existing data directory or database: a misspelt one is not created.
 access::KeyStore opened(const Asked& asked) {
-  if (!asked.database.empty()) return store_of(asked);
+  if (!asked.database.empty()) return store_of(asked, Tables::existing);
   const std::filesystem::path file = std::filesystem::path(asked.data) / access::kKeysFile;
-  if (std::filesystem::exists(file)) return store_of(asked);
+  if (std::filesystem::exists(file)) return store_of(asked, Tables::existing);
   throw Error(ErrorCode::not_found,
               "There is no " + file.string() + "; give the --data directory of a server.");
 }

@@ -40,13 +40,18 @@ constexpr std::string_view kSelect =
 constexpr int kDigestColumn = 7;
 
 std::unique_ptr<store::Database> opened(const std::filesystem::path& data,
-                                        const store::PostgresAddress& database) {
-  make_directories(data);
+                                        const store::PostgresAddress& database,
+                                        KeyStore::Tables tables) {
   if (!database.url.empty()) {
     auto all = store::DatabaseAddress(database).open();
-    store::migrate(*all);
+    if (tables == KeyStore::Tables::existing) {
+      store::require_current(*all);
+    } else {
+      store::migrate(*all);
+    }
     return all;
   }
+  make_directories(data);
   auto keys = store::DatabaseAddress(data / kKeysFile).open();
   keys->check(false);
   keys->run(kSchema);
@@ -148,8 +153,9 @@ std::string to_text(const Scopes& scopes) {
 }
 
 KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::path& given,
-                   const store::PostgresAddress& database)
-    : database_(opened(data, database)), given_(given.empty() ? "" : sha256(key_in(given))) {}
+                   const store::PostgresAddress& database, Tables tables)
+    : database_(opened(data, database, tables)),
+      given_(given.empty() ? "" : sha256(key_in(given))) {}
 
 std::string KeyStore::add(ApiKey key) {
   check_name(key.name);

@@ -50,12 +50,15 @@ std::string to_text(const Scopes& scopes);
 /// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
 class KeyStore {
  public:
-  /// data: the data directory, made when missing. database: without a URL, a file there. given: the
+  /// Of a database with a URL: made and migrated, or only used where this version's are there.
+  enum class Tables { made, existing };
+
+  /// data: the data directory. database: without a URL, a file there, made when missing. given: the
   /// file of a key of the operator's own, of the scope admin and the id kGivenKeyId; empty: none.
   /// Throws Error{invalid_option} when that holds no key: 32 to 512 letters, digits and -._~+/=,
   /// and white space around them.
   explicit KeyStore(const std::filesystem::path& data, const std::filesystem::path& given = {},
-                    const store::PostgresAddress& database = {});
+                    const store::PostgresAddress& database = {}, Tables tables = Tables::made);
 
   /// Stores a key with a new id and returns what its holder sends; it cannot be had again. Throws
   /// Error{invalid_option} for a name with control characters, which a list could not show.

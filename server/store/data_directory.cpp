@@ -28,6 +28,20 @@ bool has_tables_in(const std::filesystem::path& file) {
   return !is_empty && has_tables(SqliteDatabase(file, SqliteDatabase::Access::read));
 }
 
+/// Whether it lists a job or a mesh, or did so once. Tables alone say nothing: keys are there
+/// before the first start.
+bool has_had_rows(const Database& database) {
+  if (!has_tables(database)) return false;
+  Statement rows(database,
+                 "SELECT (SELECT COUNT(*) FROM pg_sequences WHERE schemaname = current_schema()"
+                 " AND sequencename IN ('jobs_seq_seq', 'meshes_seq_seq')"
+                 " AND last_value IS NOT NULL)"
+                 " + (SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1) AS job)"
+                 " + (SELECT COUNT(*) FROM (SELECT 1 FROM meshes LIMIT 1) AS mesh)");
+  rows.step();
+  return rows.number(0) > 0;
+}
+
 int open_lock(const std::filesystem::path& data) {
   std::error_code failed;
   std::filesystem::create_directories(data, failed);
@@ -58,15 +72,19 @@ DatabaseAddress store_in(const std::filesystem::path& data, const PostgresAddres
   const int folders = blobs.folder_count();
   if (folders == 0) return address;
   const bool in_file = database.url.empty();
-  if (in_file ? has_tables_in(data / kStoreFile) : has_tables(*address.open())) return address;
-  const std::string which =
-      in_file ? "The file " + (data / kStoreFile).string() + " is missing or empty"
-              : "The database of --database has no tables of unwrapd";
+  if (in_file ? has_tables_in(data / kStoreFile) : has_had_rows(*address.open())) return address;
+  const std::string file = (data / kStoreFile).string();
+  const std::string which = in_file ? "The file " + file + " is missing or empty"
+                                    : "The database of --database lists no job and no mesh";
+  const std::string files = ", and " + (data / "blobs").string() + " has the files of " +
+                            std::to_string(folders) + " jobs and meshes";
+  if (!in_file && has_tables_in(data / kStoreFile))
+    throw Error(ErrorCode::storage_failed,
+                which + files + ", which " + file +
+                    " lists; start without --database, or give another --data directory.");
   const std::string how = in_file ? "restore it (with its -wal file, if there is one)"
                                   : "load its dump (psql or pg_restore)";
-  throw Error(ErrorCode::storage_failed, which + ", and " + (data / "blobs").string() +
-                                             " has the files of " + std::to_string(folders) +
-                                             " jobs and meshes that only it lists; " + how +
+  throw Error(ErrorCode::storage_failed, which + files + " that only it lists; " + how +
                                              ", or remove the folder blobs to start empty.");
 }
 

@@ -26,8 +26,9 @@ inline constexpr const char* kStoreFile = "jobs.sqlite";
 /// The rows of a data directory: kStoreFile, or the database with this URL where there is one.
 DatabaseAddress address_in(const std::filesystem::path& data, const PostgresAddress& database);
 
-/// The same. Throws Error{storage_failed} when that has no tables although there are files of jobs:
-/// the sweep at the start would remove them all, as no row names them.
+/// The same. Throws Error{storage_failed} when that has no tables, or in PostgreSQL no job and no
+/// mesh ever, although there are files of jobs: the sweep at the start would take them all away, as
+/// no row names them.
 DatabaseAddress store_in(const std::filesystem::path& data, const PostgresAddress& database,
                          const BlobStore& blobs);
 

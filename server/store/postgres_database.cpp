@@ -41,7 +41,6 @@ PostgresDatabase::PostgresDatabase(PostgresAddress address)
     : address_(std::move(address)), writer_(random_hex(kWriterBytes)) {
   try {
     link_until(Clock::now() + address_.patience, false);
-    make_tables();
   } catch (const StoreAway& away) {
     throw InsideError(ErrorCode::storage_failed, away.what(), away.reason());
   }
@@ -57,6 +56,7 @@ void PostgresDatabase::make_tables() {
     link.run(kOwnTables);
     link.run("COMMIT");
   });
+  has_own_tables_ = true;
 }
 
 /// Where the link was cut, the session before may not know it, and keep its locks: it is ended.
@@ -151,6 +151,9 @@ std::unique_ptr<Cursor> PostgresDatabase::prepare(std::string_view sql) const {
 const Dialect& PostgresDatabase::dialect() const { return kPostgresDialect; }
 
 std::int64_t PostgresDatabase::version() const {
+  Statement there(*this, "SELECT COUNT(to_regclass('schema_version'))");
+  there.step();
+  if (there.number(0) == 0) return 0;
   Statement version(*this, "SELECT COALESCE(MAX(version), 0) FROM schema_version");
   version.step();
   return version.number(0);
@@ -224,6 +227,7 @@ void PostgresDatabase::fail(bool in_doubt) const {
 }
 
 void PostgresDatabase::apply_all(Extent /*extent*/, const std::function<void()>& make) {
+  if (!has_own_tables_) make_tables();
   link();
   const std::int64_t number = ++number_;
   Clock::time_point end = Clock::time_point::max();

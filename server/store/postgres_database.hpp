@@ -22,8 +22,8 @@ namespace unwrapd::server::store {
 
 class PostgresDatabase final : public Database {
  public:
-  /// Makes its own tables where they are missing. Throws InsideError{storage_failed} when it cannot
-  /// be reached.
+  /// Throws InsideError{storage_failed} when it cannot be reached. The first change makes its own
+  /// tables where they are missing.
   explicit PostgresDatabase(PostgresAddress address);
 
   void run(const std::string& sql) override;
@@ -64,6 +64,7 @@ class PostgresDatabase final : public Database {
   const std::string writer_;  // the id of this connection's row
   std::int64_t number_ = 0;   // of the last transaction
   bool claimed_ = false;
+  bool has_own_tables_ = false;
   bool in_transaction_ = false;
   mutable std::unique_ptr<PostgresLink> link_;
   mutable std::string session_;  // that of the link, or of the one before

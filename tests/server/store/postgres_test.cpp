@@ -27,7 +27,9 @@
 namespace unwrapd::server::store {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(PostgresTexts, HaveTheirPlacesInDollars) {
   EXPECT_EQ(with_dollars("a = ? AND b = ? AND c = '?'"), "a = $1 AND b = $2 AND c = '?'");
@@ -230,6 +232,40 @@ TEST_F(Postgres, HasItsStoreAgainAfterACutThatTheServerDoesNotKnow) {
   EXPECT_NE(
       reason_for([&] { DatabaseAddress(hasty).open()->claim(); }).find("another unwrapd uses it"),
       std::string::npos);
+}
+
+TEST_F(Postgres, WithoutAJobTakesNoFilesAway) {
+  access::KeyStore(dir_.path(), {}, address_).add(access::ApiKey());
+  make_directories(dir_.path() / "blobs" / "j_a");
+  const BlobStore blobs(dir_.path());
+  const auto start = [&] { static_cast<void>(store_in(dir_.path(), address_, blobs)); };
+  EXPECT_THAT(reason_for(start), AllOf(HasSubstr("lists no job"), HasSubstr("load its dump")));
+  SqliteDatabase file(dir_.path() / kStoreFile);
+  migrate(file);
+  EXPECT_THAT(reason_for(start), AllOf(HasSubstr(kStoreFile), Not(HasSubstr("remove"))));
+  database_->transact([&] {
+    database_->run(
+        "INSERT INTO meshes (id, owner, sha256, bytes, media_type, created_ms,"
+        " kept_since_ms, stored_bytes) VALUES ('m_a', '', '', 0, '', 0, 0, 0)");
+  });
+  start();
+  database_->transact([&] { database_->run("DELETE FROM meshes"); });
+  start();  // what is left of a mesh that was removed
+}
+
+TEST_F(Postgres, IsNotMadeToListItsKeys) {
+  const TempDir other;
+  const PostgresAddress empty = postgres_of(other.path());
+  EXPECT_THAT(reason_for([&] {
+                access::KeyStore(other.path() / "none", {}, empty,
+                                 access::KeyStore::Tables::existing);
+              }),
+              HasSubstr("schema 0"));
+  EXPECT_FALSE(std::filesystem::exists(other.path() / "none"));
+  EXPECT_TRUE(columns(*DatabaseAddress(empty).open(),
+                      "SELECT table_name, table_type FROM information_schema.tables"
+                      " WHERE table_schema = current_schema()")
+                  .empty());
 }
 
 TEST_F(Postgres, FindsNothingUnderWhatIsNoText) {
