@@ -18,7 +18,8 @@ using namespace std::chrono_literals;
 
 constexpr Dialect kPostgresDialect{.least = "LEAST", .greatest = "GREATEST"};
 constexpr auto kPauseBetweenTries = 50ms;  // of one call
-constexpr auto kPauseWhileAway = 500ms;    // of all calls
+constexpr auto kPauseWhileAway = 500ms;    // of all calls, at least
+constexpr int kPausePerTry = 9;            // times what a try takes that nobody answers
 constexpr std::size_t kWriterBytes = 16;
 constexpr const char* kOwnTables =
     "SELECT pg_advisory_xact_lock(1431193452, hashtext(current_schema()) # 1);"
@@ -78,6 +79,7 @@ void PostgresDatabase::be_away(bool in_doubt) const {
 /// Throws StoreAway when it cannot be reached until then.
 void PostgresDatabase::link_until(Clock::time_point end, bool in_doubt) const {
   while (true) {
+    const Clock::time_point begun = Clock::now();
     try {
       return try_link();
     } catch (const LinkLost& lost) {
@@ -85,7 +87,7 @@ void PostgresDatabase::link_until(Clock::time_point end, bool in_doubt) const {
     }
     const Clock::time_point now = Clock::now();
     if (now >= end) {
-      next_try_ = now + kPauseWhileAway;
+      next_try_ = now + std::max<Clock::duration>(kPauseWhileAway, kPausePerTry * (now - begun));
       be_away(in_doubt);
     }
     std::this_thread::sleep_for(kPauseBetweenTries);

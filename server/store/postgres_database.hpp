@@ -4,7 +4,8 @@
 // and what was being changed is changed again unless it is found done. To find that, each
 // transaction writes its number into the row of this connection in the table `writers`; one whose
 // answer to COMMIT was lost is there or not. Where nobody answers in time, StoreAway tells clients
-// to come back, and further calls fail at once while tries are few.
+// to come back. Further calls fail at once, but for one in a while that tries: at most a tenth of
+// the time goes into tries, of which each may take connect_timeout a host where packets are lost.
 
 #include <chrono>
 #include <cstdint>
