@@ -20,6 +20,7 @@ class LibpqLibrary {
   decltype(&::PQstatus) status;
   decltype(&::PQerrorMessage) error_message;
   decltype(&::PQparameterStatus) parameter_status;
+  decltype(&::PQserverVersion) server_version;
   decltype(&::PQexec) exec;
   decltype(&::PQprepare) prepare;
   decltype(&::PQexecPrepared) exec_prepared;
