@@ -23,6 +23,8 @@ constexpr const char* kSession =
     " SET tcp_keepalives_idle = 5; SET tcp_keepalives_interval = 2; SET tcp_keepalives_count = 3;"
     " SET tcp_user_timeout = '10s'";
 
+constexpr int kOldestVersion = 150000;  // as libpq says 15.0
+
 std::string line_of(const char* message) {
   std::string line(message);
   while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())) != 0)
@@ -73,6 +75,9 @@ PostgresLink::PostgresLink(const std::string& url) {
     throw InsideError(ErrorCode::storage_failed, "The server's store failed.",
                       "The database of --database is not in UTF8; make one by createdb -E UTF8 -T "
                       "template0.");
+  if (pq_.server_version(session_.get()) < kOldestVersion)
+    throw InsideError(ErrorCode::storage_failed, "The server's store failed.",
+                      "The PostgreSQL server of --database is older than version 15.");
   run(kSession);
 }
 
