@@ -21,8 +21,8 @@ const COUNT_ENDS = `
   CREATE TABLE ends (id TEXT);
   CREATE FUNCTION note_end() RETURNS trigger LANGUAGE plpgsql AS
     $$ BEGIN INSERT INTO ends VALUES (NEW.id); RETURN NULL; END $$;
-  CREATE TRIGGER ends AFTER UPDATE ON jobs FOR EACH ROW
-    WHEN (NEW.state IN ('succeeded', 'failed', 'cancelled') AND NEW.finished_ms <> OLD.finished_ms)
+  CREATE TRIGGER ends AFTER UPDATE OF state ON jobs FOR EACH ROW
+    WHEN (NEW.state IN ('succeeded', 'failed', 'cancelled'))
     EXECUTE FUNCTION note_end();`;
 
 async function start(t, data, port = undefined, ...flags) {

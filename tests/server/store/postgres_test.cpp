@@ -10,6 +10,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "core/base/error.hpp"
@@ -17,10 +18,10 @@
 #include "server/base/errors.hpp"
 #include "server/base/files.hpp"
 #include "server/store/job_store.hpp"
-#include "server/store/numbered_places.hpp"
 #include "server/store/schema.hpp"
 #include "server/store/sqlite_database.hpp"
 #include "tests/api/error_of.hpp"
+#include "tests/server/reason_for.hpp"
 #include "tests/server/temp_dir.hpp"
 #include "tests/server/test_database.hpp"
 
@@ -30,45 +31,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-TEST(PostgresTexts, HaveTheirPlacesInDollars) {
-  EXPECT_EQ(with_dollars("a = ? AND b = ? AND c = '?'"), "a = $1 AND b = $2 AND c = '?'");
-  EXPECT_EQ(with_dollars("a = ?2 OR b = ?1 OR c = ?10"), "a = $2 OR b = $1 OR c = $10");
-}
-
-/// What the operator reads of the failure.
-template <class Action>
-std::string reason_for(const Action& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return reason_of(error);
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
-}
-
-std::string reason_for_url(const std::string& url) {
-  return reason_for([&] {
-    static_cast<void>(
-        DatabaseAddress(PostgresAddress{.url = url, .patience = std::chrono::milliseconds(1)})
-            .open());
-  });
-}
-
-TEST(PostgresUrl, IsNotQuotedWhereAPieceOfItMayBeAPassword) {
-  for (const char* secret : {"hush%zz", "hush/b", "1/hush", "hush@b", "hush#b@c/d"}) {
-    const std::string reason =
-        reason_for_url(std::string("postgres://user:") + secret + "@127.0.0.1:1/none");
-    EXPECT_EQ(reason.find("hush"), std::string::npos) << reason;
-    EXPECT_NE(reason.find("%2F"), std::string::npos) << reason;
-  }
-  for (const char* url : {"postgres://user:hush/none", "postgres://user:hush?a@127.0.0.1:1/none",
-                          "postgres://user:a?b@hush@127.0.0.1:1/none"}) {
-    const std::string reason = reason_for_url(url);
-    EXPECT_EQ(reason.find("hush"), std::string::npos) << reason;
-  }
-}
 
 std::set<int> open_sockets() {
   std::set<int> sockets;
@@ -100,10 +62,10 @@ class Postgres : public testing::Test {
   void SetUp() override { migrate(*database_); }
 
   std::unique_ptr<Database> open() const { return DatabaseAddress(address_).open(); }
-  /// Ends the sessions of this schema, as a restart does.
-  void end_sessions() {
+  /// Ends a session, as a restart does.
+  void end_session(std::int64_t pid) {
     Statement end(*other_, "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE pid = ?");
-    end.with(pid_of(*database_)).run();
+    end.with(pid).run();
   }
   static std::int64_t pid_of(const Database& database) {
     Statement pid(database, "SELECT pg_backend_pid()");
@@ -135,7 +97,7 @@ class Postgres : public testing::Test {
 
 TEST_F(Postgres, ReadsAgainWhatWasCut) {
   const std::int64_t before = pid_of(*database_);
-  end_sessions();
+  end_session(pid_of(*database_));
   EXPECT_NE(pid_of(*database_), before);
 }
 
@@ -143,7 +105,7 @@ TEST_F(Postgres, MakesAgainAChangeThatWasCut) {
   int calls = 0;
   const int result = database_->transact([&] {
     add("j_1");
-    if (++calls == 1) end_sessions();
+    if (++calls == 1) end_session(pid_of(*database_));
     add("j_2");
     return calls;
   });
@@ -203,11 +165,31 @@ TEST_F(Postgres, LosesPatienceWithWhatEndsEachSession) {
 TEST_F(Postgres, RefusesAChangeThatWouldNotBeHealed) { EXPECT_THROW(add("j_1"), Error); }
 
 TEST_F(Postgres, TellsClientsToComeBackWhereNobodyAnswers) {
-  const PostgresAddress nobody{.url = "postgres://nobody@127.0.0.1:1/none",
+  Statement where(*other_, "SHOW unix_socket_directories");
+  where.step();
+  constexpr const char* kSocket = ".s.PGSQL.5432";
+  const std::filesystem::path way = dir_.path() / kSocket;
+  std::filesystem::create_symlink(std::filesystem::path(where.text(0)) / kSocket, way);
+  const PostgresAddress by_way{.url = address_.url + "&host=" + dir_.path().string(),
                                .patience = std::chrono::milliseconds(10)};
-  const Error error = error_of([&] { static_cast<void>(DatabaseAddress(nobody).open()); });
-  EXPECT_EQ(error.code(), ErrorCode::storage_failed);
-  EXPECT_EQ(std::string(error.what()).find("127.0.0.1"), std::string::npos);
+  const std::unique_ptr<Database> database = DatabaseAddress(by_way).open();
+  const std::int64_t session = pid_of(*database);
+  std::filesystem::remove(way);
+  end_session(session);
+  try {
+    pid_of(*database);
+    FAIL() << "nothing was thrown";
+  } catch (const StoreAway& away) {
+    EXPECT_GT(away.seconds(), 0);
+    EXPECT_FALSE(away.in_doubt());
+  }
+  EXPECT_TRUE(database->was_away());
+  EXPECT_THAT(error_of([&] { static_cast<void>(DatabaseAddress(by_way).open()); }).what(),
+              Not(HasSubstr(dir_.path().string())));
+  std::filesystem::create_symlink(std::filesystem::path(where.text(0)) / kSocket, way);
+  EXPECT_THROW(pid_of(*database), StoreAway);  // tries are few
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  EXPECT_NE(pid_of(*database), session);
 }
 
 TEST_F(Postgres, LetsOneServerHaveTheStore) {

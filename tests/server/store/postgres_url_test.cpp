@@ -1,0 +1,42 @@
+// What needs libpq, but no PostgreSQL server.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+
+#include "server/store/database_address.hpp"
+#include "server/store/numbered_places.hpp"
+#include "tests/server/reason_for.hpp"
+
+namespace unwrapd::server::store {
+namespace {
+
+TEST(PostgresTexts, HaveTheirPlacesInDollars) {
+  EXPECT_EQ(with_dollars("a = ? AND b = ? AND c = '?'"), "a = $1 AND b = $2 AND c = '?'");
+  EXPECT_EQ(with_dollars("a = ?2 OR b = ?1 OR c = ?10"), "a = $2 OR b = $1 OR c = $10");
+}
+
+std::string reason_for_url(const std::string& url) {
+  return reason_for([&] {
+    static_cast<void>(
+        DatabaseAddress(PostgresAddress{.url = url, .patience = std::chrono::milliseconds(1)})
+            .open());
+  });
+}
+
+TEST(PostgresUrl, IsNotQuotedWhereAPieceOfItMayBeAPassword) {
+  for (const char* secret : {"hush%zz", "hush/b", "1/hush", "hush@b", "hush#b@c/d"}) {
+    const std::string reason =
+        reason_for_url(std::string("postgres://user:") + secret + "@127.0.0.1:1/none");
+    EXPECT_EQ(reason.find("hush"), std::string::npos) << reason;
+    EXPECT_NE(reason.find("%2F"), std::string::npos) << reason;
+  }
+  for (const char* url : {"postgres://user:hush/none", "postgres://user:hush?a@127.0.0.1:1/none",
+                          "postgres://user:a?b@hush@127.0.0.1:1/none"}) {
+    const std::string reason = reason_for_url(url);
+    EXPECT_EQ(reason.find("hush"), std::string::npos) << reason;
+  }
+}
+
+}  // namespace
+}  // namespace unwrapd::server::store
