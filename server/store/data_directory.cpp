@@ -32,14 +32,12 @@ bool has_tables_in(const std::filesystem::path& file) {
 /// before the first start.
 bool has_had_rows(const Database& database) {
   if (!has_tables(database)) return false;
-  Statement rows(database,
-                 "SELECT (SELECT COUNT(*) FROM pg_sequences WHERE schemaname = current_schema()"
-                 " AND sequencename IN ('jobs_seq_seq', 'meshes_seq_seq')"
-                 " AND last_value IS NOT NULL)"
-                 " + (SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1) AS job)"
-                 " + (SELECT COUNT(*) FROM (SELECT 1 FROM meshes LIMIT 1) AS mesh)");
-  rows.step();
-  return rows.number(0) > 0;
+  return number_of(database,
+                   "SELECT (SELECT COUNT(*) FROM pg_sequences WHERE schemaname = current_schema()"
+                   " AND sequencename IN ('jobs_seq_seq', 'meshes_seq_seq')"
+                   " AND last_value IS NOT NULL)"
+                   " + (SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1) AS job)"
+                   " + (SELECT COUNT(*) FROM (SELECT 1 FROM meshes LIMIT 1) AS mesh)") > 0;
 }
 
 int open_lock(const std::filesystem::path& data) {

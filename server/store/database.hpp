@@ -141,4 +141,11 @@ class Statement {
   std::unique_ptr<Cursor> cursor_;
 };
 
+/// What a query answers that has one row of one number.
+inline std::int64_t number_of(const Database& database, std::string_view sql) {
+  Statement statement(database, sql);
+  statement.step();
+  return statement.number(0);
+}
+
 }  // namespace unwrapd::server::store

@@ -18,15 +18,13 @@ OwnerUsage JobStore::usage(std::string_view owner) {
 
 std::int64_t JobStore::evictable_bytes() {
   const std::lock_guard lock(mutex_);
-  Statement statement(*database_,
-                      "SELECT (SELECT COALESCE(SUM(bytes), 0) FROM stored)"
-                      " - (SELECT COALESCE(SUM(stored_bytes), 0) FROM jobs"
-                      " WHERE state IN ('queued', 'running'))"
-                      " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes"
-                      " WHERE (owner, sha256) NOT IN (SELECT owner, sha256 FROM jobs"
-                      " WHERE state IN ('queued', 'running')))");
-  statement.step();
-  return statement.number(0);
+  return number_of(*database_,
+                   "SELECT (SELECT COALESCE(SUM(bytes), 0) FROM stored)"
+                   " - (SELECT COALESCE(SUM(stored_bytes), 0) FROM jobs"
+                   " WHERE state IN ('queued', 'running'))"
+                   " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes"
+                   " WHERE (owner, sha256) NOT IN (SELECT owner, sha256 FROM jobs"
+                   " WHERE state IN ('queued', 'running')))");
 }
 
 /// The triggers keep the sums; a damaged one would be kept, too.
@@ -65,9 +63,7 @@ std::vector<std::string> JobStore::finished_before(std::int64_t epoch_ms, int li
 
 std::int64_t JobStore::job_count() {
   const std::lock_guard lock(mutex_);
-  Statement statement(*database_, "SELECT COALESCE(SUM(jobs), 0) FROM stored");
-  statement.step();
-  return statement.number(0);
+  return number_of(*database_, "SELECT COALESCE(SUM(jobs), 0) FROM stored");
 }
 
 /// Both are served by indices in their order, however many jobs there are.

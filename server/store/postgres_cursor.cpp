@@ -1,6 +1,5 @@
 #include "server/store/postgres_cursor.hpp"
 
-#include <charconv>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,10 +40,7 @@ class PostgresCursor final : public Cursor {
   }
 
   [[nodiscard]] std::int64_t number(int column) const override {
-    const std::string text = rows_->text(row_, column);
-    std::int64_t number = 0;
-    std::from_chars(text.data(), text.data() + text.size(), number);
-    return number;
+    return number_in(rows_->text(row_, column));
   }
 
   [[nodiscard]] std::string text(int column) const override { return rows_->text(row_, column); }

@@ -153,12 +153,8 @@ std::unique_ptr<Cursor> PostgresDatabase::prepare(std::string_view sql) const {
 const Dialect& PostgresDatabase::dialect() const { return kPostgresDialect; }
 
 std::int64_t PostgresDatabase::version() const {
-  Statement there(*this, "SELECT COUNT(to_regclass('schema_version'))");
-  there.step();
-  if (there.number(0) == 0) return 0;
-  Statement version(*this, "SELECT COALESCE(MAX(version), 0) FROM schema_version");
-  version.step();
-  return version.number(0);
+  if (number_of(*this, "SELECT COUNT(to_regclass('schema_version'))") == 0) return 0;
+  return number_of(*this, "SELECT COALESCE(MAX(version), 0) FROM schema_version");
 }
 
 std::string PostgresDatabase::step_to(std::int64_t version) const { return postgres_step(version); }

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstring>
+#include <system_error>
 
 #include "core/base/error.hpp"
 #include "server/base/errors.hpp"
@@ -43,11 +44,18 @@ bool is_away(std::string_view state) {
 
 }  // namespace
 
+std::int64_t number_in(std::string_view text) {
+  std::int64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [read, failed] = std::from_chars(text.data(), end, number);
+  if (text.empty() || (failed == std::errc() && read == end)) return number;
+  throw InsideError(
+      ErrorCode::storage_failed, "The server's store failed; try again later.",
+      "The database of --database has " + std::string(text) + " where a whole number belongs.");
+}
+
 int PostgresResult::changed() const {
-  const std::string_view count = LibpqLibrary::loaded().cmd_tuples(get());
-  int changed = 0;
-  std::from_chars(count.data(), count.data() + count.size(), changed);
-  return changed;
+  return static_cast<int>(number_in(LibpqLibrary::loaded().cmd_tuples(get())));
 }
 
 std::string PostgresResult::text(int row, int column) const {

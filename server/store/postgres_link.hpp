@@ -2,6 +2,7 @@
 // One session of PostgreSQL, by libpq: statements are prepared once, and what a failure means is
 // decided here.
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,6 +26,10 @@ struct BoundValue {
 };
 inline constexpr Oid kTextType = 25;
 inline constexpr Oid kNumberType = 20;
+
+/// The number that PostgreSQL tells; 0 for NULL. Throws InsideError{storage_failed} when it is
+/// none.
+std::int64_t number_in(std::string_view text);
 
 /// Rows, or the count of rows that were changed.
 class PostgresResult {

@@ -165,11 +165,7 @@ std::unique_ptr<Cursor> SqliteDatabase::prepare(std::string_view sql) const {
 
 const Dialect& SqliteDatabase::dialect() const { return kDialect; }
 
-std::int64_t SqliteDatabase::version() const {
-  Statement version(*this, "PRAGMA user_version");
-  version.step();
-  return version.number(0);
-}
+std::int64_t SqliteDatabase::version() const { return number_of(*this, "PRAGMA user_version"); }
 
 std::string SqliteDatabase::step_to(std::int64_t version) const { return sqlite_step(version); }
 

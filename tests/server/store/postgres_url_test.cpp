@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
 #include <string>
 
 #include "server/store/database_address.hpp"
 #include "server/store/numbered_places.hpp"
+#include "server/store/postgres_link.hpp"
 #include "tests/server/reason_for.hpp"
 
 namespace unwrapd::server::store {
@@ -22,6 +24,13 @@ std::string reason_for_url(const std::string& url) {
         DatabaseAddress(PostgresAddress{.url = url, .patience = std::chrono::milliseconds(1)})
             .open());
   });
+}
+
+TEST(PostgresNumbers, AreReadToTheirEnds) {
+  EXPECT_EQ(number_in("-9223372036854775808"), std::numeric_limits<std::int64_t>::min());
+  EXPECT_EQ(number_in(""), 0);
+  for (const char* text : {"1.5", "t", "9223372036854775808", " 1"})
+    EXPECT_THROW(number_in(text), InsideError) << text;
 }
 
 TEST(PostgresUrl, IsNotQuotedWhereAPieceOfItMayBeAPassword) {
