@@ -34,7 +34,8 @@ constexpr const char* kOwnSession =
 /// have committed here alone.
 constexpr const char* kEndSession =
     "SELECT pg_terminate_backend(pid, 1000) FROM pg_stat_activity"
-    " WHERE pid || ' of ' || backend_start = ? AND state LIKE 'idle%'";
+    " WHERE pid || ' of ' || backend_start = ? AND pid <> pg_backend_pid()"
+    " AND state LIKE 'idle%'";
 
 }  // namespace
 
