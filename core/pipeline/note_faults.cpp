@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 namespace unwrapd::pipeline {
 namespace {
 
 constexpr double kSlack = 0.001;  // of D: rounding to the page moves it less
+constexpr double kSlackOfExcess = 0.05;
 
 double worst_of(const Distortion& distortion) {
   return std::max(distortion.angle, distortion.area);
@@ -62,8 +64,9 @@ void note_distortion(Layout& layout, std::span<const Surface> surfaces,
   const auto count = std::ranges::count_if(charts, [&](const ChartReport& chart) {
     return worst_of(chart.distortion) > bearable + kSlack;
   });
-  const bool is_missed = options.max_distortion &&
-                         worst_of(layout.report.distortion) > *options.max_distortion + kSlack;
+  const double bound = options.max_distortion.value_or(std::numeric_limits<double>::infinity());
+  const bool is_missed =
+      worst_of(layout.report.distortion) > bound + std::min(kSlack, kSlackOfExcess * (bound - 2));
   if (count == 0 && !is_missed) return;
   const auto worst =
       static_cast<std::size_t>(std::ranges::max_element(charts, worse) - charts.begin());

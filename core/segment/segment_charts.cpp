@@ -15,18 +15,14 @@
 
 #include "core/base/cancel.hpp"
 #include "core/measure/rest_triangle.hpp"
-#include "core/segment/large_charts.hpp"
+#include "core/segment/component_charts.hpp"
 #include "core/segment/region_charts.hpp"
-#include "core/segment/search_extent.hpp"
-#include "core/segment/segment_symmetrically.hpp"
-#include "core/segment/whole_chart.hpp"
 
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kLeastOpenness = 0.01;   // 1 / 10^2
-constexpr double kShareOfFirst = 0.25;    // of the work, to share charts out
-constexpr double kShareOfStandIn = 0.25;  // of the work, on the first stand-in
+constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
+constexpr double kShareOfFirst = 0.25;   // of the work, to share charts out
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const charts::Chart& component) {
@@ -68,11 +64,6 @@ class Account {
   double area_ = 0;  ///< in space, of all components
 };
 
-SegmentRules for_part_of_work(SegmentRules rules, double begin, double end) {
-  rules.on_progress = part_of_progress(std::move(rules.on_progress), begin, end);
-  return rules;
-}
-
 void note(charts::Charts& surface, RepairKind kind, Index count) {
   if (count > 0) surface.repairs.push_back({kind, 0, count});
 }
@@ -90,7 +81,7 @@ class Cutter {
     const bool whole = charts::is_disk(component), is_cut = most == 1 && !merges_to_one_;
     const bool one_chart = options_.one_chart_each || is_cut;
     const bool is_left = !options_.max_distortion && openness(component) >= kLeastOpenness;
-    if (!one_chart && !(whole && is_left)) return prepare_charts(component, whole, most);
+    if (!one_chart && !(whole && is_left)) return segment_component(component, whole, most);
     if (!whole) {
       charts::cut(component);
       ++cuts;
@@ -102,59 +93,17 @@ class Cutter {
   Index cuts = 0, segmented = 0, rough = 0;
 
  private:
-  void prepare_charts(const charts::Chart& component, bool whole, Index most) {
+  void segment_component(const charts::Chart& component, bool whole, Index most) {
     SegmentRules rules =
         account_.rules(options_.max_distortion.value_or(kDefaultDistortion), component);
     rules.most_regions = most;
-    if (whole && openness(component) >= kLeastOpenness && keep_whole(component, rules)) return;
     rules.effort = options_.effort;
-    std::vector<charts::Chart> parts;
-    if (options_.symmetry == Symmetry::automatic) parts = symmetric_parts(component, rules);
-    if (parts.empty()) parts = parts_of(component, std::move(rules));
-    segmented += !whole || parts.size() > 1 ? 1 : 0;
-    for (charts::Chart& part : parts) charts.push_back(std::move(part));
-  }
-
-  /// Whether the bound holds for the disk as one chart, which then has all that regions have.
-  bool keep_whole(const charts::Chart& disk, const SegmentRules& rules) {
-    std::optional<UvMap> uv = map_whole(disk, rules.max_distortion, executor_, rules.stop);
-    if (!uv) return false;
-    charts.push_back(disk);
-    charts.back().start = std::move(*uv);
-    charts.back().least = Guarantee::bijective;
-    return true;
-  }
-
-  /// None where there is no mirror, or where the component is too large to be searched whole.
-  std::vector<charts::Chart> symmetric_parts(const charts::Chart& component,
-                                             const SegmentRules& rules) {
-    if (component.mesh.face_count() / 2 > search_extent(options_.effort).second.beyond) return {};
-    const SegmentationMesh surface =
-        make_segmentation_mesh(component.mesh, component.halfedges, component.crease);
-    const std::optional<Mirror> mirror = find_mirror(surface.mesh, rules.stop);
-    if (!mirror) return {};
-    const auto segments = segment_symmetrically(component, surface, *mirror, rules, executor_);
-    return segments ? region_charts(component, *segments) : std::vector<charts::Chart>();
-  }
-
-  /// On a small surface that stands for the component, on a larger one, or on its own.
-  std::vector<charts::Chart> parts_of(const charts::Chart& component, SegmentRules rules) {
-    const SearchExtent extent = search_extent(options_.effort);
-    const Index faces = component.mesh.face_count();
-    if (faces > extent.first.beyond) {
-      auto found = large_charts_within_bound(component, for_part_of_work(rules, 0, kShareOfStandIn),
-                                             extent.first.faces, executor_);
-      if (found) return std::move(*found);
-      rules = for_part_of_work(rules, kShareOfStandIn, 1);
-    }
-    if (faces <= extent.second.beyond) {
-      const SegmentationMesh surface =
-          make_segmentation_mesh(component.mesh, component.halfedges, component.crease);
-      return region_charts(component, segment(surface, rules, executor_));
-    }
-    LargeCharts large = large_charts(component, rules, extent.second.faces, executor_);
-    rough += large.is_rough ? 1 : 0;
-    return std::move(large.charts);
+    const bool may_stay = whole && openness(component) >= kLeastOpenness;
+    ComponentCharts parts =
+        charts_within_bound(component, {rules, options_.symmetry, may_stay}, executor_);
+    rough += parts.is_rough ? 1 : 0;
+    segmented += !whole || parts.charts.size() > 1 ? 1 : 0;
+    for (charts::Chart& part : parts.charts) charts.push_back(std::move(part));
   }
 
   const SegmentOptions& options_;
@@ -227,15 +176,15 @@ SegmentWatch without_steps_back(const SegmentWatch& watch) {
 }
 
 /// All surfaces, of which no more than `most` charts shall be made. How these are shared out is
-/// decided at the first step of the bound and holds for all: what each component comes to then
+/// decided at kDefaultDistortion and holds for all bounds: what each component comes to then
 /// follows the steps (ADR 0039).
 Cuts cut_to_most(std::vector<charts::Charts>& surfaces, const SegmentOptions& options,
                  const SegmentWatch& watch, Executor& executor) {
   const Index most = *options.max_charts;
   const std::size_t components = count_of(surfaces);
   const Index each = std::max<Index>(most - static_cast<Index>(components) + 1, 1);
-  const bool has_steps =
-      components > 1 && each > 1 && options.max_distortion.value_or(0) > kDefaultDistortion;
+  const bool has_steps = components > 1 && each > 1 &&
+                         options.max_distortion.value_or(kDefaultDistortion) != kDefaultDistortion;
   SegmentOptions first = options;
   if (has_steps) first.max_distortion = kDefaultDistortion;
   const std::vector<charts::Charts> whole = surfaces;

@@ -1,0 +1,170 @@
+#include "core/segment/component_charts.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/measure/rest_triangle.hpp"
+#include "core/segment/large_charts.hpp"
+#include "core/segment/region_charts.hpp"
+#include "core/segment/search_extent.hpp"
+#include "core/segment/segment_symmetrically.hpp"
+#include "core/segment/tighten.hpp"
+#include "core/segment/whole_chart.hpp"
+
+namespace unwrapd::segment {
+namespace {
+
+constexpr double kShareOfStandIn = 0.25;  // of the work, on the first stand-in
+
+/// What a chart of a component has of the component's creases: one a half-edge.
+std::vector<char> crease_of(const charts::Chart& component, const charts::Chart& chart) {
+  std::vector<char> crease;
+  if (component.crease.empty()) return crease;
+  for (const Index face : chart.face_source) {
+    const auto at = std::ranges::lower_bound(component.face_source, face);
+    const auto h = component.crease.begin() + 3 * (at - component.face_source.begin());
+    crease.insert(crease.end(), h, h + 3);
+  }
+  return crease;
+}
+
+SeamsOfCharts seams_of(const std::vector<charts::Chart>& charts) {
+  SeamsOfCharts seams{charts.size(), 0};
+  for (const charts::Chart& chart : charts) seams.length += boundary_length(chart);
+  return seams;
+}
+
+SegmentRules for_part_of_work(SegmentRules rules, double begin, double end) {
+  rules.on_progress = part_of_progress(std::move(rules.on_progress), begin, end);
+  return rules;
+}
+
+class ComponentSearch {
+ public:
+  ComponentSearch(const charts::Chart& component, const ComponentRules& rules, Executor& executor)
+      : component_(component), given_(rules), executor_(executor) {}
+
+  ComponentCharts run() {
+    SegmentRules rules = given_.segment;
+    std::vector<charts::Chart> parts;
+    if (given_.may_stay_whole) parts = kept_whole(rules);
+    if (parts.empty()) parts = segmented_charts(rules);
+    return {std::move(parts), is_rough_};
+  }
+
+ private:
+  /// A bound below kDefaultDistortion is reached from that, step by step (ADR 0066).
+  std::vector<charts::Chart> segmented_charts(SegmentRules rules) {
+    const TightBounds tight = tight_bounds(rules.max_distortion);
+    const auto searches = static_cast<double>(tight.searched.size() + 1);
+    rules.max_distortion = std::max(rules.max_distortion, kDefaultDistortion);
+    std::vector<charts::Chart> parts;
+    if (given_.may_stay_whole && tight.count > 0) parts = kept_whole(rules);
+    if (parts.empty()) parts = parts_of(for_part_of_work(rules, 0, 1 / searches));
+    const bool was_rough = std::exchange(is_rough_, false);
+    std::vector<std::vector<charts::Chart>> found;
+    for (const double bound : tight.searched) {
+      const auto done = static_cast<double>(found.size() + 1);
+      SegmentRules own = for_part_of_work(rules, done / searches, (done + 1) / searches);
+      own.max_distortion = bound;
+      found.push_back(parts_of(own));
+      if (std::exchange(is_rough_, false)) found.back().clear();  // it keeps another bound
+    }
+    for (std::size_t k = 0; k < tight.count; ++k) {
+      rules.max_distortion = tight.searched[k];
+      const std::size_t count = std::min<std::size_t>(2, found.size() - k);
+      parts = tightened(std::move(parts), std::span(found).subspan(k, count), rules);
+    }
+    is_rough_ = is_rough_ || was_rough;
+    return parts;
+  }
+
+  /// Charts for a tighter bound, whose seams are not shorter than the looser ones': the best that
+  /// were found within the bound, or where all of these are luckier, the looser ones split further.
+  std::vector<charts::Chart> tightened(std::vector<charts::Chart> looser,
+                                       std::span<const std::vector<charts::Chart>> found,
+                                       SegmentRules rules) {
+    rules.on_progress = {};
+    const auto better = [&](const auto& one, const auto& other) {
+      return is_better(seams_of(one), seams_of(other), rules.most_regions);
+    };
+    const std::vector<charts::Chart>* best = nullptr;
+    for (const std::vector<charts::Chart>& own : found)
+      if (!own.empty() && !better(own, looser) && (best == nullptr || better(own, *best)))
+        best = &own;
+    if (best != nullptr) return *best;
+    const SplitChart split = [&](const charts::Chart& chart, double bound) {
+      charts::Chart alone = chart;
+      alone.crease = crease_of(component_, chart);
+      SegmentRules parts = rules;
+      parts.max_distortion = bound;
+      parts.page_area *= measure::surface_area(component_.mesh) / measure::surface_area(chart.mesh);
+      return searched_parts(alone, parts);
+    };
+    return tighten(std::move(looser), rules.max_distortion, rules.most_regions, split, executor_,
+                   rules.stop);
+  }
+
+  /// The disk as one chart, which then has all that regions have, if the bound holds; else none.
+  std::vector<charts::Chart> kept_whole(const SegmentRules& rules) {
+    std::optional<UvMap> uv = map_whole(component_, rules.max_distortion, executor_, rules.stop);
+    if (!uv) return {};
+    std::vector<charts::Chart> whole = {component_};
+    whole.front().start = std::move(*uv);
+    whole.front().least = Guarantee::bijective;
+    return whole;
+  }
+
+  std::vector<charts::Chart> parts_of(const SegmentRules& rules) {
+    std::vector<charts::Chart> parts;
+    if (given_.symmetry == Symmetry::automatic) parts = symmetric_parts(rules);
+    return parts.empty() ? searched_parts(component_, rules) : parts;
+  }
+
+  /// None where there is no mirror, or where the component is too large to be searched whole.
+  std::vector<charts::Chart> symmetric_parts(const SegmentRules& rules) {
+    if (component_.mesh.face_count() / 2 > search_extent(rules.effort).second.beyond) return {};
+    const SegmentationMesh surface =
+        make_segmentation_mesh(component_.mesh, component_.halfedges, component_.crease);
+    const std::optional<Mirror> mirror = find_mirror(surface.mesh, rules.stop);
+    if (!mirror) return {};
+    const auto segments = segment_symmetrically(component_, surface, *mirror, rules, executor_);
+    return segments ? region_charts(component_, *segments) : std::vector<charts::Chart>();
+  }
+
+  /// On a small surface that stands for the component, on a larger one, or on its own.
+  std::vector<charts::Chart> searched_parts(const charts::Chart& component, SegmentRules rules) {
+    const SearchExtent extent = search_extent(rules.effort);
+    const Index faces = component.mesh.face_count();
+    if (faces > extent.first.beyond) {
+      auto found = large_charts_within_bound(component, for_part_of_work(rules, 0, kShareOfStandIn),
+                                             extent.first.faces, executor_);
+      if (found) return std::move(*found);
+      rules = for_part_of_work(rules, kShareOfStandIn, 1);
+    }
+    if (faces <= extent.second.beyond) {
+      const SegmentationMesh surface =
+          make_segmentation_mesh(component.mesh, component.halfedges, component.crease);
+      return region_charts(component, segment(surface, rules, executor_));
+    }
+    LargeCharts large = large_charts(component, rules, extent.second.faces, executor_);
+    is_rough_ = is_rough_ || large.is_rough;
+    return std::move(large.charts);
+  }
+
+  const charts::Chart& component_;
+  const ComponentRules& given_;
+  Executor& executor_;
+  bool is_rough_ = false;
+};
+
+}  // namespace
+
+ComponentCharts charts_within_bound(const charts::Chart& component, const ComponentRules& rules,
+                                    Executor& executor) {
+  return ComponentSearch(component, rules, executor).run();
+}
+
+}  // namespace unwrapd::segment
