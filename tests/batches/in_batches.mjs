@@ -1,0 +1,158 @@
+// Runs what ctest lists, many GoogleTest cases in a process: under sanitizers a process takes longer
+// to start and to end than most cases take to run.
+//
+//   node tests/batches/in_batches.mjs BUILD_FOLDER JOBS [CTEST ARGUMENTS...]
+//
+// What fails is told as it fails, with its output. Cases that a crash kept from running run in a
+// process of their own. The last line counts: "N passed, N failed, N skipped". Exits with 1 where a
+// test failed, and with 2 where there was none.
+import { execFileSync, spawn } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+const kCasesOfABatch = 12;
+const kSecondsOfAProcess = 600;
+const kSkippedExit = 77;
+
+const [folder, jobs, ...ctestArguments] = process.argv.slice(2);
+const scratch = mkdtempSync(join(tmpdir(), 'batches-'));
+const counts = { passed: 0, failed: 0, skipped: 0 };
+const failed = [];
+
+/** What ctest would run: each with its command, and the name of its case where it is one case. */
+function listedTests() {
+  const listed = execFileSync(
+    'ctest', ['--test-dir', folder, '--show-only=json-v1', ...ctestArguments],
+    { encoding: 'utf8', maxBuffer: 1 << 28 });
+  return JSON.parse(listed).tests.map(({ name, command, properties }) => {
+    const [program, ...rest] = command ?? [];
+    const filter = rest.find((argument) => argument.startsWith('--gtest_filter='));
+    const isOneCase = filter && !/[*?:]|=-/.test(filter);
+    const property = (wanted) => properties.find((one) => one.name === wanted)?.value;
+    return {
+      name,
+      command: command ?? [],
+      cwd: property('WORKING_DIRECTORY') ?? folder,
+      env: { ...process.env, ...Object.fromEntries((property('ENVIRONMENT') ?? []).map(
+        (line) => [line.slice(0, line.indexOf('=')), line.slice(line.indexOf('=') + 1)])) },
+      program,
+      testCase: isOneCase ? filter.slice('--gtest_filter='.length) : undefined,
+    };
+  });
+}
+
+/** Neighbours in ctest's list, of one program each. */
+function batchesOf(tests) {
+  const batches = [];
+  for (const test of tests) {
+    const last = batches.at(-1);
+    const fits = last && test.testCase && last[0].testCase && last[0].program === test.program;
+    if (fits && last.length < kCasesOfABatch) last.push(test);
+    else batches.push([test]);
+  }
+  return batches;
+}
+
+function run(command, { cwd, env }) {
+  return new Promise((resolve) => {
+    let output = '';
+    const child = spawn(command[0], command.slice(1),
+      { cwd, env, stdio: ['ignore', 'pipe', 'pipe'] });
+    const timer = setTimeout(() => {
+      output += `\nkilled: it ran longer than ${kSecondsOfAProcess} s\n`;
+      child.kill('SIGKILL');
+    }, kSecondsOfAProcess * 1000);
+    const end = (status) => {
+      clearTimeout(timer);
+      resolve({ status, output });
+    };
+    for (const stream of [child.stdout, child.stderr])
+      stream.setEncoding('utf8').on('data', (text) => { output += text; });
+    child.on('error', (error) => {
+      output += `${error.message}\n`;
+      end(-1);
+    });
+    child.on('close', end);
+  });
+}
+
+function end(test, outcome, output = '') {
+  counts[outcome] += 1;
+  if (outcome !== 'failed') return;
+  failed.push(test.name);
+  process.stdout.write(`${output}\n** FAILED: ${test.name}\n`);
+}
+
+async function runAlone(test) {
+  if (test.command.length === 0) return end(test, 'failed', 'its program is not built');
+  const { status, output } = await run(test.command, test);
+  if (status === kSkippedExit || (status === 0 && output.includes('[  SKIPPED ]')))
+    end(test, 'skipped');
+  else end(test, status === 0 ? 'passed' : 'failed', output);
+}
+
+/** What GoogleTest wrote of each case, by its name; nothing after a crash. */
+function resultsIn(file) {
+  try {
+    const results = new Map();
+    for (const suite of JSON.parse(readFileSync(file, 'utf8')).testsuites)
+      for (const one of suite.testsuite)
+        results.set(`${suite.name}.${one.name}`,
+          one.failures ? 'failed' : one.result === 'SKIPPED' ? 'skipped' : 'passed');
+    return results;
+  } catch {
+    return undefined;
+  }
+}
+
+/** The cases whose end the output tells: those before a crash. */
+function endedIn(output) {
+  const ended = new Map();
+  const words = { '[       OK ]': 'passed', '[  FAILED  ]': 'failed', '[  SKIPPED ]': 'skipped' };
+  for (const [, word, name] of output.matchAll(/^(\[.{10}\]) (\S+) \(\d+ ms\)$/gm))
+    if (words[word]) ended.set(name, words[word]);
+  return ended;
+}
+
+async function runBatch(batch, number) {
+  if (batch.length === 1) return runAlone(batch[0]);
+  const file = join(scratch, `${number}.json`);
+  const filter = batch.map((test) => test.testCase).join(':');
+  const command = [batch[0].program, `--gtest_filter=${filter}`, `--gtest_output=json:${file}`,
+    '--gtest_also_run_disabled_tests'];
+  const { status, output } = await run(command, batch[0]);
+  const results = resultsIn(file);
+  const known = results ?? endedIn(output);
+  const blamed = [...known.values()].includes('failed');
+  if (status !== 0 && !blamed) process.stdout.write(`${output}\n`);  // a crash, or a leak at the end
+  const isLeak = results && status !== 0 && !blamed;
+  let told = output;  // once
+  for (const test of batch) {
+    const result = known.get(test.testCase);
+    if (!result || isLeak) {
+      await runAlone(test);
+      continue;
+    }
+    end(test, result, told);
+    if (result === 'failed') told = '';
+  }
+  if (isLeak && !batch.some((test) => failed.includes(test.name)))
+    end(batch[0], 'failed', `the process of these cases ended with ${status}: ${filter}`);
+}
+
+const tests = listedTests();
+const batches = batchesOf(tests);
+let next = 0;
+const worker = async () => {
+  while (next < batches.length) {
+    const number = next++;
+    await runBatch(batches[number], number);
+  }
+};
+await Promise.all(Array.from({ length: Number(jobs) }, worker));
+rmSync(scratch, { recursive: true });
+console.log(`${batches.length} processes for ${tests.length} tests`);
+for (const name of failed) console.log(`FAILED: ${name}`);
+console.log(`${counts.passed} passed, ${counts.failed} failed, ${counts.skipped} skipped`);
+process.exitCode = counts.failed > 0 ? 1 : tests.length === 0 ? 2 : 0;
