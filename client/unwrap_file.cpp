@@ -4,7 +4,7 @@
 
 #include "api/options.hpp"
 #include "client/files.hpp"
-#include "client/gltf_buffers.hpp"
+#include "client/files_beside.hpp"
 #include "client/input_file.hpp"
 
 namespace unwrapd::client {
@@ -12,19 +12,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+WantedFiles wanted_files(const Arguments& arguments) {
+  const auto given = [&](const char* name) {
+    const auto option = arguments.options.find(name);
+    return option == arguments.options.end() ? std::string() : option->second;
+  };
+  const std::string output = given("output");
+  return {.images = given("textures") == "transfer",
+          .materials = output == "glb" || output == "gltf"};
+}
+
 /// Short options go into the query; lists of objects, and files beside the mesh, need a multipart
 /// request.
 api::Job submit(JobClient& client, const Arguments& arguments, const fs::path& file) {
-  const auto textures = arguments.options.find("textures");
-  const bool with_images = textures != arguments.options.end() && textures->second == "transfer";
-  const auto buffers = external_buffers(file, with_images);
+  const auto files = files_beside(file, wanted_files(arguments));
   const bool is_long = std::ranges::any_of(arguments.options, [](const auto& option) {
     return api::find_option(option.first)->type == api::OptionType::objects;
   });
-  if (buffers.empty() && !is_long) return client.submit(raw_upload(file), arguments.options);
+  if (files.empty() && !is_long) return client.submit(raw_upload(file), arguments.options);
   const api::Query given(arguments.options.begin(), arguments.options.end());
   const std::string options = api::options_object(given).dump();
-  return client.submit(multipart_upload(options, file, buffers), {});
+  return client.submit(multipart_upload(options, file, files), {});
 }
 
 api::Job follow(JobClient& client, const std::string& job_id, const Console& console) {

@@ -67,13 +67,13 @@ Upload raw_upload(const fs::path& document) {
 }
 
 Upload multipart_upload(const std::string& options, const fs::path& document,
-                        const std::vector<ExternalBuffer>& buffers) {
+                        const std::vector<FileBeside>& buffers) {
   Upload upload{std::string("multipart/form-data; boundary=") + kBoundary, {}};
   const auto add = [&](std::string text) { upload.pieces.push_back(text_piece(std::move(text))); };
   add(part_head("options", "", "application/json") + options + "\r\n");
   add(part_head("mesh", document.filename().string(), media_type(document)));
   upload.pieces.push_back(file_piece(document));
-  for (const ExternalBuffer& buffer : buffers) {
+  for (const FileBeside& buffer : buffers) {
     add("\r\n" + part_head("buffer", buffer.uri, "application/octet-stream"));
     upload.pieces.push_back(file_piece(buffer.file));
   }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "client/gltf_buffers.hpp"
+#include "client/files_beside.hpp"
 
 namespace unwrapd::client {
 
@@ -30,7 +30,7 @@ Upload raw_upload(const std::filesystem::path& document);
 
 /// multipart/form-data with the parts options (JSON), mesh and one a buffer, named by its URI.
 Upload multipart_upload(const std::string& options, const std::filesystem::path& document,
-                        const std::vector<ExternalBuffer>& buffers);
+                        const std::vector<FileBeside>& buffers);
 
 /// "model/gltf-binary", "model/gltf+json", "model/" and the name of another format that is read;
 /// else "application/octet-stream".
