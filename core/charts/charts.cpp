@@ -11,6 +11,7 @@
 #include "core/base/error.hpp"
 #include "core/charts/cut.hpp"
 #include "core/charts/pieces.hpp"
+#include "core/charts/seam_weight.hpp"
 #include "core/mesh/counting_sort.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/mesh/repair.hpp"
@@ -210,7 +211,9 @@ ConnectedSurface connect_surface(const solve::CacheContext&, const SurfaceNumber
   return connect({surface, first_at, welded, states}, seams);
 }
 
-Charts placed(const ConnectedSurface& connected, const TriMesh& mesh, const std::stop_token& stop) {
+Charts placed(const ConnectedSurface& connected, const Surface& surface,
+              const std::stop_token& stop) {
+  const TriMesh& mesh = surface.mesh;
   Charts charts = connected.charts;
   for (std::size_t k = 0; k < charts.charts.size(); ++k) {
     throw_if_cancelled(stop);
@@ -219,6 +222,7 @@ Charts placed(const ConnectedSurface& connected, const TriMesh& mesh, const std:
     for (const Index v : connected.vertex_source[k])
       chart.mesh.positions.push_back(mesh.positions[v]);
     sort_by_length(chart.mesh, chart.loops);
+    chart.avoid = avoid_of(chart, surface);
   }
   return charts;
 }
@@ -236,7 +240,7 @@ bool is_disk(const Chart& component) {
 }
 
 void cut(Chart& component) {
-  cut_to_disk(component.mesh, component.halfedges);
+  cut_to_disk(component.mesh, component.halfedges, component.avoid);
   const TriMesh closed = std::move(component.mesh);
   component.mesh = mesh_of(component.halfedges,
                            [&](Index h) { return closed.positions[closed.faces[h / 3][h % 3]]; });
@@ -274,14 +278,14 @@ Charts components_of(const Surface& surface, const SeamRules& seams) {
   const auto pieces =
       solve::cached<connect_surface>(solve::CacheContext{seams.core, seams.stop},
                                      SurfaceNumbers(surface), first_at, states.of, seams);
-  return placed(*pieces, surface.mesh, seams.stop);
+  return placed(*pieces, surface, seams.stop);
 }
 
 std::size_t bytes_of(const Chart& chart) {
   std::size_t bytes = sizeof(Chart) + solve::bytes_of(chart.mesh.positions) +
                       solve::bytes_of(chart.mesh.faces) + solve::bytes_of(chart.halfedges) +
                       solve::bytes_of(chart.face_source) + solve::bytes_of(chart.start) +
-                      solve::bytes_of(chart.crease);
+                      solve::bytes_of(chart.crease) + solve::bytes_of(chart.avoid);
   for (const BoundaryLoop& loop : chart.loops)
     bytes += sizeof(BoundaryLoop) + solve::bytes_of(loop);
   return bytes;

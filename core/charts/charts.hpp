@@ -27,6 +27,8 @@ struct Chart {
       Guarantee::none;            ///< the guarantee of this chart, unless options.guarantee is none
   std::vector<char> crease = {};  ///< of a component, one a half-edge: 1 where materials meet, or
                                   ///< where the input has separate vertices on both sides
+  std::vector<double> avoid = {};  ///< one a half-edge, the same on both sides of an edge: the mean
+                                   ///< of Surface::seam_avoid at its corners; empty: not painted
 };
 
 /// The result of preparing a surface. Faces in set_aside are in no chart.

@@ -14,6 +14,7 @@
 #include <queue>
 #include <utility>
 
+#include "core/charts/seam_weight.hpp"
 #include "core/mesh/counting_sort.hpp"
 #include "core/mesh/disjoint_sets.hpp"
 #include "core/mesh/edges.hpp"
@@ -29,7 +30,7 @@ struct Graph {
   std::vector<Index> node_of;   ///< one a vertex; one of a node's vertices gives it its number
   std::vector<Index> arcs;      ///< half-edges with a twin, by the node they start at
   std::vector<Index> first;     ///< arcs[first[n]] .. arcs[first[n + 1]] start at node n
-  std::vector<double> length;   ///< one a half-edge
+  std::vector<double> length;   ///< one a half-edge, by seam_weight()
   std::vector<Index> from, to;  ///< nodes of each half-edge
 };
 
@@ -46,7 +47,7 @@ std::vector<Index> merge_holes(const TriMesh& mesh, const Halfedges& halfedges) 
   return node_of;
 }
 
-Graph graph_of(const TriMesh& mesh, const Halfedges& halfedges) {
+Graph graph_of(const TriMesh& mesh, const Halfedges& halfedges, std::span<const double> avoid) {
   const std::size_t sides = halfedges.twin.size();
   Graph graph{
       merge_holes(mesh, halfedges), {}, {}, std::vector<double>(sides), std::vector<Index>(sides),
@@ -55,7 +56,7 @@ Graph graph_of(const TriMesh& mesh, const Halfedges& halfedges) {
     const Index a = start_of(mesh.faces, h), b = end_of(mesh.faces, h);
     graph.from[h] = graph.node_of[a];
     graph.to[h] = graph.node_of[b];
-    graph.length[h] = (mesh.positions[b] - mesh.positions[a]).norm();
+    graph.length[h] = seam_weight(avoid, h) * (mesh.positions[b] - mesh.positions[a]).norm();
     if (halfedges.twin[h] != kNoTwin) graph.arcs.push_back(h);
   }
   counting_sort(graph.arcs, mesh.vertex_count(), [&](Index h) { return graph.from[h]; });
@@ -89,8 +90,8 @@ Paths shortest_paths(const Graph& graph, Index root) {
   return paths;
 }
 
-/// The farthest vertex along the longest side of the bounding box.
-Index extreme_vertex(const TriMesh& mesh) {
+/// The farthest vertex along the longest side of the bounding box, of those that are painted least.
+Index extreme_vertex(const TriMesh& mesh, std::span<const double> avoid) {
   Vec3 low = mesh.positions.front(), high = low;
   for (const Vec3& p : mesh.positions) {
     low = low.cwiseMin(p);
@@ -98,9 +99,17 @@ Index extreme_vertex(const TriMesh& mesh) {
   }
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
-  const auto before = [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
-  return static_cast<Index>(std::max_element(mesh.positions.begin(), mesh.positions.end(), before) -
-                            mesh.positions.begin());
+  std::vector<double> painted(mesh.positions.size(), 0);
+  for (Index h = 0; h < static_cast<Index>(avoid.size()); ++h) {
+    double& own = painted[start_of(mesh.faces, h)];
+    own = std::max(own, avoid[h]);
+  }
+  Index best = 0;
+  for (Index v = 1; v < mesh.vertex_count(); ++v)
+    if (std::pair(-painted[v], mesh.positions[v][axis]) >
+        std::pair(-painted[best], mesh.positions[best][axis]))
+      best = v;
+  return best;
 }
 
 /// The half-edges on the path from node to the root.
@@ -111,12 +120,21 @@ std::vector<Index> path_to_root(const Graph& graph, const Paths& paths, Index no
   return path;
 }
 
+/// What the way to each vertex costs beyond its length counts against the vertex.
+void discount(const Graph& unpainted, Index root, std::vector<double>& distance) {
+  const std::vector<double> length = shortest_paths(unpainted, root).distance;
+  for (std::size_t n = 0; n < length.size(); ++n) distance[n] = 2 * length[n] - distance[n];
+}
+
 /// For a closed surface of genus 0. A path of one edge would open a slit of two half-edges.
-std::vector<Index> opening_path(const TriMesh& mesh, const Graph& graph) {
-  const Index root = graph.node_of[extreme_vertex(mesh)];
+std::vector<Index> opening_path(const TriMesh& mesh, const Halfedges& halfedges, const Graph& graph,
+                                std::span<const double> avoid) {
+  const Index root = graph.node_of[extreme_vertex(mesh, avoid)];
   const Paths paths = shortest_paths(graph, root);
-  const Index end = static_cast<Index>(
-      std::max_element(paths.distance.begin(), paths.distance.end()) - paths.distance.begin());
+  std::vector<double> distance = paths.distance;
+  if (!avoid.empty()) discount(graph_of(mesh, halfedges, {}), root, distance);
+  const Index end =
+      static_cast<Index>(std::max_element(distance.begin(), distance.end()) - distance.begin());
   std::vector<Index> path = path_to_root(graph, paths, end);
   for (Index k = graph.first[end]; path.size() < 2 && k < graph.first[end + 1]; ++k)
     if (graph.to[graph.arcs[k]] != root) path.push_back(graph.arcs[k]);
@@ -174,13 +192,13 @@ std::vector<Index> loop_edges(const Graph& graph, const Halfedges& halfedges, In
 
 }  // namespace
 
-void cut_to_disk(const TriMesh& mesh, Halfedges& halfedges) {
+void cut_to_disk(const TriMesh& mesh, Halfedges& halfedges, std::span<const double> avoid) {
   const Component shape = topology(mesh.faces, halfedges).components.front();
   if (shape.is_disk()) return;
-  const Graph graph = graph_of(mesh, halfedges);
+  const Graph graph = graph_of(mesh, halfedges, avoid);
   const std::vector<Index> cut =
-      shape.genus == 0 ? opening_path(mesh, graph)
-                       : loop_edges(graph, halfedges, graph.node_of[extreme_vertex(mesh)]);
+      shape.genus == 0 ? opening_path(mesh, halfedges, graph, avoid)
+                       : loop_edges(graph, halfedges, graph.node_of[extreme_vertex(mesh, avoid)]);
   for (Index h : cut) {
     const Index other = std::exchange(halfedges.twin[h], kNoTwin);
     halfedges.twin[other] = kNoTwin;

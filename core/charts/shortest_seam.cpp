@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/charts/seam_weight.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd::charts {
@@ -22,9 +23,10 @@ class SeamFlow {
     std::vector<double> length(twin_.size(), 0);
     double sum = 0;
     for (Index h = 0; h < static_cast<Index>(twin_.size()); ++h) {
-      length[h] = (chart.mesh.positions[end_of(chart.mesh.faces, h)] -
-                   chart.mesh.positions[start_of(chart.mesh.faces, h)])
-                      .norm();
+      length[h] =
+          seam_weight(chart.avoid, h) * (chart.mesh.positions[end_of(chart.mesh.faces, h)] -
+                                         chart.mesh.positions[start_of(chart.mesh.faces, h)])
+                                            .norm();
       sum += length[h];
     }
     const double unit = sum > 0 ? kStepsOfAnEdge * static_cast<double>(twin_.size()) / sum : 0;

@@ -63,6 +63,7 @@ ChartPart part_of(const Chart& chart, const Halfedges& cut, const std::vector<In
       const Index twin = cut.twin[h];
       part.chart.halfedges.twin.push_back(twin == kNoTwin ? kNoTwin
                                                           : 3 * rank[twin / 3] + twin % 3);
+      if (!chart.avoid.empty()) part.chart.avoid.push_back(chart.avoid[h]);
     }
   }
   CornerVertices corners = corner_vertices(part.chart.halfedges, stop);

@@ -38,6 +38,9 @@ struct Surface {
            ///< unless requested and present. NaN for corners without UVs
   std::vector<std::string> materials =
       {};  ///< materials[part[t]] names that of face t; empty unless requested
+  /// Painted preferences, one a vertex, in [0, 1]; empty unless requested (ADR 0067).
+  std::vector<double> seam_avoid = {};     ///< how dear seams are at the vertex
+  std::vector<double> texel_density = {};  ///< how many more texels its surroundings get
 };
 
 /// The result for a surface. Faces keep their number and order; a vertex on a seam is split.

@@ -12,6 +12,7 @@
 #include "core/measure/seam_length.hpp"
 #include "core/pipeline/analyse.hpp"
 #include "core/pipeline/assemble.hpp"
+#include "core/pipeline/painted_density.hpp"
 #include "core/pipeline/place_islands.hpp"
 #include "core/segment/region_charts.hpp"
 
@@ -40,6 +41,8 @@ void pack_free_charts(Layout& layout, std::span<const Surface> surfaces,
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
       const charts::Chart& chart = *layout.charts[s][k];
       UvMap& map = layout.islands[s][k];
+      const double density = density_of(chart, surfaces[s], options);
+      for (Vec2& uv : map) uv *= density;
       islands.add(charts::outline_of(chart, map), map,
                   group_of(surfaces[s], chart.face_source.front(), options.packing.group));
     }
@@ -173,7 +176,7 @@ bool has_split_charts(const Layout& layout) {
 double border_of(const Prepared& all) {
   double length = 0;
   for (const charts::Charts& surface : all.surfaces)
-    for (const charts::Chart& chart : surface.charts) length += segment::boundary_length(chart);
+    for (const charts::Chart& chart : surface.charts) length += segment::weighted_boundary(chart);
   return length;
 }
 
@@ -181,7 +184,7 @@ double border_of(const Layout& layout) {
   double length = 0;
   for (const auto& charts : layout.charts)
     for (const std::shared_ptr<const charts::Chart>& chart : charts)
-      length += segment::boundary_length(*chart);
+      length += segment::weighted_boundary(*chart);
   return length;
 }
 
@@ -211,6 +214,7 @@ void quantize_maps(Layout& layout, const UnwrapOptions& options, const std::stop
 
 void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<const Surface> given,
                   const UnwrapOptions& options, Executor& executor) {
+  double uv_area = 0;
   auto report = layout.report.charts.begin();
   for (std::size_t s = 0; s < layout.islands.size(); ++s) {
     const TriMesh& used = surfaces[s].mesh;
@@ -219,6 +223,8 @@ void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<c
       const charts::Chart& chart = *layout.charts[s][k];
       UvMap uv = layout.islands[s][k];
       to_page_widths(uv, layout.report.page);
+      const double density = density_of(chart, surfaces[s], options);
+      for (Vec2& u : uv) u /= density;  // what was asked for is no distortion
       measure::DistortionSums own =
           is_moved ? sums_in_file(chart, uv, given[s].mesh.positions, used.faces, executor)
                    : measure::distortion_sums(
@@ -228,11 +234,12 @@ void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<c
       report->area = own.area;
       report->distortion = measure::distortion(own);
       layout.sums += own;
+      uv_area += density * density * own.uv_area;
     }
   }
   const measure::DistortionSums& sums = layout.sums;
   layout.report.distortion = measure::distortion(sums);
-  layout.report.texel_density = std::sqrt(sums.uv_area / sums.area) * layout.report.page.width;
+  layout.report.texel_density = std::sqrt(uv_area / sums.area) * layout.report.page.width;
   if (!options.constraints.empty()) layout.report.fill = covered_page(layout);
 }
 

@@ -35,10 +35,10 @@ void note_new_maps(Layout& layout, const UnwrapOptions& options);
 
 bool has_split_charts(const Layout& layout);
 
-/// The length of all charts' borders before charts are mapped.
+/// The length of all charts' borders before charts are mapped, by charts::seam_weight().
 double border_of(const Prepared& all);
 
-/// The length of all charts' borders, those between the parts of split charts included.
+/// The same with those between the parts of split charts.
 double border_of(const Layout& layout);
 
 /// Packs all charts; their maps become page UVs. Charts under position constraints stay in place.
@@ -50,7 +50,8 @@ void pack_charts(Layout& layout, std::span<const Surface> surfaces, const Unwrap
 /// Error{guarantee_failed, cancelled}.
 void quantize_maps(Layout& layout, const UnwrapOptions& options, const std::stop_token& stop);
 
-/// Distortion and texel density of the triangles as they are written, rounding included. surfaces:
+/// Distortion and texel density of the triangles as they are written, rounding included. Densities
+/// that were painted are in the texel density, and in no distortion. surfaces:
 /// those that were unwrapped; given: the same as they came, with the positions that are written.
 void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<const Surface> given,
                   const UnwrapOptions& options, Executor& executor);

@@ -218,6 +218,22 @@ class Contraction {
 
 }  // namespace
 
+std::vector<double> coarse_avoid(const Coarse& coarse, const TriMesh& mesh) {
+  if (coarse.avoid.empty()) return {};
+  std::vector<double> mean(coarse.mesh.positions.size(), 0), count(mean.size(), 0);
+  for (Index h = 0; h < static_cast<Index>(coarse.avoid.size()); ++h) {
+    const Index c = coarse.cluster[start_of(mesh.faces, h)];
+    mean[c] += coarse.avoid[h];
+    ++count[c];
+  }
+  for (std::size_t c = 0; c < mean.size(); ++c) mean[c] /= count[c];
+  std::vector<double> avoid;
+  for (Index h = 0; h < 3 * coarse.mesh.face_count(); ++h)
+    avoid.push_back((mean[start_of(coarse.mesh.faces, h)] + mean[end_of(coarse.mesh.faces, h)]) /
+                    2);
+  return avoid;
+}
+
 Coarse coarsen(const TriMesh& mesh, const Halfedges& halfedges, Index faces,
                const std::stop_token& stop) {
   Contraction contraction(mesh, halfedges, stop);

@@ -32,7 +32,7 @@ std::vector<char> crease_of(const charts::Chart& component, const charts::Chart&
 
 SeamsOfCharts seams_of(const std::vector<charts::Chart>& charts) {
   SeamsOfCharts seams{charts.size(), 0};
-  for (const charts::Chart& chart : charts) seams.length += boundary_length(chart);
+  for (const charts::Chart& chart : charts) seams.length += weighted_boundary(chart);
   return seams;
 }
 
@@ -126,8 +126,7 @@ class ComponentSearch {
   /// None where there is no mirror, or where the component is too large to be searched whole.
   std::vector<charts::Chart> symmetric_parts(const SegmentRules& rules) {
     if (component_.mesh.face_count() / 2 > search_extent(rules.effort).second.beyond) return {};
-    const SegmentationMesh surface =
-        make_segmentation_mesh(component_.mesh, component_.halfedges, component_.crease);
+    const SegmentationMesh surface = make_segmentation_mesh(component_);
     const std::optional<Mirror> mirror = find_mirror(surface.mesh, rules.stop);
     if (!mirror) return {};
     const auto segments = segment_symmetrically(component_, surface, *mirror, rules, executor_);
@@ -145,8 +144,7 @@ class ComponentSearch {
       rules = for_part_of_work(rules, kShareOfStandIn, 1);
     }
     if (faces <= extent.second.beyond) {
-      const SegmentationMesh surface =
-          make_segmentation_mesh(component.mesh, component.halfedges, component.crease);
+      const SegmentationMesh surface = make_segmentation_mesh(component);
       return region_charts(component, segment(surface, rules, executor_));
     }
     LargeCharts large = large_charts(component, rules, extent.second.faces, executor_);

@@ -24,6 +24,12 @@ constexpr double kCaution = 1.15;    // for each unit of excess that was measure
 constexpr double kMostHidden = 0.7;  // of the excess allowed; where noise takes more, it is let be
 constexpr double kRoughShare = 0.1, kFirstShare = 0.9;  // of the work, when they have ended
 
+Coarse coarse_of(const charts::Chart& component, Index faces, const std::stop_token& stop) {
+  Coarse coarse = coarsen(component.mesh, component.halfedges, faces, stop);
+  coarse.avoid = component.avoid;
+  return coarse;
+}
+
 /// What charts are found, step by step (excess_steps()).
 class Search {
  public:
@@ -31,8 +37,9 @@ class Search {
       : component_(component),
         rules_(rules),
         executor_(executor),
-        coarse_(coarsen(component.mesh, component.halfedges, faces, rules.stop)),
-        surface_(make_segmentation_mesh(coarse_.mesh, coarse_.halfedges)),
+        coarse_(coarse_of(component, faces, rules.stop)),
+        surface_(make_segmentation_mesh(coarse_.mesh, coarse_.halfedges, {},
+                                        coarse_avoid(coarse_, component.mesh))),
         steps_(excess_steps(rules.max_distortion)) {}
 
   LargeCharts run() {
@@ -53,7 +60,7 @@ class Search {
   struct Found {
     std::vector<charts::Chart> charts;
     ExcessDistortion small, large;  ///< on either surface, over its area
-    SeamsOfCharts seams;  ///< both sides of each, in units of the mesh, and the surface's boundary
+    SeamsOfCharts seams;            ///< weighted_boundary() of all charts
   };
 
   std::vector<charts::Chart> loosened(Found best) {
@@ -118,7 +125,7 @@ class Search {
     Found found{region_charts(component_, coarse_, segments, rules_.stop), segments.excess, {}, {}};
     found.large = chart_excess(found.charts, executor_, rules_.stop);
     found.seams.charts = found.charts.size();
-    for (const charts::Chart& chart : found.charts) found.seams.length += boundary_length(chart);
+    for (const charts::Chart& chart : found.charts) found.seams.length += weighted_boundary(chart);
     return found;
   }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/charts/seam_weight.hpp"
 #include "core/charts/split_chart.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/segment/transfer_seams.hpp"
@@ -74,17 +75,22 @@ UvMap transferred_map(const charts::ChartPart& part, const Coarse& coarse,
   return map;
 }
 
-}  // namespace
-
-double boundary_length(const charts::Chart& chart) {
+double boundary_by(const charts::Chart& chart, std::span<const double> avoid) {
   const TriMesh& mesh = chart.mesh;
   double length = 0;
   for (const BoundaryLoop& loop : chart.loops)
     for (const Index h : loop)
       length +=
+          charts::seam_weight(avoid, h) *
           (mesh.positions[end_of(mesh.faces, h)] - mesh.positions[start_of(mesh.faces, h)]).norm();
   return length;
 }
+
+}  // namespace
+
+double boundary_length(const charts::Chart& chart) { return boundary_by(chart, {}); }
+
+double weighted_boundary(const charts::Chart& chart) { return boundary_by(chart, chart.avoid); }
 
 std::vector<charts::Chart> region_charts(const charts::Chart& component, const Segments& segments) {
   const auto [uv, seam] = seamed(component.halfedges, segments);

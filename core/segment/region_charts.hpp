@@ -13,6 +13,9 @@ namespace unwrapd::segment {
 /// In space.
 double boundary_length(const charts::Chart& chart);
 
+/// The same by charts::seam_weight().
+double weighted_boundary(const charts::Chart& chart);
+
 /// The regions of a component, each with its map for a start.
 std::vector<charts::Chart> region_charts(const charts::Chart& component, const Segments& segments);
 

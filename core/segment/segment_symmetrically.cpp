@@ -16,6 +16,15 @@ namespace {
 /// rest.
 constexpr double kForJoining = 0.5;
 
+/// A seam in front has its image behind: it is to avoid what is painted at either place.
+void average_with_image(const charts::Chart& component, const Mirror& mirror,
+                        charts::ChartPart& part) {
+  for (std::size_t h = 0; h < part.chart.avoid.size(); ++h) {
+    const Index image = mirror.halfedge[3 * part.face[h / 3] + static_cast<Index>(h % 3)];
+    if (image >= 0) part.chart.avoid[h] = (part.chart.avoid[h] + component.avoid[image]) / 2;
+  }
+}
+
 /// The parts of the component in front of the plane.
 std::vector<charts::ChartPart> front_parts(const charts::Chart& component, const Mirror& mirror,
                                            const std::stop_token& stop) {
@@ -27,6 +36,7 @@ std::vector<charts::ChartPart> front_parts(const charts::Chart& component, const
   std::erase_if(parts, [&](const charts::ChartPart& part) {
     return mirror.is_front[part.face.front()] == 0;
   });
+  for (charts::ChartPart& part : parts) average_with_image(component, mirror, part);
   return parts;
 }
 
@@ -37,7 +47,7 @@ class FrontSearch {
               SegmentRules rules, std::size_t steps, Executor& executor)
       : part_(std::move(part)),
         surface_(make_segmentation_mesh(part_.chart.mesh, part_.chart.halfedges,
-                                        creases_of(component, part_))) {
+                                        creases_of(component, part_), part_.chart.avoid)) {
     for (const Index t : part_.face) area_ += whole.area(t);
     rules.page_area /= area_;
     search_.emplace(surface_, std::move(rules), steps, executor);

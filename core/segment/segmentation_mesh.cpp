@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/charts/seam_weight.hpp"
 #include "core/linear/ordering.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/mesh/edges.hpp"
@@ -63,19 +64,26 @@ std::vector<Index> elimination_ranks(const TriMesh& mesh) {
 }  // namespace
 
 SegmentationMesh make_segmentation_mesh(const TriMesh& mesh, const Halfedges& halfedges,
-                                        std::span<const char> crease) {
+                                        std::span<const char> crease,
+                                        std::span<const double> avoid) {
   SegmentationMesh surface{normalised(mesh), halfedges, {}, {}, {}, {}, {}};
   surface.rest = measure::flatten(surface.mesh);
   surface.normal.reserve(mesh.faces.size());
   for (const Triangle& face : mesh.faces) surface.normal.push_back(normal_of(surface.mesh, face));
   surface.length.reserve(halfedges.twin.size());
   for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h)
-    surface.length.push_back((surface.mesh.positions[end_of(mesh.faces, h)] -
+    surface.length.push_back(charts::seam_weight(avoid, h) *
+                             (surface.mesh.positions[end_of(mesh.faces, h)] -
                               surface.mesh.positions[start_of(mesh.faces, h)])
                                  .norm());
   surface.seam_cost = seam_costs(surface, crease);
   surface.rank = elimination_ranks(surface.mesh);
   return surface;
+}
+
+SegmentationMesh make_segmentation_mesh(const charts::Chart& component) {
+  return make_segmentation_mesh(component.mesh, component.halfedges, component.crease,
+                                component.avoid);
 }
 
 std::vector<CornerUv> projected(const SegmentationMesh& surface, std::span<const Index> faces) {

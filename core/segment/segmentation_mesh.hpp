@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/charts/charts.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/halfedges.hpp"
 
@@ -16,7 +17,7 @@ struct SegmentationMesh {
   Halfedges halfedges;  ///< of mesh.faces; any genus, with or without boundaries
   std::vector<measure::RestTriangle> rest;  ///< one a face
   std::vector<Vec3> normal;                 ///< one a face, of unit length
-  std::vector<double> length;               ///< one a half-edge
+  std::vector<double> length;               ///< one a half-edge, by charts::seam_weight()
   std::vector<double> seam_cost;  ///< one a half-edge: its length, but less along a crease
   std::vector<Index> rank;        ///< of each vertex, in an order of elimination that fills little
 
@@ -26,9 +27,14 @@ struct SegmentationMesh {
 
 /// mesh: connected, no face of zero area, each vertex with one fan. crease: one a half-edge, 1: a
 /// seam shows less there; empty: none are given. Sharp edges are creases, too. Where many edges are
-/// (each face of a flat-shaded export stands alone) they tell nothing, and none is.
+/// (each face of a flat-shaded export stands alone) they tell nothing, and none is. avoid: see
+/// charts::Chart.
 SegmentationMesh make_segmentation_mesh(const TriMesh& mesh, const Halfedges& halfedges,
-                                        std::span<const char> crease = {});
+                                        std::span<const char> crease = {},
+                                        std::span<const double> avoid = {});
+
+/// That of a component.
+SegmentationMesh make_segmentation_mesh(const charts::Chart& component);
 
 /// The faces projected along their mean normal: a seed for the map of a nearly flat set of faces.
 std::vector<CornerUv> projected(const SegmentationMesh& surface, std::span<const Index> faces);

@@ -1,10 +1,10 @@
 // Between the clusters of two neighbouring vertices of the small surface runs a strip of triangles,
 // and every edge across the strip joins the two clusters. So a row of seams is a row of clusters to
 // walk through, and its seams on the large surface are the shortest path (Dijkstra) that goes
-// through the clusters in this order, crossing the strips between them. Clusters are disks: what
-// meets in one makes a tree there, and the surface falls apart just as the small one did.
-// Rejected: giving each face the label of the nearest small one and cutting where labels differ:
-// slits have the same label on both sides, and labels fall to pieces.
+// through the clusters in this order, crossing the strips between them (by seam_weight()). Clusters
+// are disks: what meets in one makes a tree there, and the surface falls apart just as the small
+// one did. Rejected: giving each face the label of the nearest small one and cutting where labels
+// differ: slits have the same label on both sides, and labels fall to pieces.
 #include "core/segment/transfer_seams.hpp"
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/charts/seam_weight.hpp"
 #include "core/linear/sparse.hpp"
 #include "core/mesh/counting_sort.hpp"
 #include "core/mesh/edges.hpp"
@@ -177,7 +178,8 @@ class Tracing {
       if (here.layer == last && (!to_seam || on_seam_[here.vertex] != 0))
         return mark(here, via, node);
       for_each_step(row, clusters, here, [&](Index h, const Place& there) {
-        const double length = d + (mesh_.positions[end(h)] - mesh_.positions[start(h)]).norm();
+        const double length = d + charts::seam_weight(coarse_.avoid, h) *
+                                      (mesh_.positions[end(h)] - mesh_.positions[start(h)]).norm();
         if (!(length < distance[node(there)])) return;
         distance[node(there)] = length;
         via[node(there)] = h;

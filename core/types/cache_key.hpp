@@ -94,8 +94,9 @@ inline void describe(CacheKey& key, const TriMesh& mesh) {
 }
 
 inline void describe(CacheKey& key, const Surface& surface) {
-  const auto& [mesh, part, name, corner_uv, materials] = surface;
+  const auto& [mesh, part, name, corner_uv, materials, seam_avoid, texel_density] = surface;
   key.add(mesh).add(part).add(name).add(corner_uv).add(materials);
+  key.add(seam_avoid).add(texel_density);
 }
 
 inline void describe(CacheKey& key, const SurfaceNumbers& surface) {

@@ -55,6 +55,12 @@ test('bijective', async () => {
   assert.match(table, /^time: median [\d.]+ .*\n.*\nrise: median [\d.]+ %/m);
 });
 
+test('painted', async () => {
+  const table = await program('painted', 'made:torus:300:1');
+  assert.match(table, /^made:torus:300:1 +\d+( +[\d.]+){12}$/m);
+  assert.match(table, /^median of after \/ before: in the half [\d.]+, in all [\d.]+$/m);
+});
+
 test('store', async () => {
   assert.match(await program('store', '10'), /^sqlite +\d+ inserts\/s +\d+ taken and finished\/s$/m);
 });

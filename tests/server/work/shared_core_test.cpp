@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
+
 #include "tests/core/hard_shapes.hpp"
 #include "tests/core/rounded.hpp"
 #include "tests/server/shared_jobs.hpp"
@@ -160,6 +162,28 @@ TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyTakeBodiesApart) {
   expect_answers_as_alone({{ball}}, jobs);
   jobs.resize(2);
   expect_answers_as_alone({{ball}, {other}, {disk, ball}}, jobs);
+}
+
+/// The same positions: nothing painted, 0 everywhere, one half or the other, or one less.
+TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyArePainted) {
+  const Surface bare = shapes::surface_of(shapes::sphere(1));
+  std::vector<Surfaces> meshes{{bare}};
+  for (const double x : {0.0, 1.0, -1.0, 0.5})
+    for (std::vector<double> Surface::*field : {&Surface::seam_avoid, &Surface::texel_density}) {
+      Surface painted = bare;
+      for (const Vec3& p : bare.mesh.positions)
+        (painted.*field).push_back(std::clamp(x * p.x(), 0.0, 1.0));
+      meshes.push_back({painted});
+    }
+  std::vector<UnwrapOptions> jobs(2);
+  for (UnwrapOptions& options : jobs) options.stop.iterations = 2;
+  jobs[1].max_charts = 1;
+  expect_answers_as_alone(meshes, jobs);
+  std::ranges::reverse(meshes);
+  expect_answers_as_alone(meshes, jobs);
+  for (const std::size_t zero : {6, 7})
+    EXPECT_TRUE(answer(meshes[zero], jobs[0], nullptr) == answer({bare}, jobs[0], nullptr));
+  EXPECT_FALSE(answer(meshes[5], jobs[0], nullptr) == answer({bare}, jobs[0], nullptr));
 }
 
 TEST(JobsThatShare, AnswerAsTheyWouldAloneUnderConstraints) {

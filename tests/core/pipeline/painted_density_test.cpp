@@ -1,0 +1,107 @@
+// Charts that are painted to have more texels. Their scale is measured from the UVs of the result.
+#include "core/pipeline/painted_density.hpp"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+#include "core/unwrap.hpp"
+#include "tests/core/shapes.hpp"
+
+namespace unwrapd {
+namespace {
+
+using namespace shapes;
+
+/// Two boxes, of which the second has this value.
+Surface two_boxes(double value) {
+  TriMesh other = cube(2);
+  for (Vec3& p : other.positions) p = 0.7 * p + Vec3(3, 0, 0);
+  Surface surface = surface_of(merged(std::vector<TriMesh>{cube(2), other}));
+  for (const Vec3& p : surface.mesh.positions)
+    surface.texel_density.push_back(p.x() > 2 ? value : 0);
+  return surface;
+}
+
+Unwrapped unwrap_densely(const Surface& surface, const UnwrapOptions& options = {}) {
+  SerialExecutor serial;
+  return unwrap(std::span(&surface, 1), options, {}, serial);
+}
+
+/// Texels for each unit of length on the faces of one box.
+double density_on(const Unwrapped& result, const Surface& surface, bool of_second) {
+  double in_space = 0, on_page = 0;
+  for (std::size_t t = 0; t < surface.mesh.faces.size(); ++t) {
+    const auto p = [&](std::size_t i) -> const Vec3& {
+      return surface.mesh.positions[std::size_t(surface.mesh.faces[t][i])];
+    };
+    const auto u = [&](std::size_t i) -> const Vec2& {
+      return result.surfaces[0].uv[std::size_t(result.surfaces[0].faces[t][i])];
+    };
+    if ((p(0).x() > 2) != of_second) continue;
+    in_space += (p(1) - p(0)).cross(p(2) - p(0)).norm();
+    const Vec2 a = u(1) - u(0), b = u(2) - u(0);
+    on_page += std::abs(a.x() * b.y() - a.y() * b.x());
+  }
+  return result.report.page.width * std::sqrt(on_page / in_space);
+}
+
+TEST(PaintedDensity, GivesUpToFourTimesTheTexelsForEachUnit) {
+  for (const double value : {0.0, 0.25, 0.5, 1.0}) {
+    const Surface surface = two_boxes(value);
+    const Unwrapped result = unwrap_densely(surface);
+    const double ratio = density_on(result, surface, true) / density_on(result, surface, false);
+    EXPECT_NEAR(ratio, std::pow(4, value), 1e-3 * ratio) << value;
+  }
+}
+
+TEST(PaintedDensity, IsNoDistortionAndInTheTexelDensity) {
+  const Surface surface = two_boxes(1);
+  Surface bare = surface;
+  bare.texel_density.clear();
+  const Report painted = unwrap_densely(surface).report, plain = unwrap_densely(bare).report;
+  EXPECT_NEAR(painted.distortion.angle, plain.distortion.angle, 1e-4);
+  EXPECT_NEAR(painted.distortion.area, plain.distortion.area, 1e-4);
+  EXPECT_LT(painted.distortion.area, 2.02);
+  double area = 0, texels = 0;
+  const Unwrapped result = unwrap_densely(surface);
+  for (const bool of_second : {false, true}) {
+    const double own = of_second ? 0.49 : 1;
+    area += own;
+    texels += own * std::pow(density_on(result, surface, of_second), 2);
+  }
+  EXPECT_NEAR(painted.texel_density, std::sqrt(texels / area), 1e-3 * painted.texel_density);
+}
+
+TEST(PaintedDensity, LeavesWhatIsNotPaintedAtTheDensityThatWasAskedFor) {
+  UnwrapOptions options{.page_fit = PageFit::multiple_of_four};
+  options.packing.texels_per_unit = 50;
+  const Surface surface = two_boxes(1);
+  const Unwrapped result = unwrap_densely(surface, options);
+  EXPECT_NEAR(density_on(result, surface, false), 50, 0.1);
+  EXPECT_NEAR(density_on(result, surface, true), 200, 0.4);
+}
+
+TEST(PaintedDensity, ChangesNothingWhereItIsZeroOrConstraintsDecide) {
+  const Surface zero = two_boxes(0);
+  Surface bare = zero;
+  bare.texel_density.clear();
+  EXPECT_EQ(unwrap_densely(zero).surfaces[0].uv, unwrap_densely(bare).surfaces[0].uv);
+  const Surface one = two_boxes(1);
+  UnwrapOptions held;
+  held.constraints = {{.surface = 0, .vertex = 0, .uv = Vec2(0.2, 0.2)},
+                      {.surface = 0, .vertex = bare.mesh.vertex_count() - 1, .uv = Vec2(0.7, 0.6)}};
+  EXPECT_EQ(unwrap_densely(one, held).surfaces[0].uv, unwrap_densely(bare, held).surfaces[0].uv);
+}
+
+TEST(PaintedDensity, GoesByTheMeanOverAChartsArea) {
+  const TriMesh sheet = grid(2, 1, 3, 1);  // quads of equal size
+  Surface surface = surface_of(sheet);
+  for (const Vec3& p : sheet.positions) surface.texel_density.push_back(p.x() / 3);
+  const charts::Charts charts = charts::components_of(surface, {});
+  EXPECT_NEAR(pipeline::density_of(charts.charts.front(), surface, {}), 2, 1e-12);
+}
+
+}  // namespace
+}  // namespace unwrapd
