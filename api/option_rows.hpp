@@ -110,12 +110,13 @@ constexpr OptionRow figure(std::string_view name, Range range, std::span<const M
           .set = set_plain<kField>};
 }
 
-/// For fields of type flag or names.
+/// For fields of type flag, names or text.
 template <auto kField>
 constexpr OptionRow plain(std::string_view name, OptionType type, std::span<const Method> methods,
                           std::string_view description) {
   return {.name = name,
           .type = type,
+          .nullable = kIsOptional<kField>,
           .description = description,
           .methods = methods,
           .get = get_plain<kField>,

@@ -142,6 +142,11 @@ constexpr std::array kRows = {
         .methods = kEveryMethod,
         .get = get_seam_edges,
         .set = set_seam_edges},
+    plain<&A::seam_avoid>(
+        "seam_avoid", OptionType::text, kEveryMethod,
+        "A painted attribute of vertices, from 0 to 1, such as COLOR_0.r or _AVOID: where it is "
+        "high, seams run elsewhere if that is not much longer. Unset: seams are as short as they "
+        "can be."),
     figure<&O::max_distortion>("max_distortion", {kMinDistortion, kMaxDistortion}, kEveryMethod,
                                "The most distortion of angles and of areas of ARAP maps; 2 is "
                                "ideal. Surfaces are split into charts until it holds. Lower values "
@@ -184,6 +189,12 @@ constexpr std::array kRows = {
         "texels_per_unit", {kMinTexelsPerUnit, kMaxTexelsPerUnit}, kEveryMethod,
         "Texels for each unit of length of the mesh, on every island. Unset: as many as fit. Set "
         "it to give several assets the same texel density; resolution is then auto unless given."),
+    plain<&A::texel_density>(
+        "texel_density", OptionType::text, kEveryMethod,
+        "A painted attribute of vertices, from 0 to 1, such as COLOR_0.g or _DENSITY: charts get "
+        "up "
+        "to four times as many texels for each unit of length where it is high. Unset: all charts "
+        "have the same texel density."),
     figure<&Packing::max_pages>(
         "max_pages", {1, kMaxPages}, kEveryMethod,
         "The most pages. Page k is the UDIM tile 1001 + k and lies at U from k to k + 1."),

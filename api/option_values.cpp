@@ -76,6 +76,8 @@ std::string join_names(std::span<const std::string_view> names) {
 std::string allowed_values(const OptionRow& row, const Limits& limits) {
   if (row.type == OptionType::choice) return "one of " + join_names(row.choices);
   if (row.type == OptionType::flag) return "true or false";
+  if (row.type == OptionType::text)
+    return "a name of 1 to " + std::to_string(kMaxTextBytes) + " bytes, or none (null in JSON)";
   if (row.type == OptionType::names)
     return "a list of at most " + std::to_string(kMaxNames) + " strings";
   const std::string kind = row.type == OptionType::integer ? "an integer" : "a finite number";
@@ -113,6 +115,12 @@ bool is_list_of(const OptionRow& row, const Json& value, const Limits& limits) {
   return std::ranges::adjacent_find(figures) == figures.end();
 }
 
+bool is_text(const Json& value) {
+  if (!value.is_string()) return false;
+  const std::size_t bytes = value.get_ref<const std::string&>().size();
+  return bytes > 0 && bytes <= kMaxTextBytes;
+}
+
 bool is_name_list(const Json& value) {
   const auto is_name = [](const Json& entry) { return entry.is_string(); };
   return value.is_array() && value.size() <= kMaxNames && std::ranges::all_of(value, is_name);
@@ -142,6 +150,8 @@ bool fits(const OptionRow& row, const Json& value, const Limits& limits) {
       return is_choice_of(row, value);
     case OptionType::flag:
       return value.is_boolean();
+    case OptionType::text:
+      return is_text(value);
     case OptionType::names:
       return is_name_list(value);
     case OptionType::number:
@@ -162,6 +172,7 @@ Json value_of_text(const OptionRow& row, const std::string& text) {
   if (can_unset(row) && text == kUnset) return nullptr;
   switch (row.type) {
     case OptionType::choice:
+    case OptionType::text:
       return text;
     case OptionType::flag:
       return text == "true" || text == "false" ? Json(text == "true") : Json(text);

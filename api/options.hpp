@@ -38,11 +38,13 @@ enum class OptionType {
   number,
   integer,
   numbers,  ///< a number, or a list of different ones: "1,2" in a query
+  text,     ///< a name, or null
   names,    ///< a list of strings: in a query separated by commas, or as JSON
   objects,  ///< a list of objects (constraints.hpp, seam_paths.hpp): in a query as JSON
 };
 
-inline constexpr std::size_t kMaxNumbers = 32;  ///< entries of an option of type numbers
+inline constexpr std::size_t kMaxTextBytes = 200;  ///< of an option of type text
+inline constexpr std::size_t kMaxNumbers = 32;     ///< entries of an option of type numbers
 
 /// An option. In JSON "stop.iterations" is the member iterations of the object stop.
 struct OptionRow {

@@ -60,6 +60,7 @@ constexpr std::array kPresets = {
 std::string_view type_name(OptionType type) {
   switch (type) {
     case OptionType::choice:
+    case OptionType::text:
       return "string";
     case OptionType::number:
     case OptionType::numbers:

@@ -22,6 +22,7 @@ constexpr double kMostDigits = 1e9;  // larger numbers have an exponent
 std::string range_text(const api::OptionRow& row) {
   if (row.type == api::OptionType::objects) return "FILE.json";
   if (row.type == api::OptionType::names) return "NAME[,NAME...]";
+  if (row.type == api::OptionType::text) return can_unset(row) ? "NAME|none" : "NAME";
   if (row.type == api::OptionType::choice) {
     std::string text;
     for (const std::string_view choice : row.choices)

@@ -11,6 +11,7 @@
 #include "core/asset/float_frame.hpp"
 #include "core/asset/obj_materials.hpp"
 #include "core/asset/obj_polygons.hpp"
+#include "core/asset/painted.hpp"
 #include "core/asset/patch.hpp"
 #include "core/asset/read_gltf.hpp"
 #include "core/asset/recognise.hpp"
@@ -186,6 +187,7 @@ Asset read_document(const Input& input, const ReadLimits& limits, const AssetOpt
     document->surfaces.resize(1);
     document->source = read_one_mesh(input, limits, document->format, document->surfaces.front());
   }
+  read_painted(input, *document);
   return Asset(std::move(document));
 }
 

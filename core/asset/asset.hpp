@@ -73,7 +73,8 @@ class Asset {
 /// surfaces that the options select; write() then applies the options. Throws Error with a JSON
 /// pointer or a file position: unknown_format, malformed_*, missing_buffer, external_uri,
 /// unsupported_extension, too_many_vertices, too_many_faces, too_much_memory, no_triangles,
-/// non_finite_position; invalid_option if the asset has nothing of a name in the options;
+/// non_finite_position; invalid_option if the asset has nothing of a name in the options, or an
+/// attribute that they name is no number and no colour;
 /// body_too_large if an archive unpacks to more than its limit. Throws
 /// Error{cancelled}.
 Asset read(const Input& input, const ReadLimits& limits, const AssetOptions& options = {});

@@ -79,6 +79,11 @@ double Elements::fourth_at(std::size_t element) const {
   return bytes == nullptr ? 0 : component(bytes, 3);
 }
 
+double Elements::component_of(std::size_t element, std::size_t k) const {
+  const char* bytes = at(element);
+  return bytes == nullptr ? 0 : component(bytes, k);
+}
+
 Vec2 Elements::vec2_at(std::size_t element) const {
   const char* bytes = at(element);
   if (bytes == nullptr) return Vec2::Zero();

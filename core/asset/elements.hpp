@@ -21,6 +21,8 @@ class Elements {
   [[nodiscard]] Vec3 vec3_at(std::size_t element) const;  ///< normalised if the accessor says so
   [[nodiscard]] double fourth_at(std::size_t element) const;  ///< of a vector of four, likewise
   [[nodiscard]] Vec2 vec2_at(std::size_t element) const;      ///< likewise
+  /// Component k of an element, likewise.
+  [[nodiscard]] double component_of(std::size_t element, std::size_t k) const;
 
  private:
   [[nodiscard]] double component(const char* bytes, std::size_t k) const;

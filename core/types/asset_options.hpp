@@ -51,6 +51,9 @@ struct AssetOptions {
   /// unwrapped, all others keep what they have. Both empty: everything is.
   std::vector<std::string> materials = {};
   std::vector<std::string> primitives = {};
+  /// Vertex attributes that fill the field of Surface of the same name: "_AVOID", "COLOR_0",
+  /// "COLOR_0.r"; unset: none.
+  std::optional<std::string> seam_avoid = {}, texel_density = {};
 };
 
 /// Which vertices of a primitive, or of an OBJ's mesh, are copies: 0 .. kept - 1 are what they were

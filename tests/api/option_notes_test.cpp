@@ -45,6 +45,9 @@ TEST(OptionNotes, NameWhatOtherOptionsTakeTheEffectFrom) {
   EXPECT_EQ(unused({{"guarantee", "none"}, {"repair", "virtual_boundary"}}), the("repair"));
   EXPECT_EQ(unused({{"boundary", "circle"}, {"max_charts", "3"}}), the("max_charts"));
   EXPECT_EQ(unused({{"constraints", pin}, {"max_charts", "3"}}), the("max_charts"));
+  EXPECT_EQ(unused({{"constraints", pin}, {"texel_density", "_D"}}), the("texel_density"));
+  EXPECT_EQ(unused({{"repack_only", "true"}, {"seam_avoid", "_A"}}), the("seam_avoid"));
+  EXPECT_EQ(unused({{"measure_only", "true"}, {"texel_density", "_D"}}), the("texel_density"));
   EXPECT_EQ(unused({{"constraints", pin}, {"effort", "best"}}), the("effort"));
   for (const Query& with_effect : std::vector<Query>{{{"weld_distance", "0.1"}},
                                                      {{"width", "512"}, {"resolution", "2048"}},

@@ -49,6 +49,7 @@ std::string type_of(const OptionRow& row) {
   if (row.type == OptionType::integer) return row.nullable ? "[integer, 'null']" : "integer";
   if (row.type == OptionType::objects || row.type == OptionType::names) return "array";
   if (row.type == OptionType::flag) return "boolean";
+  if (row.type == OptionType::text) return "[string, 'null']";
   if (row.type == OptionType::number && row.nullable) return "[number, 'null']";
   return row.type == OptionType::choice ? "string" : "number";
 }
@@ -118,7 +119,8 @@ TEST(OptionTable, AgreesWithTheContractInRange) {
   for (const OptionRow& row : option_table()) {
     if (scalar(schema_of(row), "minimum").empty()) {
       EXPECT_TRUE(row.type == OptionType::choice || row.type == OptionType::flag ||
-                  row.type == OptionType::names || row.type == OptionType::objects)
+                  row.type == OptionType::names || row.type == OptionType::objects ||
+                  row.type == OptionType::text)
           << row.name;
       continue;
     }

@@ -127,7 +127,7 @@ TEST(Arguments, HelpTellsRangesAsTheyAreTyped) {
        {"--stop-max-iterations INT >= 1\n", "--stop-tolerance NUMBER in [1e-12, 0.1]",
         "--lambda NUMBER[,NUMBER...] >= 0\n", "INT in [16, 16384]", "--constraints FILE.json",
         "--weld-distance NUMBER in [0, 1e+100]|none", "asap|arap|hybrid|abf",
-        "--texcoord INT in [0, 7]|auto|free", "1000000]|none"})
+        "--texcoord INT in [0, 7]|auto|free", "1000000]|none", "--seam-avoid NAME|none"})
     EXPECT_THAT(help, HasSubstr(range));
 }
 

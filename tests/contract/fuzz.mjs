@@ -55,6 +55,7 @@ function validValue(name, schema) {
   if (name === 'constraints') return fc.array(kConstraint, {maxLength: 3});
   if (name in kLists) return fc.constantFrom([], kLists[name]);
   if (has(schema, 'boolean')) return fc.boolean();
+  if (has(schema, 'string') && has(schema, 'null')) return fc.constantFrom('_PAINT', 'COLOR_0.r', null);
   const bounds = {min: schema.minimum, max: Math.min(schema.maximum, ['resolution', 'width', 'height'].includes(name) ? 4096 : 1e6)};
   const number = has(schema, 'integer') ? fc.integer(bounds) : fc.double({...bounds, noNaN: true});
   return has(schema, 'null') ? fc.option(number) : number;
@@ -143,7 +144,7 @@ async function jsonOptions(run, base) {
 /** The value that the text of a query stands for, as the schema sees it. */
 function queryValue(schema, text) {
   if (has(schema, 'boolean')) return {true: true, false: false}[text] ?? text;
-  const isNumber = schema.type !== 'string';
+  const isNumber = !has(schema, 'string') || has(schema, 'integer');
   const pattern = has(schema, 'integer') ? /^-?\d+$/ : /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
   return isNumber && pattern.test(text) ? Number(text) : text;
 }

@@ -21,7 +21,8 @@ function inputOf(option: Option): Input {
     return select;
   }
   if (option.type === 'boolean') return el('input', {...common, type: 'checkbox'});
-  if (option.words) return el('input', {...common, type: 'text', autocomplete: 'off'});
+  if (option.words || option.type === 'string')
+    return el('input', {...common, type: 'text', autocomplete: 'off', placeholder: option.default === null ? 'none' : ''});
   const {minimum, maximum} = option;
   return el('input', {...common, type: 'number', step: option.type === 'integer' ? '1' : 'any',
     ...(minimum === undefined ? {} : {min: String(minimum)}), ...(maximum === undefined ? {} : {max: String(maximum)}),
@@ -99,6 +100,7 @@ export class OptionsForm {
     if (input instanceof HTMLInputElement && input.type === 'checkbox') return input.checked;
     if (option.enum || option.words?.includes(input.value)) return input.value;
     if (input.value === '') return null;
+    if (option.type === 'string') return input.value;
     const number = Number(input.value);
     if (Number.isNaN(number)) throw new Error(`${labelOf(option.name)} must be a number${option.words ? `, or ${option.words.join(' or ')}` : ''}, not “${input.value}”.`);
     return number;

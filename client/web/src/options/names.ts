@@ -6,6 +6,7 @@ const NAMES: Record<string, string> = {
   'stop.iterations': 'Exact number of iterations', 'stop.tolerance': 'Converged below', 'stop.max_iterations': 'Most iterations',
   initial: 'Start from', pins: 'How position is fixed', guarantee: 'Guarantee', repair: 'How flips are repaired',
   boundary: 'Shape of the boundary', seams: 'Cuts of the file', weld: 'Close gaps of rounding', weld_distance: 'Widest gap to close',
+  seam_avoid: 'Painted: no seams here', texel_density: 'Painted: more texels here',
   max_distortion: 'Most distortion', max_charts: 'Most charts', effort: 'Effort', resolution: 'Texture size', width: 'Texture width',
   height: 'Texture height', padding: 'Gap between islands', texels_per_unit: 'Fixed texel density', max_pages: 'Most pages (UDIM)',
   straighten: 'Straighten strips', group: 'A page for each', rotation: 'Turn islands', stack_identical: 'Stack identical islands',
