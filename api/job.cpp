@@ -58,6 +58,7 @@ JobProgress progress_from_json(const Json& json) {
 
 Job read_job(const Json& json) {
   Job job{.id = json.at("id").get<std::string>(),
+          .name = json.value("name", ""),
           .state = require_known(state_named(json.at("state").get<std::string>())),
           .created = json.at("created").get<std::string>(),
           .attempt = json.at("attempt").get<int>(),
@@ -90,7 +91,10 @@ std::optional<Stage> stage_named(std::string_view name) {
 std::string job_path(std::string_view id) { return "/v1/jobs/" + std::string(id); }
 
 Json to_json(const Job& job) {
-  Json json = {{"id", job.id}, {"state", state_name(job.state)}, {"created", job.created}};
+  Json json = {{"id", job.id}};
+  if (!job.name.empty()) json["name"] = job.name;
+  json["state"] = state_name(job.state);
+  json["created"] = job.created;
   if (!job.finished.empty()) json["finished"] = job.finished;
   if (job.duration) json["duration"] = *job.duration;
   json["attempt"] = job.attempt;

@@ -32,6 +32,7 @@ struct JobProgress {
 
 struct Job {
   std::string id = {};
+  std::string name = {};  ///< for people; empty without one
   JobState state = JobState::queued;
   std::string created = {};             ///< RFC 3339, UTC
   std::string finished = {};            ///< the same; empty until the job is final

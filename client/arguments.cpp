@@ -95,6 +95,9 @@ void add_flags(CLI::App& app, RawArguments& raw) {
   app.add_option("--report", arguments.report, "Write the report (JSON) to PATH")
       ->type_name("PATH");
   add_picture_flags(app, arguments);
+  app.add_option("--name", arguments.name,
+                 "Name of the job for people, shown in the server's list of jobs")
+      ->type_name("TEXT");
   app.add_flag(
       "--json", arguments.json,
       "Print only the report (JSON) on stdout; of several meshes a line of JSON for each, of "

@@ -35,6 +35,7 @@ struct Arguments {
   std::filesystem::path sample;   ///< only write the sample mesh here
   Place place = Place::any;
   ServerUrl server;                  ///< with the key of the environment
+  std::string name;                  ///< of the job; empty for none
   OptionTexts options;               ///< as given, with output set; checked
   std::vector<std::string> lambdas;  ///< of a list with the method hybrid, as given; else empty
   std::chrono::milliseconds timeout{0};

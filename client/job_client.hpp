@@ -35,9 +35,10 @@ class JobClient {
   /// A stop request ends every wait with Failure{interrupted}.
   JobClient(ServerUrl server, std::stop_token stop, Patience patience = {});
 
-  /// Queues the job. options go into the query; a multipart upload contains them already, so pass
-  /// none with it. While the queue is full the call waits as long as the server asks. Throws
-  /// Failure: job_failed with the server's problem, unreachable, interrupted, file.
+  /// Queues the job. options, and the job's name, go into the query; a multipart upload contains
+  /// the options already, so pass none with it. While the queue is full the call waits as long as
+  /// the server asks. Throws Failure: job_failed with the server's problem, unreachable,
+  /// interrupted, file.
   api::Job submit(const Upload& upload, const OptionTexts& options);
 
   /// Passes on every event until the job is final, and returns its final state. After a lost

@@ -22,17 +22,22 @@ WantedFiles wanted_files(const Arguments& arguments) {
           .materials = output == "glb" || output == "gltf"};
 }
 
-/// Short options go into the query; lists of objects, and files beside the mesh, need a multipart
-/// request.
+/// The name and short options go into the query; lists of objects, and files beside the mesh, need
+/// a multipart request.
 api::Job submit(JobClient& client, const Arguments& arguments, const fs::path& file) {
   const auto files = files_beside(file, wanted_files(arguments));
   const bool is_long = std::ranges::any_of(arguments.options, [](const auto& option) {
     return api::find_option(option.first)->type == api::OptionType::objects;
   });
-  if (files.empty() && !is_long) return client.submit(raw_upload(file), arguments.options);
+  OptionTexts query;
+  if (!arguments.name.empty()) query["name"] = arguments.name;
+  if (files.empty() && !is_long) {
+    query.insert(arguments.options.begin(), arguments.options.end());
+    return client.submit(raw_upload(file), query);
+  }
   const api::Query given(arguments.options.begin(), arguments.options.end());
   const std::string options = api::options_object(given).dump();
-  return client.submit(multipart_upload(options, file, files), {});
+  return client.submit(multipart_upload(options, file, files), query);
 }
 
 api::Job follow(JobClient& client, const std::string& job_id, const Console& console) {

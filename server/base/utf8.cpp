@@ -1,6 +1,7 @@
 #include "server/base/utf8.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -31,6 +32,21 @@ bool may_follow(unsigned first, unsigned second) {
   return true;
 }
 
+bool is_control(unsigned byte) { return byte < 0x20U || byte == 0x7FU; }
+
+/// Line separators, and marks of direction (Unicode 15, 23.2).
+constexpr auto kHiddenMarks =
+    std::to_array<std::string_view>({"\u2028", "\u2029", "\u202A", "\u202B", "\u202C", "\u202D",
+                                     "\u202E", "\u2066", "\u2067", "\u2068", "\u2069"});
+
+/// A control character of two bytes, U+0080 to U+009F.
+bool has_wide_control(std::string_view text) {
+  for (std::size_t at = text.find('\xC2'); at != std::string_view::npos;
+       at = text.find('\xC2', at + 1))
+    if (byte_at(text, at + 1) < 0xA0U) return true;
+  return false;
+}
+
 }  // namespace
 
 bool is_utf8_text(std::string_view text) {
@@ -44,6 +60,19 @@ bool is_utf8_text(std::string_view text) {
     at += length;
   }
   return true;
+}
+
+bool is_plain_line(std::string_view text) {
+  if (!is_utf8_text(text) || has_wide_control(text)) return false;
+  const auto contains = [&](std::string_view mark) { return text.find(mark) != text.npos; };
+  return std::ranges::none_of(text,
+                              [](char c) { return is_control(static_cast<unsigned char>(c)); }) &&
+         std::ranges::none_of(kHiddenMarks, contains);
+}
+
+std::size_t count_characters(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return !continues(static_cast<unsigned char>(c)); }));
 }
 
 std::string_view within_bytes(std::string_view text, std::size_t most) {

@@ -9,6 +9,7 @@
 #include "server/http/media_types.hpp"
 #include "server/http/query.hpp"
 #include "server/routes/result_routes.hpp"
+#include "server/uploads/job_name.hpp"
 #include "server/work/lambda_selection.hpp"
 
 namespace unwrapd::server::routes {
@@ -151,6 +152,8 @@ void set_filter(store::JobFilter& filter, const std::string& name, const std::st
     filter.state = api::state_named(text);
     if (!filter.state)
       http::refuse_parameter(name, "There is no such state of jobs; see /openapi.yaml.");
+  } else if (name == "name") {
+    filter.name = uploads::checked_job_name(text);
   } else if (name == "limit") {
     filter.limit = static_cast<int>(http::positive_number(name, text, kMaxLimit));
   } else if (name == "cursor") {
@@ -160,9 +163,9 @@ void set_filter(store::JobFilter& filter, const std::string& name, const std::st
   }
 }
 
-/// The caller's jobs, the newest first, in pages. Parameters: state, limit (1 to 200) and cursor
-/// (the `next` of the page before). Throws Error{invalid_option} for a parameter that is unknown,
-/// given twice or out of range.
+/// The caller's jobs, the newest first, in pages. Parameters: state, name, limit (1 to 200) and
+/// cursor (the `next` of the page before). Throws Error{invalid_option} for a parameter that is
+/// unknown, given twice or out of range.
 http::Response list_jobs(store::JobStore& store, const http::Request& request) {
   store::JobFilter filter;
   if (!request.caller.sees_all) filter.owner = request.caller.owner;

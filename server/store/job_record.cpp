@@ -9,6 +9,7 @@ namespace unwrapd::server::store {
 
 api::Job to_job(const JobRecord& record) {
   api::Job job{.id = record.id,
+               .name = record.name,
                .state = record.state,
                .created = rfc3339(record.created_ms),
                .attempt = record.attempt,

@@ -56,6 +56,7 @@ struct JobRecord {
   std::string content_key;        ///< the same for the same answer: mesh, options, notes, version
   std::int64_t stored_bytes = 0;  ///< of its files, as far as quotas count them
   std::string webhook;            ///< called at its end, empty for none
+  std::string name;               ///< for people, empty without one
   std::string trace;              ///< id of the trace that it came in and all is done in
   std::string unreadable;  ///< why its row cannot be read, and it counts as failed; else empty
 };

@@ -17,7 +17,7 @@ constexpr std::string_view kColumns =
     " seq, id, state, created_ms, finished_ms, attempt, crashes, process_ends, cancel_requested, "
     "synchronous,"
     " expired, sha256, bytes, result_format, last_event, owner, urgency, request_key, content_key,"
-    " stored_bytes, webhook, trace, asked, options, notes, buffers, problem ";
+    " stored_bytes, webhook, trace, asked, name, options, notes, buffers, problem ";
 
 [[noreturn]] void unreadable(const std::string& column) {
   throw std::runtime_error("the column " + column + " cannot be read");
@@ -76,6 +76,7 @@ std::string read_plain(Columns& next, JobRecord& job) {
   job.webhook = next.text();
   job.trace = next.text();
   job.asked = next.text();
+  job.name = next.text();
   return state;
 }
 

@@ -21,9 +21,9 @@ constexpr auto kAnySeq = std::numeric_limits<std::int64_t>::max();
 std::string insert_statement() {
   return "INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256, bytes,"
          " buffers, owner, urgency, request_key, content_key, stored_bytes, webhook,"
-         " trace, asked)"
-         " VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, NULLIF(?, ''), ?, ?, ?, ?, ?) RETURNING "
-         "seq";
+         " trace, asked, name)"
+         " VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, NULLIF(?, ''), ?, ?, ?, ?, ?, ?)"
+         " RETURNING seq";
 }
 
 /// One statement for each filter, so that an index serves it in its order without looking at rows
@@ -32,7 +32,8 @@ std::string list_statement(const JobFilter& filter) {
   std::string where = "WHERE ";
   if (filter.owner) where += "owner = ?1 AND ";
   if (filter.state) where += "state = ?2 AND ";
-  return select_jobs(where + "seq < ?3 ORDER BY seq DESC LIMIT ?4");
+  if (filter.name) where += "name = ?3 AND name <> '' AND ";  // as the indices of names say
+  return select_jobs(where + "seq < ?4 ORDER BY seq DESC LIMIT ?5");
 }
 
 }  // namespace
@@ -107,7 +108,7 @@ std::int64_t JobStore::insert(const JobRecord& job) {
                    text_of(job.notes), job.input.sha256, job.input.bytes,
                    text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
                    job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace,
-                   job.asked);
+                   job.asked, job.name);
     statement.step();
     const std::int64_t seq = statement.number(0);
     statement.run();
@@ -144,8 +145,8 @@ std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
   Statement statement(*database_, list_statement(filter));
   const std::string state(filter.state ? state_name(*filter.state) : "");
   const std::int64_t before = filter.before_seq > 0 ? filter.before_seq : kAnySeq;
-  return job_rows(
-      statement.with(filter.owner.value_or(""), state, before, std::int64_t{filter.limit}));
+  return job_rows(statement.with(filter.owner.value_or(""), state, filter.name.value_or(""), before,
+                                 std::int64_t{filter.limit}));
 }
 
 std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t lease_ms) {

@@ -42,9 +42,10 @@ JobOutcome ended(api::JobState state, const Error& why, std::string_view job);
 
 /// Which jobs are listed: the newest first.
 struct JobFilter {
-  std::optional<std::string> owner;    ///< of one owner only
-  std::optional<api::JobState> state;  ///< in one state only
-  std::int64_t before_seq = 0;         ///< only those that came before this one; 0: from the newest
+  std::optional<std::string> owner;      ///< of one owner only
+  std::optional<api::JobState> state;    ///< in one state only
+  std::optional<std::string> name = {};  ///< of this name only
+  std::int64_t before_seq = 0;  ///< only those that came before this one; 0: from the newest
   int limit = 50;
 };
 

@@ -115,7 +115,8 @@ CREATE TABLE keys (
 }  // namespace
 
 std::string postgres_step(std::int64_t version) {
-  return version == kFirstVersion ? kFirstTables : "";
+  if (version < kFirstVersion) return "";
+  return version == kFirstVersion ? kFirstTables : kNamesStep;
 }
 
 }  // namespace unwrapd::server::store

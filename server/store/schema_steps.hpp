@@ -6,7 +6,16 @@
 
 namespace unwrapd::server::store {
 
-inline constexpr std::int64_t kSchemaVersion = 10;  ///< of this program
+inline constexpr std::int64_t kSchemaVersion = 11;  ///< of this program
+
+/// From version 10 to 11, in the words of both engines.
+inline constexpr const char* kNamesStep = R"sql(
+ALTER TABLE jobs ADD COLUMN name TEXT NOT NULL DEFAULT '';
+CREATE INDEX jobs_by_name ON jobs (name, seq) WHERE name <> '';
+CREATE INDEX jobs_in_state_by_name ON jobs (name, state, seq) WHERE name <> '';
+CREATE INDEX jobs_of_owner_by_name ON jobs (owner, name, seq) WHERE name <> '';
+CREATE INDEX jobs_of_owner_in_state_by_name ON jobs (owner, name, state, seq) WHERE name <> '';
+)sql";
 
 /// From version - 1 to this one; empty where nothing is to do.
 std::string sqlite_step(std::int64_t version);

@@ -7,7 +7,7 @@ namespace unwrapd::server::store {
 namespace {
 
 /// Step k turns version k into version k + 1. Released steps are never edited.
-constexpr std::array<const char*, 10> kSteps = {
+constexpr std::array<const char*, 11> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -131,7 +131,8 @@ END;
 CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
   UPDATE stored SET bytes = bytes - OLD.stored_bytes, jobs = jobs - 1 WHERE owner = OLD.owner;
 END;
-)sql"};
+)sql",
+    kNamesStep};
 
 static_assert(kSteps.size() == kSchemaVersion);
 

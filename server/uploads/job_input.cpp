@@ -8,6 +8,7 @@
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
 #include "server/store/blob_store.hpp"
+#include "server/uploads/job_name.hpp"
 
 namespace unwrapd::server::uploads {
 namespace {
@@ -86,7 +87,7 @@ class PartWriter {
     finish_file();
     if (!has_document_)
       malformed("The form has no part named \"mesh\" or \"file\"; send the asset in it.");
-    if (upload_.options && !upload_.fields.empty())
+    if (upload_.options && upload_.fields.size() > upload_.fields.count(kNameParameter))
       malformed(
           "The form has options in the part \"options\" and in parts of their own; use one way.");
     return std::move(upload_);

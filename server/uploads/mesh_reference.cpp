@@ -3,6 +3,7 @@
 #include "api/options.hpp"
 #include "core/base/error.hpp"
 #include "server/base/identity.hpp"
+#include "server/uploads/job_name.hpp"
 
 namespace unwrapd::server::uploads {
 namespace {
@@ -17,6 +18,11 @@ std::string mesh_of(const api::Json& value) {
   if (!value.is_string() || !is_sha256(value.get_ref<const std::string&>()))
     refuse_member("mesh", "mesh must be a SHA-256; send its 64 lowercase hex digits.");
   return value;
+}
+
+std::string name_of(const api::Json& value) {
+  if (!value.is_string()) refuse_member(kNameParameter, "The name of a job must be a string.");
+  return checked_job_name(value);
 }
 
 std::string options_of(const api::Json& value) {
@@ -36,10 +42,13 @@ MeshReference parse_mesh_reference(std::string_view text) {
   for (const auto& [member, value] : json.items()) {
     if (member == "mesh") {
       reference.sha256 = mesh_of(value);
+    } else if (member == kNameParameter) {
+      reference.name = name_of(value);
     } else if (member == "options") {
       reference.options = options_of(value);
     } else {
-      refuse_member(member, "The JSON has an unknown member; its members are mesh and options.");
+      refuse_member(member,
+                    "The JSON has an unknown member; its members are mesh, name and options.");
     }
   }
   if (reference.sha256.empty())

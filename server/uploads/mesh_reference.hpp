@@ -1,5 +1,5 @@
 #pragma once
-// A request for a job that names a stored mesh: {"mesh": SHA-256, "options": {...}}.
+// A request for a job that names a stored mesh: {"mesh": SHA-256, "name": TEXT, "options": {...}}.
 
 #include <optional>
 #include <string>
@@ -12,6 +12,7 @@ namespace unwrapd::server::uploads {
 
 struct MeshReference {
   std::string sha256;
+  std::string name;                    ///< of the job; empty for none
   std::optional<std::string> options;  ///< JSON text, where there are any
 };
 

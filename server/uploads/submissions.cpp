@@ -7,18 +7,28 @@
 #include "server/base/trace.hpp"
 #include "server/jobs/request_fingerprint.hpp"
 #include "server/store/stored_input.hpp"
+#include "server/uploads/job_name.hpp"
 #include "server/uploads/mesh_reference.hpp"
 
 namespace unwrapd::server::uploads {
 namespace {
 
 /// The options in the body or in the query.
-api::Json options_of(const std::optional<std::string>& text, const http::Request& request) {
-  if (!text) return api::options_object(request.query);
-  if (request.query.empty()) return api::parse_json(*text, {.max_bytes = api::kMaxOptionsBytes});
+api::Json options_of(const std::optional<std::string>& text, const api::Query& query) {
+  if (!text) return api::options_object(query);
+  if (query.empty()) return api::parse_json(*text, {.max_bytes = api::kMaxOptionsBytes});
   throw Error(ErrorCode::invalid_option,
               "Options are in the query and in the body; give them in one place.",
-              api::option_pointer(request.query.begin()->first));
+              api::option_pointer(query.begin()->first));
+}
+
+/// Names a job whose query may have named it.
+void name_in_body(store::JobRecord& job, std::string name) {
+  if (name.empty()) return;
+  if (!job.name.empty())
+    throw Error(ErrorCode::invalid_option,
+                "The name is in the query and in the body; give it in one place.", "/name");
+  job.name = std::move(name);
 }
 
 /// Throws what parse_options() does, with the place in the document that was sent.
@@ -165,6 +175,7 @@ Submissions::Sent Submissions::bring(const http::Request& request,
                                               : receive_parts(*request.body, folder);
   job.input = std::move(came.input);
   job.stored_bytes = job.input.bytes;
+  name_in_body(job, take_job_name(came.fields));
   if (came.options) return read_whole(*came.options);
   Sent sent;
   if (!came.fields.empty()) sent.options = api::options_object(came.fields).dump();
@@ -179,6 +190,7 @@ Submissions::Sent Submissions::bring_reference(const http::Request& request,
   Sent sent = read_whole(text);
   MeshReference named = parse_mesh_reference(*sent.options);
   job.input = meshes_.share(request.caller.owner, named.sha256, folder.path.filename(), "/mesh");
+  name_in_body(job, std::move(named.name));
   sent.options = std::move(named.options);
   sent.place = "/options";
   return sent;
@@ -200,11 +212,13 @@ Submissions::Sent Submissions::bring_options(const http::Request& request,
 void Submissions::receive(const http::Request& request, store::JobRecord& job, UploadBudget& room,
                           const std::string& upload) {
   const http::BodyKind kind = http::body_kind(request.header("Content-Type"));
-  api::JobOptions options = api::parse_options(request.query, limits_);  // before the body is read
+  api::Query query = request.query;
+  job.name = take_job_name(query);
+  api::JobOptions options = api::parse_options(query, limits_);  // before the body is read
   if (kind == http::BodyKind::asset) room.check_declared();
   const store::UploadFolder folder{.path = blobs_.begin_upload(upload), .room = room.counter()};
   const Sent sent = bring(request, folder, job);
-  const api::Json asked = options_of(sent.options, request);
+  const api::Json asked = options_of(sent.options, query);
   if (sent.options) options = read_options(asked, limits_, sent.place);
   job.created_ms = now_ms();
   job.options = api::to_json(options);

@@ -81,6 +81,11 @@ TEST(Arguments, PicturesHaveNamesAndTheLayoutAColour) {
   EXPECT_EQ(refused({"a.glb", "--layout-colour", "size"}).code, ExitCode::usage);
 }
 
+TEST(Arguments, AJobHasANameIfOneIsGiven) {
+  EXPECT_EQ(accepted({"a.glb", "--name", "Chair 7"}).name, "Chair 7");
+  EXPECT_EQ(accepted({"a.glb"}).name, "");
+}
+
 TEST(Arguments, TheFormatFollowsTheResultsName) {
   EXPECT_EQ(accepted({"a.obj", "-o", "b.glb"}).options.at("output"), "glb");
   EXPECT_EQ(accepted({"a.obj", "-o", "b.bin"}).options.count("output"), 0);

@@ -170,7 +170,7 @@ export const jobOf = (page) => new URLSearchParams(new URL(page.url()).hash.slic
 
 /** The options of the job that is submitted upon an action. */
 export async function submitted(page, action) {
-  const [request] = await Promise.all([page.waitForRequest((one) => /\/v1\/meshes\/[0-9a-f]+\/jobs$/.test(one.url())), action()]);
+  const [request] = await Promise.all([page.waitForRequest((one) => /\/v1\/meshes\/[0-9a-f]+\/jobs\?/.test(one.url())), action()]);
   return request.postDataJSON();
 }
 

@@ -187,6 +187,7 @@ describe("a job of the page", { skip: missing }, () => {
     await page.goto(`${bench.server.base}/`);
     await page.locator("#option-method").waitFor();
     await page.click("#jobs summary");
+    assert.equal(await page.locator(`#job-list a[href*="${id}"]`).innerText(), "listed.obj");
     await page.click(`#job-list a[href*="${id}"]`);
     await page.locator("#result").waitFor();
     assert.ok(page.url().includes(id));

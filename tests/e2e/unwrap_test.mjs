@@ -219,10 +219,10 @@ test("a list of lambdas writes a file for each and one report with the curve", a
   assert.deepEqual(curve.map(({ lambda }) => lambda), [1, 0.01]);
 });
 
-test("--constraints puts vertices where its file says", async () => {
+test("--constraints puts vertices where its file says, --name names the job", async () => {
   writeFileSync(at("pins.json"), '[{"vertex":0,"uv":[0.25,0.25]},{"at":[1,0,0],"uv":[0.75,0.25]}]');
   writeFileSync(at("square.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
-  const words = ["-o", at("held.obj"), "--constraints", at("pins.json")];
+  const words = ["-o", at("held.obj"), "--constraints", at("pins.json"), "--name", "Pins 7"];
   const run = await unwrap(at("square.obj"), ...words);
   assert.equal(run.code, 0, run.err);
   const lines = readFileSync(at("held.obj"), "utf8").match(/^vt .*$/gm);
@@ -231,6 +231,7 @@ test("--constraints puts vertices where its file says", async () => {
     const off = Math.min(...uvs.map(([u, v]) => Math.hypot(u - corner[0], v - corner[1])));
     assert.ok(off < 1e-5, `${corner} in ${JSON.stringify(uvs)}`);
   }
+  assert.equal((await (await fetch(`${address}/v1/jobs?name=Pins%207`)).json()).jobs.length, 1);
 });
 
 test("--json prints the report and nothing else", async () => {

@@ -23,7 +23,7 @@ export async function unwrap(asset: Asset, options: Options = {}, settings: Call
   return {asset: await download(job.links.result, settings, (answer) => answer.blob()), report, job};
 }
 
-export interface Many extends Omit<Call, 'idempotencyKey'> {
+export interface Many extends Omit<Call, 'idempotencyKey' | 'name'> {
   /** Most assets under way at once. Default: 4. */
   concurrency?: number;
   options?: Options;

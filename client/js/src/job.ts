@@ -16,6 +16,8 @@ export interface Call extends Connection {
   onProgress?: ((progress: Progress) => void) | undefined;
   /** Names the request: sent again with this name, it gets the same job. Default: a new name. */
   idempotencyKey?: string | undefined;
+  /** A name of the job for people, up to 200 characters. */
+  name?: string | undefined;
 }
 
 const FINAL = ['succeeded', 'failed', 'cancelled'];
@@ -29,6 +31,7 @@ function newName(): string {
 function submit(asset: Asset, options: Options, settings: Call): Promise<Job> {
   const headers = {Accept: 'application/json', 'Idempotency-Key': settings.idempotencyKey ?? newName()};
   const body = formOf(asset, options);
+  if (settings.name !== undefined) body.append('name', settings.name);
   return patiently(settings, async () => {
     const answer = await call(settings, '/v1/jobs', {method: 'POST', headers, body});
     return jsonOf<Job>(settings, answer);

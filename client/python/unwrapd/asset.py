@@ -46,10 +46,12 @@ def _size(part: Path | bytes) -> int:
 class Form:
     """A multipart/form-data body. It can be read again for another attempt."""
 
-    def __init__(self, asset: Asset, options: Mapping[str, Any]) -> None:
+    def __init__(self, asset: Asset, options: Mapping[str, Any], name: str | None = None) -> None:
         self._boundary = f"unwrapd-{secrets.token_hex(16)}"
         parts: list[Path | bytes] = []
         parts += [self._head('name="options"', "application/json"), json.dumps(options).encode()]
+        if name is not None:
+            parts += [self._head('name="name"', "text/plain; charset=utf-8"), name.encode()]
         parts += [self._head('name="mesh"', "application/octet-stream"), asset.mesh]
         for uri, file in asset.buffers.items():
             name = uri.replace('"', "%22").replace("\r", "%0D").replace("\n", "%0A")

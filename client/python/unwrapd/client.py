@@ -42,6 +42,7 @@ def unwrap(
     on_progress: OnProgress | None = None,
     retries: int = 10,
     idempotency_key: str | None = None,
+    name: str | None = None,
 ) -> Unwrapped:
     """Unwraps an asset: the path or the bytes of a glTF, OBJ, STL, PLY or OFF, or a mesh with
     vertices and faces, such as a trimesh.Trimesh.
@@ -49,10 +50,10 @@ def unwrap(
     options: those of docs/options.md. server: its address; default: UNWRAPD_SERVER, else
     http://127.0.0.1:8080. key: an API key. retries: failures in a row, of the connection or for want
     of room, before the call fails. idempotency_key: names the request, so that it can be sent again.
-    Raises UnwrapdError, and OSError for a file that cannot be read.
+    name: of the job for people, up to 200 characters. Raises UnwrapdError, and OSError for a file that cannot be read.
     """
     connection = Connection(server or default_server(), key, retries)
-    form = Form(_asset_of(asset), options or {})
+    form = Form(_asset_of(asset), options or {}, name)
     job = run_job(connection, form, idempotency_key or str(uuid.uuid4()), on_progress)
     links = job["links"]
     report = json_of(OK, download(connection, links["report"]))

@@ -86,6 +86,14 @@ test("a job outlives the server that is killed under it", async () => {
   assert.equal(jobs.filter(({ options }) => options.stop.iterations === 400).length, 1);
 });
 
+test("a job has the name that it was given", async () => {
+  const name = "Stuhl „Müller“";
+  const { job } = await client.unwrap(new Blob([grid(2)]), {}, { server: server.base, name });
+  assert.equal(job.name, name);
+  const { jobs } = await (await fetch(`${server.base}/v1/jobs?${new URLSearchParams({ name })}`)).json();
+  assert.deepEqual(jobs.map(({ id }) => id), [job.id]);
+});
+
 test("a refusal is an UnwrapdError with code, pointer, detail and status", async () => {
   const settings = { server: server.base };
   await assert.rejects(client.unwrap(new Blob([grid(2)]), { method: "magic" }, settings), (error) => {

@@ -117,9 +117,9 @@ class RealServer(unittest.TestCase):
             seen.append(progress)
 
         options = {"preset": "chart", "stop": {"iterations": 401}}
-        done = unwrap(obj(60), options, server=self.server.base, on_progress=kill)
+        done = unwrap(obj(60), options, server=self.server.base, on_progress=kill, name="Stühle")
         self.assertIn(b"\nvt ", done.asset)
-        self.assertEqual(done.job["attempt"], 2)
+        self.assertEqual((done.job["attempt"], done.job["name"]), (2, "Stühle"))
         self.assertEqual([one.data["attempt"] for one in seen if one.event == "started"], [1, 2])
         fractions = [one.fraction for one in seen]
         self.assertEqual(fractions, sorted(fractions))

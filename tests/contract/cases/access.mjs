@@ -30,7 +30,11 @@ export async function lists(run, base) {
   const rest = await run.json(base, 'listJobs', {query: {limit: 200, cursor: first.next}, status: 200});
   const ids = [...first.jobs, ...rest.jobs].map(({id}) => id);
   run.expectEqual('no job twice', new Set(ids).size, ids.length);
-  for (const query of [{limit: 0}, {limit: 201}, {state: 'lost'}, {cursor: 'x'}, {page: 1}]) {
+  const name = 'Stuhl „Müller“';
+  await run.call(base, 'createJob', {query: {name}, headers: kWait, body: meshes.glb(3), status: 200});
+  const named = await run.json(base, 'listJobs', {query: {name}, status: 200});
+  run.expectEqual('jobs of a name', named.jobs.map((job) => job.name).join(), name);
+  for (const query of [{name: 'a\nb'}, {name: 'a'.repeat(201)}, {limit: 0}, {limit: 201}, {state: 'lost'}, {cursor: 'x'}, {page: 1}]) {
     await run.call(base, 'listJobs', {query, status: 422});
   }
 }

@@ -40,6 +40,7 @@ class History : public testing::Test {
     job.id = "j_" + std::to_string(++count_);
     job.options = job.notes = api::Json::array();
     job.owner = owner;
+    job.name = "the same";
     job.content_key = job.id;
     job.stored_bytes = 10;
     return store_->insert(job);
@@ -71,6 +72,9 @@ class History : public testing::Test {
                                 std::optional(JobState::succeeded)}) {
         const store::JobFilter filter{.owner = owner, .state = state, .before_seq = 0, .limit = 5};
         all += steps_of([&] { store_->list(filter); });
+        store::JobFilter named = filter;
+        named.name = "the same";
+        all += steps_of([&] { store_->list(named); });
       }
     }
     all += steps_of([&] { store_->usage("greedy"); });

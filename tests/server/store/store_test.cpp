@@ -28,6 +28,7 @@ JobRecord some_job(const std::string& id) {
   job.notes = {"lambda has no effect"};
   job.input = {.sha256 = "ab", .bytes = 7, .buffers = {{"a b.bin", "buffer_0"}}};
   job.trace = "0af7";
+  job.name = "St\u00fchle";
   return job;
 }
 
@@ -64,6 +65,7 @@ TEST_F(Store, KeepsEveryFieldOverAReopening) {
   ASSERT_EQ(job->input.buffers.size(), 1U);
   EXPECT_EQ(job->input.buffers[0].uri, "a b.bin");
   EXPECT_EQ(job->trace, some_job("j_1").trace);
+  EXPECT_EQ(job->name, some_job("j_1").name);
   EXPECT_TRUE(job->problem.is_null());
 }
 

@@ -103,6 +103,19 @@ TEST(Schema, AnswersOfVersionEightAreGivenToNoNewQuestion) {
   EXPECT_EQ(all.number(0), 2);
 }
 
+TEST(Schema, JobsOfVersionTenHaveNoName) {
+  TempDir dir;
+  SqliteDatabase database(dir.path() / "jobs.sqlite");
+  migrate(database, 10);
+  database.run(
+      "INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256, bytes,"
+      " buffers) VALUES ('old', 'queued', 1, 0, '{}', '[]', '', 0, '[]')");
+  migrate(database);
+  Statement old(database, "SELECT id FROM jobs WHERE name = ''");
+  ASSERT_TRUE(old.step());
+  EXPECT_EQ(old.text(0), "old");
+}
+
 TEST_F(Upgrade, OfAJobWithoutItsMapTheResultIsThere) {
   start();
   const std::string id = submit();

@@ -47,7 +47,7 @@ export class Session {
   open(opened: Opened): void {
     this.#close();
     this.opened = opened;
-    this.sent = new SentMesh(opened.blob, opened.mediaType);
+    this.sent = new SentMesh(opened.blob, opened.mediaType, opened.name);
     clearProblem();
     show($('job'), false);
     history.replaceState(null, '', location.pathname + location.search);

@@ -12,9 +12,8 @@ interface Page {
 const STATES: Record<string, string> = {queued: 'waiting', running: 'running', succeeded: 'done', failed: 'failed', cancelled: 'cancelled'};
 const when = new Intl.DateTimeFormat('en', {dateStyle: 'medium', timeStyle: 'medium'});
 
-function row({id, state, created, options}: Job): HTMLElement {
-  const name = `${id.slice(0, 10)}…`;
-  const link = el('a', {href: hashOf({job: id, name: id})}, name);
+function row({id, name, state, created, options}: Job): HTMLElement {
+  const link = el('a', {href: hashOf({job: id, name: name ?? id})}, name ?? `${id.slice(0, 10)}…`);
   const what = [STATES[state] ?? state, options.preset, options.method].join(', ');
   return el('li', {}, link, ` ${when.format(new Date(created))}: ${what}`);
 }

@@ -22,16 +22,23 @@ export interface Watcher {
   wait?: number;
 }
 
+/** The name of a file as the API takes it for the name of a job. */
+function plainLine(name: string): string {
+  return [...name.replace(/[\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069]/g, ' ')].slice(0, 200).join('');
+}
+
 /** A mesh that is sent once, however many jobs it has. */
 export class SentMesh {
   readonly #blob: Blob;
   readonly #mediaType: string;
+  readonly #name: string;
   #sent: Promise<Uploaded> | undefined;
   #isThere = false;
 
-  constructor(blob: Blob, mediaType: string) {
+  constructor(blob: Blob, mediaType: string, name: string) {
     this.#blob = blob;
     this.#mediaType = mediaType;
+    this.#name = plainLine(name);
   }
 
   /** Makes a job. The server may have dropped the mesh, which is then sent again. */
@@ -41,7 +48,7 @@ export class SentMesh {
     if (!wasThere) await patiently(connection(watcher.signal), () => upload(mesh, watcher.onSent ?? (() => {}), watcher.signal));
     this.#isThere = true;
     try {
-      return await submitJob(mesh.sha256, options, watcher);
+      return await submitJob(mesh.sha256, this.#name, options, watcher);
     } catch (error) {
       if (!wasThere || !(error instanceof UnwrapdError && error.code === 'mesh_not_found')) throw error;
       this.#isThere = false;
@@ -50,12 +57,13 @@ export class SentMesh {
   }
 }
 
-function submitJob(digest: string, options: OptionValues, {signal, wait}: Watcher): Promise<Job> {
+function submitJob(digest: string, name: string, options: OptionValues, {signal, wait}: Watcher): Promise<Job> {
   const here = connection(signal);
-  const name = Array.from(crypto.getRandomValues(new Uint32Array(4)), (word) => word.toString(36)).join('-');
-  const headers = {'Content-Type': 'application/json', 'Idempotency-Key': name, ...(wait ? {Prefer: `wait=${wait}`} : {})};
+  const key = Array.from(crypto.getRandomValues(new Uint32Array(4)), (word) => word.toString(36)).join('-');
+  const headers = {'Content-Type': 'application/json', 'Idempotency-Key': key, ...(wait ? {Prefer: `wait=${wait}`} : {})};
   const init = {method: 'POST', headers, body: JSON.stringify(options)};
-  return patiently(here, async () => jsonOf<Job>(here, await request(`/v1/meshes/${digest}/jobs`, init, signal)));
+  const path = `/v1/meshes/${digest}/jobs?${new URLSearchParams({name})}`;
+  return patiently(here, async () => jsonOf<Job>(here, await request(path, init, signal)));
 }
 
 export const hasEnded = ({state}: Job) => ['succeeded', 'failed', 'cancelled'].includes(state);
