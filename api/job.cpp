@@ -22,17 +22,6 @@ std::optional<Enum> find_enumerator(std::span<const std::string_view> names,
   return static_cast<Enum>(found - names.begin());
 }
 
-Json links(std::string_view id) {
-  const std::string self = job_path(id);
-  return {{"self", self},
-          {"events", self + "/events"},
-          {"result", self + "/result"},
-          {"report", self + "/report"},
-          {"layout", self + "/layout.svg"},
-          {"layout_png", self + "/layout.png"},
-          {"preview", self + "/preview.png"}};
-}
-
 Json to_json(const JobProgress& progress) {
   return {{"stage", stage_name(progress.stage)},
           {"fraction", finite(progress.fraction)},
@@ -90,6 +79,17 @@ std::optional<Stage> stage_named(std::string_view name) {
 
 std::string job_path(std::string_view id) { return "/v1/jobs/" + std::string(id); }
 
+Json job_links(std::string_view id) {
+  const std::string self = job_path(id);
+  return {{"self", self},
+          {"events", self + "/events"},
+          {"result", self + "/result"},
+          {"report", self + "/report"},
+          {"layout", self + "/layout.svg"},
+          {"layout_png", self + "/layout.png"},
+          {"preview", self + "/preview.png"}};
+}
+
 Json to_json(const Job& job) {
   Json json = {{"id", job.id}};
   if (!job.name.empty()) json["name"] = job.name;
@@ -101,7 +101,7 @@ Json to_json(const Job& job) {
   json["options"] = job.options;
   if (job.progress) json["progress"] = to_json(*job.progress);
   if (!job.problem.is_null()) json["problem"] = job.problem;
-  json["links"] = links(job.id);
+  json["links"] = job.links.is_null() ? job_links(job.id) : job.links;
   return json;
 }
 

@@ -41,12 +41,16 @@ struct Job {
   Json options = Json::object();
   std::optional<JobProgress> progress = {};  ///< set while it runs
   Json problem = nullptr;                    ///< null unless failed or cancelled
+  Json links = nullptr;                      ///< null: job_links() of its id
 };
 
 /// The path of a job: "/v1/jobs/" + id.
 std::string job_path(std::string_view id);
 
-/// With links{self, events, result, report, layout}; with progress and problem if they are set.
+/// {self, events, result, report, layout, ...}: the paths of a job's resources, by name.
+Json job_links(std::string_view id);
+
+/// With links, and with progress and problem if they are set.
 Json to_json(const Job& job);
 
 /// Reads the output of to_json(). Members that this version does not know are ignored. Throws

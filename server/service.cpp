@@ -17,6 +17,7 @@
 #include "server/routes/admin_routes.hpp"
 #include "server/routes/info_routes.hpp"
 #include "server/routes/job_routes.hpp"
+#include "server/routes/link_routes.hpp"
 #include "server/routes/mesh_routes.hpp"
 #include "server/routes/picture_routes.hpp"
 #include "server/store/data_directory.hpp"
@@ -215,6 +216,7 @@ struct Service::Parts {
     std::vector<http::Route> all;
     routes::add_job_routes(all, services);
     routes::add_unwrap_route(all, services);
+    routes::add_link_routes(all, services);
     routes::add_mesh_routes(all, meshes, std::chrono::seconds(config.keep_seconds));
     routes::add_picture_routes(all, store, pictures);
     routes::add_info_routes(all, config.limits);

@@ -36,6 +36,11 @@ bool allows(const Scopes& scopes, const http::Request& request) {
   return scopes.admin || (only_reads(request) ? scopes.read : scopes.submit);
 }
 
+http::Caller caller_with(const ApiKey& key) {
+  return {
+      .owner = key.id, .sees_all = key.scopes.admin, .quota = key.quota, .key_sha256 = key.sha256};
+}
+
 }  // namespace
 
 bool asks_for_keys(const AccessConfig& config, std::string_view host) {
@@ -88,7 +93,7 @@ void Access::admit(http::Request& request, std::string_view route) {
   request.caller = caller_of(request, cost);
 }
 
-/// A request by a signed link acts for the key of that link.
+/// A request by a signed link or a ticket acts for the key of that link.
 void Access::open_link(http::Request& request, double cost) {
   const std::string id = LinkSigner::key_of(request);
   const std::optional<ApiKey> key = id.empty() ? std::nullopt : keys_.with_id(id);
@@ -96,9 +101,17 @@ void Access::open_link(http::Request& request, double cost) {
     throw Error(
         ErrorCode::invalid_link,
         "The link was made without an API key, or with one that was removed; ask for a new link.");
-  links_.check(request, key ? LinkKey{.id = id, .sha256 = key->sha256} : LinkKey());
+  const LinkKey made_with = key ? LinkKey{.id = id, .sha256 = key->sha256} : LinkKey();
+  http::Caller caller = key ? caller_with(*key) : http::Caller();
+  if (LinkSigner::is_ticket(request)) {
+    request.ticket = links_.check_ticket(request, made_with);
+  } else {
+    links_.check(request, made_with);
+    caller.sees_all = true;  // what is signed is the path of one job
+  }
   if (key) spend(*key, cost);
   request.query = unsigned_query(request);
+  request.caller = std::move(caller);
 }
 
 void Access::spend(const ApiKey& key, double cost) {
@@ -121,8 +134,7 @@ http::Caller Access::caller_of(const http::Request& request, double cost) {
                                           std::string(only_reads(request) ? "read" : "submit") +
                                           "; use another one.");
   }
-  return {
-      .owner = key.id, .sees_all = key.scopes.admin, .quota = key.quota, .key_sha256 = key.sha256};
+  return caller_with(key);
 }
 
 }  // namespace unwrapd::server::access

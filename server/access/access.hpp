@@ -1,7 +1,7 @@
 #pragma once
 // Which requests are allowed. Every route needs a scope. Where keys are required, a request brings
 // one as `Authorization: Bearer unw_...`; the scopes, rate and quota of that key apply to it. A
-// signed link (signed_link.hpp) opens one result without a key.
+// signed link (signed_link.hpp) opens one resource without a key, an upload ticket takes one job.
 
 #include <chrono>
 #include <filesystem>

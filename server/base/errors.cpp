@@ -87,4 +87,8 @@ Error poison() {
           "the mesh, or send a smaller part of it."};
 }
 
+Error ticket_spent() {
+  return Error(ErrorCode::invalid_link, "The upload ticket was used; ask for a new one.");
+}
+
 }  // namespace unwrapd::server

@@ -64,4 +64,7 @@ Error cancelled_by_owner();
 Error unreadable_job();
 Error poison();
 
+/// An upload ticket takes one job.
+Error ticket_spent();
+
 }  // namespace unwrapd::server

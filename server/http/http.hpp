@@ -64,15 +64,23 @@ struct Caller {
   std::string key_sha256 = {};  ///< of the API key; signed links end with the key
 };
 
+/// Allows its bearer, who needs no API key, to send one job for the holder of a key.
+struct Ticket {
+  std::string id;
+  std::int64_t max_bytes = 0;  ///< of the upload
+  std::int64_t expires = 0;    ///< seconds since 1970
+};
+
 struct Request {
   std::string method;
   std::string path;  ///< percent-decoded
   std::multimap<std::string, std::string> query;
   std::multimap<std::string, std::string, IgnoreCase> headers;
-  std::string id;              ///< the {id} of the path, once a route has matched
-  std::string sha256;          ///< the {sha256} of the path, the same
-  Caller caller;               ///< set before the handler runs
-  std::string client;          ///< the address of the client
+  std::string id;                               ///< the {id} of the path, once a route has matched
+  std::string sha256;                           ///< the {sha256} of the path, the same
+  Caller caller;                                ///< set before the handler runs
+  std::optional<Ticket> ticket = std::nullopt;  ///< by which it came, set with the caller
+  std::string client;                           ///< the address of the client
   std::string host;            ///< by which the server was reached, with its port; may be empty
   BodyReader* body = nullptr;  ///< of POST, PUT and PATCH
   std::int64_t declared_bytes = 0;              ///< of the body, decoded; 0 when not declared

@@ -99,8 +99,16 @@ void JobQueue::enqueue(store::JobRecord& job, const Submission& submission,
     door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
   door_.leave(submission.sender);
   give_up_excess();
-  job.seq = noting_doubt(job.id, [&] { return store_.insert(job); });
+  job.seq = noting_doubt(job.id, [&] { return insert(job, submission.ticket); });
   if (!answer || !answer_from_store(job, *answer)) wait_again(job);
+}
+
+std::int64_t JobQueue::insert(const store::JobRecord& job,
+                              const std::optional<store::SpentTicket>& ticket) {
+  if (!ticket) return store_.insert(job);
+  const std::optional<std::int64_t> seq = store_.insert(job, *ticket, now_ms());
+  if (!seq) throw ticket_spent();
+  return *seq;
 }
 
 /// False when the queue is closed.

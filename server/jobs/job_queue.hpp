@@ -83,6 +83,7 @@ struct Submission {
   std::string upload;         ///< the folder of its files, of BlobStore::begin_upload()
   http::Quota quota;          ///< of its owner
   bool bypass_cache = false;  ///< run it even when the same question has been answered
+  std::optional<store::SpentTicket> ticket = {};  ///< that it came with
 };
 
 /// Thread-safe.
@@ -104,7 +105,8 @@ class JobQueue {
   void give_back(std::string_view sender);
   /// Stores a job; one of the same name that is there already is returned instead. A question that
   /// this owner has had answered is answered from the store. Throws like check_room(), and
-  /// idempotency_conflict, too_many_jobs, quota_exceeded, storage_full.
+  /// idempotency_conflict, too_many_jobs, quota_exceeded, storage_full; invalid_link where its
+  /// ticket was spent by a job that is gone.
   store::JobRecord submit(Submission submission);
   /// Waits for the job whose turn it is; nullptr when the queue is closed.
   std::shared_ptr<RunningJob> take();
@@ -153,6 +155,8 @@ class JobQueue {
                                                    const store::JobRecord& same);
   void enqueue(store::JobRecord& job, const Submission& submission,
                const std::optional<Answer>& answer);
+  [[nodiscard]] std::int64_t insert(const store::JobRecord& job,
+                                    const std::optional<store::SpentTicket>& ticket);
   [[nodiscard]] bool answer_from_store(const store::JobRecord& job, const Answer& answer);
   enum class Found { lapsed, by_death, not_stopping };
   [[nodiscard]] bool is_poison(const store::JobRecord& job, Found found) const;

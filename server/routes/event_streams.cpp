@@ -93,9 +93,10 @@ Watcher EventStreams::let_in(const http::Request& request) {
   return watcher;
 }
 
-http::Response EventStreams::open_accepted(const store::JobRecord& job, Watcher watcher) {
+http::Response EventStreams::open_accepted(const store::JobRecord& job, const api::Job& shown,
+                                           Watcher watcher) {
   if (job.request_key.empty()) watcher.seen.reset();
-  return stream(job, std::move(watcher), api::sse_frame(api::accepted_event(store::to_job(job))));
+  return stream(job, std::move(watcher), api::sse_frame(api::accepted_event(shown)));
 }
 
 }  // namespace unwrapd::server::routes

@@ -35,7 +35,7 @@ class EventStreams {
   Watcher let_in(const http::Request& request);
   /// The answer to that submission: the job, then its events. Last-Event-ID is ignored unless the
   /// request has a name of its own: else the job is new.
-  http::Response open_accepted(const store::JobRecord& job, Watcher watcher);
+  http::Response open_accepted(const store::JobRecord& job, const api::Job& shown, Watcher watcher);
 
   [[nodiscard]] int open_count() const { return places_.count(); }
 

@@ -1,13 +1,12 @@
 #include "server/routes/job_routes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 
-#include "server/base/clock.hpp"
 #include "server/base/errors.hpp"
 #include "server/http/media_types.hpp"
 #include "server/http/query.hpp"
+#include "server/routes/link_routes.hpp"
 #include "server/routes/result_routes.hpp"
 #include "server/uploads/job_name.hpp"
 #include "server/work/lambda_selection.hpp"
@@ -17,11 +16,19 @@ namespace {
 
 constexpr int kRetryAfterSeconds = 5;
 
-/// The job with its live progress.
-http::Response job_response(int status, const store::JobRecord& record,
-                            const jobs::EventFeed& events) {
+/// The job as the caller may open it: with signed links by a ticket.
+api::Job shown_job(const JobServices& services, const store::JobRecord& record,
+                   const http::Request& request) {
   api::Job job = store::to_job(record);
-  const std::shared_ptr<jobs::JobFeed> feed = events.find(record.id);
+  if (request.ticket) job.links = signed_links(services.links, job.id, request.caller);
+  return job;
+}
+
+/// The job with its live progress.
+http::Response job_response(int status, const JobServices& services, const store::JobRecord& record,
+                            const http::Request& request) {
+  api::Job job = shown_job(services, record, request);
+  const std::shared_ptr<jobs::JobFeed> feed = services.events.find(record.id);
   if (feed && record.state == api::JobState::running) job.progress = feed->progress();
   http::Response response = http::json_response(status, api::to_json(job).dump());
   response.headers.emplace_back("Cache-Control", "no-store");
@@ -47,7 +54,8 @@ http::Response post_watched(const JobServices& services, const http::Request& re
   Watcher watcher = services.streams.let_in(request);
   const std::string id = services.submissions.accept(request, false);
   const store::JobRecord job = stored_job(services.store, id);
-  http::Response response = services.streams.open_accepted(job, std::move(watcher));
+  http::Response response =
+      services.streams.open_accepted(job, shown_job(services, job, request), std::move(watcher));
   response.headers.emplace_back("Location", api::job_path(id));
   return response;
 }
@@ -62,7 +70,7 @@ http::Response post_job(const JobServices& services, const http::Request& reques
   if (place) wait_for(services.events, id, std::chrono::seconds(seconds));
   const store::JobRecord job = stored_job(services.store, id);
   const bool finished = wait && api::is_final(job.state);
-  http::Response response = job_response(finished ? 200 : 202, job, services.events);
+  http::Response response = job_response(finished ? 200 : 202, services, job, request);
   response.headers.emplace_back("Location", api::job_path(id));
   if (wait) response.headers.emplace_back("Preference-Applied", "wait=" + std::to_string(seconds));
   return response;
@@ -72,7 +80,7 @@ http::Response delete_job(const JobServices& services, const http::Request& requ
   http::refuse_all(request);
   static_cast<void>(find_job(services.store, request));
   const bool was_live = services.queue.cancel_or_remove(request.id);
-  if (was_live) return job_response(202, stored_job(services.store, request.id), services.events);
+  if (was_live) return job_response(202, services, stored_job(services.store, request.id), request);
   http::Response response;
   response.status = 204;
   return response;
@@ -185,39 +193,6 @@ http::Response list_jobs(store::JobStore& store, const http::Request& request) {
   return response;
 }
 
-constexpr std::array<std::string_view, 5> kFiles = {"result", "report", "layout.svg", "layout.png",
-                                                    "preview.png"};
-constexpr std::int64_t kUsualSeconds = 3600;
-constexpr std::int64_t kMostSeconds = 7 * 24 * 3600;
-
-/// A URL that opens one file of a job without an API key, for a time. Parameters: file (default
-/// result) and seconds (1 to 604800; default 3600). Throws Error{invalid_option}.
-http::Response get_link(const store::JobRecord& job, const access::LinkSigner& links,
-                        const http::Request& request) {
-  std::string file(kFiles.front());
-  std::int64_t seconds = kUsualSeconds;
-  for (const auto& [name, text] : request.query) {
-    http::check_once(request, name);
-    if (name == "file") {
-      file = text;
-    } else if (name == "seconds") {
-      seconds = http::positive_number(name, text, kMostSeconds);
-    } else {
-      http::refuse_unknown(name);
-    }
-  }
-  if (std::ranges::count(kFiles, file) == 0)
-    http::refuse_parameter("file", "A job has no such file; see /openapi.yaml.");
-  const std::int64_t expires_ms = now_ms() + seconds * kMsPerSecond;
-  const std::string path = api::job_path(job.id) + "/" + file;
-  const access::LinkKey key{.id = request.caller.owner, .sha256 = request.caller.key_sha256};
-  const api::Json link = {{"url", links.sign(path, expires_ms / kMsPerSecond, key)},
-                          {"expires", rfc3339(expires_ms)}};
-  http::Response response = http::json_response(200, link.dump());
-  response.headers.emplace_back("Cache-Control", "no-store");
-  return response;
-}
-
 void add_submission_routes(std::vector<http::Route>& routes, const JobServices& services) {
   const auto add = [&](std::string_view method, std::string_view path, auto post) {
     routes.push_back({method, path, [services, post](const http::Request& request) {
@@ -261,12 +236,9 @@ void add_job_routes(std::vector<http::Route>& routes, const JobServices& service
   routes.push_back({"GET", "/v1/jobs", [services](const http::Request& request) {
                       return list_jobs(services.store, request);
                     }});
-  routes.push_back({"GET", "/v1/jobs/{id}/link", [services, find](const http::Request& request) {
-                      return get_link(find(request), services.links, request);
-                    }});
   routes.push_back({"GET", "/v1/jobs/{id}", [services, find](const http::Request& request) {
                       http::refuse_all(request);
-                      return job_response(200, find(request), services.events);
+                      return job_response(200, services, find(request), request);
                     }});
   routes.push_back({"DELETE", "/v1/jobs/{id}", [services](const http::Request& request) {
                       return delete_job(services, request);

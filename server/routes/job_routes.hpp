@@ -38,7 +38,7 @@ http::Response answer_with_files(
     store::JobStore& store, const store::JobRecord& job,
     const std::function<http::Response(const store::JobRecord& job)>& answer);
 
-/// POST /v1/jobs and everything below /v1/jobs/{id} but the pictures.
+/// POST /v1/jobs and everything below /v1/jobs/{id} but pictures and links.
 void add_job_routes(std::vector<http::Route>& routes, const JobServices& services);
 
 /// POST /v1/unwrap.

@@ -14,7 +14,8 @@ namespace {
 using api::JobState;
 using api::state_name;
 
-constexpr std::int64_t kNotePauseMs = 60'000;  // an idle server writes no more often
+constexpr std::int64_t kNotePauseMs = 60'000;          // an idle server writes no more often
+constexpr std::int64_t kSpentKeptMs = 24 * 3'600'000;  // longer, as clocks are set back
 constexpr auto kAnySeq = std::numeric_limits<std::int64_t>::max();
 
 /// What a reader of a job's row finds there of its input.
@@ -101,19 +102,41 @@ std::optional<JobRecord> JobStore::first(std::string_view rest, const Values&...
   return std::move(found.front());
 }
 
+std::int64_t JobStore::insert_row(const JobRecord& job) {
+  Statement statement(*database_, insert_statement());
+  statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, text_of(job.options),
+                 text_of(job.notes), job.input.sha256, job.input.bytes,
+                 text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
+                 job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace,
+                 job.asked, job.name);
+  statement.step();
+  const std::int64_t seq = statement.number(0);
+  statement.run();
+  return seq;
+}
+
 std::int64_t JobStore::insert(const JobRecord& job) {
-  return change([&] {
-    Statement statement(*database_, insert_statement());
-    statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, text_of(job.options),
-                   text_of(job.notes), job.input.sha256, job.input.bytes,
-                   text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
-                   job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace,
-                   job.asked, job.name);
-    statement.step();
-    const std::int64_t seq = statement.number(0);
-    statement.run();
-    return seq;
+  return change([&] { return insert_row(job); });
+}
+
+std::optional<std::int64_t> JobStore::insert(const JobRecord& job, const SpentTicket& ticket,
+                                             std::int64_t now_ms) {
+  return transact([&]() -> std::optional<std::int64_t> {
+    Statement(*database_, "DELETE FROM spent_tickets WHERE until_ms < ?")
+        .with(now_ms - kSpentKeptMs)
+        .run();
+    Statement(*database_,
+              "INSERT INTO spent_tickets (id, until_ms) VALUES (?, ?) ON CONFLICT (id) DO NOTHING")
+        .with(ticket.id, ticket.until_ms)
+        .run();
+    if (database_->changes() == 0) return std::nullopt;
+    return insert_row(job);
   });
+}
+
+bool JobStore::is_spent(std::string_view ticket) {
+  const std::lock_guard lock(mutex_);
+  return Statement(*database_, "SELECT id FROM spent_tickets WHERE id = ?").with(ticket).step();
 }
 
 std::optional<JobRecord> JobStore::find(std::string_view id) { return first("WHERE id = ?", id); }

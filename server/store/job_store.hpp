@@ -49,6 +49,12 @@ struct JobFilter {
   int limit = 50;
 };
 
+/// An upload ticket that a job has come with.
+struct SpentTicket {
+  std::string id;
+  std::int64_t until_ms = 0;  ///< when it expires
+};
+
 /// What an owner has here.
 struct OwnerUsage {
   std::int64_t live_jobs = 0;  ///< queued or running
@@ -78,6 +84,12 @@ class JobStore {
 
   /// Adds a queued job and returns its seq.
   std::int64_t insert(const JobRecord& job);
+  /// The same of a job that comes with a ticket, which it spends; nothing, and nothing is added,
+  /// where that was spent before.
+  std::optional<std::int64_t> insert(const JobRecord& job, const SpentTicket& ticket,
+                                     std::int64_t now_ms);
+  /// Whether a job has come with this ticket, be it here or removed meanwhile.
+  bool is_spent(std::string_view ticket);
   [[nodiscard]] std::optional<JobRecord> find(std::string_view id);
   /// The job that an owner's request of this name has made.
   std::optional<JobRecord> find_request(std::string_view owner, std::string_view request_key);
@@ -166,6 +178,7 @@ class JobStore {
     return database_->transact(make);
   }
 
+  std::int64_t insert_row(const JobRecord& job);
   void mend_sums();
   void queue_delivery(const JobRecord& job, const JobOutcome& outcome);
 

@@ -116,7 +116,8 @@ CREATE TABLE keys (
 
 std::string postgres_step(std::int64_t version) {
   if (version < kFirstVersion) return "";
-  return version == kFirstVersion ? kFirstTables : kNamesStep;
+  if (version == kFirstVersion) return kFirstTables;
+  return version == kFirstVersion + 1 ? kNamesStep : kTicketsStep;
 }
 
 }  // namespace unwrapd::server::store

@@ -6,15 +6,18 @@
 
 namespace unwrapd::server::store {
 
-inline constexpr std::int64_t kSchemaVersion = 11;  ///< of this program
+inline constexpr std::int64_t kSchemaVersion = 12;  ///< of this program
 
-/// From version 10 to 11, in the words of both engines.
+// From version 10 to 11, and to 12, in the words of both engines.
 inline constexpr const char* kNamesStep = R"sql(
 ALTER TABLE jobs ADD COLUMN name TEXT NOT NULL DEFAULT '';
 CREATE INDEX jobs_by_name ON jobs (name, seq) WHERE name <> '';
 CREATE INDEX jobs_in_state_by_name ON jobs (name, state, seq) WHERE name <> '';
 CREATE INDEX jobs_of_owner_by_name ON jobs (owner, name, seq) WHERE name <> '';
 CREATE INDEX jobs_of_owner_in_state_by_name ON jobs (owner, name, state, seq) WHERE name <> '';
+)sql";
+inline constexpr const char* kTicketsStep = R"sql(
+CREATE TABLE spent_tickets (id TEXT NOT NULL PRIMARY KEY, until_ms BIGINT NOT NULL);
 )sql";
 
 /// From version - 1 to this one; empty where nothing is to do.

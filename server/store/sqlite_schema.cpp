@@ -7,7 +7,7 @@ namespace unwrapd::server::store {
 namespace {
 
 /// Step k turns version k into version k + 1. Released steps are never edited.
-constexpr std::array<const char*, 11> kSteps = {
+constexpr std::array<const char*, 12> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -132,7 +132,7 @@ CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
   UPDATE stored SET bytes = bytes - OLD.stored_bytes, jobs = jobs - 1 WHERE owner = OLD.owner;
 END;
 )sql",
-    kNamesStep};
+    kNamesStep, kTicketsStep};
 
 static_assert(kSteps.size() == kSchemaVersion);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/base/clock.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
 #include "server/base/trace.hpp"
 #include "server/jobs/request_fingerprint.hpp"
@@ -74,8 +75,10 @@ bool wants_new_answer(const http::Request& request) {
   return request.header("Cache-Control").find("no-cache") != std::string::npos;
 }
 
-/// The name by which a request can be sent again; empty if it has none.
+/// The name by which a request can be sent again; empty if it has none. No Idempotency-Key has a
+/// blank in it, as the name of a ticket's job.
 std::string request_name(const http::Request& request) {
+  if (request.ticket) return "ticket " + request.ticket->id;
   return request.id.empty() ? idempotency_key(request) : request.id;
 }
 
@@ -99,11 +102,32 @@ std::string sender_of(const http::Request& request) {
 /// quota is used up, and its options in a longer form. A form has more than files, so that its
 /// declared size is not used.
 UploadSize size_of(const http::Request& request, const std::optional<store::JobRecord>& known) {
-  if (!known) return {.known_bytes = 0, .declared_bytes = request.declared_bytes};
+  const std::int64_t most = request.ticket ? request.ticket->max_bytes : 0;
+  if (!known)
+    return {.known_bytes = 0, .declared_bytes = request.declared_bytes, .most_bytes = most};
   if (http::body_kind(request.header("Content-Type")) == http::BodyKind::asset)
-    return {.known_bytes = known->input.bytes, .declared_bytes = request.declared_bytes};
+    return {.known_bytes = known->input.bytes,
+            .declared_bytes = request.declared_bytes,
+            .most_bytes = most};
   constexpr auto kOptionBytes = static_cast<std::int64_t>(api::kMaxOptionsBytes);
-  return {.known_bytes = known->input.bytes + kOptionBytes, .declared_bytes = 0};
+  return {
+      .known_bytes = known->input.bytes + kOptionBytes, .declared_bytes = 0, .most_bytes = most};
+}
+
+/// A ticket is for an upload and nothing else that its key may do. Throws Error{forbidden}.
+void check_within_ticket(const http::Request& request) {
+  if (!request.ticket) return;
+  if (request.headers.contains("Unwrapd-Webhook"))
+    throw Error(ErrorCode::forbidden, "An upload ticket allows no webhook; leave it out.");
+  if (http::body_kind(request.header("Content-Type")) == http::BodyKind::reference)
+    throw Error(ErrorCode::forbidden,
+                "An upload ticket opens no stored mesh; send the bytes of the mesh.");
+}
+
+std::optional<store::SpentTicket> ticket_of(const http::Request& request) {
+  if (!request.ticket) return std::nullopt;
+  return store::SpentTicket{.id = request.ticket->id,
+                            .until_ms = request.ticket->expires * kMsPerSecond};
 }
 
 }  // namespace
@@ -116,8 +140,10 @@ struct Submissions::Sent {
 };
 
 std::string Submissions::accept(const http::Request& request, bool synchronous) {
+  check_within_ticket(request);
   const std::string sender = sender_of(request);
   const std::optional<store::JobRecord> known = known_job(request);
+  if (!known && request.ticket && store_.is_spent(request.ticket->id)) throw ticket_spent();
   if (!known) queue_.check_room({.who = sender, .owner = request.caller.owner});
   const std::string upload = random_job_id();
   try {
@@ -126,7 +152,8 @@ std::string Submissions::accept(const http::Request& request, bool synchronous) 
                                 .sender = sender,
                                 .upload = upload,
                                 .quota = request.caller.quota,
-                                .bypass_cache = wants_new_answer(request)};
+                                .bypass_cache = wants_new_answer(request),
+                                .ticket = ticket_of(request)};
     receive(request, submission.job, room, upload);
     return queue_.submit(std::move(submission)).id;
   } catch (...) {
@@ -149,7 +176,7 @@ store::JobRecord Submissions::begin_job(const http::Request& request, const std:
   job.id = request.id.empty() ? upload : request.id;
   job.request_key = request_name(request);
   job.owner = request.caller.owner;
-  job.urgency = urgency(request);
+  job.urgency = request.ticket ? store::kUsualUrgency : urgency(request);
   job.trace = current_trace();
   job.synchronous = synchronous;
   job.webhook = request.header("Unwrapd-Webhook");

@@ -37,7 +37,8 @@ class Submissions {
   /// request by Idempotency-Key or by such an id may come again and gets the same job. Throws
   /// Error: queue_full, draining, unsupported_media_type, invalid_option, malformed_request,
   /// body_too_large, idempotency_conflict, too_many_jobs, quota_exceeded, storage_full,
-  /// storage_failed, webhook_refused, mesh_not_found.
+  /// storage_failed, webhook_refused, mesh_not_found; by a ticket, which names the request, also
+  /// forbidden and invalid_link.
   std::string accept(const http::Request& request, bool synchronous);
 
  private:

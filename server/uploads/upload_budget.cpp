@@ -1,6 +1,7 @@
 #include "server/uploads/upload_budget.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "server/base/errors.hpp"
 #include "server/base/files.hpp"
@@ -15,7 +16,15 @@ bool UploadBudget::reservation(std::int64_t bytes) {
   return false;
 }
 
+void UploadBudget::check_most(std::int64_t bytes) const {
+  if (size_.most_bytes == 0 || bytes <= size_.most_bytes) return;
+  throw Error(ErrorCode::body_too_large, "The upload ticket is for at most " +
+                                             std::to_string(size_.most_bytes) +
+                                             " bytes; ask for a larger one.");
+}
+
 void UploadBudget::check_declared() {
+  check_most(size_.declared_bytes);
   static_cast<void>(reservation(size_.declared_bytes));
   disk_.check_upload(size_.declared_bytes);
 }
@@ -29,6 +38,7 @@ void UploadBudget::claim_ahead(std::int64_t all) {
 
 void UploadBudget::take(std::int64_t bytes) {
   const std::int64_t all = taken_ + bytes;
+  check_most(all);
   claim_ahead(all);
   if (!disk_.try_take_for_upload(upload_, bytes)) {
     const std::int64_t whole = std::max(all, size_.declared_bytes);

@@ -26,6 +26,7 @@ struct UploadSize {
   /// once at a time, and more often where nothing must be given up for it.
   std::int64_t known_bytes = 0;
   std::int64_t declared_bytes = 0;  ///< of the body, 0 when not told beforehand
+  std::int64_t most_bytes = 0;      ///< that it may bring; 0: as many as all may
 };
 
 /// The budget of one upload, until it is stored or dropped. Not for use by two threads at once.
@@ -41,7 +42,8 @@ class UploadBudget {
 
   /// For a body that is stored as it comes: throws what take() would come to throw.
   void check_declared();
-  /// Counts bytes that are about to be written. Throws Error: quota_exceeded, storage_full.
+  /// Counts bytes that are about to be written. Throws Error: body_too_large, quota_exceeded,
+  /// storage_full.
   void take(std::int64_t bytes);
   /// Counts bytes that were removed again.
   void put_back(std::int64_t bytes);
@@ -49,6 +51,7 @@ class UploadBudget {
   [[nodiscard]] store::UploadMeter counter();
 
  private:
+  void check_most(std::int64_t bytes) const;
   [[nodiscard]] bool reservation(std::int64_t bytes);
   void claim_ahead(std::int64_t all);
 

@@ -7,7 +7,8 @@ export type {Asset, AssetInParts, Bytes} from './asset.js';
 export type {Connection} from './connection.js';
 export {UnwrapdError} from './error.js';
 export type {Call, Progress} from './job.js';
-export type {Job, JobEvent, Options, Problem, Report, Result} from './types.js';
+export {type TicketTerms, uploadTickets} from './ticket.js';
+export type {Job, JobEvent, Options, Problem, Report, Result, Tickets} from './types.js';
 
 export interface Unwrapped {
   /** The asset with its texture coordinates. Its type says the format. */
@@ -23,7 +24,7 @@ export async function unwrap(asset: Asset, options: Options = {}, settings: Call
   return {asset: await download(job.links.result, settings, (answer) => answer.blob()), report, job};
 }
 
-export interface Many extends Omit<Call, 'idempotencyKey' | 'name'> {
+export interface Many extends Omit<Call, 'idempotencyKey' | 'name' | 'ticket'> {
   /** Most assets under way at once. Default: 4. */
   concurrency?: number;
   options?: Options;

@@ -18,6 +18,8 @@ export interface Call extends Connection {
   idempotencyKey?: string | undefined;
   /** A name of the job for people, up to 200 characters. */
   name?: string | undefined;
+  /** An upload ticket, in place of a key: a URL of uploadTickets(), which takes one job. */
+  ticket?: string | undefined;
 }
 
 const FINAL = ['succeeded', 'failed', 'cancelled'];
@@ -33,7 +35,7 @@ function submit(asset: Asset, options: Options, settings: Call): Promise<Job> {
   const body = formOf(asset, options);
   if (settings.name !== undefined) body.append('name', settings.name);
   return patiently(settings, async () => {
-    const answer = await call(settings, '/v1/jobs', {method: 'POST', headers, body});
+    const answer = await call(settings, settings.ticket ?? '/v1/jobs', {method: 'POST', headers, body});
     return jsonOf<Job>(settings, answer);
   });
 }
@@ -114,7 +116,7 @@ export async function runJob(asset: Asset, options: Options, settings: Call): Pr
   try {
     const ended = await follow(job, settings);
     if (ended.problem) throw new UnwrapdError(ended.problem);
-    return ended;
+    return {...ended, links: job.links}; // those of a ticket are signed
   } catch (error) {
     if (!(error instanceof UnwrapdError)) await cancel(job, settings);
     throw error;
@@ -122,6 +124,7 @@ export async function runJob(asset: Asset, options: Options, settings: Call): Pr
 }
 
 /** A file of a job that has succeeded, read whole. */
-export function download<T>(path: string, settings: Connection, read: (answer: Response) => Promise<T>): Promise<T> {
-  return patiently(settings, async () => reach(settings, read(await call(settings, path))));
+export function download<T>(path: string, settings: Connection, read: (answer: Response) => Promise<T>,
+                            headers: Record<string, string> = {}): Promise<T> {
+  return patiently(settings, async () => reach(settings, read(await call(settings, path, {headers}))));
 }

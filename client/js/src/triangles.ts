@@ -70,8 +70,8 @@ function container(json: string, bytes: BlobPart[], byteLength: number): Blob {
 export async function unwrapTriangles(meshes: Triangles[], options: Options, settings: Call):
     Promise<{meshes: MappedTriangles[]; report: Report}> {
   const job = await runJob(glbOf(meshes), options, settings);
-  const path = `${job.links.result}.json`;
-  const result = await download(path, settings, (answer) => jsonOf<Result>(settings, answer));
+  const asJson = {Accept: 'application/json'}; // of the link itself, which may be signed
+  const result = await download(job.links.result, settings, (answer) => jsonOf<Result>(settings, answer), asJson);
   const mapped = result.meshes.map(({uv, faces, vertex_map}) => ({
     uv: Float32Array.from(uv), indices: Uint32Array.from(faces), sources: Uint32Array.from(vertex_map),
   }));

@@ -10,3 +10,4 @@ export type JobEvent = Schemas['JobEvent'];
 export type Problem = Schemas['Problem'];
 export type Report = Schemas['Report'];
 export type Result = Schemas['Result'];
+export type Tickets = Schemas['Tickets'];

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,22 +38,22 @@ def json_of(status: int, body: bytes) -> Any:
         raise unexpected(status) from None
 
 
-def download(connection: Connection, path: str) -> bytes:
+def download(connection: Connection, path: str, headers: Mapping[str, str] | None = None) -> bytes:
     """A file of a job, read whole."""
 
     def attempt() -> bytes:
-        with connection.call("GET", path) as answer:
+        with connection.call("GET", path, headers) as answer:
             return read(answer)
 
     return patiently(connection, attempt)
 
 
-def submit(connection: Connection, form: Form, name: str) -> Job:
+def submit(connection: Connection, form: Form, name: str, path: str) -> Job:
     """Sends the asset. A request that is sent again gets the job that it made before."""
     headers = {**form.headers(), "Accept": "application/json", "Idempotency-Key": name}
 
     def attempt() -> Job:
-        with connection.call("POST", "/v1/jobs", headers, form) as answer:
+        with connection.call("POST", path, headers, form) as answer:
             return json_of(answer.status, read(answer))
 
     return patiently(connection, attempt)
@@ -115,10 +115,12 @@ def _cancel(connection: Connection, job: Job) -> None:
         pass
 
 
-def run_job(connection: Connection, form: Form, name: str, on_progress: OnProgress | None) -> Job:
+def run_job(
+    connection: Connection, form: Form, name: str, on_progress: OnProgress | None, path: str = "/v1/jobs"
+) -> Job:
     """Submits and follows a job. Raises UnwrapdError unless it succeeds; what on_progress raises, or
     Ctrl-C, cancels the job."""
-    job = submit(connection, form, name)
+    job = submit(connection, form, name, path)
     try:
         ended = follow(connection, job, on_progress)
     except UnwrapdError:
@@ -128,6 +130,6 @@ def run_job(connection: Connection, form: Form, name: str, on_progress: OnProgre
         raise
     if problem := ended.get("problem"):
         raise UnwrapdError(problem)
-    return ended
+    return {**ended, "links": job["links"]}  # those of a ticket are signed
 
 

@@ -94,6 +94,16 @@ test("a job has the name that it was given", async () => {
   assert.deepEqual(jobs.map(({ id }) => id), [job.id]);
 });
 
+test("a ticket takes a mesh in place of a key, once", async () => {
+  const { urls } = await client.uploadTickets({ server: server.base }, { count: 2, seconds: 60, maxBytes: 1e6 });
+  const settings = { server: server.base, ticket: urls[0] };
+  const { asset, job } = await client.unwrap(new Blob([grid(3)]), {}, settings);
+  assert.match(await asset.text(), /^vt /m);
+  assert.match(job.links.result, /signature=/);
+  await assert.rejects(client.unwrap(new Blob([grid(2)]), {}, settings), { code: "idempotency_conflict" });
+  await assert.rejects(client.uploadTickets({ server: server.base }, { count: 101 }), { pointer: "/count" });
+});
+
 test("a refusal is an UnwrapdError with code, pointer, detail and status", async () => {
   const settings = { server: server.base };
   await assert.rejects(client.unwrap(new Blob([grid(2)]), { method: "magic" }, settings), (error) => {

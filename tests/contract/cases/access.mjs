@@ -1,5 +1,5 @@
 // Jobs by name, lists of jobs and links to their files, at a server that asks for no keys.
-import {request} from '../http.mjs';
+import {raw, request} from '../http.mjs';
 import * as meshes from '../meshes.mjs';
 import {kGlb, kWait, newId} from './shared.mjs';
 
@@ -41,7 +41,7 @@ export async function lists(run, base) {
 
 /** What a link can be to, and the operation that answers it. */
 const kLinked = {result: 'getResult', report: 'getReport', 'layout.svg': 'getLayout',
-                 'layout.png': 'getLayoutPng', 'preview.png': 'getPreview'};
+                 'layout.png': 'getLayoutPng', 'preview.png': 'getPreview', events: 'watchJob', job: 'getJob'};
 
 export async function links(run, base) {
   const {id: job} = await run.json(base, 'createJob', {headers: kWait, body: meshes.glb(), status: 200});
@@ -56,4 +56,19 @@ export async function links(run, base) {
   await run.call(base, 'getLink', {job, query: {seconds: 0}, status: 422});
   await run.call(base, 'getLink', {job, query: {file: 'document'}, status: 422});
   await run.call(base, 'getLink', {job: newId(), status: 404});
+}
+
+/** Tickets where no keys are: they have no key, and are bounded as elsewhere. */
+export async function tickets(run, base) {
+  const {urls} = await run.json(base, 'createTickets', {query: {count: 2, seconds: 60, max_bytes: 1e6}, status: 200});
+  run.expectEqual('tickets', urls.length, 2);
+  const send = (url, body) => request(base, {method: 'POST', path: url, headers: kWait, body});
+  const sent = run.judge('a job by a ticket', 'createJob', await send(urls[0], meshes.glb()), 200);
+  const {links} = JSON.parse(sent.body.toString());
+  run.expectEqual('its signed result', (await fetch(base + links.result)).status, 200);
+  run.judge('another job by it', 'createJob', await send(urls[0], meshes.glb(7)), 409);
+  for (const query of [{seconds: 86401}, {count: 0}, {max_bytes: 'x'}])
+    await run.call(base, 'createTickets', {query, status: 422});
+  const bare = 'POST /v1/tickets HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n';
+  run.judge('tickets without length', 'createTickets', await raw(base, bare), 411);
 }

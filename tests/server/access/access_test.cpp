@@ -207,6 +207,36 @@ TEST_F(Keys, ALinkGoesWithItsKeyAndNoOtherTakesItsPlace) {
   EXPECT_NO_THROW(keyless.admit(request, "/v1/jobs/{id}/result"));
 }
 
+TEST_F(Keys, ATicketOpensOneCallForItsKeyWithAllThatIsSigned) {
+  const http::Caller caller = admit(add("ci", {.submit = true}), "POST");
+  const LinkKey key{.id = caller.owner, .sha256 = caller.key_sha256};
+  const http::Ticket ticket{.id = "0af7", .max_bytes = 70, .expires = 1'000'000'000'000};
+  http::Request request = opening(links_.sign(ticket, key));
+  request.method = "POST";
+  http::Request taken = request;
+  access_.admit(taken, "/v1/jobs");
+  ASSERT_TRUE(taken.ticket);
+  EXPECT_EQ(taken.ticket->id, "0af7");
+  EXPECT_EQ(taken.ticket->max_bytes, 70);
+  EXPECT_EQ(taken.ticket->expires, ticket.expires);
+  EXPECT_EQ(taken.caller.owner, caller.owner);
+  EXPECT_FALSE(taken.caller.sees_all);
+  EXPECT_EQ(taken.query.size(), 1U) << "options are left";
+  std::vector<http::Request> refused(9, request);
+  refused[0].method = "GET";
+  refused[1].path = "/v1/jobs/events";
+  for (std::size_t k = 0; const char* name : {"ticket", "max_bytes", "expires", "key", "signature"})
+    refused[2 + k++].query.erase(name);
+  refused[7].query.erase("max_bytes");
+  refused[7].query.emplace("max_bytes", "700");
+  refused[8].query.erase("max_bytes");  // a line of what is signed in another parameter
+  refused[8].query.erase("ticket");
+  refused[8].query.emplace("ticket", "0af7\n70");
+  for (http::Request& each : refused) EXPECT_ANY_THROW(access_.admit(each, "/v1/jobs"));
+  EXPECT_TRUE(keys_.remove(key.id));
+  EXPECT_EQ(error_of([&] { access_.admit(request, "/v1/jobs"); }).code(), ErrorCode::invalid_link);
+}
+
 TEST_F(Keys, LinksAndLargePicturesCountForTheRateOfTheirKey) {
   ApiKey limited;
   limited.name = "ci";

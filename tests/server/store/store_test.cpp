@@ -71,6 +71,22 @@ TEST_F(Store, KeepsEveryFieldOverAReopening) {
 
 TEST_F(Store, FindsNothingThatWasNotInserted) { EXPECT_FALSE(store_->find("j_none")); }
 
+TEST_F(Store, SpendsATicketOnceAndRemembersItBeyondItsJob) {
+  const SpentTicket ticket{.id = "0af7", .until_ms = 5000};
+  EXPECT_FALSE(store_->is_spent("0af7"));
+  ASSERT_TRUE(store_->insert(some_job("j_1"), ticket, 1000));
+  EXPECT_FALSE(store_->insert(some_job("j_2"), ticket, 1000));
+  EXPECT_FALSE(store_->find("j_2")) << "neither or both";
+  store_->remove("j_1");
+  reopen();
+  EXPECT_TRUE(store_->is_spent("0af7"));
+  constexpr std::int64_t kDays = 24 * 3'600'000;
+  ASSERT_TRUE(store_->insert(some_job("j_3"), {.id = "0af8", .until_ms = 9000}, 6000));
+  EXPECT_TRUE(store_->is_spent("0af7")) << "a day longer, as clocks may be set back";
+  ASSERT_TRUE(store_->insert(some_job("j_4"), {.id = "0af9", .until_ms = 2 * kDays}, 2 * kDays));
+  EXPECT_FALSE(store_->is_spent("0af7"));
+}
+
 TEST_F(Store, TakesTheOldestFirstAndCountsTheAttempt) {
   store_->insert(some_job("j_1"));
   store_->insert(some_job("j_2"));
