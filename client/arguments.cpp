@@ -69,6 +69,14 @@ void add_picture_flags(CLI::App& app, Arguments& arguments) {
                  "angles, ratio of areas, or flipped triangles. Default: stretch")
       ->check(CLI::IsMember({"stretch", "angle", "area", "flips"}).description(""))
       ->type_name("stretch|angle|area|flips");
+  app.add_option("--template", arguments.painting,
+                 "Write a template to paint on to PATH: the edges of the layout without a "
+                 "background, as a PNG with a pixel for each texel if it ends in .png, else an SVG")
+      ->type_name("PATH");
+  app.add_option("--preview-view", arguments.preview_view,
+                 "From where the preview shows the mesh: front, back, left, right, top, bottom, "
+                 "turntable (eight views), or two angles such as 30,20. Default: aslant")
+      ->type_name("VIEW");
   app.add_option("--preview", arguments.preview,
                  "Write a picture of the mesh, textured with a checkerboard, to PATH (PNG)")
       ->type_name("PATH");
@@ -169,9 +177,10 @@ bool is_batch(const Arguments& arguments) {
 }
 
 void check_batch(const Arguments& arguments) {
-  const std::array<std::pair<const char*, const fs::path&>, 3> of_one = {
+  const std::array<std::pair<const char*, const fs::path&>, 4> of_one = {
       {{"--report", arguments.report},
        {"--layout", arguments.layout},
+       {"--template", arguments.painting},
        {"--preview", arguments.preview}}};
   for (const auto& [flag, path] : of_one)
     if (!path.empty())
@@ -205,11 +214,13 @@ void settle_comparison(Arguments& arguments) {
     throw Failure(ExitCode::usage, "compare takes two meshes; name both.");
   if (!arguments.out.empty() && arguments.out.extension() != ".html")
     throw Failure(ExitCode::usage, "--out: compare writes a page; name a file that ends in .html.");
-  if (!arguments.report.empty() || !arguments.layout.empty() || !arguments.preview.empty() ||
-      arguments.resume || arguments.watch || arguments.options.contains("measure_only"))
+  if (!arguments.report.empty() || !arguments.layout.empty() || !arguments.painting.empty() ||
+      !arguments.preview.empty() || arguments.resume || arguments.watch ||
+      arguments.options.contains("measure_only"))
     throw Failure(ExitCode::usage,
                   "compare prints a table, or with --json both reports, and writes a page with -o; "
-                  "leave out --report, --layout, --preview, --resume, --watch and --measure-only.");
+                  "leave out --report, --layout, --template, --preview, --resume, --watch and "
+                  "--measure-only.");
   arguments.options["measure_only"] = "true";
 }
 

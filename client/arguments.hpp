@@ -29,10 +29,12 @@ struct Arguments {
   bool resume = false;    ///< leave out inputs whose results are there
   bool watch = false;     ///< go on with inputs that come or change
   std::filesystem::path report;
-  std::filesystem::path layout;   ///< a PNG if its extension says so, else an SVG
-  std::string layout_colour;      ///< quantity to colour by; empty: the server's default
-  std::filesystem::path preview;  ///< the textured mesh, PNG
-  std::filesystem::path sample;   ///< only write the sample mesh here
+  std::filesystem::path layout;    ///< a PNG if its extension says so, else an SVG
+  std::string layout_colour;       ///< quantity to colour by; empty: the server's default
+  std::filesystem::path painting;  ///< a template to paint on, a PNG or an SVG as the layout
+  std::filesystem::path preview;   ///< the textured mesh, PNG
+  std::string preview_view;        ///< from where it is seen; empty: the server's default
+  std::filesystem::path sample;    ///< only write the sample mesh here
   Place place = Place::any;
   ServerUrl server;                  ///< with the key of the environment
   std::string name;                  ///< of the job; empty for none

@@ -1,6 +1,7 @@
 #include "client/outputs.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <string_view>
 
@@ -9,12 +10,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "lambda=1e%2B5" of "1e+5": in a query a plus is a space.
+/// "1e%2B5" of "1e+5": in a query a plus is a space.
+std::string in_query(const std::string& text) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string encoded;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain = std::isalnum(byte) != 0 || c == '.' || c == ',' || c == '-';
+    if (is_plain) encoded += c;
+    if (!is_plain) encoded += {'%', digits[byte / 16], digits[byte % 16]};
+  }
+  return encoded;
+}
+
 std::string lambda_query(const std::string& lambda) {
-  if (lambda.empty()) return {};
-  std::string query = "lambda=";
-  for (const char c : lambda) query += c == '+' ? "%2B" : std::string(1, c);
-  return query;
+  return lambda.empty() ? std::string() : "lambda=" + in_query(lambda);
 }
 
 std::string append_query(const std::string& path, const std::string& query) {
@@ -36,6 +46,7 @@ std::vector<Output> outputs_of(const Arguments& arguments) {
   for (const std::string& lambda : arguments.lambdas.empty() ? one_map : arguments.lambdas) {
     add("--out", arguments.out, lambda);
     add("--layout", arguments.layout, lambda);
+    add("--template", arguments.painting, lambda);
     add("--preview", arguments.preview, lambda);
   }
   add("--report", arguments.report, "");
@@ -59,6 +70,17 @@ std::string layout_of(const Arguments& arguments) {
   std::string path = arguments.layout.extension() == ".png" ? "/layout.png" : "/layout.svg";
   if (!arguments.layout_colour.empty()) path += "?colour=" + arguments.layout_colour;
   return path;
+}
+
+std::string template_of(const Arguments& arguments) {
+  const bool is_png = arguments.painting.extension() == ".png";
+  return std::string(is_png ? "/layout.png?size=page" : "/layout.svg?page=1") +
+         "&wireframe=1&background=none";
+}
+
+std::string preview_of(const Arguments& arguments) {
+  return arguments.preview_view.empty() ? "/preview.png"
+                                        : "/preview.png?view=" + in_query(arguments.preview_view);
 }
 
 fs::path map_path(const fs::path& path, const std::string& lambda) {
@@ -93,8 +115,11 @@ Outputs::Map::Map(const Arguments& arguments, const std::string& lambda)
                                       : map_path(arguments.out, lambda).string()),
       query(lambda_query(lambda)),
       layout_path(layout_of(arguments)),
+      template_path(template_of(arguments)),
+      preview_path(preview_of(arguments)),
       result(map_path(arguments.out, lambda)) {
   if (!arguments.layout.empty()) layout.emplace(map_path(arguments.layout, lambda));
+  if (!arguments.painting.empty()) painting.emplace(map_path(arguments.painting, lambda));
   if (!arguments.preview.empty()) preview.emplace(map_path(arguments.preview, lambda));
 }
 
@@ -102,12 +127,14 @@ std::string Outputs::Map::fetch(JobClient& client, const std::string& job_id) {
   client.fetch(job_id, append_query("/result", query),
                [&](std::string_view bytes) { result.append(bytes); });
   if (layout) layout->append(client.fetch(job_id, append_query(layout_path, query)));
-  if (preview) preview->append(client.fetch(job_id, append_query("/preview.png", query)));
+  if (painting) painting->append(client.fetch(job_id, append_query(template_path, query)));
+  if (preview) preview->append(client.fetch(job_id, append_query(preview_path, query)));
   return client.fetch(job_id, append_query("/report", query));
 }
 
 void Outputs::Map::commit() {
   if (layout) layout->commit();
+  if (painting) painting->commit();
   if (preview) preview->commit();
   result.commit();
 }

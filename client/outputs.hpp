@@ -20,6 +20,10 @@ std::filesystem::path map_path(const std::filesystem::path& path, const std::str
 /// What shows the layout in the colours that are asked for: an SVG, unless --layout names a PNG.
 std::string layout_of(const Arguments& arguments);
 
+/// What shows the template that --template names, and the preview.
+std::string template_of(const Arguments& arguments);
+std::string preview_of(const Arguments& arguments);
+
 /// Whether the result, the report or a picture goes to standard output.
 bool writes_to_standard_output(const Arguments& arguments);
 
@@ -49,9 +53,9 @@ class Outputs {
 
     std::string name;
     std::string query;  ///< "lambda=0.1", or nothing
-    std::string layout_path;
+    std::string layout_path, template_path, preview_path;
     NewFile result;
-    std::optional<NewFile> layout, preview;
+    std::optional<NewFile> layout, painting, preview;
   };
 
   std::list<Map> maps_;

@@ -20,8 +20,13 @@ class Band {
   static constexpr int kPixels = 16;  ///< its height
   static constexpr int kRows = kPixels * kSamples;
 
-  Band(int width, const Rgb& background)
-      : columns_(width * kSamples), background_(background), colour_(size()), depth_(size()) {}
+  /// is_clear: what nothing is painted on is transparent; it remembers what was.
+  Band(int width, const Rgb& background, bool is_clear)
+      : columns_(width * kSamples),
+        background_(background),
+        colour_(size()),
+        depth_(size()),
+        painted_(is_clear ? size() : 0) {}
 
   /// Moves to the rows from `first` on, empty.
   void start(int first);
@@ -45,12 +50,15 @@ class Band {
   }
   Rgb& colour_at(std::size_t place) { return colour_[place]; }
 
-  /// Writes the means of the samples into the picture's rows.
+  /// Writes the means of the samples into the picture's rows; where it has alpha, of those that
+  /// were painted.
   void resolve(Image& image) const;
 
  private:
   /// Of the pixel whose first sample is at this place.
   [[nodiscard]] Rgb mean(std::size_t first) const;
+  /// The same of its painted samples, and their share as alpha.
+  [[nodiscard]] std::array<std::uint8_t, 4> painted_mean(std::size_t first) const;
   [[nodiscard]] std::size_t size() const {
     return static_cast<std::size_t>(kRows) * static_cast<std::size_t>(columns_);
   }
@@ -60,12 +68,13 @@ class Band {
   Rgb background_;
   std::vector<Rgb> colour_;
   std::vector<float> depth_;
+  std::vector<std::uint8_t> painted_;  // empty unless is_clear
 };
 
 /// What a picture is drawn on.
 struct Canvas {
   Image& image;
-  Rgb background;
+  Rgb background;  ///< of an image without alpha
   std::stop_token stop = {};
 };
 
@@ -87,7 +96,7 @@ void draw_in_bands(const Canvas& canvas, Index count, TriangleOf triangle, Draw 
     for (Index b = first; b < bands && b * Band::kRows < rows.end; ++b) touches.push_back({b, k});
   }
   counting_sort(touches, bands, [](const Touch& touch) { return touch.band; });
-  Band band(image.width, canvas.background);
+  Band band(image.width, canvas.background, !image.alpha.empty());
   std::size_t next = 0;
   for (Index b = 0; b < bands; ++b) {
     throw_if_cancelled(canvas.stop);

@@ -25,7 +25,12 @@ struct LayoutLook {
       : colouring(shown), page(extent) {}
 
   Colouring colouring;
-  Vec2 page;  ///< its sides, the longer one 1; UVs are in these units
+  Vec2 page;                ///< its sides, the longer one 1; UVs are in these units
+  bool legend = true;       ///< below the page
+  bool background = true;   ///< false: transparent wherever nothing is drawn
+  bool wireframe = false;   ///< the edges of all triangles, in place of their colours
+  bool numbers = false;     ///< of islands (island_numbers.hpp)
+  bool is_cropped = false;  ///< to the page: what lies beyond it is cut off, as are margins
 };
 
 /// A figure that stands below the bar.
@@ -55,6 +60,7 @@ const ColourScale& colour_scale(Colouring colouring);
 
 inline constexpr Rgb kFlippedColour = {0xff, 0x2a, 0x4d};
 inline constexpr Rgb kOverlapColour = {0x52, 0x00, 0x7a};  ///< of the hatching
+inline constexpr Rgb kWire = {0x8a, 0x85, 0x96};           ///< edges within an island
 inline constexpr Rgb kInk = {0x16, 0x13, 0x1f};
 inline constexpr Rgb kPaper = {0xff, 0xff, 0xff};
 inline constexpr Rgb kPage = {0xe9, 0xe8, 0xed};

@@ -14,7 +14,8 @@ using Rgb = std::array<std::uint8_t, 3>;  ///< sRGB
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> rgb;  ///< 3 * width * height, rows from the top, sRGB
+  std::vector<std::uint8_t> rgb;         ///< 3 * width * height, rows from the top, sRGB
+  std::vector<std::uint8_t> alpha = {};  ///< width * height, 0: transparent; empty: all opaque
 
   [[nodiscard]] Rgb at(int x, int y) const {
     const std::size_t k = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +

@@ -3,6 +3,7 @@
 // std::to_chars relative to a triangle's first corner, which keeps them short.
 #include "core/figure/layout_svg.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -10,19 +11,24 @@
 #include <vector>
 
 #include "core/base/cancel.hpp"
+#include "core/figure/island_numbers.hpp"
 #include "core/figure/legend.hpp"
+#include "core/figure/lettering.hpp"
 #include "core/figure/painting.hpp"
 
 namespace unwrapd::figure {
 namespace {
 
 constexpr double kUnits = 40960;    // coordinates a page's side
+constexpr double kMinFont = 8;      // units, height of a font
 constexpr double kMaxUnits = 1e12;  // no UV, however far off, leaves the range of long
 
-/// The data of the paths: one for each colour, flipped triangles, boundaries.
+/// The data of the paths: one for each colour, flipped triangles, edges between triangles,
+/// boundaries.
 struct Paths {
   std::vector<std::string> colour;
   std::string flipped;
+  std::string wires;
   std::string boundary;
 };
 
@@ -87,6 +93,12 @@ void draw(const UnwrappedSurface& surface, std::span<const std::uint8_t> painted
   for (const Edge& edge : outline(surface)) append_edge(paths.boundary, edge, places);
 }
 
+void draw_wires(const UnwrappedSurface& surface, const Frame& frame, Paths& paths) {
+  const Places places(surface.uv, frame);
+  for (const Edge& edge : inner_edges(surface)) append_edge(paths.wires, edge, places);
+  for (const Edge& edge : outline(surface)) append_edge(paths.boundary, edge, places);
+}
+
 /// Triangles of one colour. A stroke of that colour hides the hairlines between neighbours.
 void append_fill(std::string& svg, const Rgb& colour, std::string_view data, long stroke) {
   if (data.empty()) return;
@@ -113,9 +125,10 @@ void append_hatching(std::string& svg, const std::vector<Polygon>& overlaps, con
   svg.append("\"><title>shared by two triangles</title></path>\n");
 }
 
-void append_boundary(std::string& svg, std::string_view data) {
-  svg.append("<path fill=\"none\" stroke=\"").append(hex(kInk));
-  svg.append("\" stroke-width=\"30\" d=\"").append(data).append("\"/>\n");
+void append_strokes(std::string& svg, const Rgb& colour, long width, std::string_view data) {
+  svg.append("<path fill=\"none\" stroke=\"").append(hex(colour)).append("\" stroke-width=\"");
+  append(svg, width);
+  svg.append("\" d=\"").append(data).append("\"/>\n");
 }
 
 void append_attribute(std::string& svg, std::string_view name, double value) {
@@ -143,11 +156,61 @@ void append_label(std::string& svg, const Label& label) {
   svg.append(">").append(label.text).append("</text>\n");
 }
 
-void append_legend(std::string& svg, const ColourScale& scale) {
+/// The part of the drawing that is shown, in whole units; the legend is as wide.
+struct Shown {
+  long width;
+  long top;     ///< of the page
+  long legend;  ///< its height, 0 for none
+
+  [[nodiscard]] long height() const { return kPageUnits - top + legend; }
+};
+
+Shown shown_of(const LayoutLook& look) {
+  const Vec2 sides = look.is_cropped ? look.page : Vec2::Ones();
+  const long width = std::max(1L, std::lround(kPageUnits * sides.x()));
+  return {.width = width,
+          .top = kPageUnits - std::max(1L, std::lround(kPageUnits * sides.y())),
+          .legend = look.legend ? std::lround(double{kLegendUnits} * static_cast<double>(width) /
+                                              kPageUnits)
+                                : 0};
+}
+
+/// A legend that is narrower than the page's square is scaled about the page's lower left corner.
+void append_legend(std::string& svg, const ColourScale& scale, const Shown& shown) {
   const Legend legend = legend_of(scale);
-  svg.append("<g font-family=\"sans-serif\" fill=\"").append(hex(kInk)).append("\">\n");
+  svg.append("<g font-family=\"sans-serif\" fill=\"").append(hex(kInk)).append("\"");
+  if (shown.width < kPageUnits) {
+    svg += " transform=\"translate(0 4096) scale(";
+    append(svg, shown.width);
+    svg += ") scale(.000244140625) translate(0 -4096)\"";  // 1/4096
+  }
+  svg += ">\n";
   for (const Swatch& swatch : legend.swatches) append_swatch(svg, swatch);
   for (const Label& label : legend.labels) append_label(svg, label);
+  svg += "</g>\n";
+}
+
+/// On a brighter ground where colours are.
+void append_numbers(std::string& svg, std::span<const UnwrappedSurface> unwrapped,
+                    const LayoutLook& look, const Frame& frame) {
+  svg.append("<g font-family=\"sans-serif\" text-anchor=\"middle\" fill=\"").append(hex(kInk));
+  if (!look.wireframe) svg.append("\" paint-order=\"stroke\" stroke=\"").append(hex(kPaper));
+  svg += "\">\n";
+  long number = 0;
+  for (const IslandMark& mark : island_marks(unwrapped)) {
+    ++number;
+    const double size = kPageUnits / frame.side * mark.size;
+    if (size < kMinFont) continue;
+    const Vec2 place = kPageUnits * frame.place(mark.middle);
+    svg += "<text";
+    append_attribute(svg, "x", place.x());
+    append_attribute(svg, "y", kPageUnits - place.y() + kDigitHeight * size / 2);
+    append_attribute(svg, "font-size", size);
+    if (!look.wireframe) append_attribute(svg, "stroke-width", size / 5);
+    svg += '>';
+    append(svg, number);
+    svg += "</text>\n";
+  }
   svg += "</g>\n";
 }
 
@@ -161,39 +224,72 @@ void append_page(std::string& svg, const Vec2& page) {
   svg.append(" fill=\"").append(hex(kPage)).append("\"/>\n");
 }
 
-void append_head(std::string& svg, const ColourScale& scale, const Vec2& page) {
-  svg +=
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 4096 4416\">\n"
-      "<title>UV layout, coloured by ";
-  svg.append(scale.title).append("</title>\n");
-  svg.append("<rect width=\"4096\" height=\"4416\" fill=\"").append(hex(kPaper)).append("\"/>\n");
+void append_head(std::string& svg, const LayoutLook& look, const Shown& shown) {
+  svg += "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 ";
+  for (const long number : {shown.top, shown.width}) {
+    append(svg, number);
+    svg += ' ';
+  }
+  append(svg, shown.height());
+  svg += "\">\n<title>UV layout";
+  if (!look.wireframe) svg.append(", coloured by ").append(colour_scale(look.colouring).title);
+  svg += "</title>\n";
+}
+
+void append_background(std::string& svg, const Vec2& page, const Shown& shown) {
+  svg += "<rect";
+  if (shown.top > 0) append_attribute(svg, "y", static_cast<double>(shown.top));
+  append_attribute(svg, "width", static_cast<double>(shown.width));
+  append_attribute(svg, "height", static_cast<double>(shown.height()));
+  svg.append(" fill=\"").append(hex(kPaper)).append("\"/>\n");
   append_page(svg, page);
 }
 
-static_assert(kPageUnits == 4096 && kLegendUnits == 320, "append_head() spells them out");
+/// Triangles in their colours, flipped ones above them.
+void append_colours(std::string& svg, const Paths& paths, const LayoutLook& look) {
+  const ColourScale& scale = colour_scale(look.colouring);
+  for (std::size_t k = 0; k < scale.colours.size(); ++k)
+    append_fill(svg, scale.colours[k], paths.colour[k], 5);
+  append_fill(svg, kFlippedColour, paths.flipped, look.colouring == Colouring::flips ? 120 : 5);
+}
+
+Paths paths_of(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
+               const LayoutLook& look, const Frame& frame, const std::stop_token& stop) {
+  Paths paths;
+  paths.colour.resize(colour_scale(look.colouring).colours.size());
+  if (look.wireframe) {
+    for (const UnwrappedSurface& surface : unwrapped) draw_wires(surface, frame, paths);
+    return paths;
+  }
+  const auto painted = painted_faces(surfaces, unwrapped, look.colouring);
+  for (std::size_t s = 0; s < unwrapped.size(); ++s)
+    draw(unwrapped[s], painted[s], frame, stop, paths);
+  return paths;
+}
 
 }  // namespace
 
 std::string layout_svg(std::span<const Surface> surfaces,
                        std::span<const UnwrappedSurface> unwrapped, const LayoutLook& look,
                        const std::stop_token& stop) {
-  const ColourScale& scale = colour_scale(look.colouring);
-  const auto painted = painted_faces(surfaces, unwrapped, look.colouring);
-  const Frame frame = frame_of(unwrapped);
-  Paths paths{
-      .colour = std::vector<std::string>(scale.colours.size()), .flipped = {}, .boundary = {}};
-  for (std::size_t s = 0; s < unwrapped.size(); ++s)
-    draw(unwrapped[s], painted[s], frame, stop, paths);
+  const Frame frame = look.is_cropped ? Frame() : frame_of(unwrapped);
+  const Shown shown = shown_of(look);
+  const Paths paths = paths_of(surfaces, unwrapped, look, frame, stop);
   std::string svg;
-  append_head(svg, scale, frame.side == 1 ? look.page : Vec2::Ones());
+  append_head(svg, look, shown);
+  if (look.background)
+    append_background(svg, frame.side == 1 ? look.page : Vec2(Vec2::Ones()), shown);
   svg += "<g transform=\"matrix(.1 0 0 -.1 0 4096)\" stroke-linejoin=\"round\">\n";
-  for (std::size_t k = 0; k < scale.colours.size(); ++k)
-    append_fill(svg, scale.colours[k], paths.colour[k], 5);
-  append_fill(svg, kFlippedColour, paths.flipped, look.colouring == Colouring::flips ? 120 : 5);
-  append_hatching(svg, overlap_polygons(unwrapped, stop), frame);
-  append_boundary(svg, paths.boundary);
+  append_colours(svg, paths, look);
+  if (look.wireframe) {
+    append_strokes(svg, kWire, 15, paths.wires);
+  } else {
+    append_hatching(svg, overlap_polygons(unwrapped, stop), frame);
+  }
+  append_strokes(svg, kInk, 30, paths.boundary);
   svg += "</g>\n";
-  append_legend(svg, scale);
+  if (look.numbers) append_numbers(svg, unwrapped, look, frame);
+  if (look.legend) append_legend(svg, colour_scale(look.colouring), shown);
   svg += "</svg>\n";
   return svg;
 }

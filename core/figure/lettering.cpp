@@ -24,7 +24,6 @@ constexpr double kLine = 1000;
 constexpr double kFontUnits = 10.5;  // of a font's height
 constexpr double kGap = 1.7;         // between letters
 constexpr double kSpace = 2.2;       // width of a blank
-constexpr double kPen = 0.95;        // width of a stroke
 constexpr double kMaxPiece = 15;     // degrees of an arc that a straight piece stands for
 
 constexpr Stroke line(double x0, double y0, double x1, double y1) {
@@ -116,11 +115,11 @@ void for_each_piece(const Stroke& stroke, Visit visit) {
 }
 
 void append_glyph(std::vector<FlatTriangle>& drawing, const Glyph& glyph, const Vec2& origin,
-                  double unit) {
+                  double unit, const Pen& pen) {
   const auto place = [&](const Vec2& p) { return Vec2(origin + unit * Vec2(p.x(), -p.y())); };
   for (const Stroke& stroke : std::span(glyph.strokes).first(glyph.count)) {
     for_each_piece(stroke, [&](const Vec2& from, const Vec2& to) {
-      append_line(drawing, {place(from), place(to)}, kPen * unit, kInk);
+      append_line(drawing, {place(from), place(to)}, pen.width * unit, pen.colour);
     });
   }
 }
@@ -134,11 +133,11 @@ double text_width(std::string_view text, double size) {
 }
 
 void append_text(std::vector<FlatTriangle>& drawing, std::string_view text, const Vec2& start,
-                 double size) {
+                 double size, const Pen& pen) {
   const double unit = size / kFontUnits;
   Vec2 origin = start;
   for (const char letter : text) {
-    if (const Glyph* glyph = find_glyph(letter)) append_glyph(drawing, *glyph, origin, unit);
+    if (const Glyph* glyph = find_glyph(letter)) append_glyph(drawing, *glyph, origin, unit, pen);
     origin.x() += unit * advance(letter);
   }
 }

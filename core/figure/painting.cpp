@@ -78,6 +78,17 @@ Polygon above_line(const Polygon& polygon, const Vec2& normal, double least) {
   return kept;
 }
 
+std::vector<Edge> edges_of(const UnwrappedSurface& surface, bool at_the_end) {
+  const std::vector<EdgeSide> sides = sides_on_page(surface);
+  std::vector<Edge> edges;
+  for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
+    if ((last - first == 1) != at_the_end) return;
+    edges.push_back(
+        {start_of(surface.faces, first->halfedge), end_of(surface.faces, first->halfedge)});
+  });
+  return edges;
+}
+
 }  // namespace
 
 std::vector<std::vector<std::uint8_t>> painted_faces(std::span<const Surface> surfaces,
@@ -127,20 +138,18 @@ Polygon clipped(const Polygon& polygon, const Vec2& normal, double low, double h
   return above_line(above, -normal, -high);
 }
 
-std::vector<Edge> outline(const UnwrappedSurface& surface) {
+std::vector<EdgeSide> sides_on_page(const UnwrappedSurface& surface) {
   std::vector<Vec3> places(surface.uv.size());
   for (std::size_t v = 0; v < places.size(); ++v) places[v] << surface.uv[v], 0;
   const std::vector<Triangle> faces = renumber(surface.faces, weld(places));
   auto sides = edge_sides(faces, [&](Index h) { return !repeats_vertex(faces[face_of(h)]); });
   sort_by_edge(sides, static_cast<Index>(places.size()));
-  std::vector<Edge> edges;
-  for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
-    if (last - first > 1) return;
-    edges.push_back(
-        {start_of(surface.faces, first->halfedge), end_of(surface.faces, first->halfedge)});
-  });
-  return edges;
+  return sides;
 }
+
+std::vector<Edge> outline(const UnwrappedSurface& surface) { return edges_of(surface, true); }
+
+std::vector<Edge> inner_edges(const UnwrappedSurface& surface) { return edges_of(surface, false); }
 
 Frame frame_of(std::span<const UnwrappedSurface> unwrapped) {
   Vec2 low = Vec2::Zero(), high = Vec2::Ones();

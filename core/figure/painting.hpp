@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/figure/colour_scale.hpp"
+#include "core/mesh/edges.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd::figure {
@@ -41,6 +42,13 @@ using Edge = std::array<Index, 2>;  ///< vertices of an UnwrappedSurface
 /// The edges that have a face on one side only of the page. Found by place, since vertices may be
 /// split for other reasons than a seam.
 std::vector<Edge> outline(const UnwrappedSurface& surface);
+
+/// All other edges, each once.
+std::vector<Edge> inner_edges(const UnwrappedSurface& surface);
+
+/// The half-edges on each edge of the page, in the order of edges; found by place. Faces that
+/// repeat a place have none.
+std::vector<EdgeSide> sides_on_page(const UnwrappedSurface& surface);
 
 /// The square of UV space that a picture shows: the page [0,1]^2, or a greater one about all
 /// islands where positions were prescribed that lie off the page.

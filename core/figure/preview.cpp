@@ -194,14 +194,8 @@ void draw_line(const LinePart& part, Band& band) {
                    [&](std::size_t place, const auto&) { band.colour_at(place) = part.colour; });
 }
 
-}  // namespace
-
-Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
-              int size, const std::stop_token& stop) {
-  assert(surfaces.size() == unwrapped.size());
-  assert(size >= kMinImageSize && size <= kMaxImageSize);
-  const View view = view_of(surfaces, size);
-  const double checks = checks_of(surfaces, unwrapped, view);
+Image drawn(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
+            const View& view, double checks, const std::stop_token& stop) {
   std::vector<Painter> painters;
   std::vector<LinePart> lines;
   std::vector<Index> first_face = {0};
@@ -215,6 +209,7 @@ Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurfac
   const auto surface_of = [&](Index k) {
     return std::ranges::upper_bound(first_face, k) - first_face.begin() - 1;
   };
+  const int size = static_cast<int>(std::lround(2 * view.centre));
   Image image = blank_image(size, size);
   draw_in_bands(
       {image, kPaper, stop}, faces + static_cast<Index>(lines.size()),
@@ -229,6 +224,58 @@ Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurfac
         draw_line(lines[k - faces], band);
       });
   return image;
+}
+
+/// Eight views around the surfaces, all at one scale.
+std::array<View, kTurntableViews> views_around(std::span<const Surface> surfaces, int size) {
+  std::array<View, kTurntableViews> views;
+  double pixels = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const double turn = 360.0 * static_cast<double>(k) / kTurntableViews;
+    views[k] = view_of(surfaces, size, Aspect{.azimuth = turn, .elevation = kTurntableElevation});
+    pixels = std::min(pixels, views[k].pixels);
+  }
+  for (View& view : views) {
+    view.extent *= pixels / view.pixels;
+    view.pixels = pixels;
+  }
+  return views;
+}
+
+/// Copies a square picture to where its column and row begin in a sheet of such squares.
+void place_on_sheet(const Image& picture, int column, int row, Image& sheet) {
+  const std::ptrdiff_t line = std::ptrdiff_t{3} * picture.width;
+  for (int y = 0; y < picture.height; ++y)
+    std::copy_n(picture.rgb.begin() + y * line, line,
+                sheet.rgb.begin() + 3 * (std::ptrdiff_t{row * picture.height + y} * sheet.width +
+                                         std::ptrdiff_t{column} * picture.width));
+}
+
+}  // namespace
+
+Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
+              int size, const std::optional<Aspect>& aspect, const std::stop_token& stop) {
+  assert(surfaces.size() == unwrapped.size());
+  assert(size >= kMinImageSize && size <= kMaxImageSize);
+  const View view = view_of(surfaces, size, aspect);
+  return drawn(surfaces, unwrapped, view, checks_of(surfaces, unwrapped, view), stop);
+}
+
+Image turntable(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
+                int size, const std::stop_token& stop) {
+  assert(surfaces.size() == unwrapped.size());
+  assert(size >= kMinImageSize && size <= kMaxImageSize);
+  constexpr int kColumns = kTurntableViews / 2;
+  const int side = size / kColumns;
+  const std::array<View, kTurntableViews> views = views_around(surfaces, side);
+  const double checks = checks_of(surfaces, unwrapped, views[0]);
+  Image sheet = blank_image(kColumns * side, 2 * side);
+  for (int k = 0; k < kTurntableViews; ++k) {
+    const View& view = views[static_cast<std::size_t>(k)];
+    place_on_sheet(drawn(surfaces, unwrapped, view, checks, stop), k % kColumns, k / kColumns,
+                   sheet);
+  }
+  return sheet;
 }
 
 }  // namespace unwrapd::figure

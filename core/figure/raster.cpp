@@ -29,6 +29,18 @@ void append_line(std::vector<FlatTriangle>& drawing, const std::array<Vec2, 2>& 
         {{snapped(corners[0]), snapped(corners[k - 1]), snapped(corners[k])}, colour});
 }
 
+void append_thin_line(std::vector<FlatTriangle>& drawing, const std::array<Vec2, 2>& ends,
+                      double width, const Rgb& colour) {
+  const Vec2 along = ends[1] - ends[0];
+  const double length = along.norm();
+  if (!(length > 0)) return;
+  const Vec2 aside = Vec2(-along.y(), along.x()) * (width / 2 / length);
+  const ScreenPoint a = snapped(ends[0] - aside), b = snapped(ends[1] - aside);
+  const ScreenPoint c = snapped(ends[1] + aside), d = snapped(ends[0] + aside);
+  drawing.push_back({{a, b, c}, colour});
+  drawing.push_back({{a, c, d}, colour});
+}
+
 void append_rectangle(std::vector<FlatTriangle>& drawing, const Vec2& low, const Vec2& high,
                       const Rgb& colour) {
   const ScreenPoint a = snapped(low), c = snapped(high);
@@ -40,14 +52,16 @@ void append_rectangle(std::vector<FlatTriangle>& drawing, const Vec2& low, const
 Image blank_image(int width, int height) {
   assert(width >= 1 && height >= 1);
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  return {.width = width, .height = height, .rgb = std::vector<std::uint8_t>(3 * pixels)};
+  return {
+      .width = width, .height = height, .rgb = std::vector<std::uint8_t>(3 * pixels), .alpha = {}};
 }
 
-Image rasterised(std::span<const FlatTriangle> drawing, int width, int height,
-                 const Rgb& background, const std::stop_token& stop) {
-  Image image = blank_image(width, height);
+Image rasterised(std::span<const FlatTriangle> drawing, const Sheet& sheet,
+                 const std::stop_token& stop) {
+  Image image = blank_image(sheet.width, sheet.height);
+  if (!sheet.background) image.alpha.resize(image.rgb.size() / 3);
   draw_in_bands(
-      {image, background, stop}, static_cast<Index>(drawing.size()),
+      {image, sheet.background.value_or(Rgb{}), stop}, static_cast<Index>(drawing.size()),
       [&](Index k) -> const ScreenTriangle& { return drawing[k].corners; },
       [&](Index k, Band& band) { band.fill(drawing[k].corners, drawing[k].colour); });
   return image;

@@ -13,10 +13,6 @@
 namespace unwrapd::figure {
 namespace {
 
-struct Aspect {
-  double azimuth, elevation;  ///< degrees, from +Z towards +X and towards +Y
-};
-
 /// In the order of preference.
 constexpr std::array<Aspect, 14> kAspects = {{{30, 20},
                                               {-30, 20},
@@ -32,6 +28,16 @@ constexpr std::array<Aspect, 14> kAspects = {{{30, 20},
                                               {150, -30},
                                               {-30, -50},
                                               {-150, -50}}};
+struct NamedAspect {
+  std::string_view name;
+  Aspect aspect;
+};
+constexpr std::array<NamedAspect, 6> kNamed = {{{"front", {0, 0}},
+                                                {"back", {180, 0}},
+                                                {"left", {-90, 0}},
+                                                {"right", {90, 0}},
+                                                {"top", {0, 90}},
+                                                {"bottom", {0, -90}}}};
 constexpr double kNearlyBest = 0.9;   // of the best view's area
 constexpr double kFillOfView = 0.92;  // of the picture's side
 
@@ -39,7 +45,7 @@ void look_from(const Aspect& aspect, View& view) {
   const double a = aspect.azimuth * std::numbers::pi / 180;
   const double e = aspect.elevation * std::numbers::pi / 180;
   view.toward = {std::sin(a) * std::cos(e), std::sin(e), std::cos(a) * std::cos(e)};
-  view.right = Vec3::UnitY().cross(view.toward).normalized();
+  view.right = {std::cos(a), 0, -std::sin(a)};  // also where one looks along Y
   view.up = view.toward.cross(view.right);
 }
 
@@ -89,11 +95,16 @@ Vec2 View::pixel(const Vec3& position) const {
 
 double View::depth(const Vec3& position) const { return pixels * toward.dot(position / unit); }
 
-View view_of(std::span<const Surface> surfaces, int size) {
+std::optional<Aspect> aspect_named(std::string_view name) {
+  const auto found = std::ranges::find(kNamed, name, &NamedAspect::name);
+  return found == kNamed.end() ? std::nullopt : std::optional(found->aspect);
+}
+
+View view_of(std::span<const Surface> surfaces, int size, const std::optional<Aspect>& aspect) {
   View view;
   view.unit = greatest_coordinate(surfaces);
   view.centre = size / 2.0;
-  look_from(best_aspect(surfaces, view.unit), view);
+  look_from(aspect ? *aspect : best_aspect(surfaces, view.unit), view);
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::max()), high = -low;
   for_each_face(surfaces, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
     for (const Vec3* p : {&a, &b, &c}) {

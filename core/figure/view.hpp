@@ -1,7 +1,9 @@
 #pragma once
 // From where a surface is looked at, and where its points then lie in the picture.
 
+#include <optional>
 #include <span>
+#include <string_view>
 
 #include "core/mesh/tri_mesh.hpp"
 
@@ -22,10 +24,19 @@ struct View {
   double extent = 0;
 };
 
+/// From where one looks: degrees, from +Z towards +X and towards +Y.
+struct Aspect {
+  double azimuth = 0;
+  double elevation = 0;
+};
+
+/// front (from +Z), back, left (from -X), right, top (from +Y, front below) or bottom.
+std::optional<Aspect> aspect_named(std::string_view name);
+
 /// The view that shows most of the surfaces' outer sides among a few from above and aslant, +Y
 /// being up (glTF 2.0, Sec. 3.4) and +Z in front; the first of those that are nearly as good. All
 /// that faces use is fitted into a square of `size` pixels. A surface without extent lies in the
-/// middle.
-View view_of(std::span<const Surface> surfaces, int size);
+/// middle. aspect: from there instead.
+View view_of(std::span<const Surface> surfaces, int size, const std::optional<Aspect>& aspect = {});
 
 }  // namespace unwrapd::figure

@@ -53,7 +53,7 @@ double cost_of(const http::Request& request, std::string_view route) {
   const auto size = request.query.find("size");
   if (!route.ends_with(".png") || size == request.query.end()) return 1;
   const std::string& text = size->second;
-  int pixels = 0;  // what is no size costs nothing to refuse
+  int pixels = text == "page" ? figure::kMaxImageSize : 0;  // what is no size is refused
   std::from_chars(text.data(), text.data() + text.size(), pixels);
   pixels = std::clamp(pixels, 0, figure::kMaxImageSize);
   return std::max(1.0, pixels * static_cast<double>(pixels) / kMegapixel);

@@ -15,8 +15,9 @@ class PictureStore {
  public:
   PictureStore(store::BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
-  /// The picture of one of the maps of a succeeded job (lambda_selection.hpp). Only sizes that are
-  /// a power of two are stored with the job, so that requests for every size do not fill the disk.
+  /// The picture of one of the maps of a succeeded job (lambda_selection.hpp). Only usual looks in
+  /// sizes that are a power of two are stored with the job, so that requests for all others do not
+  /// fill the disk.
   /// A damaged picture is drawn again. Throws what Renderer::render() throws.
   StoredResult open(const store::JobRecord& job, std::size_t map, const work::Picture& picture,
                     const http::HasLeft& has_left = {});

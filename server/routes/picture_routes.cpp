@@ -1,6 +1,8 @@
 #include "server/routes/picture_routes.hpp"
 
 #include <charconv>
+#include <cmath>
+#include <optional>
 
 #include "server/routes/job_routes.hpp"
 #include "server/routes/result_routes.hpp"
@@ -8,6 +10,8 @@
 
 namespace unwrapd::server::routes {
 namespace {
+
+constexpr int kMostPages = 100;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& what) {
   throw Error(ErrorCode::invalid_option, what, "/" + name);
@@ -25,8 +29,97 @@ int parse_size(const std::string& text) {
   const auto [stop, error] = std::from_chars(text.data(), end, size);
   if (error != std::errc() || stop != end || size < figure::kMinImageSize ||
       size > figure::kMaxImageSize)
-    refuse("size", "The size must be a whole number of pixels from 64 to 4096.");
+    refuse("size",
+           "The size must be a whole number of pixels from 64 to 4096, or for layout.png page.");
   return size;
+}
+
+bool parse_switch(const std::string& name, const std::string& text) {
+  if (text != "0" && text != "1") refuse(name, "The parameter must be 0 or 1.");
+  return text == "1";
+}
+
+bool parse_background(const std::string& text) {
+  if (text != "page" && text != "none")
+    refuse("background", "The background is unknown; use page or none.");
+  return text == "page";
+}
+
+int parse_page(const std::string& text) {
+  int page = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, page);
+  if (error != std::errc() || stop != end || page < 1 || page > kMostPages)
+    refuse("page", "The page must be a whole number from 1 to 100.");
+  return page;
+}
+
+/// An angle in degrees, at the start of a text, which it is taken from.
+std::optional<double> take_degrees(std::string_view& text, double most) {
+  double degrees = 0;
+  const auto [stop, error] =
+      std::from_chars(text.data(), text.data() + text.size(), degrees, std::chars_format::fixed);
+  if (error != std::errc() || !(std::abs(degrees) <= most)) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
+  return degrees;
+}
+
+/// "30,-20.5", rounded to hundredths.
+std::optional<figure::Aspect> parse_angles(std::string_view text) {
+  const auto rounded = [](double degrees) { return std::round(100 * degrees) / 100 + 0.0; };
+  const std::optional<double> azimuth = take_degrees(text, 360);
+  if (!azimuth || !text.starts_with(',')) return std::nullopt;
+  text.remove_prefix(1);
+  const std::optional<double> elevation = take_degrees(text, 90);
+  if (!elevation || !text.empty()) return std::nullopt;
+  return figure::Aspect{.azimuth = rounded(*azimuth), .elevation = rounded(*elevation)};
+}
+
+void set_view(work::Picture& picture, const std::string& text) {
+  if (text == "auto") return;
+  picture.turns = text == "turntable";
+  if (picture.turns) return;
+  picture.aspect = figure::aspect_named(text);
+  if (!picture.aspect) picture.aspect = parse_angles(text);
+  if (!picture.aspect)
+    refuse("view",
+           "The view must be auto, front, back, left, right, top, bottom, turntable, or two angles "
+           "in degrees such as 30,20, from -360 to 360 and from -90 to 90.");
+}
+
+/// Sets a parameter of layouts; false when it is none.
+bool set_layout(work::Picture& picture, const std::string& name, const std::string& text) {
+  if (name == "colour") {
+    picture.colouring = parse_colour(text);
+  } else if (name == "legend") {
+    picture.legend = parse_switch(name, text);
+  } else if (name == "background") {
+    picture.background = parse_background(text);
+  } else if (name == "wireframe") {
+    picture.wireframe = parse_switch(name, text);
+  } else if (name == "numbers") {
+    picture.numbers = parse_switch(name, text);
+  } else if (name == "page") {
+    picture.page = parse_page(text);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void set_size(work::Picture& picture, const std::string& text) {
+  picture.has_page_size = text == "page" && picture.kind == work::PictureKind::layout_png;
+  if (!picture.has_page_size) picture.size = parse_size(text);
+}
+
+/// What some parameters say of others.
+void settle_layout(work::Picture& picture, const std::multimap<std::string, std::string>& query) {
+  if (picture.has_page_size && picture.page == 0) picture.page = 1;
+  if (!query.contains("legend")) picture.legend = !picture.wireframe && picture.page == 0;
+  if (!picture.wireframe) return;
+  for (const char* name : {"colour", "legend"})
+    if (query.contains(name) && (picture.legend || std::string_view(name) == "colour"))
+      refuse(name, "A wireframe shows no colours, and has no legend of them; leave this out.");
 }
 
 http::Response get_picture(results::PictureStore& pictures, const store::JobRecord& job,
@@ -46,16 +139,19 @@ http::Response get_picture(results::PictureStore& pictures, const store::JobReco
 work::Picture picture_of(work::PictureKind kind,
                          const std::multimap<std::string, std::string>& query) {
   work::Picture picture{.kind = kind};
+  const bool is_layout = kind != work::PictureKind::preview_png;
   for (const auto& [name, text] : query) {
     if (query.count(name) > 1) refuse(name, "The parameter is given twice; give it once.");
-    if (name == "colour" && kind != work::PictureKind::preview_png) {
-      picture.colouring = parse_colour(text);
+    if (is_layout && set_layout(picture, name, text)) continue;
+    if (name == "view" && !is_layout) {
+      set_view(picture, text);
     } else if (name == "size" && kind != work::PictureKind::layout_svg) {
-      picture.size = parse_size(text);
+      set_size(picture, text);
     } else {
       refuse(name, "This picture has no parameter of this name; see /openapi.yaml.");
     }
   }
+  if (is_layout) settle_layout(picture, query);
   return picture;
 }
 

@@ -7,7 +7,7 @@
 
 namespace unwrapd::server::work {
 
-/// The bytes of a PNG file, 8 bits a channel, sRGB, without alpha or date: the same for the same
+/// The bytes of a PNG file, 8 bits a channel, sRGB, without a date: the same for the same
 /// picture. Throws Error{internal} when there is no memory for it.
 std::string encode_png(const figure::Image& image);
 

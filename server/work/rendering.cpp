@@ -1,6 +1,7 @@
 #include "server/work/rendering.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,34 +23,97 @@ namespace {
 
 using Surfaces = std::vector<UnwrappedSurface>;
 
-/// Stretches UVs to the shape of the page, whose longer side becomes 1. Returns the sides of the
-/// page; of the square, where UVs lie beyond the page: then it has no margins.
-Vec2 shape_page(const PageSize& page, Surfaces& unwrapped) {
-  constexpr double kSlack = 1e-6;
-  const Vec2 sides = Vec2(page.width, page.height) / std::max(page.width, page.height);
-  if (sides == Vec2::Ones()) return sides;
-  bool is_beyond = false;
-  for (UnwrappedSurface& surface : unwrapped)
-    for (Vec2& uv : surface.uv) {
-      is_beyond = is_beyond || uv.minCoeff() < -kSlack || uv.maxCoeff() > 1 + kSlack;
-      uv = uv.cwiseProduct(sides);
-    }
-  return is_beyond ? Vec2(Vec2::Ones()) : sides;
+/// The pages of a layout.
+struct Pages {
+  PageSize size;
+  int count = 1;
+};
+
+/// Those of the options; where the report is there, the ones that were written.
+Pages pages_of(const api::JobOptions& options, std::string_view report) {
+  Pages pages{.size = options.unwrap.page_size()};
+  if (report.empty()) return pages;
+  const api::Json json = api::Json::parse(report);
+  pages.count = json.value("pages", 1);
+  if (const auto page = json.find("page"); page != json.end())
+    pages.size = {.width = page->at("width"), .height = page->at("height")};
+  return pages;
 }
 
-std::string draw(const Picture& picture, const asset::Asset& asset, const PageSize& page,
-                 Surfaces unwrapped, const std::stop_token& stop) {
-  const figure::LayoutLook look(picture.colouring, shape_page(page, unwrapped));
-  switch (picture.kind) {
-    case PictureKind::layout_svg:
-      return figure::layout_svg(asset.surfaces(), unwrapped, look, stop);
-    case PictureKind::layout_png:
-      return encode_png(
-          figure::layout_image(asset.surfaces(), unwrapped, look, picture.size, stop));
-    case PictureKind::preview_png:
-      return encode_png(figure::preview(asset.surfaces(), unwrapped, picture.size, stop));
-  }
-  return {};
+/// The longer one is 1.
+Vec2 sides_of(const PageSize& page) {
+  return Vec2(page.width, page.height) / std::max(page.width, page.height);
+}
+
+/// Stretches UVs to the shape of the page, and moves them so that the lower left corner of a tile
+/// (UDIM, from 0) is the origin.
+void bring_to_page(const Vec2& sides, int tile, Surfaces& unwrapped) {
+  constexpr int kTilesARow = 10;
+  const Vec2 corner(tile % kTilesARow, tile / kTilesARow);
+  if (sides == Vec2::Ones() && tile == 0) return;
+  for (UnwrappedSurface& surface : unwrapped)
+    for (Vec2& uv : surface.uv) uv = (uv - corner).cwiseProduct(sides);
+}
+
+bool lies_beyond(const Surfaces& unwrapped) {
+  constexpr double kSlack = 1e-6;
+  return std::ranges::any_of(unwrapped, [](const UnwrappedSurface& surface) {
+    return std::ranges::any_of(surface.uv, [](const Vec2& uv) {
+      return uv.minCoeff() < -kSlack || uv.maxCoeff() > 1 + kSlack;
+    });
+  });
+}
+
+/// All pages in one square. Where UVs lie beyond the page, it has no margins.
+figure::LayoutLook look_at_all(const Picture& picture, const Pages& pages, Surfaces& unwrapped) {
+  const Vec2 sides = sides_of(pages.size);
+  const bool is_beyond = sides != Vec2::Ones() && lies_beyond(unwrapped);
+  bring_to_page(sides, 0, unwrapped);
+  return {picture.colouring, is_beyond ? Vec2(Vec2::Ones()) : sides};
+}
+
+figure::LayoutLook look_at_page(const Picture& picture, const Pages& pages, Surfaces& unwrapped) {
+  if (picture.page > pages.count)
+    throw Error(ErrorCode::invalid_option,
+                "The layout has " + std::to_string(pages.count) + " pages; choose one of them.",
+                "/page");
+  figure::LayoutLook look(picture.colouring, sides_of(pages.size));
+  look.is_cropped = true;
+  bring_to_page(look.page, picture.page - 1, unwrapped);
+  return look;
+}
+
+int pixels_of(const Picture& picture, const PageSize& page) {
+  const int side = std::max(page.width, page.height);
+  if (!picture.has_page_size) return picture.size;
+  if (side <= figure::kMaxImageSize) return side;
+  throw Error(ErrorCode::invalid_option,
+              "The page has " + std::to_string(page.width) + " x " + std::to_string(page.height) +
+                  " texels, and a picture at most 4096 pixels a side; ask for a number.",
+              "/size");
+}
+
+std::string draw_layout(const Picture& picture, const asset::Asset& asset, const Pages& pages,
+                        Surfaces unwrapped, const std::stop_token& stop) {
+  figure::LayoutLook look = picture.page > 0 ? look_at_page(picture, pages, unwrapped)
+                                             : look_at_all(picture, pages, unwrapped);
+  look.legend = picture.legend;
+  look.background = picture.background;
+  look.wireframe = picture.wireframe;
+  look.numbers = picture.numbers;
+  if (picture.kind == PictureKind::layout_svg)
+    return figure::layout_svg(asset.surfaces(), unwrapped, look, stop);
+  const int size = pixels_of(picture, pages.size);
+  return encode_png(figure::layout_image(asset.surfaces(), unwrapped, look, size, stop));
+}
+
+std::string draw_preview(const Picture& picture, const asset::Asset& asset, const Pages& pages,
+                         Surfaces unwrapped, const std::stop_token& stop) {
+  bring_to_page(sides_of(pages.size), 0, unwrapped);
+  const auto& surfaces = asset.surfaces();
+  return encode_png(picture.turns
+                        ? figure::turntable(surfaces, unwrapped, picture.size, stop)
+                        : figure::preview(surfaces, unwrapped, picture.size, picture.aspect, stop));
 }
 
 api::Json analysis_json(const RenderingInput& mesh, std::size_t memory_bytes,
@@ -87,9 +151,12 @@ std::string render(const Rendering& rendering, const RenderingInput& input,
   const asset::Asset asset =
       asset::read(input.asset, read_limits(input.record, limits), options.asset);
   Surfaces unwrapped = decode_uvs(input.uvs);
-  if (rendering.picture)
-    return draw(*rendering.picture, asset, options.unwrap.page_size(), std::move(unwrapped),
+  if (rendering.picture) {
+    const auto draw =
+        rendering.picture->kind == PictureKind::preview_png ? &draw_preview : &draw_layout;
+    return draw(*rendering.picture, asset, pages_of(options, input.report), std::move(unwrapped),
                 input.asset.stop);
+  }
   if (rendering.format) return asset::write(asset, unwrapped, *rendering.format);
   return api::result_json(api::Json::parse(input.report), asset.surfaces(), unwrapped);
 }

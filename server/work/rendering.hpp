@@ -11,6 +11,7 @@
 #include "api/limits.hpp"
 #include "core/asset/asset.hpp"
 #include "core/figure/colour_scale.hpp"
+#include "core/figure/view.hpp"
 #include "server/store/job_record.hpp"
 
 namespace unwrapd::server::work {
@@ -19,8 +20,18 @@ enum class PictureKind { layout_svg, layout_png, preview_png };
 
 struct Picture {
   PictureKind kind = PictureKind::layout_svg;
-  figure::Colouring colouring = figure::Colouring::stretch;  ///< of layouts
-  int size = figure::kDefaultImageSize;                      ///< of PNGs, pixels
+  int size = figure::kDefaultImageSize;  ///< of PNGs, pixels
+  // Of layouts.
+  figure::Colouring colouring = figure::Colouring::stretch;
+  bool legend = true;
+  bool background = true;
+  bool wireframe = false;
+  bool numbers = false;        ///< of islands
+  int page = 0;                ///< cropped to this page, from 1; 0: all pages, in one square
+  bool has_page_size = false;  ///< in place of `size`: a pixel for each texel of the page
+  // Of previews.
+  std::optional<figure::Aspect> aspect = {};
+  bool turns = false;  ///< a sheet of eight views
 };
 
 struct Rendering {
@@ -36,11 +47,12 @@ struct RenderingInput {
   const store::JobRecord& record;
   asset::Input asset;
   std::string_view uvs;     ///< of the map: what encode_uvs() wrote
-  std::string_view report;  ///< of the map, JSON
+  std::string_view report;  ///< of the map, JSON; of pictures only where they show one page
 };
 
 /// The bytes of the file. Throws what reading and writing the asset throw, storage_failed when the
-/// map is none, cancelled once the asset's token asks for a stop.
+/// map is none, invalid_option for a page that is not there or too large for a picture, cancelled
+/// once the asset's token asks for a stop.
 std::string render(const Rendering& rendering, const RenderingInput& input,
                    const api::Limits& limits);
 

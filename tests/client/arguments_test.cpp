@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "api/options.hpp"
+#include "client/outputs.hpp"
 #include "tests/client/temporary_folder.hpp"
 
 namespace unwrapd::client {
@@ -79,6 +80,15 @@ TEST(Arguments, PicturesHaveNamesAndTheLayoutAColour) {
   EXPECT_EQ(arguments.preview, "p.png");
   EXPECT_EQ(accepted({"a.glb"}).layout_colour, "");
   EXPECT_EQ(refused({"a.glb", "--layout-colour", "size"}).code, ExitCode::usage);
+}
+
+TEST(Arguments, TemplatesAndViewsAreAskedForByTheirPaths) {
+  const Arguments arguments = accepted({"a.glb", "--template", "t.png", "--preview-view", "30,20"});
+  EXPECT_EQ(template_of(arguments), "/layout.png?size=page&wireframe=1&background=none");
+  EXPECT_EQ(preview_of(arguments), "/preview.png?view=30,20");
+  EXPECT_EQ(template_of(accepted({"a.glb", "--template", "t.svg"})),
+            "/layout.svg?page=1&wireframe=1&background=none");
+  EXPECT_EQ(preview_of(accepted({"a.glb"})), "/preview.png");
 }
 
 TEST(Arguments, AJobHasANameIfOneIsGiven) {
@@ -211,7 +221,7 @@ TEST(Arguments, SeveralMeshesOrAFolderAreABatch) {
   EXPECT_EQ(accepted({all.c_str()}).inputs.size(), 1U);
   EXPECT_EQ(accepted({"*.glb"}).inputs.size(), 1U);
   EXPECT_EQ(accepted({"a.glb", "--resume"}).inputs.size(), 1U);
-  for (const char* flag : {"--report", "--layout", "--preview"})
+  for (const char* flag : {"--report", "--layout", "--template", "--preview"})
     EXPECT_THAT(refused({"a.glb", "b.glb", flag, "x.png"}).text, HasSubstr(flag));
   for (const char* out : {one.c_str(), "-", "new.obj"})
     EXPECT_THAT(refused({"a.glb", "b.glb", "-o", out}).text, HasSubstr("--out"));

@@ -76,6 +76,21 @@ TEST(Outputs, OfACurveAreWrittenForEveryLambda) {
   EXPECT_EQ(folder.file_count(), 7U);
 }
 
+TEST(Outputs, OfATemplateAndAViewAreWhatIsAskedFor) {
+  Echo echo;
+  JobClient client = echo.client();
+  const TemporaryFolder folder;
+  Arguments arguments = everything(folder);
+  arguments.painting = folder.file("paint.png");
+  arguments.preview_view = "30,20&size=9";
+  arguments.lambdas = {"1", "0.01"};
+  static_cast<void>(Outputs(arguments).fill(client, "j_1"));
+  EXPECT_EQ(read_file(folder.file("paint.0.01.png")),
+            "/v1/jobs/j_1/layout.png?size=page&wireframe=1&background=none&lambda=0.01");
+  EXPECT_EQ(read_file(folder.file("preview.1.png")),
+            "/v1/jobs/j_1/preview.png?view=30,20%26size%3D9&lambda=1");
+}
+
 TEST(Outputs, ThatCannotBeWrittenAreRefusedBeforeAnythingIsFetched) {
   const TemporaryFolder folder;
   Arguments arguments = everything(folder);

@@ -40,7 +40,7 @@ export const ROOMS = [
   ["server/store", "jobs in SQLite or PostgreSQL, their files, quotas, sweeping", ["core/asset", ...STORED]],
   ["server/work", "one job from input bytes to output bytes, in its own process", [...TERMS, ...STORED, "core", "core/asset", "core/figure", "core/pipeline"]],
   ["server/jobs", "the queue, fair turns, workers, events", [...STORED, "server/http", "server/work"]],
-  ["server/access", "API keys, signed links", [...STORED, "core/figure", "server/http", "server/jobs"]],
+  ["server/access", "API keys, signed links, upload tickets", [...STORED, "core/figure", "server/http", "server/jobs"]],
   ["server/webhooks", "signed calls when a job ends", [...STORED, "server/http"]],
   ["server/backup", "backup, restore and check of a data directory", [...STORED, "server/access"]],
   ["server/results", "results and pictures, made on request", [...STORED, "core/asset", "server/http", "server/work", "server/jobs"]],

@@ -3,8 +3,10 @@
 /** Every picture in every colour, its tag and parts, and what its parameters may not be. */
 export async function pictures(run, base, job) {
   const colour = ['stretch', 'angle', 'area', 'flips'];
-  const known = {getLayout: {colour}, getLayoutPng: {colour, size: [64, 200]},
-                 getPreview: {size: [65, 256]}};
+  const look = {legend: [0, 1], background: ['page', 'none'], wireframe: [0, 1], numbers: [0, 1], page: [1]};
+  const view = ['auto', 'front', 'back', 'left', 'right', 'top', 'bottom', 'turntable', '30,-20.5', '-360,90'];
+  const known = {getLayout: {colour, ...look}, getLayoutPng: {colour, ...look, size: [64, 200, 'page']},
+                 getPreview: {size: [65, 256], view}};
   for (const [id, parameters] of Object.entries(known)) {
     const get = (query, status, headers) => run.call(base, id, {job, query, headers, status});
     for (const [name, values] of Object.entries(parameters)) {
@@ -20,7 +22,9 @@ export async function pictures(run, base, job) {
 
 async function badParameters(run, base, job, id) {
   const bad = {colour: ['', 'red', 'Area'], size: ['63', '4097', '-64', '1e2', '64px', ''],
-               color: ['area']};
+               color: ['area'], legend: ['2', 'yes'], background: ['red'], wireframe: ['-1'], numbers: ['all'],
+               page: ['0', '2', '101', '1.5'],
+               view: ['', 'side', '30', '30,91', '361,0', '1e2,0', '30,20,', 'nan,0', ' 30,20', '30;20']};
   const pairs = Object.entries(bad).flatMap(([name, values]) => values.map((v) => [[name, v]]));
   for (const query of [...pairs, [['size', '64'], ['size', '65']]]) {
     const problem = await run.json(base, id, {job, query, status: 422});

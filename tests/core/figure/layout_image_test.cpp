@@ -205,9 +205,11 @@ TEST(LayoutImage, HearsAStop) {
            [&] {
              layout_image({&surface, 1}, {&out, 1}, Colouring::angle, kSize, stop.get_token());
            },
-           [&] { rasterised({}, kSize, kSize, kPage, stop.get_token()); },
            [&] {
-             preview({&surface, 1}, {&out, 1}, kSize, stop.get_token());
+             rasterised({}, {kSize, kSize, kPage}, stop.get_token());
+           },
+           [&] {
+             preview({&surface, 1}, {&out, 1}, kSize, {}, stop.get_token());
            }})
     EXPECT_EQ(error_of(draw).code(), ErrorCode::cancelled);
 }

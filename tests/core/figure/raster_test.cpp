@@ -22,7 +22,7 @@ double ink(const Image& image) {
 TEST(Raster, APixelIsTheMeanOfWhatCoversIt) {
   std::vector<FlatTriangle> drawing;
   append_rectangle(drawing, {2, 3}, {10.5, 8}, kBlack);
-  const Image image = rasterised(drawing, 20, 37, kWhite);
+  const Image image = rasterised(drawing, {20, 37, kWhite});
   EXPECT_EQ(image.rgb.size(), 3U * 20 * 37);
   EXPECT_EQ(image.at(1, 4), kWhite);
   EXPECT_EQ(image.at(2, 3), kBlack);
@@ -36,7 +36,7 @@ TEST(Raster, TheLaterCoversTheEarlierInEveryBand) {
   std::vector<FlatTriangle> drawing;
   append_rectangle(drawing, {0, 0}, {50, 50}, kBlack);
   append_rectangle(drawing, {10, 10}, {40, 45}, kRed);
-  const Image image = rasterised(drawing, 50, 50, kWhite);
+  const Image image = rasterised(drawing, {50, 50, kWhite});
   for (int y = 0; y < 50; ++y)
     for (int x = 0; x < 50; ++x) {
       const bool inside = x >= 10 && x < 40 && y >= 10 && y < 45;
@@ -50,7 +50,7 @@ TEST(Raster, ALineHasItsWidthWhereverItLeads) {
     const Vec2 along(std::cos(turn), std::sin(turn)), middle(50, 50);
     std::vector<FlatTriangle> drawing;
     append_line(drawing, {middle - 30 * along, middle + 30 * along}, 4, kBlack);
-    const Image image = rasterised(drawing, 100, 100, kWhite);
+    const Image image = rasterised(drawing, {100, 100, kWhite});
     const double both_ends = 8 * 2 * 2 * std::tan(std::numbers::pi / 8);  // an octagon's area
     EXPECT_NEAR(ink(image), 60 * 4 + both_ends, 2.5) << turn;
     EXPECT_EQ(image.at(50, 50), kBlack);
@@ -60,7 +60,7 @@ TEST(Raster, ALineHasItsWidthWhereverItLeads) {
 TEST(Raster, ALineWithoutLengthIsADot) {
   std::vector<FlatTriangle> drawing;
   append_line(drawing, {Vec2(8, 8), Vec2(8, 8)}, 4, kBlack);
-  EXPECT_NEAR(ink(rasterised(drawing, 16, 16, kWhite)), 13.25, 0.7);
+  EXPECT_NEAR(ink(rasterised(drawing, {16, 16, kWhite})), 13.25, 0.7);
 }
 
 TEST(Raster, EveryLetterAndDigitIsDrawnAndNoTwoAlike) {
@@ -69,7 +69,7 @@ TEST(Raster, EveryLetterAndDigitIsDrawnAndNoTwoAlike) {
   for (const char letter : known) {
     std::vector<FlatTriangle> drawing;
     append_text(drawing, std::string(1, letter), {4, 20}, 24);
-    seen.push_back(rasterised(drawing, 32, 32, kWhite));
+    seen.push_back(rasterised(drawing, {32, 32, kWhite}));
     EXPECT_GT(ink(seen.back()), 2) << letter;
     for (std::size_t k = 0; k + 1 < seen.size(); ++k)
       EXPECT_NE(seen[k].rgb, seen.back().rgb) << letter << known[k];
@@ -81,7 +81,7 @@ TEST(Raster, TextStaysWithinItsWidthAndItsLine) {
   const double width = text_width(text, 20);
   std::vector<FlatTriangle> drawing;
   append_text(drawing, text, {10, 30}, 20);
-  const Image image = rasterised(drawing, 120, 48, kWhite);
+  const Image image = rasterised(drawing, {120, 48, kWhite});
   double outside = 0;
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 120; ++x)

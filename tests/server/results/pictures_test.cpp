@@ -159,5 +159,49 @@ TEST_F(Pictures, ShareTheFateOfTheirJob) {
   expect_problem(get(id, "layout.png"), 410, "result_expired");
 }
 
+/// Each parameter changes the picture, and none is answered with the file of another.
+TEST_F(Pictures, OfEveryLookAreTheirOwn) {
+  start();
+  const std::string id = submit("?height=512");
+  await_state(id, "succeeded");
+  std::set<std::string> seen;
+  const std::vector<std::string> layouts = {"",
+                                            "legend=0",
+                                            "background=none",
+                                            "legend=0&background=none",
+                                            "wireframe=1",
+                                            "wireframe=1&background=none",
+                                            "numbers=1",
+                                            "wireframe=1&background=none&page=1&numbers=1",
+                                            "wireframe=1&numbers=1",
+                                            "page=1&legend=1&background=none"};
+  for (const char* file : {"layout.png?size=256&", "layout.svg?"})
+    for (const std::string& look : layouts) seen.insert(get(id, file + look)->body);
+  for (const char* view : {"auto", "front", "top", "31,20", "31,21", "turntable"})
+    seen.insert(get(id, "preview.png?size=256&view=" + std::string(view))->body);
+  EXPECT_EQ(seen.size(), 2 * layouts.size() + 6);
+  for (const char* file : {"layout.png?size=256&", "layout.svg?"})
+    for (const std::string& look : layouts)
+      EXPECT_TRUE(seen.contains(get(id, file + look)->body)) << look << " comes again";
+  EXPECT_EQ(files(id, ".layout."), 2 + 1 + 1) << "usual ones, and templates of a page";
+}
+
+TEST_F(Pictures, ATemplateHasTheTexelsOfItsPage) {
+  start();
+  const std::string id = submit("?width=300&height=200");
+  await_state(id, "succeeded");
+  const auto answer = get(id, "layout.png?size=page&wireframe=1&background=none");
+  const figure::Image image = decode_png(answer->body);
+  EXPECT_EQ(image.width, 300);
+  EXPECT_EQ(image.height, 200);
+  expect_problem(get(id, "layout.png?page=2"), 422, "invalid_option");
+  const std::string large = submit("?resolution=8192");
+  await_state(large, "succeeded");
+  expect_problem(get(large, "layout.png?size=page"), 422, "invalid_option");
+  const figure::Image sheet = decode_png(get(id, "preview.png?view=turntable&size=512")->body);
+  EXPECT_EQ(sheet.width, 512);
+  EXPECT_EQ(sheet.height, 256);
+}
+
 }  // namespace
 }  // namespace unwrapd::server::results
