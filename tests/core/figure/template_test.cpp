@@ -16,7 +16,7 @@ namespace {
 
 using namespace shapes;
 
-constexpr int kSide = 256;
+constexpr int kPageSide = 256;
 
 /// Separate squares of two triangles each, `count` in a row, a tenth of the page wide.
 UnwrappedSurface squares(int count) {
@@ -41,7 +41,7 @@ Surface flat(const UnwrappedSurface& out) {
   return surface_of(mesh);
 }
 
-Image drawn(const UnwrappedSurface& out, const LayoutLook& look, int size = kSide) {
+Image drawn(const UnwrappedSurface& out, const LayoutLook& look, int size = kPageSide) {
   const Surface surface = flat(out);
   return layout_image({&surface, 1}, {&out, 1}, look, size);
 }
@@ -66,16 +66,16 @@ std::uint8_t alpha_at(const Image& image, double u, double v) {
 
 TEST(Template, HasThePixelsOfThePageAndIsTransparentButForEdges) {
   const Image image = drawn(squares(3), template_of());
-  EXPECT_EQ(image.width, kSide);
-  EXPECT_EQ(image.height, kSide);
-  ASSERT_EQ(image.alpha.size(), std::size_t{kSide} * kSide);
+  EXPECT_EQ(image.width, kPageSide);
+  EXPECT_EQ(image.height, kPageSide);
+  ASSERT_EQ(image.alpha.size(), std::size_t{kPageSide} * kPageSide);
   EXPECT_EQ(alpha_at(image, 0.5, 0.8), 0) << "beside the islands";
   EXPECT_EQ(alpha_at(image, 0.03 + 0.07, 0.2 + 0.03), 0) << "within a triangle";
   EXPECT_GT(alpha_at(image, 0.03 + 0.05, 0.2 + 0.05), 50) << "on the diagonal";
   EXPECT_GT(alpha_at(image, 0.03 + 0.05, 0.2), 50) << "on the outline";
   const Image high = drawn(squares(3), template_of({0.5, 1}));
-  EXPECT_EQ(high.width, kSide / 2);
-  EXPECT_EQ(high.height, kSide);
+  EXPECT_EQ(high.width, kPageSide / 2);
+  EXPECT_EQ(high.height, kPageSide);
   EXPECT_EQ(drawn(squares(1), template_of({1, 0.5}), 10).height, 5) << "a page of few texels";
 }
 
@@ -87,7 +87,7 @@ TEST(Template, IsWhatTheWholePictureShowsOfThePage) {
     const Image whole = drawn(squares(4), look);
     look.is_cropped = true;
     const Image part = drawn(squares(4), look);
-    EXPECT_EQ(part.height, kSide * page.y());
+    EXPECT_EQ(part.height, kPageSide * page.y());
     for (int y = 0; y < part.height; ++y)
       for (int x = 0; x < part.width; ++x)
         ASSERT_EQ(part.at(x, y), whole.at(x, whole.height - part.height + y)) << x << ' ' << y;
@@ -107,9 +107,9 @@ TEST(Template, LaidOverItsBackgroundIsTheOpaquePicture) {
   }
   LayoutLook look(Colouring::flips);
   look.numbers = true;
-  const Image opaque = layout_image({&surface, 1}, {&out, 1}, look, kSide);
+  const Image opaque = layout_image({&surface, 1}, {&out, 1}, look, kPageSide);
   look.background = false;
-  const Image clear = layout_image({&surface, 1}, {&out, 1}, look, kSide);
+  const Image clear = layout_image({&surface, 1}, {&out, 1}, look, kPageSide);
   for (std::size_t k = 0; k < clear.alpha.size(); ++k)
     for (std::size_t part = 0; part < 3; ++part) {
       const double share = clear.alpha[k] / 255.0;
@@ -205,8 +205,8 @@ TEST(Template, AsADrawingHasTheSameParts) {
 TEST(Template, ACroppedLegendIsAsWideAsThePage) {
   LayoutLook look(Colouring::area, Vec2(0.5, 1));
   look.is_cropped = true;
-  EXPECT_EQ(drawn(squares(1), look).height, kSide + 10);
-  EXPECT_EQ(drawn(squares(1), look).width, kSide / 2);
+  EXPECT_EQ(drawn(squares(1), look).height, kPageSide + 10);
+  EXPECT_EQ(drawn(squares(1), look).width, kPageSide / 2);
   const std::string svg = written(squares(1), look);
   EXPECT_NE(svg.find("viewBox=\"0 0 2048 4256\""), std::string::npos);
   EXPECT_NE(svg.find("scale(2048)"), std::string::npos);
