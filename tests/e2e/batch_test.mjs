@@ -117,3 +117,15 @@ test("two files are compared as they are, in a table and on a page", async () =>
   assert.equal(nowhere.code, 4, nowhere.err);
   assert.equal((await unwrap("compare", "half.obj", "half.obj", "--quiet")).out, "");
 });
+
+test("OBJs that become GLBs take their materials and the images of these along", async () => {
+  const pixel = Buffer.from("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==", "base64");
+  writeFileSync(join(folder, "a.obj"), `mtllib a.mtl\n${kSheet.replace("f 1", "usemtl wood\nf 1")}`);
+  writeFileSync(join(folder, "a.mtl"), "newmtl wood\nKd 1 .5 .2\nmap_Kd wood.png\n");
+  writeFileSync(join(folder, "wood.png"), pixel);
+  const run = await unwrap("a.obj", "-o", "a.glb");
+  assert.equal(run.code, 0, run.err);
+  const glb = readFileSync(join(folder, "a.glb"));
+  const { images, bufferViews } = JSON.parse(glb.toString("utf8", 20, 20 + glb.readUInt32LE(12)));
+  assert.equal(bufferViews[images[0].bufferView].byteLength, pixel.length);
+});

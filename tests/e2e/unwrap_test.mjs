@@ -47,9 +47,6 @@ function unwrapWith(environment, words, watch = () => {}) {
 const unwrap = (...words) => unwrapWith({}, words);
 const kChart = ["--preset", "chart"]; // one chart, which takes least time
 
-/** A PNG of one texel. */
-const kPixel = Buffer.from("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==", "base64");
-
 function readGlb(path) {
   const bytes = readFileSync(path);
   assert.equal(bytes.toString("latin1", 0, 4), "glTF");
@@ -298,16 +295,4 @@ test("Ctrl-C cancels the job and is 130", async () => {
 
 test("--timeout cancels the job and is 3", async () => {
   await cancelled(await unwrap(at("shell.glb"), "--stop-iterations", "10000", "--timeout", "0.5"), 3);
-});
-
-test("an OBJ that becomes a GLB takes its materials and their images along", async () => {
-  writeFileSync(at("quad.obj"), "mtllib quad.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 .2\nv 0 1 0\n" +
-    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
-  writeFileSync(at("quad.mtl"), "newmtl wood\nKd 1 .5 .2\nmap_Kd wood.png\n");
-  writeFileSync(at("wood.png"), kPixel);
-  const run = await unwrap(at("quad.obj"), "-o", at("quad.glb"), ...kChart);
-  assert.equal(run.code, 0, run.err);
-  const { json } = readGlb(at("quad.glb"));
-  assert.equal(json.images.length, 1);
-  assert.equal(json.bufferViews[json.images[0].bufferView].byteLength, kPixel.length);
 });
