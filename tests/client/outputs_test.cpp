@@ -88,7 +88,7 @@ TEST(Outputs, OfATemplateAndAViewAreWhatIsAskedFor) {
   EXPECT_EQ(read_file(folder.file("paint.0.01.png")),
             "/v1/jobs/j_1/layout.png?size=page&wireframe=1&background=none&lambda=0.01");
   EXPECT_EQ(read_file(folder.file("preview.1.png")),
-            "/v1/jobs/j_1/preview.png?view=30,20%26size%3D9&lambda=1");
+            "/v1/jobs/j_1/preview.png?view=30%2C20%26size%3D9&lambda=1");
 }
 
 TEST(Outputs, ThatCannotBeWrittenAreRefusedBeforeAnythingIsFetched) {
