@@ -70,6 +70,8 @@ constexpr std::array kRows = {
     ErrorRow{storage_full, "storage_full", 507, "The storage is full"},
     ErrorRow{storage_corrupt, "storage_corrupt", 500, "A stored file is damaged"},
     ErrorRow{internal, "internal", 500, "An internal error occurred"},
+    ErrorRow{source_refused, "source_refused", 422, "The source is not allowed"},
+    ErrorRow{source_failed, "source_failed", 422, "The source cannot be read"},
 };
 
 constexpr bool in_order() {

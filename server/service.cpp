@@ -57,7 +57,8 @@ struct Service::Parts {
         renderer(blobs, config.limits, log, isolation,
                  config::render_limits(config, solver_cache.memory_limit()), functions),
         meshes(mesh_store, store, blobs, rooms, renderer),
-        submissions(queue, store, blobs, config.limits, config.webhooks, meshes, rooms),
+        sources(config.sources, config.limits.max_body_bytes, log, metrics),
+        submissions(queue, store, blobs, config.limits, config.webhooks, meshes, sources, rooms),
         results(blobs, renderer),
         sweeper(store, mesh_store, blobs, log, std::chrono::seconds(config.keep_seconds)),
         pictures(blobs, renderer),
@@ -248,6 +249,7 @@ struct Service::Parts {
   webhooks::Webhooks webhooks;
   results::Renderer renderer;
   uploads::Meshes meshes;
+  sources::Sources sources;
   uploads::Submissions submissions;
   results::ResultStore results;
   store::Sweeper sweeper;

@@ -72,9 +72,12 @@ enum class ErrorCode {
   storage_full,
   storage_corrupt,
   internal,
+  // the mesh of a request, named by its address
+  source_refused,
+  source_failed,
 };
 
-inline constexpr int kErrorCodeCount = static_cast<int>(ErrorCode::internal) + 1;
+inline constexpr int kErrorCodeCount = static_cast<int>(ErrorCode::source_failed) + 1;
 
 /// What went wrong, for the person who sent the request.
 /// message: one sentence that says what is wrong and what to do about it.

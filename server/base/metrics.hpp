@@ -28,6 +28,8 @@ enum class Metric {
   request_seconds,
   received_bytes,
   sent_bytes,
+  sources,
+  source_bytes,
   errors,
   connections,
   jobs,

@@ -17,7 +17,12 @@ constexpr int kAdminParked = 48;  // so that idle connections keep no other out
 constexpr std::int64_t kOfTheServer = 32;  // stores, listeners, wakeups, folders
 constexpr std::int64_t kOfARequest = 3;    // a file, its digests, the folder of both
 constexpr std::int64_t kOfAWorker = 13;    // a mesh with buffers, its results, two processes
+constexpr std::int64_t kOfADownload = 6;   // its socket and wakeup, the file, the folder, DNS
 constexpr std::int64_t kFewestParts = 4;   // at least a quarter is for connections
+
+int most_downloads(const Config& config) {
+  return config.sources.allowed_hosts.empty() ? 0 : config.sources.at_once;
+}
 
 }  // namespace
 
@@ -27,7 +32,7 @@ http::HttpConfig http_config(const Config& config) {
   http.address = config.listen;
   const results::RenderLimits making = render_limits(config, 0);
   http.max_requests = edge.max_requests;
-  http.max_held = most_waiting(config) + making.waiting + making.places;
+  http.max_held = most_waiting(config) + making.waiting + making.places + most_downloads(config);
   http.max_connections = edge.max_connections;
   http.max_connections_per_address = edge.max_connections_per_address;
   http.idle_connections.max_idle = edge.max_idle_connections;
@@ -101,7 +106,8 @@ int connections_within(std::int64_t files, const Config& config) {
   }
   const std::int64_t admin = config.admin ? admin_config(*config.admin).max_connections : 0;
   const std::int64_t kept_back = kOfTheServer + kOfARequest * http_config(config).max_requests +
-                                 kOfAWorker * config.workers + admin;
+                                 kOfAWorker * config.workers +
+                                 kOfADownload * most_downloads(config) + admin;
   const std::int64_t left = std::max(files - kept_back, files / kFewestParts);
   return static_cast<int>(std::min<std::int64_t>(left, config.edge.max_connections));
 }

@@ -12,6 +12,7 @@
 #include "server/access/access.hpp"
 #include "server/base/log.hpp"
 #include "server/http/addresses.hpp"
+#include "server/sources/sources.hpp"
 #include "server/store/disk_budget.hpp"
 #include "server/store/postgres_address.hpp"
 #include "server/webhooks/webhook_url.hpp"
@@ -55,6 +56,7 @@ struct Config {
   std::vector<std::string> allowed_hosts;  ///< without keys, beside addresses and localhost
   std::vector<std::string> cors_origins;
   webhooks::WebhookConfig webhooks;
+  sources::SourceConfig sources;
   work::MemoryLimits memory;
   api::Limits limits;
 };

@@ -45,6 +45,9 @@ struct ConfigGroup {
   std::vector<ConfigRow> rows;
 };
 std::vector<ConfigGroup> config_groups();
+/// Two of them (access_table.cpp).
+ConfigGroup admitting();
+ConfigGroup calling_out();
 
 /// What rows cannot see each by itself. Throws Error{invalid_option} naming the options.
 void check_together(const Config& config);

@@ -20,6 +20,13 @@ std::string mesh_of(const api::Json& value) {
   return value;
 }
 
+std::string source_of(const api::Json& value) {
+  if (!value.is_string()) refuse_member("source", "source must be an address; send a string.");
+  std::string source = value;
+  if (source.empty()) refuse_member("source", "source is empty; send the address of a mesh.");
+  return source;
+}
+
 std::string name_of(const api::Json& value) {
   if (!value.is_string()) refuse_member(kNameParameter, "The name of a job must be a string.");
   return checked_job_name(value);
@@ -42,17 +49,24 @@ MeshReference parse_mesh_reference(std::string_view text) {
   for (const auto& [member, value] : json.items()) {
     if (member == "mesh") {
       reference.sha256 = mesh_of(value);
+    } else if (member == "source") {
+      reference.source = source_of(value);
     } else if (member == kNameParameter) {
       reference.name = name_of(value);
     } else if (member == "options") {
       reference.options = options_of(value);
     } else {
-      refuse_member(member,
-                    "The JSON has an unknown member; its members are mesh, name and options.");
+      refuse_member(
+          member,
+          "The JSON has an unknown member; its members are mesh or source, name and options.");
     }
   }
-  if (reference.sha256.empty())
-    refuse_member("mesh", "The member mesh is missing; send the SHA-256 of a mesh.");
+  if (reference.sha256.empty() && reference.source.empty())
+    refuse_member("mesh",
+                  "The member mesh is missing; send the SHA-256 of a stored mesh, or an address as "
+                  "source.");
+  if (!reference.sha256.empty() && !reference.source.empty())
+    refuse_member("source", "mesh and source name two meshes; send one of them.");
   return reference;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// A request for a job that names a stored mesh: {"mesh": SHA-256, "name": TEXT, "options": {...}}.
+// A request for a job that names a stored mesh, {"mesh": SHA-256, "name": TEXT, "options": {...}},
+// or, with `source` in place of `mesh`, the address of one.
 
 #include <optional>
 #include <string>
@@ -11,7 +12,8 @@
 namespace unwrapd::server::uploads {
 
 struct MeshReference {
-  std::string sha256;
+  std::string sha256;                  ///< of a stored mesh, or
+  std::string source;                  ///< an address, unchecked
   std::string name;                    ///< of the job; empty for none
   std::optional<std::string> options;  ///< JSON text, where there are any
 };

@@ -114,14 +114,17 @@ UploadSize size_of(const http::Request& request, const std::optional<store::JobR
       .known_bytes = known->input.bytes + kOptionBytes, .declared_bytes = 0, .most_bytes = most};
 }
 
+Error stored_mesh_by_ticket() {
+  return Error(ErrorCode::forbidden,
+               "An upload ticket opens no stored mesh; send the bytes of the mesh.");
+}
+
 /// A ticket is for an upload and nothing else that its key may do. Throws Error{forbidden}.
 void check_within_ticket(const http::Request& request) {
   if (!request.ticket) return;
   if (request.headers.contains("Unwrapd-Webhook"))
     throw Error(ErrorCode::forbidden, "An upload ticket allows no webhook; leave it out.");
-  if (http::body_kind(request.header("Content-Type")) == http::BodyKind::reference)
-    throw Error(ErrorCode::forbidden,
-                "An upload ticket opens no stored mesh; send the bytes of the mesh.");
+  if (!request.sha256.empty()) throw stored_mesh_by_ticket();
 }
 
 std::optional<store::SpentTicket> ticket_of(const http::Request& request) {
@@ -137,6 +140,7 @@ struct Submissions::Sent {
   std::unique_lock<std::mutex> turn;
   std::optional<std::string> options;  // JSON text
   std::string place = {};              // of the options in the body's document, a JSON pointer
+  std::string source = {};             // the address of the mesh, where it is still to be read
 };
 
 std::string Submissions::accept(const http::Request& request, bool synchronous) {
@@ -216,11 +220,28 @@ Submissions::Sent Submissions::bring_reference(const http::Request& request,
   receive_reference_text(*request.body, text);
   Sent sent = read_whole(text);
   MeshReference named = parse_mesh_reference(*sent.options);
-  job.input = meshes_.share(request.caller.owner, named.sha256, folder.path.filename(), "/mesh");
+  if (named.source.empty()) {
+    if (request.ticket) throw stored_mesh_by_ticket();
+    job.input = meshes_.share(request.caller.owner, named.sha256, folder.path.filename(), "/mesh");
+  }
+  sent.source = std::move(named.source);
   name_in_body(job, std::move(named.name));
   sent.options = std::move(named.options);
   sent.place = "/options";
   return sent;
+}
+
+/// Others may process their options meanwhile.
+void Submissions::bring_source(const http::Request& request, const store::UploadFolder& folder,
+                               Sent& sent, store::JobRecord& job) {
+  const bool has_turn = sent.turn.owns_lock();
+  if (has_turn) sent.turn.unlock();
+  const auto body = sources_.open(sent.source, {.owner = request.caller.owner,
+                                                .has_left = request.has_left,
+                                                .draining = [this] { return queue_.draining(); }});
+  job.input = receive_asset(*body, folder).input;
+  job.stored_bytes = job.input.bytes;
+  if (has_turn) sent.turn.lock();
 }
 
 Submissions::Sent Submissions::bring_options(const http::Request& request,
@@ -244,9 +265,14 @@ void Submissions::receive(const http::Request& request, store::JobRecord& job, U
   api::JobOptions options = api::parse_options(query, limits_);  // before the body is read
   if (kind == http::BodyKind::asset) room.check_declared();
   const store::UploadFolder folder{.path = blobs_.begin_upload(upload), .room = room.counter()};
-  const Sent sent = bring(request, folder, job);
-  const api::Json asked = options_of(sent.options, query);
+  Sent sent = bring(request, folder, job);
+  api::Json asked = options_of(sent.options, query);
   if (sent.options) options = read_options(asked, limits_, sent.place);
+  if (!sent.source.empty()) {
+    asked = nullptr;  // may be large, and the source takes its time
+    bring_source(request, folder, sent, job);
+    asked = options_of(sent.options, query);
+  }
   job.created_ms = now_ms();
   job.options = api::to_json(options);
   job.notes = std::move(options.notes);

@@ -11,6 +11,7 @@
 #include "server/http/http.hpp"
 #include "server/http/media_types.hpp"
 #include "server/jobs/job_queue.hpp"
+#include "server/sources/sources.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/uploads/job_input.hpp"
 #include "server/uploads/meshes.hpp"
@@ -23,22 +24,23 @@ class Submissions {
  public:
   Submissions(jobs::JobQueue& queue, store::JobStore& store, store::BlobStore& blobs,
               const api::Limits& limits, const webhooks::WebhookConfig& webhooks, Meshes& meshes,
-              const UploadRooms& rooms)
+              sources::Sources& sources, const UploadRooms& rooms)
       : queue_(queue),
         store_(store),
         blobs_(blobs),
         rooms_(rooms),
         limits_(limits),
         webhooks_(webhooks),
-        meshes_(meshes) {}
+        meshes_(meshes),
+        sources_(sources) {}
 
   /// Returns the job's id. synchronous: the sender waits, so the mesh must be small. Where the path
   /// names a stored mesh, the body is its options. Where it has an id, it becomes the job's; a
   /// request by Idempotency-Key or by such an id may come again and gets the same job. Throws
   /// Error: queue_full, draining, unsupported_media_type, invalid_option, malformed_request,
   /// body_too_large, idempotency_conflict, too_many_jobs, quota_exceeded, storage_full,
-  /// storage_failed, webhook_refused, mesh_not_found; by a ticket, which names the request, also
-  /// forbidden and invalid_link.
+  /// storage_failed, webhook_refused, mesh_not_found, source_refused, source_failed; by a ticket,
+  /// which names the request, also forbidden and invalid_link.
   std::string accept(const http::Request& request, bool synchronous);
 
  private:
@@ -52,6 +54,9 @@ class Submissions {
                            store::JobRecord& job);
   [[nodiscard]] Sent bring_reference(const http::Request& request,
                                      const store::UploadFolder& folder, store::JobRecord& job);
+  /// Reads the mesh from its address, as if it were the body.
+  void bring_source(const http::Request& request, const store::UploadFolder& folder, Sent& sent,
+                    store::JobRecord& job);
   /// The options alone, of a job on the mesh that the path names.
   [[nodiscard]] Sent bring_options(const http::Request& request, const store::UploadFolder& folder,
                                    store::JobRecord& job);
@@ -65,6 +70,7 @@ class Submissions {
   const api::Limits& limits_;
   const webhooks::WebhookConfig& webhooks_;
   Meshes& meshes_;
+  sources::Sources& sources_;
   std::mutex reading_;
 };
 

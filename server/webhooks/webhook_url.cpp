@@ -1,14 +1,6 @@
 #include "server/webhooks/webhook_url.hpp"
 
-#include <arpa/inet.h>
-#include <netdb.h>
-
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cstdint>
-#include <memory>
-#include <optional>
 
 #include "core/base/error.hpp"
 #include "server/http/sites.hpp"
@@ -16,173 +8,38 @@
 namespace unwrapd::server::webhooks {
 namespace {
 
-constexpr std::size_t kLongestUrl = 2000;
-constexpr int kMaxPort = 65535;
+constexpr outbound::UrlUse kWebhook{.refused = ErrorCode::webhook_refused, .whose = "webhook"};
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::webhook_refused, what); }
-
-struct Network {
-  std::uint32_t address;
-  int bits;
-};
-// What of IPv4 is not the public internet (RFC 6890).
-constexpr std::array<Network, 15> kSpecial = {{{0x00000000, 8},
-                                               {0x0A000000, 8},
-                                               {0x64400000, 10},
-                                               {0x7F000000, 8},
-                                               {0xA9FE0000, 16},
-                                               {0xAC100000, 12},
-                                               {0xC0000000, 24},
-                                               {0xC0000200, 24},
-                                               {0xC0586300, 24},
-                                               {0xC0A80000, 16},
-                                               {0xC6120000, 15},
-                                               {0xC6336400, 24},
-                                               {0xCB007100, 24},
-                                               {0xE0000000, 4},
-                                               {0xF0000000, 4}}};
-
-bool is_public_v4(std::uint32_t address) {
-  return std::ranges::none_of(kSpecial, [&](const Network& network) {
-    return (address ^ network.address) >> (32 - network.bits) == 0;
-  });
-}
-
-/// Global unicast is 2000::/3; of it, 2001::/23 (tunnels and protocols), documentation and 6to4,
-/// which wraps any IPv4 address, are not.
-bool is_public_v6(const std::array<std::uint8_t, 16>& a) {
-  const bool global = (a[0] & 0xE0) == 0x20;
-  const bool protocols = a[0] == 0x20 && a[1] == 0x01 && a[2] < 0x02;
-  const bool documentation = (a[0] == 0x20 && a[1] == 0x01 && a[2] == 0x0D && a[3] == 0xB8) ||
-                             (a[0] == 0x3F && a[1] == 0xFF && a[2] < 0x10);  // RFC 9637
-  const bool six_to_four = a[0] == 0x20 && a[1] == 0x02;
-  return global && !protocols && !documentation && !six_to_four;
-}
-
-bool is_host_letter(char letter) {
-  return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9') || letter == '.' ||
-         letter == '-' || letter == ':';
-}
-
-/// In numbers, in any of the notations that resolving it knows: 127.1 and 0x7f000001, too.
-bool is_address(const std::string& host) {
-  in_addr v4{};
-  std::array<std::uint8_t, 16> v6{};
-  return inet_aton(host.c_str(), &v4) == 1 || inet_pton(AF_INET6, host.c_str(), v6.data()) == 1;
-}
-
-bool is_printable(char letter) { return letter > ' ' && letter < '\x7f'; }
-
-char lower(char letter) {
-  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-}
-
-/// Removes the scheme, in any letters (RFC 3986, 3.1), from a URL and says whether it is https.
-bool take_scheme(std::string_view& rest) {
-  for (const auto& [scheme, is_https] : {std::pair{std::string_view("https://"), true},
-                                         std::pair{std::string_view("http://"), false}}) {
-    if (!std::ranges::equal(rest.substr(0, scheme.size()), scheme, {}, lower)) continue;
-    rest.remove_prefix(scheme.size());
-    return is_https;
-  }
-  refuse("A webhook's address begins with https:// or http://; correct it.");
-}
-
-/// The number after the host, or none.
-std::optional<int> port_of(std::string_view text) {
-  int port = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), port);
-  const bool whole = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
-  if (!whole || port < 1 || port > kMaxPort) return std::nullopt;
-  return port;
-}
-
-void read_authority(std::string_view authority, WebhookUrl& url) {
-  if (authority.find('@') != std::string_view::npos)
-    refuse("A webhook's address must not name a user; leave it out.");
-  const std::size_t bracket = authority.rfind(']');
-  const std::size_t colon = authority.rfind(':');
-  const bool has_port =
-      colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket);
-  if (has_port) {
-    const std::optional<int> port = port_of(authority.substr(colon + 1));
-    if (!port) refuse("The port of the webhook's address is not a port; correct it.");
-    url.port = *port;
-    authority = authority.substr(0, colon);
-  }
-  if (authority.starts_with('[') && authority.ends_with(']'))
-    authority = authority.substr(1, authority.size() - 2);
-  url.host = authority;
-  std::ranges::transform(url.host, url.host.begin(), lower);
-  if (url.host.empty() || !std::ranges::all_of(url.host, is_host_letter))
-    refuse("The host of the webhook's address is not one; correct it.");
-}
-
-/// Of any host. Throws Error{webhook_refused}.
-WebhookUrl read_webhook(const std::string& text) {
-  const bool readable = text.size() <= kLongestUrl && std::ranges::all_of(text, is_printable) &&
-                        text.find('#') == std::string::npos;
-  if (!readable)
-    refuse("The webhook's address is not a URL of at most 2000 characters; correct it.");
-  std::string_view rest = text;
-  WebhookUrl url;
-  url.is_https = take_scheme(rest);
-  url.port = url.is_https ? 443 : 80;
-  const std::size_t end = std::min(rest.find_first_of("/?"), rest.size());
-  read_authority(rest.substr(0, end), url);
-  const std::string_view target = rest.substr(end);
-  url.target = target.starts_with('/') ? std::string(target) : "/" + std::string(target);
-  return url;
-}
-
-struct FreeAddresses {
-  void operator()(addrinfo* list) const { freeaddrinfo(list); }
-};
 
 }  // namespace
 
 WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config) {
-  WebhookUrl url = read_webhook(text);
+  WebhookUrl url = outbound::read_url(text, kWebhook);
   if (!http::is_named(url.host, config.allowed_hosts)) {
     refuse("This server calls no webhooks at " + url.host +
            "; its operator can allow the host by --webhook-hosts.");
   }
-  if (!config.allow_private && is_address(url.host) && !is_public_address(url.host))
+  if (!config.allow_private && outbound::is_address(url.host) &&
+      !outbound::is_public_address(url.host))
     refuse("The webhook's address is not a public one; give another.");
   return url;
 }
 
 std::string webhook_host(const std::string& text) {
   try {
-    return read_webhook(text).host;
+    return outbound::read_url(text, kWebhook).host;
   } catch (const Error&) {
     return text;
   }
 }
 
-bool is_public_address(const std::string& address) {
-  in_addr v4{};
-  if (inet_pton(AF_INET, address.c_str(), &v4) == 1) return is_public_v4(ntohl(v4.s_addr));
-  std::array<std::uint8_t, 16> v6{};
-  return inet_pton(AF_INET6, address.c_str(), v6.data()) == 1 && is_public_v6(v6);
-}
-
 std::vector<std::string> resolve_webhook(const WebhookUrl& url, const WebhookConfig& config) {
-  addrinfo wanted{};
-  wanted.ai_socktype = SOCK_STREAM;
-  addrinfo* list = nullptr;
-  if (getaddrinfo(url.host.c_str(), nullptr, &wanted, &list) != 0)
+  std::vector<std::string> addresses = outbound::addresses_of(url.host);
+  if (addresses.empty())
     refuse("The webhook's host has no address.");  // for the log, where no address of it goes
-  const std::unique_ptr<addrinfo, FreeAddresses> owned(list);
-  std::vector<std::string> addresses;
-  for (const addrinfo* each = list; each != nullptr; each = each->ai_next) {
-    std::array<char, NI_MAXHOST> text{};
-    getnameinfo(each->ai_addr, each->ai_addrlen, text.data(), text.size(), nullptr, 0,
-                NI_NUMERICHOST);
-    if (!config.allow_private && !is_public_address(text.data()))
-      refuse("The webhook's host is at an address that is not public.");
-    addresses.emplace_back(text.data());
-  }
+  if (!config.allow_private && !std::ranges::all_of(addresses, outbound::is_public_address))
+    refuse("The webhook's host is at an address that is not public.");
   return addresses;
 }
 

@@ -1,13 +1,10 @@
 #pragma once
-// Where a webhook may go. A server that calls addresses which its users choose can be made to call
-// what only it can reach (server-side request forgery): so the host must be allowed by the
-// operator, every address that it resolves to must be a public one, the call goes to the address
-// that was checked, and redirects are not followed. Checking the name alone was rejected: it may
-// resolve to another address a moment later.
+// Where a webhook may go: to hosts that the operator allows, at public addresses.
 
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "server/outbound/outbound_url.hpp"
 
 namespace unwrapd::server::webhooks {
 
@@ -18,13 +15,7 @@ struct WebhookConfig {
   int retry_seconds = 5;       ///< until the second try, doubled for each further one
 };
 
-/// http://host[:port][/path][?query] or https://...
-struct WebhookUrl {
-  bool is_https = true;
-  std::string host;
-  int port = 443;
-  std::string target = "/";  ///< path and query
-};
+using WebhookUrl = outbound::OutboundUrl;
 
 /// Throws Error{webhook_refused}: the text is no such URL, has a user, or is of a host that is not
 /// allowed.
@@ -32,10 +23,6 @@ WebhookUrl parse_webhook(const std::string& text, const WebhookConfig& config);
 
 /// The host of a webhook's address as parse_webhook() reads it; the text itself where it is none.
 std::string webhook_host(const std::string& text);
-
-/// Whether an address in numbers is one of the public internet: not of this machine, of a private
-/// or shared network, link-local, multicast or reserved (RFC 6890); false for what is no address.
-bool is_public_address(const std::string& address);
 
 /// The addresses of a host in numbers. Throws Error{webhook_refused} when there is none, or one
 /// that may not be called.

@@ -11,7 +11,7 @@
 #include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
 #include "server/base/trace.hpp"
-#include "server/webhooks/curl_library.hpp"
+#include "server/outbound/curl_library.hpp"
 
 namespace unwrapd::server::webhooks {
 namespace {
@@ -87,7 +87,8 @@ Webhooks::Webhooks(const store::DatabaseAddress& store, std::string server_secre
       now_(std::move(now)),
       database_(store.open()),
       pool_(kAtOnce, kPerReceiver, [this] { go_on(); }) {
-  if (!config_.allowed_hosts.empty()) CurlLibrary::loaded();  // tells at the start if it is missing
+  if (!config_.allowed_hosts.empty())
+    outbound::CurlLibrary::loaded();  // tells at the start if it is missing
   try {
     put_forward();
   } catch (const Error& error) {

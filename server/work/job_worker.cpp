@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "api/error_table.hpp"
+#include "api/report.hpp"
 #include "server/base/byte_pack.hpp"
 #include "server/work/job_frames.hpp"
 #include "server/work/sandbox.hpp"

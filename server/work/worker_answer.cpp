@@ -77,6 +77,8 @@ bool is_of_work(ErrorCode code) {
     case too_many_jobs:
     case quota_exceeded:
     case webhook_refused:
+    case source_refused:
+    case source_failed:
     case mesh_not_found:
     case digest_mismatch:
     case time_limit:

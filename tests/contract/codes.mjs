@@ -6,6 +6,7 @@ export const kProvokedElsewhere = {
   memory_limit: 'tests/isolate/isolation_test.mjs',
   poison: 'tests/isolate/isolation_test.mjs',
   internal: 'tests/isolate/isolation_test.mjs',
+  source_failed: 'tests/access/sources_test.mjs',
   storage_full: 'tests/fault/storage_test.mjs',
   storage_corrupt: 'tests/fault/storage_test.mjs',
 };

@@ -15,7 +15,7 @@ const home = mkdtempSync(join(tmpdir(), "unwrapd_guides_"));
 let server;
 
 before(async () => {
-  server = await startServer(join(bin, "unwrapd"));
+  server = await startServer(join(bin, "unwrapd"), ["--source-hosts", "localhost", "--source-private", "--source-http"]);
 });
 
 after(async () => {

@@ -90,8 +90,8 @@ inline void write_certificate(const std::string& certificate, const std::string&
   X509_NAME_add_entry_by_txt(subject, "CN", MBSTRING_ASC,
                              reinterpret_cast<const unsigned char*>("receiver"), -1, -1, 0);
   X509_set_issuer_name(own, subject);
-  X509_EXTENSION* name =
-      X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, "DNS:receiver.example");
+  X509_EXTENSION* name = X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name,
+                                             "DNS:receiver.example,DNS:localhost");
   X509_add_ext(own, name, -1);
   X509_EXTENSION_free(name);
   X509_sign(own, pair, EVP_sha256());

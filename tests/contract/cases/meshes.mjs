@@ -32,6 +32,9 @@ async function jobsOf(run, base, sha256) {
                                    {job: newId(), headers: kJson, body: text(digest('none')), status: 404});
     run.expectEqual(`${id} of a mesh that is not there`, missing.pointer, '/mesh');
   }
+  const source = Buffer.from('{"source": "https://example.com/x.glb"}');
+  const nowhere = await run.json(base, 'createJob', {headers: kJson, body: source, status: 422});
+  run.expectEqual('an address without --source-hosts', `${nowhere.code} ${nowhere.pointer}`, 'source_refused /source');
   const twice = await run.json(base, 'createJob', {
     headers: kJson, body: text(sha256), query: {method: 'arap'}, status: 422,
   });

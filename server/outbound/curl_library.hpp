@@ -1,10 +1,10 @@
 #pragma once
-// libcurl, loaded when webhooks are first called. The worker processes of jobs are the same program
-// and need none of it: linked, it would bring 25 libraries into each (ADR 0042).
+// libcurl, loaded when a server that calls others starts. The worker processes of jobs are the same
+// program and need none of it: linked, it would bring 25 libraries into each (ADR 0042).
 
 #include <curl/curl.h>
 
-namespace unwrapd::server::webhooks {
+namespace unwrapd::server::outbound {
 
 /// The functions of libcurl that are used here, by their names without "curl_".
 class CurlLibrary {
@@ -27,9 +27,14 @@ class CurlLibrary {
   decltype(&::curl_multi_info_read) multi_info_read;
   decltype(&::curl_slist_append) slist_append;
   decltype(&::curl_slist_free_all) slist_free_all;
+  decltype(&::curl_url) url;
+  decltype(&::curl_url_cleanup) url_cleanup;
+  decltype(&::curl_url_set) url_set;
+  decltype(&::curl_url_get) url_get;
+  decltype(&::curl_free) free;
 
  private:
   CurlLibrary();
 };
 
-}  // namespace unwrapd::server::webhooks
+}  // namespace unwrapd::server::outbound

@@ -1,12 +1,12 @@
-#include "server/webhooks/curl_library.hpp"
+#include "server/outbound/curl_library.hpp"
 
 #include "server/base/loaded_library.hpp"
 
-namespace unwrapd::server::webhooks {
+namespace unwrapd::server::outbound {
 
 CurlLibrary::CurlLibrary() {
   const LoadedLibrary library("libcurl.so.4",  // the one that uses OpenSSL
-                              "libcurl4", "Webhooks cannot be called; tell the operator.");
+                              "libcurl4", "Other servers cannot be called; tell the operator.");
   decltype(&::curl_global_init) global_init = nullptr;
   library.find(global_init, "curl_global_init");
   library.find(easy_init, "curl_easy_init");
@@ -24,6 +24,11 @@ CurlLibrary::CurlLibrary() {
   library.find(multi_info_read, "curl_multi_info_read");
   library.find(slist_append, "curl_slist_append");
   library.find(slist_free_all, "curl_slist_free_all");
+  library.find(url, "curl_url");
+  library.find(url_cleanup, "curl_url_cleanup");
+  library.find(url_set, "curl_url_set");
+  library.find(url_get, "curl_url_get");
+  library.find(free, "curl_free");
   if (global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK) library.cannot_load("it cannot be initialised");
 }
 
@@ -32,4 +37,4 @@ const CurlLibrary& CurlLibrary::loaded() {
   return library;
 }
 
-}  // namespace unwrapd::server::webhooks
+}  // namespace unwrapd::server::outbound
