@@ -87,9 +87,9 @@ void add_flags(CLI::App& app, RawArguments& raw) {
   app.add_option(
          "FILE", arguments.inputs,
          "The mesh: .glb, .gltf, .obj, .stl, .ply or .off, or a .zip with one of them; "
-         "- reads standard input. Several files, a pattern in quotes, or a folder, for all "
-         "meshes below it, are unwrapped side by side and told in a table. compare A B: the UVs "
-         "that two meshes have, side by side")
+         "- reads standard input; the server reads an address (https://). Several files, a pattern "
+         "in quotes, or a folder, for all meshes below it, are unwrapped side by side, in a table. "
+         "compare A B: the UVs that two meshes have, side by side")
       ->type_name("");
   app.add_option(
          "-o,--out", arguments.out,
@@ -170,8 +170,8 @@ bool is_folder(const fs::path& path) {
 bool is_batch(const Arguments& arguments) {
   const fs::path& first = arguments.inputs.front();
   std::error_code none;
-  const bool is_pattern =
-      first.string().find_first_of("*?[") != std::string::npos && !fs::exists(first, none);
+  const bool has_sign = first.string().find_first_of("*?[") != std::string::npos;
+  const bool is_pattern = has_sign && !is_address(first) && !fs::exists(first, none);
   return arguments.inputs.size() > 1 || is_folder(first) || is_pattern || arguments.resume ||
          arguments.watch;
 }
@@ -249,9 +249,9 @@ Arguments complete(RawArguments raw) {
   const auto output = arguments.options.find("output");
   const bool output_given = output != arguments.options.end();
   const bool is_named = !arguments.out.empty() && !is_standard(arguments.out);
-  const std::string format = is_named                 ? format_of(arguments.out)
-                             : is_zip(arguments.file) ? "glb"
-                                                      : "auto";
+  const std::string format = is_named                             ? format_of(arguments.out)
+                             : is_zip(local_name(arguments.file)) ? "glb"
+                                                                  : "auto";
   if (arguments.out.empty())
     arguments.out = default_out(arguments.file, output_given ? output->second : "auto");
   if (!output_given && format != "auto") arguments.options["output"] = format;

@@ -45,6 +45,17 @@ fs::path target_of(fs::path path) {
 
 }  // namespace
 
+bool is_address(const fs::path& path) {
+  const std::string& text = path.native();
+  return text.starts_with("https://") || text.starts_with("http://");
+}
+
+fs::path local_name(const fs::path& path) {
+  if (!is_address(path)) return path;
+  const std::string& text = path.native();
+  return fs::path(text.substr(0, text.find_first_of("?#"))).filename();
+}
+
 bool is_stream(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);

@@ -17,6 +17,12 @@ std::uintmax_t file_bytes(const std::filesystem::path& path);
 /// "-": standard input, or standard output.
 inline bool is_standard(const std::filesystem::path& path) { return path == "-"; }
 
+/// "https://host/x.glb": the address of a mesh, which the server reads.
+bool is_address(const std::filesystem::path& path);
+
+/// The name that a file of this path has here: of an address the last part of its path.
+std::filesystem::path local_name(const std::filesystem::path& path);
+
 /// Whether path is standard input or output, a pipe, a device, or a name for an open file, as
 /// /dev/stdout is one: no new file may take its place, and its size is not known.
 bool is_stream(const std::filesystem::path& path);

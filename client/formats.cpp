@@ -49,8 +49,11 @@ std::string format_of(const fs::path& path) {
 
 bool is_zip(const fs::path& path) { return extension_of(path) == "zip"; }
 
-fs::path default_out(const fs::path& file, const std::string& output) {
-  if (is_stream(file)) return "-";
+fs::path default_out(const fs::path& given, const std::string& output) {
+  if (is_stream(given)) return "-";
+  const fs::path file = local_name(given);
+  if (is_address(given) && !is_mesh_name(file))
+    throw Failure(ExitCode::usage, "The address names no mesh file; name the result by --out.");
   fs::path out = file;
   const bool keep = output.empty() || output == "auto";
   std::string extension = keep ? file.extension().string() : "." + output;

@@ -18,7 +18,8 @@ bool is_zip(const std::filesystem::path& path);
 
 /// "-" for a stream (files.hpp). "folder/mesh.glb" becomes "folder/mesh.uv.glb". output ("obj")
 /// changes the extension; "auto" or an empty text keeps it, unless the format is only read (STL,
-/// PLY, OFF, a zip archive): then it is "glb".
+/// PLY, OFF, a zip archive): then it is "glb". Of an address, the last part of its path counts;
+/// throws Failure{usage} where that names no mesh.
 std::filesystem::path default_out(const std::filesystem::path& file, const std::string& output);
 
 }  // namespace unwrapd::client

@@ -40,6 +40,19 @@ api::Job submit(JobClient& client, const Arguments& arguments, const fs::path& f
   return client.submit(multipart_upload(options, file, files), query);
 }
 
+/// The server reads the mesh.
+api::Job submit_address(JobClient& client, const Arguments& arguments) {
+  const api::Query given(arguments.options.begin(), arguments.options.end());
+  api::Json asked = {{"source", arguments.file.native()}, {"options", api::options_object(given)}};
+  if (!arguments.name.empty()) asked["name"] = arguments.name;
+  return client.submit(json_upload(asked.dump()), {});
+}
+
+api::Job submit_file(JobClient& client, const Arguments& arguments, const std::stop_token& stop) {
+  const InputFile input(arguments.file, stop);
+  return submit(client, arguments, input.path());
+}
+
 api::Job follow(JobClient& client, const std::string& job_id, const Console& console) {
   ProgressView view(console.err, console.style, console.width);
   ProgressState state;
@@ -78,8 +91,8 @@ void finish_job(JobClient& client, const ServerUrl& server, const std::string& j
 
 std::string finished_job(JobClient& client, const Arguments& arguments, const ServerUrl& server,
                          const Console& console, const std::stop_token& stop) {
-  const InputFile input(arguments.file, stop);
-  const api::Job job = submit(client, arguments, input.path());
+  const api::Job job = is_address(arguments.file) ? submit_address(client, arguments)
+                                                  : submit_file(client, arguments, stop);
   finish_job(client, server, job.id, console);
   return job.id;
 }

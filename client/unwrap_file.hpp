@@ -20,7 +20,8 @@ struct Console {
   std::size_t width = 80;
 };
 
-/// Sends arguments.file and follows the job to its success, as unwrap_file(); returns its id.
+/// Sends arguments.file, or its address, and follows the job to its success, as unwrap_file();
+/// returns its id.
 std::string finished_job(JobClient& client, const Arguments& arguments, const ServerUrl& server,
                          const Console& console, const std::stop_token& stop);
 

@@ -66,6 +66,8 @@ Upload raw_upload(const fs::path& document) {
   return {media_type(document), {file_piece(document)}};
 }
 
+Upload json_upload(std::string text) { return {"application/json", {text_piece(std::move(text))}}; }
+
 Upload multipart_upload(const std::string& options, const fs::path& document,
                         const std::vector<FileBeside>& buffers) {
   Upload upload{std::string("multipart/form-data; boundary=") + kBoundary, {}};

@@ -32,6 +32,9 @@ Upload raw_upload(const std::filesystem::path& document);
 Upload multipart_upload(const std::string& options, const std::filesystem::path& document,
                         const std::vector<FileBeside>& buffers);
 
+/// JSON text.
+Upload json_upload(std::string text);
+
 /// "model/gltf-binary", "model/gltf+json", "model/" and the name of another format that is read;
 /// else "application/octet-stream".
 std::string media_type(const std::filesystem::path& path);

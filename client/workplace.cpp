@@ -1,6 +1,7 @@
 #include "client/workplace.hpp"
 
 #include "client/failure.hpp"
+#include "client/files.hpp"
 #include "client/http.hpp"
 #include "core/base/error.hpp"
 #include "server/private_server.hpp"
@@ -33,6 +34,9 @@ Workplace::Workplace(const Arguments& arguments, const std::stop_token& stop)
   const bool is_elsewhere =
       arguments.place == Place::server || (arguments.place == Place::any && answers(server_, stop));
   if (is_elsewhere) return;
+  if (is_address(arguments.file))
+    throw Failure(ExitCode::usage,
+                  "An address is read by a server; name one by --server, or download the mesh.");
   own_ = server_of_its_own(arguments.inputs.empty() ? 1 : arguments.jobs);
   server_ = parse_server_url(own_->url());
   server_.key = own_->key();

@@ -43,6 +43,10 @@ TEST(Arguments, AResultIsWrittenBesideTheFileWhenNoNameIsGiven) {
   EXPECT_EQ(accepted({"a/chair.stl"}).out, "a/chair.uv.glb");
   EXPECT_EQ(accepted({"chair.PLY", "--output", "auto"}).out, "chair.uv.glb");
   EXPECT_EQ(accepted({"chair.off", "--output", "obj"}).out, "chair.uv.obj");
+  EXPECT_EQ(accepted({"https://a.b/c/chair.glb?token=[1]#top"}).out, "chair.uv.glb");
+  EXPECT_EQ(accepted({"https://a.b/chair.zip"}).options.at("output"), "glb");
+  EXPECT_THAT(refused({"https://a.b/"}).text, HasSubstr("name the result by --out"));
+  EXPECT_EQ(accepted({"https://a.b/", "-o", "chair.glb"}).file, "https://a.b/");
   EXPECT_EQ(accepted({"chair.zip"}).out, "chair.uv.glb");
   EXPECT_EQ(accepted({"chair.zip"}).options.at("output"), "glb");
 }

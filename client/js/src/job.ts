@@ -1,5 +1,5 @@
 // A job from its submission to its end, over connections that break and servers that are full.
-import {type Asset, formOf} from './asset.js';
+import {type Asset, requestOf} from './asset.js';
 import {type Connection, Patience, call, jsonOf, patiently, reach} from './connection.js';
 import {UnwrapdError, unreachable} from './error.js';
 import {eventsOf} from './events.js';
@@ -31,9 +31,8 @@ function newName(): string {
 
 /** Sends the asset. A request that is sent again gets the job that it made before. */
 function submit(asset: Asset, options: Options, settings: Call): Promise<Job> {
-  const headers = {Accept: 'application/json', 'Idempotency-Key': settings.idempotencyKey ?? newName()};
-  const body = formOf(asset, options);
-  if (settings.name !== undefined) body.append('name', settings.name);
+  const {body, headers: own} = requestOf(asset, options, settings.name);
+  const headers = {Accept: 'application/json', 'Idempotency-Key': settings.idempotencyKey ?? newName(), ...own};
   return patiently(settings, async () => {
     const answer = await call(settings, settings.ticket ?? '/v1/jobs', {method: 'POST', headers, body});
     return jsonOf<Job>(settings, answer);

@@ -1,4 +1,4 @@
-"""The request that sends an asset: a form, whose files are read as they are sent."""
+"""The request that sends an asset: a form, whose files are read as they are sent, or JSON with its address."""
 
 from __future__ import annotations
 
@@ -77,3 +77,17 @@ class Form:
             with part.open("rb") as file:
                 while piece := file.read(PIECE):
                     yield piece
+
+
+class SourceText:
+    """A JSON body that names the asset by its address, from which the server reads it."""
+
+    def __init__(self, address: str, options: Mapping[str, Any], name: str | None = None) -> None:
+        named = {} if name is None else {"name": name}
+        self._bytes = json.dumps({"source": address, "options": options, **named}).encode()
+
+    def headers(self) -> dict[str, str]:
+        return {"Content-Type": "application/json", "Content-Length": str(len(self._bytes))}
+
+    def __iter__(self) -> Iterator[bytes]:
+        yield self._bytes

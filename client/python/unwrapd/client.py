@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
 
-from .asset import Asset, Form, asset_at
+from .asset import Asset, Form, SourceText, asset_at
 from .connection import Connection, default_server, patiently, read
 from .job import OK, Job, OnProgress, download, json_of, run_job
 from .mesh import MappedMesh, MeshLike, glb_of, mapped
@@ -34,6 +34,10 @@ def _asset_of(given: str | os.PathLike[str] | bytes | MeshLike) -> Asset:
     return Asset(glb_of(given))
 
 
+def _is_address(given: object) -> bool:
+    return isinstance(given, str) and given.lower().startswith(("https://", "http://"))
+
+
 def unwrap(
     asset: str | os.PathLike[str] | bytes | MeshLike,
     options: Mapping[str, Any] | None = None,
@@ -46,8 +50,9 @@ def unwrap(
     name: str | None = None,
     ticket: str | None = None,
 ) -> Unwrapped:
-    """Unwraps an asset: the path or the bytes of a glTF, OBJ, STL, PLY or OFF, or a mesh with
-    vertices and faces, such as a trimesh.Trimesh.
+    """Unwraps an asset: the path or the bytes of a glTF, OBJ, STL, PLY or OFF, its address (https://),
+    from which the server reads it where its operator allows the host, or a mesh with vertices and
+    faces, such as a trimesh.Trimesh.
 
     options: those of docs/options.md. server: its address; default: UNWRAPD_SERVER, else
     http://127.0.0.1:8080. key: an API key. retries: failures in a row, of the connection or for want
@@ -56,7 +61,10 @@ def unwrap(
     upload_tickets(), which takes one job. Raises UnwrapdError, and OSError for a file that cannot be read.
     """
     connection = Connection(server or default_server(), key, retries)
-    form = Form(_asset_of(asset), options or {}, name)
+    if _is_address(asset):
+        form: Form | SourceText = SourceText(str(asset), options or {}, name)
+    else:
+        form = Form(_asset_of(asset), options or {}, name)
     job = run_job(connection, form, idempotency_key or str(uuid.uuid4()), on_progress, ticket or "/v1/jobs")
     links = job["links"]
     report = json_of(OK, download(connection, links["report"]))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .asset import Form
+from .asset import Form, SourceText
 from .connection import Connection, Patience, lines, patiently, read
 from .error import UnwrapdError, unexpected, unreachable
 from .events import Event, events_of
@@ -48,7 +48,7 @@ def download(connection: Connection, path: str, headers: Mapping[str, str] | Non
     return patiently(connection, attempt)
 
 
-def submit(connection: Connection, form: Form, name: str, path: str) -> Job:
+def submit(connection: Connection, form: Form | SourceText, name: str, path: str) -> Job:
     """Sends the asset. A request that is sent again gets the job that it made before."""
     headers = {**form.headers(), "Accept": "application/json", "Idempotency-Key": name}
 
@@ -116,7 +116,7 @@ def _cancel(connection: Connection, job: Job) -> None:
 
 
 def run_job(
-    connection: Connection, form: Form, name: str, on_progress: OnProgress | None, path: str = "/v1/jobs"
+    connection: Connection, form: Form | SourceText, name: str, on_progress: OnProgress | None, path: str = "/v1/jobs"
 ) -> Job:
     """Submits and follows a job. Raises UnwrapdError unless it succeeds; what on_progress raises, or
     Ctrl-C, cancels the job."""

@@ -23,6 +23,7 @@ sys.path.insert(0, os.environ.get("CLIENT_PACKAGE", str(HERE / "../../../client/
 from unwrapd import Progress, UnwrapdError, unwrap  # noqa: E402
 
 DATA = Path(os.environ.get("UNWRAPD_TEST_DATA", HERE / "../../../../shared/data"))
+USUAL = ["--admin-listen", "off", "--workers", "1", "--log-level", "off"]
 FILES = [
     "disk/tiny_square.obj", "disk/hand_lowres.obj", "paper/Balls.obj", "paper/Isis_dABF.obj",
     "closed/spot_control_mesh.obj", "gltf/pmndrs/bunny.glb", "gltf/gltfrs/tests/box_sparse.glb", "gltf/tinygltf/models/box01.glb",
@@ -51,16 +52,15 @@ def obj(size: int) -> bytes:
 class Server:
     """The real server on a port of its own, which can be killed and started again."""
 
-    def __init__(self) -> None:
-        self._data = tempfile.mkdtemp(prefix="unwrapd-client-")
+    def __init__(self, *flags: str) -> None:
+        self._flags, self._data = flags, tempfile.mkdtemp(prefix="unwrapd-client-")
         with socket.create_server(("127.0.0.1", 0)) as probe:
             self._listen = f"127.0.0.1:{probe.getsockname()[1]}"
         self.base = f"http://{self._listen}"
         self.start()
 
     def start(self) -> None:
-        flags = ["--listen", self._listen, "--admin-listen", "off", "--data", self._data, "--workers", "1"]
-        words = [os.environ["UNWRAPD"], *flags, "--log-level", "off"]
+        words = [os.environ["UNWRAPD"], "--listen", self._listen, "--data", self._data, *self._flags, *USUAL]
         self._process = subprocess.Popen(words, stdout=subprocess.PIPE)
         assert self._process.stdout
         self._process.stdout.readline()
