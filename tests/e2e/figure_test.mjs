@@ -1,8 +1,8 @@
 // The page of maps that ./dev figure makes, by the real server and client, on a real mesh file; then
-// in Chromium, where there is one (CHROMIUM, else Debian's). UNWRAPD_BIN: the folder of both programs.
+// in Chromium, where there is one. UNWRAPD_BIN: the folder of both programs.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -11,10 +11,10 @@ import { promisify } from "node:util";
 
 import { areaOf, inUnitsOf, plan } from "../../client/figure.mjs";
 import { startServer } from "../contract/server.mjs";
+import { chromium, noChromium } from "./chromium.mjs";
 
 const run = promisify(execFile);
 const bin = process.env.UNWRAPD_BIN;
-const chromium = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const figure = fileURLToPath(new URL("../../client/figure.mjs", import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), "unwrap_figure_"));
 const at = (name) => join(folder, name);
@@ -117,11 +117,7 @@ async function browse(address, ...flags) {
   return { dom: stdout, console: stderr.split("\n").filter((line) => line.includes("CONSOLE")) };
 }
 
-test("a browser shows every picture and complains of nothing", async (t) => {
-  if (!existsSync(chromium)) {
-    t.skip(`there is no Chromium at ${chromium}: the page was not opened in a browser`);
-    return;
-  }
+test("a browser shows every picture and complains of nothing", { skip: noChromium }, async () => {
   const probe = `<script>addEventListener("load", () => {
     document.title = "widths " + [...document.images].map((image) => image.naturalWidth);
   });</script></body>`;

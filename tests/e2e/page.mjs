@@ -1,5 +1,4 @@
-// The page at / of a real server in a real Chromium (CHROMIUM, else Debian's), for the tests of its
-// flows. UNWRAPD is the server.
+// The page at / of a real server in a real Chromium, for the tests of its flows. UNWRAPD is the server.
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import net from "node:net";
 import { tmpdir } from "node:os";
@@ -7,14 +6,14 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 import { startServer } from "../contract/server.mjs";
+import { chromium, noChromium } from "./chromium.mjs";
 
 export const binary = process.env.UNWRAPD;
-const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const playwright = await import("playwright-core").catch(() => undefined);
 const data = process.env.UNWRAPD_TEST_DATA ?? fileURLToPath(new URL("../../../shared/data", import.meta.url));
 
 /** Why the tests cannot run; false if they can. */
-export const missing = (!existsSync(executablePath) && `there is no Chromium at ${executablePath}`) ||
+export const missing = noChromium ||
   (!playwright && "tests/node_modules is missing: run npm ci in tests/");
 
 /** WebGL without a GPU. */
@@ -45,7 +44,7 @@ export class Bench {
 
   async open(flags = ["--workers", "1"]) {
     this.server = await startServer(binary, flags);
-    this.browser = await playwright.chromium.launch({ executablePath, args });
+    this.browser = await playwright.chromium.launch({ executablePath: chromium, args });
   }
 
   async close() {

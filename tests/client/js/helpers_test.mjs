@@ -6,17 +6,17 @@ import validator from "gltf-validator";
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 import { once } from "node:events";
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { promisify } from "node:util";
 
 import { glb } from "../../contract/meshes.mjs";
+import { chromium, noChromium } from "../../e2e/chromium.mjs";
 import { install } from "./installed.mjs";
 import { restartable } from "./restartable.mjs";
 
-const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const run = promisify(execFile);
 let server;
 let installed;
@@ -182,17 +182,15 @@ test("the types hold what they promise, and refuse what the server would", async
   await assert.rejects(compile("bad.mts"), ({ stdout }) => /'"textures"' is not assignable/.test(stdout));
 });
 
-const noBrowser = !existsSync(executablePath) && `there is no Chromium at ${executablePath}`;
-
-test("the package works in a browser, from another site", { skip: noBrowser }, async (t) => {
+test("the package works in a browser, from another site", { skip: noChromium }, async (t) => {
   const site = createServer((request, response) => {
     const isScript = request.url.endsWith(".js");
     response.setHeader("Content-Type", isScript ? "text/javascript" : "text/html");
     response.end(isScript ? readFileSync(join(installed.own, "dist", request.url)) : "<!DOCTYPE html><title>t</title>");
   });
   await once(site.listen(0, "127.0.0.1"), "listening");
-  const { chromium } = await import("playwright-core");
-  const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu", "--disable-quic"] });
+  const playwright = await import("playwright-core");
+  const browser = await playwright.chromium.launch({ executablePath: chromium, args: ["--no-sandbox", "--disable-gpu", "--disable-quic"] });
   t.after(async () => {
     await browser.close();
     site.close();
