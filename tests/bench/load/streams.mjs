@@ -3,12 +3,14 @@
 import http from 'node:http';
 import {setTimeout as sleep} from 'node:timers/promises';
 
+import {request} from '../../contract/http.mjs';
 import {startServer} from '../../contract/server.mjs';
 import {
   anonymousKb, figure, kScale, meshOfTenIterationsASecond, probe, quantile, round, submit, timed,
 } from './measure.mjs';
 
-const kStreams = 500 * kScale;
+const kAtOnce = 25;
+const kStreams = Math.max(kAtOnce, 500 * kScale);
 const kWatchSeconds = 15 * kScale;
 const kTrimmed = 12_000 * kScale;  // ms; the server gives memory back every 10 s
 
@@ -48,7 +50,7 @@ export async function streams(binary) {
   const mesh = await meshOfTenIterationsASecond(server.base);
   const jobs = [];
   for (let i = 0; i < 2; ++i) {  // two questions: the same one is worked on once
-    const query = `?stop.iterations=${10_000 - i}&guarantee=none`;
+    const query = `?preset=chart&stop.iterations=${10_000 - i}&guarantee=none`;
     jobs.push((await submit(server.base, mesh, query)).job.id);
   }
   for (const job of jobs) await iterates(server.base, job);
@@ -56,9 +58,9 @@ export async function streams(binary) {
   const before = anonymousKb(server.pid);
   const stopProbe = probe(server.base);
   const open = [];
-  for (let i = 0; i < kStreams; i += 25) {
+  for (let i = 0; i < kStreams; i += kAtOnce) {
     open.push(...await Promise.all(
-      Array.from({length: 25}, (_, k) => follow(server.base, jobs[(i + k) % 2]))));
+      Array.from({length: kAtOnce}, (_, k) => follow(server.base, jobs[(i + k) % 2]))));
   }
   const seen = open.map(({events}) => events);
   await sleep(1000 * kWatchSeconds);
@@ -74,6 +76,7 @@ export async function streams(binary) {
     figure('memory a stream', round(perStream), 'kB', 40),
   ];
   open.forEach(({close}) => close());
+  for (const id of jobs) await request(server.base, {method: 'DELETE', path: `/v1/jobs/${id}`});
   await server.stop();
   return figures;
 }
