@@ -11,7 +11,7 @@ import { promisify } from "node:util";
 
 import { areaOf, inUnitsOf, plan } from "../../client/figure.mjs";
 import { startServer } from "../contract/server.mjs";
-import { chromium, noChromium } from "./chromium.mjs";
+import { chromium, noChromium } from "./browsers.mjs";
 
 const run = promisify(execFile);
 const bin = process.env.UNWRAPD_BIN;

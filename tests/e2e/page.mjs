@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 import { startServer } from "../contract/server.mjs";
-import { chromium, noChromium } from "./chromium.mjs";
+import { chromium, firefox, noChromium } from "./browsers.mjs";
 
 export const binary = process.env.UNWRAPD;
 const playwright = await import("playwright-core").catch(() => undefined);
@@ -18,6 +18,11 @@ export const missing = noChromium ||
 
 /** WebGL without a GPU. */
 const args = ["--host-resolver-rules=MAP unwrapd.test 127.0.0.1", "--no-sandbox", "--disable-quic", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+export const launchChromium = (flags) => playwright.chromium.launch({ executablePath: chromium, args: flags });
+
+/** Debian's Firefox, by the protocol that all browsers speak. */
+export const launchFirefox = () => playwright.firefox.launch({ executablePath: firefox, channel: "moz-firefox" });
 
 /** The path of a real mesh; undefined where there are none. */
 export function real(name) {
@@ -42,9 +47,9 @@ function definePixelsOf() {
 export class Bench {
   folder = mkdtempSync(join(tmpdir(), "unwrapd-page-"));
 
-  async open(flags = ["--workers", "1"]) {
-    this.server = await startServer(binary, flags);
-    this.browser = await playwright.chromium.launch({ executablePath: chromium, args });
+  async open(launch = () => launchChromium(args)) {
+    this.server = await startServer(binary, ["--workers", "1"]);
+    this.browser = await launch();
   }
 
   async close() {

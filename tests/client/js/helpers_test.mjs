@@ -13,7 +13,7 @@ import { after, before, test } from "node:test";
 import { promisify } from "node:util";
 
 import { glb } from "../../contract/meshes.mjs";
-import { chromium, noChromium } from "../../e2e/chromium.mjs";
+import { chromium, noChromium } from "../../e2e/browsers.mjs";
 import { install } from "./installed.mjs";
 import { restartable } from "./restartable.mjs";
 

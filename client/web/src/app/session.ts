@@ -11,6 +11,7 @@ import {type Kept, listDownloads} from '../result/downloads.js';
 import {showFigures} from '../result/figures.js';
 import {LambdaGallery} from '../result/lambdas.js';
 import {type Loaded, loadAsset, loadResult} from '../result/load.js';
+import {showPictures} from '../result/pictures.js';
 import {clearProblem, showMessage, showProblem} from './problem.js';
 import type {Viewing} from './viewing.js';
 
@@ -152,6 +153,7 @@ export class Session {
     });
     if (kind === 'draft') $('downloads').replaceChildren('This is a draft. Let the slider go for a result.');
     else listDownloads(this.kept!, showProblem);
+    if (kind !== 'draft' && this.#viewing.isBlank) showPictures(this.kept!).catch(showProblem);
     this.onResult?.();
   }
 

@@ -59,6 +59,13 @@ export class Viewing {
     const dark = matchMedia('(prefers-color-scheme: dark)');
     dark.addEventListener('change', () => this.#useTheme());
     this.#useTheme();
+    show($('no-webgl'), this.isBlank);
+    $('views').classList.toggle('blank', this.isBlank);
+  }
+
+  /** Whether this browser cannot draw the views. */
+  get isBlank(): boolean {
+    return this.viewer.solid.isBlank;
   }
 
   get #colouring(): Colouring {
@@ -83,6 +90,7 @@ export class Viewing {
     if (model.looks) this.#before.skin = once(() => skinOf(model));
     if (surface.faces <= SEARCHED_FACES) this.#before.overlapping = this.#before.map && overlappingFaces(this.#before.map);
     this.#after = undefined;
+    show($('pictures'), false);
     this.#show(this.#before);
     return surface;
   }
@@ -136,8 +144,10 @@ export class Viewing {
     const [some, many] = [overlapping?.length ?? 0, worst !== undefined];
     show($('worst-row'), many);
     show($('overlaps-row'), some > 0);
+    const chart = `chart ${worst! + 1}`;
+    const told = this.isBlank ? `The most distorted one is ${chart}.` : `The frame shows ${chart}, the most distorted one.`;
     const texts = [
-      many ? `The frame shows chart ${worst! + 1}, the most distorted one.` : '',
+      many ? told : '',
       some > 0 ? `${count(some, 'triangle')} ${some === 1 ? 'overlaps' : 'overlap'} others of the same chart. They are hatched.` : '',
     ];
     $('faults').textContent = texts.filter(Boolean).join(' ');

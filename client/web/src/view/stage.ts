@@ -31,9 +31,15 @@ function geometryOf(positions: Float32Array): BufferGeometry {
   return geometry;
 }
 
+/** None where the browser has no WebGL: it is off, or the graphics card is blocked. */
+function rendererOf(canvas: HTMLCanvasElement): WebGLRenderer | undefined {
+  const context = canvas.getContext('webgl2', {antialias: true});
+  return context ? new WebGLRenderer({canvas, context}) : undefined;
+}
+
 export abstract class Stage {
   readonly scene = new Scene();
-  readonly renderer: WebGLRenderer;
+  readonly #renderer: WebGLRenderer | undefined;
   protected abstract readonly camera: Camera;
   protected abstract readonly isLit: boolean;
   readonly #seams = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
@@ -50,7 +56,7 @@ export abstract class Stage {
   #asked = false;
 
   constructor(readonly canvas: HTMLCanvasElement, protected readonly material: Material & {map: Texture | null}) {
-    this.renderer = new WebGLRenderer({canvas, antialias: true});
+    this.#renderer = rendererOf(canvas);
     this.#mesh = new Mesh(new BufferGeometry(), material);
     const wire = new MeshBasicMaterial({wireframe: true, transparent: true, opacity: 0.35, polygonOffset: true, polygonOffsetFactor: -1});
     this.#wire = new Mesh(this.#mesh.geometry, wire);
@@ -61,6 +67,11 @@ export abstract class Stage {
       this.scene.add(object);
     });
     new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  /** Whether nothing that is shown is ever seen. */
+  get isBlank(): boolean {
+    return !this.#renderer;
   }
 
   protected setTriangles(positions: Float32Array, normals: Float32Array | undefined, uv: Float32Array | undefined): void {
@@ -178,10 +189,10 @@ export abstract class Stage {
       this.#asked = false;
       const {clientWidth: width, clientHeight: height} = this.canvas;
       if (width === 0 || height === 0) return;
-      this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-      this.renderer.setSize(width, height, false);
       this.shape(width / height);
-      this.renderer.render(this.scene, this.camera);
+      this.#renderer?.setPixelRatio(Math.min(devicePixelRatio, 2));
+      this.#renderer?.setSize(width, height, false);
+      this.#renderer?.render(this.scene, this.camera);
     });
   }
 
