@@ -26,7 +26,8 @@ struct SourceConfig {
       allowed_hosts;           ///< "example.com", "*.example.com" or "*"; none: no sources
   bool allow_private = false;  ///< addresses of this machine and of private networks
   bool allow_http = false;     ///< without TLS, too
-  int seconds = 60;            ///< for one download, from resolving its host to its last byte
+  int seconds = 45;            ///< for one download, from resolving its host to its last byte; our
+                               ///< clients, and many proxies, give up after 60 s of silence
   int at_once = 8;             ///< downloads; more are refused
 };
 

@@ -10,9 +10,10 @@ const MESH = grid(8);
 
 /** A server of unwrapd and its directory, gone after the test. */
 async function start(t, ...flags) {
+  let server;
+  t.after(() => server?.end("SIGKILL")); // before its directory goes: hooks run in their order
   const data = dataDirectory(t);
-  const server = await Server.start(data, ...flags);
-  t.after(() => server.end("SIGKILL"));
+  server = await Server.start(data, ...flags);
   return { server, data };
 }
 

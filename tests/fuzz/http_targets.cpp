@@ -12,6 +12,7 @@
 #include "server/http/connection.hpp"
 #include "server/http/http_exchange.hpp"
 #include "server/http/http_head.hpp"
+#include "server/outbound/outbound_url.hpp"
 #include "server/uploads/mesh_reference.hpp"
 #include "tests/fuzz/targets.hpp"
 
@@ -119,8 +120,9 @@ std::vector<std::string> multipart_seeds() {
 
 void reference(std::string_view bytes) {
   const server::uploads::MeshReference named = server::uploads::parse_mesh_reference(bytes);
-  promise(server::is_sha256(named.sha256),
-          "a mesh is named by its digest, which leads nowhere else");
+  promise(named.sha256.empty() != named.source.empty(), "there is one mesh");
+  promise(named.sha256.empty() || server::is_sha256(named.sha256),
+          "a stored mesh is named by its digest, which leads nowhere else");
   promise(!named.options ||
               api::parse_json(*named.options, {.max_bytes = api::kMaxOptionsBytes}).is_object(),
           "options are an object");
@@ -129,16 +131,32 @@ void reference(std::string_view bytes) {
 std::vector<std::string> reference_seeds() {
   const std::string digest(64, 'a');
   return {R"({"mesh":")" + digest + R"(","options":{"method":"slim","stop":{"iterations":3}}})",
-          R"({"mesh":")" + digest + R"("})"};
+          R"({"mesh":")" + digest + R"("})", R"({"source":"https://a.example/b.glb","name":"c"})"};
+}
+
+/// Addresses that clients chose, as they are read before they are checked.
+void address(std::string_view bytes) {
+  namespace out = server::outbound;
+  const out::OutboundUrl url =
+      out::read_url(std::string(bytes), {.refused = ErrorCode::source_refused, .whose = "source"});
+  promise(url.port > 0 && url.port < 65'536, "a port is one");
+  promise(url.target.starts_with('/'), "a target is a path");
+  promise(url.host.find_first_of("@/?#\\ \r\n%") == std::string::npos, "a host is one");
+}
+
+std::vector<std::string> address_seeds() {
+  return {"https://a.example/b.glb?c=d", "http://[::ffff:10.0.0.1]:8080/x", "https://127.1"};
 }
 
 }  // namespace
 
 std::span<const Target> http_targets() {
-  static const std::array targets = {
-      Target{"head", head, head_seeds}, Target{"http", connection, connection_seeds},
-      Target{"multipart", multipart, multipart_seeds},
-      Target{"reference", reference, reference_seeds}, parking_target()};
+  static const std::array targets = {Target{"head", head, head_seeds},
+                                     Target{"http", connection, connection_seeds},
+                                     Target{"multipart", multipart, multipart_seeds},
+                                     Target{"reference", reference, reference_seeds},
+                                     Target{"address", address, address_seeds},
+                                     parking_target()};
   return targets;
 }
 
