@@ -22,27 +22,11 @@ std::optional<Enum> find_enumerator(std::span<const std::string_view> names,
   return static_cast<Enum>(found - names.begin());
 }
 
-Json to_json(const JobProgress& progress) {
-  return {{"stage", stage_name(progress.stage)},
-          {"fraction", finite(progress.fraction)},
-          {"chart", progress.chart},
-          {"iteration", progress.iteration},
-          {"energy", finite(progress.energy)}};
-}
-
 template <class T>
 T require_known(const std::optional<T>& value) {
   if (!value)
     throw Error(ErrorCode::malformed_request, "The state of the job is unknown to this version.");
   return *value;
-}
-
-JobProgress progress_from_json(const Json& json) {
-  return {.stage = require_known(stage_named(json.at("stage").get<std::string>())),
-          .fraction = json.at("fraction").get<double>(),
-          .chart = json.at("chart").get<Index>(),
-          .iteration = json.at("iteration").get<int>(),
-          .energy = json.at("energy").get<double>()};
 }
 
 Job read_job(const Json& json) {
@@ -56,12 +40,28 @@ Job read_job(const Json& json) {
           .problem = {}};
   job.finished = json.value("finished", "");
   if (json.contains("duration")) job.duration = json.at("duration").get<double>();
-  if (json.contains("progress")) job.progress = progress_from_json(json.at("progress"));
+  if (json.contains("progress")) job.progress = progress_of(json.at("progress"));
   if (json.contains("problem")) job.problem = json.at("problem");
   return job;
 }
 
 }  // namespace
+
+Json to_json(const JobProgress& progress) {
+  return {{"stage", stage_name(progress.stage)},
+          {"fraction", finite(progress.fraction)},
+          {"chart", progress.chart},
+          {"iteration", progress.iteration},
+          {"energy", finite(progress.energy)}};
+}
+
+JobProgress progress_of(const Json& json) {
+  return {.stage = require_known(stage_named(json.at("stage").get<std::string>())),
+          .fraction = json.at("fraction").get<double>(),
+          .chart = json.at("chart").get<Index>(),
+          .iteration = json.at("iteration").get<int>(),
+          .energy = json.at("energy").get<double>()};
+}
 
 std::string_view state_name(JobState state) { return kStates[static_cast<std::size_t>(state)]; }
 

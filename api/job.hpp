@@ -51,6 +51,9 @@ std::string job_path(std::string_view id);
 Json job_links(std::string_view id);
 
 /// With links, and with progress and problem if they are set.
+Json to_json(const JobProgress& progress);
+/// Throws Error{malformed_request} or Json::exception for what to_json() has not made.
+JobProgress progress_of(const Json& json);
 Json to_json(const Job& job);
 
 /// Reads the output of to_json(). Members that this version does not know are ignored. Throws

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "server/access/key_store.hpp"
+#include "server/access/shared_secret.hpp"
 #include "server/access/signed_link.hpp"
 #include "server/base/clock.hpp"
 #include "server/base/errors.hpp"
@@ -65,8 +66,9 @@ void tell_webhook_secret(const Asked& asked) {
   access::KeyStore keys = opened(asked);
   const bool is_stored = !asked.id.empty() && asked.id != access::kGivenKeyId;
   if (is_stored && !keys.with_id(asked.id)) unknown_key(asked.id);
+  const std::optional<std::string> shared = access::known_shared_secret({.url = asked.database});
   const std::string secret =
-      access::secret_in(std::filesystem::path(asked.data) / access::kSecretFile);
+      shared ? *shared : access::secret_in(std::filesystem::path(asked.data) / access::kSecretFile);
   std::printf("%s\n", webhooks::webhook_secret(secret, asked.id).c_str());
 }
 

@@ -10,10 +10,12 @@
 #include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
 #include "server/base/threads.hpp"
+#include "server/cache_metrics.hpp"
 #include "server/config/component_config.hpp"
 #include "server/http/access_log.hpp"
 #include "server/http/sites.hpp"
 #include "server/jobs/worker_pool.hpp"
+#include "server/other_nodes.hpp"
 #include "server/routes/admin_routes.hpp"
 #include "server/routes/info_routes.hpp"
 #include "server/routes/job_routes.hpp"
@@ -28,6 +30,7 @@ namespace unwrapd::server {
 namespace {
 
 using namespace std::chrono_literals;
+constexpr int kBeatsInALease = 3;
 constexpr std::size_t kEventsKept = 1024, kFeedsKept = 64;  // of each job; of finished jobs
 
 }  // namespace
@@ -37,23 +40,27 @@ struct Service::Parts {
       : config(given),
         isolation(config::isolation_of(config, solver_cache, functions)),
         lock(config.data),
-        blobs(config.data, config.disk),
-        store(store::store_in(config.data, config.database, blobs)),
+        node(node_of(config)),
+        blobs(blobs_root(config), config.disk,
+              node.is_shared ? store::Sharing::by_nodes : store::Sharing::none),
+        store(store::store_in(config.data, database_of(config, node), blobs), read_clocks, node),
         mesh_store(store::address_in(config.data, config.database)),
         queue(store, blobs, events, log,
               {.max_queue = config.limits.max_queue,
                .workers = config.workers,
                .max_stored = config.max_stored_jobs,
+               .lease = config.lease,
                .stop = config::most_stopping(config)}),
         streams(events, config.limits.max_streams),
         keys(config.data, config.access.key_file, config.database),
-        secret(access::secret_in(config.data / access::kSecretFile)),
+        secret(secret_of(config, node)),
         links(secret),
         access(keys, links, access::asks_for_keys(config.access, config.listen.host)),
         cors(config.cors_origins),
         sites(config.allowed_hosts, cors),
-        webhooks(store::address_in(config.data, config.database), secret, config.webhooks, log,
-                 [this] { return store.now(); }),
+        webhooks(
+            store::address_in(config.data, config.database), secret, config.webhooks, log,
+            [this] { return store.now(); }, node.is_shared),
         renderer(blobs, config.limits, log, isolation,
                  config::render_limits(config, solver_cache.memory_limit()), functions),
         meshes(mesh_store, store, blobs, rooms, renderer),
@@ -77,6 +84,7 @@ struct Service::Parts {
       admin.emplace(config::admin_config(*config.admin), uses(told, log, LogLevel::debug), log);
     }
     config::warn_without_keys(config, keys.has_any(), log);
+    other_nodes.emplace(config.database, store, blobs, events, queue, log);
     tell_state();
     config::tell_isolation(isolation, config, log, metrics);
     queue.recover(isolation.possible);
@@ -163,7 +171,12 @@ struct Service::Parts {
         },
         log);
     renewing.emplace(
-        "prolonging leases", 10s, [this] { queue.renew_leases(); }, log);
+        "prolonging leases", std::chrono::milliseconds(config.lease) / kBeatsInALease,
+        [this] {
+          queue.renew_leases();
+          if (node.is_shared) blobs.room().recount(store.stored_bytes());
+        },
+        log);
     mending.emplace(
         "mending after a loss of the database", 1s, [this] { queue.mend(); }, log);
     calling.emplace(
@@ -179,27 +192,7 @@ struct Service::Parts {
                  [&] { return http.open() - http.parked(); });
     metrics.tell(Metric::event_streams, {}, [&] { return streams.open_count(); });
     metrics.tell(Metric::stored_bytes, {}, [&] { return blobs.room().used_bytes(); });
-    tell_caches();
-  }
-
-  void tell_caches() {
-    const auto tell_asked = [&](std::string_view cache, auto hits, auto misses) {
-      metrics.tell(Metric::cache_requests, {{"cache", cache}, {"outcome", "hit"}}, hits);
-      metrics.tell(Metric::cache_requests, {{"cache", cache}, {"outcome", "miss"}}, misses);
-    };
-    const auto tell_files = [&](std::string_view cache, const FileCounts& of) {
-      tell_asked(
-          cache, [&of] { return of.hits.load(); }, [&of] { return of.misses.load(); });
-      metrics.tell(Metric::made_bytes, {{"cache", cache}}, [&of] { return of.bytes.load(); });
-    };
-    tell_asked(
-        "solver", [&] { return solver_cache.counters().hits; },
-        [&] { return solver_cache.counters().misses; });
-    metrics.tell(Metric::cache_bytes, {{"cache", "solver"}},
-                 [&] { return solver_cache.counters().bytes; });
-    tell_files("result", results.counts());
-    tell_files("picture", pictures.counts());
-    tell_files("analysis", meshes.counts());
+    tell_caches(metrics, solver_cache, {&results.counts(), &pictures.counts(), &meshes.counts()});
   }
 
   /// Stops the edge, then the admin port: probes answer until the last request is answered.
@@ -229,6 +222,7 @@ struct Service::Parts {
   work::SolverCache solver_cache{config.memory, config.workers};
   const work::Isolation isolation;
   store::DataLock lock;
+  const store::Node node;
   store::BlobStore blobs;
   store::JobStore store;
   store::MeshStore mesh_store;
@@ -239,6 +233,7 @@ struct Service::Parts {
   const std::shared_ptr<Wakeup> news = std::make_shared<Wakeup>();
   jobs::EventFeed events{kEventsKept, kFeedsKept, &metrics, news};
   jobs::JobQueue queue;
+  std::optional<OtherNodes> other_nodes;
   routes::EventStreams streams;
   access::KeyStore keys;
   const std::string secret;
@@ -255,7 +250,8 @@ struct Service::Parts {
   store::Sweeper sweeper;
   results::PictureStore pictures;
   const routes::Readiness readiness{
-      queue, store, [this] { return store::is_whole(config.data, config.database); },
+      queue, store,
+      [this] { return store::is_whole(config.data, blobs_root(config), config.database); },
       [this] { return !workers || workers->are_left(); }};
   http::Router router;
   http::HttpServer http;

@@ -3,6 +3,7 @@
 // environment variable and a key of the file. --max-queue is UNWRAPD_MAX_QUEUE and max-queue; the
 // flag wins over the variable, the variable over the file, the file over the default.
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -41,7 +42,9 @@ struct Config {
   /// after that of listen, on loopback, where nothing else is asked for.
   std::optional<http::Address> admin;
   std::filesystem::path data = "data";
-  store::PostgresAddress database;  ///< without a URL: SQLite in data
+  store::PostgresAddress database;     ///< without a URL: SQLite in data
+  std::filesystem::path shared_blobs;  ///< of the files of all nodes; empty: in data, of this alone
+  std::chrono::seconds lease{30};      ///< of a running job
   int workers = 1;
   int threads = 1;  ///< for each job
   int keep_seconds = 7 * 24 * 60 * 60;

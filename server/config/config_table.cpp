@@ -15,6 +15,7 @@ constexpr int kMaxThreads = 256;
 constexpr int kMaxStreams = 4096;
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 constexpr std::string_view kNoAdmin = "off";
+constexpr std::string_view kDirectory = "dir:";  // before a path of --blobs
 
 http::Address address_of(const std::string& text) {
   const std::optional<http::Address> address = http::parse_address(text);
@@ -101,30 +102,32 @@ ConfigRow isolate_row() {
 }
 
 ConfigGroup working() {
-  return {.title = "Jobs",
-          .rows = {
-              text({"data", "PATH", "Directory of jobs and results; created if missing"},
-                   &Config::data),
-              number({"workers", "N", "Jobs that run at once"}, {1, kMaxThreads}, &Config::workers),
-              number({"threads", "N", "Threads of each job"}, {1, kMaxThreads}, &Config::threads),
-              number({"memory-limit", "N",
-                      "Bytes of memory for one job; a job that would need more is refused. 0: its "
-                      "share of the machine"},
-                     {0, kMaxMemoryBytes}, &Config::memory, &work::MemoryLimits::job_bytes),
-              number({"solver-cache-bytes", "N",
-                      "Bytes of memory for factors and maps that are cached for further jobs on "
-                      "the same mesh (with --isolate=off)"},
-                     {0, kMaxMemoryBytes}, &Config::memory, &work::MemoryLimits::cache_bytes),
-              isolate_row(),
-              number({"grace-seconds", "N",
-                      "Seconds that a job may take to stop after its owner or --max-job-seconds "
-                      "stops it; then its process is killed, or its thread abandoned"},
-                     {0, 3600}, &Config::grace_seconds),
-              number({"drain-seconds", "N",
-                      "Seconds that running jobs may continue after SIGTERM; a second signal ends "
-                      "the wait. Jobs that do not stop, and last answers, may take 15 s and "
-                      "--grace-seconds more"},
-                     {0, kMaxCount}, &Config::drain_seconds)}};
+  return {
+      .title = "Jobs",
+      .rows = {text({"data", "PATH", "Directory of jobs and results; created if missing"},
+                    &Config::data),
+               number({"workers", "N",
+                       "Jobs that run at once. 0: none; the other nodes of --blobs run them"},
+                      {0, kMaxThreads}, &Config::workers),
+               number({"threads", "N", "Threads of each job"}, {1, kMaxThreads}, &Config::threads),
+               number({"memory-limit", "N",
+                       "Bytes of memory for one job; a job that would need more is refused. 0: its "
+                       "share of the machine"},
+                      {0, kMaxMemoryBytes}, &Config::memory, &work::MemoryLimits::job_bytes),
+               number({"solver-cache-bytes", "N",
+                       "Bytes of memory for factors and maps that are cached for further jobs on "
+                       "the same mesh (with --isolate=off)"},
+                      {0, kMaxMemoryBytes}, &Config::memory, &work::MemoryLimits::cache_bytes),
+               isolate_row(),
+               number({"grace-seconds", "N",
+                       "Seconds that a job may take to stop after its owner or --max-job-seconds "
+                       "stops it; then its process is killed, or its thread abandoned"},
+                      {0, 3600}, &Config::grace_seconds),
+               number({"drain-seconds", "N",
+                       "Seconds that running jobs may continue after SIGTERM; a second signal ends "
+                       "the wait. Jobs that do not stop, and last answers, may take 15 s and "
+                       "--grace-seconds more"},
+                      {0, kMaxCount}, &Config::drain_seconds)}};
 }
 
 ConfigRow database_row() {
@@ -146,10 +149,44 @@ ConfigRow database_row() {
       .get = [](const Config& config) { return config.database.url; }};
 }
 
+ConfigRow blobs_row() {
+  return {
+      .heading = {"blobs", "dir:PATH",
+                  "Shared directory of the files of all nodes that use the same --database, such "
+                  "as dir:/srv/unwrapd; --data is this node's own then. Unset: files stay in "
+                  "--data, and no other server may use the database"},
+      .kind = ConfigKind::text,
+      .set =
+          [](Config& config, const std::string& text) {
+            if (!text.empty() && (!text.starts_with(kDirectory) || text == kDirectory))
+              expected("dir: and the path of a directory");
+            config.shared_blobs = text.empty() ? "" : text.substr(kDirectory.size());
+          },
+      .get =
+          [](const Config& config) {
+            const std::string path = config.shared_blobs.string();
+            return path.empty() ? path : std::string(kDirectory) + path;
+          }};
+}
+
+ConfigRow lease_row() {
+  constexpr Range kSeconds{3, 3600};
+  return {
+      .heading = {"lease-seconds", "N",
+                  "Seconds after which a running job whose node shows no sign of life is run by "
+                  "another node. Nodes show one three times as often"},
+      .kind = ConfigKind::number,
+      .set =
+          [=](Config& config, const std::string& text) {
+            config.lease = std::chrono::seconds(number_in(kSeconds, text));
+          },
+      .get = [](const Config& config) { return std::to_string(config.lease.count()); }};
+}
+
 ConfigGroup storing() {
   return {
       .title = "Storage",
-      .rows = {database_row(),
+      .rows = {database_row(), blobs_row(), lease_row(),
                number({"keep-seconds", "N", "Seconds that results are kept"}, {1, kMaxCount},
                       &Config::keep_seconds),
                number({"max-stored-jobs", "N",
@@ -220,6 +257,13 @@ std::vector<ConfigGroup> config_groups() {
 }
 
 void check_together(const Config& config) {
+  if (!config.shared_blobs.empty() && config.database.url.empty())
+    throw Error(ErrorCode::invalid_option,
+                "--blobs is for nodes that share a --database; give its URL, too.");
+  if (config.workers == 0 && config.shared_blobs.empty())
+    throw Error(ErrorCode::invalid_option,
+                "--workers is 0 and no other node can run jobs; give --database and --blobs, or at "
+                "least one worker.");
   if (config.edge.tls_cert.empty() != config.edge.tls_key.empty())
     throw Error(ErrorCode::invalid_option, "--tls-cert and --tls-key belong together; give both.");
   if (config.access.insecure && !config.access.key_file.empty())

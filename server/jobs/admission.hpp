@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "server/http/http.hpp"
-#include "server/jobs/fair_share.hpp"
 #include "server/jobs/slot_reservations.hpp"
 #include "server/store/job_store.hpp"
 
@@ -16,31 +15,36 @@ namespace unwrapd::server::jobs {
 
 /// A running job.
 struct AtWork {
-  std::string_view owner;
+  std::string owner;
   double seconds = 0;  ///< since it began
+};
+
+/// What the queue is like now.
+struct QueueState {
+  store::QueueCounts counts;
+  Lengths lengths;  ///< of the newest jobs
+  std::int64_t workers = 1;
+  std::vector<AtWork> running;
 };
 
 /// Not for use by two threads at once.
 class Admission {
  public:
-  Admission(int places, int workers) : places_(places), workers_(workers) {}
+  explicit Admission(int places) : places_(places) {}
 
   /// Reserves a slot of the queue for the sender until leave(), for half a minute. Throws
   /// RetryLater{queue_full} when there is none.
-  void check_place(const Applicant& sender, const FairShare& share,
-                   const std::vector<AtWork>& running);
+  void check_place(const Applicant& sender, const QueueState& state);
   /// Throws quota_exceeded, or RetryLater{too_many_jobs}, when the owner has reached its quota.
   void check_quota(std::string_view sender, const http::Quota& quota,
                    const store::OwnerUsage& usage, const store::JobRecord& job,
-                   const FairShare& share, const std::vector<AtWork>& running);
+                   const QueueState& state);
   void leave(std::string_view sender) { promised_.leave(sender); }
 
  private:
-  [[nodiscard]] QueueForecast line(const FairShare& share,
-                                   const std::vector<AtWork>& running) const;
+  [[nodiscard]] QueueForecast line(const QueueState& state) const;
 
   const int places_;
-  const int workers_;
   SlotReservations promised_;
   std::map<std::string, SlotReservations> promised_to_owner_;  // of those at the end of their quota
 };

@@ -9,19 +9,30 @@
 namespace unwrapd::server::jobs {
 namespace {
 
-constexpr std::int64_t kSeqsPerAttempt = 1'000'000'000;
 constexpr std::size_t kMaxReadingBytes = std::size_t{4} * 1024;  // at once, kept for each reader
+constexpr std::chrono::milliseconds kTimeToCatchUp{300};
 
 }  // namespace
 
 JobFeed::JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics,
-                 std::shared_ptr<const Wakeup> news)
+                 std::shared_ptr<const Wakeup> news, Share share)
     : base_(base),
       trace_(current_trace().empty() ? new_trace_id() : current_trace()),
       news_(std::move(news)),
+      share_(std::move(share)),
       newest_(base),
+      forgotten_(base),
       capacity_(capacity) {
   if (metrics) watch_.emplace(*metrics);
+}
+
+/// Requires the mutex.
+void JobFeed::keep(Frame frame) {
+  newest_ = frame.seq;
+  ring_.push_back(std::move(frame));
+  if (ring_.size() <= capacity_) return;
+  forgotten_ = ring_.front().seq;
+  ring_.pop_front();
 }
 
 void JobFeed::publish(const std::function<api::Event(std::int64_t seq)>& make) {
@@ -31,12 +42,55 @@ void JobFeed::publish(const std::function<api::Event(std::int64_t seq)>& make) {
     if (over()) return;
     const api::Event event = make(newest_ + 1);
     if (watch_) watch_->see(event);
-    ring_.push_back({event.seq, api::sse_frame(event)});
-    newest_ = event.seq;
-    if (ring_.size() > capacity_) ring_.pop_front();
+    keep({event.seq, api::sse_frame(event)});
     finished_ = is_last = api::is_last(event);
+    if (share_)
+      share_({.job = {},
+              .seq = event.seq,
+              .is_last = is_last,
+              .frame = ring_.back().text,
+              .progress = progress_ ? api::to_json(*progress_).dump() : std::string()});
   }
   tell_news(is_last);
+}
+
+void JobFeed::append(const store::EventRow& event) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (over() || !following_ || event.seq <= newest_) return;
+    keep({event.seq, event.frame});
+    if (!event.progress.empty()) progress_ = api::progress_of(api::Json::parse(event.progress));
+    finished_ = event.is_last;
+  }
+  tell_news(event.is_last);
+}
+
+void JobFeed::rise_to(std::int64_t seq) {
+  const std::lock_guard lock(mutex_);
+  newest_ = std::max(newest_, seq);
+}
+
+bool JobFeed::is_finished() const {
+  const std::lock_guard lock(mutex_);
+  return over();
+}
+
+std::int64_t JobFeed::newest() const {
+  const std::lock_guard lock(mutex_);
+  return newest_;
+}
+
+void JobFeed::set_caught_up() {
+  {
+    const std::lock_guard lock(mutex_);
+    caught_up_ = true;
+  }
+  over_.notify_all();
+}
+
+void JobFeed::wait_caught_up(std::chrono::milliseconds at_most) const {
+  std::unique_lock lock(mutex_);
+  over_.wait_for(lock, at_most, [&] { return caught_up_ || over(); });
 }
 
 void JobFeed::tell_news(bool is_over) {
@@ -73,18 +127,19 @@ std::int64_t JobFeed::resume_after(std::optional<std::int64_t> last_event_id) co
   return finished_ ? std::min(*last_event_id, newest_ - 1) : *last_event_id;
 }
 
+/// Numbers rise, with gaps between attempts.
 Reading JobFeed::read(std::int64_t after) const {
   const std::lock_guard lock(mutex_);
   Reading reading{.frames = {}, .last_seq = after, .end = false};
-  if (!ring_.empty() && ring_.front().seq > after + 1) {
-    reading.last_seq = ring_.front().seq - 1;
+  if (after < forgotten_ && !ring_.empty()) {
+    reading.last_seq = forgotten_;
     reading.frames = api::sse_frame(api::gap_event(after + 1, reading.last_seq));
   }
-  while (!ring_.empty() && reading.last_seq < newest_) {
+  for (auto next = std::ranges::upper_bound(ring_, reading.last_seq, {}, &Frame::seq);
+       next != ring_.end(); ++next) {
     if (reading.frames.size() > kMaxReadingBytes) return reading;
-    const auto behind = static_cast<std::size_t>(newest_ - reading.last_seq);
-    reading.frames += ring_[ring_.size() - behind].text;
-    ++reading.last_seq;
+    reading.frames += next->text;
+    reading.last_seq = next->seq;
   }
   reading.end = over();
   return reading;
@@ -96,17 +151,58 @@ bool JobFeed::wait_finished(std::chrono::steady_clock::time_point until) const {
   return finished_;
 }
 
-std::shared_ptr<JobFeed> EventFeed::open(const std::string& job, int attempt) {
-  const std::lock_guard lock(mutex_);
-  auto feed = std::make_shared<JobFeed>(attempt * kSeqsPerAttempt, ring_, metrics_, news_);
+void EventFeed::share_with(std::function<void(store::EventRow event)> share,
+                           std::function<void(const std::string& job)> found) {
+  share_ = std::move(share);
+  found_ = std::move(found);
+}
+
+/// Requires the mutex.
+std::shared_ptr<JobFeed> EventFeed::make(const std::string& job, int attempt) {
+  JobFeed::Share share;
+  if (share_)
+    share = [this, job](store::EventRow event) {
+      event.job = job;
+      share_(std::move(event));
+    };
+  auto feed = std::make_shared<JobFeed>(attempt * kSeqsPerAttempt, ring_, metrics_, news_,
+                                        std::move(share));
   feeds_[job] = feed;
   return feed;
+}
+
+std::shared_ptr<JobFeed> EventFeed::open(const std::string& job, int attempt) {
+  const std::lock_guard lock(mutex_);
+  return make(job, attempt);
 }
 
 std::shared_ptr<JobFeed> EventFeed::find(std::string_view job) const {
   const std::lock_guard lock(mutex_);
   const auto found = feeds_.find(job);
   return found == feeds_.end() ? nullptr : found->second;
+}
+
+std::shared_ptr<JobFeed> EventFeed::of(const store::JobRecord& job) {
+  std::shared_ptr<JobFeed> feed;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = feeds_.find(job.id);
+    if (found != feeds_.end()) return found->second;
+    if (!share_ || api::is_final(job.state)) return nullptr;
+    feed = make(job.id, 0);
+    feed->follow(true);
+  }
+  found_(job.id);
+  feed->wait_caught_up(kTimeToCatchUp);
+  return feed;
+}
+
+std::vector<std::pair<std::string, std::shared_ptr<JobFeed>>> EventFeed::following() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::pair<std::string, std::shared_ptr<JobFeed>>> found;
+  for (const auto& [job, feed] : feeds_)
+    if (feed->is_following() && !feed->is_finished()) found.emplace_back(job, feed);
+  return found;
 }
 
 void EventFeed::retire(const std::string& job) {

@@ -1,8 +1,10 @@
 #pragma once
 // The events of jobs, from the worker to any number of readers. A feed is a bounded ring: a worker
 // never waits for a reader, and a slow reader gets an event that names the gap. Sequence numbers
-// rise over attempts and restarts: attempt k of a job begins at k * 10^9.
+// rise over attempts and restarts: attempt k of a job begins at k * 10^9. Where several nodes serve
+// one store, the feed of a job that runs elsewhere follows the feed there (event_exchange.hpp).
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -16,10 +18,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "api/events.hpp"
 #include "server/base/wakeup.hpp"
 #include "server/jobs/job_metrics.hpp"
+#include "server/store/event_channel.hpp"
+#include "server/store/job_record.hpp"
 
 namespace unwrapd::server::jobs {
 
@@ -30,12 +36,17 @@ struct Reading {
   bool end = false;           ///< nothing will follow
 };
 
+inline constexpr std::int64_t kSeqsPerAttempt = 1'000'000'000;
+
 /// The events of one job. Thread-safe.
 class JobFeed {
  public:
-  /// Belongs to the trace of the calling thread, or to a new one.
+  using Share = std::function<void(store::EventRow event)>;
+
+  /// Belongs to the trace of the calling thread, or to a new one. share: called for each event that
+  /// is published here, in order.
   JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics = nullptr,
-          std::shared_ptr<const Wakeup> news = nullptr);
+          std::shared_ptr<const Wakeup> news = nullptr, Share share = {});
 
   /// The trace id of the job's log lines.
   [[nodiscard]] const std::string& trace() const { return trace_; }
@@ -49,6 +60,19 @@ class JobFeed {
 
   /// The sequence number that the next event will get.
   [[nodiscard]] std::int64_t next_seq() const;
+  /// The next event will have a number above this one.
+  void rise_to(std::int64_t seq);
+
+  /// Whether the job runs elsewhere, and append() adds its events.
+  [[nodiscard]] bool is_following() const { return following_; }
+  void follow(bool following) { following_ = following; }
+  /// Adds an event of another node, unless one of its number or a later one is there.
+  void append(const store::EventRow& event);
+  [[nodiscard]] bool is_finished() const;
+  [[nodiscard]] std::int64_t newest() const;
+  /// What there was when it began to follow is there now.
+  void set_caught_up();
+  void wait_caught_up(std::chrono::milliseconds at_most) const;
   /// The event after which a reader with this Last-Event-ID goes on. A reader that has seen the end
   /// sees it again.
   [[nodiscard]] std::int64_t resume_after(std::optional<std::int64_t> last_event_id) const;
@@ -64,19 +88,24 @@ class JobFeed {
   };
   [[nodiscard]] bool over() const { return finished_ || ended_; }
   void tell_news(bool is_over);
+  void keep(Frame frame);
 
   const std::int64_t base_;
   const std::string trace_;
   mutable std::mutex mutex_;
   mutable std::condition_variable over_;
   const std::shared_ptr<const Wakeup> news_;
+  const Share share_;
   std::int64_t newest_;
+  std::int64_t forgotten_;  // the newest that is no longer kept
   const std::size_t capacity_;
   std::deque<Frame> ring_;
   std::optional<api::JobProgress> progress_;
   std::optional<JobMetrics> watch_;
   bool finished_ = false;
   bool ended_ = false;
+  bool caught_up_ = false;
+  std::atomic<bool> following_ = false;
 };
 
 /// All feeds: those of live jobs and, for late readers, those of the last finished ones.
@@ -88,8 +117,18 @@ class EventFeed {
                      Metrics* metrics = nullptr, std::shared_ptr<const Wakeup> news = nullptr)
       : ring_(ring), kept_finished_(kept_finished), metrics_(metrics), news_(std::move(news)) {}
 
+  /// From now on, other nodes are told of events; found: called with the id of a job that begins to
+  /// be followed here.
+  void share_with(std::function<void(store::EventRow event)> share,
+                  std::function<void(const std::string& job)> found);
+
   /// The feed of a job that waits for its next attempt; attempt: those begun before.
   std::shared_ptr<JobFeed> open(const std::string& job, int attempt);
+  /// The feed of a job, which follows it where it runs elsewhere. nullptr when the job has ended,
+  /// or nothing runs elsewhere, and there is none.
+  std::shared_ptr<JobFeed> of(const store::JobRecord& job);
+  /// All that follow, by job.
+  [[nodiscard]] std::vector<std::pair<std::string, std::shared_ptr<JobFeed>>> following() const;
   [[nodiscard]] std::shared_ptr<JobFeed> find(std::string_view job) const;
   /// Marks a job as finished: its feed is kept until newer ones replace it.
   void retire(const std::string& job);
@@ -97,10 +136,14 @@ class EventFeed {
   void end_all();
 
  private:
+  std::shared_ptr<JobFeed> make(const std::string& job, int attempt);
+
   const std::size_t ring_;
   const std::size_t kept_finished_;
   Metrics* const metrics_;
   const std::shared_ptr<const Wakeup> news_;
+  std::function<void(store::EventRow event)> share_;
+  std::function<void(const std::string& job)> found_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<JobFeed>, std::less<>> feeds_;
   std::list<std::string> finished_;

@@ -78,7 +78,7 @@ bool FeedOutput::try_keep(std::string_view name, std::string_view bytes) {
     if (!job_.stop.stop_requested()) return false;
     throw Error(ErrorCode::cancelled, "The job was stopped before its files could be counted.");
   }
-  blobs_.write_unsealed(job_.record.id, name, bytes);
+  blobs_.write_unsealed(job_.record.id, job_.record.attempt, name, bytes);
   return true;
 }
 

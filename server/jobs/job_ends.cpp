@@ -2,6 +2,7 @@
 #include <chrono>
 
 #include "api/error_table.hpp"
+#include "server/base/clock.hpp"
 #include "server/base/errors.hpp"
 #include "server/jobs/job_queue.hpp"
 #include "server/store/job_rows.hpp"
@@ -13,6 +14,7 @@ using api::JobState;
 
 constexpr int kMaxAttemptsWhenFull = 20;
 constexpr std::chrono::milliseconds kPauseWhileAway{500};
+constexpr std::int64_t kSeqsOfEnds = 500'000;  // for ends by nodes that do not run the job
 
 }  // namespace
 
@@ -24,29 +26,30 @@ bool JobQueue::wait_for_room(const RunningJob& job, const store::JobOutcome& out
   pause_.note(again);
   if (!again) return false;
   log_.warning("the disk is full, the job waits", {{"job", job.record.id}});
-  wait_or_end(job.record);
+  wait_or_end(job.record, outcome.ran_ms);
   return true;
 }
 
 /// The success that it is, if its files can be noted.
-store::JobOutcome JobQueue::sealed(const std::string& id, store::JobOutcome outcome) {
+store::JobOutcome JobQueue::sealed(const store::JobRecord& job, store::JobOutcome outcome) {
   try {
-    outcome.stored_bytes = blobs_.seal(id);
+    outcome.stored_bytes = blobs_.seal(job.id, job.attempt);
     return outcome;
   } catch (const Error& error) {
-    return store::ended(JobState::failed, error, id);
+    return store::ended(JobState::failed, error, job.id);
   }
 }
 
 void JobQueue::finish(const RunningJob& job, store::JobOutcome outcome,
                       const std::function<void()>& stored) {
-  if (outcome.state == JobState::succeeded) outcome = sealed(job.record.id, std::move(outcome));
+  if (outcome.state == JobState::succeeded) outcome = sealed(job.record, std::move(outcome));
   std::unique_lock lock(mutex_);
   const auto leave = [&] {
     running_.erase(job.record.id);
     changed_.notify_all();
-    share_.end(job.record.owner, job.seconds());
+    lengths_.add(job.seconds());
   };
+  outcome.ran_ms = static_cast<std::int64_t>(job.seconds() * kMsPerSecond);
   while (true) {
     try {
       settle_end(job, outcome, stored);
@@ -66,16 +69,21 @@ void JobQueue::finish(const RunningJob& job, store::JobOutcome outcome,
 void JobQueue::settle_end(const RunningJob& job, const store::JobOutcome& outcome,
                           const std::function<void()>& stored) {
   if (outcome.state == JobState::cancelled && job.cause == StopCause::draining) {
-    wait_or_end(job.record);  // its readers are told so
+    wait_or_end(job.record, outcome.ran_ms);  // its readers are told so
     return;
   }
   if (wait_for_room(job, outcome)) return;
   end_job(job.record, outcome, stored);
 }
 
-void JobQueue::end_job(const store::JobRecord& job, store::JobOutcome outcome,
+bool JobQueue::end_job(const store::JobRecord& job, store::JobOutcome outcome,
                        const std::function<void()>& stored) {
-  const std::shared_ptr<JobFeed> feed = events_.find(job.id);
+  std::shared_ptr<JobFeed> feed = events_.find(job.id);
+  if (!feed) feed = events_.open(job.id, job.attempt);
+  if (is_shared() && !running_.contains(job.id)) {
+    feed->follow(false);
+    feed->rise_to(job.attempt * kSeqsPerAttempt + kSeqsOfEnds);
+  }
   outcome.last_event = feed->next_seq();
   const Moment now = store_.now();
   outcome.finished_ms = now.of_day_ms;
@@ -87,12 +95,24 @@ void JobQueue::end_job(const store::JobRecord& job, store::JobOutcome outcome,
   if (!job.webhook.empty()) outcome.delivery = store::text_of(api::to_json(store::to_job(record)));
   const bool is_doubted = doubted_.contains(job.id);
   const bool is_ours = noting_doubt(job.id, [&] { return store_.finish(job, outcome); });
-  if (!is_ours && !(is_doubted && has_ended(job, outcome.state))) return;
+  if (!is_ours && !(is_doubted && has_ended(job, outcome.state))) {
+    leave_to_others(job, *feed);
+    return false;
+  }
   if (stored) stored();
   tell_end(record);
+  return true;
+}
+
+/// Another node has taken the job up, or ended it.
+void JobQueue::leave_to_others(const store::JobRecord& job, JobFeed& feed) {
+  if (!is_shared()) return;
+  feed.follow(true);
+  blobs_.drop_attempt(job.id, job.attempt);
 }
 
 void JobQueue::tell_end(const store::JobRecord& job) {
+  if (job.state == JobState::succeeded) publish(job);
   if (const std::shared_ptr<JobFeed> feed = events_.find(job.id))
     feed->publish([&](std::int64_t seq) { return api::final_event(seq, store::to_job(job)); });
   events_.retire(job.id);
@@ -101,6 +121,16 @@ void JobQueue::tell_end(const store::JobRecord& job) {
                           {"state", api::state_name(job.state)},
                           {"attempt", job.attempt},
                           {"problem", job.problem}});
+}
+
+/// What fails here is done by the first node that finds the job (JobStore::on_success()).
+void JobQueue::publish(const store::JobRecord& job) {
+  try {
+    blobs_.publish(job.id, job.attempt);
+  } catch (const std::exception& error) {
+    log_.warning("results are not in their place yet",
+                 {{"job", job.id}, {"reason", reason_of(error)}});
+  }
 }
 
 /// Whether the store has this end of this attempt.

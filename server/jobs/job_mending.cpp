@@ -22,9 +22,7 @@ void JobQueue::mend() {
   must_mend_ |= store_.was_away();
   if (!must_mend_) return;
   const std::vector<store::JobRecord> unfinished = store_.unfinished();
-  share_.forget_waiting();
-  for (const store::JobRecord& job : unfinished)  // before what may fail
-    if (waits(job) && !is_known_elsewhere(job) && events_.find(job.id)) share_.add(job.owner);
+  leases_.forget();
   changed_.notify_all();
   for (const store::JobRecord& job : unfinished) mend_row(job);
   const std::set<std::string> doubted = doubted_;
@@ -40,7 +38,9 @@ bool JobQueue::is_known_elsewhere(const store::JobRecord& job) const {
 
 /// A job that runs in the store alone was taken by a call that never heard of it.
 void JobQueue::mend_row(const store::JobRecord& job) {
-  if (is_known_elsewhere(job)) return;
+  const store::Node& here = store_.node();
+  const bool is_of_others = here.is_shared && (job.node != here.id || waits(job));
+  if (is_known_elsewhere(job) || is_of_others) return;
   if (!waits(job)) return take_up(job, Found::lapsed);
   if (!events_.find(job.id)) wait_again(job);
 }

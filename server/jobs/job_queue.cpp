@@ -1,5 +1,8 @@
 #include "server/jobs/job_queue.hpp"
 
+#include <algorithm>
+#include <ranges>
+
 #include "api/error_table.hpp"
 #include "server/base/clock.hpp"
 #include "server/base/errors.hpp"
@@ -10,6 +13,24 @@
 namespace unwrapd::server::jobs {
 using api::JobState;
 
+namespace {
+
+constexpr std::chrono::milliseconds kPauseWhileTaken{5};
+constexpr std::chrono::seconds kPauseBetweenLooks{1};
+/// Of the numbers of an attempt, those for events of nodes that do not run it.
+constexpr std::int64_t kSeqsOfQueue = 1'000'000;
+
+/// Of an insertion that added nothing. Only where requests come to several nodes at a time: a quota
+/// is checked before.
+void check_added(store::Insertion::Outcome outcome, const http::Quota& quota) {
+  using Outcome = store::Insertion::Outcome;
+  if (outcome == Outcome::ticket_spent) throw ticket_spent();
+  if (outcome == Outcome::too_many_jobs) throw too_many_jobs(quota.max_jobs, 1);
+  if (outcome == Outcome::too_many_bytes) throw quota_exceeded(quota.max_bytes);
+}
+
+}  // namespace
+
 JobQueue::JobQueue(store::JobStore& store, store::BlobStore& blobs, EventFeed& events,
                    const Log& log, const QueueConfig& config)
     : store_(store),
@@ -17,15 +38,28 @@ JobQueue::JobQueue(store::JobStore& store, store::BlobStore& blobs, EventFeed& e
       events_(events),
       log_(log),
       config_(config),
-      door_(config.max_queue, config.workers) {}
+      door_(config.max_queue),
+      all_workers_(config.workers),
+      leases_(config.lease) {
+  load_lengths();
+}
+
+void JobQueue::load_lengths() {
+  lengths_ = {};
+  std::vector<double> seconds = store_.last_lengths(Lengths::kRemembered);
+  for (const double length : std::views::reverse(seconds)) lengths_.add(length);
+}
 
 void JobQueue::wait_again(const store::JobRecord& job) {
   const TraceScope trace(job.trace);
   std::shared_ptr<JobFeed> feed = events_.find(job.id);  // with its readers, if it ran already
   if (!feed) feed = events_.open(job.id, job.attempt);
-  feed->publish([&](std::int64_t seq) { return api::queued_event(seq, share_.waiting()); });
-  share_.add(job.owner);
+  if (is_shared()) feed->rise_to(job.attempt * kSeqsPerAttempt);
+  const std::int64_t ahead = std::max<std::int64_t>(0, store_.counts().waiting - 1);
+  feed->publish([&](std::int64_t seq) { return api::queued_event(seq, ahead); });
+  feed->follow(is_shared());
   changed_.notify_all();
+  tell_jobs_wait_();
 }
 
 void JobQueue::check_open() const {
@@ -35,20 +69,37 @@ void JobQueue::check_open() const {
 
 std::optional<RetryLater> JobQueue::shortage() const {
   const std::lock_guard lock(mutex_);
-  if (left_.empty() && !(pause_.is_full() && share_.waiting() > 0)) return std::nullopt;
+  if (left_.empty() && !(pause_.is_full() && store_.counts().waiting > 0)) return std::nullopt;
   return no_room(std::max(1, pause_.seconds_left()));
 }
 
-std::vector<AtWork> JobQueue::at_work() const {
+std::vector<AtWork> JobQueue::at_work() {
   std::vector<AtWork> all;
   for (const auto& [id, job] : running_) all.push_back({job->record.owner, job->seconds()});
+  if (!is_shared()) return all;
+  const std::int64_t now = now_ms();
+  for (const store::JobRecord& job : store_.running(true)) {
+    const auto ran_ms = static_cast<double>(std::max<std::int64_t>(0, now - job.started_ms));
+    all.push_back({job.owner, ran_ms / kMsPerSecond});
+  }
   return all;
+}
+
+QueueState JobQueue::state() {
+  return {.counts = store_.counts(),
+          .lengths = lengths_,
+          .workers = all_workers_,
+          .running = at_work()};
+}
+
+std::int64_t JobQueue::mean_ms() const {
+  return static_cast<std::int64_t>(lengths_.mean * kMsPerSecond);
 }
 
 void JobQueue::check_room(const Applicant& sender) {
   const std::lock_guard lock(mutex_);
   check_open();
-  door_.check_place(sender, share_, at_work());
+  door_.check_place(sender, state());
 }
 
 void JobQueue::give_back(std::string_view sender) {
@@ -78,7 +129,10 @@ store::JobRecord JobQueue::submit(Submission submission) {
   }
   blobs_.keep_upload(submission.upload, job.id, store::digests_of(job.input));
   try {
-    enqueue(job, submission, submission.bypass_cache ? std::nullopt : find_answer(job));
+    if (!enqueue(submission, submission.bypass_cache ? std::nullopt : find_answer(job))) {
+      blobs_.remove(job.id);
+      return known_elsewhere(job);
+    }
   } catch (const StoreAway& away) {
     if (!away.in_doubt()) blobs_.remove(job.id);
     throw;
@@ -90,65 +144,79 @@ store::JobRecord JobQueue::submit(Submission submission) {
   return std::move(job);
 }
 
-void JobQueue::enqueue(store::JobRecord& job, const Submission& submission,
-                       const std::optional<Answer>& answer) {
+/// Of a request that another node has been sent at the same time.
+store::JobRecord JobQueue::known_elsewhere(const store::JobRecord& job) {
+  if (std::optional<store::JobRecord> known = same_name(job)) return std::move(*known);
+  throw unknown_job();
+}
+
+/// False where another node has been sent the same request meanwhile.
+bool JobQueue::enqueue(Submission& submission, const std::optional<Answer>& answer) {
+  store::JobRecord& job = submission.job;
   const std::lock_guard lock(mutex_);
   check_open();
-  door_.check_place({.who = submission.sender, .owner = job.owner}, share_, at_work());
+  const QueueState now = state();
+  door_.check_place({.who = submission.sender, .owner = job.owner}, now);
   if (const http::Quota& quota = submission.quota; quota.max_jobs > 0 || quota.max_bytes > 0)
-    door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, share_, at_work());
+    door_.check_quota(submission.sender, quota, store_.usage(job.owner), job, now);
   door_.leave(submission.sender);
   give_up_excess();
-  job.seq = noting_doubt(job.id, [&] { return insert(job, submission.ticket); });
+  const store::Insertion added = noting_doubt(job.id, [&] {
+    const http::Quota& quota = submission.quota;
+    return store_.insert(job, {.live_jobs = quota.max_jobs, .stored_bytes = quota.max_bytes},
+                         submission.ticket, now_ms());
+  });
+  if (added.outcome == store::Insertion::Outcome::known) return false;
+  check_added(added.outcome, submission.quota);
+  job.seq = added.seq;
   if (!answer || !answer_from_store(job, *answer)) wait_again(job);
+  return true;
 }
 
-std::int64_t JobQueue::insert(const store::JobRecord& job,
-                              const std::optional<store::SpentTicket>& ticket) {
-  if (!ticket) return store_.insert(job);
-  const std::optional<std::int64_t> seq = store_.insert(job, *ticket, now_ms());
-  if (!seq) throw ticket_spent();
-  return *seq;
-}
-
-/// False when the queue is closed.
-bool JobQueue::await_turn(std::unique_lock<std::mutex>& lock) {
-  while (!closed_) {
-    if (share_.waiting() == 0) {
-      changed_.wait(lock);
-    } else if (pause_.seconds_left() > 0) {
-      changed_.wait_until(lock, pause_.until());
-    } else {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// A job whose row cannot be read never runs.
+/// Waits for the job whose turn it is; nullptr when the queue is closed. A job whose row cannot be
+/// read never runs.
 std::shared_ptr<RunningJob> JobQueue::take() {
   std::unique_lock lock(mutex_);
-  while (await_turn(lock)) {
-    const std::string owner = share_.next();
-    std::optional<store::JobRecord> record =
-        store_.take(owner, elapsed_ms() + config_.lease.count());
-    if (record && record->unreadable.empty()) return begin(std::move(*record));
-    share_.remove(owner);
-    if (record) {
-      set_aside(*record);
+  while (!closed_) {
+    if (pause_.seconds_left() > 0) {
+      changed_.wait_until(lock, pause_.until());
+      continue;
+    }
+    const std::optional<std::string> owner = store_.next_owner(mean_ms());
+    if (!owner) {
+      await_news(lock);
+      continue;
+    }
+    std::optional<store::JobRecord> record = store_.take(*owner, now_ms());
+    if (!record) {
+      changed_.wait_for(lock, kPauseWhileTaken);
+    } else if (record->unreadable.empty()) {
+      return begin(std::move(*record));
     } else {
-      log_.error("the store has lost a queued job", {{"owner", owner}});
+      set_aside(*record);
     }
   }
   return nullptr;
 }
 
+/// What other nodes do is found by looking, even where no hint of it arrives.
+void JobQueue::await_news(std::unique_lock<std::mutex>& lock) {
+  if (is_shared()) {
+    changed_.wait_for(lock, kPauseBetweenLooks);
+  } else {
+    changed_.wait(lock);
+  }
+}
+
 std::shared_ptr<RunningJob> JobQueue::begin(store::JobRecord record) {
-  share_.start(record.owner);
   auto job = std::make_shared<RunningJob>();
   job->record = std::move(record);
-  job->feed = events_.find(job->record.id);
-  job->started_ms = now_ms();
+  const std::string& id = job->record.id;
+  job->feed = events_.find(id);
+  if (!job->feed) job->feed = events_.open(id, job->record.attempt - 1);
+  job->feed->follow(false);
+  if (is_shared()) job->feed->rise_to((job->record.attempt - 1) * kSeqsPerAttempt + kSeqsOfQueue);
+  job->started_ms = job->record.started_ms;
   running_[job->record.id] = job;
   job->feed->publish(
       [&](std::int64_t seq) { return api::started_event(seq, job->record.attempt); });
@@ -176,14 +244,17 @@ void JobQueue::remove_ended(const std::string& id) {
 
 void JobQueue::cancel_live(const store::JobRecord& job) {
   if (job.state == JobState::queued) {
-    blobs_.room().free_by(
-        [&] { end_job(job, store::ended(JobState::cancelled, cancelled_by_owner(), job.id)); });
-    if (std::erase(left_, job.id) == 0) share_.remove(job.owner);
-    return;
+    bool is_ended = false;
+    blobs_.room().free_by([&] {
+      is_ended = end_job(job, store::ended(JobState::cancelled, cancelled_by_owner(), job.id));
+    });
+    std::erase(left_, job.id);
+    if (is_ended) return;  // else another node has begun it meanwhile
   }
   blobs_.room().free_by([&] { store_.request_cancel(job.id); });
   const auto running = running_.find(job.id);
-  if (running != running_.end()) running->second->request_stop(StopCause::cancelled);
+  if (running != running_.end()) return running->second->request_stop(StopCause::cancelled);
+  tell_cancelled_();
 }
 
 void JobQueue::note_process_end(const RunningJob& job) {
@@ -192,43 +263,6 @@ void JobQueue::note_process_end(const RunningJob& job) {
   } catch (const StoreAway&) {    // it counts as long as this server runs
   } catch (const Error& error) {  // the job goes on
     if (error.code() != ErrorCode::storage_full) throw;
-  }
-}
-
-void JobQueue::close() {
-  const std::lock_guard lock(mutex_);
-  closed_ = true;
-  changed_.notify_all();
-}
-
-void JobQueue::stop_waiting() {
-  const std::lock_guard lock(mutex_);
-  hurried_ = true;
-  changed_.notify_all();
-}
-
-bool JobQueue::drain(std::chrono::seconds patience) {
-  close();
-  std::unique_lock lock(mutex_);
-  const auto idle = [&] { return running_.empty(); };
-  changed_.wait_for(lock, patience, [&] { return idle() || hurried_; });
-  if (idle()) return true;
-  for (const auto& [id, job] : running_) {
-    log_.warning("job interrupted by the shutdown, queued again", {{"job", id}});
-    job->request_stop(StopCause::draining);
-  }
-  if (changed_.wait_for(lock, config_.stop, idle)) return true;
-  for (const auto& [id, job] : running_) take_up_stuck(id);
-  return false;
-}
-
-void JobQueue::take_up_stuck(const std::string& id) {
-  try {
-    const std::optional<store::JobRecord> stored = store_.find(id);
-    if (stored && stored->state == JobState::running) take_up(*stored, Found::not_stopping);
-  } catch (const Error& error) {  // the next start finds it
-    log_.warning("job that does not stop could not be queued again",
-                 {{"job", id}, {"reason", reason_of(error)}});
   }
 }
 

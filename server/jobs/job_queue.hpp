@@ -1,11 +1,13 @@
 #pragma once
 // The bounded queue of jobs and their life: queued -> running -> succeeded | failed | cancelled.
-// The store has the lasting state. This class adds waiting, turns (fair_share.hpp), stop requests
-// and events. A full queue refuses at once rather than let requests pile up.
+// The store knows which jobs wait, whose turn it is and what runs where; this class knows the jobs
+// that run here, and adds waiting, stop requests and events. A full queue refuses at once rather
+// than let requests pile up.
 //
 // A running job is on lease, which renew_leases() prolongs. A job whose end could not be stored
 // because the disk is full keeps its lease until it expires, and then runs again. Where the store
-// cannot be reached, the end waits for it.
+// cannot be reached, the end waits for it. Where several nodes work on one store, each takes up
+// jobs of others whose lease has ended.
 
 #include <atomic>
 #include <chrono>
@@ -31,13 +33,14 @@
 #include "server/jobs/admission.hpp"
 #include "server/jobs/disk_full_backoff.hpp"
 #include "server/jobs/event_feed.hpp"
-#include "server/jobs/fair_share.hpp"
+#include "server/jobs/lease_watch.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/store/job_store.hpp"
 
 namespace unwrapd::server::jobs {
 
-enum class StopCause { none, cancelled, time_limit, draining };
+/// lost: another node has taken the job up.
+enum class StopCause { none, cancelled, time_limit, draining, lost };
 
 /// A running job. Its end is stored once, either by its worker or by the thread that gives the
 /// worker up.
@@ -70,7 +73,7 @@ struct RunningJob {
 
 struct QueueConfig {
   int max_queue = 256;
-  int workers = 1;
+  int workers = 1;              ///< of this node
   std::int64_t max_stored = 0;  ///< ended jobs; 0: no limit
   std::chrono::milliseconds lease = std::chrono::seconds(30);
   std::chrono::milliseconds stop = std::chrono::seconds(10);  ///< for jobs told to stop, at the end
@@ -129,6 +132,15 @@ class JobQueue {
   /// Cancels a live job (true), or removes a finished one and its files (false). Throws not_found.
   bool cancel_or_remove(const std::string& id);
 
+  /// From now on, other nodes are told when jobs wait, or are cancelled.
+  void tell_others(std::function<void()> jobs_wait, std::function<void()> cancelled);
+  /// Other nodes may have sent jobs, or given some back.
+  void look_for_jobs() { changed_.notify_all(); }
+  /// Stops the jobs of this node that were cancelled at another.
+  void stop_cancelled();
+  /// Tells readers here the end of a job that ended elsewhere.
+  void tell_end_elsewhere(const std::string& id);
+
   /// No new jobs from now on; those waiting stay in the store for the next start.
   void close();
   /// Waits for the running jobs; those that are not done by then go back to the queue. False when
@@ -143,7 +155,10 @@ class JobQueue {
 
  private:
   void check_open() const;
-  [[nodiscard]] std::vector<AtWork> at_work() const;
+  [[nodiscard]] QueueState state();
+  [[nodiscard]] std::vector<AtWork> at_work();
+  [[nodiscard]] std::int64_t mean_ms() const;
+  void load_lengths();
   [[nodiscard]] std::optional<store::JobRecord> same_name(const store::JobRecord& job);
   /// Of the job that has had the same question.
   struct Answer {
@@ -153,24 +168,24 @@ class JobQueue {
   [[nodiscard]] std::optional<Answer> find_answer(store::JobRecord& job);
   [[nodiscard]] std::optional<Answer> adopt_answer(const std::string& id,
                                                    const store::JobRecord& same);
-  void enqueue(store::JobRecord& job, const Submission& submission,
-               const std::optional<Answer>& answer);
-  [[nodiscard]] std::int64_t insert(const store::JobRecord& job,
-                                    const std::optional<store::SpentTicket>& ticket);
+  [[nodiscard]] bool enqueue(Submission& submission, const std::optional<Answer>& answer);
+  [[nodiscard]] store::JobRecord known_elsewhere(const store::JobRecord& job);
+  void await_news(std::unique_lock<std::mutex>& lock);
   [[nodiscard]] bool answer_from_store(const store::JobRecord& job, const Answer& answer);
   enum class Found { lapsed, by_death, not_stopping };
   [[nodiscard]] bool is_poison(const store::JobRecord& job, Found found) const;
-  void wait_or_end(const store::JobRecord& job);
+  void wait_or_end(const store::JobRecord& job, std::int64_t ran_ms);
   void give_up_excess();
   void remove_ended(const std::string& id);
   void take_up_left();
   void take_up(const store::JobRecord& job, Found found);
+  void prolong_own();
+  void take_up_lapsed();
   void give_up(const store::JobRecord& job, const Error& why);
   void set_aside(const store::JobRecord& unreadable);
   void wait_again(const store::JobRecord& job);
   [[nodiscard]] std::shared_ptr<RunningJob> begin(store::JobRecord record);
-  [[nodiscard]] bool await_turn(std::unique_lock<std::mutex>& lock);
-  [[nodiscard]] store::JobOutcome sealed(const std::string& id, store::JobOutcome outcome);
+  [[nodiscard]] store::JobOutcome sealed(const store::JobRecord& job, store::JobOutcome outcome);
   [[nodiscard]] bool wait_for_room(const RunningJob& job, const store::JobOutcome& outcome);
   /// Makes a change of a job in the store, and notes where its outcome is not known.
   template <class Change>
@@ -191,9 +206,13 @@ class JobQueue {
   void take_up_stuck(const std::string& id);
   [[nodiscard]] bool is_known_elsewhere(const store::JobRecord& job) const;
   void mend_row(const store::JobRecord& job);
+  void leave_to_others(const store::JobRecord& job, JobFeed& feed);
   void tell_end(const store::JobRecord& job);
+  void publish(const store::JobRecord& job);
+  [[nodiscard]] bool is_shared() const { return store_.node().is_shared; }
   void cancel_live(const store::JobRecord& job);
-  void end_job(const store::JobRecord& job, store::JobOutcome outcome,
+  /// False when another node has taken the job up, or ended it.
+  bool end_job(const store::JobRecord& job, store::JobOutcome outcome,
                const std::function<void()>& stored = {});
 
   store::JobStore& store_;
@@ -202,13 +221,17 @@ class JobQueue {
   const Log& log_;
   const QueueConfig config_;
 
+  std::function<void()> tell_jobs_wait_ = [] {};
+  std::function<void()> tell_cancelled_ = [] {};
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::atomic<bool> closed_ = false;
   bool hurried_ = false;
   std::mutex naming_;  // one request with a name of its own at a time
-  FairShare share_;
   Admission door_;
+  Lengths lengths_;           // of the newest jobs that ended, here or elsewhere
+  std::int64_t all_workers_;  // of all nodes
+  LeaseWatch leases_;
   DiskFullBackoff pause_;
   std::deque<std::string> left_;  // by the last process, and not taken up yet
   bool tried_apart_ = false;

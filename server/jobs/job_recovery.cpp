@@ -21,7 +21,9 @@ constexpr int kMaxCrashesApart = 10;  // where one that is to blame should end i
 void JobQueue::recover(bool tried_apart) {
   const std::lock_guard lock(mutex_);
   tried_apart_ = tried_apart;
+  const store::Node& here = store_.node();
   for (const store::JobRecord& job : store_.unfinished()) {
+    if (here.is_shared && (job.state != JobState::running || job.node != here.id)) continue;
     const bool is_whole = job.unreadable.empty();
     if (is_whole && job.state == JobState::queued && !job.cancel_requested) {
       wait_again(job);
@@ -61,8 +63,7 @@ void JobQueue::take_up(const store::JobRecord& job, Found found) {
     give_up(job, cancelled_by_owner());
   } else if (is_poison(job, found)) {
     give_up(job, poison());
-  } else {
-    store_.requeue(job.id, found != Found::lapsed);
+  } else if (store_.requeue(job, found != Found::lapsed)) {
     wait_again(job);
     log_.warning(found == Found::not_stopping
                      ? "job that does not stop queued again, under suspicion"
@@ -72,11 +73,11 @@ void JobQueue::take_up(const store::JobRecord& job, Found found) {
 }
 
 /// Puts a running job back into the queue, unless its owner has cancelled it meanwhile.
-void JobQueue::wait_or_end(const store::JobRecord& job) {
+void JobQueue::wait_or_end(const store::JobRecord& job, std::int64_t ran_ms) {
   const std::optional<store::JobRecord> stored = store_.find(job.id);
-  if (stored && stored->cancel_requested) return give_up(job, cancelled_by_owner());
-  store_.requeue(job.id, false);
-  wait_again(job);
+  if (!stored || stored->attempt != job.attempt) return;  // another node has taken it up
+  if (stored->cancel_requested) return give_up(job, cancelled_by_owner());
+  if (store_.requeue(*stored, false, ran_ms)) wait_again(job);
 }
 
 void JobQueue::give_up(const store::JobRecord& job, const Error& why) {
@@ -106,8 +107,8 @@ void JobQueue::set_aside(const store::JobRecord& unreadable) {
 /// Removes a few at a time, as the queue is locked meanwhile. A lowered bound is met step by step.
 void JobQueue::give_up_excess() {
   if (config_.max_stored == 0) return;
-  const auto live = share_.waiting() + static_cast<std::int64_t>(running_.size() + left_.size());
-  std::int64_t excess = store_.job_count() - live - config_.max_stored;
+  const store::QueueCounts now = store_.counts();
+  std::int64_t excess = store_.job_count() - now.waiting - now.running - config_.max_stored;
   for (excess = std::min(excess, kMostGivenUp); excess > 0; --excess) {
     const std::optional<std::string> first = store_.first_to_go();
     if (!first) return;
@@ -118,11 +119,28 @@ void JobQueue::give_up_excess() {
 
 void JobQueue::renew_leases() {
   const std::lock_guard lock(mutex_);
-  const std::int64_t now = elapsed_ms();
-  for (const auto& [id, job] : running_) store_.renew(id, now + config_.lease.count());
+  if (is_shared()) {
+    all_workers_ = store_.announce(config_.workers);
+    load_lengths();
+  }
+  prolong_own();
   take_up_left();
-  for (const store::JobRecord& job : store_.lapsed(now)) take_up(job, Found::lapsed);
+  take_up_lapsed();
   give_up_excess();
+  store_.level_shares();
+}
+
+/// A job that another node has taken up meanwhile stops here: its end would count for nothing.
+void JobQueue::prolong_own() {
+  for (const auto& [id, job] : running_)
+    if (!store_.beat(job->record) && is_shared()) job->request_stop(StopCause::lost);
+}
+
+void JobQueue::take_up_lapsed() {
+  for (const store::JobRecord& job : leases_.lapsed(store_.running(), LeaseWatch::Clock::now())) {
+    const bool was_elsewhere = is_shared() && job.node != store_.node().id;
+    if (!running_.contains(job.id)) take_up(job, was_elsewhere ? Found::by_death : Found::lapsed);
+  }
 }
 
 }  // namespace unwrapd::server::jobs

@@ -15,7 +15,6 @@ constexpr std::chrono::seconds kLate{2};      // how late a promised client may 
 constexpr std::chrono::seconds kSending{30};  // how long a slot is reserved for an upload
 constexpr double kMargin = 3;                 // spreads by which the queue may be late
 constexpr double kShortestMean = 1e-3;        // seconds of a job
-constexpr int kRemembered = 50;               // jobs that the mean length is of, about
 constexpr std::int64_t kFewestPromises = 64;  // that are kept at a time at most, in a short queue
 
 double seconds_until(Clock::time_point due, Clock::time_point now) {

@@ -32,6 +32,8 @@ struct QueueForecast {
 
 /// The mean length of recent jobs, and their mean deviation from it.
 struct Lengths {
+  static constexpr int kRemembered = 50;  ///< jobs that the mean is of, about
+
   double mean = 1;
   double spread = 0;
   int count = 0;  ///< of jobs, up to what still matters

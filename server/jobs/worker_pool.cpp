@@ -121,7 +121,7 @@ int WorkerPool::lost() const {
 
 bool WorkerPool::are_left() const {
   const std::lock_guard lock(mutex_);
-  return lost_ < config_.workers + replaced_;
+  return config_.workers == 0 || lost_ < config_.workers + replaced_;
 }
 
 /// Requires the mutex.

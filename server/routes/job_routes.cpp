@@ -28,16 +28,19 @@ api::Job shown_job(const JobServices& services, const store::JobRecord& record,
 http::Response job_response(int status, const JobServices& services, const store::JobRecord& record,
                             const http::Request& request) {
   api::Job job = shown_job(services, record, request);
-  const std::shared_ptr<jobs::JobFeed> feed = services.events.find(record.id);
-  if (feed && record.state == api::JobState::running) job.progress = feed->progress();
+  const bool is_running = record.state == api::JobState::running;
+  const auto feed = is_running ? services.events.of(record) : nullptr;
+  if (feed) job.progress = feed->progress();
   http::Response response = http::json_response(status, api::to_json(job).dump());
   response.headers.emplace_back("Cache-Control", "no-store");
   return response;
 }
 
 /// Waits for the end of a job, at most so long.
-void wait_for(const jobs::EventFeed& events, const std::string& id, std::chrono::seconds time) {
-  const std::shared_ptr<jobs::JobFeed> feed = events.find(id);
+void wait_for(const JobServices& services, const std::string& id, std::chrono::seconds time) {
+  std::shared_ptr<jobs::JobFeed> feed = services.events.find(id);
+  if (!feed)
+    if (const auto job = services.store.find(id)) feed = services.events.of(*job);
   if (feed) static_cast<void>(feed->wait_finished(std::chrono::steady_clock::now() + time));
 }
 
@@ -67,7 +70,7 @@ http::Response post_job(const JobServices& services, const http::Request& reques
   const int seconds = std::min(wait.value_or(0), services.limits.max_wait_seconds);
   const auto place = seconds > 0 ? services.waiters.try_enter(request.caller.owner) : nullptr;
   if (!place && seconds > 0) wait.reset();  // a preference (RFC 7240), not a promise
-  if (place) wait_for(services.events, id, std::chrono::seconds(seconds));
+  if (place) wait_for(services, id, std::chrono::seconds(seconds));
   const store::JobRecord job = stored_job(services.store, id);
   const bool finished = wait && api::is_final(job.state);
   http::Response response = job_response(finished ? 200 : 202, services, job, request);
@@ -114,7 +117,7 @@ http::Response post_unwrap(const JobServices& services, const http::Request& req
   const auto place = services.waiters.try_enter(request.caller.owner);
   if (!place) throw too_many_wait();
   const std::string id = services.submissions.accept(request, true);
-  wait_for(services.events, id, std::chrono::seconds(services.limits.max_job_seconds) + kTimeToEnd);
+  wait_for(services, id, std::chrono::seconds(services.limits.max_job_seconds) + kTimeToEnd);
   const store::JobRecord job = stored_job(services.store, id);
   http::Response response;
   try {

@@ -41,8 +41,9 @@ void check_there(const fs::path& path) {
 
 }  // namespace
 
-BlobStore::BlobStore(const fs::path& data, const DiskLimits& limits)
-    : incoming_(data / "incoming"),
+BlobStore::BlobStore(const fs::path& data, const DiskLimits& limits, Sharing sharing)
+    : sharing_(sharing),
+      incoming_(data / "incoming"),
       blobs_(data / "blobs"),
       room_(data, limits),
       lost_(data, room_) {
@@ -74,9 +75,9 @@ std::int64_t BlobStore::count(const std::string& name) {
   const std::vector<std::string> changed = shared_.set(name, several);
   std::int64_t all = bytes.alone;
   for (const auto& [file, size] : bytes.several)
-    if (shared_.counts_for(name, file)) all += size;
+    if (is_shared_by_nodes() || shared_.counts_for(name, file)) all += size;
   room_.set(name, all);
-  count_again(changed);
+  if (!is_shared_by_nodes()) count_again(changed);
   return all;
 }
 
@@ -101,12 +102,13 @@ fs::path BlobStore::path(std::string_view job, std::string_view file) const {
   return blobs_ / job / file;
 }
 
-void BlobStore::write_unsealed(std::string_view job, std::string_view file,
+void BlobStore::write_unsealed(std::string_view job, int attempt, std::string_view file,
                                std::string_view bytes) {
   const auto count = static_cast<std::int64_t>(bytes.size());
   room_.take(job, count);
   try {
-    write_file_unsynced(path(job, file), bytes);
+    if (is_shared_by_nodes()) make_directories(work_folder(job, attempt));
+    write_file_unsynced(work_folder(job, attempt) / file, bytes);
   } catch (...) {
     room_.put_back(job, count);
     throw;
@@ -139,6 +141,7 @@ bool BlobStore::share_document(std::string_view mesh, std::string_view upload) {
 bool BlobStore::is_shared(std::string_view mesh) const {
   const std::lock_guard lock(counting_);
   const FolderBytes bytes = bytes_in(blobs_ / mesh);
+  if (is_shared_by_nodes()) return !bytes.several.empty();
   return std::ranges::any_of(bytes.several, [&](const auto& file) {
     return shared_.has_others(std::string(mesh), file.first);
   });
@@ -153,15 +156,18 @@ std::int64_t BlobStore::bytes(std::string_view job) {
   return count(std::string(job));
 }
 
-std::int64_t BlobStore::seal(std::string_view job) {
+std::int64_t BlobStore::seal(std::string_view job, int attempt) {
   const std::lock_guard lock(noting_);
-  seal_files(blobs_ / job, [](std::string_view file) { return !is_input(file); });
-  sync_directory(blobs_ / job);
-  return bytes(job);
+  const fs::path folder = work_folder(job, attempt);
+  seal_files(folder, [](std::string_view file) { return !is_input(file); });
+  sync_directory(folder);
+  const std::int64_t in_place = bytes(job);
+  return is_shared_by_nodes() ? in_place + bytes_in(folder).alone : in_place;
 }
 
 void BlobStore::note(std::string_view job, const std::string& file) {
   const std::lock_guard lock(noting_);
+  const std::shared_ptr<void> locked = lock_folder(job);
   Digests digests = read_digests(blobs_ / job);
   digests[file] = sha256_of(File::open(path(job, file)));
   write_digests(blobs_ / job, digests);

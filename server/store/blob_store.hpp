@@ -6,6 +6,12 @@
 // the next start; a folder that no row names is set aside (lost_folders.hpp). `digests` has the
 // SHA-256 of each file (digests.hpp), against which reads are checked. DIR/digests-noted says that
 // all folders have one, which 0.1.0 did not write.
+//
+// Several nodes may share a directory. Then an attempt writes its results to
+// DIR/incoming/<job>.<attempt>/, and they move to the job's folder once its row says that this
+// attempt has succeeded (publish()): a node that was taken for dead writes nowhere that counts.
+// What may be another node's present work is left alone by sweeps, and shared files count for each
+// of their holders.
 
 #include <cstdint>
 #include <filesystem>
@@ -54,10 +60,14 @@ struct Swept {
   std::vector<std::string> failed;  ///< left where they are, for they cannot be read or moved
 };
 
+/// Whether other nodes use the same directory.
+enum class Sharing { none, by_nodes };
+
 class BlobStore {
  public:
   /// Creates the directories below data where they are missing.
-  explicit BlobStore(const std::filesystem::path& data, const DiskLimits& limits = {});
+  explicit BlobStore(const std::filesystem::path& data, const DiskLimits& limits = {},
+                     Sharing sharing = Sharing::none);
 
   /// A new empty folder for an upload.
   std::filesystem::path begin_upload(std::string_view upload);
@@ -67,9 +77,10 @@ class BlobStore {
   void drop_upload(std::string_view upload) noexcept;
 
   [[nodiscard]] std::filesystem::path path(std::string_view job, std::string_view file) const;
-  /// A file of a job at work, which seal() syncs. Throws Error{storage_full} when there is no room,
-  /// or storage_failed.
-  void write_unsealed(std::string_view job, std::string_view file, std::string_view bytes);
+  /// A file of an attempt of a job at work, which seal() syncs. Throws Error{storage_full} when
+  /// there is no room, or storage_failed.
+  void write_unsealed(std::string_view job, int attempt, std::string_view file,
+                      std::string_view bytes);
   void remove(std::string_view job) noexcept;
   /// The document of a stored mesh becomes that of an upload, too; its bytes are shared, and count
   /// for the mesh. False when it is not there. Throws Error{storage_failed} where the file system
@@ -85,7 +96,12 @@ class BlobStore {
 
   /// Syncs all results and notes their digests, replacing those of an attempt before: on return
   /// they survive a loss of power. Returns the bytes of all files of the job.
-  std::int64_t seal(std::string_view job);
+  std::int64_t seal(std::string_view job, int attempt);
+  /// Makes the sealed results of an attempt those of the job, which has succeeded by them. Does
+  /// nothing where that is done. Throws Error{storage_failed}.
+  void publish(std::string_view job, int attempt);
+  /// Removes the results of an attempt that came to nothing.
+  void drop_attempt(std::string_view job, int attempt) noexcept;
   /// Keeps a file that was made after seal() and can be made again, and notes its digest. False
   /// when that would take something from others: there is no room for it, its owner may not have
   /// so much, or another job has this id by now. seq: the number of the job's row; 0 for a mesh.
@@ -116,6 +132,8 @@ class BlobStore {
   /// sets aside in DIR/lost folders that no row names, and all that is no folder. now_ms: of
   /// Moment::kept_ms().
   [[nodiscard]] Swept sweep(const Fates& fates, std::int64_t now_ms);
+  /// Whether other nodes use the same directory.
+  [[nodiscard]] bool is_shared_by_nodes() const { return sharing_ == Sharing::by_nodes; }
   /// Moves a job's folder to DIR/lost. False when there is none.
   bool set_aside(const std::string& job, std::int64_t now_ms);
 
@@ -127,6 +145,7 @@ class BlobStore {
   int remove_left() noexcept { return left_.retry(); }
 
  private:
+  const Sharing sharing_;
   std::filesystem::path incoming_;
   std::filesystem::path blobs_;
   DiskBudget room_;
@@ -136,6 +155,10 @@ class BlobStore {
   void sweep_one(const std::filesystem::directory_entry& entry, const Fates& fates,
                  std::int64_t now_ms, Swept& swept);
   void note(std::string_view job, const std::string& file);
+  [[nodiscard]] std::filesystem::path attempt_folder(std::string_view job, int attempt) const;
+  [[nodiscard]] std::filesystem::path work_folder(std::string_view job, int attempt) const;
+  [[nodiscard]] bool may_be_at_work(const std::filesystem::path& path, std::int64_t now_ms) const;
+  [[nodiscard]] std::shared_ptr<void> lock_folder(std::string_view job) const;
 
   Keeping keeping_;
   mutable CheckedFiles checked_;

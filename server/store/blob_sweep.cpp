@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "server/base/clock.hpp"
 #include "server/base/identity.hpp"
 #include "server/store/blob_store.hpp"
 
@@ -21,7 +22,7 @@ void remove_unfinished(const fs::path& folder) {
 Swept BlobStore::sweep(const Fates& fates, std::int64_t now_ms) {
   Swept swept;
   for (const fs::directory_entry& entry : fs::directory_iterator(incoming_))
-    remove_tree(entry.path());
+    if (!may_be_at_work(entry.path(), server::now_ms())) remove_tree(entry.path());
   swept.returned =
       lost_.return_wanted([&](const std::string& name) { return fates(name) == FolderFate::kept; });
   std::vector<fs::directory_entry> entries(fs::directory_iterator(blobs_), {});
@@ -41,6 +42,7 @@ void BlobStore::sweep_one(const fs::directory_entry& entry, const Fates& fates, 
   const std::string name = entry.path().filename();
   const FolderFate fate = fates(name);
   const bool is_folder = fs::is_directory(entry.symlink_status());
+  if (fate == FolderFate::unknown && may_be_at_work(entry.path(), server::now_ms())) return;
   if (fate == FolderFate::unknown || !is_folder) {
     lost_.take(name, now_ms);
     swept.lost.push_back(name);
@@ -48,8 +50,8 @@ void BlobStore::sweep_one(const fs::directory_entry& entry, const Fates& fates, 
     fs::remove_all(entry.path());
     ++swept.removed;
   } else {
-    remove_unfinished(entry.path());
-    const bool shares = !bytes_in(entry.path()).several.empty();
+    if (!may_be_at_work(entry.path(), server::now_ms())) remove_unfinished(entry.path());
+    const bool shares = !is_shared_by_nodes() && !bytes_in(entry.path()).several.empty();
     const std::int64_t counted = bytes(name);
     if (shares && !is_mesh_id(name)) swept.sharing.emplace_back(name, counted);
   }

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/base/error.hpp"
+#include "server/base/identity.hpp"
 #include "server/store/schema.hpp"
 #include "server/store/sqlite_database.hpp"
 
@@ -14,6 +15,7 @@ namespace unwrapd::server::store {
 namespace {
 
 constexpr mode_t kFileMode = 0640;
+constexpr std::size_t kNodeBytes = 8;
 
 [[noreturn]] void cannot_open(const std::filesystem::path& path, const std::error_code& reason) {
   throw Error(ErrorCode::storage_failed,
@@ -86,8 +88,15 @@ DatabaseAddress store_in(const std::filesystem::path& data, const PostgresAddres
                                              ", or remove the folder blobs to start empty.");
 }
 
-bool is_whole(const std::filesystem::path& data, const PostgresAddress& database) {
-  return std::filesystem::is_directory(data / "blobs") &&
+std::string node_in(const std::filesystem::path& data) {
+  const std::filesystem::path file = data / "node";
+  if (!std::filesystem::exists(file)) write_file(file, "n_" + random_hex(kNodeBytes));
+  return read_file(file);
+}
+
+bool is_whole(const std::filesystem::path& data, const std::filesystem::path& blobs,
+              const PostgresAddress& database) {
+  return std::filesystem::is_directory(blobs / "blobs") &&
          (!database.url.empty() || std::filesystem::exists(data / kStoreFile));
 }
 

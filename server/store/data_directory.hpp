@@ -3,6 +3,7 @@
 // and meshes.
 
 #include <filesystem>
+#include <string>
 
 #include "server/base/files.hpp"
 #include "server/store/blob_store.hpp"
@@ -32,7 +33,11 @@ DatabaseAddress address_in(const std::filesystem::path& data, const PostgresAddr
 DatabaseAddress store_in(const std::filesystem::path& data, const PostgresAddress& database,
                          const BlobStore& blobs);
 
-/// Whether what the server has made in its data directory is there.
-bool is_whole(const std::filesystem::path& data, const PostgresAddress& database);
+/// The id of the node that works in this data directory; made when it is missing.
+std::string node_in(const std::filesystem::path& data);
+
+/// Whether what the server has made in its data directory, and in that of the files, is there.
+bool is_whole(const std::filesystem::path& data, const std::filesystem::path& blobs,
+              const PostgresAddress& database);
 
 }  // namespace unwrapd::server::store

@@ -17,8 +17,9 @@ namespace unwrapd::server::store {
 
 /// What engines call by different names in one SQL text.
 struct Dialect {
-  std::string_view least;     ///< the function for the smaller of two values
-  std::string_view greatest;  ///< and the larger
+  std::string_view least;             ///< the function for the smaller of two values
+  std::string_view greatest;          ///< and the larger
+  std::string_view skip_locked = "";  ///< ends a query that passes over rows others are changing
   bool has_index_hints = false;
 
   /// What follows the name of a table that is to be read by this index.
@@ -66,6 +67,8 @@ class Database {
   [[nodiscard]] virtual std::string step_to(std::int64_t version) const = 0;
   /// Notes it, within the transaction of the step.
   virtual void set_version(std::int64_t version) = 0;
+  /// Keeps others from changing the version until the end of the transaction.
+  virtual void lock_version() {}
 
   /// Throws when what it has stored is found damaged. indices: whether they say the same as the
   /// tables, too, which takes longer.

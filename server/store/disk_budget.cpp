@@ -112,6 +112,12 @@ void DiskBudget::give_back(std::string_view job) {
   by_job_.erase(found);
 }
 
+void DiskBudget::recount(std::int64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  by_job_.clear();
+  used_ = bytes;
+}
+
 void DiskBudget::free_by(const std::function<void()>& write) {
   try {
     write();

@@ -77,6 +77,9 @@ class DiskBudget {
   /// What a job's files take is now known to be this.
   void set(std::string_view job, std::int64_t bytes);
   void give_back(std::string_view job);
+  /// What all files take that are stored, where other nodes store files, too. Uploads and results
+  /// that are being written are counted from then on.
+  void recount(std::int64_t bytes);
 
   /// Writes what says that something is removed: on a full disk, in the room kept for that. May
   /// call it twice. Throws what it throws.

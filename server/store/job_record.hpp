@@ -58,6 +58,10 @@ struct JobRecord {
   std::string webhook;            ///< called at its end, empty for none
   std::string name;               ///< for people, empty without one
   std::string trace;              ///< id of the trace that it came in and all is done in
+  std::string node;               ///< that has begun it last; empty on a node that shares nothing
+  std::int64_t beat = 0;          ///< rises while that node works on this attempt
+  std::int64_t started_ms = 0;    ///< when this attempt began, by the clock of its node
+  std::int64_t ran_ms = 0;        ///< of all attempts that have come to an end
   std::string unreadable;  ///< why its row cannot be read, and it counts as failed; else empty
 };
 

@@ -17,7 +17,8 @@ constexpr std::string_view kColumns =
     " seq, id, state, created_ms, finished_ms, attempt, crashes, process_ends, cancel_requested, "
     "synchronous,"
     " expired, sha256, bytes, result_format, last_event, owner, urgency, request_key, content_key,"
-    " stored_bytes, webhook, trace, asked, name, options, notes, buffers, problem ";
+    " stored_bytes, webhook, trace, asked, name, node, beat, started_ms, ran_ms, options, notes, "
+    "buffers, problem ";
 
 [[noreturn]] void unreadable(const std::string& column) {
   throw std::runtime_error("the column " + column + " cannot be read");
@@ -77,6 +78,10 @@ std::string read_plain(Columns& next, JobRecord& job) {
   job.trace = next.text();
   job.asked = next.text();
   job.name = next.text();
+  job.node = next.text();
+  job.beat = next.number();
+  job.started_ms = next.number();
+  job.ran_ms = next.number();
   return state;
 }
 

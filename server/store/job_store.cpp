@@ -24,8 +24,13 @@ std::string insert_statement() {
          " buffers, owner, urgency, request_key, content_key, stored_bytes, webhook,"
          " trace, asked, name)"
          " VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?, ?, ?, NULLIF(?, ''), ?, ?, ?, ?, ?, ?)"
-         " RETURNING seq";
+         " ON CONFLICT DO NOTHING RETURNING seq";
 }
+
+/// Undoes an insertion. No std::exception, so that nobody takes it for an error of the store.
+struct Refused {
+  Insertion::Outcome why;
+};
 
 /// One statement for each filter, so that an index serves it in its order without looking at rows
 /// of other owners or states.
@@ -46,18 +51,18 @@ JobOutcome ended(JobState state, const Error& why, std::string_view job) {
   return outcome;
 }
 
-JobStore::JobStore(const DatabaseAddress& address, RetentionClock::Read read)
-    : database_(address.open()) {
+JobStore::JobStore(const DatabaseAddress& address, RetentionClock::Read read, Node node)
+    : node_(std::move(node)), database_(address.open()) {
   database_->claim();
   database_->check(false);
   migrate(*database_);
   Statement noted(*database_, "SELECT set_by_ms, noted_ms, noted_elapsed_ms, boot FROM written");
-  if (noted.step())
+  if (noted.step() && !node_.is_shared)
     noted_ = {.times = {noted.number(1), noted.number(2), noted.text(3)},
               .set_by_ms = noted.number(0)};
   time_.emplace(read, noted_);
   check_writable();
-  if (!write_failed_) mend_sums();
+  if (!write_failed_ && !node_.is_shared) mend_sums();
 }
 
 std::int64_t JobStore::note_time() {
@@ -65,6 +70,10 @@ std::int64_t JobStore::note_time() {
   const std::int64_t set_by_ms = now().set_by_ms;
   const std::int64_t by_ms = set_by_ms - noted_.set_by_ms;
   const bool was_set = std::abs(by_ms) >= kSetByMs;
+  if (node_.is_shared) {
+    noted_ = {.times = clocks, .set_by_ms = set_by_ms};
+    return was_set ? by_ms : 0;
+  }
   const bool is_noted = noted_.times.of_day_ms != 0 && noted_.times.boot == clocks.boot &&
                         clocks.elapsed_ms - noted_.times.elapsed_ms < kNotePauseMs;
   if (is_noted && !was_set) return 0;
@@ -95,10 +104,15 @@ void JobStore::check_writable() {
 
 template <class... Values>
 std::optional<JobRecord> JobStore::first(std::string_view rest, const Values&... values) {
-  const std::lock_guard lock(mutex_);
-  Statement statement(*database_, select_jobs(rest));
-  std::vector<JobRecord> found = job_rows(statement.with(values...));
+  std::vector<JobRecord> found;
+  {
+    const std::lock_guard lock(mutex_);
+    Statement statement(*database_, select_jobs(rest));
+    found = job_rows(statement.with(values...));
+  }
   if (found.empty()) return std::nullopt;
+  const JobRecord& job = found.front();
+  if (on_success_ && job.state == JobState::succeeded && !job.expired) on_success_(job);
   return std::move(found.front());
 }
 
@@ -109,29 +123,51 @@ std::int64_t JobStore::insert_row(const JobRecord& job) {
                  text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
                  job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace,
                  job.asked, job.name);
-  statement.step();
+  if (!statement.step()) return 0;
   const std::int64_t seq = statement.number(0);
   statement.run();
   return seq;
 }
 
-std::int64_t JobStore::insert(const JobRecord& job) {
-  return change([&] { return insert_row(job); });
+/// False when it was spent before.
+bool JobStore::spend(const SpentTicket& ticket, std::int64_t now_ms) {
+  Statement(*database_, "DELETE FROM spent_tickets WHERE until_ms < ?")
+      .with(now_ms - kSpentKeptMs)
+      .run();
+  Statement(*database_,
+            "INSERT INTO spent_tickets (id, until_ms) VALUES (?, ?) ON CONFLICT (id) DO NOTHING")
+      .with(ticket.id, ticket.until_ms)
+      .run();
+  return database_->changes() > 0;
 }
 
-std::optional<std::int64_t> JobStore::insert(const JobRecord& job, const SpentTicket& ticket,
-                                             std::int64_t now_ms) {
-  return transact([&]() -> std::optional<std::int64_t> {
-    Statement(*database_, "DELETE FROM spent_tickets WHERE until_ms < ?")
-        .with(now_ms - kSpentKeptMs)
-        .run();
-    Statement(*database_,
-              "INSERT INTO spent_tickets (id, until_ms) VALUES (?, ?) ON CONFLICT (id) DO NOTHING")
-        .with(ticket.id, ticket.until_ms)
-        .run();
-    if (database_->changes() == 0) return std::nullopt;
-    return insert_row(job);
-  });
+/// Once the job is inserted: the rows of its owner are locked from then on.
+void JobStore::check_limits(const JobRecord& job, const OwnerLimits& limits) {
+  if (limits.live_jobs == 0 && limits.stored_bytes == 0) return;
+  Statement now(*database_,
+                "SELECT (SELECT waiting + running FROM shares WHERE owner = ?1), bytes"
+                " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes WHERE owner = ?1)"
+                " FROM stored WHERE owner = ?1");
+  if (!now.with(job.owner).step()) return;
+  if (limits.live_jobs > 0 && now.number(0) > limits.live_jobs)
+    throw Refused{Insertion::Outcome::too_many_jobs};
+  if (limits.stored_bytes > 0 && now.number(1) > limits.stored_bytes)
+    throw Refused{Insertion::Outcome::too_many_bytes};
+}
+
+Insertion JobStore::insert(const JobRecord& job, const OwnerLimits& limits,
+                           const std::optional<SpentTicket>& ticket, std::int64_t now_ms) {
+  try {
+    return transact([&]() -> Insertion {
+      if (ticket && !spend(*ticket, now_ms)) throw Refused{Insertion::Outcome::ticket_spent};
+      const std::int64_t seq = insert_row(job);
+      if (seq == 0) throw Refused{Insertion::Outcome::known};
+      check_limits(job, limits);
+      return {.seq = seq};
+    });
+  } catch (const Refused& refused) {
+    return {.outcome = refused.why};
+  }
 }
 
 bool JobStore::is_spent(std::string_view ticket) {
@@ -172,41 +208,19 @@ std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
                                  std::int64_t{filter.limit}));
 }
 
-std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t lease_ms) {
-  return change([&]() -> std::optional<JobRecord> {
-    Statement statement(*database_,
-                        "UPDATE jobs SET state = 'running', attempt = attempt + 1, lease_ms = ?2"
-                        " WHERE seq = (SELECT seq FROM jobs WHERE state = 'queued' AND owner = ?1"
-                        " ORDER BY urgency, seq LIMIT 1)" +
-                            returning_jobs());
-    std::vector<JobRecord> taken = job_rows(statement.with(owner, lease_ms));
-    if (taken.empty()) return std::nullopt;
-    return std::move(taken.front());
-  });
-}
-
-void JobStore::renew(std::string_view id, std::int64_t lease_ms) {
-  update("UPDATE jobs SET lease_ms = ?2 WHERE id = ?1 AND state = 'running'", id, lease_ms);
-}
-
-std::vector<JobRecord> JobStore::lapsed(std::int64_t now_ms) {
-  const std::lock_guard lock(mutex_);
-  Statement statement(*database_,
-                      select_jobs("WHERE state = 'running' AND lease_ms < ? ORDER BY seq"));
-  return job_rows(statement.with(now_ms));
-}
-
 bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
   const std::int64_t kept_since_ms = outcome.finished_ms - outcome.set_by_ms;
   return transact([&] {
-    Statement statement(*database_,
-                        "UPDATE jobs SET state = ?4, result_format = ?5, problem = ?6,"
-                        " last_event = ?7, finished_ms = ?8, kept_since_ms = ?10, stored_bytes = ?9"
-                        " WHERE id = ?1 AND attempt = ?2 AND state = ?3");
+    Statement statement(
+        *database_,
+        "UPDATE jobs SET state = ?4, result_format = ?5, problem = ?6,"
+        " last_event = ?7, finished_ms = ?8, kept_since_ms = ?10, stored_bytes = ?9,"
+        " ran_ms = ran_ms + ?11 WHERE id = ?1 AND attempt = ?2 AND state = ?3");
     statement
         .with(known.id, std::int64_t{known.attempt}, state_name(known.state),
               state_name(outcome.state), outcome.result_format, text_of(outcome.problem),
-              outcome.last_event, outcome.finished_ms, outcome.stored_bytes, kept_since_ms)
+              outcome.last_event, outcome.finished_ms, outcome.stored_bytes, kept_since_ms,
+              outcome.ran_ms)
         .run();
     if (database_->changes() != 1) return false;
     queue_delivery(known, outcome);
@@ -245,13 +259,6 @@ void JobStore::request_cancel(std::string_view id) {
 
 void JobStore::note_process_end(std::string_view id) {
   update("UPDATE jobs SET process_ends = process_ends + 1 WHERE id = ? AND state = 'running'", id);
-}
-
-void JobStore::requeue(std::string_view id, bool crashed) {
-  update(
-      "UPDATE jobs SET state = 'queued', crashes = crashes + ?2 WHERE id = ?1 AND state = "
-      "'running'",
-      id, std::int64_t{crashed});
 }
 
 }  // namespace unwrapd::server::store

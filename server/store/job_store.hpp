@@ -2,12 +2,19 @@
 // The jobs table: every change of a job's state is one transaction here, guarded by the state it
 // must come from, so that two threads (or a late worker) can never both win.
 //
-// A running job is on lease to this process, on the clock of elapsed time: setting the time of day
-// neither ends a lease nor prolongs it.
+// A running job has the name of its node and a beat, which rises while that node works on it. Nodes
+// watch the beats of others by their own clocks (lease_watch.hpp). Whose turn it is follows from
+// the table `shares`, which triggers keep: of the owners with waiting jobs, the one that has been
+// served least so far comes next. Service is the time of ended jobs, and for each running job the
+// mean length of jobs. An owner that comes back after a pause starts level with the least served of
+// the others (start-time fair queueing: Goyal, Vin, Cheng, SIGCOMM 1996, with jobs for packets).
+// Rejected: one queue in order of arrival, in which a thousand jobs of one key make all others
+// wait.
 
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -34,6 +41,7 @@ struct JobOutcome {
   std::int64_t finished_ms = 0;
   std::int64_t set_by_ms = 0;     ///< Moment::set_by_ms at that time
   std::int64_t stored_bytes = 0;  ///< of the job's files, 0 when none are left
+  std::int64_t ran_ms = 0;        ///< how long the attempt took that ends
   std::string delivery = {};      ///< body of the call to the job's webhook, where it has one
 };
 
@@ -61,15 +69,56 @@ struct OwnerUsage {
   std::int64_t stored_bytes = 0;
 };
 
+/// What an owner may have; 0: no limit.
+struct OwnerLimits {
+  std::int64_t live_jobs = 0;
+  std::int64_t stored_bytes = 0;
+};
+
+/// How an insertion comes out.
+struct Insertion {
+  enum class Outcome {
+    added,
+    known,         ///< a job of this id, or of this request of its owner, is there already
+    ticket_spent,  ///< by another job
+    too_many_jobs,
+    too_many_bytes
+  };
+  Outcome outcome = Outcome::added;
+  std::int64_t seq = 0;  ///< of the job that was added
+};
+
+/// The jobs that wait or run, and for whom.
+struct QueueCounts {
+  std::int64_t waiting = 0;
+  std::int64_t running = 0;
+  std::int64_t owners = 0;  ///< with jobs that wait or run
+};
+
+/// A server that works on the store.
+struct Node {
+  std::string id;          ///< lasting
+  bool is_shared = false;  ///< other nodes work on the same store
+};
+
 /// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
 class JobStore {
  public:
   /// Throws when it cannot be written. read: the clocks.
-  explicit JobStore(const DatabaseAddress& address, RetentionClock::Read read = read_clocks);
+  explicit JobStore(const DatabaseAddress& address, RetentionClock::Read read = read_clocks,
+                    Node node = {});
 
+  /// Called with each succeeded job that is found from now on: its results may not be in their
+  /// place yet, where another node has ended it.
+  void on_success(std::function<void(const JobRecord& job)> action) {
+    on_success_ = std::move(action);
+  }
+
+  [[nodiscard]] const Node& node() const { return node_; }
   [[nodiscard]] Moment now() const { return time_->now(); }
   /// By how much the time of day was set since the last call, or the last one of the server before;
-  /// 0 when it was not. What the clocks show is noted for the next start.
+  /// 0 when it was not. What the clocks show is noted for the next start, where no other node has
+  /// clocks, too.
   std::int64_t note_time();
 
   /// Writes to it when the last write has failed, or none was tried; does not throw storage_full.
@@ -82,12 +131,10 @@ class JobStore {
     return database_->was_away();
   }
 
-  /// Adds a queued job and returns its seq.
-  std::int64_t insert(const JobRecord& job);
-  /// The same of a job that comes with a ticket, which it spends; nothing, and nothing is added,
-  /// where that was spent before.
-  std::optional<std::int64_t> insert(const JobRecord& job, const SpentTicket& ticket,
-                                     std::int64_t now_ms);
+  /// Adds a queued job, which spends the ticket that it comes with; or nothing. Exact, whatever
+  /// other nodes insert meanwhile.
+  Insertion insert(const JobRecord& job, const OwnerLimits& limits = {},
+                   const std::optional<SpentTicket>& ticket = {}, std::int64_t now_ms = 0);
   /// Whether a job has come with this ticket, be it here or removed meanwhile.
   bool is_spent(std::string_view ticket);
   [[nodiscard]] std::optional<JobRecord> find(std::string_view id);
@@ -104,15 +151,31 @@ class JobStore {
   /// The job to give up where there are too many: the expired one that ended first, or of the owner
   /// with the most jobs the ended one that came first.
   std::optional<std::string> first_to_go();
+  /// Bytes of all jobs and stored meshes.
+  std::int64_t stored_bytes();
   /// Bytes of finished jobs, and of stored meshes that no other job is about.
   std::int64_t evictable_bytes();
 
-  /// The most urgent, and of those the oldest, queued job of this owner, now running and on lease
-  /// until then, its attempt counted.
-  std::optional<JobRecord> take(std::string_view owner, std::int64_t lease_ms);
-  void renew(std::string_view id, std::int64_t lease_ms);
-  /// Running jobs whose lease has ended by now.
-  std::vector<JobRecord> lapsed(std::int64_t now_ms);
+  QueueCounts counts();
+  /// The owner whose turn it is, if jobs wait. mean_ms: the usual length of jobs.
+  std::optional<std::string> next_owner(std::int64_t mean_ms);
+  /// Forgets what owners without jobs were served, where it says nothing more.
+  void level_shares();
+  /// Seconds of the jobs that ended last, so many at most, the newest first.
+  std::vector<double> last_lengths(int count);
+  /// The most urgent, and of those the oldest, queued job of this owner, now running on this node,
+  /// its attempt counted. Nothing where there is none, or another node is taking it.
+  std::optional<JobRecord> take(std::string_view owner, std::int64_t now_ms = 0);
+  /// Raises the beat of an attempt of this node. False when it is no longer that: another node has
+  /// taken it up.
+  bool beat(const JobRecord& job);
+  /// Running jobs; on_others: only those of other nodes.
+  std::vector<JobRecord> running(bool on_others = false);
+  /// Ids of this node's running jobs that somebody has cancelled.
+  std::vector<std::string> cancelled_here();
+  /// Says that this node is there, with so many workers, and returns those of all that have said so
+  /// lately.
+  std::int64_t announce(std::int64_t workers);
   /// Ends a job and queues the call to its webhook. False, and nothing is changed, when it is no
   /// longer in the state and attempt that the caller knows it in.
   bool finish(const JobRecord& known, const JobOutcome& outcome);
@@ -122,8 +185,10 @@ class JobStore {
   void request_cancel(std::string_view id);
   /// Remembers that a running job has ended a process of its own.
   void note_process_end(std::string_view id);
-  /// A running job waits again; crashed: because the server died, or could not stop it.
-  void requeue(std::string_view id, bool crashed);
+  /// A running job waits again; crashed: because its server died, or could not stop it. ran_ms: how
+  /// long this attempt took. False, and nothing is changed, when the attempt that the caller knows
+  /// no longer runs, or has shown a sign of life meanwhile.
+  bool requeue(const JobRecord& known, bool crashed, std::int64_t ran_ms = 0);
 
   /// The files of a job are kept while it is not final, or has succeeded and not expired. Their
   /// fate is `unknown` when the job has no row, or one that cannot be read.
@@ -178,10 +243,15 @@ class JobStore {
     return database_->transact(make);
   }
 
+  bool spend(const SpentTicket& ticket, std::int64_t now_ms);
   std::int64_t insert_row(const JobRecord& job);
+  void check_limits(const JobRecord& job, const OwnerLimits& limits);
   void mend_sums();
+  void mend_shares();
   void queue_delivery(const JobRecord& job, const JobOutcome& outcome);
 
+  const Node node_;
+  std::function<void(const JobRecord& job)> on_success_;
   std::mutex mutex_;
   const std::unique_ptr<Database> database_;
   NotedTime noted_;

@@ -16,6 +16,13 @@ OwnerUsage JobStore::usage(std::string_view owner) {
   return {.live_jobs = statement.number(0), .stored_bytes = statement.number(1)};
 }
 
+std::int64_t JobStore::stored_bytes() {
+  const std::lock_guard lock(mutex_);
+  return number_of(*database_,
+                   "SELECT (SELECT COALESCE(SUM(bytes), 0) FROM stored)"
+                   " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes)");
+}
+
 std::int64_t JobStore::evictable_bytes() {
   const std::lock_guard lock(mutex_);
   return number_of(*database_,
@@ -35,10 +42,30 @@ void JobStore::mend_sums() {
                                   ") AS wrong UNION ALL SELECT * FROM (" + noted +
                                   " WHERE bytes <> 0 OR jobs <> 0 EXCEPT " + right +
                                   ") AS left_over LIMIT 1");
+  if (wrong.step()) {
+    transact([&] {
+      database_->run("DELETE FROM stored");
+      database_->run("INSERT INTO stored " + right);
+    });
+  }
+  mend_shares();
+}
+
+void JobStore::mend_shares() {
+  const std::string right =
+      "SELECT owner, COUNT(*) FILTER (WHERE state = 'queued'),"
+      " COUNT(*) FILTER (WHERE state = 'running') FROM jobs" +
+      database_->dialect().by_index("jobs_by_state") +
+      " WHERE state IN ('queued', 'running') GROUP BY owner";
+  const std::string noted =
+      "SELECT owner, waiting, running FROM shares WHERE waiting <> 0 OR running <> 0";
+  Statement wrong(*database_, "SELECT * FROM (" + right + " EXCEPT " + noted +
+                                  ") AS wrong UNION ALL SELECT * FROM (" + noted + " EXCEPT " +
+                                  right + ") AS left_over LIMIT 1");
   if (!wrong.step()) return;
   transact([&] {
-    database_->run("DELETE FROM stored");
-    database_->run("INSERT INTO stored " + right);
+    database_->run("DELETE FROM shares");
+    database_->run("INSERT INTO shares (owner, waiting, running) " + right);
   });
 }
 

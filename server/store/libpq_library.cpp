@@ -25,6 +25,9 @@ LibpqLibrary::LibpqLibrary() {
   library.find(value, "PQgetvalue");
   library.find(length, "PQgetlength");
   library.find(clear, "PQclear");
+  library.find(socket, "PQsocket");
+  library.find(consume_input, "PQconsumeInput");
+  library.find(notifies, "PQnotifies");
 }
 
 const LibpqLibrary& LibpqLibrary::loaded() {

@@ -31,6 +31,9 @@ class LibpqLibrary {
   decltype(&::PQgetvalue) value;
   decltype(&::PQgetlength) length;
   decltype(&::PQclear) clear;
+  decltype(&::PQsocket) socket;
+  decltype(&::PQconsumeInput) consume_input;
+  decltype(&::PQnotifies) notifies;
 
  private:
   LibpqLibrary();

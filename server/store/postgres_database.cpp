@@ -16,7 +16,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Dialect kPostgresDialect{.least = "LEAST", .greatest = "GREATEST"};
+constexpr Dialect kPostgresDialect{
+    .least = "LEAST", .greatest = "GREATEST", .skip_locked = " FOR UPDATE SKIP LOCKED"};
 constexpr auto kPauseBetweenTries = 50ms;  // of one call
 constexpr auto kPauseWhileAway = 500ms;    // of all calls, at least
 constexpr int kPausePerTry = 9;            // times what a try takes that nobody answers
@@ -28,6 +29,10 @@ constexpr const char* kOwnTables =
     " at TIMESTAMPTZ NOT NULL DEFAULT now())";
 constexpr const char* kForgetWriters = "DELETE FROM writers WHERE at < now() - interval '1 day'";
 constexpr const char* kLock = "SELECT pg_try_advisory_lock(1431193452, hashtext(current_schema()))";
+constexpr const char* kSharedLock =
+    "SELECT pg_try_advisory_lock_shared(1431193452, hashtext(current_schema()))";
+constexpr const char* kNodeLock =
+    "SELECT pg_try_advisory_lock(1431193453, hashtext(current_schema() || ?))";
 constexpr const char* kOwnSession =
     "SELECT pid || ' of ' || backend_start FROM pg_stat_activity WHERE pid = pg_backend_pid()";
 /// One that is committing is left to end by itself: ended while it waits for a standby, it would
@@ -66,10 +71,20 @@ void PostgresDatabase::try_link() const {
   link_.reset();
   auto link = std::make_unique<PostgresLink>(address_.url);
   if (!session_.empty()) link->run(kEndSession, {{.text = session_, .type = kTextType}});
-  if (claimed_ && link->run(kLock).text(0, 0) != "t")
-    throw LinkLost{"another unwrapd uses it; stop that one"};
+  if (claimed_) claim_on(*link);
   session_ = link->run(kOwnSession).text(0, 0);
   link_ = std::move(link);
+}
+
+/// Either alone, or as one of several nodes.
+void PostgresDatabase::claim_on(PostgresLink& link) const {
+  const bool is_shared = !address_.node.empty();
+  if (link.run(is_shared ? kSharedLock : kLock).text(0, 0) != "t")
+    throw LinkLost{is_shared ? "an unwrapd without --blobs uses it; stop that one"
+                             : "another unwrapd uses it; stop that one"};
+  if (!is_shared) return;
+  if (link.run(kNodeLock, {{.text = address_.node, .type = kTextType}}).text(0, 0) != "t")
+    throw LinkLost{"another unwrapd has the node id of this --data directory; give each its own"};
 }
 
 void PostgresDatabase::be_away(bool in_doubt) const {
@@ -159,6 +174,10 @@ std::int64_t PostgresDatabase::version() const {
 }
 
 std::string PostgresDatabase::step_to(std::int64_t version) const { return postgres_step(version); }
+
+void PostgresDatabase::lock_version() {
+  run("SELECT pg_advisory_xact_lock(1431193452, hashtext(current_schema()) # 2)");
+}
 
 void PostgresDatabase::set_version(std::int64_t version) {
   run("DELETE FROM schema_version; INSERT INTO schema_version VALUES (" + std::to_string(version) +

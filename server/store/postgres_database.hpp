@@ -34,10 +34,12 @@ class PostgresDatabase final : public Database {
   [[nodiscard]] std::int64_t version() const override;
   [[nodiscard]] std::string step_to(std::int64_t version) const override;
   void set_version(std::int64_t version) override;
+  void lock_version() override;
   /// It checks its pages as it reads them, where checksums are on; damage is an error then.
   void check(bool /*indices*/) const override {}
   void check_reachable() const override;
-  /// Holds an advisory lock for as long as this exists, and takes it again after a loss.
+  /// Holds advisory locks for as long as this exists, and takes them again after a loss: alone, or
+  /// beside the nodes of the same store.
   void claim() override;
   [[nodiscard]] bool was_away() override { return std::exchange(was_away_, false); }
 
@@ -58,6 +60,7 @@ class PostgresDatabase final : public Database {
   PostgresLink& link() const;
   void link_until(Clock::time_point end, bool in_doubt) const;
   void try_link() const;
+  void claim_on(PostgresLink& link) const;
   void lose_link(const LinkLost& lost, Clock::time_point& end, bool in_doubt) const;
   [[noreturn]] void be_away(bool in_doubt) const;
 

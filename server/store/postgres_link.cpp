@@ -111,6 +111,17 @@ PostgresResult PostgresLink::run(const std::string& sql) {
   return checked(pq_.exec(session_.get(), sql.c_str()));
 }
 
+std::vector<std::string> PostgresLink::notifications() {
+  if (pq_.consume_input(session_.get()) == 0)
+    throw LinkLost{line_of(pq_.error_message(session_.get()))};
+  std::vector<std::string> payloads;
+  while (PGnotify* note = pq_.notifies(session_.get())) {
+    payloads.emplace_back(note->extra);
+    pq_.free_text(note);
+  }
+  return payloads;
+}
+
 const std::string& PostgresLink::prepared(const std::string& sql, const std::vector<Oid>& types) {
   const auto known = prepared_.find(sql);
   if (known != prepared_.end()) return known->second;

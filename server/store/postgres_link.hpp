@@ -57,6 +57,10 @@ class PostgresLink {
 
   PostgresResult run(const std::string& sql);
   PostgresResult run(const std::string& sql, const std::vector<BoundValue>& values);
+  /// The socket of the session, on which notifications arrive.
+  [[nodiscard]] int socket() const { return pq_.socket(session_.get()); }
+  /// The payloads of notifications that have arrived.
+  std::vector<std::string> notifications();
 
  private:
   struct Finish {

@@ -112,12 +112,56 @@ CREATE TABLE keys (
 );
 )sql";
 
+/// Keeps `shares`, as the triggers of SQLite do.
+constexpr const char* kPostgresTurns = R"sql(
+CREATE FUNCTION note_turns() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+  IF TG_OP = 'INSERT' THEN
+    INSERT INTO shares (owner, served_ms, waiting) VALUES (NEW.owner,
+      COALESCE((SELECT MIN(served_ms) FROM shares WHERE waiting + running > 0), 0), 1)
+      ON CONFLICT (owner) DO UPDATE SET waiting = shares.waiting + 1, served_ms =
+        CASE WHEN shares.waiting + shares.running > 0 THEN shares.served_ms
+             ELSE GREATEST(shares.served_ms, excluded.served_ms) END;
+  ELSIF TG_OP = 'UPDATE' THEN
+    UPDATE shares SET
+      waiting = waiting + (NEW.state = 'queued')::int - (OLD.state = 'queued')::int,
+      running = running + (NEW.state = 'running')::int - (OLD.state = 'running')::int,
+      served_ms = served_ms + NEW.ran_ms - OLD.ran_ms
+      WHERE owner = NEW.owner;
+  ELSE
+    UPDATE shares SET waiting = waiting - (OLD.state = 'queued')::int,
+      running = running - (OLD.state = 'running')::int WHERE owner = OLD.owner;
+  END IF;
+  RETURN NULL;
+END $$;
+CREATE TRIGGER jobs_turns_new AFTER INSERT ON jobs
+  FOR EACH ROW WHEN (NEW.state = 'queued') EXECUTE FUNCTION note_turns();
+CREATE TRIGGER jobs_turns_changed AFTER UPDATE OF state ON jobs
+  FOR EACH ROW WHEN (NEW.state <> OLD.state) EXECUTE FUNCTION note_turns();
+CREATE TRIGGER jobs_turns_gone AFTER DELETE ON jobs
+  FOR EACH ROW WHEN (OLD.state IN ('queued', 'running')) EXECUTE FUNCTION note_turns();
+CREATE UNLOGGED TABLE events (
+  job TEXT NOT NULL,
+  seq BIGINT NOT NULL,
+  last BIGINT NOT NULL,
+  frame TEXT NOT NULL,
+  progress TEXT NOT NULL,
+  PRIMARY KEY (job, seq)
+);
+CREATE TABLE secrets (
+  name TEXT PRIMARY KEY,
+  value TEXT NOT NULL
+);
+)sql";
+
 }  // namespace
 
 std::string postgres_step(std::int64_t version) {
   if (version < kFirstVersion) return "";
   if (version == kFirstVersion) return kFirstTables;
-  return version == kFirstVersion + 1 ? kNamesStep : kTicketsStep;
+  if (version == kFirstVersion + 1) return kNamesStep;
+  if (version == kFirstVersion + 2) return kTicketsStep;
+  return std::string(kTurnsStep) + kPostgresTurns;
 }
 
 }  // namespace unwrapd::server::store

@@ -30,6 +30,8 @@ void migrate(Database& database, std::optional<std::int64_t> last) {
   const std::int64_t end = last.value_or(kSchemaVersion);
   while (database.version() < end)
     database.transact([&] {
+      database.lock_version();
+      if (database.version() >= end) return;
       const std::int64_t next = database.version() + 1;
       if (const std::string step = database.step_to(next); !step.empty()) database.run(step);
       database.set_version(next);

@@ -6,9 +6,9 @@
 
 namespace unwrapd::server::store {
 
-inline constexpr std::int64_t kSchemaVersion = 12;  ///< of this program
+inline constexpr std::int64_t kSchemaVersion = 13;  ///< of this program
 
-// From version 10 to 11, and to 12, in the words of both engines.
+// From version 10 to 11, to 12, and to 13 (its triggers follow), in the words of both engines.
 inline constexpr const char* kNamesStep = R"sql(
 ALTER TABLE jobs ADD COLUMN name TEXT NOT NULL DEFAULT '';
 CREATE INDEX jobs_by_name ON jobs (name, seq) WHERE name <> '';
@@ -18,6 +18,27 @@ CREATE INDEX jobs_of_owner_in_state_by_name ON jobs (owner, name, state, seq) WH
 )sql";
 inline constexpr const char* kTicketsStep = R"sql(
 CREATE TABLE spent_tickets (id TEXT NOT NULL PRIMARY KEY, until_ms BIGINT NOT NULL);
+)sql";
+inline constexpr std::int64_t kTurnsVersion = 13;
+inline constexpr const char* kTurnsStep = R"sql(
+ALTER TABLE jobs ADD COLUMN node TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN beat BIGINT NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN started_ms BIGINT NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN ran_ms BIGINT NOT NULL DEFAULT 0;
+CREATE TABLE shares (
+  owner TEXT NOT NULL PRIMARY KEY,
+  served_ms BIGINT NOT NULL DEFAULT 0,
+  waiting BIGINT NOT NULL DEFAULT 0,
+  running BIGINT NOT NULL DEFAULT 0
+);
+INSERT INTO shares (owner, waiting, running)
+  SELECT owner, COUNT(*) FILTER (WHERE state = 'queued'), COUNT(*) FILTER (WHERE state = 'running')
+  FROM jobs WHERE state IN ('queued', 'running') GROUP BY owner;
+CREATE TABLE nodes (
+  id TEXT NOT NULL PRIMARY KEY,
+  workers BIGINT NOT NULL,
+  seen_ms BIGINT NOT NULL
+);
 )sql";
 
 /// From version - 1 to this one; empty where nothing is to do.

@@ -7,7 +7,7 @@ namespace unwrapd::server::store {
 namespace {
 
 /// Step k turns version k into version k + 1. Released steps are never edited.
-constexpr std::array<const char*, 12> kSteps = {
+constexpr std::array<const char*, kSchemaVersion> kSteps = {
     R"sql(
 CREATE TABLE jobs (
   seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -132,14 +132,43 @@ CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
   UPDATE stored SET bytes = bytes - OLD.stored_bytes, jobs = jobs - 1 WHERE owner = OLD.owner;
 END;
 )sql",
-    kNamesStep, kTicketsStep};
+    kNamesStep, kTicketsStep, kTurnsStep};
 
-static_assert(kSteps.size() == kSchemaVersion);
+/// Strict tables know BIGINT by one name alone.
+std::string in_words_of_sqlite(std::string step) {
+  constexpr std::string_view kTheirs = "BIGINT";
+  for (std::size_t at = 0; (at = step.find(kTheirs, at)) != std::string::npos;)
+    step.replace(at, kTheirs.size(), "INTEGER");
+  return step;
+}
+
+/// Keeps `shares`. An owner that comes back after a pause starts level with the least served of the
+/// others, so that service cannot be saved up.
+constexpr const char* kSqliteTurns = R"sql(
+CREATE TRIGGER jobs_turns_new AFTER INSERT ON jobs WHEN NEW.state = 'queued' BEGIN
+  INSERT INTO shares (owner, served_ms, waiting) VALUES (NEW.owner,
+    COALESCE((SELECT MIN(served_ms) FROM shares WHERE waiting + running > 0), 0), 1)
+    ON CONFLICT (owner) DO UPDATE SET waiting = waiting + 1, served_ms =
+      CASE WHEN waiting + running > 0 THEN served_ms ELSE MAX(served_ms, excluded.served_ms) END;
+END;
+CREATE TRIGGER jobs_turns_changed AFTER UPDATE OF state ON jobs WHEN NEW.state <> OLD.state BEGIN
+  UPDATE shares SET
+    waiting = waiting + (NEW.state = 'queued') - (OLD.state = 'queued'),
+    running = running + (NEW.state = 'running') - (OLD.state = 'running'),
+    served_ms = served_ms + NEW.ran_ms - OLD.ran_ms
+    WHERE owner = NEW.owner;
+END;
+CREATE TRIGGER jobs_turns_gone AFTER DELETE ON jobs WHEN OLD.state IN ('queued', 'running') BEGIN
+  UPDATE shares SET waiting = waiting - (OLD.state = 'queued'),
+    running = running - (OLD.state = 'running') WHERE owner = OLD.owner;
+END;
+)sql";
 
 }  // namespace
 
 std::string sqlite_step(std::int64_t version) {
-  return kSteps.at(static_cast<std::size_t>(version - 1));
+  const std::string step = kSteps.at(static_cast<std::size_t>(version - 1));
+  return version == kTurnsVersion ? in_words_of_sqlite(step) + kSqliteTurns : step;
 }
 
 }  // namespace unwrapd::server::store

@@ -21,6 +21,7 @@ constexpr int kMaxTries = 10;
 constexpr int kAtOnce = 16;
 constexpr int kPerReceiver = 2;
 constexpr std::int64_t kLongestPauseMs = 3'600'000;
+constexpr std::int64_t kLongestCallMs = 60'000;
 
 std::string base64(std::string_view bytes) {
   std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // EVP ends it with a NUL
@@ -60,6 +61,7 @@ struct Webhooks::Due {
   std::int64_t seq;
   std::string owner;
   std::string url;
+  std::int64_t due_ms;
   int turn;  ///< calls of its owner that come before it
 };
 
@@ -80,11 +82,13 @@ std::int64_t webhook_pause_ms(int first_seconds, int failed_before, const Webhoo
 }
 
 Webhooks::Webhooks(const store::DatabaseAddress& store, std::string server_secret,
-                   WebhookConfig config, const Log& log, std::function<Moment()> now)
+                   WebhookConfig config, const Log& log, std::function<Moment()> now,
+                   bool is_shared)
     : secret_(std::move(server_secret)),
       config_(std::move(config)),
       log_(log),
       now_(std::move(now)),
+      is_shared_(is_shared),
       database_(store.open()),
       pool_(kAtOnce, kPerReceiver, [this] { go_on(); }) {
   if (!config_.allowed_hosts.empty())
@@ -110,7 +114,8 @@ void Webhooks::put_forward() {
 /// The calls that are due and not being made, in the order of their turns.
 std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
   store::Statement statement(
-      *database_, "SELECT seq, owner, url FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
+      *database_,
+      "SELECT seq, owner, url, due_ms FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
   statement.with(now_ms);
   std::vector<Due> found;
   std::map<std::string, int> turns;
@@ -122,6 +127,7 @@ std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
     found.push_back({.seq = statement.number(0),
                      .owner = owner,
                      .url = statement.text(2),
+                     .due_ms = statement.number(3),
                      .turn = turn->second++});
   }
   std::ranges::stable_sort(found, {}, &Due::turn);
@@ -197,9 +203,21 @@ bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
   return answer.failure.empty();
 }
 
+/// Keeps other nodes from making the same call, for longer than it takes. Should this node end
+/// meanwhile, it is due again then.
+bool Webhooks::claim(const Due& due) {
+  if (!is_shared_) return true;
+  return database_->change([&] {
+    store::Statement(*database_, "UPDATE deliveries SET due_ms = ?3 WHERE seq = ?1 AND due_ms = ?2")
+        .with(due.seq, due.due_ms, now_().kept_ms() + kLongestCallMs)
+        .run();
+    return database_->changes() == 1;
+  });
+}
+
 void Webhooks::begin(const Due& due) {
   const WebhookReceiver receiver{.owner = due.owner, .host = webhook_host(due.url)};
-  if (!pool_.has_room(receiver)) return;
+  if (!pool_.has_room(receiver) || !claim(due)) return;
   Delivery delivery = load(due.seq);
   being_made_.insert(due.seq);
   pool_.begin(receiver, [this, delivery = std::move(delivery)](const std::stop_token& stop) {

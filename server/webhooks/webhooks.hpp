@@ -42,8 +42,9 @@ std::int64_t webhook_pause_ms(int first_seconds, int failed_before, const Webhoo
 class Webhooks {
  public:
   /// store: the database of the jobs, whose tables are there already. now: JobStore::now().
+  /// is_shared: other nodes make the calls in it, too.
   Webhooks(const store::DatabaseAddress& store, std::string server_secret, WebhookConfig config,
-           const Log& log, std::function<Moment()> now);
+           const Log& log, std::function<Moment()> now, bool is_shared = false);
 
   /// Begins the calls that are due as far as there is room. The owner with the fewest calls comes
   /// first, and of its calls the one that was due first. The others follow when there is room.
@@ -63,6 +64,7 @@ class Webhooks {
   std::vector<Due> due(std::int64_t now_ms);
   Delivery load(std::int64_t seq);
   void begin(const Due& due);
+  [[nodiscard]] bool claim(const Due& due);
   bool make(const Delivery& delivery, const std::stop_token& stop);
   [[nodiscard]] WebhookAnswer call(const Delivery& delivery, const std::stop_token& stop) const;
   void settle(const Delivery& delivery, const WebhookAnswer& answer, std::int64_t now_ms);
@@ -72,6 +74,7 @@ class Webhooks {
   const WebhookConfig config_;
   const Log& log_;
   const std::function<Moment()> now_;
+  const bool is_shared_;
   std::mutex mutex_;  // of the next two
   const std::unique_ptr<store::Database> database_;
   std::set<std::int64_t> being_made_;  // seq

@@ -32,7 +32,7 @@ std::size_t share_of(const MemoryLimits& limits, int workers) {
   if (limits.job_bytes > 0) return static_cast<std::size_t>(limits.job_bytes);
   const std::size_t all = memory_of_machine();
   const std::size_t cache = std::min(all / 2, static_cast<std::size_t>(limits.cache_bytes));
-  return (all - cache) / static_cast<std::size_t>(workers);
+  return (all - cache) / static_cast<std::size_t>(std::max(1, workers));
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class ClockThatIsSet : public testing::Test {
     store::JobOutcome outcome;
     outcome.finished_ms = now.of_day_ms;
     outcome.set_by_ms = now.set_by_ms;
-    store_.finish(*store_.take("", 1), outcome);
+    store_.finish(*store_.take(""), outcome);
   }
 
   void expect_kept_for_100_s() {

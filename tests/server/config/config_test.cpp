@@ -115,9 +115,12 @@ TEST_F(ConfigFile, TheFlagWinsOverTheVariableAndThatOverTheFile) {
 
 TEST_F(ConfigFile, WhatIsWrongIsNamedWithItsPlaceAndWhatWouldBeRight) {
   const auto wrong = [&](const std::string& text) { return mistake({"--config", write(text)}); };
-  EXPECT_THAT(wrong("workers = 0\n"),
-              AllOf(HasSubstr("unwrapd.toml: workers takes a whole number from 1 to 256"),
-                    HasSubstr("\"0\"")));
+  EXPECT_THAT(wrong("workers = 257\n"),
+              AllOf(HasSubstr("unwrapd.toml: workers takes a whole number from 0 to 256"),
+                    HasSubstr("\"257\"")));
+  EXPECT_THAT(wrong("workers = 0\n"), HasSubstr("give --database and --blobs"));
+  EXPECT_THAT(wrong("blobs = \"dir:/srv/unwrapd\"\n"), HasSubstr("give its URL, too"));
+  EXPECT_THAT(wrong("blobs = \"/srv/unwrapd\"\n"), HasSubstr("dir: and the path of a directory"));
   EXPECT_THAT(wrong("\nmax-queue ="), HasSubstr("unwrapd.toml line 2"));
   EXPECT_THAT(wrong("max-que = 1"), HasSubstr("there is no option \"max-que\""));
   EXPECT_THAT(wrong("[workers]\nn = 1"), HasSubstr("workers must be text, a whole number"));

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+
 #include "server/base/errors.hpp"
 
 namespace unwrapd::server::jobs {
@@ -15,17 +17,16 @@ constexpr http::Quota kTwoJobs{.max_jobs = 2};
 class Quotas : public testing::Test {
  protected:
   Quotas() {
-    for (int k = 0; k < 400; ++k) {
-      share_.add("earlier");
-      share_.start("earlier");
-      share_.end("earlier", kSeconds);
-    }
+    for (int k = 0; k < 400; ++k) state_.lengths.add(kSeconds);
   }
 
-  void waits(const std::string& owner) { share_.add(owner); }
+  void waits(const std::string& owner) {
+    ++state_.counts.waiting;
+    add(owner);
+  }
   void runs(const std::string& owner) {
-    share_.add(owner);
-    share_.start(owner);
+    ++state_.counts.running;
+    add(owner);
   }
 
   /// Seconds after which this sender is to come back; 0 when he may come in.
@@ -35,8 +36,8 @@ class Quotas : public testing::Test {
     job.owner = "his";
     job.stored_bytes = 5;
     try {
-      door_.check_quota(sender, quota, {.live_jobs = live, .stored_bytes = 6}, job, share_,
-                        running);
+      state_.running = running;
+      door_.check_quota(sender, quota, {.live_jobs = live, .stored_bytes = 6}, job, state_);
     } catch (const RetryLater& later) {
       EXPECT_EQ(later.code(), ErrorCode::too_many_jobs);
       return later.seconds();
@@ -44,8 +45,16 @@ class Quotas : public testing::Test {
     return 0;
   }
 
-  FairShare share_;
-  Admission door_{100, 1};
+  QueueState state_;
+  Admission door_{100};
+
+ private:
+  void add(const std::string& owner) {
+    owners_.insert(owner);
+    state_.counts.owners = static_cast<std::int64_t>(owners_.size());
+  }
+
+  std::set<std::string> owners_;
 };
 
 TEST_F(Quotas, LetInWhoHasFewerJobs) {
@@ -81,7 +90,8 @@ TEST_F(Quotas, AreHisAlone) {
   EXPECT_GT(told("one", 2, {{"his", 4}}), 0);
   store::JobRecord job;
   job.owner = "another's";
-  EXPECT_NO_THROW(door_.check_quota("one", kTwoJobs, {.live_jobs = 1}, job, share_, {{"his", 4}}));
+  state_.running = {{"his", 4}};
+  EXPECT_NO_THROW(door_.check_quota("one", kTwoJobs, {.live_jobs = 1}, job, state_));
 }
 
 TEST_F(Quotas, CountBytesOfTheJobThatComes) {

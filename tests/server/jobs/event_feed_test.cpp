@@ -163,6 +163,77 @@ TEST(EventFeed, OldFinishedFeedsMakeRoomForNewOnes) {
   EXPECT_TRUE(events.find("j_3"));
 }
 
+/// What one node publishes, as another is told of it.
+class SharedFeeds : public testing::Test {
+ protected:
+  SharedFeeds() {
+    here_.share_with([this](const store::EventRow& event) { told_.push_back(event); },
+                     [](const std::string&) {});
+    there_.share_with([](const store::EventRow&) {},
+                      [this](const std::string& job) {
+                        for (const store::EventRow& event : told_) there_.find(job)->append(event);
+                        there_.find(job)->set_caught_up();
+                      });
+  }
+  static store::JobRecord running() {
+    store::JobRecord job;
+    job.id = "j_1";
+    job.state = api::JobState::running;
+    return job;
+  }
+
+  std::vector<store::EventRow> told_;
+  EventFeed here_;
+  EventFeed there_;
+};
+
+TEST_F(SharedFeeds, AReaderElsewhereGetsTheSameEvents) {
+  const auto feed = here_.open("j_1", 0);
+  publish_iteration(*feed, 1);
+  feed->set_progress({.stage = Stage::solve, .iteration = 2});
+  publish_iteration(*feed, 2);
+  const auto followed = there_.of(running());
+  EXPECT_EQ(followed->read(0).frames, feed->read(0).frames);
+  EXPECT_EQ(followed->progress()->iteration, 2);
+  publish_end(*feed);
+  followed->append(told_.back());
+  EXPECT_TRUE(followed->read(0).end);
+  EXPECT_EQ(followed->read(0).frames, feed->read(0).frames);
+  EXPECT_THAT(there_.following(), IsEmpty()) << "it is over";
+}
+
+TEST_F(SharedFeeds, AnEventComesOnceAndNoneThatIsLate) {
+  const auto feed = here_.open("j_1", 0);
+  publish_iteration(*feed, 1);
+  const auto followed = there_.of(running());
+  followed->append(told_.front());
+  EXPECT_EQ(count(followed->read(0).frames, "event: iteration"), 1);
+  followed->rise_to(kSeqsPerAttempt);
+  publish_iteration(*feed, 2);
+  followed->append(told_.back());
+  EXPECT_EQ(count(followed->read(0).frames, "event: iteration"), 1) << "of an attempt before";
+}
+
+TEST_F(SharedFeeds, NumbersOfALaterAttemptLeaveNoGapForItsReaders) {
+  const auto feed = here_.open("j_1", 0);
+  publish_iteration(*feed, 1);
+  feed->rise_to(kSeqsPerAttempt);
+  publish_iteration(*feed, 2);
+  const Reading reading = feed->read(1);
+  EXPECT_EQ(reading.last_seq, kSeqsPerAttempt + 1);
+  EXPECT_THAT(reading.frames, Not(HasSubstr("gap")));
+}
+
+TEST_F(SharedFeeds, NothingIsFollowedThatHasEndedOrRunsHere) {
+  store::JobRecord ended = running();
+  ended.state = api::JobState::failed;
+  EXPECT_EQ(there_.of(ended), nullptr);
+  const auto own = here_.open("j_1", 0);
+  EXPECT_EQ(here_.of(running()), own);
+  own->append({.job = "j_1", .seq = 7, .is_last = true, .frame = "late", .progress = {}});
+  EXPECT_FALSE(own->read(0).end) << "of a node that does not know that it has lost the job";
+}
+
 TEST(EventFeed, ManyReadersOfABusyFeedMissNothingUntold) {
   constexpr int kEvents = 5000;
   JobFeed feed(0, 64);

@@ -100,7 +100,7 @@ TEST_F(Recovery, AJobAtWorkAtTenDeathsIsGivenUpThoughItWasTriedApart) {
   store_->insert(some_job("j_1"));
   for (int death = 1; death <= 10; ++death) {
     ASSERT_EQ(store_->find("j_1")->state, JobState::queued) << death;
-    store_->take("", 1);
+    store_->take("");
     EventFeed events;
     JobQueue(*store_, blobs_, events, log_, {}).recover(true);
   }
@@ -115,7 +115,7 @@ class BoundedStore : public Recovery {
     store::JobRecord job = some_job(id);
     job.owner = owner;
     store_->insert(job);
-    store_->finish(*store_->take(owner, kLeaseMs), succeeded(++ended_));
+    store_->finish(*store_->take(owner), succeeded(++ended_));
     if (expired) store_->set_expired(id);
     make_directories(dir_.path() / "blobs" / id);
   }

@@ -16,10 +16,10 @@ class GoneFiles : public testing::Test {
     job.id = "j_1";
     job.options = api::Json::object();
     jobs_.insert(job);
-    jobs_.finish(*jobs_.take("", 1000), {.state = api::JobState::succeeded,
-                                         .result_format = "glb",
-                                         .problem = {},
-                                         .finished_ms = 2000});
+    jobs_.finish(*jobs_.take(""), {.state = api::JobState::succeeded,
+                                   .result_format = "glb",
+                                   .problem = {},
+                                   .finished_ms = 2000});
     return *jobs_.find(job.id);
   }
 

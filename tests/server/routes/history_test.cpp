@@ -43,7 +43,7 @@ class History : public testing::Test {
     job.name = "the same";
     job.content_key = job.id;
     job.stored_bytes = 10;
-    return store_->insert(job);
+    return store_->insert(job).seq;
   }
 
   void keep(const std::string& owner, int jobs) {
@@ -52,7 +52,7 @@ class History : public testing::Test {
       store::JobOutcome outcome;
       outcome.finished_ms = count_;
       outcome.stored_bytes = 100;
-      store_->finish(*store_->take(owner, 1), outcome);
+      store_->finish(*store_->take(owner), outcome);
     }
   }
 
@@ -82,7 +82,10 @@ class History : public testing::Test {
     all += steps_of([&] { store_->find_same("greedy", "j_1"); });
     all += steps_of([&] { store_->finished_before(std::numeric_limits<std::int64_t>::max(), 1); });
     all += steps_of([&] { store_->forget_before(0); });
-    all += steps_of([&] { store_->lapsed(0); });
+    all += steps_of([&] { store_->running(); });
+    all += steps_of([&] { store_->counts(); });
+    all += steps_of([&] { store_->next_owner(1000); });
+    all += steps_of([&] { store_->last_lengths(50); });
     return all + steps_of([&] { keep("modest", 1); });
   }
 

@@ -19,8 +19,8 @@ namespace {
 void add_sealed(BlobStore& blobs, const std::string& id) {
   write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
   blobs.keep_upload("u", id);
-  blobs.write_unsealed(id, kReportFile, "{}");
-  blobs.seal(id);
+  blobs.write_unsealed(id, 1, kReportFile, "{}");
+  blobs.seal(id, 1);
 }
 
 class FilesOfJobs : public testing::Test {
@@ -60,9 +60,9 @@ TEST_F(FilesOfJobs, ThatCannotBeWrittenTakesNoRoom) {
   add_sealed(blobs, "j_1");
   const std::int64_t before = blobs.room().used_bytes();
   std::filesystem::create_directories(blobs.path("j_1", "taken") / "by a folder");
-  EXPECT_EQ(error_of([&] { blobs.write_unsealed("j_1", "taken", "1234"); }).code(),
+  EXPECT_EQ(error_of([&] { blobs.write_unsealed("j_1", 1, "taken", "1234"); }).code(),
             ErrorCode::storage_failed);
-  EXPECT_EQ(error_of([&] { blobs.write_unsealed("j_gone", "file", "1234"); }).code(),
+  EXPECT_EQ(error_of([&] { blobs.write_unsealed("j_gone", 1, "file", "1234"); }).code(),
             ErrorCode::storage_failed);
   EXPECT_EQ(error_of([&] { static_cast<void>(blobs.try_keep("j_gone", "file", "1234")); }).code(),
             ErrorCode::storage_failed);
@@ -114,8 +114,8 @@ TEST_F(FilesOfJobs, ThatAnswerAgainCountOnceForTheOneThatIsLeft) {
   blobs.on_keeping(
       {.kept = [&](std::string_view job, std::int64_t bytes) { told[std::string(job)] = bytes; }});
   add_sealed(blobs, "j_1");
-  blobs.write_unsealed("j_1", kUvFile, std::string(1000, 'x'));
-  const std::int64_t first = blobs.seal("j_1");
+  blobs.write_unsealed("j_1", 1, kUvFile, std::string(1000, 'x'));
+  const std::int64_t first = blobs.seal("j_1", 1);
   EXPECT_EQ(first, blobs.room().used_bytes());
   for (const char* again : {"j_2", "j_3"}) {
     write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");

@@ -9,7 +9,6 @@
 
 #include "core/base/error.hpp"
 #include "server/base/identity.hpp"
-#include "server/jobs/fair_share.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/store/digests.hpp"
 #include "server/store/job_store.hpp"
@@ -52,8 +51,8 @@ class Durability : public testing::Test {
     const std::filesystem::path folder = blobs.begin_upload("u");
     write_file(folder / kDocumentFile, "v 0 0 0");
     blobs.keep_upload("u", id);
-    blobs.write_unsealed(id, kReportFile, "{}");
-    blobs.seal(id);
+    blobs.write_unsealed(id, 1, kReportFile, "{}");
+    blobs.seal(id, 1);
   }
 
   static void damage(const std::filesystem::path& file) { write_file(file, "v 0 0 1"); }
@@ -77,7 +76,7 @@ TEST_F(Durability, AFileOfTheFirstVersionIsBroughtToThisOne) {
     EXPECT_TRUE(store.finished_before(9).empty());
     EXPECT_EQ(store.finished_before(10).size(), 1U);
   }
-  EXPECT_EQ(JobStore(path()).take("", 1)->id, "j_1");
+  EXPECT_EQ(JobStore(path()).take("")->id, "j_1");
 }
 
 TEST_F(Durability, ADamagedFileIsNeverHandedOut) {
@@ -118,8 +117,8 @@ TEST_F(Durability, SealingDoesNotPassOverADamagedInput) {
   BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
   damage(blobs.path("j_1", kDocumentFile));
-  blobs.write_unsealed("j_1", kReportFile, "{\"attempt\": 2}");
-  blobs.seal("j_1");
+  blobs.write_unsealed("j_1", 1, kReportFile, "{\"attempt\": 2}");
+  blobs.seal("j_1", 1);
   EXPECT_EQ(blobs.read("j_1", kReportFile), "{\"attempt\": 2}");
   EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", kDocumentFile)); }).code(),
             ErrorCode::storage_corrupt);
@@ -140,9 +139,9 @@ TEST_F(Durability, ResultsThatAreNotWholeAreGivenToNobody) {
   for (const std::string_view file : {kReportFile, kTotalsFile, kUvFile, kDigestsFile}) {
     BlobStore blobs(dir_.path());
     add_job(blobs, "j_1");
-    blobs.write_unsealed("j_1", kTotalsFile, "{}");
-    blobs.write_unsealed("j_1", kUvFile, "uv");
-    blobs.seal("j_1");
+    blobs.write_unsealed("j_1", 1, kTotalsFile, "{}");
+    blobs.write_unsealed("j_1", 1, kUvFile, "uv");
+    blobs.seal("j_1", 1);
     write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
     blobs.keep_upload("u", "j_2");
     damage(blobs.path("j_1", file));
@@ -158,7 +157,7 @@ TEST_F(Durability, ResultsThatAreNotWholeAreGivenToNobody) {
 TEST_F(Durability, AFileThatWasMadeButNotNotedIsNotGivenToAnother) {
   BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
-  blobs.write_unsealed("j_1", "uv.bin.layout.area.svg", "<svg");
+  blobs.write_unsealed("j_1", 1, "uv.bin.layout.area.svg", "<svg");
   write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
   blobs.keep_upload("u", "j_2");
   EXPECT_FALSE(blobs.adopt("j_2", "j_1"));
@@ -241,53 +240,6 @@ TEST_F(Durability, WhatSaysThatSomethingIsRemovedHasRoomOnAFullDiskOnce) {
   EXPECT_NO_THROW(blobs.room().free_by(write));
   EXPECT_EQ(times, 2);
   EXPECT_FALSE(std::filesystem::exists(dir_.path() / "reserve"));
-}
-
-TEST(FairShare, ManyJobsOfOneOwnerDoNotKeepAnotherWaiting) {
-  jobs::FairShare share;
-  for (int k = 0; k < 1000; ++k) share.add("greedy");
-  std::string order;
-  for (int k = 0; k < 5; ++k) {
-    if (k == 2) {
-      share.add("modest");
-      share.add("modest");
-    }
-    const std::string owner = share.next();
-    order += owner.front();
-    share.start(owner);
-    share.end(owner, 1.0);
-  }
-  EXPECT_EQ(order, "gggmg") << "who comes later starts level, and then takes turns";
-  EXPECT_EQ(share.waiting(), 997);
-}
-
-TEST(FairShare, LongJobsCountForMoreThanShortOnes) {
-  jobs::FairShare share;
-  for (int k = 0; k < 100; ++k) {
-    share.add("long");
-    share.add("short");
-  }
-  double seconds[2] = {};
-  for (int k = 0; k < 60; ++k) {
-    const std::string owner = share.next();
-    const double took = owner == "long" ? 5 : 1;
-    seconds[owner == "long"] += took;
-    share.start(owner);
-    share.end(owner, took);
-  }
-  EXPECT_NEAR(seconds[0], seconds[1], 5);
-}
-
-TEST(FairShare, RunningJobsCountBeforeTheyEnd) {
-  jobs::FairShare share;
-  for (int k = 0; k < 3; ++k) {
-    share.add("a");
-    share.add("b");
-  }
-  share.start(share.next());
-  EXPECT_EQ(share.next(), "b");
-  share.start(share.next());
-  EXPECT_EQ(share.waiting(), 4);
 }
 
 }  // namespace

@@ -39,10 +39,10 @@ class StoreOfMeshes : public testing::Test {
     blobs_.begin_upload(id);
     EXPECT_TRUE(blobs_.share_document(mesh, id));
     blobs_.keep_upload(id, id);
-    jobs_.finish(*jobs_.take("", 5000), {.state = api::JobState::succeeded,
-                                         .result_format = "glb",
-                                         .problem = {},
-                                         .finished_ms = finished_ms});
+    jobs_.finish(*jobs_.take(""), {.state = api::JobState::succeeded,
+                                   .result_format = "glb",
+                                   .problem = {},
+                                   .finished_ms = finished_ms});
   }
   bool is_there(const std::string& id) const {
     return std::filesystem::exists(blobs_.path(id, kDocumentFile));

@@ -18,8 +18,6 @@ namespace {
 
 using api::JobState;
 
-constexpr std::int64_t kLeaseMs = 5000;
-
 JobRecord some_job(const std::string& id) {
   JobRecord job;
   job.id = id;
@@ -52,7 +50,7 @@ class Store : public testing::Test {
 };
 
 TEST_F(Store, KeepsEveryFieldOverAReopening) {
-  const std::int64_t seq = store_->insert(some_job("j_1"));
+  const std::int64_t seq = store_->insert(some_job("j_1")).seq;
   reopen();
   const std::optional<JobRecord> job = store_->find("j_1");
   ASSERT_TRUE(job);
@@ -74,28 +72,32 @@ TEST_F(Store, FindsNothingThatWasNotInserted) { EXPECT_FALSE(store_->find("j_non
 TEST_F(Store, SpendsATicketOnceAndRemembersItBeyondItsJob) {
   const SpentTicket ticket{.id = "0af7", .until_ms = 5000};
   EXPECT_FALSE(store_->is_spent("0af7"));
-  ASSERT_TRUE(store_->insert(some_job("j_1"), ticket, 1000));
-  EXPECT_FALSE(store_->insert(some_job("j_2"), ticket, 1000));
+  using enum Insertion::Outcome;
+  const auto insert = [&](const char* id, const SpentTicket& with, std::int64_t now_ms) {
+    return store_->insert(some_job(id), {}, with, now_ms).outcome;
+  };
+  ASSERT_EQ(insert("j_1", ticket, 1000), added);
+  EXPECT_EQ(insert("j_2", ticket, 1000), ticket_spent);
   EXPECT_FALSE(store_->find("j_2")) << "neither or both";
   store_->remove("j_1");
   reopen();
   EXPECT_TRUE(store_->is_spent("0af7"));
   constexpr std::int64_t kDays = 24 * 3'600'000;
-  ASSERT_TRUE(store_->insert(some_job("j_3"), {.id = "0af8", .until_ms = 9000}, 6000));
+  ASSERT_EQ(insert("j_3", {.id = "0af8", .until_ms = 9000}, 6000), added);
   EXPECT_TRUE(store_->is_spent("0af7")) << "a day longer, as clocks may be set back";
-  ASSERT_TRUE(store_->insert(some_job("j_4"), {.id = "0af9", .until_ms = 2 * kDays}, 2 * kDays));
+  ASSERT_EQ(insert("j_4", {.id = "0af9", .until_ms = 2 * kDays}, 2 * kDays), added);
   EXPECT_FALSE(store_->is_spent("0af7"));
 }
 
 TEST_F(Store, TakesTheOldestFirstAndCountsTheAttempt) {
   store_->insert(some_job("j_1"));
   store_->insert(some_job("j_2"));
-  EXPECT_EQ(store_->take("", kLeaseMs)->id, "j_1");
-  const std::optional<JobRecord> second = store_->take("", kLeaseMs);
+  EXPECT_EQ(store_->take("")->id, "j_1");
+  const std::optional<JobRecord> second = store_->take("");
   EXPECT_EQ(second->id, "j_2");
   EXPECT_EQ(second->attempt, 1);
   EXPECT_EQ(second->state, JobState::running);
-  EXPECT_FALSE(store_->take("", kLeaseMs));
+  EXPECT_FALSE(store_->take(""));
 }
 
 TEST_F(Store, TakesTheMostUrgentOfAnOwnersOwnJobs) {
@@ -107,21 +109,10 @@ TEST_F(Store, TakesTheMostUrgentOfAnOwnersOwnJobs) {
   other.owner = "k_b";
   other.urgency = 0;
   store_->insert(other);
-  EXPECT_EQ(store_->take("", kLeaseMs)->id, "j_2");
-  EXPECT_EQ(store_->take("", kLeaseMs)->id, "j_1");
-  EXPECT_FALSE(store_->take("", kLeaseMs));
-  EXPECT_EQ(store_->take("k_b", kLeaseMs)->id, "j_3");
-}
-
-TEST_F(Store, ARunningJobLapsesWhenItsLeaseEndsUnlessItIsRenewed) {
-  store_->insert(some_job("j_1"));
-  store_->take("", 1000);
-  EXPECT_TRUE(store_->lapsed(1000).empty());
-  ASSERT_EQ(store_->lapsed(1001).size(), 1U);
-  store_->renew("j_1", 2000);
-  EXPECT_TRUE(store_->lapsed(2000).empty());
-  store_->finish(*store_->find("j_1"), succeeded());
-  EXPECT_TRUE(store_->lapsed(9000).empty());
+  EXPECT_EQ(store_->take("")->id, "j_2");
+  EXPECT_EQ(store_->take("")->id, "j_1");
+  EXPECT_FALSE(store_->take(""));
+  EXPECT_EQ(store_->take("k_b")->id, "j_3");
 }
 
 TEST_F(Store, ARequestsNameIsItsOwnersAlone) {
@@ -132,9 +123,10 @@ TEST_F(Store, ARequestsNameIsItsOwnersAlone) {
   EXPECT_EQ(store_->find_request("k_a", "order 7")->id, "j_1");
   EXPECT_FALSE(store_->find_request("k_b", "order 7"));
   job.id = "j_2";
-  EXPECT_THROW(store_->insert(job), Error);
+  EXPECT_EQ(store_->insert(job).outcome, Insertion::Outcome::known);
+  EXPECT_FALSE(store_->find("j_2"));
   job.owner = "k_b";
-  EXPECT_NO_THROW(store_->insert(job));
+  EXPECT_EQ(store_->insert(job).outcome, Insertion::Outcome::added);
 }
 
 TEST_F(Store, AnEqualQuestionIsFoundWhileItsAnswerIsKept) {
@@ -142,7 +134,7 @@ TEST_F(Store, AnEqualQuestionIsFoundWhileItsAnswerIsKept) {
   job.content_key = "c";
   store_->insert(job);
   EXPECT_FALSE(store_->find_same("", "c"));
-  store_->finish(*store_->take("", kLeaseMs), succeeded());
+  store_->finish(*store_->take(""), succeeded());
   EXPECT_EQ(store_->find_same("", "c")->id, "j_1");
   EXPECT_FALSE(store_->find_same("k_a", "c"));
   store_->set_expired("j_1");
@@ -173,7 +165,7 @@ TEST_F(Store, CountsWhatAnOwnerHas) {
   EXPECT_EQ(store_->usage("").stored_bytes, 7);
   JobOutcome outcome = succeeded();
   outcome.stored_bytes = 50;
-  store_->finish(*store_->take("", kLeaseMs), outcome);
+  store_->finish(*store_->take(""), outcome);
   EXPECT_EQ(store_->usage("").live_jobs, 0);
   EXPECT_EQ(store_->usage("").stored_bytes, 50);
   store_->set_expired("j_1");
@@ -183,9 +175,10 @@ TEST_F(Store, CountsWhatAnOwnerHas) {
 
 TEST_F(Store, ALateWorkerCannotEndAnotherAttempt) {
   store_->insert(some_job("j_1"));
-  const JobRecord first = *store_->take("", kLeaseMs);
-  store_->requeue("j_1", true);
-  const JobRecord second = *store_->take("", kLeaseMs);
+  const JobRecord first = *store_->take("");
+  EXPECT_TRUE(store_->requeue(first, true));
+  EXPECT_FALSE(store_->requeue(first, true));
+  const JobRecord second = *store_->take("");
   EXPECT_FALSE(store_->finish(first, succeeded()));
   EXPECT_TRUE(store_->finish(second, succeeded()));
   EXPECT_FALSE(store_->finish(second, succeeded()));
@@ -199,7 +192,7 @@ TEST_F(Store, ALateWorkerCannotEndAnotherAttempt) {
 TEST_F(Store, AJobThatIsTakenIsNotCancelledAsQueued) {
   store_->insert(some_job("j_1"));
   const JobRecord queued = *store_->find("j_1");
-  store_->take("", kLeaseMs);
+  store_->take("");
   JobOutcome outcome = succeeded();
   outcome.state = JobState::cancelled;
   EXPECT_FALSE(store_->finish(queued, outcome));
@@ -208,7 +201,7 @@ TEST_F(Store, AJobThatIsTakenIsNotCancelledAsQueued) {
 
 TEST_F(Store, RemembersARequestToCancelOverAReopening) {
   store_->insert(some_job("j_1"));
-  store_->take("", kLeaseMs);
+  store_->take("");
   store_->request_cancel("j_1");
   reopen();
   EXPECT_TRUE(store_->find("j_1")->cancel_requested);
@@ -233,9 +226,9 @@ TEST_F(Store, FilesExpireFirstAndTheJobAfterAsLongAgain) {
   store_->insert(some_job("j_1"));
   blobs.begin_upload("j_1");
   blobs.keep_upload("j_1", "j_1");
-  store_->finish(*store_->take("", kLeaseMs), succeeded(1000));
+  store_->finish(*store_->take(""), succeeded(1000));
   const auto file = blobs.path("j_1", kReportFile);
-  blobs.write_unsealed("j_1", kReportFile, "{}");
+  blobs.write_unsealed("j_1", 1, kReportFile, "{}");
 
   sweep(*store_, blobs, 10'999, std::chrono::seconds(10));
   EXPECT_TRUE(std::filesystem::exists(file));
@@ -252,7 +245,7 @@ TEST_F(Store, WhatACrashLeavesBehindIsSwept) {
   for (const char* job : {"j_known", "j_orphan"}) {
     blobs.begin_upload(job);
     blobs.keep_upload(job, job);
-    blobs.write_unsealed(job, kDocumentFile, "v");
+    blobs.write_unsealed(job, 1, kDocumentFile, "v");
   }
   blobs.begin_upload("j_upload");
   const auto part = blobs.path("j_known", "result.glb.part");

@@ -134,13 +134,13 @@ TEST_F(Synchronising, ResultsAreOnTheDiskWhenTheyAreSealed) {
   BlobStore blobs(dir_.path());
   write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
   blobs.keep_upload("u", "j_1");
-  blobs.write_unsealed("j_1", kReportFile, "{}");
+  blobs.write_unsealed("j_1", 1, kReportFile, "{}");
   for (const char* format : {"gltf", "obj", "json", "stl", "ply"})  // more than are synced at once
-    blobs.write_unsealed("j_1", result_file(format), format);
-  blobs.write_unsealed("j_1", result_file("glb"), std::string(3'000'000, 'x'));
+    blobs.write_unsealed("j_1", 1, result_file(format), format);
+  blobs.write_unsealed("j_1", 1, result_file("glb"), std::string(3'000'000, 'x'));
   EXPECT_FALSE(is_synced(blobs.path("j_1", kReportFile)));  // or the next line tells nothing
   is_digests_turn = true;  // who does not wait for the others gives it its name too early
-  blobs.seal("j_1");
+  blobs.seal("j_1", 1);
   expect_synced(blobs.path("j_1", ""));
   EXPECT_EQ(read_digests(blobs.path("j_1", "")).size(), 8U);
 }

@@ -116,6 +116,23 @@ TEST(Schema, JobsOfVersionTenHaveNoName) {
   EXPECT_EQ(old.text(0), "old");
 }
 
+TEST(Schema, JobsOfVersionTwelveHaveTheirTurns) {
+  TempDir dir;
+  {
+    SqliteDatabase database(dir.path() / "jobs.sqlite");
+    migrate(database, 12);
+    for (const char* state : {"queued", "queued", "running", "failed"})
+      database.run(
+          std::string("INSERT INTO jobs (id, state, created_ms, synchronous, options, "
+                      "notes, sha256, bytes, buffers, owner) VALUES (hex(randomblob(9)), '") +
+          state + "', 1, 0, '{}', '[]', '', 0, '[]', 'k_a')");
+  }
+  JobStore store(dir.path() / "jobs.sqlite");
+  EXPECT_EQ(store.counts().waiting, 2);
+  EXPECT_EQ(store.counts().running, 1);
+  EXPECT_EQ(store.next_owner(1000), "k_a");
+}
+
 TEST_F(Upgrade, OfAJobWithoutItsMapTheResultIsThere) {
   start();
   const std::string id = submit();

@@ -164,7 +164,7 @@ TEST_F(RoomOfAnUpload, CanBeMadeOfWhatNoLiveJobNeeds) {
   meshes.put({.id = "m_2", .owner = "his", .sha256 = "ab", .media_type = "", .stored_bytes = 2});
   add("j_1", 70);
   EXPECT_EQ(store_.evictable_bytes(), 2) << "j_1 waits, and is about m_1";
-  store_.finish(*store_.take("his", 1), {.result_format = "", .problem = {}, .stored_bytes = 80});
+  store_.finish(*store_.take("his"), {.result_format = "", .problem = {}, .stored_bytes = 80});
   EXPECT_EQ(store_.evictable_bytes(), 87);
   store_.set_expired("j_1");
   EXPECT_EQ(store_.evictable_bytes(), 7);

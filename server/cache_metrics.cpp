@@ -1,0 +1,27 @@
+#include "server/cache_metrics.hpp"
+
+#include <string_view>
+
+namespace unwrapd::server {
+
+void tell_caches(Metrics& metrics, const work::SolverCache& solver, const MadeFiles& files) {
+  const auto tell_asked = [&](std::string_view cache, auto hits, auto misses) {
+    metrics.tell(Metric::cache_requests, {{"cache", cache}, {"outcome", "hit"}}, hits);
+    metrics.tell(Metric::cache_requests, {{"cache", cache}, {"outcome", "miss"}}, misses);
+  };
+  const auto tell_files = [&](std::string_view cache, const FileCounts* of) {
+    tell_asked(
+        cache, [of] { return of->hits.load(); }, [of] { return of->misses.load(); });
+    metrics.tell(Metric::made_bytes, {{"cache", cache}}, [of] { return of->bytes.load(); });
+  };
+  tell_asked(
+      "solver", [&solver] { return solver.counters().hits; },
+      [&solver] { return solver.counters().misses; });
+  metrics.tell(Metric::cache_bytes, {{"cache", "solver"}},
+               [&solver] { return solver.counters().bytes; });
+  tell_files("result", files.results);
+  tell_files("picture", files.pictures);
+  tell_files("analysis", files.analyses);
+}
+
+}  // namespace unwrapd::server

@@ -1,0 +1,179 @@
+#include "server/jobs/event_exchange.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "server/base/clock.hpp"
+#include "server/base/errors.hpp"
+
+namespace unwrapd::server::jobs {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kMostWaiting = 20'000;  // events, while the database is away
+constexpr std::size_t kMostAtOnce = 500;
+constexpr auto kPauseBetweenWrites = 20ms;
+constexpr auto kPauseBetweenSearches = 1s;
+constexpr auto kPauseBetweenForgetting = 30s;
+constexpr auto kPauseAfterLoss = 500ms;
+constexpr std::int64_t kKeptAfterEndMs = 60'000;
+constexpr std::size_t kMostIdsInHint = 100;  // a hint has room for 8000 bytes
+
+}  // namespace
+
+EventExchange::EventExchange(store::PostgresAddress address, EventFeed& events, Hearing hearing,
+                             const Log& log)
+    : address_(std::move(address)),
+      events_(events),
+      hearing_(std::move(hearing)),
+      log_(log),
+      writing_([this](const std::stop_token& stop) {
+        keep_trying(stop, "sharing events", [&] { write(stop); });
+      }),
+      listening_([this](const std::stop_token& stop) {
+        keep_trying(stop, "following other nodes", [&] { listen(stop); });
+      }) {}
+
+EventExchange::~EventExchange() {
+  writing_.request_stop();
+  listening_.request_stop();
+  bell_.ring();
+}
+
+void EventExchange::share(store::EventRow event) {
+  {
+    const std::lock_guard lock(mutex_);
+    to_write_.push_back(std::move(event));
+    if (to_write_.size() > kMostWaiting) to_write_.pop_front();
+  }
+  changed_.notify_all();
+}
+
+void EventExchange::hint(std::string_view what) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::ranges::find(to_hint_, what) == to_hint_.end()) to_hint_.emplace_back(what);
+  }
+  changed_.notify_all();
+}
+
+/// Works with a session of its own, and with another one when that is lost.
+void EventExchange::keep_trying(const std::stop_token& stop, const std::string& what,
+                                const std::function<void()>& work) {
+  while (!stop.stop_requested()) {
+    std::string reason;
+    try {
+      work();
+    } catch (const store::LinkLost& lost) {
+      reason = lost.reason;
+    } catch (const std::exception& error) {
+      reason = reason_of(error);
+    }
+    if (stop.stop_requested()) return;
+    log_.warning(what + " is tried again", {{"reason", reason}});
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, kPauseAfterLoss, [] { return false; });
+  }
+}
+
+/// Of an end of the server, the last events are written.
+void EventExchange::write(const std::stop_token& stop) {
+  store::EventChannel channel(address_);
+  while (true) {
+    std::vector<store::EventRow> events;
+    std::vector<std::string> hints;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, stop, [&] { return !to_write_.empty() || !to_hint_.empty(); });
+      if (to_write_.empty() && to_hint_.empty()) return;
+      const std::size_t count = std::min(to_write_.size(), kMostAtOnce);
+      events.assign(to_write_.begin(), to_write_.begin() + static_cast<std::ptrdiff_t>(count));
+      hints = std::exchange(to_hint_, {});
+    }
+    for (const std::string& hint : hints) channel.hint(hint);
+    if (!events.empty()) {
+      channel.append(events);
+      std::set<std::string> jobs;
+      for (const store::EventRow& event : events) jobs.insert(event.job);
+      {
+        const std::lock_guard lock(mutex_);
+        for (std::size_t k = 0; k < events.size() && !to_write_.empty(); ++k) to_write_.pop_front();
+      }
+      std::string ids;
+      if (jobs.size() <= kMostIdsInHint)
+        for (const std::string& job : jobs) ids += " " + job;
+      channel.hint(std::string(kEvents) + ids);
+    }
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, kPauseBetweenWrites, [] { return false; });
+  }
+}
+
+void EventExchange::listen(const std::stop_token& stop) {
+  store::EventChannel channel(address_);
+  channel.listen();
+  Clock::time_point next_search{}, next_forgetting = Clock::now() + kPauseBetweenForgetting;
+  while (!stop.stop_requested()) {
+    if (Clock::now() >= next_search) {
+      look_around(channel);
+      next_search = Clock::now() + kPauseBetweenSearches;
+    }
+    if (Clock::now() >= next_forgetting) {
+      channel.forget_before(now_ms() - kKeptAfterEndMs);
+      next_forgetting = Clock::now() + kPauseBetweenForgetting;
+    }
+    std::vector<std::string> with_news;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(next_search - Clock::now());
+    const std::vector<std::string> hints = channel.wait(std::max(left, 0ms), bell_);
+    for (const std::string& hint : hints) hear(hint, with_news);
+    Feeds feeds = events_.following();
+    if (!hints.empty())  // else somebody rang, or it is time to look around
+      std::erase_if(feeds, [&](const auto& followed) {
+        return std::ranges::find(with_news, followed.first) == with_news.end() &&
+               followed.second->newest() > 0;
+      });
+    fetch(channel, feeds);
+  }
+}
+
+void EventExchange::hear(const std::string& hint, std::vector<std::string>& with_news) {
+  if (hint == kJobsWait) return hearing_.jobs_wait();
+  if (hint == kCancelled) return hearing_.jobs_cancelled();
+  if (!hint.starts_with(kEvents)) return;
+  std::istringstream ids(hint.substr(kEvents.size()));
+  for (std::string id; ids >> id;) with_news.push_back(id);
+}
+
+void EventExchange::fetch(store::EventChannel& channel, const Feeds& feeds) {
+  for (std::size_t begin = 0; begin < feeds.size(); begin += kMostAtOnce) {
+    const std::size_t end = std::min(begin + kMostAtOnce, feeds.size());
+    std::map<std::string, std::shared_ptr<JobFeed>> by_job(
+        feeds.begin() + static_cast<std::ptrdiff_t>(begin),
+        feeds.begin() + static_cast<std::ptrdiff_t>(end));
+    std::vector<store::EventChannel::JobAndSeq> seen;
+    for (const auto& [job, feed] : by_job) seen.emplace_back(job, feed->newest());
+    for (const store::EventRow& event : channel.after(seen)) {
+      by_job.at(event.job)->append(event);
+      if (event.is_last) events_.retire(event.job);
+    }
+    for (const auto& [job, feed] : by_job) feed->set_caught_up();
+  }
+}
+
+/// Finds what no hint told of.
+void EventExchange::look_around(store::EventChannel& channel) {
+  hearing_.jobs_wait();
+  hearing_.jobs_cancelled();
+  const Feeds feeds = events_.following();
+  fetch(channel, feeds);
+  std::vector<store::EventChannel::JobAndSeq> followed;
+  for (const auto& [job, feed] : events_.following()) followed.emplace_back(job, 0);
+  if (followed.empty()) return;
+  for (const std::string& job : channel.ended(followed)) hearing_.job_ended(job);
+}
+
+}  // namespace unwrapd::server::jobs

@@ -1,0 +1,75 @@
+#pragma once
+// The events of jobs on other nodes of the same store. One thread writes the events of this node's
+// jobs, a few at a time, and sends hints; another waits for hints, and fills the feeds of jobs that
+// run elsewhere. Whatever a hint says is also looked for once a second, so that a lost hint costs
+// time alone. While the database is away, events wait; of too many, the oldest are given up, which
+// readers see as a gap.
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "server/base/log.hpp"
+#include "server/base/wakeup.hpp"
+#include "server/jobs/event_feed.hpp"
+#include "server/store/event_channel.hpp"
+
+namespace unwrapd::server::jobs {
+
+/// What a node does when it hears, or finds by looking, that others did something.
+struct Hearing {
+  std::function<void()> jobs_wait;
+  std::function<void()> jobs_cancelled;  ///< of this node
+  std::function<void(const std::string& job)> job_ended;
+};
+
+/// Thread-safe. The feeds and what hears must outlive it.
+class EventExchange {
+ public:
+  EventExchange(store::PostgresAddress address, EventFeed& events, Hearing hearing, const Log& log);
+  ~EventExchange();
+
+  /// Writes an event for other nodes.
+  void share(store::EventRow event);
+  /// Tells other nodes that jobs wait, or that one was cancelled.
+  void tell_jobs_wait() { hint(kJobsWait); }
+  void tell_cancelled() { hint(kCancelled); }
+  /// A job is followed from now on: what there is of it is fetched at once.
+  void fetch_now() { bell_.ring(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Feeds = std::vector<std::pair<std::string, std::shared_ptr<JobFeed>>>;
+
+  static constexpr std::string_view kJobsWait = "wait";
+  static constexpr std::string_view kCancelled = "cancel";
+  static constexpr std::string_view kEvents = "events ";
+
+  void hint(std::string_view what);
+  void keep_trying(const std::stop_token& stop, const std::string& what,
+                   const std::function<void()>& work);
+  void write(const std::stop_token& stop);
+  void listen(const std::stop_token& stop);
+  void hear(const std::string& hint, std::vector<std::string>& with_news);
+  void fetch(store::EventChannel& channel, const Feeds& feeds);
+  void look_around(store::EventChannel& channel);
+
+  const store::PostgresAddress address_;
+  EventFeed& events_;
+  const Hearing hearing_;
+  const Log& log_;
+  Wakeup bell_;
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::deque<store::EventRow> to_write_;
+  std::vector<std::string> to_hint_;
+  std::jthread writing_, listening_;  // last: they use the others
+};
+
+}  // namespace unwrapd::server::jobs

@@ -1,0 +1,36 @@
+#pragma once
+// What a node needs where others work on the same store: who it is, where the files of all are, and
+// word of what the others do.
+
+#include <memory>
+
+#include "server/base/log.hpp"
+#include "server/config/config.hpp"
+#include "server/jobs/event_exchange.hpp"
+#include "server/jobs/job_queue.hpp"
+#include "server/store/blob_store.hpp"
+#include "server/store/job_store.hpp"
+
+namespace unwrapd::server {
+
+/// This node, with an id that lasts as long as its data directory.
+store::Node node_of(const config::Config& config);
+/// The database, as this node opens it to work on it.
+store::PostgresAddress database_of(const config::Config& config, const store::Node& node);
+/// The directory of blobs/, incoming/ and lost/.
+const std::filesystem::path& blobs_root(const config::Config& config);
+/// The secret that signs links and webhooks. The tables must be there.
+std::string secret_of(const config::Config& config, const store::Node& node);
+
+/// Exchanges news with other nodes while it exists; there are none where nothing is shared.
+class OtherNodes {
+ public:
+  OtherNodes(const store::PostgresAddress& database, store::JobStore& store,
+             store::BlobStore& blobs, jobs::EventFeed& events, jobs::JobQueue& queue,
+             const Log& log);
+
+ private:
+  std::unique_ptr<jobs::EventExchange> exchange_;
+};
+
+}  // namespace unwrapd::server

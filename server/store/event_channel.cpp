@@ -1,0 +1,99 @@
+#include "server/store/event_channel.hpp"
+
+#include <poll.h>
+
+#include <array>
+
+#include "api/json.hpp"
+
+namespace unwrapd::server::store {
+namespace {
+
+constexpr const char* kUnhurried =
+    "SET default_transaction_read_only = off; SET synchronous_commit = off";
+constexpr const char* kAppend =
+    "INSERT INTO events (job, seq, last, frame, progress)"
+    " SELECT job, seq, last, frame, progress FROM json_to_recordset(CAST(? AS json))"
+    " AS new (job text, seq bigint, last bigint, frame text, progress text)"
+    " ON CONFLICT (job, seq) DO NOTHING";
+constexpr const char* kAfter =
+    "SELECT events.job, events.seq, last, frame, progress"
+    " FROM json_to_recordset(CAST(? AS json)) AS seen (job text, seq bigint)"
+    " JOIN events ON events.job = seen.job AND events.seq > seen.seq ORDER BY 1, 2";
+constexpr const char* kEnded =
+    "SELECT seen.job FROM json_to_recordset(CAST(? AS json)) AS seen (job text, seq bigint)"
+    " LEFT JOIN jobs ON jobs.id = seen.job"
+    " WHERE jobs.id IS NULL OR jobs.state NOT IN ('queued', 'running')";
+constexpr const char* kForget =
+    "DELETE FROM events WHERE job NOT IN (SELECT id FROM jobs"
+    " WHERE state IN ('queued', 'running') OR finished_ms >= ?)";
+
+std::string as_json_text(const api::Json& json) {
+  return json.dump(-1, ' ', false, api::Json::error_handler_t::replace);
+}
+
+std::string as_json_text(const std::vector<EventChannel::JobAndSeq>& jobs) {
+  api::Json all = api::Json::array();
+  for (const auto& [job, seq] : jobs) all.push_back({{"job", job}, {"seq", seq}});
+  return as_json_text(all);
+}
+
+}  // namespace
+
+EventChannel::EventChannel(const PostgresAddress& address) : link_(address.url) {
+  link_.run(kUnhurried);
+  channel_ = link_.run("SELECT 'unwrapd_' || md5(current_schema())").text(0, 0);
+}
+
+void EventChannel::append(const std::vector<EventRow>& events) {
+  api::Json all = api::Json::array();
+  for (const EventRow& event : events)
+    all.push_back({{"job", event.job},
+                   {"seq", event.seq},
+                   {"last", int{event.is_last}},
+                   {"frame", event.frame},
+                   {"progress", event.progress}});
+  link_.run(kAppend, {{.text = as_json_text(all), .type = kTextType}});
+}
+
+std::vector<EventRow> EventChannel::after(const std::vector<JobAndSeq>& jobs) {
+  const PostgresResult rows = link_.run(kAfter, {{.text = as_json_text(jobs), .type = kTextType}});
+  std::vector<EventRow> events;
+  for (int row = 0; row < rows.rows(); ++row)
+    events.push_back({.job = rows.text(row, 0),
+                      .seq = number_in(rows.text(row, 1)),
+                      .is_last = number_in(rows.text(row, 2)) != 0,
+                      .frame = rows.text(row, 3),
+                      .progress = rows.text(row, 4)});
+  return events;
+}
+
+std::vector<std::string> EventChannel::ended(const std::vector<JobAndSeq>& jobs) {
+  const PostgresResult rows = link_.run(kEnded, {{.text = as_json_text(jobs), .type = kTextType}});
+  std::vector<std::string> ids;
+  for (int row = 0; row < rows.rows(); ++row) ids.push_back(rows.text(row, 0));
+  return ids;
+}
+
+void EventChannel::forget_before(std::int64_t finished_ms) {
+  link_.run(kForget, {{.text = std::to_string(finished_ms), .type = kNumberType}});
+}
+
+void EventChannel::hint(std::string_view text) {
+  link_.run("SELECT pg_notify(?, ?)", {{.text = channel_, .type = kTextType},
+                                       {.text = std::string(text), .type = kTextType}});
+}
+
+void EventChannel::listen() { link_.run("LISTEN " + channel_); }
+
+std::vector<std::string> EventChannel::wait(std::chrono::milliseconds time, const Wakeup& bell) {
+  std::vector<std::string> hints = link_.notifications();  // of those that came with answers
+  if (!hints.empty()) return hints;
+  std::array<pollfd, 2> waited = {{{.fd = link_.socket(), .events = POLLIN, .revents = 0},
+                                   {.fd = bell.descriptor(), .events = POLLIN, .revents = 0}}};
+  ::poll(waited.data(), waited.size(), static_cast<int>(time.count()));
+  if (waited[1].revents != 0) bell.answer();
+  return link_.notifications();
+}
+
+}  // namespace unwrapd::server::store
