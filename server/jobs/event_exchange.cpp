@@ -80,6 +80,18 @@ void EventExchange::keep_trying(const std::stop_token& stop, const std::string& 
   }
 }
 
+/// Without hints, all is found by looking.
+void EventExchange::send(store::EventChannel& channel, std::string_view hint) {
+  try {
+    channel.hint(hint);
+    can_hint_ = true;
+  } catch (const Error& error) {
+    if (std::exchange(can_hint_, false))
+      log_.warning("other nodes get no hints, and look once a second",
+                   {{"reason", reason_of(error)}});
+  }
+}
+
 /// Of an end of the server, the last events are written.
 void EventExchange::write(const std::stop_token& stop) {
   store::EventChannel channel(address_);
@@ -94,7 +106,7 @@ void EventExchange::write(const std::stop_token& stop) {
       events.assign(to_write_.begin(), to_write_.begin() + static_cast<std::ptrdiff_t>(count));
       hints = std::exchange(to_hint_, {});
     }
-    for (const std::string& hint : hints) channel.hint(hint);
+    for (const std::string& hint : hints) send(channel, hint);
     if (!events.empty()) {
       channel.append(events);
       std::set<std::string> jobs;
@@ -106,7 +118,7 @@ void EventExchange::write(const std::stop_token& stop) {
       std::string ids;
       if (jobs.size() <= kMostIdsInHint)
         for (const std::string& job : jobs) ids += " " + job;
-      channel.hint(std::string(kEvents) + ids);
+      send(channel, std::string(kEvents) + ids);
     }
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, kPauseBetweenWrites, [] { return false; });

@@ -55,6 +55,7 @@ class EventExchange {
   void keep_trying(const std::stop_token& stop, const std::string& what,
                    const std::function<void()>& work);
   void write(const std::stop_token& stop);
+  void send(store::EventChannel& channel, std::string_view hint);
   void listen(const std::stop_token& stop);
   void hear(const std::string& hint, std::vector<std::string>& with_news);
   void fetch(store::EventChannel& channel, const Feeds& feeds);
@@ -69,6 +70,7 @@ class EventExchange {
   std::condition_variable_any changed_;
   std::deque<store::EventRow> to_write_;
   std::vector<std::string> to_hint_;
+  bool can_hint_ = true;              // as far as is known
   std::jthread writing_, listening_;  // last: they use the others
 };
 

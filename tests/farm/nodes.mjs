@@ -1,0 +1,100 @@
+// Several nodes on one PostgreSQL and one directory, as tests start, kill and ask them.
+import { createHash } from "node:crypto";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { setTimeout as sleep } from "node:timers/promises";
+
+import { isInstalled, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
+import { dataDirectory, grid, Server } from "../fault/server.mjs";
+
+export const options = { skip: isInstalled() ? false : NOT_INSTALLED };
+export const LEASE_SECONDS = 3; // the shortest that there is
+
+/** Counts each end of a job that is committed. */
+const COUNT_ENDS = `
+  CREATE TABLE ends (id TEXT);
+  CREATE FUNCTION note_end() RETURNS trigger LANGUAGE plpgsql AS
+    $$ BEGIN INSERT INTO ends VALUES (NEW.id); RETURN NULL; END $$;
+  CREATE TRIGGER ends AFTER UPDATE OF state ON jobs FOR EACH ROW
+    WHEN (NEW.state IN ('succeeded', 'failed', 'cancelled'))
+    EXECUTE FUNCTION note_end();`;
+
+export class Farm {
+  constructor(t) {
+    this.postgres = new Postgres({ sync: false });
+    t.after(() => this.postgres.remove());
+    this.folder = dataDirectory(t);
+    this.shared = join(this.folder, "shared");
+    this.url = this.postgres.url();
+    this.nodes = new Map();
+    t.after(() => this.nodes.forEach((node) => node.process.kill("SIGKILL")));
+  }
+
+  /** Starts a node, or starts it again; port: that of the database, or of a proxy before it. */
+  async start(name, workers, ...flags) {
+    const data = join(this.folder, name);
+    mkdirSync(data, { recursive: true });
+    const usual = ["--database", this.url, "--blobs", `dir:${this.shared}`, "--workers", String(workers)];
+    const lease = ["--lease-seconds", String(LEASE_SECONDS), "--log-level", "warning"];
+    const node = await Server.start(data, ...usual, ...lease, ...flags);
+    node.name = name;
+    node.id = readFileSync(join(data, "node"), "utf8");
+    this.nodes.set(name, node);
+    return node;
+  }
+
+  countEnds() {
+    this.postgres.query(COUNT_ENDS);
+  }
+
+  query(sql) {
+    return this.postgres.query(sql);
+  }
+
+  /** The node that runs a job now. */
+  nodeOf(job) {
+    const id = this.query(`SELECT node FROM jobs WHERE id = '${job}' AND state = 'running'`);
+    return [...this.nodes.values()].find((node) => node.id === id);
+  }
+
+  addKey(...flags) {
+    const args = ["keys", "add", "--data", this.folder, "--database", this.url, ...flags];
+    return execFileSync(process.env.UNWRAPD, args, { encoding: "utf8" }).trim().split("\n").at(-1);
+  }
+
+  folders(what) {
+    return readdirSync(join(this.shared, what)).sort();
+  }
+
+  /** Waits until no job waits or runs. */
+  async allEnd(seconds = 240) {
+    for (const giveUp = Date.now() + seconds * 1000; ; await sleep(100)) {
+      const left = this.query("SELECT COUNT(*) FROM jobs WHERE state IN ('queued', 'running')");
+      if (left === "0") return;
+      if (Date.now() > giveUp) throw new Error(`${left} jobs never end`);
+    }
+  }
+}
+
+export async function send(node, path, { size = 3, headers = {}, method = "POST", body = grid(size) } = {}) {
+  return fetch(node.url + path, { method, headers: { "Content-Type": "model/obj", ...headers }, body });
+}
+
+export async function sha256Of(answer) {
+  return createHash("sha256").update(Buffer.from(await answer.arrayBuffer())).digest("hex");
+}
+
+/** All events of a job from now on, with the milliseconds since `since` of the first and the last. */
+export async function watch(node, job, since = Date.now(), headers = {}) {
+  const answer = await fetch(`${node.url}/v1/jobs/${job}/events`, { headers });
+  let text = "";
+  let first;
+  for await (const piece of answer.body) {
+    first ??= Date.now() - since;
+    text += Buffer.from(piece);
+  }
+  const ids = [...text.matchAll(/^id: (\d+)$/gm)].map((found) => Number(found[1]));
+  const names = [...text.matchAll(/^event: (\w+)$/gm)].map((found) => found[1]);
+  return { first, last: Date.now() - since, ids, names };
+}
