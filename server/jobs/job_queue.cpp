@@ -127,7 +127,7 @@ store::JobRecord JobQueue::submit(Submission submission) {
     blobs_.drop_upload(submission.upload);
     return std::move(*known);
   }
-  blobs_.keep_upload(submission.upload, job.id, store::digests_of(job.input));
+  if (std::optional<store::JobRecord> known = keep_files(submission)) return std::move(*known);
   try {
     if (!enqueue(submission, submission.bypass_cache ? std::nullopt : find_answer(job))) {
       blobs_.remove(job.id);
@@ -142,12 +142,6 @@ store::JobRecord JobQueue::submit(Submission submission) {
   }
   log_.info("job queued", {{"job", job.id}, {"bytes", job.input.bytes}});
   return std::move(job);
-}
-
-/// Of a request that another node has been sent at the same time.
-store::JobRecord JobQueue::known_elsewhere(const store::JobRecord& job) {
-  if (std::optional<store::JobRecord> known = same_name(job)) return std::move(*known);
-  throw unknown_job();
 }
 
 /// False where another node has been sent the same request meanwhile.

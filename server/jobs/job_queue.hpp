@@ -169,6 +169,7 @@ class JobQueue {
   [[nodiscard]] std::optional<Answer> adopt_answer(const std::string& id,
                                                    const store::JobRecord& same);
   [[nodiscard]] bool enqueue(Submission& submission, const std::optional<Answer>& answer);
+  [[nodiscard]] std::optional<store::JobRecord> keep_files(const Submission& submission);
   [[nodiscard]] store::JobRecord known_elsewhere(const store::JobRecord& job);
   void await_news(std::unique_lock<std::mutex>& lock);
   [[nodiscard]] bool answer_from_store(const store::JobRecord& job, const Answer& answer);

@@ -45,8 +45,8 @@ fs::path BlobStore::work_folder(std::string_view job, int attempt) const {
   return is_shared_by_nodes() ? attempt_folder(job, attempt) : blobs_ / job;
 }
 
-/// Against other nodes that note digests; held while the pointer lives. nullptr where there are
-/// none.
+/// Keeps other nodes from noting digests of a job, or of all where none is named, while the pointer
+/// lives. nullptr where there are no other nodes.
 std::shared_ptr<void> BlobStore::lock_folder(std::string_view job) const {
   if (!is_shared_by_nodes()) return nullptr;
   const int folder = ::open((blobs_ / job).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -79,6 +79,10 @@ void BlobStore::publish(std::string_view job, int attempt) {
 
 void BlobStore::drop_attempt(std::string_view job, int attempt) noexcept {
   if (is_shared_by_nodes() && is_file_name(job)) left_.remove(attempt_folder(job, attempt));
+}
+
+bool BlobStore::is_idle(std::string_view job, std::chrono::seconds time) const {
+  return server::now_ms() - written_ms(blobs_ / job) > std::chrono::milliseconds(time).count();
 }
 
 /// Whether this may be what another node works on now.

@@ -49,6 +49,7 @@ BlobStore::BlobStore(const fs::path& data, const DiskLimits& limits, Sharing sha
       lost_(data, room_) {
   make_directories(incoming_);
   make_directories(blobs_);
+  const std::shared_ptr<void> locked = lock_folder({});
   note_first_version(blobs_, data / "digests-noted");
 }
 

@@ -13,6 +13,7 @@
 // What may be another node's present work is left alone by sweeps, and shared files count for each
 // of their holders.
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -140,6 +141,8 @@ class BlobStore {
   LostFolders& lost() { return lost_; }
   DiskBudget& room() { return room_; }
   [[nodiscard]] bool holds(std::string_view job) const;
+  /// Whether nothing was written to a job's folder for so long.
+  [[nodiscard]] bool is_idle(std::string_view job, std::chrono::seconds time) const;
 
   /// Removes what could not be removed before; returns how much that was.
   int remove_left() noexcept { return left_.retry(); }

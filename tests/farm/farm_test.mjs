@@ -172,6 +172,17 @@ test("what is promised once holds for all nodes together", options, async (t) =>
     assert.equal(farm.folders("blobs").length, 10);
   });
 
+  await t.test("a job whose id is chosen is made once", async () => {
+    for (let round = 0; round < 10; round++) {
+      const id = `j_${String(round).padStart(32, "a")}`;
+      const answers = await race(6, (node) =>
+        send(node, MADE_ONCE.replace("/jobs?", `/jobs/${id}?`), { method: "PUT", headers: as(all) }));
+      const told = await Promise.all(answers.map(async (answer) => [answer.status, (await answer.json()).id]));
+      for (const [status, known] of told) assert.ok(status === 503 || (status === 202 && known === id), `${status}`);
+      assert.ok(told.some(([status]) => status === 202));
+    }
+  });
+
   await t.test("a quota of jobs is exact", async () => {
     const key = farm.addKey("--name", "few", "--scopes", "submit,read", "--max-jobs", "5");
     const answers = await race(30, (node, k) =>
@@ -190,16 +201,16 @@ test("what is promised once holds for all nodes together", options, async (t) =>
     assert.equal(answers.filter((answer) => answer.status === 202).length, 1, String(answers.map((answer) => answer.status)));
   });
 
-  await t.test("a key with a thousand jobs does not keep another waiting", async () => {
+  await t.test("a key with many jobs keeps another waiting for one job at most", async () => {
     const [greedy, modest] = ["greedy", "modest"].map((name) => farm.addKey("--name", name, "--scopes", "submit,read"));
-    for (let k = 0; k < 100; k++)
-      await send(fronts[k % 2], MADE_ONCE, { body: `${grid(2)}# ${k}\n`, headers: as(greedy) });
+    const sent = (k) => ({ body: `${grid(2)}# ${k}\n` });
+    for (let k = 0; k < 100; k++) await send(fronts[k % 2], MADE_ONCE, { ...sent(k), headers: as(greedy) });
     await farm.start("worker", 1);
-    const { id } = await (await send(fronts[0], MADE_ONCE, { body: `${grid(2)}# modest\n`, headers: as(modest) })).json();
+    const { id } = await (await send(fronts[0], MADE_ONCE, { ...sent("modest"), headers: as(modest) })).json();
     await farm.allEnd();
-    const before = farm.query(`SELECT COUNT(*) FROM jobs WHERE finished_ms < (SELECT finished_ms FROM jobs WHERE id = '${id}')
-      AND owner = (SELECT id FROM keys WHERE name = 'greedy')`);
-    assert.ok(Number(before) < 50, `${before} of the other key's jobs came first`);
+    const between = farm.query(`SELECT COUNT(*) FROM jobs, (SELECT * FROM jobs WHERE id = '${id}') AS mine
+      WHERE jobs.started_ms BETWEEN mine.created_ms AND mine.started_ms AND jobs.id <> mine.id`);
+    assert.ok(Number(between) <= 1, `${between} jobs came first`);
   });
 });
 

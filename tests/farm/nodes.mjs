@@ -2,6 +2,7 @@
 import { createHash } from "node:crypto";
 import { execFileSync } from "node:child_process";
 import { mkdirSync, readdirSync, readFileSync } from "node:fs";
+import { connect, createServer } from "node:net";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 
@@ -31,11 +32,16 @@ export class Farm {
     t.after(() => this.nodes.forEach((node) => node.process.kill("SIGKILL")));
   }
 
-  /** Starts a node, or starts it again; port: that of the database, or of a proxy before it. */
+  /** Starts a node, or starts it again. */
   async start(name, workers, ...flags) {
+    return this.startBy(this.url, name, workers, ...flags);
+  }
+
+  /** The same, by another way to the database. */
+  async startBy(url, name, workers, ...flags) {
     const data = join(this.folder, name);
     mkdirSync(data, { recursive: true });
-    const usual = ["--database", this.url, "--blobs", `dir:${this.shared}`, "--workers", String(workers)];
+    const usual = ["--database", url, "--blobs", `dir:${this.shared}`, "--workers", String(workers)];
     const lease = ["--lease-seconds", String(LEASE_SECONDS), "--log-level", "warning"];
     const node = await Server.start(data, ...usual, ...lease, ...flags);
     node.name = name;
@@ -97,4 +103,32 @@ export async function watch(node, job, since = Date.now(), headers = {}) {
   const ids = [...text.matchAll(/^id: (\d+)$/gm)].map((found) => Number(found[1]));
   const names = [...text.matchAll(/^event: (\w+)$/gm)].map((found) => found[1]);
   return { first, last: Date.now() - since, ids, names };
+}
+
+/** A way to the database that can be cut: its sessions end, and none begins until it is mended. */
+export function cuttableLink(postgres, port) {
+  const open = new Set();
+  let isCut = false;
+  const server = createServer((client) => {
+    if (isCut) return client.destroy();
+    const upstream = connect(join(postgres.folder, ".s.PGSQL.5432"));
+    for (const socket of [client, upstream]) {
+      open.add(socket);
+      const end = () => [client, upstream].forEach((each) => open.delete(each.destroy()));
+      socket.on("error", end).on("close", end);
+    }
+    client.pipe(upstream).pipe(client);
+  });
+  server.listen(join(postgres.folder, `.s.PGSQL.${port}`));
+  return {
+    url: postgres.url(port),
+    cut() {
+      isCut = true;
+      open.forEach((socket) => socket.destroy());
+    },
+    mend() {
+      isCut = false;
+    },
+    close: () => server.close(),
+  };
 }

@@ -102,6 +102,17 @@ TEST_F(SharedDirectory, ManyNodesPublishAndNoteAtATime) {
   EXPECT_EQ(one_.read("j_1", kReportFile), "report");
 }
 
+TEST_F(SharedDirectory, ManyNodesBeginAtATime) {
+  std::vector<std::jthread> threads;
+  for (int k = 0; k < 16; ++k)
+    threads.emplace_back([this] {
+      for (int round = 0; round < 20; ++round) {
+        fs::remove(dir_.path() / "digests-noted");
+        EXPECT_NO_THROW(BlobStore(dir_.path(), {}, Sharing::by_nodes));
+      }
+    });
+}
+
 TEST_F(SharedDirectory, ASweepLeavesAloneWhatANodeMayWorkOn) {
   upload("j_new");
   upload("j_old");
