@@ -82,9 +82,13 @@ void serve(const config::Config& config, const Log& log, const work::WorkerFunct
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is then EFBIG, as no room is ENOSPC
   const sigset_t signals = block_end_signals();
   Service service(config, log, functions);
-  const std::string address = http::to_text({config.listen.host, service.port()});
-  const char* scheme = config.edge.tls_cert.empty() ? "http" : "https";
-  std::printf("unwrapd listening on %s://%s\n", scheme, address.c_str());
+  if (config.serves) {
+    const std::string address = http::to_text({config.listen.host, service.port()});
+    const char* scheme = config.edge.tls_cert.empty() ? "http" : "https";
+    std::printf("unwrapd listening on %s://%s\n", scheme, address.c_str());
+  } else {
+    std::printf("unwrapd works on the jobs of other nodes\n");
+  }
   if (service.admin_port()) {
     const std::string admin = http::to_text({config.admin->host, *service.admin_port()});
     std::printf("unwrapd admin port on http://%s\n", admin.c_str());

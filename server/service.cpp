@@ -73,8 +73,8 @@ struct Service::Parts {
                [this](http::Request& request, std::string_view route) {
                  access.admit(request, route);
                }),
-        http(config::http_config(config), main_uses(log), log),
         admin_router(routes::admin_routes(readiness, metrics), log) {
+    if (config.serves) http.emplace(config::http_config(config), main_uses(log), log);
     if (config.admin) {
       const bool only_here = !access::asks_for_keys({}, config.admin->host);
       const auto told = [this, only_here](const http::Request& request) {
@@ -115,7 +115,7 @@ struct Service::Parts {
                                  metrics.count(Metric::jobs_forced, {{"ended", how}});
                                }});
     metrics.tell(Metric::lost_threads, {}, [this] { return workers->lost(); });
-    serving = std::jthread([this] { http.serve(); });
+    if (http) serving = std::jthread([this] { http->serve(); });
     if (admin) serving_admin = std::jthread([this] { admin->serve(); });
   }
 
@@ -187,9 +187,11 @@ struct Service::Parts {
 
   void tell_state() {
     tell_process(metrics);
-    metrics.tell(Metric::connections, {{"state", "parked"}}, [&] { return http.parked(); });
-    metrics.tell(Metric::connections, {{"state", "served"}},
-                 [&] { return http.open() - http.parked(); });
+    if (http) {
+      metrics.tell(Metric::connections, {{"state", "parked"}}, [&] { return http->parked(); });
+      metrics.tell(Metric::connections, {{"state", "served"}},
+                   [&] { return http->open() - http->parked(); });
+    }
     metrics.tell(Metric::event_streams, {}, [&] { return streams.open_count(); });
     metrics.tell(Metric::stored_bytes, {}, [&] { return blobs.room().used_bytes(); });
     tell_caches(metrics, solver_cache, {&results.counts(), &pictures.counts(), &meshes.counts()});
@@ -197,8 +199,11 @@ struct Service::Parts {
 
   /// Stops the edge, then the admin port: probes answer until the last request is answered.
   void stop() {
-    http.stop();
-    serving.join();
+    is_stopped = true;
+    if (http) {
+      http->stop();
+      serving.join();
+    }
     if (!admin) return;
     admin->stop();
     serving_admin.join();
@@ -254,12 +259,13 @@ struct Service::Parts {
       [this] { return store::is_whole(config.data, blobs_root(config), config.database); },
       [this] { return !workers || workers->are_left(); }};
   http::Router router;
-  http::HttpServer http;
+  std::optional<http::HttpServer> http;
   http::Router admin_router;
   std::optional<http::HttpServer> admin;
   std::optional<Periodic> sweeping, renewing, mending, calling, trimming;
   std::optional<jobs::WorkerPool> workers;
   std::jthread serving, serving_admin;
+  bool is_stopped = false;
 };
 
 Service::Service(const config::Config& config, const Log& log,
@@ -270,13 +276,13 @@ Service::Service(const config::Config& config, const Log& log,
 }
 
 Service::~Service() {
-  if (!parts_->serving.joinable()) return;
+  if (parts_->is_stopped) return;
   parts_->queue.drain(std::chrono::seconds(0));
   parts_->events.end_all();
   parts_->stop();
 }
 
-int Service::port() const { return parts_->http.port(); }
+int Service::port() const { return parts_->http ? parts_->http->port() : 0; }
 std::optional<int> Service::admin_port() const {
   return parts_->admin ? std::optional(parts_->admin->port()) : std::nullopt;
 }

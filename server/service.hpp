@@ -23,6 +23,7 @@ class Service {
   /// Like drain(), without patience.
   ~Service();
 
+  /// 0 of a node that only works.
   [[nodiscard]] int port() const;
   /// Nothing without an admin port.
   [[nodiscard]] std::optional<int> admin_port() const;

@@ -25,9 +25,11 @@ constexpr const char* kAbout =
     "an environment variable or a line of a TOML file: --max-queue 9, UNWRAPD_MAX_QUEUE=9, "
     "max-queue = 9. The flag overrides the variable, and the variable overrides the file.";
 
+constexpr std::string_view kWorker = "worker";
 constexpr const char* kCommands =
     "Other commands, each with --help: unwrapd keys (API keys), unwrapd backup, restore and check "
-    "(copies of a data directory).";
+    "(copies of a data directory). unwrapd worker, with the same options: run jobs of other nodes "
+    "(--database, --blobs), and listen for none.";
 
 [[noreturn]] void wrong(const std::string& what) { throw Error(ErrorCode::invalid_option, what); }
 
@@ -235,6 +237,11 @@ void Reading::print() const {
 
 CommandLine Reading::run(int argc, const char* const* argv) {
   CLI::App app(kAbout, "unwrapd");
+  if (argc > 1 && std::string_view(argv[1]) == kWorker) {
+    config_.serves = false;
+    --argc;
+    ++argv;
+  }
   declare(app);
   try {
     app.parse(argc, argv);

@@ -37,6 +37,7 @@ struct EdgeConfig {
 
 struct Config {
   http::Address listen{"127.0.0.1", 8080};
+  bool serves = true;  ///< false: works on jobs of other nodes, and listens for none
   EdgeConfig edge;
   /// Of the probes and metrics; without one there is none. parse_command_line() gives it the port
   /// after that of listen, on loopback, where nothing else is asked for.
@@ -77,6 +78,7 @@ struct CommandLine {
   int exit_code = 0;  ///< of Task::leave; 2 after a mistake, of which stderr tells
 };
 
+/// `worker` as the first argument: the node only works.
 CommandLine parse_command_line(int argc, const char* const* argv);
 
 }  // namespace unwrapd::server::config

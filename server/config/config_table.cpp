@@ -260,6 +260,11 @@ void check_together(const Config& config) {
   if (!config.shared_blobs.empty() && config.database.url.empty())
     throw Error(ErrorCode::invalid_option,
                 "--blobs is for nodes that share a --database; give its URL, too.");
+  if (!config.serves && (config.shared_blobs.empty() || config.workers == 0))
+    throw Error(
+        ErrorCode::invalid_option,
+        "A worker takes the jobs of other nodes; give it their --database and --blobs, and at "
+        "least one of --workers.");
   if (config.workers == 0 && config.shared_blobs.empty())
     throw Error(ErrorCode::invalid_option,
                 "--workers is 0 and no other node can run jobs; give --database and --blobs, or at "

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kMostWaiting = 20'000;  // events, while the database is away
 constexpr std::size_t kMostAtOnce = 500;
-constexpr auto kPauseBetweenWrites = 20ms;
+constexpr auto kPauseBetweenWrites = 5ms;
 constexpr auto kPauseBetweenSearches = 1s;
 constexpr auto kPauseBetweenForgetting = 30s;
 constexpr auto kPauseAfterLoss = 500ms;

@@ -1,6 +1,7 @@
 // Jobs a second that the store takes in and ends, on SQLite and, where TEST_POSTGRESQL names
 // a PostgreSQL server, there: unwrapd_store [JOBS]. The engines take turns; of each the median
-// round is told. Each job is three commits: inserted, taken, finished.
+// round is told. Each job is three commits: inserted, taken, finished. Then how many jobs of a
+// thousand owners are claimed a second, each by the owner whose turn it is.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int kRounds = 5;
 constexpr int kUsualJobs = 2000;
+constexpr int kOwners = 1000;
 
 double seconds_of(const std::function<void()>& work) {
   const auto began = std::chrono::steady_clock::now();
@@ -49,6 +51,22 @@ struct Engine {
     ends.push_back(jobs / ending);
   }
 
+  /// Claims a second.
+  double claim_in_turn() {
+    for (int owner = 0; owner < kOwners; ++owner) {
+      store::JobRecord job;
+      job.id = "j_" + std::to_string(next++);
+      job.owner = "k_" + std::to_string(owner);
+      job.options = {{"method", "arap"}};
+      store.insert(job);
+    }
+    int claimed = 0;
+    const double claiming = seconds_of([&] {
+      while (const auto owner = store.next_owner(1000)) claimed += store.take(*owner).has_value();
+    });
+    return claimed / claiming;
+  }
+
   std::string name;
   store::JobStore store;
   int next = 0;
@@ -69,8 +87,9 @@ int run(int jobs) {
   for (int round = 0; round < kRounds; ++round)
     for (const auto& engine : engines) engine->round(jobs / kRounds);
   for (const auto& engine : engines)
-    std::printf("%-12s %8.0f inserts/s %8.0f taken and finished/s\n", engine->name.c_str(),
-                median(engine->inserts), median(engine->ends));
+    std::printf("%-12s %8.0f inserts/s %8.0f taken and finished/s %8.0f claimed in turn/s\n",
+                engine->name.c_str(), median(engine->inserts), median(engine->ends),
+                engine->claim_in_turn());
   return 0;
 }
 

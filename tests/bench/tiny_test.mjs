@@ -10,6 +10,7 @@ import {fileURLToPath} from 'node:url';
 import {promisify} from 'node:util';
 
 import * as meshes from '../contract/meshes.mjs';
+import {isInstalled} from '../postgres/postgres.mjs';
 
 const bin = process.env.UNWRAPD_BIN;
 const here = dirname(fileURLToPath(import.meta.url));
@@ -62,7 +63,13 @@ test('painted', async () => {
 });
 
 test('store', async () => {
-  assert.match(await program('store', '10'), /^sqlite +\d+ inserts\/s +\d+ taken and finished\/s$/m);
+  assert.match(await program('store', '10'), /^sqlite +\d+ inserts\/s +\d+ taken and finished\/s +\d+ claimed in turn\/s$/m);
+});
+
+test('farm', {skip: !isInstalled()}, async () => {
+  const times = await script('farm', join(bin, 'unwrapd'), '3');
+  for (const what of ['progress', 'cancel'])
+    for (const where of ['one node', 'farm']) assert.match(times, new RegExp(`^${what}, ${where} +median +[\\d.]+`, 'm'));
 });
 
 test('cancel-latency', async () => {

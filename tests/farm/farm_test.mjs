@@ -257,6 +257,17 @@ test("without hints all is found by looking", options, async (t) => {
   assert.match(worker.log + front.log, /get no hints/);
 });
 
+test("a worker without a port does what others were sent", options, async (t) => {
+  const farm = new Farm(t);
+  const front = await farm.start("front", 0);
+  const worker = await farm.startWorker("worker");
+  assert.equal(worker.url, "unwrapd works on the jobs of other nodes");
+  const answer = await send(front, `/v1/unwrap?preset=chart&${QUICK}`);
+  assert.equal(answer.status, 200);
+  assert.deepEqual(await worker.end("SIGTERM"), [0, null]);
+  await assert.rejects(Server.startAs(["worker"], {}, dataDirectory(t)), /--database and --blobs/);
+});
+
 test("nodes that do not belong together refuse to start", options, async (t) => {
   const farm = new Farm(t);
   const first = await farm.start("first", 1);

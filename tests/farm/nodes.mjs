@@ -50,6 +50,15 @@ export class Farm {
     return node;
   }
 
+  /** Starts a node that listens for no requests. */
+  async startWorker(name, ...flags) {
+    const data = join(this.folder, name);
+    const usual = ["--database", this.url, "--blobs", `dir:${this.shared}`, "--lease-seconds", String(LEASE_SECONDS)];
+    const node = await Server.startAs(["worker"], {}, data, ...usual, "--log-level", "warning", ...flags);
+    this.nodes.set(name, node);
+    return node;
+  }
+
   countEnds() {
     this.postgres.query(COUNT_ENDS);
   }

@@ -40,8 +40,13 @@ export class Server {
 
   /** The same, with more in its environment; what it logs is in `log`. */
   static async startIn(env, data, ...flags) {
+    return Server.startAs([], env, data, ...flags);
+  }
+
+  /** The same, by another command of the program. */
+  static async startAs(command, env, data, ...flags) {
     const server = new Server();
-    const all = ["--listen", "127.0.0.1:0", "--admin-listen", "off", "--data", data, ...flags];
+    const all = [...command, "--listen", "127.0.0.1:0", "--admin-listen", "off", "--data", data, ...flags];
     for (const [flag, value] of USUAL) if (!flags.includes(flag)) all.push(flag, value);
     server.process = spawn(process.env.UNWRAPD, all, {
       stdio: ["ignore", "pipe", "pipe"],
