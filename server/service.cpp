@@ -10,7 +10,6 @@
 #include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
 #include "server/base/threads.hpp"
-#include "server/cache_metrics.hpp"
 #include "server/config/component_config.hpp"
 #include "server/http/access_log.hpp"
 #include "server/http/sites.hpp"
@@ -22,6 +21,7 @@
 #include "server/routes/link_routes.hpp"
 #include "server/routes/mesh_routes.hpp"
 #include "server/routes/picture_routes.hpp"
+#include "server/service_metrics.hpp"
 #include "server/store/data_directory.hpp"
 #include "server/store/sweeper.hpp"
 #include "server/webhooks/webhooks.hpp"
@@ -88,7 +88,7 @@ struct Service::Parts {
     tell_state();
     config::tell_isolation(isolation, config, log, metrics);
     queue.recover(isolation.possible);
-    store::sweep_at_start(store, mesh_store, blobs, log);
+    if (!node.is_shared) store::sweep_at_start(store, mesh_store, blobs, log);
     blobs.room().on_shortage(
         {.evict = [this] { return store::evict_oldest(store, mesh_store, blobs); },
          .bytes = [this] { return store.evictable_bytes() + blobs.lost().bytes(); },
@@ -177,6 +177,9 @@ struct Service::Parts {
           if (node.is_shared) blobs.room().recount(store.stored_bytes());
         },
         log);
+    if (node.is_shared)
+      tidying.emplace(
+          "sweeping files", 1h, [&] { store::sweep_at_start(store, mesh_store, blobs, log); }, log);
     mending.emplace(
         "mending after a loss of the database", 1s, [this] { queue.mend(); }, log);
     calling.emplace(
@@ -187,11 +190,7 @@ struct Service::Parts {
 
   void tell_state() {
     tell_process(metrics);
-    if (http) {
-      metrics.tell(Metric::connections, {{"state", "parked"}}, [&] { return http->parked(); });
-      metrics.tell(Metric::connections, {{"state", "served"}},
-                   [&] { return http->open() - http->parked(); });
-    }
+    if (http) tell_connections(metrics, *http);
     metrics.tell(Metric::event_streams, {}, [&] { return streams.open_count(); });
     metrics.tell(Metric::stored_bytes, {}, [&] { return blobs.room().used_bytes(); });
     tell_caches(metrics, solver_cache, {&results.counts(), &pictures.counts(), &meshes.counts()});
@@ -262,7 +261,7 @@ struct Service::Parts {
   std::optional<http::HttpServer> http;
   http::Router admin_router;
   std::optional<http::HttpServer> admin;
-  std::optional<Periodic> sweeping, renewing, mending, calling, trimming;
+  std::optional<Periodic> sweeping, tidying, renewing, mending, calling, trimming;
   std::optional<jobs::WorkerPool> workers;
   std::jthread serving, serving_admin;
   bool is_stopped = false;

@@ -45,7 +45,8 @@ void JobQueue::finish(const RunningJob& job, store::JobOutcome outcome,
   if (outcome.state == JobState::succeeded) outcome = sealed(job.record, std::move(outcome));
   std::unique_lock lock(mutex_);
   const auto leave = [&] {
-    running_.erase(job.record.id);
+    const auto now = running_.find(job.record.id);
+    if (now != running_.end() && now->second.get() == &job) running_.erase(now);
     changed_.notify_all();
     lengths_.add(job.seconds());
   };
@@ -102,13 +103,6 @@ bool JobQueue::end_job(const store::JobRecord& job, store::JobOutcome outcome,
   if (stored) stored();
   tell_end(record);
   return true;
-}
-
-/// Another node has taken the job up, or ended it.
-void JobQueue::leave_to_others(const store::JobRecord& job, JobFeed& feed) {
-  if (!is_shared()) return;
-  feed.follow(true);
-  blobs_.drop_attempt(job.id, job.attempt);
 }
 
 void JobQueue::tell_end(const store::JobRecord& job) {

@@ -211,7 +211,9 @@ std::shared_ptr<RunningJob> JobQueue::begin(store::JobRecord record) {
   job->feed->follow(false);
   if (is_shared()) job->feed->rise_to((job->record.attempt - 1) * kSeqsPerAttempt + kSeqsOfQueue);
   job->started_ms = job->record.started_ms;
-  running_[job->record.id] = job;
+  std::shared_ptr<RunningJob>& running = running_[id];
+  if (running) running->request_stop(StopCause::lost);  // taken from this node, and now given back
+  running = job;
   job->feed->publish(
       [&](std::int64_t seq) { return api::started_event(seq, job->record.attempt); });
   return job;

@@ -135,7 +135,7 @@ class JobQueue {
   /// From now on, other nodes are told when jobs wait, or are cancelled.
   void tell_others(std::function<void()> jobs_wait, std::function<void()> cancelled);
   /// Other nodes may have sent jobs, or given some back.
-  void look_for_jobs() { changed_.notify_all(); }
+  void look_for_jobs();
   /// Stops the jobs of this node that were cancelled at another.
   void stop_cancelled();
   /// Tells readers here the end of a job that ended elsewhere.

@@ -22,8 +22,8 @@ void JobQueue::recover(bool tried_apart) {
   const std::lock_guard lock(mutex_);
   tried_apart_ = tried_apart;
   const store::Node& here = store_.node();
-  for (const store::JobRecord& job : store_.unfinished()) {
-    if (here.is_shared && (job.state != JobState::running || job.node != here.id)) continue;
+  for (const store::JobRecord& job : is_shared() ? store_.running() : store_.unfinished()) {
+    if (is_shared() && job.node != here.id) continue;
     const bool is_whole = job.unreadable.empty();
     if (is_whole && job.state == JobState::queued && !job.cancel_requested) {
       wait_again(job);

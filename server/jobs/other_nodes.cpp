@@ -61,6 +61,20 @@ store::JobRecord JobQueue::known_elsewhere(const store::JobRecord& job) {
   throw unknown_job();
 }
 
+/// Under the mutex, so that no worker is between its look and its wait.
+void JobQueue::look_for_jobs() {
+  const std::lock_guard lock(mutex_);
+  changed_.notify_all();
+}
+
+/// Another node has taken the job up, or ended it; or this one has begun it again.
+void JobQueue::leave_to_others(const store::JobRecord& job, JobFeed& feed) {
+  if (!is_shared()) return;
+  const auto now = running_.find(job.id);
+  if (now == running_.end() || now->second->record.attempt == job.attempt) feed.follow(true);
+  blobs_.drop_attempt(job.id, job.attempt);
+}
+
 void JobQueue::stop_cancelled() {
   const std::lock_guard lock(mutex_);
   if (running_.empty()) return;

@@ -1,7 +1,8 @@
 #pragma once
-// How often caches are asked, and what they have, as metrics.
+// Metrics of the parts of a server: its connections, how often caches are asked, what they have.
 
 #include "server/base/metrics.hpp"
+#include "server/http/http_server.hpp"
 #include "server/work/solver_cache.hpp"
 
 namespace unwrapd::server {
@@ -13,7 +14,8 @@ struct MadeFiles {
   const FileCounts* analyses;
 };
 
-/// All must outlive the metrics.
+/// What is told of must outlive the metrics.
+void tell_connections(Metrics& metrics, const http::HttpServer& http);
 void tell_caches(Metrics& metrics, const work::SolverCache& solver, const MadeFiles& files);
 
 }  // namespace unwrapd::server

@@ -1,8 +1,14 @@
-#include "server/cache_metrics.hpp"
+#include "server/service_metrics.hpp"
 
 #include <string_view>
 
 namespace unwrapd::server {
+
+void tell_connections(Metrics& metrics, const http::HttpServer& http) {
+  metrics.tell(Metric::connections, {{"state", "parked"}}, [&http] { return http.parked(); });
+  metrics.tell(Metric::connections, {{"state", "served"}},
+               [&http] { return http.open() - http.parked(); });
+}
 
 void tell_caches(Metrics& metrics, const work::SolverCache& solver, const MadeFiles& files) {
   const auto tell_asked = [&](std::string_view cache, auto hits, auto misses) {
