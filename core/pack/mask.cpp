@@ -4,23 +4,29 @@
 #include "core/pack/mask.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
 namespace unwrapd::pack {
 namespace {
 
+constexpr std::size_t kFewInARow = 16;
+constexpr std::size_t kUsuallyInARow = 4;  // runs that are found
+
 struct Crossing {
   double x = 0;
   int winding = 0;
 };
 
-int cell(double x, int count) { return std::clamp(static_cast<int>(std::floor(x)), 0, count - 1); }
+/// The cell of a coordinate, clamped: below 0, truncation gives the same as floor.
+int cell(double x, int count) { return std::clamp(static_cast<int>(x), 0, count - 1); }
 
 /// What is found row by row, in one list: those of a row lie together, as they came.
 template <class Item>
 class ByRow {
  public:
+  void reserve(std::size_t count) { found_.reserve(count); }
   void add(int row, const Item& item) { found_.push_back({row, item}); }
 
   /// Called once, after the last item.
@@ -69,10 +75,20 @@ void touch(const Vec2& a, const Vec2& b, Scan& scan) {
   }
 }
 
+/// By insertion where they are few: std::stable_sort takes memory for each row.
+void sort_by_x(std::span<Crossing> crossings) {
+  if (crossings.size() > kFewInARow) {
+    std::ranges::stable_sort(crossings, {}, &Crossing::x);
+    return;
+  }
+  for (std::size_t k = 1; k < crossings.size(); ++k)
+    for (std::size_t i = k; i > 0 && crossings[i].x < crossings[i - 1].x; --i)
+      std::swap(crossings[i], crossings[i - 1]);
+}
+
 /// Appends the runs between the crossings of a row.
 void fill_inside(std::span<Crossing> crossings, int width, std::vector<Run>& runs) {
-  std::stable_sort(crossings.begin(), crossings.end(),
-                   [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+  sort_by_x(crossings);
   int winding = 0;
   for (std::size_t k = 0; k + 1 < crossings.size(); ++k) {
     winding += crossings[k].winding;
@@ -81,9 +97,8 @@ void fill_inside(std::span<Crossing> crossings, int width, std::vector<Run>& run
   }
 }
 
-/// Sorts runs, joins those that touch or overlap, and appends them as the next row.
-void append_row(std::vector<Run>& runs, Rows& rows) {
-  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.begin < b.begin; });
+/// Joins sorted runs that touch or overlap, and appends them as the next row.
+void append_sorted(std::span<const Run> runs, Rows& rows) {
   const auto row_begin = rows.runs.size();
   for (const Run& run : runs) {
     if (rows.runs.size() > row_begin && run.begin <= rows.runs.back().end)
@@ -92,6 +107,12 @@ void append_row(std::vector<Run>& runs, Rows& rows) {
       rows.runs.push_back(run);
   }
   rows.first.push_back(static_cast<int>(rows.runs.size()));
+}
+
+/// The same of runs in any order.
+void append_row(std::vector<Run>& runs, Rows& rows) {
+  std::ranges::sort(runs, {}, &Run::begin);
+  append_sorted(runs, rows);
 }
 
 /// reach[d]: the widest |dx| at |dy| = d at which a point of one cell can lie nearer than the
@@ -106,18 +127,68 @@ std::vector<int> disk_rows(double padding) {
   return reach;
 }
 
+/// Rows that are united, each widened by its own reach and moved by the margin.
+struct Stack {
+  const Rows& touched;
+  std::span<const int> reach;
+  int first, last, middle;  ///< rows
+  int margin;
+
+  [[nodiscard]] Run widened(const Run& run, int row) const {
+    const int wide = reach[static_cast<std::size_t>(std::abs(row - middle))];
+    return {run.begin + margin - wide, run.end + margin + wide};
+  }
+};
+
+/// What all k-th runs of some rows have in common, and their hull.
+struct Column {
+  Run common, hull;
+
+  void join(const Run& run) {
+    common = {std::max(common.begin, run.begin), std::min(common.end, run.end)};
+    hull = {std::min(hull.begin, run.begin), std::max(hull.end, run.end)};
+  }
+};
+
+/// The union of rows of equally many runs, if for every k all k-th runs have a cell or an end in
+/// common: it consists of the hulls. Nearly all rows are of this kind, and need no sorting.
+bool unite_alike(const Stack& stack, std::vector<Column>& columns, std::vector<Run>& runs) {
+  const std::size_t count = stack.touched.row(stack.first).size();
+  columns.clear();
+  for (const Run& run : stack.touched.row(stack.first))
+    columns.push_back({stack.widened(run, stack.first), stack.widened(run, stack.first)});
+  for (int s = stack.first + 1; s <= stack.last; ++s) {
+    const std::span<const Run> own = stack.touched.row(s);
+    if (own.size() != count) return false;
+    for (std::size_t k = 0; k < count; ++k) columns[k].join(stack.widened(own[k], s));
+  }
+  for (const Column& own : columns) {
+    if (own.common.begin > own.common.end) return false;
+    runs.push_back(own.hull);
+  }
+  return true;
+}
+
 Rows grow(const Rows& touched, double padding) {
   const std::vector<int> reach = disk_rows(padding);
   const int margin = margin_of(padding);
   Rows grown;
+  grown.runs.reserve(touched.runs.size() + static_cast<std::size_t>(2 * margin));
+  grown.first.reserve(static_cast<std::size_t>(touched.height() + 2 * margin + 1));
   std::vector<Run> runs;
+  std::vector<Column> columns;
   for (int y = -margin; y < touched.height() + margin; ++y) {
+    const Stack stack{
+        touched, reach, std::max(0, y - margin), std::min(touched.height() - 1, y + margin),
+        y,       margin};
     runs.clear();
-    for (int s = std::max(0, y - margin); s <= std::min(touched.height() - 1, y + margin); ++s) {
-      const int wide = reach[static_cast<std::size_t>(std::abs(s - y))];
-      for (const Run& run : touched.row(s))
-        runs.push_back({run.begin + margin - wide, run.end + margin + wide});
+    if (unite_alike(stack, columns, runs)) {
+      append_sorted(runs, grown);
+      continue;
     }
+    runs.clear();
+    for (int s = stack.first; s <= stack.last; ++s)
+      for (const Run& run : touched.row(s)) runs.push_back(stack.widened(run, s));
     append_row(runs, grown);
   }
   return grown;
@@ -138,8 +209,10 @@ Mask make_mask(const charts::Outline& outline, const Turn& turn, double padding)
   mask.low = low;
   mask.width = std::max(1, static_cast<int>(std::ceil(high.x() - low.x())));
   Scan scan{mask.width, std::max(1, static_cast<int>(std::ceil(high.y() - low.y()))), {}, {}};
-  for (const auto& [a, b] : outline) touch(turn(a) - low, turn(b) - low, scan);
   const auto rows = static_cast<std::size_t>(scan.height);
+  scan.runs.reserve(kUsuallyInARow * rows);
+  scan.crossings.reserve(kUsuallyInARow * rows);
+  for (const auto& [a, b] : outline) touch(turn(a) - low, turn(b) - low, scan);
   scan.runs.sort(rows);
   scan.crossings.sort(rows);
   std::vector<Run> runs;
