@@ -31,15 +31,19 @@ struct Extent {
   std::size_t finished = 0;  ///< starts that continue on the fine grids
   double first = 1;          ///< work of the first compaction, in shares of the most
   double fine = 1;           ///< the same of those on the fine grids
+  bool is_short = false;     ///< no grid between the first and the last
 };
 constexpr std::array kExtents = {Extent{2, 1, .05, .1}, Extent{6, 2, .1, .25}, Extent{6, 2, 1, 1}};
 
 constexpr std::size_t kVeryFew = 3;  // islands that come to the same page from nearly any start
 
-Extent extent_of(std::size_t islands, Effort effort) {
-  Extent extent = kExtents[static_cast<std::size_t>(effort)];
-  if (islands > kVeryFew || effort == Effort::best) return extent;
-  extent.starts = std::min(extent.starts, islands);
+/// Very few islands of a small mesh would take longer to pack than to map; where they may turn,
+/// most of that is masks.
+Extent extent_of(std::size_t islands, const FewRules& rules) {
+  Extent extent = kExtents[static_cast<std::size_t>(rules.effort)];
+  if (islands > kVeryFew || rules.effort == Effort::best) return extent;
+  extent.is_short = rules.rotation == Rotation::any;
+  extent.starts = extent.is_short ? 1 : std::min(extent.starts, islands);
   extent.finished = 1;
   return extent;
 }
@@ -71,7 +75,7 @@ class FewPacker {
       : islands_(islands),
         grid_(grid),
         rotation_(rules.rotation),
-        extent_(extent_of(islands.size(), rules.effort)),
+        extent_(extent_of(islands.size(), rules)),
         executor_(executor),
         shares_(shares_of(islands)) {}
 
@@ -128,7 +132,8 @@ class FewPacker {
   }
 
   Attempt finish(Attempt tried) const {
-    for (const Squeeze& grid : kGrids) {
+    for (const Squeeze& grid :
+         std::span(kGrids).subspan(extent_.is_short ? kGrids.size() - 1 : 0)) {
       if (tried.found.side == 0) return tried;
       const Squeeze own = on_page(grid, grid_.tight_side(grid_.columns(grid.rules.side)));
       const double scale = tried.placer->scale() * own.rules.side / tried.found.side;

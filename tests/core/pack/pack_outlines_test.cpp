@@ -68,6 +68,17 @@ TEST(PackOutlines, KeepsThePaddingAtEveryEffortAndFillsMoreWithMore) {
   }
 }
 
+TEST(PackOutlines, VeryFewFillNearlyAsMuchAsWithTheMostWork) {
+  double usual = 0, best = 0;
+  for (int seed = 1; seed <= 8; ++seed)
+    for (int count : {2, 3}) {
+      const auto islands = stars(count, static_cast<unsigned>(seed));
+      usual += fill(islands, pack_alone(islands, {}).placements);
+      best += fill(islands, pack_alone(islands, {.effort = Effort::best}).placements);
+    }
+  EXPECT_GT(usual, 0.98 * best);
+}
+
 TEST(PackOutlines, FillsHollowsThatRowsLeaveEmpty) {
   for (int count : {5, 12, 60, 500}) {
     const std::vector<charts::Outline> islands = stars(count, 4);
