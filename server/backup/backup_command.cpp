@@ -10,12 +10,13 @@
 
 #include "core/base/error.hpp"
 #include "server/backup/backup.hpp"
+#include "server/backup/move_rows.hpp"
 #include "server/base/errors.hpp"
 
 namespace unwrapd::server::backup {
 namespace {
 
-constexpr std::array<std::string_view, 3> kCommands = {"backup", "restore", "check"};
+constexpr std::array<std::string_view, 4> kCommands = {"backup", "restore", "check", "move"};
 constexpr int kFailed = 1;
 constexpr int kDamaged = 3;
 
@@ -25,11 +26,17 @@ struct Asked {
   std::string backup;
 };
 
-CLI::App* command(CLI::App& app, const std::string& name, const std::string& what, Asked& asked) {
+CLI::App* any_command(CLI::App& app, const std::string& name, const std::string& what,
+                      Asked& asked) {
   CLI::App* found = app.add_subcommand(name, what);
   found->add_option("--data", asked.data, "Directory of jobs and results")
       ->envname("UNWRAPD_DATA")
       ->capture_default_str();
+  return found;
+}
+
+CLI::App* command(CLI::App& app, const std::string& name, const std::string& what, Asked& asked) {
+  CLI::App* found = any_command(app, name, what, asked);
   found->add_option("--database", asked.database, "Of a server with a PostgreSQL database: refused")
       ->envname("UNWRAPD_DATABASE");
   return found;
@@ -94,6 +101,18 @@ int run_backup_command(int argc, const char* const* argv) {
         require_sqlite(asked);
         code = tell("checked", check_store(asked.data));
       });
+  CLI::App* moving = any_command(app, "move",
+                                 "Move the rows of a data directory to an empty PostgreSQL "
+                                 "database, while no server runs; files stay in the directory",
+                                 asked);
+  moving->add_option("--database", asked.database, "URL of that database")
+      ->envname("UNWRAPD_DATABASE")
+      ->required();
+  moving->callback([&] {
+    const StoreReport report = move_rows(asked.data, {.url = asked.database});
+    std::printf("moved: %lld jobs and meshes; start the server with --database from now on\n",
+                static_cast<long long>(report.jobs));
+  });
   try {
     app.parse(argc, argv);
     return code;
