@@ -191,6 +191,7 @@ struct Service::Parts {
   void tell_state() {
     tell_process(metrics);
     if (http) tell_connections(metrics, *http);
+    tell_jobs(metrics, queue);
     metrics.tell(Metric::event_streams, {}, [&] { return streams.open_count(); });
     metrics.tell(Metric::stored_bytes, {}, [&] { return blobs.room().used_bytes(); });
     tell_caches(metrics, solver_cache, {&results.counts(), &pictures.counts(), &meshes.counts()});

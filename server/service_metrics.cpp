@@ -4,6 +4,11 @@
 
 namespace unwrapd::server {
 
+void tell_jobs(Metrics& metrics, jobs::JobQueue& queue) {
+  metrics.tell(Metric::jobs, {{"state", "queued"}}, [&queue] { return queue.counts().waiting; });
+  metrics.tell(Metric::jobs, {{"state", "running"}}, [&queue] { return queue.counts().running; });
+}
+
 void tell_connections(Metrics& metrics, const http::HttpServer& http) {
   metrics.tell(Metric::connections, {{"state", "parked"}}, [&http] { return http.parked(); });
   metrics.tell(Metric::connections, {{"state", "served"}},

@@ -3,6 +3,7 @@
 
 #include "server/base/metrics.hpp"
 #include "server/http/http_server.hpp"
+#include "server/jobs/job_queue.hpp"
 #include "server/work/solver_cache.hpp"
 
 namespace unwrapd::server {
@@ -15,6 +16,7 @@ struct MadeFiles {
 };
 
 /// What is told of must outlive the metrics.
+void tell_jobs(Metrics& metrics, jobs::JobQueue& queue);
 void tell_connections(Metrics& metrics, const http::HttpServer& http);
 void tell_caches(Metrics& metrics, const work::SolverCache& solver, const MadeFiles& files);
 

@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds kTimeToCatchUp{300};
 }  // namespace
 
 JobFeed::JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics,
-                 std::shared_ptr<const Wakeup> news, Share share)
+                 std::shared_ptr<const Wakeup> news, Share share, std::chrono::milliseconds waited)
     : base_(base),
       trace_(current_trace().empty() ? new_trace_id() : current_trace()),
       news_(std::move(news)),
@@ -23,7 +23,7 @@ JobFeed::JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics,
       newest_(base),
       forgotten_(base),
       capacity_(capacity) {
-  if (metrics) watch_.emplace(*metrics);
+  if (metrics) watch_.emplace(*metrics, waited);
 }
 
 /// Requires the mutex.
@@ -158,7 +158,8 @@ void EventFeed::share_with(std::function<void(store::EventRow event)> share,
 }
 
 /// Requires the mutex.
-std::shared_ptr<JobFeed> EventFeed::make(const std::string& job, int attempt) {
+std::shared_ptr<JobFeed> EventFeed::make(const std::string& job, int attempt,
+                                         std::chrono::milliseconds waited) {
   JobFeed::Share share;
   if (share_)
     share = [this, job](store::EventRow event) {
@@ -166,14 +167,15 @@ std::shared_ptr<JobFeed> EventFeed::make(const std::string& job, int attempt) {
       share_(std::move(event));
     };
   auto feed = std::make_shared<JobFeed>(attempt * kSeqsPerAttempt, ring_, metrics_, news_,
-                                        std::move(share));
+                                        std::move(share), waited);
   feeds_[job] = feed;
   return feed;
 }
 
-std::shared_ptr<JobFeed> EventFeed::open(const std::string& job, int attempt) {
+std::shared_ptr<JobFeed> EventFeed::open(const std::string& job, int attempt,
+                                         std::chrono::milliseconds waited) {
   const std::lock_guard lock(mutex_);
-  return make(job, attempt);
+  return make(job, attempt, waited);
 }
 
 std::shared_ptr<JobFeed> EventFeed::find(std::string_view job) const {

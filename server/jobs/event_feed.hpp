@@ -44,9 +44,10 @@ class JobFeed {
   using Share = std::function<void(store::EventRow event)>;
 
   /// Belongs to the trace of the calling thread, or to a new one. share: called for each event that
-  /// is published here, in order.
+  /// is published here, in order. waited: how long the job has waited, for the metrics.
   JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics = nullptr,
-          std::shared_ptr<const Wakeup> news = nullptr, Share share = {});
+          std::shared_ptr<const Wakeup> news = nullptr, Share share = {},
+          std::chrono::milliseconds waited = {});
 
   /// The trace id of the job's log lines.
   [[nodiscard]] const std::string& trace() const { return trace_; }
@@ -122,8 +123,10 @@ class EventFeed {
   void share_with(std::function<void(store::EventRow event)> share,
                   std::function<void(const std::string& job)> found);
 
-  /// The feed of a job that waits for its next attempt; attempt: those begun before.
-  std::shared_ptr<JobFeed> open(const std::string& job, int attempt);
+  /// The feed of a job that waits for its next attempt; attempt: those begun before; waited: how
+  /// long it has waited already.
+  std::shared_ptr<JobFeed> open(const std::string& job, int attempt,
+                                std::chrono::milliseconds waited = {});
   /// The feed of a job, which follows it where it runs elsewhere. nullptr when the job has ended,
   /// or nothing runs elsewhere, and there is none.
   std::shared_ptr<JobFeed> of(const store::JobRecord& job);
@@ -136,7 +139,8 @@ class EventFeed {
   void end_all();
 
  private:
-  std::shared_ptr<JobFeed> make(const std::string& job, int attempt);
+  std::shared_ptr<JobFeed> make(const std::string& job, int attempt,
+                                std::chrono::milliseconds waited = {});
 
   const std::size_t ring_;
   const std::size_t kept_finished_;

@@ -2,26 +2,13 @@
 
 namespace unwrapd::server::jobs {
 
-JobMetrics::JobMetrics(Metrics& metrics) : metrics_(metrics) { become("queued"); }
-
-JobMetrics::~JobMetrics() { become({}); }
-
-void JobMetrics::become(std::string_view state) {
-  if (!state_.empty()) metrics_.count(Metric::jobs, {{"state", state_}}, -1);
-  state_ = state;
-  if (!state_.empty()) metrics_.count(Metric::jobs, {{"state", state_}}, 1);
-}
-
 void JobMetrics::see(const api::Event& event) {
-  if (event.name == "started") {
-    become("running");
-  } else if (event.name == "iteration") {
+  if (event.name == "iteration") {
     metrics_.count(Metric::iterations);
   } else if (event.name == "stage") {
     enter(event.data.at("name"));
   } else if (api::is_last(event)) {
     enter({});
-    become({});
     metrics_.count(Metric::jobs_ended, {{"state", event.name}});
     if (event.name == "failed") {
       const std::string& code = event.data.at("problem").at("code").get_ref<const std::string&>();

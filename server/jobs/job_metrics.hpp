@@ -1,7 +1,7 @@
 #pragma once
-// Counts jobs by their events: those that wait or run, how long each waited and each stage took,
-// iterations, and how each ended. All ways of running a job, in this process or another, publish
-// these events.
+// Counts jobs by their events: how long each waited and each stage took, iterations, and how each
+// ended. All ways of running a job, in this process or another, publish these events; those of
+// other nodes are counted there.
 
 #include <chrono>
 #include <string>
@@ -13,22 +13,19 @@ namespace unwrapd::server::jobs {
 
 class JobMetrics {
  public:
-  explicit JobMetrics(Metrics& metrics);
-  JobMetrics(const JobMetrics&) = delete;
-  JobMetrics& operator=(const JobMetrics&) = delete;
-  ~JobMetrics();
+  /// waited: how long the job has waited before.
+  JobMetrics(Metrics& metrics, std::chrono::milliseconds waited)
+      : metrics_(metrics), since_(std::chrono::steady_clock::now() - waited) {}
 
   /// Counts the next event of the job.
   void see(const api::Event& event);
 
  private:
   void enter(const std::string& stage);
-  void become(std::string_view state);
 
   Metrics& metrics_;
-  std::string_view state_;  // empty: neither queued nor running
   std::string stage_ = "queue";
-  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point since_;
 };
 
 }  // namespace unwrapd::server::jobs

@@ -96,6 +96,15 @@ std::int64_t JobQueue::mean_ms() const {
   return static_cast<std::int64_t>(lengths_.mean * kMsPerSecond);
 }
 
+store::QueueCounts JobQueue::counts() {
+  const std::lock_guard lock(mutex_);
+  try {
+    counted_ = store_.counts();
+  } catch (const Error&) {  // it is told elsewhere that the store is away
+  }
+  return counted_;
+}
+
 void JobQueue::check_room(const Applicant& sender) {
   const std::lock_guard lock(mutex_);
   check_open();
@@ -207,7 +216,9 @@ std::shared_ptr<RunningJob> JobQueue::begin(store::JobRecord record) {
   job->record = std::move(record);
   const std::string& id = job->record.id;
   job->feed = events_.find(id);
-  if (!job->feed) job->feed = events_.open(id, job->record.attempt - 1);
+  const std::chrono::milliseconds waited(
+      std::max<std::int64_t>(0, job->record.started_ms - job->record.created_ms));
+  if (!job->feed) job->feed = events_.open(id, job->record.attempt - 1, waited);
   job->feed->follow(false);
   if (is_shared()) job->feed->rise_to((job->record.attempt - 1) * kSeqsPerAttempt + kSeqsOfQueue);
   job->started_ms = job->record.started_ms;

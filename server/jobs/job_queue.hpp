@@ -141,6 +141,9 @@ class JobQueue {
   /// Tells readers here the end of a job that ended elsewhere.
   void tell_end_elsewhere(const std::string& id);
 
+  /// The jobs that wait or run, on all nodes; as they were last, while the store is away.
+  [[nodiscard]] store::QueueCounts counts();
+
   /// No new jobs from now on; those waiting stay in the store for the next start.
   void close();
   /// Waits for the running jobs; those that are not done by then go back to the queue. False when
@@ -233,6 +236,7 @@ class JobQueue {
   Lengths lengths_;           // of the newest jobs that ended, here or elsewhere
   std::int64_t all_workers_;  // of all nodes
   LeaseWatch leases_;
+  store::QueueCounts counted_;
   DiskFullBackoff pause_;
   std::deque<std::string> left_;  // by the last process, and not taken up yet
   bool tried_apart_ = false;
