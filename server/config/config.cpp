@@ -28,7 +28,8 @@ constexpr const char* kAbout =
 constexpr std::string_view kWorker = "worker";
 constexpr const char* kCommands =
     "Other commands, each with --help: unwrapd keys (API keys), unwrapd backup, restore, check "
-    "and move (copies of a data directory, and its way to PostgreSQL). unwrapd worker, with the same options: run jobs of other nodes "
+    "and move (copies of a data directory, and its way to PostgreSQL). unwrapd worker, with the "
+    "same options: run jobs of other nodes "
     "(--database, --blobs), and listen for none.";
 
 [[noreturn]] void wrong(const std::string& what) { throw Error(ErrorCode::invalid_option, what); }

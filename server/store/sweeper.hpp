@@ -23,8 +23,8 @@ void sweep(MeshStore& meshes, BlobStore& blobs, std::int64_t now_ms, std::chrono
 /// unused for longer and that no job shares; false when there is nothing.
 bool evict_oldest(JobStore& store, MeshStore& meshes, BlobStore& blobs);
 
-/// Before anything else has files, or where other nodes have some: BlobStore::sweep() by the rows of
-/// both, and what it has done is told.
+/// Before anything else has files, or where other nodes have some: BlobStore::sweep() by the rows
+/// of both, and what it has done is told.
 void sweep_at_start(JobStore& store, MeshStore& meshes, BlobStore& blobs, const Log& log);
 
 /// Sweeps, whatever the time of day is set to, and has it noted when it was.
