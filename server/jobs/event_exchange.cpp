@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <set>
 #include <sstream>
 #include <utility>
 
@@ -92,6 +91,21 @@ void EventExchange::send(store::EventChannel& channel, std::string_view hint) {
   }
 }
 
+void EventExchange::append(store::EventChannel& channel,
+                           const std::vector<store::EventRow>& events) {
+  channel.append(events);
+  {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t k = 0; k < events.size() && !to_write_.empty(); ++k) to_write_.pop_front();
+  }
+  std::set<std::string> jobs;
+  for (const store::EventRow& event : events) jobs.insert(event.job);
+  std::string ids;
+  if (jobs.size() <= kMostIdsInHint)  // else: of any
+    for (const std::string& job : jobs) ids += " " + job;
+  send(channel, std::string(kEvents) + ids);
+}
+
 /// Of an end of the server, the last events are written.
 void EventExchange::write(const std::stop_token& stop) {
   store::EventChannel channel(address_);
@@ -107,19 +121,7 @@ void EventExchange::write(const std::stop_token& stop) {
       hints = std::exchange(to_hint_, {});
     }
     for (const std::string& hint : hints) send(channel, hint);
-    if (!events.empty()) {
-      channel.append(events);
-      std::set<std::string> jobs;
-      for (const store::EventRow& event : events) jobs.insert(event.job);
-      {
-        const std::lock_guard lock(mutex_);
-        for (std::size_t k = 0; k < events.size() && !to_write_.empty(); ++k) to_write_.pop_front();
-      }
-      std::string ids;
-      if (jobs.size() <= kMostIdsInHint)
-        for (const std::string& job : jobs) ids += " " + job;
-      send(channel, std::string(kEvents) + ids);
-    }
+    if (!events.empty()) append(channel, events);
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, kPauseBetweenWrites, [] { return false; });
   }
@@ -138,26 +140,29 @@ void EventExchange::listen(const std::stop_token& stop) {
       channel.forget_before(now_ms() - kKeptAfterEndMs);
       next_forgetting = Clock::now() + kPauseBetweenForgetting;
     }
-    std::vector<std::string> with_news;
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(next_search - Clock::now());
     const std::vector<std::string> hints = channel.wait(std::max(left, 0ms), bell_);
-    for (const std::string& hint : hints) hear(hint, with_news);
+    std::set<std::string> with_news;
+    bool of_any = hints.empty();  // somebody rang, or it is time to look around
+    for (const std::string& hint : hints) of_any |= !hear(hint, with_news);
     Feeds feeds = events_.following();
-    if (!hints.empty())  // else somebody rang, or it is time to look around
+    if (!of_any)
       std::erase_if(feeds, [&](const auto& followed) {
-        return std::ranges::find(with_news, followed.first) == with_news.end() &&
-               followed.second->newest() > 0;
+        return !with_news.contains(followed.first) && followed.second->newest() > 0;
       });
     fetch(channel, feeds);
   }
 }
 
-void EventExchange::hear(const std::string& hint, std::vector<std::string>& with_news) {
-  if (hint == kJobsWait) return hearing_.jobs_wait();
-  if (hint == kCancelled) return hearing_.jobs_cancelled();
-  if (!hint.starts_with(kEvents)) return;
+/// False for a hint that there are events without saying of which jobs.
+bool EventExchange::hear(const std::string& hint, std::set<std::string>& with_news) {
+  if (hint == kJobsWait) hearing_.jobs_wait();
+  if (hint == kCancelled) hearing_.jobs_cancelled();
+  if (!hint.starts_with(kEvents)) return true;
   std::istringstream ids(hint.substr(kEvents.size()));
-  for (std::string id; ids >> id;) with_news.push_back(id);
+  bool names_jobs = false;
+  for (std::string id; ids >> id; names_jobs = true) with_news.insert(id);
+  return names_jobs;
 }
 
 void EventExchange::fetch(store::EventChannel& channel, const Feeds& feeds) {

@@ -10,6 +10,7 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -56,8 +57,9 @@ class EventExchange {
                    const std::function<void()>& work);
   void write(const std::stop_token& stop);
   void send(store::EventChannel& channel, std::string_view hint);
+  void append(store::EventChannel& channel, const std::vector<store::EventRow>& events);
   void listen(const std::stop_token& stop);
-  void hear(const std::string& hint, std::vector<std::string>& with_news);
+  [[nodiscard]] bool hear(const std::string& hint, std::set<std::string>& with_news);
   void fetch(store::EventChannel& channel, const Feeds& feeds);
   void look_around(store::EventChannel& channel);
 
