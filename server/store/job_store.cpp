@@ -159,9 +159,9 @@ Insertion JobStore::insert(const JobRecord& job, const OwnerLimits& limits,
                            const std::optional<SpentTicket>& ticket, std::int64_t now_ms) {
   try {
     return transact([&]() -> Insertion {
-      if (ticket && !spend(*ticket, now_ms)) throw Refused{Insertion::Outcome::ticket_spent};
       const std::int64_t seq = insert_row(job);
       if (seq == 0) throw Refused{Insertion::Outcome::known};
+      if (ticket && !spend(*ticket, now_ms)) throw Refused{Insertion::Outcome::ticket_spent};
       check_limits(job, limits);
       return {.seq = seq};
     });

@@ -146,8 +146,9 @@ struct Submissions::Sent {
 std::string Submissions::accept(const http::Request& request, bool synchronous) {
   check_within_ticket(request);
   const std::string sender = sender_of(request);
+  const bool is_spent = request.ticket && store_.is_spent(request.ticket->id);  // read first
   const std::optional<store::JobRecord> known = known_job(request);
-  if (!known && request.ticket && store_.is_spent(request.ticket->id)) throw ticket_spent();
+  if (!known && is_spent) throw ticket_spent();
   if (!known) queue_.check_room({.who = sender, .owner = request.caller.owner});
   const std::string upload = random_job_id();
   try {

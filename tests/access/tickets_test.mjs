@@ -170,9 +170,11 @@ test("tickets are for who may submit, and count for the quota of the key", async
 
 test("two that send one ticket at once make one job", async (t) => {
   const { at } = await site(t);
-  const url = await at.ticket();
-  const answers = await Promise.all(Array.from({ length: 8 }, () => at.send(url)));
-  const ids = new Set();
-  for (const answer of answers) ids.add((await json(answer, 202)).id);
-  assert.equal(ids.size, 1);
+  for (let round = 0; round < 10; round++) {
+    const url = await at.ticket();
+    const answers = await Promise.all(Array.from({ length: 8 }, () => at.send(url)));
+    const ids = new Set();
+    for (const answer of answers) ids.add((await json(answer, 202)).id);
+    assert.equal(ids.size, 1);
+  }
 });

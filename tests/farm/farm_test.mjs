@@ -199,6 +199,10 @@ test("what is promised once holds for all nodes together", options, async (t) =>
       fetch(new URL(urls[0], node.url), {
         method: "POST", headers: { "Content-Type": "model/obj" }, body: `${grid(3)}# ${k}\n` }));
     assert.equal(answers.filter((answer) => answer.status === 202).length, 1, String(answers.map((answer) => answer.status)));
+    const same = await send(fronts[0], "/v1/tickets", { body: "", headers: as(all, { "Content-Type": "application/json" }) });
+    const [url] = (await same.json()).urls;
+    const told = await race(10, async (node) => (await send(node, url, {})).json());
+    assert.equal(new Set(told.map(({ id }) => id)).size, 1, JSON.stringify(told[0]));
   });
 
   await t.test("a key with many jobs keeps another waiting for one job at most", async () => {
