@@ -24,18 +24,16 @@ http::Address address_of(const std::string& text) {
 }
 
 ConfigRow listen_row() {
-  return {
-      .heading = {"listen", "HOST:PORT", "http::Address of the service; port 0 takes a free port"},
-      .kind = ConfigKind::text,
-      .set = [](Config& config, const std::string& text) { config.listen = address_of(text); },
-      .get = [](const Config& config) { return to_text(config.listen); }};
+  return {.heading = {"listen", "HOST:PORT", "Address of the service; port 0 takes a free port"},
+          .kind = ConfigKind::text,
+          .set = [](Config& config, const std::string& text) { config.listen = address_of(text); },
+          .get = [](const Config& config) { return to_text(config.listen); }};
 }
 
 ConfigRow admin_row() {
-  return {.heading =
-              {"admin-listen", "HOST:PORT",
-               "http::Address of probes and metrics, or off. Unset: 127.0.0.1 with the port after "
-               "that of --listen"},
+  return {.heading = {"admin-listen", "HOST:PORT",
+                      "Address of probes and metrics, or off. Unset: 127.0.0.1 with the port after "
+                      "that of --listen"},
           .kind = ConfigKind::text,
           .set =
               [](Config& config, const std::string& text) {

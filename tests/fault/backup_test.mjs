@@ -68,5 +68,5 @@ test("a backup of a server that was killed, and one that is damaged", async (t) 
   assert.match(refused.stderr, /not a complete backup: j_\w+\/result\.obj is damaged.*Nothing was restored/);
   const checked = run("check", "--data", backup);
   assert.deepEqual([checked.status, readdirSync(place)], [3, ["b"]]);
-  assert.match(run("--help").stdout, /unwrapd backup, restore and check/);
+  assert.match(run("--help").stdout, /unwrapd backup, restore, check and move/);
 });
