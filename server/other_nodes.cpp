@@ -34,11 +34,11 @@ OtherNodes::OtherNodes(const store::PostgresAddress& database, store::JobStore& 
                        const Log& log) {
   if (!store.node().is_shared) return;
   store.on_success([&blobs](const store::JobRecord& job) { blobs.publish(job.id, job.attempt); });
-  jobs::Hearing hearing{
+  jobs::ExchangeCallbacks callbacks{
       .jobs_wait = [&queue] { queue.look_for_jobs(); },
       .jobs_cancelled = [&queue] { queue.stop_cancelled(); },
       .job_ended = [&queue](const std::string& job) { queue.tell_end_elsewhere(job); }};
-  exchange_ = std::make_unique<jobs::EventExchange>(database, events, std::move(hearing), log);
+  exchange_ = std::make_unique<jobs::EventExchange>(database, events, std::move(callbacks), log);
   events.share_with([this](store::EventRow event) { exchange_->share(std::move(event)); },
                     [this](const std::string&) { exchange_->fetch_now(); });
   queue.tell_others([this] { exchange_->tell_jobs_wait(); },

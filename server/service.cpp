@@ -178,7 +178,7 @@ struct Service::Parts {
         },
         log);
     if (node.is_shared)
-      tidying.emplace(
+      sweeping_files.emplace(
           "sweeping files", 1h, [&] { store::sweep_at_start(store, mesh_store, blobs, log); }, log);
     mending.emplace(
         "mending after a loss of the database", 1s, [this] { queue.mend(); }, log);
@@ -262,7 +262,7 @@ struct Service::Parts {
   std::optional<http::HttpServer> http;
   http::Router admin_router;
   std::optional<http::HttpServer> admin;
-  std::optional<Periodic> sweeping, tidying, renewing, mending, calling, trimming;
+  std::optional<Periodic> sweeping, sweeping_files, renewing, mending, calling, trimming;
   std::optional<jobs::WorkerPool> workers;
   std::jthread serving, serving_admin;
   bool is_stopped = false;

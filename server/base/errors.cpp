@@ -13,12 +13,15 @@ constexpr int kAwayRetrySeconds = 2;
 
 }  // namespace
 
-StoreAway::StoreAway(std::string reason, bool in_doubt)
+StoreAway::StoreAway(StorePart part, const std::string& reason, bool in_doubt)
     : RetryLater(ErrorCode::storage_failed,
-                 "The server's database cannot be reached; send the request again after "
-                 "Retry-After.",
+                 "The server's " +
+                     std::string(part == StorePart::database ? "database" : "storage") +
+                     " cannot be reached; send the request again after Retry-After.",
                  kAwayRetrySeconds),
-      reason_("The database of --database cannot be reached (" + std::move(reason) + ")."),
+      reason_((part == StorePart::database ? "The database of --database cannot be reached ("
+                                           : "The bucket of --blobs cannot be reached (") +
+              reason + ")."),
       in_doubt_(in_doubt) {}
 
 std::string reason_of(const std::exception& error) {

@@ -22,10 +22,13 @@ class RetryLater : public Error {
   int seconds_;
 };
 
-/// The database of the store cannot be reached, which passes. reason: for the log of the operator.
+/// What of the store may be away.
+enum class StorePart { database, files };
+
+/// A part of the store cannot be reached, which passes. reason: for the log of the operator.
 class StoreAway : public RetryLater {
  public:
-  StoreAway(std::string reason, bool in_doubt);
+  StoreAway(StorePart part, const std::string& reason, bool in_doubt = false);
 
   [[nodiscard]] const std::string& reason() const noexcept { return reason_; }
   /// Whether the change may yet have come about.

@@ -24,11 +24,11 @@ constexpr std::size_t kMostIdsInHint = 100;  // a hint has room for 8000 bytes
 
 }  // namespace
 
-EventExchange::EventExchange(store::PostgresAddress address, EventFeed& events, Hearing hearing,
-                             const Log& log)
+EventExchange::EventExchange(store::PostgresAddress address, EventFeed& events,
+                             ExchangeCallbacks callbacks, const Log& log)
     : address_(std::move(address)),
       events_(events),
-      hearing_(std::move(hearing)),
+      callbacks_(std::move(callbacks)),
       log_(log),
       writing_([this](const std::stop_token& stop) {
         keep_trying(stop, "sharing events", [&] { write(stop); });
@@ -91,15 +91,17 @@ void EventExchange::send(store::EventChannel& channel, std::string_view hint) {
   }
 }
 
-void EventExchange::append(store::EventChannel& channel,
-                           const std::vector<store::EventRow>& events) {
-  channel.append(events);
-  {
-    const std::lock_guard lock(mutex_);
-    for (std::size_t k = 0; k < events.size() && !to_write_.empty(); ++k) to_write_.pop_front();
-  }
+/// What is not written when the session is lost is written by the next one.
+void EventExchange::append(store::EventChannel& channel) {
   std::set<std::string> jobs;
-  for (const store::EventRow& event : events) jobs.insert(event.job);
+  for (const store::EventRow& event : unsent_) jobs.insert(event.job);
+  try {
+    channel.append(unsent_);
+  } catch (const Error& error) {  // tried again, they would hold up all others
+    log_.error("events are not told to other nodes",
+               {{"events", unsent_.size()}, {"reason", reason_of(error)}});
+  }
+  unsent_.clear();
   std::string ids;
   if (jobs.size() <= kMostIdsInHint)  // else: of any
     for (const std::string& job : jobs) ids += " " + job;
@@ -109,19 +111,19 @@ void EventExchange::append(store::EventChannel& channel,
 /// Of an end of the server, the last events are written.
 void EventExchange::write(const std::stop_token& stop) {
   store::EventChannel channel(address_);
+  if (!unsent_.empty()) append(channel);
   while (true) {
-    std::vector<store::EventRow> events;
     std::vector<std::string> hints;
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, stop, [&] { return !to_write_.empty() || !to_hint_.empty(); });
       if (to_write_.empty() && to_hint_.empty()) return;
-      const std::size_t count = std::min(to_write_.size(), kMostAtOnce);
-      events.assign(to_write_.begin(), to_write_.begin() + static_cast<std::ptrdiff_t>(count));
       hints = std::exchange(to_hint_, {});
+      for (; !to_write_.empty() && unsent_.size() < kMostAtOnce; to_write_.pop_front())
+        unsent_.push_back(std::move(to_write_.front()));
     }
     for (const std::string& hint : hints) send(channel, hint);
-    if (!events.empty()) append(channel, events);
+    if (!unsent_.empty()) append(channel);
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, kPauseBetweenWrites, [] { return false; });
   }
@@ -144,7 +146,7 @@ void EventExchange::listen(const std::stop_token& stop) {
     const std::vector<std::string> hints = channel.wait(std::max(left, 0ms), bell_);
     std::set<std::string> with_news;
     bool of_any = hints.empty();  // somebody rang, or it is time to look around
-    for (const std::string& hint : hints) of_any |= !hear(hint, with_news);
+    for (const std::string& hint : hints) of_any |= !take_hint(hint, with_news);
     Feeds feeds = events_.following();
     if (!of_any)
       std::erase_if(feeds, [&](const auto& followed) {
@@ -155,9 +157,9 @@ void EventExchange::listen(const std::stop_token& stop) {
 }
 
 /// False for a hint that there are events without saying of which jobs.
-bool EventExchange::hear(const std::string& hint, std::set<std::string>& with_news) {
-  if (hint == kJobsWait) hearing_.jobs_wait();
-  if (hint == kCancelled) hearing_.jobs_cancelled();
+bool EventExchange::take_hint(const std::string& hint, std::set<std::string>& with_news) {
+  if (hint == kJobsWait) callbacks_.jobs_wait();
+  if (hint == kCancelled) callbacks_.jobs_cancelled();
   if (!hint.starts_with(kEvents)) return true;
   std::istringstream ids(hint.substr(kEvents.size()));
   bool names_jobs = false;
@@ -183,14 +185,14 @@ void EventExchange::fetch(store::EventChannel& channel, const Feeds& feeds) {
 
 /// Finds what no hint told of.
 void EventExchange::look_around(store::EventChannel& channel) {
-  hearing_.jobs_wait();
-  hearing_.jobs_cancelled();
+  callbacks_.jobs_wait();
+  callbacks_.jobs_cancelled();
   const Feeds feeds = events_.following();
   fetch(channel, feeds);
   std::vector<store::EventChannel::JobAndSeq> followed;
   for (const auto& [job, feed] : events_.following()) followed.emplace_back(job, 0);
   if (followed.empty()) return;
-  for (const std::string& job : channel.ended(followed)) hearing_.job_ended(job);
+  for (const std::string& job : channel.ended(followed)) callbacks_.job_ended(job);
 }
 
 }  // namespace unwrapd::server::jobs

@@ -2,8 +2,8 @@
 // The events of jobs on other nodes of the same store. One thread writes the events of this node's
 // jobs, a few at a time, and sends hints; another waits for hints, and fills the feeds of jobs that
 // run elsewhere. Whatever a hint says is also looked for once a second, so that a lost hint costs
-// time alone. While the database is away, events wait; of too many, the oldest are given up, which
-// readers see as a gap.
+// time alone. While the database is away, events wait; of too many, the oldest are given up, and so
+// are those that it refuses. Readers elsewhere see a gap.
 
 #include <chrono>
 #include <condition_variable>
@@ -23,17 +23,18 @@
 
 namespace unwrapd::server::jobs {
 
-/// What a node does when it hears, or finds by looking, that others did something.
-struct Hearing {
+/// What a node does when it is told, or finds by looking, that others did something.
+struct ExchangeCallbacks {
   std::function<void()> jobs_wait;
   std::function<void()> jobs_cancelled;  ///< of this node
   std::function<void(const std::string& job)> job_ended;
 };
 
-/// Thread-safe. The feeds and what hears must outlive it.
+/// Thread-safe. The feeds and what the callbacks use must outlive it.
 class EventExchange {
  public:
-  EventExchange(store::PostgresAddress address, EventFeed& events, Hearing hearing, const Log& log);
+  EventExchange(store::PostgresAddress address, EventFeed& events, ExchangeCallbacks callbacks,
+                const Log& log);
   ~EventExchange();
 
   /// Writes an event for other nodes.
@@ -57,23 +58,24 @@ class EventExchange {
                    const std::function<void()>& work);
   void write(const std::stop_token& stop);
   void send(store::EventChannel& channel, std::string_view hint);
-  void append(store::EventChannel& channel, const std::vector<store::EventRow>& events);
+  void append(store::EventChannel& channel);
   void listen(const std::stop_token& stop);
-  [[nodiscard]] bool hear(const std::string& hint, std::set<std::string>& with_news);
+  [[nodiscard]] bool take_hint(const std::string& hint, std::set<std::string>& with_news);
   void fetch(store::EventChannel& channel, const Feeds& feeds);
   void look_around(store::EventChannel& channel);
 
   const store::PostgresAddress address_;
   EventFeed& events_;
-  const Hearing hearing_;
+  const ExchangeCallbacks callbacks_;
   const Log& log_;
   Wakeup bell_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::deque<store::EventRow> to_write_;
   std::vector<std::string> to_hint_;
-  bool can_hint_ = true;              // as far as is known
-  std::jthread writing_, listening_;  // last: they use the others
+  std::vector<store::EventRow> unsent_;  // of to_write_, those that the writing thread writes now
+  bool can_hint_ = true;                 // as far as is known
+  std::jthread writing_, listening_;     // last: they use the others
 };
 
 }  // namespace unwrapd::server::jobs

@@ -12,6 +12,12 @@ namespace {
 constexpr std::size_t kMaxReadingBytes = std::size_t{4} * 1024;  // at once, kept for each reader
 constexpr std::chrono::milliseconds kTimeToCatchUp{300};
 
+/// Whether an event has the first number of a part.
+bool begins_part(std::int64_t seq) {
+  const std::int64_t before = (seq - 1) % kSeqsPerAttempt;
+  return before == 0 || before == kSeqsOfEnds || before == kSeqsOfRun;
+}
+
 }  // namespace
 
 JobFeed::JobFeed(std::int64_t base, std::size_t capacity, Metrics* metrics,
@@ -58,6 +64,8 @@ void JobFeed::append(const store::EventRow& event) {
   {
     const std::lock_guard lock(mutex_);
     if (over() || !following_ || event.seq <= newest_) return;
+    if (event.seq > newest_ + 1 && !begins_part(event.seq))
+      keep({event.seq - 1, api::sse_frame(api::gap_event(newest_ + 1, event.seq - 1))});
     keep({event.seq, event.frame});
     if (!event.progress.empty()) progress_ = api::progress_of(api::Json::parse(event.progress));
     finished_ = event.is_last;
@@ -184,7 +192,7 @@ std::shared_ptr<JobFeed> EventFeed::find(std::string_view job) const {
   return found == feeds_.end() ? nullptr : found->second;
 }
 
-std::shared_ptr<JobFeed> EventFeed::of(const store::JobRecord& job) {
+std::shared_ptr<JobFeed> EventFeed::find_or_follow(const store::JobRecord& job) {
   std::shared_ptr<JobFeed> feed;
   {
     const std::lock_guard lock(mutex_);

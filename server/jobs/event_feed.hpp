@@ -36,7 +36,11 @@ struct Reading {
   bool end = false;           ///< nothing will follow
 };
 
+/// The numbers of an attempt, in parts of which each has one writer: the node that queued the job,
+/// one that ends it without running it, and the one that runs it.
 inline constexpr std::int64_t kSeqsPerAttempt = 1'000'000'000;
+inline constexpr std::int64_t kSeqsOfEnds = 500'000;   ///< where the second part begins
+inline constexpr std::int64_t kSeqsOfRun = 1'000'000;  ///< and the third
 
 /// The events of one job. Thread-safe.
 class JobFeed {
@@ -67,7 +71,8 @@ class JobFeed {
   /// Whether the job runs elsewhere, and append() adds its events.
   [[nodiscard]] bool is_following() const { return following_; }
   void follow(bool following) { following_ = following; }
-  /// Adds an event of another node, unless one of its number or a later one is there.
+  /// Adds an event of another node, unless one of its number or a later one is there. Where events
+  /// before it were lost, readers get one that names the gap.
   void append(const store::EventRow& event);
   [[nodiscard]] bool is_finished() const;
   [[nodiscard]] std::int64_t newest() const;
@@ -129,7 +134,7 @@ class EventFeed {
                                 std::chrono::milliseconds waited = {});
   /// The feed of a job, which follows it where it runs elsewhere. nullptr when the job has ended,
   /// or nothing runs elsewhere, and there is none.
-  std::shared_ptr<JobFeed> of(const store::JobRecord& job);
+  std::shared_ptr<JobFeed> find_or_follow(const store::JobRecord& job);
   /// All that follow, by job.
   [[nodiscard]] std::vector<std::pair<std::string, std::shared_ptr<JobFeed>>> following() const;
   [[nodiscard]] std::shared_ptr<JobFeed> find(std::string_view job) const;

@@ -1,5 +1,8 @@
 // The part of job_queue.hpp for the ends of jobs: stored first, then told.
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <thread>
 
 #include "api/error_table.hpp"
 #include "server/base/clock.hpp"
@@ -14,7 +17,6 @@ using api::JobState;
 
 constexpr int kMaxAttemptsWhenFull = 20;
 constexpr std::chrono::milliseconds kPauseWhileAway{500};
-constexpr std::int64_t kSeqsOfEnds = 500'000;  // for ends by nodes that do not run the job
 
 }  // namespace
 
@@ -32,11 +34,18 @@ bool JobQueue::wait_for_room(const RunningJob& job, const store::JobOutcome& out
 
 /// The success that it is, if its files can be noted.
 store::JobOutcome JobQueue::sealed(const store::JobRecord& job, store::JobOutcome outcome) {
-  try {
-    outcome.stored_bytes = blobs_.seal(job.id, job.attempt);
-    return outcome;
-  } catch (const Error& error) {
-    return store::ended(JobState::failed, error, job.id);
+  while (true) {
+    try {
+      outcome.stored_bytes = blobs_.seal(job.id, job.attempt);
+      return outcome;
+    } catch (const StoreAway& away) {
+      log_.warning("the results of a job wait for the bucket",
+                   {{"job", job.id}, {"reason", reason_of(away)}});
+      if (closed_) return store::ended(JobState::cancelled, away, job.id);
+    } catch (const Error& error) {
+      return store::ended(JobState::failed, error, job.id);
+    }
+    std::this_thread::sleep_for(kPauseWhileAway);
   }
 }
 
@@ -50,7 +59,7 @@ void JobQueue::finish(const RunningJob& job, store::JobOutcome outcome,
     changed_.notify_all();
     lengths_.add(job.seconds());
   };
-  outcome.ran_ms = static_cast<std::int64_t>(job.seconds() * kMsPerSecond);
+  outcome.ran_ms = std::max<std::int64_t>(1, std::llround(job.seconds() * kMsPerSecond));
   while (true) {
     try {
       settle_end(job, outcome, stored);
@@ -117,7 +126,7 @@ void JobQueue::tell_end(const store::JobRecord& job) {
                           {"problem", job.problem}});
 }
 
-/// What fails here is done by the first node that finds the job (JobStore::on_success()).
+/// What fails here is done by the first node that finds the job (JobStore::on_found()).
 void JobQueue::publish(const store::JobRecord& job) {
   try {
     blobs_.publish(job.id, job.attempt);

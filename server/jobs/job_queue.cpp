@@ -1,6 +1,7 @@
 #include "server/jobs/job_queue.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ranges>
 
 #include "api/error_table.hpp"
@@ -17,8 +18,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kPauseWhileTaken{5};
 constexpr std::chrono::seconds kPauseBetweenLooks{1};
-/// Of the numbers of an attempt, those for events of nodes that do not run it.
-constexpr std::int64_t kSeqsOfQueue = 1'000'000;
 
 /// Of an insertion that added nothing. Only where requests come to several nodes at a time: a quota
 /// is checked before.
@@ -92,8 +91,9 @@ QueueState JobQueue::state() {
           .running = at_work()};
 }
 
+/// At least 1, as of lengths: turns go by what jobs cost, and without a cost they do not change.
 std::int64_t JobQueue::mean_ms() const {
-  return static_cast<std::int64_t>(lengths_.mean * kMsPerSecond);
+  return std::max<std::int64_t>(1, std::llround(lengths_.mean * kMsPerSecond));
 }
 
 store::QueueCounts JobQueue::counts() {
@@ -220,7 +220,7 @@ std::shared_ptr<RunningJob> JobQueue::begin(store::JobRecord record) {
       std::max<std::int64_t>(0, job->record.started_ms - job->record.created_ms));
   if (!job->feed) job->feed = events_.open(id, job->record.attempt - 1, waited);
   job->feed->follow(false);
-  if (is_shared()) job->feed->rise_to((job->record.attempt - 1) * kSeqsPerAttempt + kSeqsOfQueue);
+  if (is_shared()) job->feed->rise_to((job->record.attempt - 1) * kSeqsPerAttempt + kSeqsOfRun);
   job->started_ms = job->record.started_ms;
   std::shared_ptr<RunningJob>& running = running_[id];
   if (running) running->request_stop(StopCause::lost);  // taken from this node, and now given back

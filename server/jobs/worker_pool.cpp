@@ -213,8 +213,23 @@ WorkerPool::Then WorkerPool::come_back(const RunningJob& job) {
   return Then::leave;
 }
 
+/// Waits for a bucket that is away.
+store::LoadedInput WorkerPool::load(const RunningJob& job) const {
+  while (true) {
+    try {
+      return {blobs_, job.record};
+    } catch (const StoreAway& away) {
+      if (job.stop.stop_requested())
+        throw Error(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
+      log_.warning("a job waits for its files",
+                   {{"job", job.record.id}, {"reason", reason_of(away)}});
+    }
+    std::this_thread::sleep_for(kPauseAfterFailure);
+  }
+}
+
 std::string WorkerPool::run(const RunningJob& job, const Means& means) {
-  const store::LoadedInput loaded(blobs_, job.record);
+  const store::LoadedInput loaded = load(job);
   FeedOutput output(job, blobs_, {means.reservation, config_.most_bytes});
   const auto queue_ms = static_cast<double>(job.started_ms - job.record.created_ms);
   const work::JobTask task{.record = loaded.record(),

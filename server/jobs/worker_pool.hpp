@@ -70,6 +70,7 @@ class WorkerPool {
   Then come_back(const RunningJob& job);
   store::JobOutcome attempt(const RunningJob& job, const Means& means);
   std::string run_patiently(const RunningJob& job, const Means& means);
+  [[nodiscard]] store::LoadedInput load(const RunningJob& job) const;
   std::string run(const RunningJob& job, const Means& means);
 
   JobQueue& queue_;

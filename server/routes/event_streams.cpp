@@ -68,7 +68,7 @@ http::Response EventStreams::stream(const store::JobRecord& job, Watcher watcher
   http::Response response;
   response.content_type = "text/event-stream";
   response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-  const std::shared_ptr<jobs::JobFeed> feed = events_.of(job);
+  const std::shared_ptr<jobs::JobFeed> feed = events_.find_or_follow(job);
   if (!feed) {
     response.body = greeting + last_frames(job, watcher.seen.value_or(0));
     return response;

@@ -29,7 +29,7 @@ http::Response job_response(int status, const JobServices& services, const store
                             const http::Request& request) {
   api::Job job = shown_job(services, record, request);
   const bool is_running = record.state == api::JobState::running;
-  const auto feed = is_running ? services.events.of(record) : nullptr;
+  const auto feed = is_running ? services.events.find_or_follow(record) : nullptr;
   if (feed) job.progress = feed->progress();
   http::Response response = http::json_response(status, api::to_json(job).dump());
   response.headers.emplace_back("Cache-Control", "no-store");
@@ -40,7 +40,7 @@ http::Response job_response(int status, const JobServices& services, const store
 void wait_for(const JobServices& services, const std::string& id, std::chrono::seconds time) {
   std::shared_ptr<jobs::JobFeed> feed = services.events.find(id);
   if (!feed)
-    if (const auto job = services.store.find(id)) feed = services.events.of(*job);
+    if (const auto job = services.store.find(id)) feed = services.events.find_or_follow(*job);
   if (feed) static_cast<void>(feed->wait_finished(std::chrono::steady_clock::now() + time));
 }
 

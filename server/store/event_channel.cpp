@@ -5,11 +5,12 @@
 #include <array>
 
 #include "api/json.hpp"
+#include "server/store/job_rows.hpp"
 
 namespace unwrapd::server::store {
 namespace {
 
-constexpr const char* kUnhurried =
+constexpr const char* kEventSession =
     "SET default_transaction_read_only = off; SET synchronous_commit = off";
 constexpr const char* kAppend =
     "INSERT INTO events (job, seq, last, frame, progress)"
@@ -28,20 +29,16 @@ constexpr const char* kForget =
     "DELETE FROM events WHERE job NOT IN (SELECT id FROM jobs"
     " WHERE state IN ('queued', 'running') OR finished_ms >= ?)";
 
-std::string as_json_text(const api::Json& json) {
-  return json.dump(-1, ' ', false, api::Json::error_handler_t::replace);
-}
-
-std::string as_json_text(const std::vector<EventChannel::JobAndSeq>& jobs) {
+std::string positions(const std::vector<EventChannel::JobAndSeq>& jobs) {
   api::Json all = api::Json::array();
   for (const auto& [job, seq] : jobs) all.push_back({{"job", job}, {"seq", seq}});
-  return as_json_text(all);
+  return text_of(all);
 }
 
 }  // namespace
 
 EventChannel::EventChannel(const PostgresAddress& address) : link_(address.url) {
-  link_.run(kUnhurried);
+  link_.run(kEventSession);
   channel_ = link_.run("SELECT 'unwrapd_' || md5(current_schema())").text(0, 0);
 }
 
@@ -53,11 +50,11 @@ void EventChannel::append(const std::vector<EventRow>& events) {
                    {"last", int{event.is_last}},
                    {"frame", event.frame},
                    {"progress", event.progress}});
-  link_.run(kAppend, {{.text = as_json_text(all), .type = kTextType}});
+  link_.run(kAppend, {{.text = text_of(all), .type = kTextType}});
 }
 
 std::vector<EventRow> EventChannel::after(const std::vector<JobAndSeq>& jobs) {
-  const PostgresResult rows = link_.run(kAfter, {{.text = as_json_text(jobs), .type = kTextType}});
+  const PostgresResult rows = link_.run(kAfter, {{.text = positions(jobs), .type = kTextType}});
   std::vector<EventRow> events;
   for (int row = 0; row < rows.rows(); ++row)
     events.push_back({.job = rows.text(row, 0),
@@ -69,7 +66,7 @@ std::vector<EventRow> EventChannel::after(const std::vector<JobAndSeq>& jobs) {
 }
 
 std::vector<std::string> EventChannel::ended(const std::vector<JobAndSeq>& jobs) {
-  const PostgresResult rows = link_.run(kEnded, {{.text = as_json_text(jobs), .type = kTextType}});
+  const PostgresResult rows = link_.run(kEnded, {{.text = positions(jobs), .type = kTextType}});
   std::vector<std::string> ids;
   for (int row = 0; row < rows.rows(); ++row) ids.push_back(rows.text(row, 0));
   return ids;

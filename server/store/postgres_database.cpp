@@ -89,7 +89,7 @@ void PostgresDatabase::claim_on(PostgresLink& link) const {
 
 void PostgresDatabase::be_away(bool in_doubt) const {
   was_away_ = true;
-  throw StoreAway(why_away_, in_doubt);
+  throw StoreAway(StorePart::database, why_away_, in_doubt);
 }
 
 /// Throws StoreAway when it cannot be reached until then.

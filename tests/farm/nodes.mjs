@@ -6,20 +6,11 @@ import { connect, createServer } from "node:net";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { isInstalled, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
+import { COUNT_ENDS, isInstalled, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
 import { dataDirectory, grid, Server } from "../fault/server.mjs";
 
 export const options = { skip: isInstalled() ? false : NOT_INSTALLED };
 export const LEASE_SECONDS = 3; // the shortest that there is
-
-/** Counts each end of a job that is committed. */
-const COUNT_ENDS = `
-  CREATE TABLE ends (id TEXT);
-  CREATE FUNCTION note_end() RETURNS trigger LANGUAGE plpgsql AS
-    $$ BEGIN INSERT INTO ends VALUES (NEW.id); RETURN NULL; END $$;
-  CREATE TRIGGER ends AFTER UPDATE OF state ON jobs FOR EACH ROW
-    WHEN (NEW.state IN ('succeeded', 'failed', 'cancelled'))
-    EXECUTE FUNCTION note_end();`;
 
 export class Farm {
   constructor(t) {
@@ -27,6 +18,7 @@ export class Farm {
     t.after(() => this.postgres.remove());
     this.folder = dataDirectory(t);
     this.shared = join(this.folder, "shared");
+    this.blobs = ["--blobs", `dir:${this.shared}`];
     this.url = this.postgres.url();
     this.nodes = new Map();
     t.after(() => this.nodes.forEach((node) => node.process.kill("SIGKILL")));
@@ -41,7 +33,7 @@ export class Farm {
   async startBy(url, name, workers, ...flags) {
     const data = join(this.folder, name);
     mkdirSync(data, { recursive: true });
-    const usual = ["--database", url, "--blobs", `dir:${this.shared}`, "--workers", String(workers)];
+    const usual = ["--database", url, ...this.blobs, "--workers", String(workers)];
     const lease = ["--lease-seconds", String(LEASE_SECONDS), "--log-level", "warning"];
     const node = await Server.start(data, ...usual, ...lease, ...flags);
     node.name = name;
@@ -53,7 +45,7 @@ export class Farm {
   /** Starts a node that listens for no requests. */
   async startWorker(name, ...flags) {
     const data = join(this.folder, name);
-    const usual = ["--database", this.url, "--blobs", `dir:${this.shared}`, "--lease-seconds", String(LEASE_SECONDS)];
+    const usual = ["--database", this.url, ...this.blobs, "--lease-seconds", String(LEASE_SECONDS)];
     const node = await Server.startAs(["worker"], {}, data, ...usual, "--log-level", "warning", ...flags);
     this.nodes.set(name, node);
     return node;

@@ -5,7 +5,7 @@ import { execFile } from "node:child_process";
 import test, { after } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { commitProxy, isInstalled, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
+import { commitProxy, COUNT_ENDS, isInstalled, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
 import { dataDirectory, grid, QUICK, Server } from "./server.mjs";
 
 const KILLED_JOBS = 200;
@@ -15,15 +15,6 @@ const PROXY_PORT = 5433;
 const options = { skip: isInstalled() ? false : NOT_INSTALLED };
 const postgres = isInstalled() ? new Postgres({ sync: false }) : undefined;
 after(() => postgres?.remove());
-
-/** Counts each end of a job that is committed. */
-const COUNT_ENDS = `
-  CREATE TABLE ends (id TEXT);
-  CREATE FUNCTION note_end() RETURNS trigger LANGUAGE plpgsql AS
-    $$ BEGIN INSERT INTO ends VALUES (NEW.id); RETURN NULL; END $$;
-  CREATE TRIGGER ends AFTER UPDATE OF state ON jobs FOR EACH ROW
-    WHEN (NEW.state IN ('succeeded', 'failed', 'cancelled'))
-    EXECUTE FUNCTION note_end();`;
 
 async function start(t, data, port = undefined, ...flags) {
   const flagsOfAll = ["--database", postgres.url(port), "--workers", "2", "--isolate=off"];

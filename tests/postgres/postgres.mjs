@@ -10,6 +10,15 @@ import { join } from "node:path";
 const DEBIAN = "/usr/lib/postgresql";
 export const NOT_INSTALLED = "PostgreSQL is not installed (Debian package postgresql)";
 
+/** Makes the table `ends`, which has a row for each end of a job that is committed. */
+export const COUNT_ENDS = `
+  CREATE TABLE ends (id TEXT);
+  CREATE FUNCTION note_end() RETURNS trigger LANGUAGE plpgsql AS
+    $$ BEGIN INSERT INTO ends VALUES (NEW.id); RETURN NULL; END $$;
+  CREATE TRIGGER ends AFTER UPDATE OF state ON jobs FOR EACH ROW
+    WHEN (NEW.state IN ('succeeded', 'failed', 'cancelled'))
+    EXECUTE FUNCTION note_end();`;
+
 /** Where its programs are: of the newest version; undefined where there is none. */
 function programs() {
   const versions = existsSync(DEBIAN) ? readdirSync(DEBIAN).sort((a, b) => b - a) : [];

@@ -32,7 +32,7 @@ TEST(ReasonOfAnError, IsItsOwnTextElse) {
 }
 
 TEST(AStoreThatIsAway, IsUnavailableForClientsAndHasAReasonForTheLog) {
-  const StoreAway away("refused by db.example", true);
+  const StoreAway away(StorePart::database, "refused by db.example", true);
   EXPECT_THAT(reason_of(away), HasSubstr("refused by db.example"));
   const http::Response response = http::error_response(away);
   EXPECT_EQ(response.status, 503);

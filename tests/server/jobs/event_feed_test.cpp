@@ -192,7 +192,7 @@ TEST_F(SharedFeeds, AReaderElsewhereGetsTheSameEvents) {
   publish_iteration(*feed, 1);
   feed->set_progress({.stage = Stage::solve, .iteration = 2});
   publish_iteration(*feed, 2);
-  const auto followed = there_.of(running());
+  const auto followed = there_.find_or_follow(running());
   EXPECT_EQ(followed->read(0).frames, feed->read(0).frames);
   EXPECT_EQ(followed->progress()->iteration, 2);
   publish_end(*feed);
@@ -205,13 +205,25 @@ TEST_F(SharedFeeds, AReaderElsewhereGetsTheSameEvents) {
 TEST_F(SharedFeeds, AnEventComesOnceAndNoneThatIsLate) {
   const auto feed = here_.open("j_1", 0);
   publish_iteration(*feed, 1);
-  const auto followed = there_.of(running());
+  const auto followed = there_.find_or_follow(running());
   followed->append(told_.front());
   EXPECT_EQ(count(followed->read(0).frames, "event: iteration"), 1);
   followed->rise_to(kSeqsPerAttempt);
   publish_iteration(*feed, 2);
   followed->append(told_.back());
   EXPECT_EQ(count(followed->read(0).frames, "event: iteration"), 1) << "of an attempt before";
+}
+
+TEST_F(SharedFeeds, WhatWasLostOnTheWayIsToldAsAGap) {
+  const auto feed = here_.open("j_1", 0);
+  feed->rise_to(kSeqsOfRun);
+  for (int k = 1; k <= 4; ++k) publish_iteration(*feed, k);
+  told_.erase(told_.begin() + 1, told_.begin() + 3);
+  const Reading reading = there_.find_or_follow(running())->read(0);
+  EXPECT_THAT(reading.frames, HasSubstr("\"first\":1000002,\"last\":1000003"));
+  EXPECT_EQ(count(reading.frames, "event: gap"), 1) << "none where a part of the numbers begins";
+  EXPECT_EQ(count(reading.frames, "event: iteration"), 2);
+  EXPECT_EQ(reading.last_seq, kSeqsOfRun + 4);
 }
 
 TEST_F(SharedFeeds, NumbersOfALaterAttemptLeaveNoGapForItsReaders) {
@@ -227,9 +239,9 @@ TEST_F(SharedFeeds, NumbersOfALaterAttemptLeaveNoGapForItsReaders) {
 TEST_F(SharedFeeds, NothingIsFollowedThatHasEndedOrRunsHere) {
   store::JobRecord ended = running();
   ended.state = api::JobState::failed;
-  EXPECT_EQ(there_.of(ended), nullptr);
+  EXPECT_EQ(there_.find_or_follow(ended), nullptr);
   const auto own = here_.open("j_1", 0);
-  EXPECT_EQ(here_.of(running()), own);
+  EXPECT_EQ(here_.find_or_follow(running()), own);
   own->append({.job = "j_1", .seq = 7, .is_last = true, .frame = "late", .progress = {}});
   EXPECT_FALSE(own->read(0).end) << "of a node that does not know that it has lost the job";
 }

@@ -63,7 +63,8 @@ TEST_F(FeedOutputs, WaitForAStoreThatCannotBeReachedUntilTheJobIsStopped) {
   int asked = 0;
   const std::function<std::int64_t(const std::string&)> away =
       [&](const std::string&) -> std::int64_t {
-    if (++asked < 3 || job_.stop.stop_requested()) throw StoreAway("gone", false);
+    if (++asked < 3 || job_.stop.stop_requested())
+      throw StoreAway(StorePart::database, "gone", false);
     return 0;
   };
   FeedOutput patient(job_, blobs_, {reservation_, away});

@@ -43,7 +43,7 @@ class GoneDatabase final : public store::Database {
     if (fate == Fate::pass || fate == Fate::made_unheard) file_.transact(make);
     if (fate == Fate::pass) return;
     was_away_ = true;
-    throw StoreAway("gone", fate != Fate::away);
+    throw StoreAway(StorePart::database, "gone", fate != Fate::away);
   }
 
   store::SqliteDatabase file_;
