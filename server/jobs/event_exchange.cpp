@@ -183,7 +183,8 @@ void EventExchange::fetch(store::EventChannel& channel, const Feeds& feeds) {
   }
 }
 
-/// Finds what no hint told of.
+/// Finds what no hint told of. The end of a job comes with its events, which are written a little
+/// later than its row: it is told without them only where they do not come until the next look.
 void EventExchange::look_around(store::EventChannel& channel) {
   callbacks_.jobs_wait();
   callbacks_.jobs_cancelled();
@@ -191,8 +192,12 @@ void EventExchange::look_around(store::EventChannel& channel) {
   fetch(channel, feeds);
   std::vector<store::EventChannel::JobAndSeq> followed;
   for (const auto& [job, feed] : events_.following()) followed.emplace_back(job, 0);
-  if (followed.empty()) return;
-  for (const std::string& job : channel.ended(followed)) callbacks_.job_ended(job);
+  std::set<std::string> ended;
+  if (!followed.empty())
+    for (std::string& job : channel.ended(followed)) ended.insert(std::move(job));
+  for (const std::string& job : ended)
+    if (ended_before_.contains(job)) callbacks_.job_ended(job);
+  ended_before_ = std::move(ended);
 }
 
 }  // namespace unwrapd::server::jobs

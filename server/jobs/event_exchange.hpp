@@ -74,8 +74,9 @@ class EventExchange {
   std::deque<store::EventRow> to_write_;
   std::vector<std::string> to_hint_;
   std::vector<store::EventRow> unsent_;  // of to_write_, those that the writing thread writes now
-  bool can_hint_ = true;                 // as far as is known
-  std::jthread writing_, listening_;     // last: they use the others
+  std::set<std::string> ended_before_;  // of those that the listening thread found at its last look
+  bool can_hint_ = true;                // as far as is known
+  std::jthread writing_, listening_;    // last: they use the others
 };
 
 }  // namespace unwrapd::server::jobs
