@@ -10,7 +10,7 @@
 namespace unwrapd::server {
 
 store::Node node_of(const config::Config& config) {
-  if (config.shared_blobs.empty()) return {};
+  if (!config::shares_blobs(config)) return {};
   return {.id = store::node_in(config.data), .is_shared = true};
 }
 
@@ -20,8 +20,19 @@ store::PostgresAddress database_of(const config::Config& config, const store::No
   return database;
 }
 
-const std::filesystem::path& blobs_root(const config::Config& config) {
+std::filesystem::path blobs_root(const config::Config& config) {
+  if (!config.bucket.url.empty()) return config.data / "copies";
   return config.shared_blobs.empty() ? config.data : config.shared_blobs;
+}
+
+store::BlobStore blobs_of(const config::Config& config, const store::Node& node, const Log& log) {
+  if (config.bucket.url.empty())
+    return store::BlobStore(blobs_root(config), config.disk,
+                            node.is_shared ? store::Sharing::by_nodes : store::Sharing::none);
+  const store::SweepAges ages{.unknown = std::chrono::seconds(config.keep_seconds)};
+  auto folders =
+      std::make_unique<store::BucketFolders>(bucket::address_of(config.bucket), node.id, ages, log);
+  return {blobs_root(config), config.disk, std::move(folders), config.copied_bytes};
 }
 
 std::string secret_of(const config::Config& config, const store::Node& node) {
@@ -33,7 +44,11 @@ OtherNodes::OtherNodes(const store::PostgresAddress& database, store::JobStore& 
                        store::BlobStore& blobs, jobs::EventFeed& events, jobs::JobQueue& queue,
                        const Log& log) {
   if (!store.node().is_shared) return;
-  store.on_success([&blobs](const store::JobRecord& job) { blobs.publish(job.id, job.attempt); });
+  store.on_found([&blobs](const store::JobRecord& job) {
+    const bool has_results = job.state == api::JobState::succeeded && !job.expired;
+    blobs.note_row(job.id, job.seq, has_results ? job.attempt : 0);
+    if (has_results) blobs.publish(job.id, job.attempt);
+  });
   jobs::ExchangeCallbacks callbacks{
       .jobs_wait = [&queue] { queue.look_for_jobs(); },
       .jobs_cancelled = [&queue] { queue.stop_cancelled(); },

@@ -17,8 +17,11 @@ namespace unwrapd::server {
 store::Node node_of(const config::Config& config);
 /// The database, as this node opens it to work on it.
 store::PostgresAddress database_of(const config::Config& config, const store::Node& node);
-/// The directory of blobs/, incoming/ and lost/.
-const std::filesystem::path& blobs_root(const config::Config& config);
+/// The directory of blobs/, incoming/ and lost/; of a bucket, of the copies of this node.
+std::filesystem::path blobs_root(const config::Config& config);
+/// The files of all jobs. Throws InsideError{storage_failed} where they are in a bucket that cannot
+/// be used.
+store::BlobStore blobs_of(const config::Config& config, const store::Node& node, const Log& log);
 /// The secret that signs links and webhooks. The tables must be there.
 std::string secret_of(const config::Config& config, const store::Node& node);
 

@@ -41,8 +41,7 @@ struct Service::Parts {
         isolation(config::isolation_of(config, solver_cache, functions)),
         lock(config.data),
         node(node_of(config)),
-        blobs(blobs_root(config), config.disk,
-              node.is_shared ? store::Sharing::by_nodes : store::Sharing::none),
+        blobs(blobs_of(config, node, log)),
         store(store::store_in(config.data, database_of(config, node), blobs), read_clocks, node),
         mesh_store(store::address_in(config.data, config.database)),
         queue(store, blobs, events, log,
@@ -167,6 +166,7 @@ struct Service::Parts {
         "sweeping", sweeper.pause(),
         [this] {
           sweeper.sweep_once();
+          blobs.trim_copies();
           blobs.remove_left();
         },
         log);

@@ -12,6 +12,7 @@
 #include "api/limits.hpp"
 #include "server/access/access.hpp"
 #include "server/base/log.hpp"
+#include "server/bucket/bucket_config.hpp"
 #include "server/http/addresses.hpp"
 #include "server/sources/sources.hpp"
 #include "server/store/disk_budget.hpp"
@@ -45,7 +46,9 @@ struct Config {
   std::filesystem::path data = "data";
   store::PostgresAddress database;     ///< without a URL: SQLite in data
   std::filesystem::path shared_blobs;  ///< of the files of all nodes; empty: in data, of this alone
-  std::chrono::seconds lease{30};      ///< of a running job
+  bucket::BucketConfig bucket;         ///< with a URL: that of the files of all nodes
+  std::int64_t copied_bytes = 10'000'000'000;  ///< of the bucket's files, in data
+  std::chrono::seconds lease{30};              ///< of a running job
   int workers = 1;
   int threads = 1;  ///< for each job
   int keep_seconds = 7 * 24 * 60 * 60;
@@ -64,6 +67,11 @@ struct Config {
   work::MemoryLimits memory;
   api::Limits limits;
 };
+
+/// Whether several nodes may use the same files.
+inline bool shares_blobs(const Config& config) {
+  return !config.shared_blobs.empty() || !config.bucket.url.empty();
+}
 
 /// What the command line asks for.
 enum class Task {

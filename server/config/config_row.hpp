@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,12 +46,16 @@ struct ConfigGroup {
   std::vector<ConfigRow> rows;
 };
 std::vector<ConfigGroup> config_groups();
-/// Two of them (access_table.cpp).
+/// Three of them (storage_table.cpp, access_table.cpp).
+ConfigGroup storing();
 ConfigGroup admitting();
 ConfigGroup calling_out();
 
 /// What rows cannot see each by itself. Throws Error{invalid_option} naming the options.
 void check_together(const Config& config);
+
+/// The most of what is counted by an int.
+inline constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 
 struct Range {
   std::int64_t least = 0;

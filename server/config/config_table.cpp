@@ -1,6 +1,5 @@
 // The table of all options of the server: the name, range and sentence of each.
 #include <algorithm>
-#include <limits>
 
 #include "server/config/config_row.hpp"
 #include "server/http/addresses.hpp"
@@ -9,13 +8,10 @@ namespace unwrapd::server::config {
 namespace {
 
 constexpr std::int64_t kMaxBodyBytes = std::int64_t{4} * 1024 * 1024 * 1024;
-constexpr std::int64_t kMaxDiskBytes = std::int64_t{1} << 60;
 constexpr std::int64_t kMaxMemoryBytes = std::int64_t{1} << 60;
 constexpr int kMaxThreads = 256;
 constexpr int kMaxStreams = 4096;
-constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 constexpr std::string_view kNoAdmin = "off";
-constexpr std::string_view kDirectory = "dir:";  // before a path of --blobs
 
 http::Address address_of(const std::string& text) {
   const std::optional<http::Address> address = http::parse_address(text);
@@ -128,78 +124,6 @@ ConfigGroup working() {
                       {0, kMaxCount}, &Config::drain_seconds)}};
 }
 
-ConfigRow database_row() {
-  return {
-      .heading = {.name = "database",
-                  .takes = "URL",
-                  .what = "PostgreSQL database of the jobs, meshes, keys and webhooks, "
-                          "postgres://user@host/name; their files stay in --data. Unset: SQLite "
-                          "in --data",
-                  .is_secret = true},
-      .kind = ConfigKind::text,
-      .set =
-          [](Config& config, const std::string& text) {
-            const bool is_url =
-                text.starts_with("postgres://") || text.starts_with("postgresql://");
-            if (!text.empty() && !is_url) expected("a URL like postgres://user@host/name");
-            config.database.url = text;
-          },
-      .get = [](const Config& config) { return config.database.url; }};
-}
-
-ConfigRow blobs_row() {
-  return {
-      .heading = {"blobs", "dir:PATH",
-                  "Shared directory of the files of all nodes that use the same --database, such "
-                  "as dir:/srv/unwrapd; --data is this node's own then. Unset: files stay in "
-                  "--data, and no other server may use the database"},
-      .kind = ConfigKind::text,
-      .set =
-          [](Config& config, const std::string& text) {
-            if (!text.empty() && (!text.starts_with(kDirectory) || text == kDirectory))
-              expected("dir: and the path of a directory");
-            config.shared_blobs = text.empty() ? "" : text.substr(kDirectory.size());
-          },
-      .get =
-          [](const Config& config) {
-            const std::string path = config.shared_blobs.string();
-            return path.empty() ? path : std::string(kDirectory) + path;
-          }};
-}
-
-ConfigRow lease_row() {
-  constexpr Range kSeconds{3, 3600};
-  return {
-      .heading = {"lease-seconds", "N",
-                  "Seconds after which a running job whose node shows no sign of life is run by "
-                  "another node. Nodes show one three times as often"},
-      .kind = ConfigKind::number,
-      .set =
-          [=](Config& config, const std::string& text) {
-            config.lease = std::chrono::seconds(number_in(kSeconds, text));
-          },
-      .get = [](const Config& config) { return std::to_string(config.lease.count()); }};
-}
-
-ConfigGroup storing() {
-  return {
-      .title = "Storage",
-      .rows = {database_row(), blobs_row(), lease_row(),
-               number({"keep-seconds", "N", "Seconds that results are kept"}, {1, kMaxCount},
-                      &Config::keep_seconds),
-               number({"max-stored-jobs", "N",
-                       "Most ended jobs that are stored; beyond it, expired jobs are deleted "
-                       "first, then the oldest of the key with the most jobs. 0: no limit"},
-                      {0, kMaxCount}, &Config::max_stored_jobs),
-               number({"max-disk-bytes", "N",
-                       "Bytes on disk for the files of all jobs; beyond it, the oldest results are "
-                       "deleted early. 0: no limit"},
-                      {0, kMaxDiskBytes}, &Config::disk, &store::DiskLimits::max_bytes),
-               number({"min-free-bytes", "N",
-                       "Bytes of the disk that uploads leave free; results leave half of it free"},
-                      {0, kMaxDiskBytes}, &Config::disk, &store::DiskLimits::min_free_bytes)}};
-}
-
 ConfigGroup telling() {
   const Names<LogLevel> levels = {{"debug", LogLevel::debug},
                                   {"info", LogLevel::info},
@@ -255,15 +179,18 @@ std::vector<ConfigGroup> config_groups() {
 }
 
 void check_together(const Config& config) {
-  if (!config.shared_blobs.empty() && config.database.url.empty())
+  if (shares_blobs(config) && config.database.url.empty())
     throw Error(ErrorCode::invalid_option,
                 "--blobs is for nodes that share a --database; give its URL, too.");
-  if (!config.serves && (config.shared_blobs.empty() || config.workers == 0))
+  if (config.bucket.url.empty() && !config.bucket.endpoint.empty())
+    throw Error(ErrorCode::invalid_option,
+                "--s3-endpoint is of a bucket; give its name, too: --blobs s3://NAME.");
+  if (!config.serves && (!shares_blobs(config) || config.workers == 0))
     throw Error(
         ErrorCode::invalid_option,
         "A worker takes the jobs of other nodes; give it their --database and --blobs, and at "
         "least one of --workers.");
-  if (config.workers == 0 && config.shared_blobs.empty())
+  if (config.workers == 0 && !shares_blobs(config))
     throw Error(ErrorCode::invalid_option,
                 "--workers is 0 and no other node can run jobs; give --database and --blobs, or at "
                 "least one worker.");

@@ -11,6 +11,8 @@ CurlLibrary::CurlLibrary() {
   library.find(global_init, "curl_global_init");
   library.find(easy_init, "curl_easy_init");
   library.find(easy_cleanup, "curl_easy_cleanup");
+  library.find(easy_reset, "curl_easy_reset");
+  library.find(easy_perform, "curl_easy_perform");
   library.find(easy_setopt, "curl_easy_setopt");
   library.find(easy_getinfo, "curl_easy_getinfo");
   library.find(easy_strerror, "curl_easy_strerror");

@@ -61,7 +61,11 @@ std::shared_ptr<void> BlobStore::lock_folder(std::string_view job) const {
 /// The digests go last: until the folder of the attempt is removed, all this can be done again.
 void BlobStore::publish(std::string_view job, int attempt) {
   const fs::path from = attempt_folder(job, attempt);
-  if (!is_shared_by_nodes() || !fs::exists(from)) return;
+  if (copies_) return publish_in_bucket(job, attempt);
+  if (is_shared_by_nodes() && fs::exists(from)) publish_here(job, from);
+}
+
+void BlobStore::publish_here(std::string_view job, const fs::path& from) {
   const std::lock_guard lock(noting_);
   const std::shared_ptr<void> locked = lock_folder(job);
   const Digests results = read_digests(from);
@@ -78,11 +82,24 @@ void BlobStore::publish(std::string_view job, int attempt) {
 }
 
 void BlobStore::drop_attempt(std::string_view job, int attempt) noexcept {
-  if (is_shared_by_nodes() && is_file_name(job)) left_.remove(attempt_folder(job, attempt));
+  if (!is_shared_by_nodes() || !is_file_name(job)) return;
+  if (copies_) copies_->bucket().drop_attempt_later(job, attempt);
+  left_.remove(attempt_folder(job, attempt));
 }
 
 bool BlobStore::is_idle(std::string_view job, std::chrono::seconds time) const {
+  if (copies_) return std::chrono::seconds(copies_->bucket().age_s(job)) > time;
   return server::now_ms() - written_ms(blobs_ / job) > std::chrono::milliseconds(time).count();
+}
+
+/// Results of a job that has succeeded are not where they belong when its node died in between.
+void BlobStore::settle_attempts(const Fates& fates) const {
+  if (!is_shared_by_nodes()) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(incoming_)) {
+    const std::string name = entry.path().filename();
+    const std::size_t dot = name.rfind('.');
+    if (dot != std::string::npos) static_cast<void>(fates(name.substr(0, dot)));
+  }
 }
 
 /// Whether this may be what another node works on now.

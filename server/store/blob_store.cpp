@@ -61,6 +61,7 @@ fs::path BlobStore::begin_upload(std::string_view upload) {
 
 void BlobStore::keep_upload(std::string_view upload, std::string_view job, const Digests& known) {
   seal_files(incoming_ / upload, is_input, known);
+  if (copies_) keep_in_bucket(upload, job);
   rename_unsynced(incoming_ / upload, blobs_ / job);
   Syncs({blobs_ / job, blobs_, incoming_}).finish();
   room_.give_back(upload);
@@ -100,6 +101,11 @@ void BlobStore::drop_upload(std::string_view upload) noexcept {
 }
 
 fs::path BlobStore::path(std::string_view job, std::string_view file) const {
+  bring(job, file);
+  return place(job, file);
+}
+
+fs::path BlobStore::place(std::string_view job, std::string_view file) const {
   return blobs_ / job / file;
 }
 
@@ -118,6 +124,7 @@ void BlobStore::write_unsealed(std::string_view job, int attempt, std::string_vi
 
 void BlobStore::remove(std::string_view job) noexcept {
   if (!is_file_name(job)) return;  // of a damaged row
+  if (copies_) remove_in_bucket(job);
   left_.remove(blobs_ / job);
   room_.give_back(job);
   room_.make_reserve();
@@ -126,8 +133,9 @@ void BlobStore::remove(std::string_view job) noexcept {
 }
 
 bool BlobStore::share_document(std::string_view mesh, std::string_view upload) {
+  bring(mesh, kDocumentFile);
   std::error_code failed;
-  fs::create_hard_link(path(mesh, kDocumentFile), incoming_ / upload / kDocumentFile, failed);
+  fs::create_hard_link(place(mesh, kDocumentFile), incoming_ / upload / kDocumentFile, failed);
   if (!failed) {
     const std::lock_guard lock(counting_);
     count(std::string(mesh));  // for it, and for the job from keep_upload() on
@@ -140,6 +148,7 @@ bool BlobStore::share_document(std::string_view mesh, std::string_view upload) {
 }
 
 bool BlobStore::is_shared(std::string_view mesh) const {
+  if (copies_) return false;  // each folder has an object of its own
   const std::lock_guard lock(counting_);
   const FolderBytes bytes = bytes_in(blobs_ / mesh);
   if (is_shared_by_nodes()) return !bytes.several.empty();
@@ -149,6 +158,7 @@ bool BlobStore::is_shared(std::string_view mesh) const {
 }
 
 bool BlobStore::has(std::string_view job, std::string_view file) const {
+  bring(job, file);
   return read_digests(blobs_ / job).contains(file);
 }
 
@@ -162,6 +172,7 @@ std::int64_t BlobStore::seal(std::string_view job, int attempt) {
   const fs::path folder = work_folder(job, attempt);
   seal_files(folder, [](std::string_view file) { return !is_input(file); });
   sync_directory(folder);
+  if (copies_) return seal_in_bucket(job, attempt, folder);
   const std::int64_t in_place = bytes(job);
   return is_shared_by_nodes() ? in_place + bytes_in(folder).alone : in_place;
 }
@@ -170,9 +181,10 @@ void BlobStore::note(std::string_view job, const std::string& file) {
   const std::lock_guard lock(noting_);
   const std::shared_ptr<void> locked = lock_folder(job);
   Digests digests = read_digests(blobs_ / job);
-  digests[file] = sha256_of(File::open(path(job, file)));
+  digests[file] = sha256_of(File::open(place(job, file)));
   write_digests(blobs_ / job, digests);
   sync_directory(blobs_ / job);
+  if (copies_) return;  // it counts for nobody
   const std::int64_t counted = bytes(job);
   if (keeping_.kept) keeping_.kept(job, counted);
 }
@@ -180,16 +192,17 @@ void BlobStore::note(std::string_view job, const std::string& file) {
 bool BlobStore::try_keep(std::string_view job, const std::string& file, std::string_view bytes,
                          std::int64_t seq) {
   const auto count = static_cast<std::int64_t>(bytes.size());
+  if (copies_) return keep_copy(job, file, bytes);
   std::shared_ptr<void> reservation;  // until the bytes count
   if (keeping_.reservation && !(reservation = keeping_.reservation(std::string(job), seq, count)))
     return false;
   if (!room_.try_take(job, count)) return false;
   try {
-    write_file(path(job, file), bytes);
+    write_file(place(job, file), bytes);
     note(job, file);
     return true;
   } catch (const Error& error) {
-    remove_tree(path(job, file));
+    remove_tree(place(job, file));
     room_.put_back(job, count);
     if (error.code() == ErrorCode::storage_full) return false;
     throw;
@@ -210,19 +223,23 @@ std::shared_ptr<const File> BlobStore::lend(std::string_view bytes) const {
   }
 }
 
-bool BlobStore::holds(std::string_view job) const { return fs::exists(blobs_ / job); }
+bool BlobStore::holds(std::string_view job) const {
+  return copies_ ? copies_->bucket().has_input(job) : fs::exists(blobs_ / job);
+}
 
 /// What is checked is the link: it stays what it is when the other's file is made again meanwhile.
 bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
   Digests adopted;
   try {
+    if (copies_) copies_->bring_results(from);
     const Digests theirs = read_digests(blobs_ / from);
     if (!theirs.contains(kReportFile)) return false;
     for (const std::string& file : results_in(blobs_ / from, theirs)) {
       adopted[file] = theirs.at(file);
-      fs::create_hard_link(path(from, file), path(job, file));
-      if (!checked_.is_whole(File::open(path(job, file)), theirs.at(file))) corrupt(file);
+      fs::create_hard_link(place(from, file), place(job, file));
+      if (!checked_.is_whole(File::open(place(job, file)), theirs.at(file))) corrupt(file);
     }
+    if (copies_ && !copies_->bucket().copy_results(job, from)) corrupt(kReportFile);
     Digests digests = read_digests(blobs_ / job);
     digests.merge(Digests(adopted));
     write_digests(blobs_ / job, digests);
@@ -232,36 +249,44 @@ bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
     count(std::string(job));
     return true;
   } catch (const std::exception&) {  // then the job is run like any other
-    for (const auto& [file, digest] : adopted) remove_tree(path(job, file));
+    for (const auto& [file, digest] : adopted) remove_tree(place(job, file));
     return false;
   }
 }
 
 std::shared_ptr<const File> BlobStore::open(std::string_view job, std::string_view file) const {
-  check_there(path(job, file));
-  auto opened = std::make_shared<const File>(File::open(path(job, file)));
-  const Digests digests = read_digests(blobs_ / job);
-  const auto noted = digests.find(file);
-  if (noted == digests.end() || !checked_.is_whole(*opened, noted->second)) corrupt(file);
-  return opened;
+  for (bool is_again = false;; is_again = true) {
+    check_there(path(job, file));
+    auto opened = std::make_shared<const File>(File::open(place(job, file)));
+    const Digests digests = read_digests(blobs_ / job);
+    const auto noted = digests.find(file);
+    if (noted != digests.end() && checked_.is_whole(*opened, noted->second)) return opened;
+    if (!copies_ || is_again) corrupt(file);
+    copies_->forget_file(job, file);
+  }
 }
 
 std::string BlobStore::read(std::string_view job, std::string_view file) const {
-  check_there(path(job, file));
-  std::string bytes = read_file(path(job, file));
-  const Digests digests = read_digests(blobs_ / job);
-  const auto noted = digests.find(file);
-  if (noted == digests.end() || noted->second != sha256(bytes)) corrupt(file);
-  return bytes;
+  for (bool is_again = false;; is_again = true) {
+    check_there(path(job, file));
+    std::string bytes = read_file(place(job, file));
+    const Digests digests = read_digests(blobs_ / job);
+    const auto noted = digests.find(file);
+    if (noted != digests.end() && noted->second == sha256(bytes)) return bytes;
+    if (!copies_ || is_again) corrupt(file);
+    copies_->forget_file(job, file);
+  }
 }
 
 std::string BlobStore::digest(std::string_view job, std::string_view file) const {
+  bring(job, file);
   const Digests digests = read_digests(blobs_ / job);
   const auto noted = digests.find(file);
-  return noted != digests.end() ? noted->second : sha256_of(File::open(path(job, file)));
+  return noted != digests.end() ? noted->second : sha256_of(File::open(place(job, file)));
 }
 
 int BlobStore::folder_count() const {
+  if (copies_) return int{copies_->bucket().has_any()};
   return static_cast<int>(std::distance(fs::directory_iterator(blobs_), fs::directory_iterator()));
 }
 

@@ -12,6 +12,10 @@
 // attempt has succeeded (publish()): a node that was taken for dead writes nowhere that counts.
 // What may be another node's present work is left alone by sweeps, and shared files count for each
 // of their holders.
+//
+// Or the folders are in a bucket (bucket_folders.hpp), and blobs/ has this node's copies of them.
+// An upload and the results of an attempt are in the bucket before their rows are written. What is
+// made after seal() stays on this node, and is made again elsewhere.
 
 #include <chrono>
 #include <cstdint>
@@ -25,6 +29,7 @@
 
 #include "server/base/files.hpp"
 #include "server/store/blob_files.hpp"
+#include "server/store/cached_folders.hpp"
 #include "server/store/checked_files.hpp"
 #include "server/store/digests.hpp"
 #include "server/store/disk_budget.hpp"
@@ -42,14 +47,6 @@ struct Keeping {
   /// The bytes of all the job's files now.
   std::function<void(std::string_view job, std::int64_t bytes)> kept = {};
 };
-
-/// What the rows say of a folder of blobs/.
-enum class FolderFate {
-  kept,
-  gone,     ///< of a job whose files are no longer kept
-  unknown,  ///< no row names it
-};
-using Fates = std::function<FolderFate(const std::string& name)>;
 
 /// The outcome of a sweep.
 struct Swept {
@@ -69,6 +66,10 @@ class BlobStore {
   /// Creates the directories below data where they are missing.
   explicit BlobStore(const std::filesystem::path& data, const DiskLimits& limits = {},
                      Sharing sharing = Sharing::none);
+  /// The folders are in a bucket; this node has copies of them below a directory of its own, which
+  /// is emptied, and at most so many bytes.
+  BlobStore(const std::filesystem::path& copies, const DiskLimits& limits,
+            std::unique_ptr<BucketFolders> bucket, std::int64_t most_copied_bytes);
 
   /// A new empty folder for an upload.
   std::filesystem::path begin_upload(std::string_view upload);
@@ -77,6 +78,7 @@ class BlobStore {
   void keep_upload(std::string_view upload, std::string_view job, const Digests& known = {});
   void drop_upload(std::string_view upload) noexcept;
 
+  /// Where a file is, if it is there.
   [[nodiscard]] std::filesystem::path path(std::string_view job, std::string_view file) const;
   /// A file of an attempt of a job at work, which seal() syncs. Throws Error{storage_full} when
   /// there is no room, or storage_failed.
@@ -127,7 +129,7 @@ class BlobStore {
 
   void on_keeping(Keeping keeping) { keeping_ = std::move(keeping); }
 
-  /// Folders of jobs and meshes.
+  /// The number of folders of jobs and meshes; of a bucket, whether there are any.
   [[nodiscard]] int folder_count() const;
   /// At the start: removes unfinished uploads and files and the folders of jobs that are gone, and
   /// sets aside in DIR/lost folders that no row names, and all that is no folder. now_ms: of
@@ -141,6 +143,12 @@ class BlobStore {
   LostFolders& lost() { return lost_; }
   DiskBudget& room() { return room_; }
   [[nodiscard]] bool holds(std::string_view job) const;
+  /// The row of this number has the name of this folder, and its attempt of this number has
+  /// succeeded (0: none has).
+  void note_row(std::string_view job, std::int64_t seq, int succeeded);
+  /// Removes copies of what is in a bucket: those that are too many; one more than that.
+  void trim_copies();
+  bool give_up_copy() noexcept { return copies_ && copies_->give_up_one(); }
   /// Whether nothing was written to a job's folder for so long.
   [[nodiscard]] bool is_idle(std::string_view job, std::chrono::seconds time) const;
 
@@ -157,7 +165,17 @@ class BlobStore {
   void count_again(const std::vector<std::string>& holders);
   void sweep_one(const std::filesystem::directory_entry& entry, const Fates& fates,
                  std::int64_t now_ms, Swept& swept);
+  void settle_attempts(const Fates& fates) const;
   void note(std::string_view job, const std::string& file);
+  [[nodiscard]] std::filesystem::path place(std::string_view job, std::string_view file) const;
+  void publish_here(std::string_view job, const std::filesystem::path& from);
+  void bring(std::string_view job, std::string_view file) const;
+  void keep_in_bucket(std::string_view upload, std::string_view job);
+  std::int64_t seal_in_bucket(std::string_view job, int attempt,
+                              const std::filesystem::path& folder);
+  void publish_in_bucket(std::string_view job, int attempt);
+  void remove_in_bucket(std::string_view job) noexcept;
+  bool keep_copy(std::string_view job, const std::string& file, std::string_view bytes);
   [[nodiscard]] std::filesystem::path attempt_folder(std::string_view job, int attempt) const;
   [[nodiscard]] std::filesystem::path work_folder(std::string_view job, int attempt) const;
   [[nodiscard]] bool may_be_at_work(const std::filesystem::path& path, std::int64_t now_ms) const;
@@ -168,7 +186,8 @@ class BlobStore {
   LeftFolders left_;
   mutable std::mutex counting_;
   SharedFiles shared_;
-  mutable std::mutex noting_;  // one writer of `digests` at a time
+  mutable std::mutex noting_;              // one writer of `digests` at a time
+  std::unique_ptr<CachedFolders> copies_;  // of a bucket
 };
 
 }  // namespace unwrapd::server::store

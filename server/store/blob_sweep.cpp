@@ -21,10 +21,15 @@ void remove_unfinished(const fs::path& folder) {
 
 Swept BlobStore::sweep(const Fates& fates, std::int64_t now_ms) {
   Swept swept;
+  settle_attempts(fates);
   for (const fs::directory_entry& entry : fs::directory_iterator(incoming_))
     if (!may_be_at_work(entry.path(), server::now_ms())) remove_tree(entry.path());
   swept.returned =
       lost_.return_wanted([&](const std::string& name) { return fates(name) == FolderFate::kept; });
+  if (copies_) {
+    swept.removed = copies_->sweep(fates);
+    return swept;
+  }
   std::vector<fs::directory_entry> entries(fs::directory_iterator(blobs_), {});
   std::ranges::sort(entries, std::greater());  // meshes first: the documents count for them
   for (const fs::directory_entry& entry : entries) {
@@ -58,6 +63,7 @@ void BlobStore::sweep_one(const fs::directory_entry& entry, const Fates& fates, 
 }
 
 bool BlobStore::set_aside(const std::string& job, std::int64_t now_ms) {
+  if (copies_) return is_file_name(job) && copies_->set_aside(job);
   if (!is_file_name(job) || !fs::exists(fs::symlink_status(blobs_ / job))) return false;
   lost_.take(job, now_ms);
   room_.give_back(job);

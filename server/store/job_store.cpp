@@ -112,7 +112,7 @@ std::optional<JobRecord> JobStore::first(std::string_view rest, const Values&...
   }
   if (found.empty()) return std::nullopt;
   const JobRecord& job = found.front();
-  if (on_success_ && job.state == JobState::succeeded && !job.expired) on_success_(job);
+  if (on_found_) on_found_(job);
   return std::move(found.front());
 }
 

@@ -108,11 +108,9 @@ class JobStore {
   explicit JobStore(const DatabaseAddress& address, RetentionClock::Read read = read_clocks,
                     Node node = {});
 
-  /// Called with each succeeded job that is found from now on: its results may not be in their
-  /// place yet, where another node has ended it.
-  void on_success(std::function<void(const JobRecord& job)> action) {
-    on_success_ = std::move(action);
-  }
+  /// Called with each job that is found or taken from now on. Where another node has ended it, its
+  /// results may not be in their place yet.
+  void on_found(std::function<void(const JobRecord& job)> action) { on_found_ = std::move(action); }
 
   [[nodiscard]] const Node& node() const { return node_; }
   [[nodiscard]] Moment now() const { return time_->now(); }
@@ -251,7 +249,7 @@ class JobStore {
   void queue_delivery(const JobRecord& job, const JobOutcome& outcome);
 
   const Node node_;
-  std::function<void(const JobRecord& job)> on_success_;
+  std::function<void(const JobRecord& job)> on_found_;
   std::mutex mutex_;
   const std::unique_ptr<Database> database_;
   NotedTime noted_;

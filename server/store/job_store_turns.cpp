@@ -67,6 +67,7 @@ std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t now
                             std::string(database_->dialect().skip_locked) + ")" + returning_jobs());
     std::vector<JobRecord> taken = job_rows(statement.with(owner, node_.id, now_ms));
     if (taken.empty()) return std::nullopt;
+    if (on_found_) on_found_(taken.front());
     return std::move(taken.front());
   });
 }

@@ -113,6 +113,20 @@ TEST_F(SharedDirectory, ManyNodesBeginAtATime) {
     });
 }
 
+TEST_F(SharedDirectory, ASweepPublishesWhatADeadNodeHasEnded) {
+  upload("j_1");
+  work(one_, "j_1", 1, "report");  // its row says that it has succeeded, and nobody asked since
+  age(dir_.path(), std::chrono::hours(2));
+  static_cast<void>(two_.sweep(
+      [this](const std::string& job) {
+        two_.publish(job, 1);  // as JobStore::on_found() does
+        return FolderFate::kept;
+      },
+      1));
+  EXPECT_EQ(two_.read("j_1", kReportFile), "report");
+  EXPECT_EQ(unfinished(), 0U);
+}
+
 TEST_F(SharedDirectory, ASweepLeavesAloneWhatANodeMayWorkOn) {
   upload("j_new");
   upload("j_old");

@@ -1,0 +1,76 @@
+// The part of blob_store.hpp for folders in a bucket, of which this node has copies.
+#include <utility>
+
+#include "core/base/error.hpp"
+#include "server/base/errors.hpp"
+#include "server/store/blob_store.hpp"
+
+namespace unwrapd::server::store {
+
+namespace fs = std::filesystem;
+
+BlobStore::BlobStore(const fs::path& copies, const DiskLimits& limits,
+                     std::unique_ptr<BucketFolders> bucket, std::int64_t most_copied_bytes)
+    : BlobStore(copies, limits, Sharing::by_nodes) {
+  for (const fs::path& folder : {incoming_, blobs_}) {
+    remove_tree(folder);
+    make_directories(folder);
+  }
+  copies_ = std::make_unique<CachedFolders>(std::move(bucket), blobs_, most_copied_bytes, noting_);
+}
+
+void BlobStore::note_row(std::string_view job, std::int64_t seq, int succeeded) {
+  if (copies_) copies_->note_row(job, seq, succeeded);
+}
+
+void BlobStore::trim_copies() {
+  if (copies_) copies_->trim();
+}
+
+void BlobStore::bring(std::string_view job, std::string_view file) const {
+  if (copies_) copies_->bring(job, file);
+}
+
+void BlobStore::keep_in_bucket(std::string_view upload, std::string_view job) {
+  if (!copies_->bucket().put_input(job, incoming_ / upload))
+    throw Error(ErrorCode::storage_failed, "A job of this id has files; send the job again.");
+  copies_->forget(job);
+  copies_->keep(job);
+}
+
+std::int64_t BlobStore::seal_in_bucket(std::string_view job, int attempt, const fs::path& folder) {
+  copies_->bucket().put_results(job, attempt, folder);
+  return copies_->bucket().input_bytes(job) + bytes_in(folder).alone;
+}
+
+/// This node has the results at once. Another that misses them does not wait for this one
+/// (CachedFolders::bring()).
+void BlobStore::publish_in_bucket(std::string_view job, int attempt) {
+  const fs::path from = attempt_folder(job, attempt);
+  if (!fs::exists(from)) return;
+  make_directories(blobs_ / job);
+  publish_here(job, from);
+  copies_->bucket().publish_later(job, attempt);
+}
+
+void BlobStore::remove_in_bucket(std::string_view job) noexcept {
+  copies_->bucket().remove_later(job);
+  copies_->forget(job);
+}
+
+/// What can be made again is kept here alone. False where there is no room.
+bool BlobStore::keep_copy(std::string_view job, const std::string& file, std::string_view bytes) {
+  try {
+    room_.check_free(static_cast<std::int64_t>(bytes.size()));
+    make_directories(blobs_ / job);
+    write_file(place(job, file), bytes);
+    note(job, file);
+    return true;
+  } catch (const Error& error) {
+    remove_tree(place(job, file));
+    if (error.code() == ErrorCode::storage_full) return false;
+    throw;
+  }
+}
+
+}  // namespace unwrapd::server::store

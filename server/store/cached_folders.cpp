@@ -1,0 +1,157 @@
+#include "server/store/cached_folders.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "server/base/files.hpp"
+#include "server/base/identity.hpp"
+#include "server/store/blob_files.hpp"
+#include "server/store/digests.hpp"
+#include "server/store/shared_files.hpp"
+
+namespace unwrapd::server::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kNoRowYet = -1;
+constexpr int kPartNameBytes = 8;
+
+std::int64_t bytes_of(const fs::path& folder) {
+  const FolderBytes bytes = bytes_in(folder);
+  std::int64_t all = bytes.alone;
+  for (const auto& [file, size] : bytes.several) all += size;
+  return all;
+}
+
+}  // namespace
+
+CachedFolders::CachedFolders(std::unique_ptr<BucketFolders> bucket, fs::path folder,
+                             std::int64_t most_bytes, std::mutex& noting)
+    : bucket_(std::move(bucket)),
+      folder_(std::move(folder)),
+      most_bytes_(most_bytes),
+      noting_(noting) {}
+
+void CachedFolders::keep(std::string_view job) {
+  const std::lock_guard lock(mutex_);
+  rows_[std::string(job)] = {.seq = kNoRowYet};
+}
+
+void CachedFolders::note_row(std::string_view job, std::int64_t seq, int succeeded) {
+  const std::lock_guard lock(mutex_);
+  Row& row = rows_[std::string(job)];
+  if (row.seq != seq && row.seq != kNoRowYet) remove_tree(folder_ / job);
+  row = {.seq = seq, .succeeded = succeeded};
+}
+
+/// Results are published by whoever misses them first. False where there are none.
+bool CachedFolders::publish(std::string_view job) {
+  int attempt = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto row = rows_.find(job); row != rows_.end()) attempt = row->second.succeeded;
+  }
+  if (attempt > 0) bucket_->publish(job, attempt);
+  return attempt > 0;
+}
+
+void CachedFolders::forget(std::string_view job) noexcept {
+  const std::lock_guard lock(mutex_);
+  if (const auto row = rows_.find(job); row != rows_.end()) rows_.erase(row);
+  if (const auto used = used_.find(job); used != used_.end()) used_.erase(used);
+  remove_tree(folder_ / job);
+}
+
+void CachedFolders::forget_file(std::string_view job, std::string_view file) noexcept {
+  remove_tree(folder_ / job / file);
+}
+
+/// Whether the copy's list says whether there is such a file: lists of files never change.
+bool CachedFolders::knows(std::string_view job, std::string_view file) const {
+  const Digests digests = read_digests(folder_ / job);
+  return digests.contains(file) || digests.contains(is_input(file) ? kDocumentFile : kReportFile);
+}
+
+StoredObjects CachedFolders::note_files(std::string_view job) {
+  StoredObjects objects = bucket_->files(job);
+  if (!objects.contains(kReportFile) && publish(job)) objects = bucket_->files(job);
+  if (objects.empty()) return objects;
+  const std::lock_guard lock(noting_);
+  make_directories(folder_ / job);
+  Digests digests = read_digests(folder_ / job);
+  for (const auto& [file, object] : objects) digests[file] = object.sha256;
+  write_digests(folder_ / job, digests);
+  return objects;
+}
+
+/// Two threads may fetch a file at a time: the second replaces it by the same bytes.
+void CachedFolders::fetch(std::string_view job, const std::string& file,
+                          const StoredObject& object) {
+  const fs::path part = folder_ / job / (file + "." + random_hex(kPartNameBytes) + ".part");
+  if (bucket_->get(object, part)) rename_unsynced(part, folder_ / job / file);
+}
+
+void CachedFolders::bring(std::string_view job, std::string_view file) {
+  {
+    const std::lock_guard lock(mutex_);
+    used_[std::string(job)] = std::chrono::steady_clock::now();
+  }
+  const bool is_there = fs::exists(folder_ / job / file);
+  if (knows(job, file) && (is_there || !read_digests(folder_ / job).contains(file))) return;
+  const StoredObjects objects = note_files(job);
+  const auto found = objects.find(file);
+  if (found != objects.end() && !is_there) fetch(job, found->first, found->second);
+}
+
+void CachedFolders::bring_results(std::string_view job) {
+  for (const auto& [file, object] : note_files(job))
+    if (!is_input(file) && !fs::exists(folder_ / job / file)) fetch(job, file, object);
+}
+
+std::vector<CachedFolders::Copy> CachedFolders::by_use() {
+  std::vector<Copy> copies;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+    std::string name = entry.path().filename();
+    const std::lock_guard lock(mutex_);
+    const auto used = used_.find(name);
+    copies.push_back({used == used_.end() ? decltype(Copy::used)() : used->second, name});
+  }
+  std::ranges::sort(copies, {}, &Copy::used);
+  return copies;
+}
+
+bool CachedFolders::set_aside(std::string_view job) {
+  forget(job);
+  return bucket_->set_aside(job);
+}
+
+int CachedFolders::sweep(const Fates& fates) {
+  for (const Copy& copy : by_use())
+    if (fates(copy.name) == FolderFate::gone) forget(copy.name);
+  return bucket_->sweep(fates, [this](const std::string& job) { publish(job); });
+}
+
+void CachedFolders::trim() {
+  const std::vector<Copy> copies = by_use();
+  std::int64_t bytes = 0;
+  for (const Copy& copy : copies) bytes += bytes_of(folder_ / copy.name);
+  for (const Copy& copy : copies) {
+    if (bytes <= most_bytes_) return;
+    bytes -= bytes_of(folder_ / copy.name);
+    forget(copy.name);
+  }
+}
+
+bool CachedFolders::give_up_one() noexcept {
+  try {
+    const std::vector<Copy> copies = by_use();
+    if (!copies.empty()) forget(copies.front().name);
+    return !copies.empty();
+  } catch (const std::exception&) {  // the directory cannot be read
+    return false;
+  }
+}
+
+}  // namespace unwrapd::server::store
