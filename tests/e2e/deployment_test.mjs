@@ -8,34 +8,17 @@ import { join } from "node:path";
 import test, { after } from "node:test";
 import yaml from "js-yaml";
 
-const folder = join(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../../docker");
-const read = (name) => readFileSync(join(folder, name), "utf8");
+import { accepted, folder, image, isIgnored, LONGEST_END, modelOf, read } from "./deployment.mjs";
+
 const objects = yaml.loadAll(read("kubernetes/unwrapd.yaml"));
 const of = (kind) => objects.find((object) => object.kind === kind);
 const scratch = mkdtempSync(join(tmpdir(), "unwrapd_deployment_"));
 after(() => rmSync(scratch, { recursive: true }));
 
-const LONGEST_END = 20; // s after the drain: for jobs that do not stop, and for last answers
-const image = Object.fromEntries(
-  [...read("Dockerfile").matchAll(/(UNWRAPD_\w+)=(\S+)/g)].map(([, name, value]) => [name, value]));
-
-/** The options as the server sees them; fails when it would not start with them. */
-function accepted(flags, environment = {}) {
-  const told = spawnSync(process.env.UNWRAPD, [...flags, "--print-config"], {
-    env: { PATH: process.env.PATH, ...environment },
-    encoding: "utf8",
-  });
-  assert.equal(told.status, 0, told.stderr);
-  return told.stdout;
-}
-
 test("the objects are as Kubernetes' schemas ask", async () => {
   const kinds = objects.map((object) => object.kind);
   assert.deepEqual(kinds.sort(), ["ConfigMap", "Deployment", "NetworkPolicy", "PersistentVolumeClaim", "Service"]);
-  for (const object of objects) {
-    const group = await import(`kubernetes-models/${object.apiVersion}`);
-    new group[object.kind](object).validate();
-  }
+  for (const object of objects) (await modelOf(object)).validate();
 });
 
 test("the objects name each other rightly", () => {
@@ -75,9 +58,7 @@ test("what is shipped asks for a key, which it finds where it is mounted", () =>
   const { services, secrets } = yaml.load(read("compose.yaml"));
   const [secret] = services.unwrapd.secrets;
   assert.equal(services.unwrapd.environment.UNWRAPD_KEY_FILE, `/run/secrets/${secret}`);
-  const ignored = readFileSync(join(folder, "../.gitignore"), "utf8").split("\n");
-  const file = secrets[secret].file.replace(/^\.\//, ""); // podman-compose asks for the ./
-  assert.ok(ignored.includes(`/docker/${file}`), "the key could be committed");
+  isIgnored(secrets[secret].file);
 });
 
 test("the server takes all options of the ConfigMap beside the image's, and is given time to end", () => {

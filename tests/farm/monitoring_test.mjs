@@ -3,14 +3,13 @@
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
-import { createServer } from "node:net";
 import { join } from "node:path";
 import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 import yaml from "js-yaml";
 
 import { QUICK } from "../fault/server.mjs";
-import { Farm, options, send } from "./nodes.mjs";
+import { Farm, freePort, isInstalled, options, send } from "./nodes.mjs";
 
 const ROOT = join(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
 const DOCKER = join(ROOT, "docker");
@@ -18,14 +17,6 @@ const read = (path) => readFileSync(join(ROOT, path), "utf8");
 const WINDOW = "1m";
 const SCRAPES = 3; // that a rate needs, and one to spare
 
-const isInstalled = (program) => {
-  try {
-    execFileSync(program, ["--version"], { stdio: "ignore" });
-    return true;
-  } catch {
-    return false;
-  }
-};
 const NO_PROMETHEUS = "Prometheus is not installed (Debian package prometheus)";
 const skip = options.skip || (isInstalled("prometheus") && isInstalled("promtool") ? false : NO_PROMETHEUS);
 const promtool = (...args) => execFileSync("promtool", args, { cwd: join(DOCKER, "prometheus"), encoding: "utf8", stdio: "pipe" });
@@ -34,14 +25,6 @@ const alerts = () => yaml.load(read("docker/prometheus/alerts.yaml")).groups.fla
 const dashboard = () => JSON.parse(read("docker/grafana/unwrapd.json"));
 const targets = () => dashboard().panels.flatMap((panel) => panel.targets ?? []);
 const shown = (target) => target.expr.replaceAll("$__rate_interval", WINDOW).replaceAll("$__range", WINDOW);
-
-async function freePort() {
-  const server = createServer();
-  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  const { port } = server.address();
-  await new Promise((resolve) => server.close(resolve));
-  return port;
-}
 
 /** A Prometheus with the configuration of docker/, but for whom it asks, and how often. */
 async function prometheus(t, folder, ports) {

@@ -6,10 +6,10 @@ import { connect, createServer } from "node:net";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { COUNT_ENDS, isInstalled, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
+import { COUNT_ENDS, isInstalled as hasPostgres, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
 import { dataDirectory, grid, Server } from "../fault/server.mjs";
 
-export const options = { skip: isInstalled() ? false : NOT_INSTALLED };
+export const options = { skip: hasPostgres() ? false : NOT_INSTALLED };
 export const LEASE_SECONDS = 3; // the shortest that there is
 
 export class Farm {
@@ -82,6 +82,25 @@ export class Farm {
       if (Date.now() > giveUp) throw new Error(`${left} jobs never end`);
     }
   }
+}
+
+/** Whether a program can be run. */
+export function isInstalled(program, flag = "--version") {
+  try {
+    execFileSync(program, [flag], { stdio: "ignore" });
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+/** A port that nobody has now. */
+export async function freePort() {
+  const server = createServer();
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  const { port } = server.address();
+  await new Promise((resolve) => server.close(resolve));
+  return port;
 }
 
 export async function send(node, path, { size = 3, headers = {}, method = "POST", body = grid(size) } = {}) {
