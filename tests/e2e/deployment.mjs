@@ -26,11 +26,28 @@ export function accepted(flags, environment = {}) {
 /** An option's value in what accepted() returns. */
 export const valueOf = (told, option) => JSON.parse(new RegExp(`^${option} = ([^#\n]+?)(  #.*)?$`, "m").exec(told)[1]);
 
-/** The model that Kubernetes' schemas, or KEDA's, give an object. */
-export async function modelOf(object) {
+/** A value that notes which of its members are not read. */
+function watched(value, path, unread) {
+  if (typeof value !== "object" || value === null) return value;
+  const members = Object.fromEntries(Object.entries(value).map(([key, one]) => [key, watched(one, `${path}.${key}`, unread)]));
+  for (const key of Object.keys(value)) if (!Array.isArray(value)) unread.add(`${path}.${key}`);
+  return new Proxy(value, {
+    get(target, key) {
+      unread.delete(`${path}.${String(key)}`);
+      return Object.hasOwn(members, key) ? members[key] : target[key];
+    },
+  });
+}
+
+/** Fails when an object is not as the schemas of Kubernetes, or of KEDA, ask, or has a member that they do not read. */
+export async function checkSchema(object) {
   const home = object.apiVersion.startsWith("keda.sh/") ? "@kubernetes-models/keda" : "kubernetes-models";
   const group = await import(`${home}/${object.apiVersion}`);
-  return new group[object.kind](object);
+  const model = new group[object.kind](object);
+  const unread = new Set();
+  for (const key of Object.keys(object)) model[key] = watched(object[key], key, unread);
+  model.validate();
+  assert.deepEqual([...unread], [], `${object.kind} has no such members`);
 }
 
 /** Fails when a secret that lies in docker/ could be committed. */
