@@ -47,6 +47,7 @@ export class Farm {
     const data = join(this.folder, name);
     const usual = ["--database", this.url, ...this.blobs, "--lease-seconds", String(LEASE_SECONDS)];
     const node = await Server.startAs(["worker"], {}, data, ...usual, "--log-level", "warning", ...flags);
+    node.id = readFileSync(join(data, "node"), "utf8");
     this.nodes.set(name, node);
     return node;
   }
