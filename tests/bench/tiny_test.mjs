@@ -66,6 +66,11 @@ test('store', async () => {
   assert.match(await program('store', '10'), /^sqlite +\d+ inserts\/s +\d+ taken and finished\/s +\d+ claimed in turn\/s$/m);
 });
 
+test('cost', async () => {
+  const table = await script('cost', join(bin, 'unwrapd'), '1', sheet);
+  assert.equal(table.match(/^sheet\.obj +\w+ +1 +\d+ +\d+\.\d\d$/gm)?.length, 3, table);
+});
+
 test('farm', {skip: !isInstalled()}, async () => {
   const times = await script('farm', join(bin, 'unwrapd'), '3');
   for (const what of ['progress', 'cancel'])
