@@ -1,7 +1,7 @@
 // docker/kubernetes/farm.yaml is right: by the schemas of Kubernetes and KEDA, in itself, and in the
 // eyes of the server whose options it sets. UNWRAPD names the binary.
 import assert from "node:assert/strict";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test, { after } from "node:test";
@@ -117,4 +117,17 @@ test("the scaler counts jobs by a pod's workers, and nothing else says how many 
   assert.equal(authenticationRef.name, of("TriggerAuthentication").metadata.name);
   const [secret] = of("TriggerAuthentication").spec.secretTargetRef;
   assert.match(text, new RegExp(`secret generic ${secret.name} [^#]*\n(# .*\n)?# .*--from-literal=${secret.key}=`));
+});
+
+test("the commands of an upgrade name what there is", () => {
+  const guide = readFileSync(new URL("../../docs/farm.md", import.meta.url), "utf8");
+  const [, commands] = /```\n(kubectl[^`]+)```/.exec(guide);
+  const named = [...commands.matchAll(/\b(scaledobject|deployment)[ /]([\w-]+)/g)].map(([, kind, name]) => `${kind}/${name}`);
+  const there = objects.map((object) => `${object.kind.toLowerCase()}/${object.metadata.name}`);
+  assert.deepEqual([...new Set(named)].sort(), there.filter((one) => /^(scaledobject|deployment)/.test(one)).sort());
+  const [, label, value] = / -l (\S+)=(\S+) /.exec(commands);
+  for (const deployment of deployments) assert.equal(labelsOf(deployment)[label], value);
+  assert.ok(commands.includes(` ${containerOf(serve).name}=`));
+  const [, minutes] = /--timeout=(\d+)m/.exec(commands);
+  assert.ok(60 * minutes >= podOf(worker).terminationGracePeriodSeconds);
 });

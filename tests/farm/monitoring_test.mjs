@@ -70,9 +70,11 @@ test("the alerts fire in the farms that they are for, and in no other", { skip }
   promtool("check", "config", "prometheus.yaml");
   promtool("test", "rules", "alerts_test.yaml");
   const tested = read("docker/prometheus/alerts_test.yaml");
+  const guide = read("docs/farm.md");
   for (const { alert, annotations } of alerts()) {
     assert.match(tested, new RegExp(`exp_samples:.*alertname="${alert}"|- \\{ labels: .*alertname="${alert}"`), alert);
     assert.match(annotations.summary, /\. \S|; \S/, `${alert} says what to do`);
+    assert.ok(guide.includes(`\`${alert}\``), `docs/farm.md does not name ${alert}`);
   }
 });
 
