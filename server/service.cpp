@@ -91,7 +91,7 @@ struct Service::Parts {
     blobs.room().on_shortage(
         {.evict = [this] { return store::evict_oldest(store, mesh_store, blobs); },
          .bytes = [this] { return store.evictable_bytes() + blobs.lost().bytes(); },
-         .give_up_lost = [this] { return blobs.lost().give_up_first(); }});
+         .give_up_lost = [this] { return blobs.give_up_copy() || blobs.lost().give_up_first(); }});
     blobs.on_keeping({.reservation = [this](const auto& id, auto seq,
                                             auto bytes) { return claim_to_keep(id, seq, bytes); },
                       .kept =

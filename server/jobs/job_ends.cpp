@@ -32,7 +32,7 @@ bool JobQueue::wait_for_room(const RunningJob& job, const store::JobOutcome& out
   return true;
 }
 
-/// The success that it is, if its files can be noted.
+/// The success that it is, if its files can be noted. Throws StoreAway while the server ends.
 store::JobOutcome JobQueue::sealed(const store::JobRecord& job, store::JobOutcome outcome) {
   while (true) {
     try {
@@ -41,7 +41,7 @@ store::JobOutcome JobQueue::sealed(const store::JobRecord& job, store::JobOutcom
     } catch (const StoreAway& away) {
       log_.warning("the results of a job wait for the bucket",
                    {{"job", job.id}, {"reason", reason_of(away)}});
-      if (closed_) return store::ended(JobState::cancelled, away, job.id);
+      if (closed_) throw;
     } catch (const Error& error) {
       return store::ended(JobState::failed, error, job.id);
     }
@@ -51,14 +51,20 @@ store::JobOutcome JobQueue::sealed(const store::JobRecord& job, store::JobOutcom
 
 void JobQueue::finish(const RunningJob& job, store::JobOutcome outcome,
                       const std::function<void()>& stored) {
-  if (outcome.state == JobState::succeeded) outcome = sealed(job.record, std::move(outcome));
-  std::unique_lock lock(mutex_);
+  std::unique_lock lock(mutex_, std::defer_lock);
   const auto leave = [&] {
     const auto now = running_.find(job.record.id);
     if (now != running_.end() && now->second.get() == &job) running_.erase(now);
     changed_.notify_all();
     lengths_.add(job.seconds());
   };
+  try {
+    if (outcome.state == JobState::succeeded) outcome = sealed(job.record, std::move(outcome));
+  } catch (const StoreAway&) {  // it is run again
+    lock.lock();
+    return leave();
+  }
+  lock.lock();
   outcome.ran_ms = std::max<std::int64_t>(1, std::llround(job.seconds() * kMsPerSecond));
   while (true) {
     try {

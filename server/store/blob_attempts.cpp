@@ -82,9 +82,7 @@ void BlobStore::publish_here(std::string_view job, const fs::path& from) {
 }
 
 void BlobStore::drop_attempt(std::string_view job, int attempt) noexcept {
-  if (!is_shared_by_nodes() || !is_file_name(job)) return;
-  if (copies_) copies_->bucket().drop_attempt_later(job, attempt);
-  left_.remove(attempt_folder(job, attempt));
+  if (is_shared_by_nodes() && is_file_name(job)) left_.remove(attempt_folder(job, attempt));
 }
 
 bool BlobStore::is_idle(std::string_view job, std::chrono::seconds time) const {

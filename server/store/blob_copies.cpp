@@ -32,15 +32,19 @@ void BlobStore::bring(std::string_view job, std::string_view file) const {
 }
 
 void BlobStore::keep_in_bucket(std::string_view upload, std::string_view job) {
-  if (!copies_->bucket().put_input(job, incoming_ / upload))
+  const std::optional<std::string> root = copies_->bucket().put_input(job, incoming_ / upload);
+  if (!root)
     throw Error(ErrorCode::storage_failed, "A job of this id has files; send the job again.");
   copies_->forget(job);
-  copies_->keep(job);
+  copies_->keep(job, *root);
 }
 
 std::int64_t BlobStore::seal_in_bucket(std::string_view job, int attempt, const fs::path& folder) {
-  copies_->bucket().put_results(job, attempt, folder);
-  return copies_->bucket().input_bytes(job) + bytes_in(folder).alone;
+  copies_->bucket().put_results(copies_->root(job), attempt, folder);
+  std::int64_t bytes = bytes_in(folder).alone;
+  for (const auto& [file, object] : copies_->bucket().find(job).files)
+    if (is_input(file)) bytes += object.bytes;
+  return bytes;
 }
 
 /// This node has the results at once. Another that misses them does not wait for this one
@@ -48,13 +52,13 @@ std::int64_t BlobStore::seal_in_bucket(std::string_view job, int attempt, const 
 void BlobStore::publish_in_bucket(std::string_view job, int attempt) {
   const fs::path from = attempt_folder(job, attempt);
   if (!fs::exists(from)) return;
+  copies_->bucket().publish_later(copies_->known_root(job), attempt);
   make_directories(blobs_ / job);
   publish_here(job, from);
-  copies_->bucket().publish_later(job, attempt);
 }
 
 void BlobStore::remove_in_bucket(std::string_view job) noexcept {
-  copies_->bucket().remove_later(job);
+  copies_->bucket().remove_later(job, copies_->known_root(job));
   copies_->forget(job);
 }
 

@@ -168,10 +168,12 @@ std::int64_t BlobStore::bytes(std::string_view job) {
 }
 
 std::int64_t BlobStore::seal(std::string_view job, int attempt) {
-  const std::lock_guard lock(noting_);
   const fs::path folder = work_folder(job, attempt);
-  seal_files(folder, [](std::string_view file) { return !is_input(file); });
-  sync_directory(folder);
+  {
+    const std::lock_guard lock(noting_);
+    seal_files(folder, [](std::string_view file) { return !is_input(file); });
+    sync_directory(folder);
+  }
   if (copies_) return seal_in_bucket(job, attempt, folder);
   const std::int64_t in_place = bytes(job);
   return is_shared_by_nodes() ? in_place + bytes_in(folder).alone : in_place;
@@ -239,7 +241,8 @@ bool BlobStore::adopt(std::string_view job, std::string_view from) noexcept {
       fs::create_hard_link(place(from, file), place(job, file));
       if (!checked_.is_whole(File::open(place(job, file)), theirs.at(file))) corrupt(file);
     }
-    if (copies_ && !copies_->bucket().copy_results(job, from)) corrupt(kReportFile);
+    if (copies_ && !copies_->bucket().copy_results(copies_->root(job), copies_->root(from)))
+      corrupt(kReportFile);
     Digests digests = read_digests(blobs_ / job);
     digests.merge(Digests(adopted));
     write_digests(blobs_ / job, digests);

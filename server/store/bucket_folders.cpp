@@ -15,17 +15,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kInputList = "/input", kResultList = "/result", kManifest = "manifest";
+constexpr std::string_view kInputList = "/input", kResultList = "result", kManifest = "manifest";
 constexpr std::chrono::seconds kTimeToFinish{5};
-constexpr std::size_t kUploadNameBytes = 8;
+constexpr std::chrono::seconds kClockTick{1};  // of the times of objects
+constexpr std::size_t kRootBytes = 8;
 constexpr int kCopied = 0;  // instead of the number of an attempt: those begin at 1
 
-std::string key_of(std::string_view job, std::string_view rest) {
-  return std::string(job) + std::string(rest);
-}
+std::string input_list(std::string_view job) { return std::string(job) + std::string(kInputList); }
 
-std::string attempt_prefix(std::string_view job, int attempt) {
-  return std::string(job) + "/" + std::to_string(attempt) + "/";
+std::string result_list(const std::string& root) { return root + std::string(kResultList); }
+
+std::string attempt_prefix(const std::string& root, int attempt) {
+  return root + std::to_string(attempt) + "/";
 }
 
 std::string to_text(const StoredObjects& objects) {
@@ -78,48 +79,49 @@ BucketFolders::~BucketFolders() {
   changed_.notify_all();
 }
 
-/// Another node may be sent the job of this name at the same time: its objects have other names.
-bool BucketFolders::put_input(std::string_view job, const fs::path& folder) {
-  const std::string prefix = key_of(job, "/in_") + random_hex(kUploadNameBytes) + "/";
-  const StoredObjects objects = objects_in(folder, prefix);
+/// Another node may be sent the job of this name at the same time: its objects have another root.
+std::optional<std::string> BucketFolders::put_input(std::string_view job, const fs::path& folder) {
+  const std::string root = std::string(job) + "/" + random_hex(kRootBytes) + "/";
+  const StoredObjects objects = objects_in(folder, root);
   for (const auto& [file, object] : objects)
     bucket_.put_file(object.key, folder / file, object.sha256);
-  return bucket_.put_new(key_of(job, kInputList), to_text(objects));
+  if (!bucket_.put_new(input_list(job), to_text(objects))) return std::nullopt;
+  return root;
 }
 
-void BucketFolders::put_results(std::string_view job, int attempt, const fs::path& folder) {
-  const std::string prefix = attempt_prefix(job, attempt);
+void BucketFolders::put_results(const std::string& root, int attempt, const fs::path& folder) {
+  const std::string prefix = attempt_prefix(root, attempt);
   const StoredObjects objects = objects_in(folder, prefix);
   for (const auto& [file, object] : objects)
     bucket_.put_file(object.key, folder / file, object.sha256);
   bucket_.put(prefix + std::string(kManifest), to_text(objects));
 }
 
-void BucketFolders::publish(std::string_view job, int attempt) {
-  const std::string manifest = attempt_prefix(job, attempt) + std::string(kManifest);
-  if (bucket_.age_s(key_of(job, kResultList))) return;
-  const std::optional<std::string> list = bucket_.get(manifest);
-  if (list) bucket_.put(key_of(job, kResultList), *list);
+void BucketFolders::publish(const std::string& root, int attempt) {
+  if (bucket_.age_s(result_list(root))) return;
+  const std::optional<std::string> list =
+      bucket_.get(attempt_prefix(root, attempt) + std::string(kManifest));
+  if (list) bucket_.put(result_list(root), *list);
 }
 
-bool BucketFolders::copy_results(std::string_view job, std::string_view from) {
-  StoredObjects objects = listed(key_of(from, kResultList));
-  const std::string prefix = attempt_prefix(job, kCopied);
+bool BucketFolders::copy_results(const std::string& root, const std::string& from) {
+  StoredObjects objects = listed(result_list(from));
+  const std::string prefix = attempt_prefix(root, kCopied);
   for (auto& [file, object] : objects) {
     if (!bucket_.copy(object.key, prefix + file)) return false;
     object.key = prefix + file;
   }
   if (objects.empty()) return false;
-  bucket_.put(key_of(job, kResultList), to_text(objects));
+  bucket_.put(result_list(root), to_text(objects));
   return true;
 }
 
 bool BucketFolders::has_input(std::string_view job) {
-  return bucket_.age_s(key_of(job, kInputList)).has_value();
+  return bucket_.age_s(input_list(job)).has_value();
 }
 
 std::int64_t BucketFolders::age_s(std::string_view job) {
-  return bucket_.age_s(key_of(job, kInputList)).value_or(0);
+  return bucket_.age_s(input_list(job)).value_or(0);
 }
 
 StoredObjects BucketFolders::listed(const std::string& list) {
@@ -127,16 +129,13 @@ StoredObjects BucketFolders::listed(const std::string& list) {
   return text ? objects_of(*text) : StoredObjects();
 }
 
-std::int64_t BucketFolders::input_bytes(std::string_view job) {
-  std::int64_t bytes = 0;
-  for (const auto& [file, object] : listed(key_of(job, kInputList))) bytes += object.bytes;
-  return bytes;
-}
-
-StoredObjects BucketFolders::files(std::string_view job) {
-  StoredObjects all = listed(key_of(job, kInputList));
-  all.merge(listed(key_of(job, kResultList)));
-  return all;
+BucketFolder BucketFolders::find(std::string_view job) {
+  BucketFolder folder{.root = {}, .files = listed(input_list(job))};
+  if (folder.files.empty()) return folder;
+  const std::string& key = folder.files.begin()->second.key;
+  folder.root = key.substr(0, key.rfind('/') + 1);
+  folder.files.merge(listed(result_list(folder.root)));
+  return folder;
 }
 
 bool BucketFolders::get(const StoredObject& object, const fs::path& file) {
@@ -145,7 +144,7 @@ bool BucketFolders::get(const StoredObject& object, const fs::path& file) {
 
 bool BucketFolders::set_aside(std::string_view job) {
   if (!has_input(job)) return false;
-  for (const std::string_view list : {kInputList, kResultList}) bucket_.remove(key_of(job, list));
+  bucket_.remove(input_list(job));
   return true;
 }
 
@@ -156,23 +155,32 @@ bool BucketFolders::has_any() {
 }
 
 /// Lists first: what is left when this ends half-way is what no list names.
-void BucketFolders::remove_all(const std::string& prefix) {
-  std::vector<bucket::ObjectInfo> objects = bucket_.list(prefix);
+void BucketFolders::remove_all(std::vector<bucket::ObjectInfo> objects) {
   const auto depth = [](const std::string& key) { return std::ranges::count(key, '/'); };
   std::ranges::stable_sort(objects, {}, [&](const auto& object) { return depth(object.key); });
   for (const bucket::ObjectInfo& object : objects) bucket_.remove(object.key);
 }
 
-void BucketFolders::remove_later(std::string_view job) {
-  put_off([this, prefix = key_of(job, "/")] { remove_all(prefix); });
+void BucketFolders::remove(const std::string& job, std::string root, Time called) {
+  const std::string present = find(job).root;
+  if (root.empty()) {
+    const auto since_call = std::chrono::steady_clock::now() - called;
+    if (std::chrono::seconds(age_s(job)) <= since_call + kClockTick) return;
+    root = present;
+  }
+  if (root.empty()) return;
+  if (root == present) bucket_.remove(input_list(job));
+  remove_all(bucket_.list(root));
 }
 
-void BucketFolders::drop_attempt_later(std::string_view job, int attempt) {
-  put_off([this, prefix = attempt_prefix(job, attempt)] { remove_all(prefix); });
+void BucketFolders::remove_later(std::string_view job, const std::string& root) {
+  put_off([this, job = std::string(job), root, called = std::chrono::steady_clock::now()] {
+    remove(job, root, called);
+  });
 }
 
-void BucketFolders::publish_later(std::string_view job, int attempt) {
-  put_off([this, job = std::string(job), attempt] { publish(job, attempt); });
+void BucketFolders::publish_later(const std::string& root, int attempt) {
+  put_off([this, root, attempt] { publish(root, attempt); });
 }
 
 void BucketFolders::put_off(std::function<void()> task) {
@@ -219,7 +227,7 @@ int BucketFolders::sweep(const Fates& fates,
     if (fate == FolderFate::kept) {
       remove_unnamed(job, std::move(objects), settle);
     } else {
-      remove_all(job + "/");
+      remove_all(std::move(objects));
       ++removed;
     }
   }
@@ -230,15 +238,17 @@ int BucketFolders::sweep(const Fates& fates,
 /// named, and no list is read.
 void BucketFolders::remove_unnamed(const std::string& job, std::vector<bucket::ObjectInfo> objects,
                                    const std::function<void(const std::string& job)>& settle) {
-  const auto part_of = [](const std::string& key) { return key.substr(0, key.rfind('/')); };
-  std::set<std::string> parts, named = {job};
+  const auto part_of = [](const std::string& key) { return key.substr(0, key.rfind('/') + 1); };
+  std::set<std::string> parts;
   for (const bucket::ObjectInfo& object : objects) parts.insert(part_of(object.key));
-  constexpr std::size_t kUsual = 3;  // the lists, the upload, the attempt
+  constexpr std::size_t kUsual = 3;  // <job>/, its root, an attempt
   if (parts.size() <= kUsual) return;
   settle(job);
-  for (const auto& [file, object] : files(job)) named.insert(part_of(object.key));
-  for (const bucket::ObjectInfo& object : objects)
-    if (!named.contains(part_of(object.key))) bucket_.remove(object.key);
+  const BucketFolder folder = find(job);
+  std::set<std::string> named = {job + "/", folder.root};
+  for (const auto& [file, object] : folder.files) named.insert(part_of(object.key));
+  std::erase_if(objects, [&](const auto& object) { return named.contains(part_of(object.key)); });
+  remove_all(std::move(objects));
 }
 
 }  // namespace unwrapd::server::store

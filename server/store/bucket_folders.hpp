@@ -1,14 +1,15 @@
 #pragma once
 // The folders of jobs and meshes in a bucket, for nodes that share no directory:
 //
-//   <job>/in_<hex>/<file>     what the sender brought
-//   <job>/<attempt>/<file>    results of an attempt
-//   <job>/<attempt>/manifest  the list of these files, once all of them are there
-//   <job>/input               the list of the files that were brought: written once, by one node
-//   <job>/result              the list of the files of the attempt that succeeded
+//   <job>/input                     the list of the files that were brought: written once
+//   <job>/<hex>/<file>              these files
+//   <job>/<hex>/<attempt>/<file>    results of an attempt
+//   <job>/<hex>/<attempt>/manifest  the list of these, once all of them are there
+//   <job>/<hex>/result              the list of the results of the attempt that succeeded
 //
-// No object changes once it is written, so that a copy in a directory stays right. An attempt of a
-// node that was taken for dead writes where nobody looks. What no list names is swept later.
+// No object changes once it is written, so that a copy in a directory stays right; a name that is
+// used again gets another <hex>. An attempt of a node that was taken for dead writes where nobody
+// looks. What no list names is swept later.
 
 #include <chrono>
 #include <condition_variable>
@@ -39,6 +40,12 @@ struct StoredObject {
 /// By their names.
 using StoredObjects = std::map<std::string, StoredObject, std::less<>>;
 
+/// A folder in the bucket.
+struct BucketFolder {
+  std::string root;  ///< "<job>/<hex>/"; empty where there is no folder
+  StoredObjects files;
+};
+
 /// What the rows say of a folder.
 enum class FolderFate {
   kept,
@@ -66,23 +73,21 @@ class BucketFolders {
   /// Finishes what was put off, for a few seconds.
   ~BucketFolders();
 
-  /// Copies the files of an upload, whose digests are noted in its folder. False where the job has
-  /// files already.
-  [[nodiscard]] bool put_input(std::string_view job, const std::filesystem::path& folder);
+  /// Copies the files of an upload, whose digests are noted in its folder. Returns the root;
+  /// nothing where the job has files already.
+  [[nodiscard]] std::optional<std::string> put_input(std::string_view job,
+                                                     const std::filesystem::path& folder);
   /// Copies the results of an attempt, of which nobody knows before publish().
-  void put_results(std::string_view job, int attempt, const std::filesystem::path& folder);
-  /// Makes the results of an attempt those of the job. Does nothing where that is done.
-  void publish(std::string_view job, int attempt);
-  /// Gives a job the results of another. False where that has none.
-  [[nodiscard]] bool copy_results(std::string_view job, std::string_view from);
+  void put_results(const std::string& root, int attempt, const std::filesystem::path& folder);
+  /// Makes the results of an attempt those of the folder. Does nothing where that is done.
+  void publish(const std::string& root, int attempt);
+  /// Gives a folder the results of another. False where that has none.
+  [[nodiscard]] bool copy_results(const std::string& root, const std::string& from);
 
   [[nodiscard]] bool has_input(std::string_view job);
   /// Seconds since a job's files were brought; 0 where there are none.
   [[nodiscard]] std::int64_t age_s(std::string_view job);
-  /// Bytes of the files that were brought.
-  [[nodiscard]] std::int64_t input_bytes(std::string_view job);
-  /// The files of a job that lists name.
-  [[nodiscard]] StoredObjects files(std::string_view job);
+  [[nodiscard]] BucketFolder find(std::string_view job);
   /// Writes a file into one that must not exist. False where it is gone.
   [[nodiscard]] bool get(const StoredObject& object, const std::filesystem::path& file);
   /// Makes room for another job of this name: what is there is named by no list, and swept later.
@@ -92,16 +97,19 @@ class BucketFolders {
   [[nodiscard]] bool has_any();
 
   // Done by a thread of its own; what fails is left to a sweep, or to whoever finds the job.
-  void remove_later(std::string_view job);
-  void drop_attempt_later(std::string_view job, int attempt);
-  void publish_later(std::string_view job, int attempt);
+  /// root: empty where this node does not know it. Then a folder that may be younger than this call
+  /// is left to a sweep, too, as it may be that of another job.
+  void remove_later(std::string_view job, const std::string& root);
+  void publish_later(const std::string& root, int attempt);
 
   /// Removes folders of jobs that are gone, and in others what no list names. Returns the number of
   /// folders removed. settle: asked to publish what a job has before something of it is removed.
   int sweep(const Fates& fates, const std::function<void(const std::string& job)>& settle);
 
  private:
-  void remove_all(const std::string& prefix);
+  using Time = std::chrono::steady_clock::time_point;
+  void remove(const std::string& job, std::string root, Time called);
+  void remove_all(std::vector<bucket::ObjectInfo> objects);
   void put_off(std::function<void()> task);
   void work();
   [[nodiscard]] StoredObjects listed(const std::string& list);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <numeric>
 #include <utility>
 
 #include "server/base/files.hpp"
@@ -15,7 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using Clock = std::chrono::steady_clock;
+
 constexpr std::int64_t kNoRowYet = -1;
+constexpr std::chrono::minutes kRemembered{10};  // a name without a copy
 constexpr int kPartNameBytes = 8;
 
 std::int64_t bytes_of(const fs::path& folder) {
@@ -34,33 +38,49 @@ CachedFolders::CachedFolders(std::unique_ptr<BucketFolders> bucket, fs::path fol
       most_bytes_(most_bytes),
       noting_(noting) {}
 
-void CachedFolders::keep(std::string_view job) {
+void CachedFolders::keep(std::string_view job, const std::string& root) {
   const std::lock_guard lock(mutex_);
-  rows_[std::string(job)] = {.seq = kNoRowYet};
+  rows_[std::string(job)] = {.seq = kNoRowYet, .root = root, .used = Clock::now()};
 }
 
 void CachedFolders::note_row(std::string_view job, std::int64_t seq, int succeeded) {
   const std::lock_guard lock(mutex_);
   Row& row = rows_[std::string(job)];
-  if (row.seq != seq && row.seq != kNoRowYet) remove_tree(folder_ / job);
-  row = {.seq = seq, .succeeded = succeeded};
+  if (row.seq != seq && row.seq != kNoRowYet) {
+    remove_tree(folder_ / job);
+    row.root.clear();
+  }
+  row.seq = seq;
+  row.succeeded = succeeded;
+  row.used = Clock::now();
+}
+
+std::string CachedFolders::known_root(std::string_view job) const {
+  const std::lock_guard lock(mutex_);
+  const auto row = rows_.find(job);
+  return row == rows_.end() ? std::string() : row->second.root;
+}
+
+std::string CachedFolders::root(std::string_view job) {
+  std::string known = known_root(job);
+  return known.empty() ? note_files(job).root : known;
 }
 
 /// Results are published by whoever misses them first. False where there are none.
-bool CachedFolders::publish(std::string_view job) {
+bool CachedFolders::publish(std::string_view job, const std::string& root) {
   int attempt = 0;
   {
     const std::lock_guard lock(mutex_);
     if (const auto row = rows_.find(job); row != rows_.end()) attempt = row->second.succeeded;
   }
-  if (attempt > 0) bucket_->publish(job, attempt);
-  return attempt > 0;
+  if (attempt == 0 || root.empty()) return false;
+  bucket_->publish(root, attempt);
+  return true;
 }
 
 void CachedFolders::forget(std::string_view job) noexcept {
   const std::lock_guard lock(mutex_);
   if (const auto row = rows_.find(job); row != rows_.end()) rows_.erase(row);
-  if (const auto used = used_.find(job); used != used_.end()) used_.erase(used);
   remove_tree(folder_ / job);
 }
 
@@ -74,16 +94,20 @@ bool CachedFolders::knows(std::string_view job, std::string_view file) const {
   return digests.contains(file) || digests.contains(is_input(file) ? kDocumentFile : kReportFile);
 }
 
-StoredObjects CachedFolders::note_files(std::string_view job) {
-  StoredObjects objects = bucket_->files(job);
-  if (!objects.contains(kReportFile) && publish(job)) objects = bucket_->files(job);
-  if (objects.empty()) return objects;
+BucketFolder CachedFolders::note_files(std::string_view job) {
+  BucketFolder folder = bucket_->find(job);
+  if (!folder.files.contains(kReportFile) && publish(job, folder.root)) folder = bucket_->find(job);
+  if (folder.root.empty()) return folder;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto row = rows_.find(job); row != rows_.end()) row->second.root = folder.root;
+  }
   const std::lock_guard lock(noting_);
   make_directories(folder_ / job);
   Digests digests = read_digests(folder_ / job);
-  for (const auto& [file, object] : objects) digests[file] = object.sha256;
+  for (const auto& [file, object] : folder.files) digests[file] = object.sha256;
   write_digests(folder_ / job, digests);
-  return objects;
+  return folder;
 }
 
 /// Two threads may fetch a file at a time: the second replaces it by the same bytes.
@@ -96,17 +120,17 @@ void CachedFolders::fetch(std::string_view job, const std::string& file,
 void CachedFolders::bring(std::string_view job, std::string_view file) {
   {
     const std::lock_guard lock(mutex_);
-    used_[std::string(job)] = std::chrono::steady_clock::now();
+    if (const auto row = rows_.find(job); row != rows_.end()) row->second.used = Clock::now();
   }
   const bool is_there = fs::exists(folder_ / job / file);
   if (knows(job, file) && (is_there || !read_digests(folder_ / job).contains(file))) return;
-  const StoredObjects objects = note_files(job);
-  const auto found = objects.find(file);
-  if (found != objects.end() && !is_there) fetch(job, found->first, found->second);
+  const StoredObjects files = note_files(job).files;
+  const auto found = files.find(file);
+  if (found != files.end() && !is_there) fetch(job, found->first, found->second);
 }
 
 void CachedFolders::bring_results(std::string_view job) {
-  for (const auto& [file, object] : note_files(job))
+  for (const auto& [file, object] : note_files(job).files)
     if (!is_input(file) && !fs::exists(folder_ / job / file)) fetch(job, file, object);
 }
 
@@ -115,8 +139,8 @@ std::vector<CachedFolders::Copy> CachedFolders::by_use() {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
     std::string name = entry.path().filename();
     const std::lock_guard lock(mutex_);
-    const auto used = used_.find(name);
-    copies.push_back({used == used_.end() ? decltype(Copy::used)() : used->second, name});
+    const auto row = rows_.find(name);
+    copies.push_back({row == rows_.end() ? Time() : row->second.used, name});
   }
   std::ranges::sort(copies, {}, &Copy::used);
   return copies;
@@ -130,18 +154,22 @@ bool CachedFolders::set_aside(std::string_view job) {
 int CachedFolders::sweep(const Fates& fates) {
   for (const Copy& copy : by_use())
     if (fates(copy.name) == FolderFate::gone) forget(copy.name);
-  return bucket_->sweep(fates, [this](const std::string& job) { publish(job); });
+  return bucket_->sweep(fates, [this](const std::string& job) { note_files(job); });
 }
 
 void CachedFolders::trim() {
   const std::vector<Copy> copies = by_use();
-  std::int64_t bytes = 0;
-  for (const Copy& copy : copies) bytes += bytes_of(folder_ / copy.name);
-  for (const Copy& copy : copies) {
-    if (bytes <= most_bytes_) return;
-    bytes -= bytes_of(folder_ / copy.name);
-    forget(copy.name);
+  std::vector<std::int64_t> sizes;
+  for (const Copy& copy : copies) sizes.push_back(bytes_of(folder_ / copy.name));
+  std::int64_t bytes = std::accumulate(sizes.begin(), sizes.end(), std::int64_t{0});
+  for (std::size_t k = 0; k < copies.size() && bytes > most_bytes_; ++k) {
+    forget(copies[k].name);
+    bytes -= sizes[k];
   }
+  const std::lock_guard lock(mutex_);
+  std::erase_if(rows_, [&](const auto& row) {
+    return Clock::now() - row.second.used > kRemembered && !fs::exists(folder_ / row.first);
+  });
 }
 
 bool CachedFolders::give_up_one() noexcept {

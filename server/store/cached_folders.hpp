@@ -29,10 +29,14 @@ class CachedFolders {
 
   BucketFolders& bucket() { return *bucket_; }
   /// The copy of a folder that this node has just brought, and whose row is about to be written.
-  void keep(std::string_view job);
+  void keep(std::string_view job, const std::string& root);
   /// The row of this number has this name now. succeeded: the attempt that made its results; 0:
   /// none yet.
   void note_row(std::string_view job, std::int64_t seq, int succeeded);
+  /// The root of a folder as this node has known it; empty where it has not.
+  [[nodiscard]] std::string known_root(std::string_view job) const;
+  /// The same, asking where it is not known.
+  [[nodiscard]] std::string root(std::string_view job);
   /// Removes the copy of a folder.
   void forget(std::string_view job) noexcept;
   void forget_file(std::string_view job, std::string_view file) noexcept;
@@ -44,33 +48,35 @@ class CachedFolders {
   /// BucketFolders::set_aside() and sweep(); copies of folders that are no longer kept go, too.
   bool set_aside(std::string_view job);
   int sweep(const Fates& fates);
-  /// Removes what is too much.
+  /// Removes what is too much, and forgets names that were not used lately.
   void trim();
   /// Removes the copy that was not used for longest. False where there is none.
   bool give_up_one() noexcept;
 
  private:
+  using Time = std::chrono::steady_clock::time_point;
   struct Row {
     std::int64_t seq = 0;
     int succeeded = 0;
+    std::string root = {};
+    Time used = {};
   };
   struct Copy {
-    std::chrono::steady_clock::time_point used;
+    Time used;
     std::string name;
   };
   [[nodiscard]] std::vector<Copy> by_use();
   [[nodiscard]] bool knows(std::string_view job, std::string_view file) const;
-  StoredObjects note_files(std::string_view job);
-  bool publish(std::string_view job);
+  BucketFolder note_files(std::string_view job);
+  bool publish(std::string_view job, const std::string& root);
   void fetch(std::string_view job, const std::string& file, const StoredObject& object);
 
   std::unique_ptr<BucketFolders> bucket_;
   const std::filesystem::path folder_;
   const std::int64_t most_bytes_;
   std::mutex& noting_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<std::string, Row, std::less<>> rows_;  ///< by name
-  std::map<std::string, std::chrono::steady_clock::time_point, std::less<>> used_;
 };
 
 }  // namespace unwrapd::server::store

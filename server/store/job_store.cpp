@@ -215,9 +215,9 @@ bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
         *database_,
         "UPDATE jobs SET state = ?4, result_format = ?5, problem = ?6,"
         " last_event = ?7, finished_ms = ?8, kept_since_ms = ?10, stored_bytes = ?9,"
-        " ran_ms = ran_ms + ?11 WHERE id = ?1 AND attempt = ?2 AND state = ?3");
+        " ran_ms = ran_ms + ?11 WHERE seq = ?1 AND attempt = ?2 AND state = ?3");
     statement
-        .with(known.id, std::int64_t{known.attempt}, state_name(known.state),
+        .with(known.seq, std::int64_t{known.attempt}, state_name(known.state),
               state_name(outcome.state), outcome.result_format, text_of(outcome.problem),
               outcome.last_event, outcome.finished_ms, outcome.stored_bytes, kept_since_ms,
               outcome.ran_ms)

@@ -75,9 +75,9 @@ std::optional<JobRecord> JobStore::take(std::string_view owner, std::int64_t now
 bool JobStore::beat(const JobRecord& job) {
   return change([&] {
     Statement(*database_,
-              "UPDATE jobs SET beat = beat + 1 WHERE id = ?1 AND attempt = ?2 AND node = ?3"
+              "UPDATE jobs SET beat = beat + 1 WHERE seq = ?1 AND attempt = ?2 AND node = ?3"
               " AND state = 'running'")
-        .with(job.id, std::int64_t{job.attempt}, node_.id)
+        .with(job.seq, std::int64_t{job.attempt}, node_.id)
         .run();
     return database_->changes() == 1;
   });
@@ -123,8 +123,8 @@ bool JobStore::requeue(const JobRecord& known, bool crashed, std::int64_t ran_ms
   return change([&] {
     Statement(*database_,
               "UPDATE jobs SET state = 'queued', crashes = crashes + ?4, ran_ms = ran_ms + ?5"
-              " WHERE id = ?1 AND attempt = ?2 AND beat = ?3 AND state = 'running'")
-        .with(known.id, std::int64_t{known.attempt}, known.beat, std::int64_t{crashed}, ran_ms)
+              " WHERE seq = ?1 AND attempt = ?2 AND beat = ?3 AND state = 'running'")
+        .with(known.seq, std::int64_t{known.attempt}, known.beat, std::int64_t{crashed}, ran_ms)
         .run();
     return database_->changes() == 1;
   });

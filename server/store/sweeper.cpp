@@ -67,7 +67,7 @@ void sweep(MeshStore& meshes, BlobStore& blobs, std::int64_t now_ms, std::chrono
 }
 
 bool evict_oldest(JobStore& store, MeshStore& meshes, BlobStore& blobs) {
-  if (blobs.give_up_copy() || blobs.lost().give_up_first()) return true;
+  if (blobs.lost().give_up_first()) return true;
   const std::vector<std::string> finished = store.finished_before(kAnyTime, 1);
   for (const MeshRecord& mesh : meshes.unused_since(kAnyTime)) {
     if (!store.finished_before(mesh.kept_since_ms + 1, 1).empty()) break;

@@ -22,6 +22,16 @@ constexpr int kAtOnce = 16;
 constexpr int kPerReceiver = 2;
 constexpr std::int64_t kLongestPauseMs = 3'600'000;
 constexpr std::int64_t kLongestCallMs = 60'000;
+constexpr std::int64_t kTimeForOthersMs = 3'600'000;
+
+bool may_call(const std::string& url, const WebhookConfig& config) {
+  try {
+    static_cast<void>(parse_webhook(url, config));
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
 
 std::string base64(std::string_view bytes) {
   std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // EVP ends it with a NUL
@@ -204,9 +214,12 @@ bool Webhooks::make(const Delivery& delivery, const std::stop_token& stop) {
 }
 
 /// Keeps other nodes from making the same call, for longer than it takes. Should this node end
-/// meanwhile, it is due again then.
+/// meanwhile, it is due again then. A call that this node may not make is left to those that may;
+/// where none does for an hour, it fails here, as all calls end some time.
 bool Webhooks::claim(const Due& due) {
   if (!is_shared_) return true;
+  const bool is_late = now_().kept_ms() - due.due_ms > kTimeForOthersMs;
+  if (!is_late && !may_call(due.url, config_)) return false;
   return database_->change([&] {
     store::Statement(*database_, "UPDATE deliveries SET due_ms = ?3 WHERE seq = ?1 AND due_ms = ?2")
         .with(due.seq, due.due_ms, now_().kept_ms() + kLongestCallMs)

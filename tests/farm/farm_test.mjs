@@ -236,6 +236,7 @@ test("a webhook is called once though all nodes look for calls that are due", op
   const nodes = [];
   for (const name of ["a", "b", "c"]) nodes.push(await farm.start(name, 1, ...flags));
   const hook = `http://127.0.0.1:${receiver.address().port}/`;
+  const forbidden = await farm.start("may call nobody", 1);
   const ids = [];
   for (let k = 0; k < 12; k++) {
     const asked = { body: `${grid(2)}# ${k}\n`, headers: { "Unwrapd-Webhook": hook } };
@@ -246,6 +247,7 @@ test("a webhook is called once though all nodes look for calls that are due", op
   for (const giveUp = Date.now() + 20_000; farm.query("SELECT COUNT(*) FROM deliveries") !== "0"; await sleep(100))
     assert.ok(Date.now() < giveUp);
   assert.deepEqual([...calls].sort(), [...ids].sort());
+  assert.doesNotMatch(forbidden.log, /not reached/);
 });
 
 test("without hints all is found by looking", options, async (t) => {

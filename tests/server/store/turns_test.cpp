@@ -39,6 +39,22 @@ class Turns : public testing::Test {
   std::int64_t count_ = 0;
 };
 
+TEST_F(Turns, AnEndIsOfOneRowThoughItsNameIsUsedAgain) {
+  add("owner");
+  const JobRecord before = start("owner");
+  store_->remove(before.id);
+  count_ = 0;
+  add("owner");
+  const JobRecord now = start("owner");
+  ASSERT_EQ(now.id, before.id);
+  ASSERT_EQ(now.attempt, before.attempt);
+  EXPECT_FALSE(store_->beat(before));
+  EXPECT_FALSE(store_->requeue(before, false, 0));
+  EXPECT_FALSE(store_->finish(
+      before, {.result_format = "glb", .problem = {}, .finished_ms = 1, .ran_ms = 1}));
+  EXPECT_TRUE(store_->beat(now));
+}
+
 TEST_F(Turns, ManyJobsOfOneOwnerDoNotKeepAnotherWaiting) {
   for (int k = 0; k < 50; ++k) add("greedy");
   std::string order;
