@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 
 #include "core/figure/image.hpp"
 #include "server/http/addresses.hpp"
@@ -13,7 +12,6 @@ namespace unwrapd::server::access {
 namespace {
 
 constexpr std::string_view kScheme = "Bearer ";
-constexpr double kSecondsPerMinute = 60;
 constexpr double kMegapixel = 1024.0 * 1024.0;
 // Open to everybody: what the server is and whether it is well, and no job.
 constexpr auto kPublic = std::to_array<std::string_view>(
@@ -59,24 +57,6 @@ double cost_of(const http::Request& request, std::string_view route) {
   return std::max(1.0, pixels * static_cast<double>(pixels) / kMegapixel);
 }
 
-int RateLimit::wait_seconds(const std::string& key, std::int64_t per_minute, Clock::time_point now,
-                            double cost) {
-  if (per_minute == 0) return 0;
-  const auto most = static_cast<double>(per_minute);
-  cost = std::min(cost, most);
-  const std::lock_guard lock(mutex_);
-  const auto [found, is_new] = buckets_.try_emplace(key, Bucket{.tokens = most, .filled = now});
-  Bucket& bucket = found->second;
-  const std::chrono::duration<double> since = now - bucket.filled;
-  bucket.tokens = std::min(most, bucket.tokens + since.count() * most / kSecondsPerMinute);
-  bucket.filled = now;
-  if (bucket.tokens >= cost) {
-    bucket.tokens -= cost;
-    return 0;
-  }
-  return static_cast<int>(std::ceil((cost - bucket.tokens) * kSecondsPerMinute / most));
-}
-
 ApiKey Access::key_of(const http::Request& request) {
   const std::string field = request.header("Authorization");
   std::optional<ApiKey> key;
@@ -115,8 +95,7 @@ void Access::open_link(http::Request& request, double cost) {
 }
 
 void Access::spend(const ApiKey& key, double cost) {
-  const auto now = std::chrono::steady_clock::now();
-  const int wait = rates_.wait_seconds(key.id, key.requests_per_minute, now, cost);
+  const int wait = keys_.wait_seconds(key, cost);
   if (wait == 0) return;
   throw RetryLater(
       ErrorCode::rate_limited,

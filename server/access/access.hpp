@@ -3,10 +3,7 @@
 // one as `Authorization: Bearer unw_...`; the scopes, rate and quota of that key apply to it. A
 // signed link (signed_link.hpp) opens one resource without a key, an upload ticket takes one job.
 
-#include <chrono>
 #include <filesystem>
-#include <map>
-#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -29,25 +26,6 @@ bool asks_for_keys(const AccessConfig& config, std::string_view host);
 /// For how many requests one counts: a large picture for one each megapixel.
 double cost_of(const http::Request& request, std::string_view route);
 
-/// At most so many requests a minute, a minute's worth of them at once (token bucket).
-class RateLimit {
- public:
-  using Clock = std::chrono::steady_clock;
-
-  /// 0 when the request may go on, else the whole seconds after which it may.
-  /// cost: for how many requests it counts, which are a minute's worth at most.
-  int wait_seconds(const std::string& key, std::int64_t per_minute, Clock::time_point now,
-                   double cost = 1);
-
- private:
-  struct Bucket {
-    double tokens = 0;
-    Clock::time_point filled{};
-  };
-  std::mutex mutex_;
-  std::map<std::string, Bucket> buckets_;
-};
-
 /// Thread-safe.
 class Access {
  public:
@@ -67,7 +45,6 @@ class Access {
   KeyStore& keys_;
   const LinkSigner& links_;
   const bool ask_;
-  RateLimit rates_;
 };
 
 }  // namespace unwrapd::server::access

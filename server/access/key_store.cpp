@@ -155,7 +155,8 @@ std::string to_text(const Scopes& scopes) {
 KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::path& given,
                    const store::PostgresAddress& database, Tables tables)
     : database_(opened(data, database, tables)),
-      given_(given.empty() ? "" : sha256(key_in(given))) {}
+      given_(given.empty() ? "" : sha256(key_in(given))),
+      is_shared_(!database.url.empty()) {}
 
 std::string KeyStore::add(ApiKey key) {
   check_name(key.name);
@@ -203,6 +204,14 @@ std::vector<ApiKey> KeyStore::all() {
   std::vector<ApiKey> keys;
   while (statement.step()) keys.push_back(key_of(statement));
   return keys;
+}
+
+int KeyStore::wait_seconds(const ApiKey& key, double cost) {
+  const std::int64_t most = key.requests_per_minute;
+  if (most == 0) return 0;
+  if (!is_shared_) return rates_.wait_seconds(key.id, most, RateLimit::Clock::now(), cost);
+  const std::lock_guard lock(mutex_);
+  return wait_seconds_of_all(*database_, key.id, most, std::min(cost, static_cast<double>(most)));
 }
 
 bool KeyStore::remove(std::string_view id) {

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/access/rate_limit.hpp"
 #include "server/http/http.hpp"
 #include "server/store/database_address.hpp"
 
@@ -70,6 +71,10 @@ class KeyStore {
   [[nodiscard]] bool has_any();
   /// In the order in which they were added.
   std::vector<ApiKey> all();
+  /// 0 when the key may be used once more, else the whole seconds after which it may. cost: for how
+  /// many uses this one counts, which are a minute's worth at most. Nodes of one database with a
+  /// URL count together; uses that are not answered for that it is away may count.
+  int wait_seconds(const ApiKey& key, double cost);
   /// False when there is none of this id. Its jobs stay.
   bool remove(std::string_view id);
 
@@ -77,6 +82,8 @@ class KeyStore {
   std::mutex mutex_;
   const std::unique_ptr<store::Database> database_;
   const std::string given_;  // SHA-256; empty: none
+  const bool is_shared_;     // with other nodes
+  RateLimit rates_;
 };
 
 }  // namespace unwrapd::server::access

@@ -161,7 +161,8 @@ std::string postgres_step(std::int64_t version) {
   if (version == kFirstVersion) return kFirstTables;
   if (version == kFirstVersion + 1) return kNamesStep;
   if (version == kFirstVersion + 2) return kTicketsStep;
-  return std::string(kTurnsStep) + kPostgresTurns;
+  if (version == kTurnsVersion) return std::string(kTurnsStep) + kPostgresTurns;
+  return kRatesStep;
 }
 
 }  // namespace unwrapd::server::store

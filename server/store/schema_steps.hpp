@@ -6,7 +6,7 @@
 
 namespace unwrapd::server::store {
 
-inline constexpr std::int64_t kSchemaVersion = 13;  ///< of this program
+inline constexpr std::int64_t kSchemaVersion = 14;  ///< of this program
 
 // From version 10 to 11, to 12, and to 13 (its triggers follow), in the words of both engines.
 inline constexpr const char* kNamesStep = R"sql(
@@ -39,6 +39,11 @@ CREATE TABLE nodes (
   workers BIGINT NOT NULL,
   seen_ms BIGINT NOT NULL
 );
+)sql";
+
+/// To version 14, of nodes with one database: a process that is alone counts in its memory.
+inline constexpr const char* kRatesStep = R"sql(
+CREATE UNLOGGED TABLE rates (key TEXT NOT NULL PRIMARY KEY, full_us BIGINT NOT NULL);
 )sql";
 
 /// From version - 1 to this one; empty where nothing is to do.

@@ -132,7 +132,7 @@ CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
   UPDATE stored SET bytes = bytes - OLD.stored_bytes, jobs = jobs - 1 WHERE owner = OLD.owner;
 END;
 )sql",
-    kNamesStep, kTicketsStep, kTurnsStep};
+    kNamesStep, kTicketsStep, kTurnsStep, ""};
 
 /// Strict tables know BIGINT by one name alone.
 std::string in_words_of_sqlite(std::string step) {

@@ -192,6 +192,17 @@ test("what is promised once holds for all nodes together", options, async (t) =>
     assert.ok(codes.every((code) => [202, 429].includes(code)), String(codes));
   });
 
+  await t.test("the rate of a key is exact", async () => {
+    const key = farm.addKey("--name", "slow", "--scopes", "read", "--requests-per-minute", "12");
+    const began = Date.now();
+    const answers = await race(60, (node) => fetch(`${node.url}/v1/jobs`, { headers: as(key) }));
+    const more = Math.floor((Date.now() - began) / 5000); // came while they ran
+    const allowed = answers.filter((answer) => answer.status === 200).length;
+    assert.ok(allowed >= 12 && allowed <= 12 + more, `${allowed} of 12`);
+    const waits = answers.filter((answer) => answer.status === 429).map((answer) => Number(answer.headers.get("Retry-After")));
+    assert.ok(waits.length > 40 && waits.every((seconds) => seconds >= 1 && seconds <= 5), String(waits));
+  });
+
   await t.test("an upload ticket is good for one job", async () => {
     const made = await send(fronts[0], "/v1/tickets", { body: "", headers: as(all, { "Content-Type": "application/json" }) });
     const { urls } = await made.json();

@@ -139,17 +139,6 @@ TEST(Links, AreNotSignedWithWhatIsLeftOfASecret) {
             ErrorCode::storage_failed);
 }
 
-TEST(RateLimit, LetsAMinutesWorthThroughAndThenOneByOne) {
-  RateLimit rates;
-  const RateLimit::Clock::time_point start{};
-  for (int k = 0; k < 30; ++k) EXPECT_EQ(rates.wait_seconds("a", 30, start), 0);
-  EXPECT_EQ(rates.wait_seconds("a", 30, start), 2);
-  EXPECT_EQ(rates.wait_seconds("b", 30, start), 0);
-  EXPECT_EQ(rates.wait_seconds("a", 30, start + std::chrono::seconds(2)), 0);
-  EXPECT_EQ(rates.wait_seconds("a", 30, start + std::chrono::seconds(2)), 2);
-  EXPECT_EQ(rates.wait_seconds("a", 0, start), 0);
-}
-
 /// The request that opens a link.
 http::Request opening(const std::string& link) {
   http::Request request = request_of("GET", link.substr(0, link.find('?')));
