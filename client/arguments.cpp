@@ -12,6 +12,7 @@
 #include "api/options.hpp"
 #include "client/files.hpp"
 #include "client/formats.hpp"
+#include "client/in_flight.hpp"
 #include "client/nearest.hpp"
 #include "client/option_flags.hpp"
 
@@ -21,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxTimeoutSeconds = 1e6;
-constexpr int kMaxJobs = 256;
 constexpr const char* kUsualServer = "http://127.0.0.1:8080";
 
 constexpr const char* kAbout =
@@ -112,16 +112,18 @@ void add_flags(CLI::App& app, RawArguments& raw) {
       "compare a list of both");
   app.add_flag("-q,--quiet", arguments.quiet, "Print no progress and no summary");
   app.add_option("--server", raw.server,
-                 std::string("Address of the server. Default: ") + kUsualServer +
-                     "; if none answers there, the job runs in this process")
+                 std::string("Address of the server, or of several nodes of a farm, with commas "
+                             "between them. Default: ") +
+                     kUsualServer + "; if none answers there, the job runs in this process")
       ->type_name("URL")
       ->envname("UNWRAPD_SERVER");
   app.add_flag("--local", raw.local,
                "Run the job in this process, without a server, whatever --server says");
-  app.add_option("-j,--jobs", arguments.jobs, "Of several meshes, unwrap so many at once")
-      ->check(CLI::Range(1, kMaxJobs).description(""))
-      ->type_name("N")
-      ->capture_default_str();
+  app.add_option("-j,--jobs", arguments.jobs,
+                 "Of several meshes, unwrap so many at once. Default: as many as keep all workers "
+                 "of the server busy")
+      ->check(CLI::Range(1, InFlight::kMost).description(""))
+      ->type_name("N");
   app.add_flag("--resume", arguments.resume,
                "Leave out meshes whose results are there and newer than they are");
   app.add_flag("--watch", arguments.watch,
@@ -162,18 +164,13 @@ std::vector<std::string> lambdas_of(const OptionTexts& options) {
   return CLI::detail::split(lambda->second, ',');
 }
 
-bool is_folder(const fs::path& path) {
-  std::error_code none;
-  return fs::is_directory(path, none);
-}
-
 bool is_batch(const Arguments& arguments) {
   const fs::path& first = arguments.inputs.front();
   std::error_code none;
   const bool has_sign = first.string().find_first_of("*?[") != std::string::npos;
   const bool is_pattern = has_sign && !is_address(first) && !fs::exists(first, none);
-  return arguments.inputs.size() > 1 || is_folder(first) || is_pattern || arguments.resume ||
-         arguments.watch;
+  return arguments.inputs.size() > 1 || fs::is_directory(first, none) || is_pattern ||
+         arguments.resume || arguments.watch;
 }
 
 void check_batch(const Arguments& arguments) {
@@ -189,10 +186,9 @@ void check_batch(const Arguments& arguments) {
   std::error_code none;
   const fs::path& out = arguments.out;
   const bool is_file = is_stream(out) || is_mesh_name(out) || fs::exists(out, none);
-  if (!out.empty() && is_file && !is_folder(out))
+  if (!out.empty() && is_file && !fs::is_directory(out, none))
     throw Failure(ExitCode::usage,
-                  "--out: several meshes, --resume and --watch write into a folder, "
-                  "and " +
+                  "--out: several meshes, --resume and --watch write into a folder, and " +
                       out.string() + " is none; name one.");
   if (!arguments.lambdas.empty())
     throw Failure(ExitCode::usage,
@@ -233,9 +229,9 @@ Arguments complete(RawArguments raw) {
   if (arguments.inputs.empty()) throw Failure(ExitCode::usage, "FILE is missing; name a mesh.");
   if (!raw.server.empty()) arguments.place = Place::server;
   if (raw.local) arguments.place = Place::here;
-  arguments.server = parse_server_url(raw.server.empty() ? kUsualServer : raw.server);
-  // Only from the environment, since all users of the machine can see a command line.
-  if (const char* key = std::getenv("UNWRAP_API_KEY")) arguments.server.key = key;
+  arguments.servers = parse_server_urls(raw.server.empty() ? kUsualServer : raw.server);
+  const char* key = std::getenv("UNWRAP_API_KEY");  // all can see a command line
+  for (ServerUrl& server : arguments.servers) server.key = key == nullptr ? "" : key;
   arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));
   if (is_comparison(arguments)) settle_comparison(arguments);
   check_options(arguments.options);
@@ -270,6 +266,10 @@ std::string hint(const CLI::App& app) {
   return {};
 }
 
+Message refusal(ExitCode code, const std::string& why) {
+  return {code, "unwrap: " + why + "\nSee unwrap --help.\n"};
+}
+
 }  // namespace
 
 std::variant<Arguments, Message> parse_arguments(int argc, const char* const* argv) {
@@ -286,14 +286,11 @@ std::variant<Arguments, Message> parse_arguments(int argc, const char* const* ar
   } catch (const CLI::CallForVersion& version) {
     return Message{ExitCode::ok, std::string(version.what()) + "\n"};
   } catch (const CLI::ExtrasError& error) {
-    return Message{ExitCode::usage,
-                   std::string("unwrap: ") + error.what() + hint(app) + "\nSee unwrap --help.\n"};
+    return refusal(ExitCode::usage, error.what() + hint(app));
   } catch (const CLI::ParseError& error) {
-    return Message{ExitCode::usage,
-                   std::string("unwrap: ") + error.what() + "\nSee unwrap --help.\n"};
+    return refusal(ExitCode::usage, error.what());
   } catch (const Failure& failure) {
-    return Message{failure.code(),
-                   std::string("unwrap: ") + failure.what() + "\nSee unwrap --help.\n"};
+    return refusal(failure.code(), failure.what());
   }
 }
 

@@ -25,7 +25,7 @@ struct Arguments {
   /// Several files, patterns or folders, and the folder of their results in `out`; empty: one file.
   std::vector<std::filesystem::path> inputs;
   bool compares = false;  ///< the two inputs as they are; out: a page about them, or empty
-  int jobs = 4;           ///< of inputs, at once
+  int jobs = 0;           ///< of inputs, at once; 0: as many as the workers need
   bool resume = false;    ///< leave out inputs whose results are there
   bool watch = false;     ///< go on with inputs that come or change
   std::filesystem::path report;
@@ -36,7 +36,7 @@ struct Arguments {
   std::string preview_view;        ///< from where it is seen; empty: the server's default
   std::filesystem::path sample;    ///< only write the sample mesh here
   Place place = Place::any;
-  ServerUrl server;                  ///< with the key of the environment
+  std::vector<ServerUrl> servers;    ///< of one service, with the key of the environment
   std::string name;                  ///< of the job; empty for none
   OptionTexts options;               ///< as given, with output set; checked
   std::vector<std::string> lambdas;  ///< of a list with the method hybrid, as given; else empty

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <exception>
 #include <iomanip>
 #include <map>
 #include <mutex>
 #include <ostream>
 #include <sstream>
-#include <thread>
 
 #include "client/batch_files.hpp"
 #include "client/figures.hpp"
+#include "client/in_flight.hpp"
 #include "client/printable.hpp"
 
 namespace unwrapd::client {
@@ -21,7 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kLook{1};  // between two looks of --watch
+constexpr std::chrono::seconds kLook{1};      // between two looks of --watch
+constexpr std::chrono::seconds kSilence{30};  // after a line that says why all wait
+
+// An upgrade of a farm may take ten minutes, and a full queue an hour.
+constexpr Patience kBatch{.lost_connections = 125, .refusals = 3600};
 
 /// What became of one mesh.
 struct Row {
@@ -32,30 +35,29 @@ struct Row {
   double seconds = 0;
 };
 
-/// Shared by the threads that take the meshes one after the other.
+/// Shared by the threads of the meshes.
 class Batch {
  public:
-  Batch(const Arguments& arguments, const ServerUrl& server, const Console& console,
+  Batch(const Arguments& arguments, const Servers& servers, const Console& console,
         const std::stop_token& stop)
-      : arguments_(arguments), server_(server), console_(console), stop_(stop) {}
+      : arguments_(arguments), servers_(servers), console_(console), stop_(stop) {}
 
   /// Rows in the order of the items. Throws what ends all of them: unreachable, interrupted.
   std::vector<Row> run(std::vector<BatchFile> items);
 
  private:
-  void work();
-  Row unwrapped(const BatchFile& item) const;
+  Row unwrapped(const BatchFile& item, const InFlight::OnBegun& on_begun);
   void tell(const Row& row) const;
+  void tell_wait(const std::string& why);
 
   const Arguments& arguments_;
-  const ServerUrl& server_;
+  const Servers& servers_;
   const Console& console_;
   const std::stop_token stop_;
-  std::mutex mutex_;
-  std::vector<BatchFile> items_;
+  std::mutex mutex_;  ///< of what follows, and of the console
   std::vector<Row> rows_;
-  std::size_t next_ = 0, ended_ = 0;
-  std::exception_ptr end_;
+  std::size_t ended_ = 0;
+  Clock::time_point told_wait_ = Clock::now() - kSilence;
 };
 
 /// The arguments of one mesh.
@@ -66,7 +68,15 @@ Arguments arguments_of(const Arguments& batch, const BatchFile& item) {
   return one;
 }
 
-Row Batch::unwrapped(const BatchFile& item) const {
+/// Tells it once for all that wait.
+void Batch::tell_wait(const std::string& why) {
+  const std::scoped_lock lock(mutex_);
+  if (console_.style == ProgressStyle::none || Clock::now() - told_wait_ < kSilence) return;
+  told_wait_ = Clock::now();
+  console_.err << "waiting: " << printable(why) << std::endl;
+}
+
+Row Batch::unwrapped(const BatchFile& item, const InFlight::OnBegun& on_begun) {
   Row row{.item = item};
   const Clock::time_point began = Clock::now();
   try {
@@ -75,7 +85,9 @@ Row Batch::unwrapped(const BatchFile& item) const {
     check_outputs(one);
     std::ostringstream ignored;
     const Console silent{ignored, ignored, ProgressStyle::none};
-    row.report = unwrap_file(one, server_, silent, stop_).front().report;
+    JobClient client(servers_, stop_, kBatch,
+                     {.on_begun = on_begun, .on_wait = [&](const auto& why) { tell_wait(why); }});
+    row.report = unwrap_file(client, one, silent, stop_).front().report;
     row.figures = read_figures(row.report);
   } catch (const Failure& failure) {
     if (failure.code() == ExitCode::unreachable || failure.code() == ExitCode::interrupted) throw;
@@ -100,40 +112,22 @@ void Batch::tell(const Row& row) const {
     console_.out << line.dump(-1, ' ', false, api::Json::error_handler_t::replace) << std::endl;
   }
   if (console_.style != ProgressStyle::none)
-    console_.err << "[" << ended_ << "/" << items_.size() << "] "
+    console_.err << "[" << ended_ << "/" << rows_.size() << "] "
                  << printable(row.item.file.string() +
                               (row.failure.empty() ? "" : ": " + row.failure))
                  << std::endl;
 }
 
-void Batch::work() {
-  std::unique_lock lock(mutex_);
-  while (next_ < items_.size() && !end_) {
-    const std::size_t mine = next_++;
-    lock.unlock();
-    try {
-      Row row = unwrapped(items_[mine]);
-      lock.lock();
-      ++ended_;
-      tell(row);
-      rows_[mine] = std::move(row);
-    } catch (...) {
-      if (!lock.owns_lock()) lock.lock();
-      if (!end_) end_ = std::current_exception();
-    }
-  }
-}
-
 std::vector<Row> Batch::run(std::vector<BatchFile> items) {
-  items_ = std::move(items);
-  rows_.assign(items_.size(), {});
-  next_ = ended_ = 0;
-  {
-    const std::size_t most = std::min<std::size_t>(items_.size(), std::size_t(arguments_.jobs));
-    std::vector<std::jthread> threads;
-    for (std::size_t k = 0; k < most; ++k) threads.emplace_back([this] { work(); });
-  }
-  if (end_) std::rethrow_exception(end_);
+  rows_.assign(items.size(), {});
+  ended_ = 0;
+  InFlight(arguments_.jobs).run(items.size(), [&](std::size_t mine, const auto& on_begun) {
+    Row row = unwrapped(items[mine], on_begun);
+    const std::scoped_lock lock(mutex_);
+    ++ended_;
+    tell(row);
+    rows_[mine] = std::move(row);
+  });
   return std::move(rows_);
 }
 
@@ -190,12 +184,12 @@ void keep_new(std::vector<BatchFile>& items, std::map<fs::path, fs::file_time_ty
 
 }  // namespace
 
-void run_batch(const Arguments& arguments, const ServerUrl& server, const Console& console,
+void run_batch(const Arguments& arguments, const Servers& servers, const Console& console,
                const std::stop_token& stop) {
   const auto output = arguments.options.find("output");
   const std::string format = output == arguments.options.end() ? "auto" : output->second;
   std::map<fs::path, fs::file_time_type> tried;  // when what was sent had been written
-  Batch batch(arguments, server, console, stop);
+  Batch batch(arguments, servers, console, stop);
   for (bool first = true; first || arguments.watch; first = false) {
     if (!first) pause(stop);
     std::vector<BatchFile> items = batch_files(arguments.inputs, arguments.out, format);

@@ -28,14 +28,14 @@ struct TableRow {
   std::array<std::string, 2> of;
 };
 
-Measured measured(const Arguments& arguments, std::size_t which, const ServerUrl& server,
+Measured measured(const Arguments& arguments, std::size_t which, const Servers& servers,
                   const Console& console, const std::stop_token& stop) {
   Arguments own = arguments;
   own.file = arguments.inputs[which];
   Measured mesh{.name = printable(own.file.string())};
   try {
-    JobClient client(server, stop);
-    const std::string job = finished_job(client, own, server, console, stop);
+    JobClient client(servers, stop);
+    const std::string job = finished_job(client, own, console, stop);
     mesh.report = client.fetch(job, "/report");
     if (arguments.out.empty()) return mesh;
     mesh.layout = client.fetch(job, layout_of(arguments));
@@ -142,12 +142,12 @@ std::string page_of(const std::array<Measured, 2>& meshes, const std::vector<Tab
 
 }  // namespace
 
-void compare(const Arguments& arguments, const ServerUrl& server, const Console& console,
+void compare(const Arguments& arguments, const Servers& servers, const Console& console,
              const std::stop_token& stop) {
   std::optional<NewFile> page;  // tried before anything is sent
   if (!arguments.out.empty()) page.emplace(arguments.out);
-  const std::array<Measured, 2> meshes = {measured(arguments, 0, server, console, stop),
-                                          measured(arguments, 1, server, console, stop)};
+  const std::array<Measured, 2> meshes = {measured(arguments, 0, servers, console, stop),
+                                          measured(arguments, 1, servers, console, stop)};
   const std::vector<TableRow> rows = rows_of(meshes);
   if (arguments.json)
     console.out << "[" << meshes[0].report << "," << meshes[1].report << "]" << std::endl;

@@ -1,10 +1,14 @@
 #include "client/job_client.hpp"
 
 #include <algorithm>
+#include <array>
 #include <condition_variable>
+#include <cstdio>
 #include <cstdlib>
 #include <mutex>
 #include <optional>
+#include <random>
+#include <utility>
 
 #include "api/error_table.hpp"
 #include "client/failure.hpp"
@@ -15,7 +19,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr int kTooManyRequests = 429;
+constexpr int kBadGateway = 502;
 constexpr int kUnavailable = 503;
+constexpr int kGatewayTimeout = 504;
 constexpr long kLongestRetryAfterSeconds = 60;
 
 std::string percent_encoded(const std::string& text) {
@@ -41,9 +47,30 @@ bool is_busy(const Reply& reply) {
   return reply.status == kTooManyRequests || reply.status == kUnavailable;
 }
 
+/// Up to a quarter more than is asked, so that many clients do not come back as one.
 milliseconds retry_after(const Reply& reply) {
-  const long seconds = std::strtol(reply.header("retry-after").c_str(), nullptr, 10);
-  return std::chrono::seconds(std::clamp(seconds, 1L, kLongestRetryAfterSeconds));
+  const long asked = std::strtol(reply.header("retry-after").c_str(), nullptr, 10);
+  const long seconds = std::clamp(asked, 1L, kLongestRetryAfterSeconds);
+  thread_local std::minstd_rand random{std::random_device{}()};
+  return milliseconds(std::uniform_int_distribution<long>(1000 * seconds, 1250 * seconds)(random));
+}
+
+/// A name that no other request has.
+std::string new_idempotency_key() {
+  std::random_device random;
+  std::string key = "unwrap-";
+  for (int k = 0; k < 4; ++k) {
+    std::array<char, 9> digits;
+    std::snprintf(digits.data(), digits.size(), "%08x", static_cast<unsigned>(random()));
+    key += digits.data();
+  }
+  return key;
+}
+
+std::string title_of(const api::Json& problem) {
+  return problem.is_object() && problem.contains("title") && problem["title"].is_string()
+             ? problem["title"].get<std::string>()
+             : "The server is busy.";
 }
 
 /// JSON of an answer; null if it is not JSON.
@@ -76,37 +103,76 @@ bool is_final_event(const SseEvent& event) {
 
 }  // namespace
 
-JobClient::JobClient(ServerUrl server, std::stop_token stop, Patience patience)
-    : http_(std::move(server), stop), stop_(std::move(stop)), patience_(patience) {}
+JobClient::JobClient(Servers servers, std::stop_token stop, Patience patience, Listener listener)
+    : servers_(std::move(servers)),
+      http_(servers_.next(), stop),
+      stop_(std::move(stop)),
+      patience_(patience),
+      listener_(std::move(listener)) {}
+
+Reply JobClient::ask_once(const Call& call) {
+  Reply reply = call(http_);
+  if (reply.status == kBadGateway || reply.status == kGatewayTimeout)
+    throw Failure(ExitCode::unreachable, "The proxy at " + http_.server().origin +
+                                             " found no server (status " +
+                                             std::to_string(reply.status) + ").");
+  servers_.note_answer(http_.server());
+  return reply;
+}
+
+void JobClient::lose(const Failure& failure, int& lost) {
+  if (failure.code() != ExitCode::unreachable) throw failure;
+  servers_.note_silence(http_.server());
+  const int most =
+      servers_.have_answered() ? patience_.lost_connections : static_cast<int>(servers_.size());
+  if (++lost >= most) throw failure;
+  http_ = Http(servers_.next(), stop_);
+}
+
+Reply JobClient::ask(const Call& call) {
+  milliseconds after_loss = patience_.first_pause;
+  for (int lost = 0, refused = 0;;) {
+    try {
+      Reply reply = ask_once(call);
+      lost = 0;
+      if (!is_busy(reply) || ++refused >= patience_.refusals) return reply;
+      wait(title_of(json_of(reply.body)), retry_after(reply));
+      after_loss = patience_.first_pause;
+    } catch (const Failure& failure) {
+      lose(failure, lost);
+      wait(failure.what(), after_loss);
+      after_loss = std::min(2 * after_loss, patience_.longest_pause);
+    }
+  }
+}
 
 api::Job JobClient::submit(const Upload& upload, const OptionTexts& options) {
   const std::string path = "/v1/jobs" + query_of(options);
-  const Headers headers = {{"Accept", "application/json"}};
-  Reply reply = http_.post(path, upload, headers);
-  for (int refusal = 1; is_busy(reply) && refusal < patience_.refusals; ++refusal) {
-    pause(retry_after(reply));
-    reply = http_.post(path, upload, headers);
-  }
+  const Headers headers = {{"Accept", "application/json"},
+                           {"Idempotency-Key", new_idempotency_key()}};
+  const Reply reply = ask([&](const Http& http) { return http.post(path, upload, headers); });
   if (!reply.ok()) refuse(reply);
   return job_of(json_of(reply.body));
 }
 
 api::Job JobClient::follow(const std::string& job_id, const EventSink& on_event) {
-  FollowState following{.last_id = {}, .job = {}, .wait = patience_.first_pause};
+  FollowState following{.last_id = {}, .job = {}, .pause = patience_.first_pause};
   while (true) {
+    std::string why;
     try {
       read_events(job_id, following, on_event);
     } catch (const Failure& failure) {
-      if (!following.job && !may_reconnect(failure, following)) throw;
+      why = failure.what();
+      if (!following.job) lose(failure, following.lost);
     }
     if (following.job) return *following.job;
-    pause(following.wait);
-    following.wait = std::min(2 * following.wait, patience_.longest_pause);
+    wait(why, following.pause);
+    following.pause = std::min(2 * following.pause, patience_.longest_pause);
   }
 }
 
-bool JobClient::may_reconnect(const Failure& failure, FollowState& following) const {
-  return failure.code() == ExitCode::unreachable && ++following.lost < patience_.lost_connections;
+void JobClient::note_begun(FollowState& following) const {
+  if (!std::exchange(following.has_begun, true) && listener_.on_begun) listener_.on_begun();
 }
 
 void JobClient::read_events(const std::string& job_id, FollowState& following,
@@ -114,19 +180,30 @@ void JobClient::read_events(const std::string& job_id, FollowState& following,
   const auto take = [&](const SseEvent& event) {
     following.last_id = event.id;
     following.lost = 0;
-    following.wait = patience_.first_pause;
+    following.pause = patience_.first_pause;
+    if (event.name != "queued") note_begun(following);
     if (is_final_event(event)) following.job = job_of(json_of(event.data));
     on_event(event);
   };
   SseParser parser;
   Headers headers = {{"Accept", "text/event-stream"}};
   if (!following.last_id.empty()) headers["Last-Event-ID"] = following.last_id;
-  const Reply reply = http_.get(api::job_path(job_id) + "/events", headers,
-                                [&](std::string_view bytes) { parser.feed(bytes, take); });
+  const Reply reply = ask_once([&](const Http& http) {
+    return http.get(api::job_path(job_id) + "/events", headers,
+                    [&](std::string_view bytes) { parser.feed(bytes, take); });
+  });
   if (following.job) return;
   if (!reply.ok() && !is_busy(reply)) refuse(reply);
-  const api::Job now = state_of(job_id);  // no stream is available, or it ended early
+  read_state(job_id, following);  // no stream is available, or it ended early
+}
+
+void JobClient::read_state(const std::string& job_id, FollowState& following) {
+  const Reply reply = ask_once([&](const Http& http) { return http.get(api::job_path(job_id)); });
   following.lost = 0;
+  if (is_busy(reply)) return;
+  if (!reply.ok()) refuse(reply);
+  const api::Job now = job_of(json_of(reply.body));
+  if (now.state != api::JobState::queued) note_begun(following);
   if (api::is_final(now.state)) following.job = now;
 }
 
@@ -137,22 +214,26 @@ std::string JobClient::fetch(const std::string& job_id, const std::string& what)
 }
 
 void JobClient::fetch(const std::string& job_id, const std::string& what, const BytesSink& sink) {
-  const Reply reply = http_.get(api::job_path(job_id) + what, {}, sink);
+  std::size_t passed_on = 0;
+  const Reply reply = ask([&](const Http& http) {
+    std::size_t known = passed_on;  // of this answer, which has the bytes of the one before
+    return http.get(api::job_path(job_id) + what, {}, [&](std::string_view bytes) {
+      const std::size_t old = std::min(known, bytes.size());
+      known -= old;
+      passed_on += bytes.size() - old;
+      if (bytes.size() > old) sink(bytes.substr(old));
+    });
+  });
   if (!reply.ok()) refuse(reply);
 }
 
 void JobClient::cancel(const std::string& job_id) {
-  const Reply reply = http_.remove(api::job_path(job_id));
+  const Reply reply = ask([&](const Http& http) { return http.remove(api::job_path(job_id)); });
   if (!reply.ok()) refuse(reply);
 }
 
-api::Job JobClient::state_of(const std::string& job_id) {
-  const Reply reply = http_.get(api::job_path(job_id));
-  if (!reply.ok()) refuse(reply);
-  return job_of(json_of(reply.body));
-}
-
-void JobClient::pause(milliseconds duration) {
+void JobClient::wait(const std::string& why, milliseconds duration) {
+  if (!why.empty() && listener_.on_wait) listener_.on_wait(why);
   std::mutex mutex;
   std::unique_lock lock(mutex);
   std::condition_variable_any never_notified;  // only the stop token ends the wait

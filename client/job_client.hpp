@@ -12,6 +12,7 @@
 #include "api/job.hpp"
 #include "client/failure.hpp"
 #include "client/http.hpp"
+#include "client/servers.hpp"
 #include "client/sse.hpp"
 #include "client/upload.hpp"
 
@@ -28,47 +29,69 @@ struct Patience {
   int refusals = 30;          ///< "queue full, come back in n seconds"
 };
 
+/// What a caller may want to hear, in the thread that calls; each may be empty.
+struct Listener {
+  std::function<void()> on_begun;  ///< the job that is followed has been started, or ended
+  std::function<void(const std::string&)> on_wait;  ///< why a call has to be made again
+};
+
 class JobClient {
  public:
   using EventSink = std::function<void(const SseEvent&)>;
 
-  /// A stop request ends every wait with Failure{interrupted}.
-  JobClient(ServerUrl server, std::stop_token stop, Patience patience = {});
+  /// A call waits as long as a busy server asks. One that loses its connection is made again, at
+  /// the next address; the first of all calls at each address but once. A stop request ends every
+  /// wait with Failure{interrupted}.
+  JobClient(Servers servers, std::stop_token stop, Patience patience = {}, Listener listener = {});
 
-  /// Queues the job. options, and the job's name, go into the query; a multipart upload contains
-  /// the options already, so pass none with it. While the queue is full the call waits as long as
-  /// the server asks. Throws Failure: job_failed with the server's problem, unreachable,
-  /// interrupted, file.
+  /// Queues the job, once, however often the call is made. options, and the job's name, go into
+  /// the query; a multipart upload contains the options already, so pass none with it. Throws
+  /// Failure: job_failed with the server's problem, unreachable, interrupted, file.
   api::Job submit(const Upload& upload, const OptionTexts& options);
 
   /// Passes on every event until the job is final, and returns its final state. After a lost
   /// connection it continues behind the last event. Throws Failure: as submit.
   api::Job follow(const std::string& job_id, const EventSink& on_event);
 
-  /// The body of a GET on the job; `what` is "/result", "/report", "/layout.svg" and so on.
+  /// The body of a GET on the job; `what` is "/result", "/report", "/layout.svg" and so on. Each
+  /// byte goes to sink once, however often the call is made.
   std::string fetch(const std::string& job_id, const std::string& what);
   void fetch(const std::string& job_id, const std::string& what, const BytesSink& sink);
 
   void cancel(const std::string& job_id);
 
+  [[nodiscard]] const Servers& servers() const { return servers_; }
+
  private:
+  using Call = std::function<Reply(const Http&)>;
+
   /// The state of following a job across connections.
   struct FollowState {
     std::string last_id;
     std::optional<api::Job> job;  ///< set once it is final
-    std::chrono::milliseconds wait;
+    std::chrono::milliseconds pause;
     int lost = 0;  ///< lost connections in a row
+    bool has_begun = false;
   };
 
   /// Reads the events of one connection; without a stream, the job's state.
   void read_events(const std::string& job_id, FollowState& following, const EventSink& on_event);
-  bool may_reconnect(const Failure& failure, FollowState& following) const;
-  api::Job state_of(const std::string& job_id);
-  void pause(std::chrono::milliseconds duration);
+  void read_state(const std::string& job_id, FollowState& following);
+  void note_begun(FollowState& following) const;
+  /// Makes the call again as the constructor says; the last answer.
+  Reply ask(const Call& call);
+  /// Makes it once. Throws Failure{unreachable}, for a proxy that finds no server, too.
+  Reply ask_once(const Call& call);
+  /// Counts a lost connection, and goes to the next address; throws the failure if there were too
+  /// many.
+  void lose(const Failure& failure, int& lost);
+  void wait(const std::string& why, std::chrono::milliseconds duration);
 
-  Http http_;
+  Servers servers_;
+  Http http_;  ///< of the address in use
   std::stop_token stop_;
   Patience patience_;
+  Listener listener_;
 };
 
 /// A problem document as text: title, detail, code and pointer.

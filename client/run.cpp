@@ -57,14 +57,15 @@ void run(const Arguments& arguments, const Console& console, const std::stop_tok
   if (arguments.inputs.empty()) check_outputs(arguments);
   const Workplace workplace(arguments, stop);
   if (workplace.is_here() && arguments.place == Place::any && !arguments.quiet)
-    console.err << "No server answers at " << arguments.server.origin
+    console.err << "No server answers at " << arguments.servers.front().origin
                 << ": the job runs in this process." << std::endl;
   if (arguments.compares) {
-    compare(arguments, workplace.server(), console, stop);
+    compare(arguments, workplace.servers(), console, stop);
   } else if (arguments.inputs.empty()) {
-    tell(arguments, unwrap_file(arguments, workplace.server(), console, stop), console);
+    JobClient client(workplace.servers(), stop);
+    tell(arguments, unwrap_file(client, arguments, console, stop), console);
   } else {
-    run_batch(arguments, workplace.server(), console, stop);
+    run_batch(arguments, workplace.servers(), console, stop);
   }
 }
 

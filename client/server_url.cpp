@@ -68,4 +68,14 @@ ServerUrl parse_server_url(std::string_view text) {
   return {scheme + "://" + std::string(authority), std::move(prefix)};
 }
 
+std::vector<ServerUrl> parse_server_urls(std::string_view list) {
+  std::vector<ServerUrl> all;
+  while (true) {
+    const std::size_t comma = list.find(',');
+    all.push_back(parse_server_url(list.substr(0, comma)));
+    if (comma == std::string_view::npos) return all;
+    list.remove_prefix(comma + 1);
+  }
+}
+
 }  // namespace unwrapd::client

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace unwrapd::client {
 
@@ -18,5 +19,8 @@ struct ServerUrl {
 /// Reads "http://host[:port][/prefix]", "https://…" or bare "host[:port]" (then http). IPv6
 /// addresses need brackets. Throws Failure{usage}.
 ServerUrl parse_server_url(std::string_view text);
+
+/// The same of a list with commas.
+std::vector<ServerUrl> parse_server_urls(std::string_view list);
 
 }  // namespace unwrapd::client

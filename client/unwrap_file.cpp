@@ -12,6 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr Patience kShort{.lost_connections = 3, .refusals = 3};  // of a command that was stopped
+
 WantedFiles wanted_files(const Arguments& arguments) {
   const auto given = [&](const char* name) {
     const auto option = arguments.options.find(name);
@@ -63,9 +65,9 @@ api::Job follow(JobClient& client, const std::string& job_id, const Console& con
 }
 
 /// Cancels the job of a stopped client, by another client, and returns the outcome as text.
-std::string cancel(const ServerUrl& server, const std::string& job_id) {
+std::string cancel(const Servers& servers, const std::string& job_id) {
   try {
-    JobClient(server, {}).cancel(job_id);
+    JobClient(servers, {}, kShort).cancel(job_id);
     return "Stopped; the job " + job_id + " is cancelled.";
   } catch (const Failure& failure) {
     return "Stopped; the job " + job_id + " could not be cancelled: " + failure.what();
@@ -73,8 +75,7 @@ std::string cancel(const ServerUrl& server, const std::string& job_id) {
 }
 
 /// Follows the job to its end, or cancels it if the wait ends before.
-void finish_job(JobClient& client, const ServerUrl& server, const std::string& job_id,
-                const Console& console) {
+void finish_job(JobClient& client, const std::string& job_id, const Console& console) {
   try {
     const api::Job job = follow(client, job_id, console);
     if (job.state == api::JobState::succeeded) return;
@@ -83,25 +84,24 @@ void finish_job(JobClient& client, const ServerUrl& server, const std::string& j
                                             : "The job was cancelled by someone else.");
   } catch (const Failure& failure) {
     if (failure.code() != ExitCode::interrupted) throw;
-    throw Failure(ExitCode::interrupted, cancel(server, job_id));
+    throw Failure(ExitCode::interrupted, cancel(client.servers(), job_id));
   }
 }
 
 }  // namespace
 
-std::string finished_job(JobClient& client, const Arguments& arguments, const ServerUrl& server,
-                         const Console& console, const std::stop_token& stop) {
+std::string finished_job(JobClient& client, const Arguments& arguments, const Console& console,
+                         const std::stop_token& stop) {
   const api::Job job = is_address(arguments.file) ? submit_address(client, arguments)
                                                   : submit_file(client, arguments, stop);
-  finish_job(client, server, job.id, console);
+  finish_job(client, job.id, console);
   return job.id;
 }
 
-std::vector<WrittenMap> unwrap_file(const Arguments& arguments, const ServerUrl& server,
+std::vector<WrittenMap> unwrap_file(JobClient& client, const Arguments& arguments,
                                     const Console& console, const std::stop_token& stop) {
   Outputs outputs(arguments);
-  JobClient client(server, stop);
-  const std::string job = finished_job(client, arguments, server, console, stop);
+  const std::string job = finished_job(client, arguments, console, stop);
   return outputs.fill(client, job);
 }
 

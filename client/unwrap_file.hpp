@@ -22,12 +22,12 @@ struct Console {
 
 /// Sends arguments.file, or its address, and follows the job to its success, as unwrap_file();
 /// returns its id.
-std::string finished_job(JobClient& client, const Arguments& arguments, const ServerUrl& server,
-                         const Console& console, const std::stop_token& stop);
+std::string finished_job(JobClient& client, const Arguments& arguments, const Console& console,
+                         const std::stop_token& stop);
 
 /// Sends arguments.file, follows the job, writes the files. When stop is requested the job is
 /// cancelled. Requires check_outputs(). Throws Failure.
-std::vector<WrittenMap> unwrap_file(const Arguments& arguments, const ServerUrl& server,
+std::vector<WrittenMap> unwrap_file(JobClient& client, const Arguments& arguments,
                                     const Console& console, const std::stop_token& stop);
 
 }  // namespace unwrapd::client

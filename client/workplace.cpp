@@ -9,6 +9,8 @@
 namespace unwrapd::client {
 namespace {
 
+constexpr int kJobsHere = 4;  // of several meshes, unless the command says how many
+
 bool answers(const ServerUrl& server, const std::stop_token& stop) {
   try {
     static_cast<void>(Http(server, stop).get("/healthz"));
@@ -30,16 +32,19 @@ std::unique_ptr<server::PrivateServer> server_of_its_own(int jobs) {
 }  // namespace
 
 Workplace::Workplace(const Arguments& arguments, const std::stop_token& stop)
-    : server_(arguments.server) {
+    : servers_(arguments.servers) {
   const bool is_elsewhere =
-      arguments.place == Place::server || (arguments.place == Place::any && answers(server_, stop));
+      arguments.place == Place::server ||
+      (arguments.place == Place::any && answers(arguments.servers.front(), stop));
   if (is_elsewhere) return;
   if (is_address(arguments.file))
     throw Failure(ExitCode::usage,
                   "An address is read by a server; name one by --server, or download the mesh.");
-  own_ = server_of_its_own(arguments.inputs.empty() ? 1 : arguments.jobs);
-  server_ = parse_server_url(own_->url());
-  server_.key = own_->key();
+  const int jobs = arguments.jobs > 0 ? arguments.jobs : kJobsHere;
+  own_ = server_of_its_own(arguments.inputs.empty() ? 1 : jobs);
+  ServerUrl here = parse_server_url(own_->url());
+  here.key = own_->key();
+  servers_ = here;
 }
 
 Workplace::~Workplace() = default;

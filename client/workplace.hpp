@@ -24,12 +24,12 @@ class Workplace {
   ~Workplace();
 
   /// With the key that it wants.
-  [[nodiscard]] const ServerUrl& server() const { return server_; }
+  [[nodiscard]] const Servers& servers() const { return servers_; }
   [[nodiscard]] bool is_here() const { return own_ != nullptr; }
 
  private:
   std::unique_ptr<server::PrivateServer> own_;
-  ServerUrl server_;
+  Servers servers_;
 };
 
 }  // namespace unwrapd::client

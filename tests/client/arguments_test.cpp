@@ -205,12 +205,14 @@ TEST(Arguments, HelpTellsTheExitCodes) {
 
 TEST(Arguments, TheServerComesFromTheEnvironmentUnlessGiven) {
   setenv("UNWRAPD_SERVER", "http://farm:99", 1);
-  EXPECT_EQ(accepted({"a.glb"}).server.origin, "http://farm:99");
-  EXPECT_EQ(accepted({"a.glb", "--server", "here:1"}).server.origin, "http://here:1");
+  EXPECT_EQ(accepted({"a.glb"}).servers.front().origin, "http://farm:99");
+  EXPECT_EQ(accepted({"a.glb", "--server", "here:1"}).servers.front().origin, "http://here:1");
+  EXPECT_EQ(accepted({"a.glb", "--server", "here:1,there:2"}).servers.back().origin,
+            "http://there:2");
   EXPECT_EQ(accepted({"a.glb"}).place, Place::server);
   EXPECT_EQ(accepted({"a.glb", "--local"}).place, Place::here);
   unsetenv("UNWRAPD_SERVER");
-  EXPECT_EQ(accepted({"a.glb"}).server.origin, "http://127.0.0.1:8080");
+  EXPECT_EQ(accepted({"a.glb"}).servers.front().origin, "http://127.0.0.1:8080");
   EXPECT_EQ(accepted({"a.glb"}).place, Place::any);
 }
 
@@ -221,6 +223,7 @@ TEST(Arguments, SeveralMeshesOrAFolderAreABatch) {
   EXPECT_TRUE(accepted({"a.glb"}).inputs.empty());
   EXPECT_EQ(accepted({"a.glb", "b.glb", "-o", "out", "-j", "3"}).inputs.size(), 2U);
   EXPECT_EQ(accepted({"a.glb", "b.glb", "-j", "3"}).jobs, 3);
+  EXPECT_EQ(accepted({"a.glb", "b.glb"}).jobs, 0);
   const std::string all = folder.file("").string(), one = folder.file("a.obj").string();
   EXPECT_EQ(accepted({all.c_str()}).inputs.size(), 1U);
   EXPECT_EQ(accepted({"*.glb"}).inputs.size(), 1U);

@@ -148,6 +148,92 @@ TEST(JobClient, ComesBackWhenTheQueueWasFull) {
   EXPECT_EQ(asked, 2);
 }
 
+/// A server that has answered before, so that calls to it are made again.
+Servers known(const FakeServer& server) {
+  const ServerUrl url = parse_server_url(server.address());
+  Servers servers(url);
+  servers.note_answer(url);
+  return servers;
+}
+
+TEST(JobClient, SendsAJobAgainUnderTheSameNameWhenTheAnswerIsLost) {
+  FakeServer server;
+  std::vector<std::string> names, bodies;
+  server.routes().Post("/v1/jobs", [&](const httplib::Request& request, httplib::Response& reply) {
+    names.push_back(request.get_header_value("Idempotency-Key"));
+    bodies.push_back(request.body);
+    if (names.size() % 2 == 0) return answer(reply, 202, to_json(job_in(JobState::queued)));
+    reply.status = 502;  // as of a proxy whose server died
+    reply.set_content("<html>", "text/html");
+  });
+  server.start();
+  const TemporaryFolder folder;
+  const Upload upload = raw_upload(folder.write("mesh.obj", "v 1"));
+  JobClient client(known(server), {}, kHasty);
+  EXPECT_EQ(client.submit(upload, {}).id, "j_1");
+  EXPECT_EQ(client.submit(upload, {}).id, "j_1");
+  ASSERT_EQ(names.size(), 4U);
+  EXPECT_GE(names[0].size(), 32U);
+  EXPECT_EQ(names[1], names[0]);
+  EXPECT_NE(names[2], names[0]);
+  EXPECT_EQ(names[3], names[2]);
+  EXPECT_THAT(bodies, testing::Each("v 1"));
+}
+
+TEST(JobClient, PassesOnEachByteOfAnAnswerThatIsCutOffOnce) {
+  FakeServer server;
+  const std::string all(200'000, 'r');
+  std::atomic<int> asked = 0;
+  server.routes().Get("/v1/jobs/j_1/result", [&](const httplib::Request&,
+                                                 httplib::Response& reply) {
+    const std::size_t most = ++asked < 3 ? 70'000 * std::size_t(asked) : all.size();
+    reply.set_content_provider(all.size(), "model/gltf-binary",
+                               [&, most](std::size_t from, std::size_t, httplib::DataSink& sink) {
+                                 const std::size_t to = std::min(from + 10'000, most);
+                                 return from < most && sink.write(all.data() + from, to - from);
+                               });
+  });
+  server.start();
+  std::string received;
+  JobClient client(known(server), {}, kHasty);
+  client.fetch("j_1", "/result", [&](std::string_view bytes) { received += bytes; });
+  EXPECT_EQ(received, all);
+  EXPECT_EQ(asked, 3);
+}
+
+TEST(JobClient, WaitsForABusyServerWhateverItAsks) {
+  FakeServer server;
+  std::atomic<int> asked = 0;
+  server.routes().Get(
+      "/v1/jobs/j_1/report", [&](const httplib::Request&, httplib::Response& reply) {
+        if (++asked > 1) return reply.set_content("{}", "application/json");
+        reply.set_header("Retry-After", "1");
+        answer(reply, 429, api::problem(Error(ErrorCode::rate_limited, "Too many requests.")));
+      });
+  server.start();
+  std::vector<std::string> told;
+  JobClient client(
+      parse_server_url(server.address()), {}, kHasty,
+      {.on_begun = {}, .on_wait = [&](const std::string& why) { told.push_back(why); }});
+  EXPECT_EQ(client.fetch("j_1", "/report"), "{}");
+  EXPECT_EQ(told.size(), 1U);
+}
+
+TEST(JobClient, TellsOnceThatTheJobHasBegun) {
+  FakeServer server;
+  server.routes().Get(kEvents, [&](const httplib::Request&, httplib::Response& reply) {
+    send_frames(reply, {api::queued_event(1, 0), api::started_event(2, 1),
+                        api::final_event(3, job_in(JobState::succeeded))});
+  });
+  server.start();
+  int begun = 0, events = 0, events_before = 0;
+  JobClient client(parse_server_url(server.address()), {}, kHasty,
+                   {.on_begun = [&] { ++begun, events_before = events; }, .on_wait = {}});
+  client.follow("j_1", [&](const SseEvent&) { ++events; });
+  EXPECT_EQ(begun, 1);
+  EXPECT_EQ(events_before, 1);
+}
+
 TEST(JobClient, StopsInTheMiddleOfAWaitForTheNextEvent) {
   std::stop_source stop;  // outlives the server, whose thread asks it
   FakeServer server;

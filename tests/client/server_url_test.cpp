@@ -26,6 +26,15 @@ TEST(ServerUrl, KeepsAPrefixWithoutItsLastSlash) {
   EXPECT_EQ(parse_server_url("http://host/tools/uv/").prefix, "/tools/uv");
 }
 
+TEST(ServerUrl, ReadsAListWithCommas) {
+  const std::vector<ServerUrl> all = parse_server_urls("http://a:1,b:2/uv");
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].origin, "http://a:1");
+  EXPECT_EQ(all[1].origin + all[1].prefix, "http://b:2/uv");
+  for (const char* list : {"", ",", "a,", "a,,b", "a, b"})
+    expect_failure(ExitCode::usage, [&] { parse_server_urls(list); });
+}
+
 TEST(ServerUrl, RefusesWhatIsNoAddressAndShowsHowToWriteOne) {
   for (const char* text : {"", "http://", "ftp://host", "http://host:", "http://host:0",
                            "http://host:65536", "http://host:80x", "http://[::1", "http://[::1]80",

@@ -10,7 +10,7 @@ import { createInterface } from "node:readline";
 import { after } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-const USUAL = [["--admin-listen", "off"], ["--workers", "1"], ["--log-level", "off"]];
+const USUAL = [["--listen", "127.0.0.1:0"], ["--admin-listen", "off"], ["--workers", "1"], ["--log-level", "off"]];
 export const QUICK = "stop.iterations=2";
 export const ENDLESS = ["stop.iterations=10000", 100]; // a query and a size: never waited for
 
@@ -46,7 +46,7 @@ export class Server {
   /** The same, by another command of the program. */
   static async startAs(command, env, data, ...flags) {
     const server = new Server();
-    const all = [...command, "--listen", "127.0.0.1:0", "--data", data, ...flags];
+    const all = [...command, "--data", data, ...flags];
     for (const [flag, value] of USUAL) if (!flags.includes(flag)) all.push(flag, value);
     server.process = spawn(process.env.UNWRAPD, all, {
       stdio: ["ignore", "pipe", "pipe"],
