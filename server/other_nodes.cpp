@@ -11,7 +11,9 @@ namespace unwrapd::server {
 
 store::Node node_of(const config::Config& config) {
   if (!config::shares_blobs(config)) return {};
-  return {.id = store::node_in(config.data), .is_shared = true};
+  const bool keeps_work =
+      config.isolate == config::Isolate::off && config.memory.cache_bytes > 0 && config.workers > 0;
+  return {.id = store::node_in(config.data), .is_shared = true, .keeps_work = keeps_work};
 }
 
 store::PostgresAddress database_of(const config::Config& config, const store::Node& node) {

@@ -7,6 +7,11 @@ namespace unwrapd::server {
 void tell_jobs(Metrics& metrics, jobs::JobQueue& queue) {
   metrics.tell(Metric::jobs, {{"state", "queued"}}, [&queue] { return queue.counts().waiting; });
   metrics.tell(Metric::jobs, {{"state", "running"}}, [&queue] { return queue.counts().running; });
+  const auto tell_affinity = [&](std::string_view outcome, auto count) {
+    metrics.tell(Metric::cache_requests, {{"cache", "node"}, {"outcome", outcome}}, count);
+  };
+  tell_affinity("hit", [&queue] { return queue.affinity().hits; });
+  tell_affinity("miss", [&queue] { return queue.affinity().misses; });
 }
 
 void tell_connections(Metrics& metrics, const http::HttpServer& http) {

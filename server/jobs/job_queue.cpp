@@ -17,6 +17,7 @@ using api::JobState;
 namespace {
 
 constexpr std::chrono::milliseconds kPauseWhileTaken{5};
+constexpr std::chrono::milliseconds kPauseWhileLeft{25};  // to a node that has worked on its mesh
 constexpr std::chrono::seconds kPauseBetweenLooks{1};
 
 /// Of an insertion that added nothing. Only where requests come to several nodes at a time: a quota
@@ -190,9 +191,9 @@ std::shared_ptr<RunningJob> JobQueue::take() {
       await_news(lock);
       continue;
     }
-    std::optional<store::JobRecord> record = store_.take(*owner, now_ms());
+    std::optional<store::JobRecord> record = take_of(*owner);
     if (!record) {
-      changed_.wait_for(lock, kPauseWhileTaken);
+      changed_.wait_for(lock, store_.node().keeps_work ? kPauseWhileLeft : kPauseWhileTaken);
     } else if (record->unreadable.empty()) {
       return begin(std::move(*record));
     } else {
@@ -200,6 +201,16 @@ std::shared_ptr<RunningJob> JobQueue::take() {
     }
   }
   return nullptr;
+}
+
+std::optional<store::JobRecord> JobQueue::take_of(const std::string& owner) {
+  if (!store_.node().keeps_work) return store_.take(owner, now_ms());
+  const auto chosen = affinity_.choose(store_.first_waiting(owner, Affinity::kLook),
+                                       std::chrono::steady_clock::now());
+  if (!chosen) return std::nullopt;
+  std::optional<store::JobRecord> record = store_.take_one(chosen->seq, now_ms());
+  if (record) affinity_.count(*chosen);
+  return record;
 }
 
 /// What other nodes do is found by looking, even where no hint of it arrives.

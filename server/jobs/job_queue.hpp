@@ -31,6 +31,7 @@
 #include "server/base/log.hpp"
 #include "server/http/http.hpp"
 #include "server/jobs/admission.hpp"
+#include "server/jobs/affinity.hpp"
 #include "server/jobs/disk_full_backoff.hpp"
 #include "server/jobs/event_feed.hpp"
 #include "server/jobs/lease_watch.hpp"
@@ -144,6 +145,9 @@ class JobQueue {
   /// The jobs that wait or run, on all nodes; as they were last, while the store is away.
   [[nodiscard]] store::QueueCounts counts();
 
+  /// Of nodes that keep their work.
+  [[nodiscard]] AffinityCounts affinity() const { return affinity_.counts(); }
+
   /// No new jobs from now on; those waiting stay in the store for the next start.
   void close();
   /// Waits for the running jobs; those that are not done by then go back to the queue. False when
@@ -175,6 +179,7 @@ class JobQueue {
   [[nodiscard]] std::optional<store::JobRecord> keep_files(const Submission& submission);
   [[nodiscard]] store::JobRecord known_elsewhere(const store::JobRecord& job);
   void await_news(std::unique_lock<std::mutex>& lock);
+  [[nodiscard]] std::optional<store::JobRecord> take_of(const std::string& owner);
   [[nodiscard]] bool answer_from_store(const store::JobRecord& job, const Answer& answer);
   enum class Found { lapsed, by_death, not_stopping };
   [[nodiscard]] bool is_poison(const store::JobRecord& job, Found found) const;
@@ -236,6 +241,7 @@ class JobQueue {
   Lengths lengths_;           // of the newest jobs that ended, here or elsewhere
   std::int64_t all_workers_;  // of all nodes
   LeaseWatch leases_;
+  Affinity affinity_;
   store::QueueCounts counted_;
   DiskFullBackoff pause_;
   std::deque<std::string> left_;  // by the last process, and not taken up yet

@@ -22,6 +22,7 @@ void JobQueue::recover(bool tried_apart) {
   const std::lock_guard lock(mutex_);
   tried_apart_ = tried_apart;
   const store::Node& here = store_.node();
+  if (is_shared()) store_.forget_own_work();
   for (const store::JobRecord& job : is_shared() ? store_.running() : store_.unfinished()) {
     if (is_shared() && job.node != here.id) continue;
     const bool is_whole = job.unreadable.empty();
@@ -128,6 +129,7 @@ void JobQueue::renew_leases() {
   take_up_lapsed();
   give_up_excess();
   store_.level_shares();
+  if (store_.node().keeps_work) store_.forget_old_work();
 }
 
 /// A job that another node has taken up meanwhile stops here: its end would count for nothing.

@@ -95,10 +95,21 @@ struct QueueCounts {
   std::int64_t owners = 0;  ///< with jobs that wait or run
 };
 
+inline constexpr std::int64_t kNodeSeenMs = 60'000;  ///< after which a node counts as gone
+
 /// A server that works on the store.
 struct Node {
   std::string id;          ///< lasting
   bool is_shared = false;  ///< other nodes work on the same store
+  /// It has others beside it, and keeps its work on meshes for further jobs.
+  bool keeps_work = false;
+};
+
+/// A queued job: whether this node, or another one that is there, has lately worked on its
+/// document.
+struct WaitingJob {
+  std::int64_t seq = 0;
+  bool is_known_here = false, is_known_elsewhere = false;
 };
 
 /// Thread-safe. Every function may throw Error{storage_failed, storage_full}.
@@ -164,6 +175,14 @@ class JobStore {
   /// The most urgent, and of those the oldest, queued job of this owner, now running on this node,
   /// its attempt counted. Nothing where there is none, or another node is taking it.
   std::optional<JobRecord> take(std::string_view owner, std::int64_t now_ms = 0);
+  /// The first of the jobs that take() would return, so many at most, in its order. Of nodes that
+  /// keep their work, as the next three.
+  std::vector<WaitingJob> first_waiting(std::string_view owner, int most);
+  /// take() of this job.
+  std::optional<JobRecord> take_one(std::int64_t seq, std::int64_t now_ms);
+  /// Forgets what this node has worked on, as it has, or what any has that is long ago.
+  void forget_own_work();
+  void forget_old_work();
   /// Raises the beat of an attempt of this node. False when it is no longer that: another node has
   /// taken it up.
   bool beat(const JobRecord& job);

@@ -10,7 +10,6 @@
 namespace unwrapd::server::store {
 namespace {
 
-constexpr std::int64_t kSeenMs = 60'000;           // after which a node counts as gone
 constexpr std::int64_t kForgottenMs = 86'400'000;  // and as never been
 constexpr double kSecondsPerMs = 1e-3;
 
@@ -114,7 +113,7 @@ std::int64_t JobStore::announce(std::int64_t workers) {
     Statement(*database_, "DELETE FROM nodes WHERE seen_ms < ?").with(now - kForgottenMs).run();
     Statement seen(*database_,
                    "SELECT CAST(COALESCE(SUM(workers), 0) AS BIGINT) FROM nodes WHERE seen_ms > ?");
-    seen.with(now - kSeenMs).step();
+    seen.with(now - kNodeSeenMs).step();
     return seen.number(0);
   });
 }

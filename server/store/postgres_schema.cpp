@@ -162,7 +162,7 @@ std::string postgres_step(std::int64_t version) {
   if (version == kFirstVersion + 1) return kNamesStep;
   if (version == kFirstVersion + 2) return kTicketsStep;
   if (version == kTurnsVersion) return std::string(kTurnsStep) + kPostgresTurns;
-  return kRatesStep;
+  return kNodesTogetherStep;
 }
 
 }  // namespace unwrapd::server::store

@@ -41,9 +41,15 @@ CREATE TABLE nodes (
 );
 )sql";
 
-/// To version 14, of nodes with one database: a process that is alone counts in its memory.
-inline constexpr const char* kRatesStep = R"sql(
+/// To version 14, of nodes with one database: a process that is alone keeps this in its memory.
+inline constexpr const char* kNodesTogetherStep = R"sql(
 CREATE UNLOGGED TABLE rates (key TEXT NOT NULL PRIMARY KEY, full_us BIGINT NOT NULL);
+CREATE UNLOGGED TABLE worked_on (
+  document TEXT NOT NULL,
+  node TEXT NOT NULL,
+  noted TIMESTAMPTZ NOT NULL DEFAULT clock_timestamp(),
+  PRIMARY KEY (document, node)
+);
 )sql";
 
 /// From version - 1 to this one; empty where nothing is to do.
