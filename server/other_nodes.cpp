@@ -37,6 +37,16 @@ store::BlobStore blobs_of(const config::Config& config, const store::Node& node,
   return {blobs_root(config), config.disk, std::move(folders), config.copied_bytes};
 }
 
+store::DatabaseAddress rows_besides_jobs(const config::Config& config) {
+  const store::DatabaseAddress address = store::address_in(config.data, config.database);
+  return config.database.url.empty() ? address : address.shared();
+}
+
+access::KeyStore keys_of(const config::Config& config, const store::DatabaseAddress& rows) {
+  if (config.database.url.empty()) return access::KeyStore(config.data, config.access.key_file);
+  return {rows, config.access.key_file};
+}
+
 std::string secret_of(const config::Config& config, const store::Node& node) {
   std::string own = access::secret_in(config.data / access::kSecretFile);
   return node.is_shared ? access::shared_secret(config.database, own) : std::move(own);

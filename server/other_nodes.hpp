@@ -4,11 +4,13 @@
 
 #include <memory>
 
+#include "server/access/key_store.hpp"
 #include "server/base/log.hpp"
 #include "server/config/config.hpp"
 #include "server/jobs/event_exchange.hpp"
 #include "server/jobs/job_queue.hpp"
 #include "server/store/blob_store.hpp"
+#include "server/store/database_address.hpp"
 #include "server/store/job_store.hpp"
 
 namespace unwrapd::server {
@@ -22,6 +24,10 @@ std::filesystem::path blobs_root(const config::Config& config);
 /// The files of all jobs. Throws InsideError{storage_failed} where they are in a bucket that cannot
 /// be used.
 store::BlobStore blobs_of(const config::Config& config, const store::Node& node, const Log& log);
+/// The rows of meshes, keys and webhooks. With a URL they use one connection, beside that of jobs.
+store::DatabaseAddress rows_besides_jobs(const config::Config& config);
+/// rows: of rows_besides_jobs(), whose tables are there.
+access::KeyStore keys_of(const config::Config& config, const store::DatabaseAddress& rows);
 /// The secret that signs links and webhooks. The tables must be there.
 std::string secret_of(const config::Config& config, const store::Node& node);
 

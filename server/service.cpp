@@ -43,7 +43,7 @@ struct Service::Parts {
         node(node_of(config)),
         blobs(blobs_of(config, node, log)),
         store(store::store_in(config.data, database_of(config, node), blobs), read_clocks, node),
-        mesh_store(store::address_in(config.data, config.database)),
+        mesh_store(other_rows),
         queue(store, blobs, events, log,
               {.max_queue = config.limits.max_queue,
                .workers = config.workers,
@@ -51,15 +51,14 @@ struct Service::Parts {
                .lease = config.lease,
                .stop = config::most_stopping(config)}),
         streams(events, config.limits.max_streams),
-        keys(config.data, config.access.key_file, config.database),
-        secret(secret_of(config, node)),
+        keys(keys_of(config, other_rows)),
         links(secret),
         access(keys, links, access::asks_for_keys(config.access, config.listen.host)),
         cors(config.cors_origins),
         sites(config.allowed_hosts, cors),
         webhooks(
-            store::address_in(config.data, config.database), secret, config.webhooks, log,
-            [this] { return store.now(); }, node.is_shared),
+            other_rows, secret, config.webhooks, log, [this] { return store.now(); },
+            node.is_shared),
         renderer(blobs, config.limits, log, isolation,
                  config::render_limits(config, solver_cache.memory_limit()), functions),
         meshes(mesh_store, store, blobs, rooms, renderer),
@@ -230,6 +229,7 @@ struct Service::Parts {
   const store::Node node;
   store::BlobStore blobs;
   store::JobStore store;
+  const store::DatabaseAddress other_rows = rows_besides_jobs(config);
   store::MeshStore mesh_store;
   store::QuotaReservations reservations{store};
   const uploads::UploadRooms rooms{reservations, blobs.room()};
@@ -241,7 +241,7 @@ struct Service::Parts {
   std::optional<OtherNodes> other_nodes;
   routes::EventStreams streams;
   access::KeyStore keys;
-  const std::string secret;
+  const std::string secret = secret_of(config, node);
   const access::LinkSigner links;
   access::Access access;
   const http::Cors cors;

@@ -39,7 +39,7 @@ constexpr std::string_view kSelect =
     " FROM keys ";
 constexpr int kDigestColumn = 7;
 
-std::unique_ptr<store::Database> opened(const std::filesystem::path& data,
+std::shared_ptr<store::Database> opened(const std::filesystem::path& data,
                                         const store::PostgresAddress& database,
                                         KeyStore::Tables tables) {
   if (!database.url.empty()) {
@@ -157,6 +157,11 @@ KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::pat
     : database_(opened(data, database, tables)),
       given_(given.empty() ? "" : sha256(key_in(given))),
       is_shared_(!database.url.empty()) {}
+
+KeyStore::KeyStore(const store::DatabaseAddress& database, const std::filesystem::path& given)
+    : database_(database.open()),
+      given_(given.empty() ? "" : sha256(key_in(given))),
+      is_shared_(true) {}
 
 std::string KeyStore::add(ApiKey key) {
   check_name(key.name);

@@ -14,7 +14,7 @@ std::optional<std::string> secret_of(const store::Database& database) {
 }  // namespace
 
 std::string shared_secret(const store::DatabaseAddress& address, const std::string& own) {
-  const std::unique_ptr<store::Database> database = address.open();
+  const std::shared_ptr<store::Database> database = address.open();
   return database->transact([&] {
     store::Statement(*database,
                      "INSERT INTO secrets (name, value) VALUES ('links', ?) ON CONFLICT DO NOTHING")

@@ -103,7 +103,7 @@ StoreReport move_rows(const fs::path& data, const store::PostgresAddress& to) {
     from.check(true);
     store::migrate(from);
     from.transact([&] { from.run("UPDATE jobs SET state = 'queued' WHERE state = 'running'"); });
-    const std::unique_ptr<store::Database> there = store::DatabaseAddress(to).open();
+    const std::shared_ptr<store::Database> there = store::DatabaseAddress(to).open();
     there->claim();
     store::migrate(*there);
     require_empty(*there);

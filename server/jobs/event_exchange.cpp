@@ -30,16 +30,10 @@ EventExchange::EventExchange(store::PostgresAddress address, EventFeed& events,
       events_(events),
       callbacks_(std::move(callbacks)),
       log_(log),
-      writing_([this](const std::stop_token& stop) {
-        keep_trying(stop, "sharing events", [&] { write(stop); });
-      }),
-      listening_([this](const std::stop_token& stop) {
-        keep_trying(stop, "following other nodes", [&] { listen(stop); });
-      }) {}
+      exchanging_([this](const std::stop_token& stop) { keep_trying(stop); }) {}
 
 EventExchange::~EventExchange() {
-  writing_.request_stop();
-  listening_.request_stop();
+  exchanging_.request_stop();
   bell_.ring();
 }
 
@@ -49,7 +43,7 @@ void EventExchange::share(store::EventRow event) {
     to_write_.push_back(std::move(event));
     if (to_write_.size() > kMostWaiting) to_write_.pop_front();
   }
-  changed_.notify_all();
+  bell_.ring();
 }
 
 void EventExchange::hint(std::string_view what) {
@@ -57,23 +51,22 @@ void EventExchange::hint(std::string_view what) {
     const std::lock_guard lock(mutex_);
     if (std::ranges::find(to_hint_, what) == to_hint_.end()) to_hint_.emplace_back(what);
   }
-  changed_.notify_all();
+  bell_.ring();
 }
 
-/// Works with a session of its own, and with another one when that is lost.
-void EventExchange::keep_trying(const std::stop_token& stop, const std::string& what,
-                                const std::function<void()>& work) {
+/// Works with a session, and with another one when that is lost.
+void EventExchange::keep_trying(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     std::string reason;
     try {
-      work();
+      exchange(stop);
     } catch (const store::LinkLost& lost) {
       reason = lost.reason;
     } catch (const std::exception& error) {
       reason = reason_of(error);
     }
     if (stop.stop_requested()) return;
-    log_.warning(what + " is tried again", {{"reason", reason}});
+    log_.warning("exchanging news with other nodes is tried again", {{"reason", reason}});
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, kPauseAfterLoss, [] { return false; });
   }
@@ -108,31 +101,30 @@ void EventExchange::append(store::EventChannel& channel) {
   send(channel, std::string(kEvents) + ids);
 }
 
-/// Of an end of the server, the last events are written.
-void EventExchange::write(const std::stop_token& stop) {
-  store::EventChannel channel(address_);
-  if (!unsent_.empty()) append(channel);
-  while (true) {
-    std::vector<std::string> hints;
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, stop, [&] { return !to_write_.empty() || !to_hint_.empty(); });
-      if (to_write_.empty() && to_hint_.empty()) return;
-      hints = std::exchange(to_hint_, {});
-      for (; !to_write_.empty() && unsent_.size() < kMostAtOnce; to_write_.pop_front())
-        unsent_.push_back(std::move(to_write_.front()));
-    }
-    for (const std::string& hint : hints) send(channel, hint);
-    if (!unsent_.empty()) append(channel);
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, stop, kPauseBetweenWrites, [] { return false; });
-  }
+bool EventExchange::has_to_write() {
+  const std::lock_guard lock(mutex_);
+  return !to_write_.empty() || !to_hint_.empty();
 }
 
-void EventExchange::listen(const std::stop_token& stop) {
+void EventExchange::write(store::EventChannel& channel) {
+  std::vector<std::string> hints;
+  {
+    const std::lock_guard lock(mutex_);
+    hints = std::exchange(to_hint_, {});
+    for (; !to_write_.empty() && unsent_.size() < kMostAtOnce; to_write_.pop_front())
+      unsent_.push_back(std::move(to_write_.front()));
+  }
+  for (const std::string& hint : hints) send(channel, hint);
+  if (!unsent_.empty()) append(channel);
+}
+
+/// At an end of the server, the last events are written.
+void EventExchange::exchange(const std::stop_token& stop) {
   store::EventChannel channel(address_);
   channel.listen();
-  Clock::time_point next_search{}, next_forgetting = Clock::now() + kPauseBetweenForgetting;
+  if (!unsent_.empty()) append(channel);
+  Clock::time_point next_search{}, next_write{};
+  Clock::time_point next_forgetting = Clock::now() + kPauseBetweenForgetting;
   while (!stop.stop_requested()) {
     if (Clock::now() >= next_search) {
       look_around(channel);
@@ -142,18 +134,30 @@ void EventExchange::listen(const std::stop_token& stop) {
       channel.forget_before(now_ms() - kKeptAfterEndMs);
       next_forgetting = Clock::now() + kPauseBetweenForgetting;
     }
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(next_search - Clock::now());
-    const std::vector<std::string> hints = channel.wait(std::max(left, 0ms), bell_);
-    std::set<std::string> with_news;
-    bool of_any = hints.empty();  // somebody rang, or it is time to look around
-    for (const std::string& hint : hints) of_any |= !take_hint(hint, with_news);
-    Feeds feeds = events_.following();
-    if (!of_any)
-      std::erase_if(feeds, [&](const auto& followed) {
-        return !with_news.contains(followed.first) && followed.second->newest() > 0;
-      });
-    fetch(channel, feeds);
+    if (has_to_write() && Clock::now() >= next_write) {
+      write(channel);
+      next_write = Clock::now() + kPauseBetweenWrites;
+    }
+    const Clock::time_point until =
+        has_to_write() ? std::min(next_search, next_write) : next_search;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
+    take_hints(channel, channel.wait(std::max(left, 0ms), bell_));
   }
+  while (has_to_write()) write(channel);
+}
+
+void EventExchange::take_hints(store::EventChannel& channel,
+                               const std::vector<std::string>& hints) {
+  std::set<std::string> with_news;
+  bool of_any = must_fetch_.exchange(false);
+  for (const std::string& hint : hints) of_any |= !take_hint(hint, with_news);
+  if (!of_any && with_news.empty()) return;
+  Feeds feeds = events_.following();
+  if (!of_any)
+    std::erase_if(feeds, [&](const auto& followed) {
+      return !with_news.contains(followed.first) && followed.second->newest() > 0;
+    });
+  fetch(channel, feeds);
 }
 
 /// False for a hint that there are events without saying of which jobs.

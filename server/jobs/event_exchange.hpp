@@ -1,10 +1,11 @@
 #pragma once
-// The events of jobs on other nodes of the same store. One thread writes the events of this node's
-// jobs, a few at a time, and sends hints; another waits for hints, and fills the feeds of jobs that
-// run elsewhere. Whatever a hint says is also looked for once a second, so that a lost hint costs
-// time alone. While the database is away, events wait; of too many, the oldest are given up, and so
-// are those that it refuses. Readers elsewhere see a gap.
+// The events of jobs on other nodes of the same store. A thread with one session writes the events
+// of this node's jobs, a few at a time, and sends hints; it waits for hints, and fills the feeds of
+// jobs that run elsewhere. Whatever a hint says is also looked for once a second, so that a lost
+// hint costs time alone. While the database is away, events wait; of too many, the oldest are given
+// up, and so are those that it refuses. Readers elsewhere see a gap.
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -43,7 +44,10 @@ class EventExchange {
   void tell_jobs_wait() { hint(kJobsWait); }
   void tell_cancelled() { hint(kCancelled); }
   /// A job is followed from now on: what there is of it is fetched at once.
-  void fetch_now() { bell_.ring(); }
+  void fetch_now() {
+    must_fetch_ = true;
+    bell_.ring();
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -54,12 +58,13 @@ class EventExchange {
   static constexpr std::string_view kEvents = "events ";
 
   void hint(std::string_view what);
-  void keep_trying(const std::stop_token& stop, const std::string& what,
-                   const std::function<void()>& work);
-  void write(const std::stop_token& stop);
+  void keep_trying(const std::stop_token& stop);
+  void exchange(const std::stop_token& stop);
+  [[nodiscard]] bool has_to_write();
+  void write(store::EventChannel& channel);
   void send(store::EventChannel& channel, std::string_view hint);
   void append(store::EventChannel& channel);
-  void listen(const std::stop_token& stop);
+  void take_hints(store::EventChannel& channel, const std::vector<std::string>& hints);
   [[nodiscard]] bool take_hint(const std::string& hint, std::set<std::string>& with_news);
   void fetch(store::EventChannel& channel, const Feeds& feeds);
   void look_around(store::EventChannel& channel);
@@ -73,10 +78,11 @@ class EventExchange {
   std::condition_variable_any changed_;
   std::deque<store::EventRow> to_write_;
   std::vector<std::string> to_hint_;
-  std::vector<store::EventRow> unsent_;  // of to_write_, those that the writing thread writes now
-  std::set<std::string> ended_before_;  // of those that the listening thread found at its last look
-  bool can_hint_ = true;                // as far as is known
-  std::jthread writing_, listening_;    // last: they use the others
+  std::atomic<bool> must_fetch_ = false;
+  std::vector<store::EventRow> unsent_;  // of to_write_, those that are written now
+  std::set<std::string> ended_before_;   // of those that were found at the last look
+  bool can_hint_ = true;                 // as far as is known
+  std::jthread exchanging_;              // last: it uses the others
 };
 
 }  // namespace unwrapd::server::jobs

@@ -46,7 +46,8 @@ class Cursor {
 /// How many statements a change consists of.
 enum class Extent { one, several };
 
-/// One connection, whose commits survive a loss of power. Not for use by two threads at once.
+/// One connection, whose commits survive a loss of power. A file's is not for use by two threads at
+/// once; with PostgreSQL calls of others wait for the end of a change.
 class Database {
  public:
   Database() = default;

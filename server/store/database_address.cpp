@@ -6,11 +6,11 @@
 namespace unwrapd::server::store {
 
 DatabaseAddress::DatabaseAddress(std::filesystem::path file)
-    : open_([file = std::move(file)] { return std::make_unique<SqliteDatabase>(file); }) {}
+    : open_([file = std::move(file)] { return std::make_shared<SqliteDatabase>(file); }) {}
 
 DatabaseAddress::DatabaseAddress(PostgresAddress postgres)
     : open_([address = std::move(postgres)] {
-        return std::make_unique<PostgresDatabase>(address);
+        return std::make_shared<PostgresDatabase>(address);
       }) {}
 
 }  // namespace unwrapd::server::store

@@ -13,15 +13,20 @@ namespace unwrapd::server::store {
 
 class DatabaseAddress {
  public:
-  using Open = std::function<std::unique_ptr<Database>()>;
+  using Open = std::function<std::shared_ptr<Database>()>;
 
   /// A file, which is made when it is missing.
   DatabaseAddress(std::filesystem::path file);  // NOLINT(google-explicit-constructor)
   DatabaseAddress(PostgresAddress postgres);    // NOLINT(google-explicit-constructor)
   explicit DatabaseAddress(Open open) : open_(std::move(open)) {}
 
-  /// A connection of its own. Throws as Database does.
-  [[nodiscard]] std::unique_ptr<Database> open() const { return open_(); }
+  /// The same connection for all that open it; of PostgreSQL alone. Throws as Database does.
+  [[nodiscard]] DatabaseAddress shared() const {
+    return DatabaseAddress([database = open()] { return database; });
+  }
+
+  /// A connection of its own, unless this is shared. Throws as Database does.
+  [[nodiscard]] std::shared_ptr<Database> open() const { return open_(); }
 
  private:
   Open open_;

@@ -270,7 +270,7 @@ class JobStore {
   const Node node_;
   std::function<void(const JobRecord& job)> on_found_;
   std::mutex mutex_;
-  const std::unique_ptr<Database> database_;
+  const std::shared_ptr<Database> database_;
   NotedTime noted_;
   std::optional<const RetentionClock> time_;
   std::atomic<bool> write_failed_ = true;  // or was not tried

@@ -52,7 +52,7 @@ class MeshStore {
   }
 
   std::mutex mutex_;
-  const std::unique_ptr<Database> database_;
+  const std::shared_ptr<Database> database_;
 };
 
 }  // namespace unwrapd::server::store

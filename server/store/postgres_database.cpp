@@ -142,6 +142,7 @@ void PostgresDatabase::patiently(const Attempt& attempt) const {
 
 PostgresResult PostgresDatabase::execute(const std::string& sql,
                                          const std::vector<BoundValue>& values) const {
+  const std::scoped_lock lock(mutex_);
   std::optional<PostgresResult> result;
   const auto run_once = [&](PostgresLink& link) { result = link.run(sql, values); };
   if (in_transaction_) {
@@ -154,6 +155,7 @@ PostgresResult PostgresDatabase::execute(const std::string& sql,
 }
 
 void PostgresDatabase::run(const std::string& sql) {
+  const std::scoped_lock lock(mutex_);
   const auto run_once = [&](PostgresLink& link) { changes_ = link.run(sql).changed(); };
   if (in_transaction_) {
     run_once(*link_);
@@ -185,10 +187,12 @@ void PostgresDatabase::set_version(std::int64_t version) {
 }
 
 void PostgresDatabase::check_reachable() const {
+  const std::scoped_lock lock(mutex_);
   patiently([](PostgresLink& link) { link.run("SELECT 1"); });
 }
 
 void PostgresDatabase::claim() {
+  const std::scoped_lock lock(mutex_);
   claimed_ = true;
   try {
     link_until(Clock::now() + address_.patience, false);
@@ -245,6 +249,7 @@ void PostgresDatabase::fail(bool in_doubt) const {
 }
 
 void PostgresDatabase::apply_all(Extent /*extent*/, const std::function<void()>& make) {
+  const std::scoped_lock lock(mutex_);
   if (!has_own_tables_) make_tables();
   link();
   const std::int64_t number = ++number_;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,6 +22,7 @@
 
 namespace unwrapd::server::store {
 
+/// Thread-safe.
 class PostgresDatabase final : public Database {
  public:
   /// Throws InsideError{storage_failed} when it cannot be reached. The first change makes its own
@@ -41,7 +43,10 @@ class PostgresDatabase final : public Database {
   /// Holds advisory locks for as long as this exists, and takes them again after a loss: alone, or
   /// beside the nodes of the same store.
   void claim() override;
-  [[nodiscard]] bool was_away() override { return std::exchange(was_away_, false); }
+  [[nodiscard]] bool was_away() override {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(was_away_, false);
+  }
 
   /// Runs a prepared statement.
   [[nodiscard]] PostgresResult execute(const std::string& sql,
@@ -64,6 +69,7 @@ class PostgresDatabase final : public Database {
   void lose_link(const LinkLost& lost, Clock::time_point& end, bool in_doubt) const;
   [[noreturn]] void be_away(bool in_doubt) const;
 
+  mutable std::recursive_mutex mutex_;  ///< of a call; of a change until its end
   const PostgresAddress address_;
   const std::string writer_;  // the id of this connection's row
   std::int64_t number_ = 0;   // of the last transaction

@@ -76,7 +76,7 @@ class Webhooks {
   const std::function<Moment()> now_;
   const bool is_shared_;
   std::mutex mutex_;  // of the next two
-  const std::unique_ptr<store::Database> database_;
+  const std::shared_ptr<store::Database> database_;
   std::set<std::int64_t> being_made_;  // seq
   WebhookPool pool_;                   // last: its threads use the others
 };

@@ -17,6 +17,9 @@ test("a worker without a port does what others were sent", options, async (t) =>
   assert.equal(worker.url, "unwrapd works on the jobs of other nodes");
   const answer = await send(front, `/v1/unwrap?preset=chart&${QUICK}`);
   assert.equal(answer.status, 200);
+  const sessions = farm.query(`SELECT COUNT(*) FROM pg_stat_activity WHERE backend_type = 'client backend'
+    AND pid <> pg_backend_pid()`);
+  assert.equal(sessions, "6", "each node has three");
   assert.deepEqual(await worker.end("SIGTERM"), [0, null]);
   await assert.rejects(Server.startAs(["worker"], {}, dataDirectory(t)), /--database and --blobs/);
 });

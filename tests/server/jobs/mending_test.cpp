@@ -74,7 +74,7 @@ class Mending : public testing::Test {
 
   TempDir dir_;
   Fate next_ = Fate::pass;
-  store::JobStore store_{store::DatabaseAddress([this]() -> std::unique_ptr<store::Database> {
+  store::JobStore store_{store::DatabaseAddress([this]() -> std::shared_ptr<store::Database> {
     return std::make_unique<GoneDatabase>(dir_.path() / "jobs.sqlite", next_);
   })};
   store::BlobStore blobs_{dir_.path()};

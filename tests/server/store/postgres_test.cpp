@@ -61,7 +61,7 @@ class Postgres : public testing::Test {
  protected:
   void SetUp() override { migrate(*database_); }
 
-  std::unique_ptr<Database> open() const { return DatabaseAddress(address_).open(); }
+  std::shared_ptr<Database> open() const { return DatabaseAddress(address_).open(); }
   /// Ends a session, as a restart does.
   void end_session(std::int64_t pid) {
     Statement end(*other_, "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE pid = ?");
@@ -91,8 +91,8 @@ class Postgres : public testing::Test {
 
   TempDir dir_;
   const PostgresAddress address_ = postgres_of(dir_.path());
-  const std::unique_ptr<Database> other_ = open();
-  const std::unique_ptr<Database> database_ = open();
+  const std::shared_ptr<Database> other_ = open();
+  const std::shared_ptr<Database> database_ = open();
 };
 
 TEST_F(Postgres, ReadsAgainWhatWasCut) {
@@ -152,7 +152,7 @@ TEST_F(Postgres, TellsTheDoubtWhereTheNextTryFailsInAnotherWay) {
 TEST_F(Postgres, LosesPatienceWithWhatEndsEachSession) {
   PostgresAddress hasty = address_;
   hasty.patience = std::chrono::milliseconds(50);
-  const std::unique_ptr<Database> database = DatabaseAddress(hasty).open();
+  const std::shared_ptr<Database> database = DatabaseAddress(hasty).open();
   EXPECT_THROW(Statement(*database, "SELECT pg_terminate_backend(pg_backend_pid())").step(),
                StoreAway);
   EXPECT_THROW(database->change([&] {
@@ -172,7 +172,7 @@ TEST_F(Postgres, TellsClientsToComeBackWhereNobodyAnswers) {
   std::filesystem::create_symlink(std::filesystem::path(where.text(0)) / kSocket, way);
   const PostgresAddress by_way{.url = address_.url + "&host=" + dir_.path().string(),
                                .patience = std::chrono::milliseconds(10)};
-  const std::unique_ptr<Database> database = DatabaseAddress(by_way).open();
+  const std::shared_ptr<Database> database = DatabaseAddress(by_way).open();
   const std::int64_t session = pid_of(*database);
   std::filesystem::remove(way);
   end_session(session);
@@ -201,7 +201,7 @@ TEST_F(Postgres, LetsOneServerHaveTheStore) {
 
 TEST_F(Postgres, HasItsStoreAgainAfterACutThatTheServerDoesNotKnow) {
   const std::set<int> before = open_sockets();
-  const std::unique_ptr<Database> holder = open();
+  const std::shared_ptr<Database> holder = open();
   std::set<int> links = open_sockets();
   for (const int other : before) links.erase(other);
   ASSERT_EQ(links.size(), 1);

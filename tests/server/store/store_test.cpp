@@ -209,7 +209,7 @@ TEST_F(Store, RemembersARequestToCancelOverAReopening) {
 
 TEST_F(Store, RefusesTablesOfAnotherSchema) {
   store_.reset();
-  const std::unique_ptr<Database> newer = database_.open();
+  const std::shared_ptr<Database> newer = database_.open();
   newer->transact([&] { newer->set_version(99); });
   EXPECT_THROW(JobStore{database_}, Error);
 }

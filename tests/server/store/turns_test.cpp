@@ -158,7 +158,7 @@ TEST_F(Turns, DamagedCountsAreMendedAtTheStart) {
   for (const char* owner : {"a", "b", "b"}) add(owner);
   start("b");
   store_.reset();
-  const std::unique_ptr<Database> other = database_.open();
+  const std::shared_ptr<Database> other = database_.open();
   other->transact([&] { other->run("UPDATE shares SET waiting = 7, running = 0"); });
   store_ = std::make_unique<JobStore>(database_);
   EXPECT_EQ(store_->counts().waiting, 2);
