@@ -20,9 +20,10 @@ std::string size_text(const texture::Size& size) {
 /// The old image with its mip chain; the new one with its offsets, and as its encoder keeps it.
 void check_memory(const Gltf& gltf, const NewImage& image, std::size_t faces) {
   constexpr std::size_t kOfFace = sizeof(texture::PlacedTriangle) + sizeof(texture::TurnedFrames);
+  const std::size_t deep = image.head.is_deep ? 1 : 0;
   const std::size_t bytes = texture::decoding_bytes(image.head) +
-                            6 * texels({image.head.width, image.head.height}) +
-                            17 * texels(image.size) + 2 * kOfFace * faces;
+                            (6 + 6 * deep) * texels({image.head.width, image.head.height}) +
+                            (17 + 8 * deep) * texels(image.size) + 2 * kOfFace * faces;
   if (bytes > gltf.transfer->max_bytes / 2)
     throw Error(ErrorCode::too_much_memory,
                 "to resample this image to " + size_text(image.size) +

@@ -62,7 +62,8 @@ ImageHead head_of(const ImageFile& file) {
 std::size_t decoding_bytes(const ImageHead& head) {
   const std::size_t texels =
       static_cast<std::size_t>(head.width) * static_cast<std::size_t>(head.height);
-  return texels * (head.codec == Codec::png ? 4 : 12);  // progressive JPEG: 2 bytes a coefficient
+  if (head.codec == Codec::png) return texels * (head.is_deep ? 8 : 4);
+  return texels * 12;  // progressive JPEG: 2 bytes a coefficient
 }
 
 Image decode(const ImageFile& file, const ImageHead& head, const std::stop_token& stop) {

@@ -21,11 +21,12 @@ ImageHead head_of(const ImageFile& file);
 std::size_t decoding_bytes(const ImageHead& head);
 
 /// head: of the same file. Channels keep their stored values: profiles and gamma are ignored, as
-/// glTF asks; 16 bits are rounded to 8. Throws Error{malformed_image}, Error{cancelled}.
+/// glTF asks. Throws Error{malformed_image}, Error{cancelled}.
 Image decode(const ImageFile& file, const ImageHead& head, const std::stop_token& stop);
 
-/// A file of head's codec; head's alpha and grey tell which channels are written. JPEG and lossy
-/// WebP are written at quality 95. Throws Error{cancelled}.
+/// A file of head's codec; head's alpha and grey tell which channels are written. A PNG has the
+/// bits of the image; of another codec it must have 8. JPEG and lossy WebP are written at
+/// quality 95. Throws Error{cancelled}.
 std::string encode(const Image& image, const ImageHead& head, const std::stop_token& stop);
 
 }  // namespace unwrapd::texture

@@ -25,9 +25,7 @@ inline constexpr int kQuality = 95;  // of lossy files
 
 /// An image of the head's size, all zero.
 inline Image blank(const ImageHead& head) {
-  return {head.width, head.height,
-          std::vector<std::uint8_t>(4 * static_cast<std::size_t>(head.width) *
-                                    static_cast<std::size_t>(head.height))};
+  return blank_image({head.width, head.height}, head.is_deep);
 }
 
 [[noreturn]] inline void refuse_broken(const ImageFile& file, const std::string& format) {

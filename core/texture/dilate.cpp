@@ -66,8 +66,13 @@ class Sweeper {
     for (int x = 0; x < width_; ++x) {
       const Offset& offset = offsets_[index(x, y)];
       if (offset.x == Offset::kNone) return;  // nothing is covered
-      const std::uint8_t* source = painted_.image.at(x + offset.x, y + offset.y);
-      std::copy(source, source + 4, painted_.image.rgba.data() + 4 * index(x, y));
+      const std::size_t from = painted_.image.index(x + offset.x, y + offset.y);
+      const std::size_t to = painted_.image.index(x, y);
+      const auto copy = [&](auto* values) { std::copy_n(values + from, 4, values + to); };
+      if (painted_.image.is_deep())
+        copy(painted_.image.deep.data());
+      else
+        copy(painted_.image.rgba.data());
     }
   }
 

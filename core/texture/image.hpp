@@ -1,5 +1,5 @@
 #pragma once
-// Images in memory and in files. All work is on eight bits a channel, four channels.
+// Images in memory and in files. All work is on four channels, of eight bits each or of sixteen.
 
 #include <cstddef>
 #include <cstdint>
@@ -32,17 +32,35 @@ struct ImageHead {
   bool has_alpha = false;
   bool is_grey = false;
   bool is_lossless = true;  ///< of a WebP; a PNG always is, a JPEG never
+  bool is_deep = false;     ///< 16 bits a channel: some PNGs
 };
 
-/// rgba: rows from the top, 4 bytes a texel; grey images have three equal channels.
+/// Rows from the top, 4 values a texel; grey images have three equal channels. The values are in
+/// rgba, or where they have 16 bits in deep; the other is empty.
 struct Image {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
+  std::vector<std::uint16_t> deep = {};
 
-  [[nodiscard]] const std::uint8_t* at(int x, int y) const {
-    return rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                              static_cast<std::size_t>(x));
+  [[nodiscard]] bool is_deep() const { return !deep.empty(); }
+  /// Of the first value of a texel.
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                static_cast<std::size_t>(x));
   }
+  [[nodiscard]] const std::uint8_t* at(int x, int y) const { return rgba.data() + index(x, y); }
 };
+
+/// All zero.
+inline Image blank_image(const Size& size, bool is_deep) {
+  const std::size_t values =
+      4 * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+  Image image{size.width, size.height, {}};
+  if (is_deep)
+    image.deep.resize(values);
+  else
+    image.rgba.resize(values);
+  return image;
+}
 
 }  // namespace unwrapd::texture

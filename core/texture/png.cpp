@@ -2,6 +2,7 @@
 // may leave. Each row is a step, so that a stop can be an exception.
 #include <png.h>
 
+#include <bit>
 #include <csetjmp>
 #include <cstring>
 #include <new>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr png_alloc_size_t kMaxChunkBytes = png_alloc_size_t{8} << 20;  // of a profile or a text
 constexpr int kCompression = 6;
+constexpr int kBits = 8, kDeepBits = 16;  // of a channel
 
 /// False if libpng left the step.
 template <class Step>
@@ -56,19 +58,22 @@ class Reader {
             .height = static_cast<int>(png_get_image_height(png_, info_)),
             .has_alpha = (type & PNG_COLOR_MASK_ALPHA) != 0 ||
                          png_get_valid(png_, info_, PNG_INFO_tRNS) != 0,
-            .is_grey = (type & PNG_COLOR_MASK_COLOR) == 0};
+            .is_grey = (type & PNG_COLOR_MASK_COLOR) == 0,
+            .is_deep = png_get_bit_depth(png_, info_) == kDeepBits};
   }
 
   Image image(const std::stop_token& stop) {
     int passes = 1;
-    require(completes(png_, [&] { passes = make_rgba(); }));
     Image image = blank(head());
-    const std::size_t row_bytes = 4 * static_cast<std::size_t>(image.width);
+    require(completes(png_, [&] { passes = make_rgba(image.is_deep()); }));
+    const std::size_t row_bytes = (image.is_deep() ? 8 : 4) * static_cast<std::size_t>(image.width);
     if (png_get_rowbytes(png_, info_) != row_bytes) refuse_broken(file_, "PNG");
     for (int pass = 0; pass < passes; ++pass)
       for (int y = 0; y < image.height; ++y) {
         throw_if_cancelled(stop);
-        png_bytep row = image.rgba.data() + row_bytes * static_cast<std::size_t>(y);
+        png_bytep row = image.is_deep()
+                            ? reinterpret_cast<png_bytep>(image.deep.data() + image.index(0, y))
+                            : image.rgba.data() + image.index(0, y);
         require(completes(png_, [&] { png_read_row(png_, row, nullptr); }));
       }
     return image;
@@ -86,11 +91,11 @@ class Reader {
   }
 
   /// Returns the number of passes of an interlaced image.
-  int make_rgba() {
+  int make_rgba(bool is_deep) {
     png_set_expand(png_);
-    png_set_scale_16(png_);
     png_set_gray_to_rgb(png_);
-    png_set_add_alpha(png_, 0xff, PNG_FILLER_AFTER);
+    png_set_add_alpha(png_, is_deep ? 0xffff : 0xff, PNG_FILLER_AFTER);
+    if (is_deep && std::endian::native == std::endian::little) png_set_swap(png_);
     const int passes = png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
     return passes;
@@ -126,16 +131,10 @@ class Writer {
     const int type = (head.is_grey ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB) |
                      (head.has_alpha ? PNG_COLOR_MASK_ALPHA : 0);
     require(completes(png_, [&] { begin(image, type); }));
-    const std::size_t channels = (head.is_grey ? 1U : 3U) + (head.has_alpha ? 1U : 0U);
-    std::vector<png_byte> row(channels * static_cast<std::size_t>(image.width));
-    for (int y = 0; y < image.height; ++y) {
-      throw_if_cancelled(stop);
-      for (int x = 0; x < image.width; ++x)
-        for (std::size_t c = 0; c < channels; ++c)
-          row[channels * static_cast<std::size_t>(x) + c] =
-              image.at(x, y)[head.has_alpha && c + 1 == channels ? 3 : c];
-      require(completes(png_, [&] { png_write_row(png_, row.data()); }));
-    }
+    if (image.is_deep())
+      write_rows(image, image.deep, head, stop);
+    else
+      write_rows(image, image.rgba, head, stop);
     require(completes(png_, [&] { png_write_end(png_, info_); }));
     return std::move(bytes_);
   }
@@ -145,13 +144,31 @@ class Writer {
     if (!completed) throw Error(ErrorCode::internal, "A PNG image could not be written.");
   }
 
+  /// values: those of the image.
+  template <class Value>
+  void write_rows(const Image& image, const std::vector<Value>& values, const ImageHead& head,
+                  const std::stop_token& stop) {
+    const std::size_t channels = (head.is_grey ? 1U : 3U) + (head.has_alpha ? 1U : 0U);
+    std::vector<Value> row(channels * static_cast<std::size_t>(image.width));
+    for (int y = 0; y < image.height; ++y) {
+      throw_if_cancelled(stop);
+      for (int x = 0; x < image.width; ++x)
+        for (std::size_t c = 0; c < channels; ++c)
+          row[channels * static_cast<std::size_t>(x) + c] =
+              values[image.index(x, y) + (head.has_alpha && c + 1 == channels ? 3 : c)];
+      require(
+          completes(png_, [&] { png_write_row(png_, reinterpret_cast<png_bytep>(row.data())); }));
+    }
+  }
+
   void begin(const Image& image, int type) {
     png_set_write_fn(png_, &bytes_, append_bytes, nullptr);
     png_set_IHDR(png_, info_, static_cast<png_uint_32>(image.width),
-                 static_cast<png_uint_32>(image.height), 8, type, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 static_cast<png_uint_32>(image.height), image.is_deep() ? kDeepBits : kBits, type,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_compression_level(png_, kCompression);
     png_write_info(png_, info_);
+    if (image.is_deep() && std::endian::native == std::endian::little) png_set_swap(png_);
   }
 
   std::string bytes_;

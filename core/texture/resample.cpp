@@ -93,8 +93,8 @@ Texel turned_texel(const Texel& texel, const TurnedFrames& frames, const Eigen::
   return {now.x(), now.y(), is_normal ? now.z() : texel[2], texel[3]};
 }
 
-/// The bytes of a texel from the mean of its samples.
-std::array<std::uint8_t, 4> encoded(Texel mean, Content content) {
+/// The texel from the mean of its samples.
+Texel finished(Texel mean, Content content) {
   if (content == Content::normals || content == Content::directions) {
     const bool is_normal = content == Content::normals;
     const Eigen::Vector3f unit =
@@ -102,10 +102,7 @@ std::array<std::uint8_t, 4> encoded(Texel mean, Content content) {
     for (int c = 0; c < (is_normal ? 3 : 2); ++c)
       mean[static_cast<std::size_t>(c)] = (unit[c] + 1) / 2;
   }
-  std::array<std::uint8_t, 4> bytes{};
-  for (std::size_t c = 0; c < 4; ++c)
-    bytes[c] = stored(mean[c], content == Content::colour && c < 3);
-  return bytes;
+  return mean;
 }
 
 /// A triangle by the numbers of its patch and in it.
@@ -133,9 +130,8 @@ class Painter {
   Painter(const Texture& texture, std::span<const Patch> patches, const Size& size, Content content,
           const std::stop_token& stop)
       : texture_(texture), patches_(patches), size_(size), content_(content), stop_(stop) {
-    const std::size_t texels = row_texels() * static_cast<std::size_t>(size.height);
-    painted_.image = {size.width, size.height, std::vector<std::uint8_t>(4 * texels)};
-    painted_.is_covered.resize(texels);
+    painted_.image = blank_image(size, texture.is_deep());
+    painted_.is_covered.resize(row_texels() * static_cast<std::size_t>(size.height));
     sort_into_bands();
   }
 
@@ -215,9 +211,8 @@ class Painter {
       Sum& sum = sums_[i];
       if (sum.weight == 0) continue;
       for (float& value : sum.value) value /= sum.weight;
-      const std::array<std::uint8_t, 4> bytes = encoded(sum.value, content_);
-      std::copy(bytes.begin(), bytes.end(),
-                painted_.image.rgba.begin() + std::ptrdiff_t(4 * (first + i)));
+      store(painted_.image, 4 * (first + i), finished(sum.value, content_),
+            content_ == Content::colour);
       painted_.is_covered[first + i] = 1;
     }
   }

@@ -15,19 +15,28 @@ namespace {
 double from_srgb(double stored) {
   return stored <= 0.04045 ? stored / 12.92 : std::pow((stored + 0.055) / 1.055, 2.4);
 }
+double to_srgb(double value) {
+  return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
+}
 
-std::array<float, 256> table(bool is_srgb) {
-  std::array<float, 256> values{};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double value = static_cast<double>(i) / 255;
+/// [i]: the value of which i is stored, in `count` steps.
+std::vector<float> table(std::size_t count, bool is_srgb) {
+  std::vector<float> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double value = static_cast<double>(i) / static_cast<double>(count - 1);
     values[i] = static_cast<float>(is_srgb ? from_srgb(value) : value);
   }
   return values;
 }
 
-const std::array<float, 256>& decoded(bool is_srgb) {
-  static const std::array<float, 256> plain = table(false), srgb = table(true);
-  return is_srgb ? srgb : plain;
+const float* decoded(bool is_srgb) {
+  static const std::vector<float> plain = table(256, false), srgb = table(256, true);
+  return (is_srgb ? srgb : plain).data();
+}
+
+const float* decoded_deep(bool is_srgb) {
+  static const std::vector<float> plain = table(65'536, false), srgb = table(65'536, true);
+  return (is_srgb ? srgb : plain).data();
 }
 
 /// [i]: where the stored value i ends and i + 1 begins.
@@ -74,13 +83,29 @@ Texel mixed(const Texel& a, const Texel& b, float weight) {
   return mix;
 }
 
-}  // namespace
-
+/// The stored value of a channel in [0, 1]; of sRGB, of a value linear in light.
 std::uint8_t stored(float value, bool is_srgb) {
   if (!is_srgb) return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0F, 1.0F)));
   const auto& bounds = srgb_bounds();
   return static_cast<std::uint8_t>(std::upper_bound(bounds.begin(), bounds.end(), value) -
                                    bounds.begin());
+}
+
+std::uint16_t stored_deep(float value, bool is_srgb) {
+  const double clamped = std::clamp(static_cast<double>(value), 0.0, 1.0);
+  return static_cast<std::uint16_t>(std::lround(65'535 * (is_srgb ? to_srgb(clamped) : clamped)));
+}
+
+}  // namespace
+
+void store(Image& image, std::size_t index, const Texel& texel, bool is_srgb) {
+  for (std::size_t c = 0; c < 4; ++c) {
+    const bool is_colour = is_srgb && c < 3;
+    if (image.is_deep())
+      image.deep[index + c] = stored_deep(texel[c], is_colour);
+    else
+      image.rgba[index + c] = stored(texel[c], is_colour);
+  }
 }
 
 Texture::Texture(Image image, bool is_srgb, const std::stop_token& stop) : is_srgb_(is_srgb) {
@@ -91,23 +116,26 @@ Texture::Texture(Image image, bool is_srgb, const std::stop_token& stop) : is_sr
 }
 
 Texel Texture::texel(const Image& image, int x, int y) const {
-  const std::uint8_t* rgba = image.at(x, y);
-  const std::array<float, 256>& colour = decoded(is_srgb_);
-  return {colour[rgba[0]], colour[rgba[1]], colour[rgba[2]], decoded(false)[rgba[3]]};
+  const auto read = [&](const auto* values, const float* colour, const float* alpha) -> Texel {
+    return {colour[values[0]], colour[values[1]], colour[values[2]], alpha[values[3]]};
+  };
+  const std::size_t index = image.index(x, y);
+  return image.is_deep()
+             ? read(image.deep.data() + index, decoded_deep(is_srgb_), decoded_deep(false))
+             : read(image.rgba.data() + index, decoded(is_srgb_), decoded(false));
 }
 
 /// Each texel is the mean of four; the last of a row or column takes in an odd one, too.
 Image Texture::halved(const Image& image, const std::stop_token& stop) const {
-  Image half{std::max(image.width / 2, 1), std::max(image.height / 2, 1), {}};
-  half.rgba.reserve(4 * static_cast<std::size_t>(half.width) *
-                    static_cast<std::size_t>(half.height));
+  Image half =
+      blank_image({std::max(image.width / 2, 1), std::max(image.height / 2, 1)}, image.is_deep());
   for (int y = 0; y < half.height; ++y) {
     throw_if_cancelled(stop);
     const int rows_end = y + 1 == half.height ? image.height : 2 * y + 2;
     for (int x = 0; x < half.width; ++x) {
       const int columns_end = x + 1 == half.width ? image.width : 2 * x + 2;
-      const Texel mean = mean_of(image, {2 * x, columns_end}, {2 * y, rows_end});
-      for (std::size_t c = 0; c < 4; ++c) half.rgba.push_back(stored(mean[c], is_srgb_ && c < 3));
+      store(half, half.index(x, y), mean_of(image, {2 * x, columns_end}, {2 * y, rows_end}),
+            is_srgb_);
     }
   }
   return half;

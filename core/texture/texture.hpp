@@ -31,6 +31,7 @@ class Texture {
 
   [[nodiscard]] int width() const { return levels_.front().width; }
   [[nodiscard]] int height() const { return levels_.front().height; }
+  [[nodiscard]] bool is_deep() const { return levels_.front().is_deep(); }
   [[nodiscard]] int levels() const { return static_cast<int>(levels_.size()); }
 
   /// uv: V pointing down, finite. level: of the mip chain, 0 is the image.
@@ -48,7 +49,7 @@ class Texture {
   bool is_srgb_;
 };
 
-/// The stored value of a channel in [0, 1]; of sRGB, of a value linear in light.
-std::uint8_t stored(float value, bool is_srgb);
+/// Stores a texel in the image whose first value has this index. is_srgb: as of Texture.
+void store(Image& image, std::size_t index, const Texel& texel, bool is_srgb);
 
 }  // namespace unwrapd::texture

@@ -125,6 +125,20 @@ TEST(Transfer, KeepsWhatOtherPrimitivesRead) {
   EXPECT_EQ(now.images[0].rgba, old.rgba);
 }
 
+TEST(Transfer, KeepsSixteenBits) {
+  Image old = texture::blank_image({kSide, kSide}, true);
+  for (std::size_t i = 0; i < old.deep.size(); ++i)
+    old.deep[i] = static_cast<std::uint16_t>(i % 4 == 3 ? 0xffff : 257 * (i % 255) + 1);
+  const Written now = written(read_file(textured(file_of(old)).glb(), kTransfer));
+  ASSERT_EQ(now.images.size(), 1U);
+  ASSERT_TRUE(now.images[0].is_deep());
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      for (std::size_t c = 0; c < 4; ++c)
+        EXPECT_EQ(now.images[0].deep[now.images[0].index(x, y) + c],
+                  old.deep[old.index(kSide - 1 - y, x) + c]);  // as of old_texel()
+}
+
 TEST(Transfer, PaintsAPageThatIsNotSquare) {
   const Image old = chart_of_colours(kSide, 2 * kSide);
   AssetOptions options = kTransfer;

@@ -48,6 +48,24 @@ TEST(Codec, PngAndLosslessWebpGiveBackEveryTexel) {
     }
 }
 
+TEST(Codec, APngOfSixteenBitsGivesBackEveryTexel) {
+  for (const bool has_alpha : {false, true}) {
+    Image image = deep_noise(33, 19);
+    if (!has_alpha)
+      for (std::size_t i = 3; i < image.deep.size(); i += 4) image.deep[i] = 0xffff;
+    ImageHead head{Codec::png, 33, 19, has_alpha, false, true, true}, again;
+    EXPECT_EQ(read_back(encode(image, head, {}), again).deep, image.deep);
+    EXPECT_TRUE(again.is_deep);
+  }
+  Image grey = deep_noise(9, 5);
+  for (std::size_t i = 0; i < grey.deep.size(); i += 4)
+    grey.deep[i + 1] = grey.deep[i + 2] = grey.deep[i];
+  ImageHead again;
+  EXPECT_EQ(read_back(encode(grey, {Codec::png, 9, 5, true, true, true, true}, {}), again).deep,
+            grey.deep);
+  EXPECT_TRUE(again.is_grey);
+}
+
 TEST(Codec, GreyStaysGrey) {
   const Image image = smooth(20, 10, true);
   for (const Codec codec : {Codec::png, Codec::jpeg}) {

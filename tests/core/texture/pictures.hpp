@@ -30,6 +30,15 @@ inline Image noise(int width, int height) {
   });
 }
 
+/// The same of 16 bits.
+inline Image deep_noise(int width, int height) {
+  Image image = blank_image({width, height}, true);
+  unsigned state = 7;
+  for (std::uint16_t& value : image.deep)
+    value = static_cast<std::uint16_t>((state = state * 1664525U + 1013904223U) >> 16U);
+  return image;
+}
+
 inline Rgba at(const Image& image, int x, int y) {
   const std::uint8_t* p = image.at(x, y);
   return {p[0], p[1], p[2], p[3]};

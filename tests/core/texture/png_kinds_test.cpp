@@ -49,7 +49,7 @@ Image read(const std::string& bytes, ImageHead& head) {
   return decode(file, head, {});
 }
 
-TEST(PngKinds, SixteenBitsAreRoundedToEight) {
+TEST(PngKinds, SixteenBitsAreReadWhole) {
   const std::string bytes = png_of({.bits = 16}, [](int y) {
     std::vector<png_byte> row;
     for (int x = 0; x < kSide; ++x)
@@ -61,11 +61,14 @@ TEST(PngKinds, SixteenBitsAreRoundedToEight) {
   });
   ImageHead head;
   const Image image = read(bytes, head);
+  ASSERT_TRUE(head.is_deep && image.is_deep());
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) {
-      EXPECT_NEAR(at(image, x, y)[0], (1000 * x + 100 * y) / 257.0, 0.51);
-      EXPECT_EQ(at(image, x, y)[1], 255);
-      EXPECT_EQ(at(image, x, y)[2], 1);
+      const std::uint16_t* texel = image.deep.data() + image.index(x, y);
+      EXPECT_EQ(texel[0], 1000 * x + 100 * y);
+      EXPECT_EQ(texel[1], 65535);
+      EXPECT_EQ(texel[2], 200);
+      EXPECT_EQ(texel[3], 65535);
     }
 }
 

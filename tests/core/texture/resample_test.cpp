@@ -18,6 +18,18 @@ TEST(Resample, TheSameLayoutGivesTheSamePicture) {
     EXPECT_EQ(paint(image, page(same), 37, content).image.rgba, image.rgba);
 }
 
+TEST(Resample, SixteenBitsStaySixteenBits) {
+  const Image image = deep_noise(37, 37);
+  const auto same = [](float u, float v) { return Eigen::Vector2f(u, v); };
+  for (const Content content : {Content::colour, Content::values})
+    EXPECT_EQ(paint(image, page(same), 37, content).image.deep, image.deep);
+  Painted half = paint(image, page([](float u, float v) { return Eigen::Vector2f(u, v / 2); }), 37);
+  std::fill(half.is_covered.begin() + 37, half.is_covered.end(), std::uint8_t{0});
+  dilate(half, {});
+  for (int x = 0; x < 37; ++x)
+    EXPECT_EQ(half.image.deep[half.image.index(x, 36)], half.image.deep[half.image.index(x, 0)]);
+}
+
 TEST(Resample, ALayoutTurnedByNinetyDegreesGivesTheTurnedPicture) {
   const Image image = noise(16, 16);
   const auto turned = [](float u, float v) { return Eigen::Vector2f(v, 1 - u); };
