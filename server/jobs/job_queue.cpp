@@ -50,12 +50,13 @@ void JobQueue::load_lengths() {
   for (const double length : std::views::reverse(seconds)) lengths_.add(length);
 }
 
+/// Does not fail where the store is away: the job's row says already that it waits.
 void JobQueue::wait_again(const store::JobRecord& job) {
   const TraceScope trace(job.trace);
   std::shared_ptr<JobFeed> feed = events_.find(job.id);  // with its readers, if it ran already
   if (!feed) feed = events_.open(job.id, job.attempt);
   if (is_shared()) feed->rise_to(job.attempt * kSeqsPerAttempt);
-  const std::int64_t ahead = std::max<std::int64_t>(0, store_.counts().waiting - 1);
+  const std::int64_t ahead = std::max<std::int64_t>(0, counts_if_reached().waiting - 1);
   feed->publish([&](std::int64_t seq) { return api::queued_event(seq, ahead); });
   feed->follow(is_shared());
   changed_.notify_all();
@@ -99,6 +100,10 @@ std::int64_t JobQueue::mean_ms() const {
 
 store::QueueCounts JobQueue::counts() {
   const std::lock_guard lock(mutex_);
+  return counts_if_reached();
+}
+
+store::QueueCounts JobQueue::counts_if_reached() {
   try {
     counted_ = store_.counts();
   } catch (const Error&) {  // it is told elsewhere that the store is away

@@ -193,6 +193,7 @@ class JobQueue {
   void give_up(const store::JobRecord& job, const Error& why);
   void set_aside(const store::JobRecord& unreadable);
   void wait_again(const store::JobRecord& job);
+  [[nodiscard]] store::QueueCounts counts_if_reached();
   [[nodiscard]] std::shared_ptr<RunningJob> begin(store::JobRecord record);
   [[nodiscard]] store::JobOutcome sealed(const store::JobRecord& job, store::JobOutcome outcome);
   [[nodiscard]] bool wait_for_room(const RunningJob& job, const store::JobOutcome& outcome);

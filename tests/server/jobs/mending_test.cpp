@@ -17,7 +17,7 @@ namespace {
 using api::JobState;
 
 /// What becomes of the next change.
-enum class Fate { pass, made_unheard, lost_in_doubt, away };
+enum class Fate { pass, made_then_away, made_unheard, lost_in_doubt, away };
 
 class GoneDatabase final : public store::Database {
  public:
@@ -25,6 +25,7 @@ class GoneDatabase final : public store::Database {
 
   void run(const std::string& sql) override { file_.run(sql); }
   [[nodiscard]] std::unique_ptr<store::Cursor> prepare(std::string_view sql) const override {
+    if (std::exchange(is_away_, false)) go_away(false);
     return file_.prepare(sql);
   }
   [[nodiscard]] int changes() const override { return file_.changes(); }
@@ -40,15 +41,19 @@ class GoneDatabase final : public store::Database {
  private:
   void apply_all(store::Extent /*extent*/, const std::function<void()>& make) override {
     const Fate fate = std::exchange(next_, Fate::pass);
-    if (fate == Fate::pass || fate == Fate::made_unheard) file_.transact(make);
-    if (fate == Fate::pass) return;
+    if (fate != Fate::lost_in_doubt && fate != Fate::away) file_.transact(make);
+    is_away_ = fate == Fate::made_then_away;
+    if (fate != Fate::pass && !is_away_) go_away(fate != Fate::away);
+  }
+  [[noreturn]] void go_away(bool in_doubt) const {
     was_away_ = true;
-    throw StoreAway(StorePart::database, "gone", fate != Fate::away);
+    throw StoreAway(StorePart::database, "gone", in_doubt);
   }
 
   store::SqliteDatabase file_;
   Fate& next_;
-  bool was_away_ = false;
+  mutable bool is_away_ = false;  // for the next statement
+  mutable bool was_away_ = false;
 };
 
 class Mending : public testing::Test {
@@ -90,6 +95,13 @@ TEST_F(Mending, AJobThatWasStoredUnheardIsRun) {
   queue_.mend();
   EXPECT_EQ(queue_.take()->record.id, "j_1");
   EXPECT_EQ(queue_.take()->record.id, "j_2");
+}
+
+TEST_F(Mending, AJobThatWasStoredWhenTheStoreGoesAwayKeepsItsFiles) {
+  next_ = Fate::made_then_away;
+  submit("j_1");
+  EXPECT_TRUE(has_files("j_1"));
+  EXPECT_EQ(queue_.take()->record.id, "j_1");
 }
 
 TEST_F(Mending, AJobThatWasNotStoredLeavesNoFiles) {
