@@ -7,52 +7,13 @@ import { join } from "node:path";
 import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { dataDirectory, grid, QUICK, Server } from "../fault/server.mjs";
-import { cuttableLink, Farm, LEASE_SECONDS, options, send, sha256Of } from "./nodes.mjs";
+import { assertAllDone, digestsOfANodeAlone, FLAGS, submitAll } from "./load.mjs";
+import { cuttableLink, Farm, LEASE_SECONDS, options, sha256Of } from "./nodes.mjs";
 
 const JOBS = Number(process.env.FARM_JOBS ?? 150);
 const KILLS = Number(process.env.FARM_KILLS ?? 4);
 const STOPS = Number(process.env.FARM_STOPS ?? 1);
-const SIZES = [2, 3, 4, 5, 6];
-const PATH = `/v1/jobs?preset=chart&${QUICK}`;
-const AT_ONCE = 8;
-const FLAGS = ["--isolate=off", "--max-queue", "100000"];
 const LINK_PORT = 5444;
-
-/** Sends a job under a name until some serving node has taken it. */
-async function submit(fronts, k) {
-  const headers = { "Idempotency-Key": `job-${k}`, "Cache-Control": "no-cache" };
-  for (let round = 0; ; round++) {
-    const node = fronts()[(k + round) % 2];
-    try {
-      const answer = await send(node, PATH, { size: SIZES[k % SIZES.length], headers });
-      const body = await answer.json();
-      if ([200, 202].includes(answer.status)) return body.id;
-      assert.ok([429, 503].includes(answer.status), JSON.stringify(body));
-    } catch (error) {
-      assert.ok(error instanceof TypeError, error); // the node is gone
-    }
-    await sleep(100);
-  }
-}
-
-async function submitAll(fronts) {
-  const ids = new Array(JOBS);
-  let next = 0;
-  const sendSome = async () => {
-    for (let k = next++; k < JOBS; k = next++) ids[k] = await submit(fronts, k);
-  };
-  await Promise.all(Array.from({ length: AT_ONCE }, sendSome));
-  return ids;
-}
-
-async function digestsOfANodeAlone(t) {
-  const alone = await Server.start(dataDirectory(t));
-  const digests = [];
-  for (const size of SIZES) digests.push(await sha256Of(await send(alone, `/v1/unwrap?preset=chart&${QUICK}`, { size })));
-  await alone.end("SIGTERM");
-  return digests;
-}
 
 function age(folder) {
   const old = Date.now() / 1000 - 7200;
@@ -76,7 +37,8 @@ test(`${JOBS} jobs outlive ${KILLS} kills, ${STOPS} stops of the database, a cut
   farm.countEnds();
   const fronts = () => [farm.nodes.get("front-1"), farm.nodes.get("front-2")];
 
-  const submitting = submitAll(fronts);
+  const ids = new Array(JOBS);
+  const submitting = submitAll(fronts, JOBS, ids);
   const pause = () => sleep(Math.max(300, JOBS));
   const harm = async () => {
     for (let k = 0; k < Math.max(KILLS, STOPS); k++) {
@@ -98,18 +60,10 @@ test(`${JOBS} jobs outlive ${KILLS} kills, ${STOPS} stops of the database, a cut
     link.mend();
     farm.nodes.get("three").process.kill("SIGCONT");
   };
-  const [ids] = await Promise.all([submitting, harm()]);
+  await Promise.all([submitting, harm()]);
   await farm.allEnd(60 + JOBS);
 
-  assert.equal(new Set(ids).size, JOBS);
-  assert.equal(farm.query("SELECT COUNT(*) FROM jobs WHERE state = 'succeeded'"), String(JOBS));
-  assert.equal(farm.query("SELECT COUNT(*), COUNT(DISTINCT id) FROM ends"), `${JOBS}|${JOBS}`);
-  assert.equal(farm.query("SELECT COALESCE(SUM(waiting + running), 0) FROM shares"), "0");
-  for (const [k, id] of ids.entries()) {
-    const answer = await fetch(`${fronts()[k % 2].url}/v1/jobs/${id}/result`);
-    assert.equal(answer.status, 200, id);
-    assert.equal(await sha256Of(answer), expected[k % SIZES.length], id);
-  }
+  await assertAllDone(farm, fronts, ids, expected);
   t.diagnostic(`${farm.query("SELECT COUNT(*) FROM jobs WHERE attempt > 1")} jobs were begun more than once`);
 
   await Promise.all([...farm.nodes.values()].map((node) => node.end("SIGTERM")));

@@ -13,9 +13,9 @@ export const options = { skip: hasPostgres() ? false : NOT_INSTALLED };
 export const LEASE_SECONDS = 3; // the shortest that there is
 
 export class Farm {
-  constructor(t) {
-    this.postgres = new Postgres({ sync: false });
-    t.after(() => this.postgres.remove());
+  constructor(t, postgres = new Postgres({ sync: false })) {
+    this.postgres = postgres;
+    t.after(() => postgres.remove());
     this.folder = dataDirectory(t);
     this.shared = join(this.folder, "shared");
     this.blobs = ["--blobs", `dir:${this.shared}`];

@@ -2,7 +2,7 @@
 // before it that loses what it is told to lose. As root it runs as the user postgres: PostgreSQL
 // refuses root.
 import { execFileSync } from "node:child_process";
-import { chownSync, existsSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
+import { chownSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { connect, createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -32,16 +32,20 @@ export function isInstalled() {
 const idOf = (flag) => Number(execFileSync("id", [flag, "postgres"], { encoding: "utf8" }));
 
 export class Postgres {
-  /** Starts one. sync: false where only processes end, not machines. */
-  constructor({ sync = true } = {}) {
+  /**
+   * Starts one. sync: false where only processes end, not machines. settings: more of it, by name.
+   * from: the primary whose standby it is.
+   */
+  constructor({ sync = true, settings = {}, from } = {}) {
     this.bin = programs();
+    this.settings = settings;
     this.folder = mkdtempSync(join(tmpdir(), "unwrapd-postgres-"));
     this.data = join(this.folder, "data");
     this.user = process.getuid() === 0 ? { uid: idOf("-u"), gid: idOf("-g") } : {};
     this.sync = sync ? "on" : "off";
     if (this.user.uid) chownSync(this.folder, this.user.uid, this.user.gid);
-    const asked = ["-D", this.data, "-U", "postgres", "-A", "trust", "-E", "UTF8", "--locale=C.UTF-8", "--no-sync"];
-    this.run("initdb", asked);
+    if (from) this.#copy(from);
+    else this.run("initdb", ["-D", this.data, "-U", "postgres", "-A", "trust", "-E", "UTF8", "--locale=C.UTF-8", "--no-sync"]);
     this.start();
   }
 
@@ -50,14 +54,33 @@ export class Postgres {
     return execFileSync(join(this.bin, program), args, options);
   }
 
+  /** A copy that follows the primary under the name `standby`. */
+  #copy(from) {
+    const source = `host=${from.folder} user=postgres application_name=standby`;
+    this.run("pg_basebackup", ["-D", this.data, "-d", source, "-R", "-X", "stream", "-c", "fast", "--no-sync"]);
+  }
+
   start() {
-    const options = `-k ${this.folder} -c listen_addresses= -c fsync=${this.sync} -c max_connections=40`;
+    const all = { listen_addresses: "", fsync: this.sync, max_connections: 40, ...this.settings };
+    const options = [`-k ${this.folder}`, ...Object.entries(all).map(([name, value]) => `-c ${name}=${value}`)].join(" ");
     this.run("pg_ctl", ["-D", this.data, "-l", join(this.folder, "log"), "-o", options, "-w", "-t", "60", "start"]);
   }
 
   /** As a crash ends it: nothing is said to clients, and the next start recovers. */
   kill() {
     this.run("pg_ctl", ["-D", this.data, "-m", "immediate", "-w", "stop"]);
+  }
+
+  /** As its machine ends by a loss of power: all its processes at one moment. */
+  loseMachine() {
+    const [main] = readFileSync(join(this.data, "postmaster.pid"), "utf8").split("\n");
+    const children = execFileSync("pgrep", ["-P", main], { encoding: "utf8" }).trim().split("\n");
+    for (const pid of [main, ...children]) process.kill(Number(pid), "SIGKILL");
+  }
+
+  /** Makes the primary of what was a standby. */
+  promote() {
+    this.run("pg_ctl", ["-D", this.data, "-w", "promote"]);
   }
 
   /** Its URL, or that of another socket in its folder. */
