@@ -10,11 +10,13 @@
 
 #include "client/bounded_http.hpp"
 #include "client/failure.hpp"
+#include "client/http_redirect.hpp"
 
 namespace unwrapd::client {
 namespace {
 
 constexpr int kConnectSeconds = 5;
+constexpr int kMostRedirects = 5;
 constexpr int kSilenceSeconds = 60;  // event streams send a heartbeat every 15 s
 constexpr std::size_t kBlockBytes = 65'536;
 constexpr std::size_t kMostText = std::size_t{64}
@@ -170,6 +172,19 @@ Reply Http::post(const std::string& path, const Upload& upload, const Headers& h
 }
 
 Reply Http::get(const std::string& path, const Headers& headers, const BytesSink& sink) const {
+  Destination at{.server = server_, .path = path};
+  for (int redirects = 0;; ++redirects) {
+    Reply reply = get_from(at.server, at.path, headers, sink);
+    if (!is_redirect(reply.status)) return reply;
+    if (redirects == kMostRedirects)
+      throw Failure(ExitCode::unreachable, "The server at " + server_.origin +
+                                               " redirects without end; check the address.");
+    at = redirected(at.server, reply.header("location"));
+  }
+}
+
+Reply Http::get_from(const ServerUrl& server, const std::string& path, const Headers& headers,
+                     const BytesSink& sink) const {
   Receiver receiver{.sink = sink, .text = {}};
   const auto on_head = [&](const httplib::Response& response) {
     receiver.begin(response.status);
@@ -180,9 +195,9 @@ Reply Http::get(const std::string& path, const Headers& headers, const BytesSink
     return !stop_.stop_requested() && guard([&] { receiver.take({data, length}); });
   };
   const auto send = [&](auto& client) {
-    return client.Get(server_.prefix + path, to_httplib(headers), on_head, on_bytes);
+    return client.Get(server.prefix + path, to_httplib(headers), on_head, on_bytes);
   };
-  Reply reply = to_reply(perform(server_, stop_, guard, send));
+  Reply reply = to_reply(perform(server, stop_, guard, send));
   reply.body = std::move(receiver.text);
   return reply;
 }

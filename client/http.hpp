@@ -38,7 +38,8 @@ class Http {
   [[nodiscard]] Reply post(const std::string& path, const Upload& upload,
                            const Headers& headers) const;
 
-  /// The body of a 2xx answer goes to sink, if given; any other body to the Reply.
+  /// The body of a 2xx answer goes to sink, if given; any other body to the Reply. Follows a few
+  /// redirects; the API key is sent to the server's own origin alone.
   [[nodiscard]] Reply get(const std::string& path, const Headers& headers = {},
                           const BytesSink& sink = {}) const;
 
@@ -47,6 +48,9 @@ class Http {
   [[nodiscard]] const ServerUrl& server() const { return server_; }
 
  private:
+  [[nodiscard]] Reply get_from(const ServerUrl& server, const std::string& path,
+                               const Headers& headers, const BytesSink& sink) const;
+
   ServerUrl server_;
   std::stop_token stop_;
 };

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TypeVar
-from urllib.parse import urlsplit
+from urllib.parse import SplitResult, urljoin, urlsplit
 
-from .error import UNREACHABLE, UnwrapdError, error_of, unreachable
+from .error import UNREACHABLE, UnwrapdError, error_of, unexpected, unreachable
 
 T = TypeVar("T")
 
@@ -20,6 +20,8 @@ LONGEST_PAUSE = 5.0
 LONGEST_RETRY_AFTER = 60
 GATEWAYS = (502, 504)  # a proxy without a server behind it
 SILENCE = 60.0  # seconds; the server says something every 15
+REDIRECTS = (301, 302, 303, 307, 308)
+MOST_REDIRECTS = 5
 
 
 def default_server() -> str:
@@ -33,6 +35,10 @@ def network_errors() -> Iterator[None]:
         yield
     except (OSError, http.client.HTTPException) as error:
         raise unreachable(str(error) or type(error).__name__) from error
+
+
+def _origin(address: SplitResult) -> tuple[str, str | None, int]:
+    return address.scheme, address.hostname, address.port or (443 if address.scheme == "https" else 80)
 
 
 def read(answer: http.client.HTTPResponse) -> bytes:
@@ -70,20 +76,40 @@ class Connection:
         headers: Mapping[str, str] | None = None,
         body: Iterable[bytes] | None = None,
     ) -> Iterator[http.client.HTTPResponse]:
-        """Sends one request. Raises UnwrapdError for any answer but one of success."""
-        address = urlsplit(self.server)
-        secure = address.scheme == "https"
-        kind = http.client.HTTPSConnection if secure else http.client.HTTPConnection
+        """Sends one request. Raises UnwrapdError for any answer but one of success.
+
+        A GET follows redirects. The key is sent to the server's own origin alone.
+        """
+        url = self.server.rstrip("/") + path
+        for _ in range(MOST_REDIRECTS + 1):
+            with self._ask(method, url, headers, body) as answer:
+                target = answer.headers["Location"] if answer.status in REDIRECTS and method == "GET" else None
+                if not target:
+                    if answer.status >= 300:
+                        with network_errors():
+                            raise error_of(answer.status, answer.headers["Retry-After"], answer.read())
+                    yield answer
+                    return
+            url = urljoin(url, target)
+        raise unexpected(answer.status)
+
+    @contextmanager
+    def _ask(
+        self, method: str, url: str, headers: Mapping[str, str] | None, body: Iterable[bytes] | None
+    ) -> Iterator[http.client.HTTPResponse]:
+        address = urlsplit(url)
+        if address.scheme not in ("http", "https"):
+            raise unreachable(f"a redirect to {address.scheme}")
+        target = (address.path or "/") + (f"?{address.query}" if address.query else "")
+        kind = http.client.HTTPSConnection if address.scheme == "https" else http.client.HTTPConnection
         sent = dict(headers or {})
-        if self.key:
+        if self.key and _origin(address) == _origin(urlsplit(self.server)):
             sent["Authorization"] = f"Bearer {self.key}"
         line = kind(address.hostname or "", address.port, timeout=SILENCE)
         try:
             with network_errors():
-                line.request(method, address.path.rstrip("/") + path, body, sent)
+                line.request(method, target, body, sent)
                 answer = line.getresponse()
-                if answer.status >= 300:
-                    raise error_of(answer.status, answer.headers["Retry-After"], answer.read())
             yield answer
         finally:
             line.close()

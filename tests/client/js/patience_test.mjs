@@ -132,3 +132,19 @@ test("the key is sent with each request; what onProgress throws is the caller's,
   await assert.rejects(unwrapBy(t, { [`DELETE ${kJob.links.self}`]: cancel }, { onProgress }), RangeError);
   assert.equal(cancelled, 1);
 });
+
+test("a redirect to another origin gets no key", async (t) => {
+  const seen = [];
+  const bucket = createServer((request, response) => {
+    seen.push([request.url, request.headers.authorization]);
+    response.end("of the bucket");
+  });
+  await once(bucket.listen(0, "127.0.0.1"), "listening");
+  t.after(() => bucket.close());
+  const Location = `http://127.0.0.1:${bucket.address().port}/o?s=a%2Fb`;
+  const { result } = await unwrapBy(t, {
+    [`GET ${kJob.links.result}`]: (request, response) => response.writeHead(307, { Location }).end(),
+  }, { key: "secret" });
+  assert.equal(await result.asset.text(), "of the bucket");
+  assert.deepEqual(seen, [["/o?s=a%2Fb", undefined]]);
+});
