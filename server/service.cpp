@@ -64,7 +64,7 @@ struct Service::Parts {
         meshes(mesh_store, store, blobs, rooms, renderer),
         sources(config.sources, config.limits.max_body_bytes, log, metrics),
         submissions(queue, store, blobs, config.limits, config.webhooks, meshes, sources, rooms),
-        results(blobs, renderer),
+        results(blobs, renderer, config::results_from(config)),
         sweeper(store, mesh_store, blobs, log, std::chrono::seconds(config.keep_seconds)),
         pictures(blobs, renderer),
         router(routes(), log,
@@ -217,7 +217,7 @@ struct Service::Parts {
     routes::add_link_routes(all, services);
     routes::add_mesh_routes(all, meshes, std::chrono::seconds(config.keep_seconds));
     routes::add_picture_routes(all, store, pictures);
-    routes::add_info_routes(all, config.limits);
+    routes::add_info_routes(all, config.limits, bucket::link_origin(config.bucket));
     routes::add_probe_routes(all, readiness);
     return all;
   }

@@ -268,6 +268,10 @@ std::vector<ObjectInfo> Bucket::list(const std::string& prefix, std::size_t most
   return objects;
 }
 
+std::string Bucket::link(const std::string& key, const LinkTerms& terms) const {
+  return link_to(address_, key, terms);
+}
+
 std::int64_t Bucket::now_s() {
   return seconds_of_header(ask({.method = "GET", .query = {{"list-type", "2"}, {"max-keys", "1"}}}),
                            "date");

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/bucket/bucket_link.hpp"
 #include "server/bucket/s3_exchange.hpp"
 
 namespace unwrapd::server::bucket {
@@ -53,6 +54,8 @@ class Bucket {
   void remove(const std::string& key);
   /// All whose keys begin so; most: at most so many, about.
   std::vector<ObjectInfo> list(const std::string& prefix, std::size_t most = SIZE_MAX);
+  /// Asks nobody: there may be no such object.
+  [[nodiscard]] std::string link(const std::string& key, const LinkTerms& terms) const;
   /// Now, by the store's clock, in seconds since 1970.
   std::int64_t now_s();
 

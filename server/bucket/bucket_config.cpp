@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <sstream>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 #include "core/base/error.hpp"
 #include "server/base/files.hpp"
@@ -22,6 +24,27 @@ bool needs_no_code(char letter) {
 std::string variable(const char* name) {
   const char* const value = std::getenv(name);
   return value == nullptr ? "" : value;
+}
+
+std::string endpoint_of(const BucketConfig& config) {
+  return config.endpoint.empty() ? "https://s3." + config.region + ".amazonaws.com"
+                                 : config.endpoint;
+}
+
+/// Under which clients reach it.
+std::string link_endpoint(const BucketConfig& config) {
+  return config.redirect_endpoint.empty() ? endpoint_of(config) : config.redirect_endpoint;
+}
+
+/// The scheme and the host of an endpoint; a port that its scheme means anyway is left out, as
+/// clients leave it out of what is signed.
+std::pair<std::string, std::string> scheme_and_host(const std::string& endpoint) {
+  const std::size_t end = endpoint.find("://");
+  const std::string scheme = endpoint.substr(0, end);
+  std::string host = endpoint.substr(end + 3);
+  const std::string usual_port = scheme == "https" ? ":443" : ":80";
+  if (host.ends_with(usual_port)) host.resize(host.size() - usual_port.size());
+  return {scheme, host};
 }
 
 Credentials read_credentials(const std::filesystem::path& path) {
@@ -66,6 +89,12 @@ bool is_endpoint(const std::string& text) {
          host.find_first_of("/@?# ") == std::string::npos;
 }
 
+std::string link_origin(const BucketConfig& config) {
+  if (!config.redirects) return {};
+  const auto [scheme, host] = scheme_and_host(link_endpoint(config));
+  return scheme + "://" + host;
+}
+
 BucketAddress address_of(const BucketConfig& config) {
   const std::string path = config.url.substr(kScheme.size());
   const std::size_t slash = path.find('/');
@@ -74,11 +103,8 @@ BucketAddress address_of(const BucketConfig& config) {
   if (slash != std::string::npos) address.prefix = path.substr(slash + 1);
   if (!address.prefix.empty() && !address.prefix.ends_with('/')) address.prefix += '/';
   address.region = config.region;
-  const std::string endpoint =
-      config.endpoint.empty() ? "https://s3." + config.region + ".amazonaws.com" : config.endpoint;
-  const std::size_t scheme = endpoint.find("://");
-  address.scheme = endpoint.substr(0, scheme);
-  address.host = endpoint.substr(scheme + 3);
+  std::tie(address.scheme, address.host) = scheme_and_host(endpoint_of(config));
+  std::tie(address.link_scheme, address.link_host) = scheme_and_host(link_endpoint(config));
   address.credentials = config.credentials.empty() ? credentials_of_environment()
                                                    : read_credentials(config.credentials);
   return address;

@@ -1,7 +1,6 @@
 #include "server/bucket/s3_exchange.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cstring>
@@ -36,16 +35,6 @@ void append(HeaderLines& lines, const std::string& line) {
   lines.reset(longer);
 }
 
-/// As signatures have it: "20130524T000000Z".
-std::string time_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  std::array<char, sizeof "20130524T000000Z"> text{};
-  std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &parts);
-  return text.data();
-}
-
 UnsignedRequest unsigned_request(const Call& call, const BucketAddress& address) {
   UnsignedRequest request{.method = call.method,
                           .host = address.host,
@@ -59,8 +48,8 @@ UnsignedRequest unsigned_request(const Call& call, const BucketAddress& address)
 
 HeaderLines lines_of(const UnsignedRequest& request, const BucketAddress& address) {
   HeaderLines lines;
-  for (const std::string& line :
-       signed_headers(request, address.credentials, address.region, time_now()))
+  for (const std::string& line : signed_headers(request, address.credentials, address.region,
+                                                signing_time(std::time(nullptr))))
     append(lines, line);
   append(lines, "Expect:");
   return lines;

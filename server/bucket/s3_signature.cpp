@@ -51,6 +51,18 @@ std::string signing_key(const Credentials& credentials, const std::array<std::st
   return hmac_sha256(key, "aws4_request");
 }
 
+std::string scope_of(const std::string& region, const std::string& time) {
+  return time.substr(0, kDateLength) + "/" + region + "/s3/aws4_request";
+}
+
+std::string signature_of(const UnsignedRequest& request, const Credentials& credentials,
+                         const std::string& region, const std::string& time) {
+  const std::string to_sign = std::string(kAlgorithm) + "\n" + time + "\n" +
+                              scope_of(region, time) + "\n" + sha256(canonical_request(request));
+  const std::string key = signing_key(credentials, {time.substr(0, kDateLength), region, "s3"});
+  return to_hex(hmac_sha256(key, to_sign));
+}
+
 }  // namespace
 
 std::string encoded_path(const std::string& path) { return encoded(path, "/"); }
@@ -60,6 +72,14 @@ std::string encoded_query(const std::map<std::string, std::string>& query) {
   for (const auto& [name, value] : query)
     text += (text.empty() ? "" : "&") + encoded(name, "") + "=" + encoded(value, "");
   return text;
+}
+
+std::string signing_time(std::time_t time) {
+  std::tm parts{};
+  ::gmtime_r(&time, &parts);
+  std::array<char, sizeof "20130524T000000Z"> text{};
+  std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &parts);
+  return text.data();
 }
 
 std::vector<std::string> signed_headers(UnsignedRequest request, const Credentials& credentials,
@@ -72,16 +92,27 @@ std::vector<std::string> signed_headers(UnsignedRequest request, const Credentia
   for (const auto& [name, value] : request.headers) lines.push_back(name + ": " + value);
   request.headers["host"] = request.host;
 
-  const std::string date = time.substr(0, kDateLength);
-  const std::string scope = date + "/" + region + "/s3/aws4_request";
-  const std::string to_sign = std::string(kAlgorithm) + "\n" + time + "\n" + scope + "\n" +
-                              sha256(canonical_request(request));
-  const std::string signature =
-      to_hex(hmac_sha256(signing_key(credentials, {date, region, "s3"}), to_sign));
   lines.push_back("Authorization: " + std::string(kAlgorithm) +
-                  " Credential=" + credentials.access_key + "/" + scope +
-                  ",SignedHeaders=" + names_of(request.headers) + ",Signature=" + signature);
+                  " Credential=" + credentials.access_key + "/" + scope_of(region, time) +
+                  ",SignedHeaders=" + names_of(request.headers) +
+                  ",Signature=" + signature_of(request, credentials, region, time));
   return lines;
+}
+
+std::string signed_query(UnsignedRequest request, const Credentials& credentials,
+                         const std::string& region, const std::string& time,
+                         std::chrono::seconds valid) {
+  request.headers = {{"host", request.host}};
+  request.body_sha256 = "UNSIGNED-PAYLOAD";
+  request.query["X-Amz-Algorithm"] = kAlgorithm;
+  request.query["X-Amz-Credential"] = credentials.access_key + "/" + scope_of(region, time);
+  request.query["X-Amz-Date"] = time;
+  request.query["X-Amz-Expires"] = std::to_string(valid.count());
+  request.query["X-Amz-SignedHeaders"] = names_of(request.headers);
+  if (!credentials.session_token.empty())
+    request.query["X-Amz-Security-Token"] = credentials.session_token;
+  return encoded_query(request.query) +
+         "&X-Amz-Signature=" + signature_of(request, credentials, region, time);
 }
 
 }  // namespace unwrapd::server::bucket

@@ -98,6 +98,10 @@ results::RenderLimits render_limits(const Config& config, std::size_t memory_byt
           .bytes = memory_bytes};
 }
 
+results::ResultsFrom results_from(const Config& config) {
+  return config.bucket.redirects ? results::ResultsFrom::bucket : results::ResultsFrom::node;
+}
+
 int connections_within(std::int64_t files, const Config& config) {
   if (files < kFewestDescriptors) {
     throw Error(ErrorCode::internal,

@@ -8,6 +8,7 @@
 #include "server/config/config.hpp"
 #include "server/http/http_server.hpp"
 #include "server/results/render_limiter.hpp"
+#include "server/results/result_store.hpp"
 #include "server/work/job_process.hpp"
 #include "server/work/job_worker.hpp"
 #include "server/work/solver_cache.hpp"
@@ -38,6 +39,8 @@ int most_waiting(const Config& config);
 /// Requests that wait for a picture or make one hold a thread, like those that wait for a job:
 /// http_config() adds that many threads.
 results::RenderLimits render_limits(const Config& config, std::size_t memory_bytes);
+
+results::ResultsFrom results_from(const Config& config);
 
 /// Open files without which no server can work.
 inline constexpr std::int64_t kFewestDescriptors = 64;

@@ -185,6 +185,13 @@ void check_together(const Config& config) {
   if (config.bucket.url.empty() && !config.bucket.endpoint.empty())
     throw Error(ErrorCode::invalid_option,
                 "--s3-endpoint is of a bucket; give its name, too: --blobs s3://NAME.");
+  if (config.bucket.url.empty() && config.bucket.redirects)
+    throw Error(ErrorCode::invalid_option,
+                "--blob-redirect sends clients to a bucket; give its name, too: --blobs "
+                "s3://NAME.");
+  if (!config.bucket.redirects && !config.bucket.redirect_endpoint.empty())
+    throw Error(ErrorCode::invalid_option,
+                "--blob-redirect-endpoint is of redirects; give --blob-redirect, too.");
   if (!config.serves && (!shares_blobs(config) || config.workers == 0))
     throw Error(
         ErrorCode::invalid_option,

@@ -51,18 +51,16 @@ ConfigRow blobs_row() {
           }};
 }
 
-ConfigRow endpoint_row() {
-  return {.heading = {"s3-endpoint", "URL",
-                      "Server of the bucket, such as https://s3.example.com. Unset: Amazon's of "
-                      "--s3-region"},
+ConfigRow endpoint_row(const ConfigHeading& heading, std::string bucket::BucketConfig::*endpoint) {
+  return {.heading = heading,
           .kind = ConfigKind::text,
           .set =
-              [](Config& config, const std::string& text) {
+              [=](Config& config, const std::string& text) {
                 if (!text.empty() && !bucket::is_endpoint(text))
                   expected("a URL like https://s3.example.com, without a path");
-                config.bucket.endpoint = text;
+                config.bucket.*endpoint = text;
               },
-          .get = [](const Config& config) { return config.bucket.endpoint; }};
+          .get = [=](const Config& config) { return config.bucket.*endpoint; }};
 }
 
 ConfigRow lease_row() {
@@ -84,7 +82,11 @@ ConfigRow lease_row() {
 ConfigGroup storing() {
   return {.title = "Storage",
           .rows = {
-              database_row(), blobs_row(), endpoint_row(),
+              database_row(), blobs_row(),
+              endpoint_row({"s3-endpoint", "URL",
+                            "Server of the bucket, such as https://s3.example.com. Unset: Amazon's "
+                            "of --s3-region"},
+                           &bucket::BucketConfig::endpoint),
               text({"s3-region", "NAME", "Region of the bucket"}, &Config::bucket,
                    &bucket::BucketConfig::region),
               text({"s3-credentials", "PATH",
@@ -95,6 +97,13 @@ ConfigGroup storing() {
                       "Bytes in --data for copies of the bucket's files; those used longest ago go "
                       "first"},
                      {0, kMaxDiskBytes}, &Config::copied_bytes),
+              on_off({"blob-redirect", "",
+                      "GET of a result answers 307 with a link to the bucket, which is valid for "
+                      "five minutes"},
+                     &Config::bucket, &bucket::BucketConfig::redirects),
+              endpoint_row({"blob-redirect-endpoint", "URL",
+                            "Server of the bucket as clients reach it. Unset: --s3-endpoint"},
+                           &bucket::BucketConfig::redirect_endpoint),
               lease_row(),
               number({"keep-seconds", "N", "Seconds that results are kept"}, {1, kMaxCount},
                      &Config::keep_seconds),

@@ -2,6 +2,7 @@
 
 #include "core/base/error.hpp"
 #include "server/base/identity.hpp"
+#include "server/http/media_types.hpp"
 #include "server/work/lambda_selection.hpp"
 
 namespace unwrapd::server::results {
@@ -54,6 +55,14 @@ StoredResult ResultStore::open(const store::JobRecord& job, std::size_t map,
   const std::string bytes = renderer_.render(job, rendering, has_left);
   counts_.made(bytes);
   return keep(blobs_, job, file, bytes);
+}
+
+std::optional<store::ResultLink> ResultStore::link(const store::JobRecord& job, std::size_t map,
+                                                   std::string_view format,
+                                                   std::string_view method) {
+  if (from_ == ResultsFrom::node) return std::nullopt;
+  const std::string file = work::map_file(store::result_file(format), map);
+  return blobs_.link(job.id, job.seq, file, method, http::media_type(format));
 }
 
 }  // namespace unwrapd::server::results

@@ -31,21 +31,30 @@ StoredResult keep(store::BlobStore& blobs, const store::JobRecord& job, const st
 /// One that is handed out once.
 StoredResult lend(const store::BlobStore& blobs, std::string_view bytes);
 
+/// Who hands out results that are in a bucket.
+enum class ResultsFrom { node, bucket };
+
 /// Thread-safe.
 class ResultStore {
  public:
-  ResultStore(store::BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
+  ResultStore(store::BlobStore& blobs, Renderer& renderer, ResultsFrom from = ResultsFrom::node)
+      : blobs_(blobs), renderer_(renderer), from_(from) {}
 
   /// The result of a succeeded job by one of its maps (see lambda_selection.hpp), in a format (glb,
   /// gltf, obj, json); one that is missing or damaged is made from the job's input and map. Throws
   /// what Renderer::render() throws.
   StoredResult open(const store::JobRecord& job, std::size_t map, std::string_view format,
                     const http::HasLeft& has_left = {});
+  /// The same result, where the bucket hands it out: for a client that asks by this method (GET or
+  /// HEAD). Nothing where the bucket has none of this map and format.
+  std::optional<store::ResultLink> link(const store::JobRecord& job, std::size_t map,
+                                        std::string_view format, std::string_view method);
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
   store::BlobStore& blobs_;
   Renderer& renderer_;
+  const ResultsFrom from_;
   FileCounts counts_;
 };
 

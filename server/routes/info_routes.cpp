@@ -6,7 +6,8 @@
 #include "server/routes/text_handlers.hpp"
 
 namespace unwrapd::server::routes {
-void add_info_routes(std::vector<http::Route>& routes, const api::Limits& limits) {
+void add_info_routes(std::vector<http::Route>& routes, const api::Limits& limits,
+                     const std::string& downloads) {
   routes.push_back({"GET", "/v1/methods", [&limits](const http::Request&) {
                       return http::json_response(200, api::methods_json(limits).dump());
                     }});
@@ -15,7 +16,7 @@ void add_info_routes(std::vector<http::Route>& routes, const api::Limits& limits
                     }});
   routes.push_back({"GET", "/openapi.yaml", text_handler(api::openapi_yaml(), "application/yaml")});
   routes.push_back({"GET", "/openapi.json", text_handler(api::openapi_json(), "application/json")});
-  add_page_routes(routes);
+  add_page_routes(routes, downloads);
 }
 
 }  // namespace unwrapd::server::routes

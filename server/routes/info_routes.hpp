@@ -1,6 +1,7 @@
 #pragma once
 // What the server says of itself to everybody: methods, limits, the contract.
 
+#include <string>
 #include <vector>
 
 #include "api/limits.hpp"
@@ -8,6 +9,8 @@
 
 namespace unwrapd::server::routes {
 
-void add_info_routes(std::vector<http::Route>& routes, const api::Limits& limits);
+/// downloads: of add_page_routes().
+void add_info_routes(std::vector<http::Route>& routes, const api::Limits& limits,
+                     const std::string& downloads = {});
 
 }  // namespace unwrapd::server::routes

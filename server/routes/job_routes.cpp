@@ -147,7 +147,7 @@ void add_files(std::vector<http::Route>& routes, const JobServices& services) {
       return result_of(services.results, job, map, request);
     });
   };
-  add_result("/v1/jobs/{id}/result", &get_result);
+  add_result("/v1/jobs/{id}/result", &get_result_or_link);
   add_result("/v1/jobs/{id}/result.json", &get_json_result);
   add("/v1/jobs/{id}/report",
       [services](const store::JobRecord& job, std::size_t map, const http::Request&) {

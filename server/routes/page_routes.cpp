@@ -15,13 +15,16 @@
 namespace unwrapd::server::routes {
 namespace {
 
-/// The pages call nothing but their own server. blob: and data: are files that people open and what
-/// is in them; decoders of Draco and meshopt are WebAssembly, the former in a worker made of a
-/// blob.
-constexpr std::string_view kPagePolicy =
-    "default-src 'none'; style-src 'self'; script-src 'self' 'wasm-unsafe-eval'; "
-    "worker-src 'self' blob:; connect-src 'self' blob: data:; img-src 'self' data: blob:; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// The pages call nothing but their own server, and where results are. blob: and data: are files
+/// that people open and what is in them; decoders of Draco and meshopt are WebAssembly, the former
+/// in a worker made of a blob.
+std::string page_policy(const std::string& downloads) {
+  return "default-src 'none'; style-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src "
+         "'self' blob:; connect-src 'self' blob: data:" +
+         (downloads.empty() ? "" : " " + downloads) +
+         "; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors "
+         "'none'";
+}
 constexpr std::string_view kForGood = "public, max-age=31536000, immutable";
 constexpr std::int64_t kMostBytes = std::int64_t{1} << 26;
 
@@ -44,7 +47,7 @@ void encode_file(const web::PageFile& file, std::string_view accepted, http::Res
   response.body = std::string(brotli ? file.brotli : file.gzip);
 }
 
-http::Response get_page_file(const http::Request& request) {
+http::Response get_page_file(const http::Request& request, const std::string& policy) {
   const std::string_view name = std::string_view(request.path).substr(request.path.rfind('/') + 1);
   const auto file = std::ranges::find(web::page_files(), name, &web::PageFile::name);
   if (file == web::page_files().end())
@@ -54,17 +57,20 @@ http::Response get_page_file(const http::Request& request) {
   response.content_type = file->type;
   encode_file(*file, request.header("Accept-Encoding"), response);
   response.headers.emplace_back("Cache-Control", kForGood);
-  protect(response, kPagePolicy);
+  protect(response, policy);
   return response;
 }
 
 }  // namespace
 
-void add_page_routes(std::vector<http::Route>& routes) {
+void add_page_routes(std::vector<http::Route>& routes, const std::string& downloads) {
   constexpr std::string_view kHtml = "text/html; charset=utf-8";
-  routes.push_back({"GET", "/", page_handler(web::index_html(), kHtml, kPagePolicy)});
-  routes.push_back({"GET", "/docs", page_handler(web::docs_html(), kHtml, kPagePolicy)});
-  routes.push_back({"GET", "/assets/{name}", get_page_file});
+  const std::string policy = page_policy(downloads);
+  routes.push_back({"GET", "/", page_handler(web::index_html(), kHtml, policy)});
+  routes.push_back({"GET", "/docs", page_handler(web::docs_html(), kHtml, policy)});
+  routes.push_back({"GET", "/assets/{name}", [policy](const http::Request& request) {
+                      return get_page_file(request, policy);
+                    }});
 }
 
 }  // namespace unwrapd::server::routes

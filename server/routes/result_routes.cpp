@@ -33,6 +33,16 @@ http::Response result_in(const std::string& format, results::ResultStore& result
                          request);
 }
 
+http::Response linked_response(const store::ResultLink& linked, std::string_view type,
+                               const http::Request& request) {
+  const std::string etag = "\"" + linked.sha256 + "\"";
+  if (has_copy(request, etag)) return not_modified(request, etag, type);
+  http::Response response;
+  response.status = 307;
+  response.headers = {{"ETag", etag}, {"Location", linked.url}, {"Cache-Control", "no-store"}};
+  return response;
+}
+
 }  // namespace
 
 bool has_copy(const http::Request& request, const std::string& etag) {
@@ -83,6 +93,17 @@ http::Response get_result(results::ResultStore& results, const store::JobRecord&
   require_result(job);
   const std::string format = http::choose_format(request.header("Accept"), job.result_format);
   http::Response response = result_in(format, results, job, map, request);
+  response.headers.emplace_back("Vary", "Accept");
+  return response;
+}
+
+http::Response get_result_or_link(results::ResultStore& results, const store::JobRecord& job,
+                                  std::size_t map, const http::Request& request) {
+  require_result(job);
+  const std::string format = http::choose_format(request.header("Accept"), job.result_format);
+  const auto linked = results.link(job, map, format, request.method);
+  if (!linked) return get_result(results, job, map, request);
+  http::Response response = linked_response(*linked, http::media_type(format), request);
   response.headers.emplace_back("Vary", "Accept");
   return response;
 }

@@ -29,7 +29,11 @@ http::Response stored_response(const results::StoredResult& stored, std::string_
 http::Response get_result(results::ResultStore& results, const store::JobRecord& job,
                           std::size_t map, const http::Request& request);
 
-/// The report and the meshes as JSON, whatever Accept says, the same.
+/// The same, or a redirect to the bucket that hands it out. For GET and HEAD.
+http::Response get_result_or_link(results::ResultStore& results, const store::JobRecord& job,
+                                  std::size_t map, const http::Request& request);
+
+/// The report and the meshes as JSON, whatever Accept says, like get_result().
 http::Response get_json_result(results::ResultStore& results, const store::JobRecord& job,
                                std::size_t map, const http::Request& request);
 

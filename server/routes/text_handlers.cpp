@@ -20,7 +20,8 @@ http::Handler text_handler(std::string_view text, std::string_view type) {
   };
 }
 
-http::Handler page_handler(std::string_view text, std::string_view type, std::string_view policy) {
+http::Handler page_handler(std::string_view text, std::string_view type,
+                           const std::string& policy) {
   return [answer = text_handler(text, type), policy](const http::Request& request) {
     http::Response response = answer(request);
     protect(response, policy);

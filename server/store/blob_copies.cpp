@@ -31,6 +31,18 @@ void BlobStore::bring(std::string_view job, std::string_view file) const {
   if (copies_) copies_->bring(job, file);
 }
 
+std::optional<ResultLink> BlobStore::link(const std::string& job, std::int64_t seq,
+                                          std::string_view file, std::string_view method,
+                                          std::string_view type) const {
+  if (!copies_) return std::nullopt;
+  const std::optional<StoredObject> object = copies_->find_result(job, seq, file);
+  if (!object) return std::nullopt;
+  const bucket::LinkTerms terms{.method = std::string(method),
+                                .content_type = std::string(type),
+                                .cache_control = "private, no-cache"};
+  return ResultLink{.url = copies_->bucket().link(*object, terms), .sha256 = object->sha256};
+}
+
 void BlobStore::keep_in_bucket(std::string_view upload, std::string_view job) {
   const std::optional<std::string> root = copies_->bucket().put_input(job, incoming_ / upload);
   if (!root)

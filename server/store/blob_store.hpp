@@ -23,6 +23,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +57,12 @@ struct Swept {
   std::vector<std::pair<std::string, std::int64_t>> sharing =
       {};                           ///< jobs, and what counts for them
   std::vector<std::string> failed;  ///< left where they are, for they cannot be read or moved
+};
+
+/// Of a file in a bucket.
+struct ResultLink {
+  std::string url;
+  std::string sha256;
 };
 
 /// Whether other nodes use the same directory.
@@ -126,6 +133,12 @@ class BlobStore {
   [[nodiscard]] std::string read(std::string_view job, std::string_view file) const;
   /// The noted digest; of a file without one, computed.
   [[nodiscard]] std::string digest(std::string_view job, std::string_view file) const;
+
+  /// For a client that gets a result from the bucket by this method (GET or HEAD), as this type.
+  /// Nothing where that is not in a bucket, or the job's row has another number by now.
+  [[nodiscard]] std::optional<ResultLink> link(const std::string& job, std::int64_t seq,
+                                               std::string_view file, std::string_view method,
+                                               std::string_view type) const;
 
   void on_keeping(Keeping keeping) { keeping_ = std::move(keeping); }
 

@@ -142,6 +142,10 @@ bool BucketFolders::get(const StoredObject& object, const fs::path& file) {
   return bucket_.get_file(object.key, file);
 }
 
+std::string BucketFolders::link(const StoredObject& object, const bucket::LinkTerms& terms) const {
+  return bucket_.link(object.key, terms);
+}
+
 bool BucketFolders::set_aside(std::string_view job) {
   if (!has_input(job)) return false;
   bucket_.remove(input_list(job));

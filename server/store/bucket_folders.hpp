@@ -90,6 +90,8 @@ class BucketFolders {
   [[nodiscard]] BucketFolder find(std::string_view job);
   /// Writes a file into one that must not exist. False where it is gone.
   [[nodiscard]] bool get(const StoredObject& object, const std::filesystem::path& file);
+  /// By which a client gets it.
+  [[nodiscard]] std::string link(const StoredObject& object, const bucket::LinkTerms& terms) const;
   /// Makes room for another job of this name: what is there is named by no list, and swept later.
   /// False where there is nothing.
   [[nodiscard]] bool set_aside(std::string_view job);

@@ -49,6 +49,7 @@ void CachedFolders::note_row(std::string_view job, std::int64_t seq, int succeed
   if (row.seq != seq && row.seq != kNoRowYet) {
     remove_tree(folder_ / job);
     row.root.clear();
+    row.results.clear();
   }
   row.seq = seq;
   row.succeeded = succeeded;
@@ -94,14 +95,31 @@ bool CachedFolders::knows(std::string_view job, std::string_view file) const {
   return digests.contains(file) || digests.contains(is_input(file) ? kDocumentFile : kReportFile);
 }
 
-BucketFolder CachedFolders::note_files(std::string_view job) {
-  BucketFolder folder = bucket_->find(job);
-  if (!folder.files.contains(kReportFile) && publish(job, folder.root)) folder = bucket_->find(job);
-  if (folder.root.empty()) return folder;
+BucketFolder CachedFolders::find(std::string_view job) {
+  const auto row_number = [&] {
+    const auto row = rows_.find(job);
+    return row == rows_.end() ? kNoRowYet : row->second.seq;
+  };
+  std::int64_t seq = kNoRowYet;
   {
     const std::lock_guard lock(mutex_);
-    if (const auto row = rows_.find(job); row != rows_.end()) row->second.root = folder.root;
+    seq = row_number();
   }
+  BucketFolder folder = bucket_->find(job);
+  if (!folder.files.contains(kReportFile) && publish(job, folder.root)) folder = bucket_->find(job);
+  const std::lock_guard lock(mutex_);
+  const auto row = rows_.find(job);
+  if (folder.root.empty() || row == rows_.end() || row_number() != seq) return folder;
+  row->second.root = folder.root;
+  if (!folder.files.contains(kReportFile)) return folder;
+  row->second.results = folder.files;
+  std::erase_if(row->second.results, [](const auto& object) { return is_input(object.first); });
+  return folder;
+}
+
+BucketFolder CachedFolders::note_files(std::string_view job) {
+  BucketFolder folder = find(job);
+  if (folder.root.empty()) return folder;
   const std::lock_guard lock(noting_);
   make_directories(folder_ / job);
   Digests digests = read_digests(folder_ / job);
@@ -132,6 +150,25 @@ void CachedFolders::bring(std::string_view job, std::string_view file) {
 void CachedFolders::bring_results(std::string_view job) {
   for (const auto& [file, object] : note_files(job).files)
     if (!is_input(file) && !fs::exists(folder_ / job / file)) fetch(job, file, object);
+}
+
+std::optional<StoredObject> CachedFolders::find_result(std::string_view job, std::int64_t seq,
+                                                       std::string_view file) {
+  const auto known = [&]() -> std::optional<StoredObjects> {
+    const std::lock_guard lock(mutex_);
+    const auto row = rows_.find(job);
+    if (row == rows_.end() || row->second.seq != seq) return StoredObjects();
+    if (row->second.results.empty()) return std::nullopt;
+    return row->second.results;
+  };
+  std::optional<StoredObjects> results = known();
+  if (!results) {
+    find(job);
+    results = known().value_or(StoredObjects());
+  }
+  const auto found = results->find(file);
+  if (found == results->end()) return std::nullopt;
+  return found->second;
 }
 
 std::vector<CachedFolders::Copy> CachedFolders::by_use() {

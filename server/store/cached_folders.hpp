@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,10 @@ class CachedFolders {
   void bring(std::string_view job, std::string_view file);
   /// The same of all results.
   void bring_results(std::string_view job);
+  /// A result of the job with the row of this number, as it is in the bucket, which is asked once.
+  /// Nothing where there is none of this name, or another job has the folder's name by now.
+  std::optional<StoredObject> find_result(std::string_view job, std::int64_t seq,
+                                          std::string_view file);
   /// BucketFolders::set_aside() and sweep(); copies of folders that are no longer kept go, too.
   bool set_aside(std::string_view job);
   int sweep(const Fates& fates);
@@ -59,6 +64,7 @@ class CachedFolders {
     std::int64_t seq = 0;
     int succeeded = 0;
     std::string root = {};
+    StoredObjects results = {};  ///< once they are known
     Time used = {};
   };
   struct Copy {
@@ -67,6 +73,7 @@ class CachedFolders {
   };
   [[nodiscard]] std::vector<Copy> by_use();
   [[nodiscard]] bool knows(std::string_view job, std::string_view file) const;
+  BucketFolder find(std::string_view job);
   BucketFolder note_files(std::string_view job);
   bool publish(std::string_view job, const std::string& root);
   void fetch(std::string_view job, const std::string& file, const StoredObject& object);

@@ -10,3 +10,8 @@ export const kProvokedElsewhere = {
   storage_full: 'tests/fault/storage_test.mjs',
   storage_corrupt: 'tests/fault/storage_test.mjs',
 };
+
+// The same of answers: "operation status". The tests that are named judge them by the contract.
+export const kShownElsewhere = {
+  'getResult 307': 'tests/farm/redirect_test.mjs',  // needs a bucket
+};

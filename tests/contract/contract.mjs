@@ -7,7 +7,7 @@ import {basename} from 'node:path';
 import {fileURLToPath} from 'node:url';
 
 import * as cases from './cases.mjs';
-import {kProvokedElsewhere} from './codes.mjs';
+import {kProvokedElsewhere, kShownElsewhere} from './codes.mjs';
 import {fuzz} from './fuzz.mjs';
 import {calls} from './fuzz_calls.mjs';
 import * as limits from './limits.mjs';
@@ -43,6 +43,18 @@ function codes(run) {
              elsewhere.filter(([code, file]) => !asks(code, file)).map(([code]) => code));
 }
 
+/** Every documented status is shown, here or by the test that is named. */
+function statuses(run) {
+  const unseen = run.contract.unseen();
+  const elsewhere = Object.entries(kShownElsewhere);
+  run.expect('every documented status was shown or is named', unseen.filter((pair) => !(pair in kShownElsewhere)));
+  run.expect('only what was not shown is named', elsewhere.map(([pair]) => pair).filter((pair) => !unseen.includes(pair)));
+  const judges = (pair, file) => new RegExp(`judge\\(['"]${pair.split(' ')[0]}['"]`).test(
+      readFileSync(new URL(`../../${file}`, import.meta.url), 'utf8'));
+  run.expect('the tests that are named judge them',
+             elsewhere.filter(([pair, file]) => !judges(pair, file)).map(([pair]) => pair));
+}
+
 /** Runs one group; an exception is one failure and does not stop the others. */
 async function group(run, name, action) {
   const before = run.passed;
@@ -68,7 +80,7 @@ async function main() {
   for (const [name, action] of Object.entries({...limits, ...refusals})) {
     await group(run, name, () => action(run, binary));
   }
-  run.expect('every documented status was shown', run.contract.unseen());
+  statuses(run);
   codes(run);
   console.log(`${run.passed} passed, ${run.failed} failed`);
   process.exitCode = run.failed === 0 ? 0 : 1;

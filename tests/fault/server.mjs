@@ -11,6 +11,7 @@ import { after } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
 const USUAL = [["--listen", "127.0.0.1:0"], ["--admin-listen", "off"], ["--workers", "1"], ["--log-level", "off"]];
+export const FAKETIME = `/usr/lib/${process.arch === "arm64" ? "aarch64" : "x86_64"}-linux-gnu/faketime/libfaketime.so.1`;
 export const QUICK = "stop.iterations=2";
 export const ENDLESS = ["stop.iterations=10000", 100]; // a query and a size: never waited for
 

@@ -7,9 +7,8 @@ import { join } from "node:path";
 import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { dataDirectory, ENDLESS, grid, QUICK, Server, smallDisk } from "./server.mjs";
+import { dataDirectory, ENDLESS, FAKETIME, grid, QUICK, Server, smallDisk } from "./server.mjs";
 
-const FAKETIME = `/usr/lib/${process.arch === "arm64" ? "aarch64" : "x86_64"}-linux-gnu/faketime/libfaketime.so.1`;
 
 /** Changes one byte in the middle of a file. */
 function damage(file) {

@@ -6,6 +6,7 @@
 #include "core/base/error.hpp"
 #include "server/base/files.hpp"
 #include "server/bucket/bucket_config.hpp"
+#include "server/bucket/bucket_link.hpp"
 #include "server/bucket/xml_texts.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
@@ -42,6 +43,24 @@ TEST(BucketConfig, AnAddressHasItsParts) {
   EXPECT_EQ(address.credentials.secret_key, "SECRET");
   config.endpoint.clear();
   EXPECT_EQ(address_of(config).host, "s3.eu-west-1.amazonaws.com");
+}
+
+TEST(BucketConfig, LinksHaveTheEndpointOfClients) {
+  const TempDir dir;
+  write_file(dir.path() / "key", "ID\nSECRET\n");
+  BucketConfig config{
+      .url = "s3://jobs/a", .endpoint = "http://inside:9000", .credentials = dir.path() / "key"};
+  const LinkTerms terms{
+      .method = "GET", .content_type = "model/obj", .cache_control = "private, a"};
+  const auto link = [&] { return link_to(address_of(config), "j_1/result.obj", terms); };
+  EXPECT_TRUE(link().starts_with("http://inside:9000/jobs/a/j_1/result.obj?X-Amz-")) << link();
+  config.redirect_endpoint = "https://files.example.com:443";
+  EXPECT_TRUE(link().starts_with("https://files.example.com/jobs/a/j_1/")) << "clients send no 443";
+  EXPECT_EQ(address_of(config).host, "inside:9000");
+  EXPECT_NE(link().find("&response-cache-control=private%2C%20a&response-content-type=model%2Fobj&"
+                        "X-Amz-Signature="),
+            std::string::npos)
+      << link();
 }
 
 TEST(BucketConfig, WithoutAKeyNothingStarts) {

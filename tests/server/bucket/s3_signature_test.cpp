@@ -1,5 +1,6 @@
 // Signatures against the examples that Amazon publishes ("Signature Calculations for the
-// Authorization Header"): the same key, requests and time.
+// Authorization Header" and "Authenticating Requests: Using Query Parameters"): the same key,
+// requests and time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 
 namespace unwrapd::server::bucket {
 namespace {
+
+using namespace std::chrono_literals;
 
 const Credentials kExample{.access_key = "AKIAIOSFODNN7EXAMPLE",
                            .secret_key = "wJalrXUtnFEMI/K7MDENG/bPxRfiCYEXAMPLEKEY"};
@@ -61,6 +64,29 @@ TEST(S3Signature, TokensOfTemporaryKeysAreSent) {
   EXPECT_NE(lines.back().find("20130524/eu-west-1/s3/aws4_request,SignedHeaders="
                               "host;x-amz-content-sha256;x-amz-date;x-amz-security-token,"),
             std::string::npos);
+}
+
+TEST(S3Signature, OfALink) {
+  const std::string query =
+      signed_query(request("GET", "/test.txt"), kExample, "us-east-1", "20130524T000000Z", 24h);
+  EXPECT_EQ(query,
+            "X-Amz-Algorithm=AWS4-HMAC-SHA256&X-Amz-Credential=AKIAIOSFODNN7EXAMPLE%2F20130524%2F"
+            "us-east-1%2Fs3%2Faws4_request&X-Amz-Date=20130524T000000Z&X-Amz-Expires=86400&"
+            "X-Amz-SignedHeaders=host&X-Amz-Signature="
+            "aeeed9bbccd4d02ee5c0109b86d86835f995330da4c265957d157751f604d404");
+}
+
+TEST(S3Signature, LinksHaveTheTokensOfTemporaryKeys) {
+  Credentials temporary = kExample;
+  temporary.session_token = "a/token=";
+  const std::string query =
+      signed_query(request("GET", "/"), temporary, "us-east-1", "20130524T000000Z", 5min);
+  EXPECT_NE(query.find("&X-Amz-Security-Token=a%2Ftoken%3D&X-Amz-SignedHeaders="),
+            std::string::npos);
+}
+
+TEST(S3Signature, TimesAreOfGreenwich) {
+  EXPECT_EQ(signing_time(1'369'353'600), "20130524T000000Z");
 }
 
 TEST(S3Signature, BytesOfPathsAndQueriesHaveCodes) {

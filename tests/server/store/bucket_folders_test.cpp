@@ -136,6 +136,31 @@ TEST_F(Bucketed, AnotherJobGetsTheSameResults) {
   EXPECT_EQ(two.read("j_2", "result.glb"), "glb of report");
 }
 
+TEST_F(Bucketed, LinksAreToResultsOfTheRowThatIsMeant) {
+  BlobStore one = node("one"), two = node("two");
+  upload(one, "j_1", "v");
+  work(one, "j_1", 1, "report");
+  const auto link = [&](std::int64_t seq, const char* file) {
+    return two.link("j_1", seq, file, "GET", "model/gltf-binary");
+  };
+  two.note_row("j_1", 5, 0);
+  EXPECT_FALSE(link(5, "result.glb")) << "it has not succeeded";
+  two.note_row("j_1", 5, 1);
+  const std::optional<ResultLink> linked = link(5, "result.glb");
+  ASSERT_TRUE(linked);
+  EXPECT_EQ(linked->sha256, sha256("glb of report"));
+  EXPECT_NE(linked->url.find("/1/result.glb?"), std::string::npos) << linked->url;
+  EXPECT_FALSE(link(5, "result.obj")) << "the bucket has none";
+  EXPECT_FALSE(link(5, kDocumentFile.data())) << "it is no result";
+  EXPECT_FALSE(link(4, "result.glb")) << "of the job that had the name before";
+  one.remove("j_1");
+  expect_objects(0);
+  upload(one, "j_1", "w");
+  two.note_row("j_1", 6, 0);
+  EXPECT_FALSE(link(6, "result.glb")) << "the next has none yet";
+  EXPECT_FALSE(BlobStore(dir_.path() / "alone").link("j_1", 5, "result.glb", "GET", "model/obj"));
+}
+
 TEST_F(Bucketed, CopiesGoWhereTheyAreTooManyAndComeBack) {
   BlobStore small(dir_.path() / "small", {}, folders(), 100);
   for (const std::string job : {"j_1", "j_2", "j_3"}) upload(small, job, std::string(60, 'v'));
