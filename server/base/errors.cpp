@@ -19,6 +19,7 @@ StoreAway::StoreAway(StorePart part, const std::string& reason, bool in_doubt)
                      std::string(part == StorePart::database ? "database" : "storage") +
                      " cannot be reached; send the request again after Retry-After.",
                  kAwayRetrySeconds),
+      detail_(reason),
       reason_((part == StorePart::database ? "The database of --database cannot be reached ("
                                            : "The bucket of --blobs cannot be reached (") +
               reason + ")."),

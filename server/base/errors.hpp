@@ -31,10 +31,13 @@ class StoreAway : public RetryLater {
   StoreAway(StorePart part, const std::string& reason, bool in_doubt = false);
 
   [[nodiscard]] const std::string& reason() const noexcept { return reason_; }
+  /// The same without the part: "it answers GET with 403".
+  [[nodiscard]] const std::string& detail() const noexcept { return detail_; }
   /// Whether the change may yet have come about.
   [[nodiscard]] bool in_doubt() const { return in_doubt_; }
 
  private:
+  std::string detail_;
   std::string reason_;
   bool in_doubt_;
 };

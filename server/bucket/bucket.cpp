@@ -24,11 +24,11 @@ constexpr std::size_t kMostToldOfAnswer = 200;
 constexpr std::int64_t kPartBytes = std::int64_t{16} * 1024 * 1024;
 constexpr std::size_t kMostListedAtOnce = 1000;  // what S3 answers with at most
 constexpr long kNotFound = 404, kExists = 412, kTooPatient = 408, kRaced = 409, kTooMany = 429,
-               kFirstServerError = 500;
+               kFirstServerError = 500, kNotImplemented = 501;
 
 bool may_pass(long status) {
   return status == kTooPatient || status == kRaced || status == kTooMany ||
-         status >= kFirstServerError;
+         (status >= kFirstServerError && status != kNotImplemented);
 }
 
 std::string told_of(const Call& call, const Answer& answer) {
@@ -121,8 +121,7 @@ void Bucket::check(const std::string& name) {
   const char* what = "be written to";
   try {
     remove(name);
-    if (!put_new(name, name))
-      throw StoreAway(StorePart::files, "it has an object that was removed");
+    put(name, name);
     what = "keep an object from being written twice (If-None-Match)";
     if (put_new(name, "another")) throw StoreAway(StorePart::files, "it was written");
     what = "be read";
@@ -132,8 +131,9 @@ void Bucket::check(const std::string& name) {
     what = "be cleared";
     remove(name);
   } catch (const StoreAway& away) {
-    throw InsideError(ErrorCode::storage_failed, "The bucket cannot be used.",
-                      "The bucket of --blobs cannot " + std::string(what) + ": " + away.reason());
+    throw InsideError(
+        ErrorCode::storage_failed, "The bucket cannot be used.",
+        "The bucket of --blobs cannot " + std::string(what) + ": " + away.detail() + ".");
   }
 }
 

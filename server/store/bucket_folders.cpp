@@ -226,7 +226,7 @@ int BucketFolders::sweep(const Fates& fates,
   for (auto& [job, objects] : folders) {
     const FolderFate fate = fates(job);
     const auto newest = std::ranges::max_element(objects, {}, &bucket::ObjectInfo::written_s);
-    const std::chrono::seconds age(now_s - newest->written_s);
+    const std::chrono::seconds age(std::max<std::int64_t>(0, now_s - newest->written_s));
     if (age < (fate == FolderFate::unknown ? ages_.unknown : ages_.at_work)) continue;
     if (fate == FolderFate::kept) {
       remove_unnamed(job, std::move(objects), settle);

@@ -13,7 +13,7 @@ const SECONDS_TO_START = 60;
 export const NOT_INSTALLED = "radosgw is not installed (Debian packages radosgw, ceph-mon, ceph-osd)";
 export const isInstalled = () => PROGRAMS.every((name) => existsSync(join("/usr/bin", name)));
 
-function freePort() {
+export function freePort() {
   return new Promise((resolve) => {
     const server = createServer().listen(0, "127.0.0.1", () => {
       const { port } = server.address();
