@@ -9,12 +9,14 @@
 #include "server/access/signed_link.hpp"
 #include "server/base/clock.hpp"
 #include "server/base/errors.hpp"
+#include "server/config/config.hpp"
 #include "server/webhooks/webhooks.hpp"
 
 namespace unwrapd::server {
 namespace {
 
 struct Asked {
+  std::string config;
   std::string data = "data";
   std::string database;
   access::ApiKey key;
@@ -72,8 +74,22 @@ void tell_webhook_secret(const Asked& asked) {
   std::printf("%s\n", webhooks::webhook_secret(secret, asked.id).c_str());
 }
 
-CLI::App* command(CLI::App& app, const std::string& name, const std::string& what, Asked& asked) {
+/// Flags and variables override the file of the server's options.
+void read_config(const CLI::App& given, Asked& asked) {
+  if (asked.config.empty()) return;
+  const config::Config file = config::config_of_file(asked.config);
+  if (given.count("--data") == 0) asked.data = file.data.string();
+  if (given.count("--database") == 0) asked.database = file.database.url;
+}
+
+/// action: of the command, once it is parsed.
+CLI::App* command(CLI::App& app, const std::string& name, const std::string& what, Asked& asked,
+                  void (*action)(const Asked&)) {
   CLI::App* found = app.add_subcommand(name, what);
+  found
+      ->add_option("--config", asked.config,
+                   "File with the server's options; its data and database are used")
+      ->envname("UNWRAPD_CONFIG");
   found->add_option("--data", asked.data, "Directory of jobs and results")
       ->envname("UNWRAPD_DATA")
       ->capture_default_str();
@@ -81,11 +97,15 @@ CLI::App* command(CLI::App& app, const std::string& name, const std::string& wha
       ->add_option("--database", asked.database,
                    "URL of the PostgreSQL database, where one is used")
       ->envname("UNWRAPD_DATABASE");
+  found->callback([&asked, found, action] {
+    read_config(*found, asked);
+    action(asked);
+  });
   return found;
 }
 
 void declare(CLI::App& app, Asked& asked) {
-  CLI::App* add = command(app, "add", "Create a key and print it", asked);
+  CLI::App* add = command(app, "add", "Create a key and print it", asked, add_key);
   add->add_option("--name", asked.key.name, "Name of the key, for people")->required();
   add->add_option("--scopes", asked.scopes, "Scopes, separated by commas: submit, read, admin")
       ->capture_default_str();
@@ -98,17 +118,15 @@ void declare(CLI::App& app, Asked& asked) {
         "Most requests of the key in a minute");
   limit("--max-jobs", asked.key.quota.max_jobs, "Most jobs of the key that wait or run");
   limit("--max-bytes", asked.key.quota.max_bytes, "Most bytes of the files of all its jobs");
-  add->callback([&] { add_key(asked); });
-  command(app, "list", "List the keys", asked)->callback([&] { list_keys(asked); });
-  CLI::App* remove = command(app, "remove", "Revoke a key; its jobs remain", asked);
+  command(app, "list", "List the keys", asked, list_keys);
+  CLI::App* remove = command(app, "remove", "Revoke a key; its jobs remain", asked, remove_key);
   remove->add_option("ID", asked.id, "Id of the key, from unwrapd keys list")->required();
-  remove->callback([&] { remove_key(asked); });
   CLI::App* secret =
-      command(app, "webhook-secret", "Print the secret that signs the webhooks of a key", asked);
+      command(app, "webhook-secret", "Print the secret that signs the webhooks of a key", asked,
+              tell_webhook_secret);
   secret->add_option("ID", asked.id,
                      "Id of the key; k_file for the key of --key-file; leave it out if the server "
                      "requires no keys");
-  secret->callback([&] { tell_webhook_secret(asked); });
 }
 
 }  // namespace

@@ -192,7 +192,7 @@ struct Service::Parts {
     if (http) tell_connections(metrics, *http);
     tell_jobs(metrics, queue);
     metrics.tell(Metric::event_streams, {}, [&] { return streams.open_count(); });
-    metrics.tell(Metric::stored_bytes, {}, [&] { return blobs.room().used_bytes(); });
+    tell_store(metrics, blobs, blobs_root(config), webhooks);
     tell_caches(metrics, solver_cache, {&results.counts(), &pictures.counts(), &meshes.counts()});
   }
 

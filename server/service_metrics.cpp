@@ -7,11 +7,23 @@ namespace unwrapd::server {
 void tell_jobs(Metrics& metrics, jobs::JobQueue& queue) {
   metrics.tell(Metric::jobs, {{"state", "queued"}}, [&queue] { return queue.counts().waiting; });
   metrics.tell(Metric::jobs, {{"state", "running"}}, [&queue] { return queue.counts().running; });
+  metrics.tell(Metric::waiting_seconds, {}, [&queue] { return queue.waiting_seconds(); });
   const auto tell_affinity = [&](std::string_view outcome, auto count) {
     metrics.tell(Metric::cache_requests, {{"cache", "node"}, {"outcome", outcome}}, count);
   };
   tell_affinity("hit", [&queue] { return queue.affinity().hits; });
   tell_affinity("miss", [&queue] { return queue.affinity().misses; });
+}
+
+void tell_store(Metrics& metrics, store::BlobStore& blobs, const std::filesystem::path& root,
+                webhooks::Webhooks& webhooks) {
+  metrics.tell(Metric::webhooks_due, {}, [&webhooks] { return webhooks.due_count(); });
+  metrics.tell(Metric::stored_bytes, {}, [&blobs] { return blobs.room().used_bytes(); });
+  metrics.tell(Metric::free_bytes, {}, [root] {
+    std::error_code error;
+    const std::filesystem::space_info space = std::filesystem::space(root, error);
+    return error ? 0.0 : static_cast<double>(space.available);
+  });
 }
 
 void tell_connections(Metrics& metrics, const http::HttpServer& http) {

@@ -43,6 +43,8 @@ constexpr std::array kFamilies = {
               "Open connections: parked (no complete request yet) or served."},
     FamilyRow{Metric::jobs, "unwrapd_jobs", Type::Gauge,
               "Jobs that are queued or running, on all nodes."},
+    FamilyRow{Metric::waiting_seconds, "unwrapd_waiting_seconds", Type::Gauge,
+              "How long the job has waited that waits longest; 0 while none waits."},
     FamilyRow{Metric::jobs_ended, "unwrapd_jobs_ended_total", Type::Counter,
               "Jobs that ended, by state."},
     FamilyRow{Metric::job_errors, "unwrapd_job_errors_total", Type::Counter,
@@ -52,6 +54,8 @@ constexpr std::array kFamilies = {
               "(their process) or given_up (their thread)."},
     FamilyRow{Metric::lost_threads, "unwrapd_lost_threads", Type::Gauge,
               "Threads that still work on jobs that were given up."},
+    FamilyRow{Metric::job_cpu_seconds, "unwrapd_job_cpu_seconds_total", Type::Counter,
+              "User and system CPU time of processes of jobs that have ended, in seconds."},
     FamilyRow{Metric::isolation, "unwrapd_isolation", Type::Gauge,
               "1 when each job runs in its own process, else 0."},
     FamilyRow{Metric::stage_seconds, "unwrapd_job_stage_seconds", Type::Histogram,
@@ -67,6 +71,10 @@ constexpr std::array kFamilies = {
               "Bytes of files made because of cache misses, by cache."},
     FamilyRow{Metric::stored_bytes, "unwrapd_stored_bytes", Type::Gauge,
               "Bytes of all jobs' files on disk."},
+    FamilyRow{Metric::free_bytes, "unwrapd_free_bytes", Type::Gauge,
+              "Bytes that are free on the file system of the jobs' files."},
+    FamilyRow{Metric::webhooks_due, "unwrapd_webhooks_due", Type::Gauge,
+              "Calls of webhooks whose time has come, and that were not answered yet."},
     FamilyRow{Metric::resident_bytes, "process_resident_memory_bytes", Type::Gauge,
               "Resident memory size in bytes."},
     FamilyRow{Metric::cpu_seconds, "process_cpu_seconds_total", Type::Counter,
@@ -109,9 +117,10 @@ double resident_bytes() {
   return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
-double cpu_seconds() {
+/// who: of this process, or of its children that have ended.
+double cpu_seconds(decltype(RUSAGE_SELF) who) {
   rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
+  ::getrusage(who, &usage);
   const auto seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
@@ -185,7 +194,8 @@ void tell_process(Metrics& metrics) {
   const auto start = static_cast<double>(now_ms()) / 1000;
   metrics.tell(Metric::build_info, {{"version", UNWRAPD_VERSION}}, [] { return 1; });
   metrics.tell(Metric::resident_bytes, {}, resident_bytes);
-  metrics.tell(Metric::cpu_seconds, {}, cpu_seconds);
+  metrics.tell(Metric::cpu_seconds, {}, [] { return cpu_seconds(RUSAGE_SELF); });
+  metrics.tell(Metric::job_cpu_seconds, {}, [] { return cpu_seconds(RUSAGE_CHILDREN); });
   metrics.tell(Metric::open_files, {}, open_files);
   metrics.tell(Metric::start_time, {}, [start] { return start; });
 }

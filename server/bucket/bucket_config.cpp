@@ -85,8 +85,12 @@ bool is_endpoint(const std::string& text) {
   if (scheme == std::string::npos) return false;
   const std::string name = text.substr(0, scheme);
   const std::string host = text.substr(scheme + 3);
+  const auto is_of_host = [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("-._:[]").find(static_cast<char>(c)) != std::string_view::npos;
+  };
   return (name == "http" || name == "https") && !host.empty() &&
-         host.find_first_of("/@?# ") == std::string::npos;
+         std::ranges::all_of(host, is_of_host);
 }
 
 std::string link_origin(const BucketConfig& config) {

@@ -55,6 +55,10 @@ class Reading {
   }
 
   CommandLine run(int argc, const char* const* argv);
+  Config run_file(const std::string& path) {
+    read_file(path);
+    return config_;
+  }
 
  private:
   void declare(CLI::App& app);
@@ -262,6 +266,8 @@ CommandLine Reading::run(int argc, const char* const* argv) {
 }
 
 }  // namespace
+
+Config config_of_file(const std::string& path) { return Reading().run_file(path); }
 
 CommandLine parse_command_line(int argc, const char* const* argv) {
   try {

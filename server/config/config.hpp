@@ -86,6 +86,9 @@ struct CommandLine {
   int exit_code = 0;  ///< of Task::leave; 2 after a mistake, of which stderr tells
 };
 
+/// What a file of options says; the rest is the default. Throws Error{invalid_option}.
+Config config_of_file(const std::string& path);
+
 /// `worker` as the first argument: the node only works.
 CommandLine parse_command_line(int argc, const char* const* argv);
 

@@ -98,19 +98,6 @@ std::int64_t JobQueue::mean_ms() const {
   return std::max<std::int64_t>(1, std::llround(lengths_.mean * kMsPerSecond));
 }
 
-store::QueueCounts JobQueue::counts() {
-  const std::lock_guard lock(mutex_);
-  return counts_if_reached();
-}
-
-store::QueueCounts JobQueue::counts_if_reached() {
-  try {
-    counted_ = store_.counts();
-  } catch (const Error&) {  // it is told elsewhere that the store is away
-  }
-  return counted_;
-}
-
 void JobQueue::check_room(const Applicant& sender) {
   const std::lock_guard lock(mutex_);
   check_open();

@@ -145,6 +145,9 @@ class JobQueue {
   /// The jobs that wait or run, on all nodes; as they were last, while the store is away.
   [[nodiscard]] store::QueueCounts counts();
 
+  /// How long the job has waited that waits longest, on any node; 0 where none does. It grows while
+  /// the store is away.
+  [[nodiscard]] double waiting_seconds();
   /// Of nodes that keep their work.
   [[nodiscard]] AffinityCounts affinity() const { return affinity_.counts(); }
 
@@ -244,6 +247,7 @@ class JobQueue {
   LeaseWatch leases_;
   Affinity affinity_;
   store::QueueCounts counted_;
+  std::optional<std::int64_t> first_waiting_ms_;  // as of counted_
   DiskFullBackoff pause_;
   std::deque<std::string> left_;  // by the last process, and not taken up yet
   bool tried_apart_ = false;

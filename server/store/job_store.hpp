@@ -166,6 +166,8 @@ class JobStore {
   std::int64_t evictable_bytes();
 
   QueueCounts counts();
+  /// When the job that has waited longest came; nothing while none waits.
+  std::optional<std::int64_t> first_waiting_ms();
   /// The owner whose turn it is, if jobs wait. mean_ms: the usual length of jobs.
   std::optional<std::string> next_owner(std::int64_t mean_ms);
   /// Forgets what owners without jobs were served, where it says nothing more.

@@ -24,6 +24,14 @@ QueueCounts JobStore::counts() {
   return {.waiting = sums.number(0), .running = sums.number(1), .owners = sums.number(2)};
 }
 
+std::optional<std::int64_t> JobStore::first_waiting_ms() {
+  const std::lock_guard lock(mutex_);
+  Statement first(*database_,
+                  "SELECT created_ms FROM jobs WHERE state = 'queued' ORDER BY seq LIMIT 1");
+  if (!first.step()) return std::nullopt;
+  return first.number(0);
+}
+
 std::optional<std::string> JobStore::next_owner(std::int64_t mean_ms) {
   const std::lock_guard lock(mutex_);
   Statement least(*database_,

@@ -121,6 +121,17 @@ void Webhooks::put_forward() {
          config_.retry_seconds * kMsPerSecond, kLongestPauseMs);
 }
 
+std::int64_t Webhooks::due_count() {
+  const std::lock_guard lock(mutex_);
+  try {
+    store::Statement count(*database_, "SELECT COUNT(*) FROM deliveries WHERE due_ms <= ?");
+    count.with(now_().kept_ms()).step();
+    counted_due_ = count.number(0);
+  } catch (const Error&) {  // it is told elsewhere that the store is away
+  }
+  return counted_due_;
+}
+
 /// The calls that are due and not being made, in the order of their turns.
 std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
   store::Statement statement(

@@ -49,6 +49,8 @@ class Webhooks {
   /// Begins the calls that are due as far as there is room. The owner with the fewest calls comes
   /// first, and of its calls the one that was due first. The others follow when there is room.
   void call_due();
+  /// Calls that are due, or being made; as they were last, while the store is away.
+  [[nodiscard]] std::int64_t due_count();
 
  private:
   struct Due;
@@ -78,7 +80,8 @@ class Webhooks {
   std::mutex mutex_;  // of the next two
   const std::shared_ptr<store::Database> database_;
   std::set<std::int64_t> being_made_;  // seq
-  WebhookPool pool_;                   // last: its threads use the others
+  std::int64_t counted_due_ = 0;
+  WebhookPool pool_;  // last: its threads use the others
 };
 
 }  // namespace unwrapd::server::webhooks

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { createHash } from "node:crypto";
-import { existsSync, readdirSync, statSync } from "node:fs";
+import { existsSync, readdirSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 
@@ -132,6 +132,12 @@ test("the command makes no directory, secret or key for a slip of the pen", (t) 
   assert.equal(new Set(secrets).size, 3);
   for (const secret of secrets) assert.match(secret, /^whsec_/);
   assert.equal(keys("add", "--name", "a\nk_1", "--data", data).status, 1);
+
+  const file = join(data, "server.toml");
+  writeFileSync(file, `data = "${data}"\nworkers = 1\n`);
+  assert.match(keys("list", "--config", file).stdout, / a$/m);
+  assert.equal(keys("list", "--config", file, "--data", missing).status, 1, "a flag overrides the file");
+  assert.match(keys("list", "--config", join(data, "none.toml")).stderr, /none\.toml/);
 });
 
 test("a key's meshes are its own, and count once", async (t) => {

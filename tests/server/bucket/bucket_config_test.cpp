@@ -23,7 +23,7 @@ TEST(BucketConfig, NamesAreOfLettersThatNeedNoCode) {
   for (const char* good : {"https://s3.example.com", "http://[::1]:9000", "http://127.0.0.1:80"})
     EXPECT_TRUE(is_endpoint(good)) << good;
   for (const char* bad :
-       {"", "s3.example.com", "https://", "https://a/b", "https://u@a", "ftp://a"})
+       {"", "s3.example.com", "https://", "https://a/b", "https://u@a", "ftp://a", "https://a;b"})
     EXPECT_FALSE(is_endpoint(bad)) << bad;
 }
 
