@@ -25,12 +25,13 @@ export function freePort() {
 export class Radosgw {
   key = { id: "TESTKEY", secret: "test-secret" };
 
-  static async start() {
+  /** address: where its gateway listens. */
+  static async start(address = "127.0.0.1") {
     const store = new Radosgw();
     store.folder = mkdtempSync(join(tmpdir(), "radosgw-"));
     const [port, monitor, monitor1] = [await freePort(), await freePort(), await freePort()];
-    store.endpoint = `http://127.0.0.1:${port}`;
-    store.#configure(port, `[v2:127.0.0.1:${monitor},v1:127.0.0.1:${monitor1}]`);
+    store.endpoint = `http://${address}:${port}`;
+    store.#configure(`${address}:${port}`, `[v2:127.0.0.1:${monitor},v1:127.0.0.1:${monitor1}]`);
     try {
       store.#startCluster();
       store.startGateway();
@@ -42,7 +43,7 @@ export class Radosgw {
     return store;
   }
 
-  #configure(port, monitor) {
+  #configure(gateway, monitor) {
     this.monitor = monitor;
     this.id = randomUUID();
     this.config = join(this.folder, "ceph.conf");
@@ -77,7 +78,7 @@ export class Radosgw {
       osd_objectstore: "memstore",
       memstore_device_bytes: 1 << 29,
       osd_memory_target: 939524096,
-      rgw_frontends: `beast endpoint=127.0.0.1:${port} tcp_nodelay=1`,
+      rgw_frontends: `beast endpoint=${gateway} tcp_nodelay=1`,
       rgw_enable_usage_log: false,
     };
     const lines = Object.entries(settings).map(([name, value]) => `${name} = ${value}`);

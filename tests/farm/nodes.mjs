@@ -20,6 +20,7 @@ export class Farm {
     this.shared = join(this.folder, "shared");
     this.blobs = ["--blobs", `dir:${this.shared}`];
     this.url = this.postgres.url();
+    this.program = () => [process.env.UNWRAPD]; // of a node, by its name
     this.nodes = new Map();
     t.after(() => this.nodes.forEach((node) => node.process.kill("SIGKILL")));
   }
@@ -35,7 +36,7 @@ export class Farm {
     mkdirSync(data, { recursive: true });
     const usual = ["--database", url, ...this.blobs, "--workers", String(workers)];
     const lease = ["--lease-seconds", String(LEASE_SECONDS), "--log-level", "warning"];
-    const node = await Server.start(data, ...usual, ...lease, ...flags);
+    const node = await Server.startBy(this.program(name), {}, data, ...usual, ...lease, ...flags);
     node.name = name;
     node.id = readFileSync(join(data, "node"), "utf8");
     this.nodes.set(name, node);

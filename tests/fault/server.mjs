@@ -46,10 +46,15 @@ export class Server {
 
   /** The same, by another command of the program. */
   static async startAs(command, env, data, ...flags) {
+    return Server.startBy([process.env.UNWRAPD, ...command], env, data, ...flags);
+  }
+
+  /** The same, by any words that end with those of a program and its command. */
+  static async startBy([program, ...words], env, data, ...flags) {
     const server = new Server();
-    const all = [...command, "--data", data, ...flags];
+    const all = [...words, "--data", data, ...flags];
     for (const [flag, value] of USUAL) if (!flags.includes(flag)) all.push(flag, value);
-    server.process = spawn(process.env.UNWRAPD, all, {
+    server.process = spawn(program, all, {
       stdio: ["ignore", "pipe", "pipe"],
       env: { ...process.env, ...env },
     });

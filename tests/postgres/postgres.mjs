@@ -2,7 +2,7 @@
 // before it that loses what it is told to lose. As root it runs as the user postgres: PostgreSQL
 // refuses root.
 import { execFileSync } from "node:child_process";
-import { chownSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { appendFileSync, chownSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { connect, createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -46,6 +46,7 @@ export class Postgres {
     if (this.user.uid) chownSync(this.folder, this.user.uid, this.user.gid);
     if (from) this.#copy(from);
     else this.run("initdb", ["-D", this.data, "-U", "postgres", "-A", "trust", "-E", "UTF8", "--locale=C.UTF-8", "--no-sync"]);
+    if (settings.listen_addresses) appendFileSync(join(this.data, "pg_hba.conf"), "host all all samenet trust\n");
     this.start();
   }
 
