@@ -90,7 +90,9 @@ Row Batch::unwrapped(const BatchFile& item, const InFlight::OnBegun& on_begun) {
     row.report = unwrap_file(client, one, silent, stop_).front().report;
     row.figures = read_figures(row.report);
   } catch (const Failure& failure) {
-    if (failure.code() == ExitCode::unreachable || failure.code() == ExitCode::interrupted) throw;
+    const bool is_of_all =
+        failure.code() == ExitCode::unreachable && !servers_.have_answered(began);
+    if (is_of_all || failure.code() == ExitCode::interrupted) throw;
     row.failure = failure.what();
   } catch (const fs::filesystem_error& error) {
     row.failure = error.what();

@@ -18,12 +18,16 @@ enum class ExitCode {
 
 class Failure : public std::runtime_error {
  public:
-  Failure(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  Failure(ExitCode code, const std::string& message, bool may_pass = false)
+      : std::runtime_error(message), code_(code), may_pass_(may_pass) {}
 
   [[nodiscard]] ExitCode code() const noexcept { return code_; }
+  /// Whether the same call may succeed a little later: a server that gave no answer.
+  [[nodiscard]] bool may_pass() const noexcept { return may_pass_; }
 
  private:
   ExitCode code_;
+  bool may_pass_;
 };
 
 }  // namespace unwrapd::client

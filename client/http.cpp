@@ -90,7 +90,8 @@ httplib::Result perform(Client&& client, const ServerUrl& server, const std::sto
     throw Failure(ExitCode::unreachable,
                   "The server at " + server.origin + " gave no answer (" +
                       httplib::to_string(result.error()) +
-                      "); start it, name another with --server, or use --local.");
+                      "); start it, name another with --server, or use --local.",
+                  true);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "client/in_flight.hpp"
 
 #include <algorithm>
+#include <system_error>
 
 namespace unwrapd::client {
 namespace {
@@ -18,8 +19,12 @@ bool InFlight::may_take() const {
 void InFlight::grow() {
   if (!may_take()) return;
   if (idle_ > 0) return changed_.notify_all();
-  ++working_;
-  threads_.emplace_back([this] { work(); });
+  try {
+    threads_.emplace_back([this] { work(); });
+    ++working_;                         // it waits for the lock
+  } catch (const std::system_error&) {  // no more threads: those that there are do all
+    if (working_ == 0) throw;
+  }
 }
 
 void InFlight::perform(std::size_t number, std::unique_lock<std::mutex>& lock) {

@@ -19,9 +19,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr int kTooManyRequests = 429;
-constexpr int kBadGateway = 502;
+constexpr int kServerError = 500;
+constexpr int kOwnLosses = 20;  // in a row, while the same servers answer other calls
 constexpr int kUnavailable = 503;
-constexpr int kGatewayTimeout = 504;
 constexpr long kLongestRetryAfterSeconds = 60;
 
 std::string percent_encoded(const std::string& text) {
@@ -112,34 +112,40 @@ JobClient::JobClient(Servers servers, std::stop_token stop, Patience patience, L
 
 Reply JobClient::ask_once(const Call& call) {
   Reply reply = call(http_);
-  if (reply.status == kBadGateway || reply.status == kGatewayTimeout)
-    throw Failure(ExitCode::unreachable, "The proxy at " + http_.server().origin +
-                                             " found no server (status " +
-                                             std::to_string(reply.status) + ").");
+  const bool is_of_server = reply.status < kServerError || reply.status == kUnavailable ||
+                            json_of(reply.body).contains("code");
+  if (!is_of_server)
+    throw Failure(ExitCode::unreachable,
+                  "Something before the server at " + http_.server().origin +
+                      " answered with status " + std::to_string(reply.status) + ".",
+                  true);
   servers_.note_answer(http_.server());
   return reply;
 }
 
-void JobClient::lose(const Failure& failure, int& lost) {
-  if (failure.code() != ExitCode::unreachable) throw failure;
+void JobClient::lose(const Failure& failure, Losses& losses) {
+  if (!failure.may_pass()) throw failure;
   servers_.note_silence(http_.server());
   const int most =
       servers_.have_answered() ? patience_.lost_connections : static_cast<int>(servers_.size());
-  if (++lost >= most) throw failure;
+  if (losses.count == 0) losses.first = std::chrono::steady_clock::now();
+  if (++losses.count >= most) throw failure;
+  if (losses.count >= kOwnLosses && servers_.have_answered(losses.first)) throw failure;
   http_ = Http(servers_.next(), stop_);
 }
 
 Reply JobClient::ask(const Call& call) {
   milliseconds after_loss = patience_.first_pause;
-  for (int lost = 0, refused = 0;;) {
+  Losses losses;
+  for (int refused = 0;;) {
     try {
       Reply reply = ask_once(call);
-      lost = 0;
+      losses = {};
       if (!is_busy(reply) || ++refused >= patience_.refusals) return reply;
       wait(title_of(json_of(reply.body)), retry_after(reply));
       after_loss = patience_.first_pause;
     } catch (const Failure& failure) {
-      lose(failure, lost);
+      lose(failure, losses);
       wait(failure.what(), after_loss);
       after_loss = std::min(2 * after_loss, patience_.longest_pause);
     }
@@ -163,7 +169,7 @@ api::Job JobClient::follow(const std::string& job_id, const EventSink& on_event)
       read_events(job_id, following, on_event);
     } catch (const Failure& failure) {
       why = failure.what();
-      if (!following.job) lose(failure, following.lost);
+      if (!following.job) lose(failure, following.losses);
     }
     if (following.job) return *following.job;
     wait(why, following.pause);
@@ -179,7 +185,8 @@ void JobClient::read_events(const std::string& job_id, FollowState& following,
                             const EventSink& on_event) {
   const auto take = [&](const SseEvent& event) {
     following.last_id = event.id;
-    following.lost = 0;
+    following.losses = {};
+    following.refused = 0;
     following.pause = patience_.first_pause;
     if (event.name != "queued") note_begun(following);
     if (is_final_event(event)) following.job = job_of(json_of(event.data));
@@ -199,9 +206,11 @@ void JobClient::read_events(const std::string& job_id, FollowState& following,
 
 void JobClient::read_state(const std::string& job_id, FollowState& following) {
   const Reply reply = ask_once([&](const Http& http) { return http.get(api::job_path(job_id)); });
-  following.lost = 0;
-  if (is_busy(reply)) return;
+  following.losses = {};
+  if (is_busy(reply) && ++following.refused < patience_.refusals)
+    return wait(title_of(json_of(reply.body)), retry_after(reply));
   if (!reply.ok()) refuse(reply);
+  following.refused = 0;
   const api::Job now = job_of(json_of(reply.body));
   if (now.state != api::JobState::queued) note_begun(following);
   if (api::is_final(now.state)) following.job = now;
@@ -209,14 +218,19 @@ void JobClient::read_state(const std::string& job_id, FollowState& following) {
 
 std::string JobClient::fetch(const std::string& job_id, const std::string& what) {
   std::string body;
-  fetch(job_id, what, [&](std::string_view bytes) { body += bytes; });
+  const Reply reply = ask([&](const Http& http) {
+    body.clear();
+    return http.get(api::job_path(job_id) + what, {},
+                    [&](std::string_view bytes) { body += bytes; });
+  });
+  if (!reply.ok()) refuse(reply);
   return body;
 }
 
 void JobClient::fetch(const std::string& job_id, const std::string& what, const BytesSink& sink) {
-  std::size_t passed_on = 0;
+  std::size_t passed_on = 0, known = 0;
   const Reply reply = ask([&](const Http& http) {
-    std::size_t known = passed_on;  // of this answer, which has the bytes of the one before
+    known = passed_on;  // of this answer, which has the bytes of the one before
     return http.get(api::job_path(job_id) + what, {}, [&](std::string_view bytes) {
       const std::size_t old = std::min(known, bytes.size());
       known -= old;
@@ -225,6 +239,9 @@ void JobClient::fetch(const std::string& job_id, const std::string& what, const 
     });
   });
   if (!reply.ok()) refuse(reply);
+  if (known > 0)
+    throw Failure(ExitCode::unreachable,
+                  "The server sent a shorter file the second time; try again.");
 }
 
 void JobClient::cancel(const std::string& job_id) {

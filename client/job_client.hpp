@@ -65,12 +65,19 @@ class JobClient {
  private:
   using Call = std::function<Reply(const Http&)>;
 
+  /// Lost connections in a row.
+  struct Losses {
+    int count = 0;
+    std::chrono::steady_clock::time_point first = {};
+  };
+
   /// The state of following a job across connections.
   struct FollowState {
     std::string last_id;
     std::optional<api::Job> job;  ///< set once it is final
     std::chrono::milliseconds pause;
-    int lost = 0;  ///< lost connections in a row
+    Losses losses = {};
+    int refused = 0;  ///< in a row
     bool has_begun = false;
   };
 
@@ -80,11 +87,12 @@ class JobClient {
   void note_begun(FollowState& following) const;
   /// Makes the call again as the constructor says; the last answer.
   Reply ask(const Call& call);
-  /// Makes it once. Throws Failure{unreachable}, for a proxy that finds no server, too.
+  /// Makes it once. Throws a Failure{unreachable} that may pass for a proxy that finds no server,
+  /// and for a server error that is not unwrapd's, too.
   Reply ask_once(const Call& call);
   /// Counts a lost connection, and goes to the next address; throws the failure if there were too
   /// many.
-  void lose(const Failure& failure, int& lost);
+  void lose(const Failure& failure, Losses& losses);
   void wait(const std::string& why, std::chrono::milliseconds duration);
 
   Servers servers_;

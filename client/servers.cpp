@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <optional>
 
 namespace unwrapd::client {
 namespace {
@@ -28,7 +29,7 @@ struct Servers::Known {
   std::vector<Address> addresses;
   std::mutex mutex;
   std::size_t turn = 0;
-  bool have_answered = false;
+  std::optional<Clock::time_point> last_answer;
 };
 
 Servers::Servers(std::vector<ServerUrl> all) : known_(std::make_shared<Known>()) {
@@ -48,7 +49,7 @@ const ServerUrl& Servers::next() {
 
 void Servers::note_answer(const ServerUrl& server) {
   const std::scoped_lock lock(known_->mutex);
-  known_->have_answered = true;
+  known_->last_answer = Clock::now();
   known_->of(server).silent_until = {};
 }
 
@@ -59,9 +60,9 @@ void Servers::note_silence(const ServerUrl& server) {
 
 std::size_t Servers::size() const { return known_->addresses.size(); }
 
-bool Servers::have_answered() const {
+bool Servers::have_answered(Clock::time_point since) const {
   const std::scoped_lock lock(known_->mutex);
-  return known_->have_answered;
+  return known_->last_answer && *known_->last_answer >= since;
 }
 
 }  // namespace unwrapd::client

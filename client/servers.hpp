@@ -1,6 +1,7 @@
 #pragma once
 // The addresses of one service, in use by several threads.
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -26,8 +27,8 @@ class Servers {
   void note_silence(const ServerUrl& server);
 
   [[nodiscard]] std::size_t size() const;
-  /// Whether any address has ever answered.
-  [[nodiscard]] bool have_answered() const;
+  /// Whether any address has ever answered, or since then.
+  [[nodiscard]] bool have_answered(std::chrono::steady_clock::time_point since = {}) const;
 
  private:
   struct Known;

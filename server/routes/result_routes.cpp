@@ -101,7 +101,10 @@ http::Response get_result_or_link(results::ResultStore& results, const store::Jo
                                   std::size_t map, const http::Request& request) {
   require_result(job);
   const std::string format = http::choose_format(request.header("Accept"), job.result_format);
-  const auto linked = results.link(job, map, format, request.method);
+  // The bucket does not know our tags.
+  const bool is_conditional = request.headers.contains("If-Match");
+  const auto linked =
+      is_conditional ? std::nullopt : results.link(job, map, format, request.method);
   if (!linked) return get_result(results, job, map, request);
   http::Response response = linked_response(*linked, http::media_type(format), request);
   response.headers.emplace_back("Vary", "Accept");

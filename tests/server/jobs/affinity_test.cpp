@@ -40,6 +40,14 @@ TEST(Affinity, LeavesAJobToTheOtherNodeForAWhileAndNoLonger) {
   EXPECT_EQ(chosen(affinity, {known_elsewhere(3)}, kFirstLook + Affinity::kWait), 0) << "it is new";
 }
 
+/// Of a node that looks seldom, and always finds another job, too.
+TEST(Affinity, LeavesNoJobToOthersTwice) {
+  Affinity affinity;
+  EXPECT_EQ(chosen(affinity, {known_elsewhere(1), known_nowhere(2)}), 2);
+  const auto later = kFirstLook + std::chrono::hours(1);
+  EXPECT_EQ(chosen(affinity, {known_elsewhere(1), known_nowhere(3)}, later), 1);
+}
+
 TEST(Affinity, CountsWhereMeshesCome) {
   Affinity affinity;
   affinity.count(known_nowhere(1));
