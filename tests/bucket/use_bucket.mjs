@@ -9,19 +9,28 @@ import { setTimeout as sleep } from "node:timers/promises";
 
 import { dataDirectory, grid, QUICK, Server } from "../fault/server.mjs";
 import { Farm, send, sha256Of } from "../farm/nodes.mjs";
+import { slowLink } from "./slow_link.mjs";
 
 const JOBS = 60;
 const SIZES = [2, 3, 4, 5];
 const PATH = `/v1/jobs?preset=chart&${QUICK}`;
 const FLAGS = ["--isolate=off"];
 const BIG = `${grid(30)}#${" ".repeat(17_000_000)}\n`; // goes in two parts
+/** Where the store is killed: in which request, after how many bytes of it. The first two are of CI. */
+const CUTS = [
+  { name: "the end of an input in parts", pattern: /^POST \S*uploadId=/, bytes: 100, body: BIG },
+  { name: "a result", pattern: /^PUT \S*\/1\/result\./, bytes: 100_000, body: grid(100) },
+  { name: "the first part of an input", pattern: /^PUT \S*partNumber=1&/, bytes: 4_000_000, body: BIG },
+  { name: "the last part of an input", pattern: /^PUT \S*partNumber=2&/, bytes: 100_000, body: BIG },
+  { name: "an input in one piece", pattern: /^PUT \S*\/document /, bytes: 4_000_000, body: BIG.slice(0, -9_000_000) },
+].slice(0, process.env.FARM_JOBS ? undefined : 2);
 
 /** Sends a job until it is taken: a store that is away is told by 503. */
-async function submit(nodes, k) {
+async function submit(nodes, k, body = grid(SIZES[k % SIZES.length])) {
   for (let round = 0; ; round++) {
     const headers = { "Idempotency-Key": `job-${k}`, "Cache-Control": "no-cache" };
     const node = nodes()[(k + round) % 2];
-    const answer = await send(node, PATH, { size: SIZES[k % SIZES.length], headers }).catch(() => undefined);
+    const answer = await send(node, PATH, { body, headers }).catch(() => undefined);
     if (answer?.ok) return (await answer.json()).id;
     if (answer) assert.equal(answer.status, 503, await answer.text());
     await sleep(100);
@@ -41,7 +50,9 @@ export async function useBucket(t, store) {
   const objects = () => [...String(store.s3("GET", "/jobs?list-type=2")).matchAll(/<Key>(.*?)<\/Key>/g)].map(([, key]) => key);
   Object.assign(process.env, store.environment());
   const farm = new Farm(t);
-  farm.blobs = ["--blobs", "s3://jobs/farm", "--s3-endpoint", store.endpoint];
+  const link = await slowLink(store.endpoint);
+  t.after(link.close);
+  farm.blobs = ["--blobs", "s3://jobs/farm", "--s3-endpoint", link.endpoint];
 
   await t.test("a bucket that cannot be used is told at the start", () => {
     const args = ["--database", farm.url, "--s3-endpoint", store.endpoint, "--listen", "127.0.0.1:0"];
@@ -104,6 +115,27 @@ export async function useBucket(t, store) {
       }
     }
   });
+
+  for (const [k, { name, pattern, bytes, body }] of CUTS.entries())
+    await t.test(`the store is killed in the middle of ${name}`, async () => {
+      const cut = link.cutIn(pattern, bytes, async () => {
+        await store.killGateway();
+        await sleep(300);
+        store.startGateway();
+        await store.answers();
+      });
+      const sent = submit(fronts, JOBS + k, body);
+      await cut;
+      const { id, state, attempt } = await fronts()[0].finished(await sent);
+      assert.deepEqual([state, attempt], ["succeeded", 1]);
+      const expected = await sha256Of(await send(alone, `/v1/unwrap?preset=chart&${QUICK}`, { body }));
+      for (const node of fronts())
+        assert.equal(await sha256Of(await fetch(`${node.url}/v1/jobs/${id}/result`)), expected);
+      assert.equal(farm.query("SELECT COUNT(*) - COUNT(DISTINCT id) FROM ends"), "0");
+      ids.push(id);
+    });
+  const unfinished = String(store.s3("GET", "/jobs?uploads=")).match(/<UploadId>/g) ?? [];
+  t.diagnostic(`${unfinished.length} uploads in parts were never completed`);
 
   await t.test("while the store is away, what is known is told, and files are not", async () => {
     const [node] = fronts();
