@@ -13,6 +13,7 @@ export const FLAGS = ["--isolate=off", "--max-queue", "100000"];
 
 /** What a client of a farm that is being harmed puts up with. */
 const PATIENT = {
+  ready: async () => {}, // to send a job of this number
   refused: (answer, body) => assert.ok([429, 503].includes(answer.status), JSON.stringify(body)),
   failed: (error) => assert.ok(error instanceof TypeError, error), // the node is gone
 };
@@ -31,11 +32,18 @@ async function submit(fronts, k, { refused, failed }) {
   }
 }
 
-/** Sends so many jobs, some at once, to the nodes that fronts() gives. ids has those that were accepted. */
-export async function submitAll(fronts, jobs, ids, client = PATIENT) {
+/**
+ * Sends so many jobs, some at once, to the nodes that fronts() gives. ids has those that were accepted.
+ * client: what differs from a patient one.
+ */
+export async function submitAll(fronts, jobs, ids, client = {}) {
+  const all = { ...PATIENT, ...client };
   let next = 0;
   const sendSome = async () => {
-    for (let k = next++; k < jobs; k = next++) ids[k] = await submit(fronts, k, client);
+    for (let k = next++; k < jobs; k = next++) {
+      await all.ready(k);
+      ids[k] = await submit(fronts, k, all);
+    }
   };
   await Promise.all(Array.from({ length: AT_ONCE }, sendSome));
 }
