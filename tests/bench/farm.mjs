@@ -1,8 +1,9 @@
-// How long news takes between nodes, beside one node alone: node farm.mjs UNWRAPD [JOBS]. From a job's
-// acceptance until a reader elsewhere sees its first progress, and from a cancel at one node until the
-// last event is seen at another. Medians and 99th percentiles in milliseconds; the two take turns.
+// How long news takes between nodes, beside one node alone: node farm.mjs UNWRAPD [JOBS]. Jobs are sent to
+// one node, watched at a second and cancelled at a third: from the request until its acceptance and until
+// the first event and the first progress of the job, and from a cancel until the last event. Medians and
+// 99th percentiles in milliseconds; the farm and the node alone take turns. The load of the machine follows.
 import { mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { loadavg, tmpdir } from "node:os";
 import { join } from "node:path";
 
 process.env.UNWRAPD = process.argv[2];
@@ -34,20 +35,23 @@ async function send(node, path, body) {
   return (await answer.json()).id;
 }
 
-async function progress(front, other, k) {
+/** A quick job: of each wait its milliseconds. */
+async function quick({ front, other }, k) {
   const begun = performance.now();
   const id = await send(front, QUICK, `${grid(8)}# ${k}\n`);
-  return (await seen(other, id, ["stage", "iteration"])) - begun;
+  const submit = performance.now() - begun;
+  const [first, progress] = await Promise.all([seen(other, id, ["queued"]), seen(other, id, ["stage", "iteration"])]);
+  return { submit, watch: first - begun, progress: progress - begun };
 }
 
-async function cancel(front, other, k) {
+async function cancel({ front, other, third }, k) {
   const id = await send(front, ENDLESS, `${grid(60)}# ${k}\n`);
   let begun;
   const ended = await seen(other, id, ["cancelled"], () => {
     begun = performance.now();
-    fetch(`${front.url}/v1/jobs/${id}`, { method: "DELETE" });
+    fetch(`${third.url}/v1/jobs/${id}`, { method: "DELETE" });
   });
-  return ended - begun;
+  return { cancel: ended - begun };
 }
 
 const folder = mkdtempSync(join(tmpdir(), "unwrapd-farm-"));
@@ -63,20 +67,20 @@ try {
   const alone = await start("alone", "--workers", "1");
   const front = await start("front", "--workers", "0", ...farm);
   const other = await start("other", "--workers", "0", ...farm);
+  const third = await start("third", "--workers", "0", ...farm);
   await start("worker", "--workers", "1", ...farm);
   const times = {};
   for (let k = 0; k < JOBS; k++)
-    for (const [name, first, second] of [["one node", alone, alone], ["farm", front, other]]) {
-      for (const [what, measure] of Object.entries({ progress, cancel })) {
-        times[`${what}, ${name}`] ??= [];
-        times[`${what}, ${name}`].push(await measure(first, second, k));
-      }
-    }
+    for (const [name, nodes] of [["one node", { front: alone, other: alone, third: alone }], ["farm", { front, other, third }]])
+      for (const measure of [quick, cancel])
+        for (const [what, milliseconds] of Object.entries(await measure(nodes, k)))
+          (times[`${what}, ${name}`] ??= []).push(milliseconds);
   for (const [what, all] of Object.entries(times)) {
     all.sort((a, b) => a - b);
     const at = (share) => all[Math.min(all.length - 1, Math.floor(share * all.length))].toFixed(1).padStart(7);
     console.log(`${what.padEnd(20)} median ${at(0.5)}  99 % ${at(0.99)} ms`);
   }
+  console.log(`load ${loadavg().map((load) => load.toFixed(1)).join(" ")}`);
 } finally {
   for (const node of started) node.process.kill("SIGKILL");
   postgres.remove();
