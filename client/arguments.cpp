@@ -230,7 +230,8 @@ Arguments complete(RawArguments raw) {
   if (!raw.server.empty()) arguments.place = Place::server;
   if (raw.local) arguments.place = Place::here;
   arguments.servers = parse_server_urls(raw.server.empty() ? kUsualServer : raw.server);
-  const char* key = std::getenv("UNWRAP_API_KEY");  // all can see a command line
+  // Only from the environment, since all users of the machine can see a command line.
+  const char* key = std::getenv("UNWRAP_API_KEY");
   for (ServerUrl& server : arguments.servers) server.key = key == nullptr ? "" : key;
   arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));
   if (is_comparison(arguments)) settle_comparison(arguments);

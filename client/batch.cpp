@@ -1,6 +1,7 @@
 #include "client/batch.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <iomanip>
@@ -57,6 +58,7 @@ class Batch {
   std::mutex mutex_;  ///< of what follows, and of the console
   std::vector<Row> rows_;
   std::size_t ended_ = 0;
+  std::atomic<bool> has_succeeded_ = false;  ///< some mesh
   Clock::time_point told_wait_ = Clock::now() - kSilence;
 };
 
@@ -89,9 +91,11 @@ Row Batch::unwrapped(const BatchFile& item, const InFlight::OnBegun& on_begun) {
                      {.on_begun = on_begun, .on_wait = [&](const auto& why) { tell_wait(why); }});
     row.report = unwrap_file(client, one, silent, stop_).front().report;
     row.figures = read_figures(row.report);
+    has_succeeded_ = true;
   } catch (const Failure& failure) {
+    // Silence is of all meshes, and so is another service; a strange answer between others is not.
     const bool is_of_all =
-        failure.code() == ExitCode::unreachable && !servers_.have_answered(began);
+        failure.code() == ExitCode::unreachable && (failure.may_pass() || !has_succeeded_.load());
     if (is_of_all || failure.code() == ExitCode::interrupted) throw;
     row.failure = failure.what();
   } catch (const fs::filesystem_error& error) {

@@ -116,8 +116,8 @@ Reply JobClient::ask_once(const Call& call) {
                             json_of(reply.body).contains("code");
   if (!is_of_server)
     throw Failure(ExitCode::unreachable,
-                  "Something before the server at " + http_.server().origin +
-                      " answered with status " + std::to_string(reply.status) + ".",
+                  "What answered for the server at " + http_.server().origin +
+                      " has a fault of its own (status " + std::to_string(reply.status) + ").",
                   true);
   servers_.note_answer(http_.server());
   return reply;
@@ -130,7 +130,8 @@ void JobClient::lose(const Failure& failure, Losses& losses) {
       servers_.have_answered() ? patience_.lost_connections : static_cast<int>(servers_.size());
   if (losses.count == 0) losses.first = std::chrono::steady_clock::now();
   if (++losses.count >= most) throw failure;
-  if (losses.count >= kOwnLosses && servers_.have_answered(losses.first)) throw failure;
+  if (losses.count >= kOwnLosses && servers_.have_answered(losses.first))
+    throw Failure(ExitCode::job_failed, failure.what());
   http_ = Http(servers_.next(), stop_);
 }
 
@@ -245,7 +246,16 @@ void JobClient::fetch(const std::string& job_id, const std::string& what, const 
 }
 
 void JobClient::cancel(const std::string& job_id) {
-  const Reply reply = ask([&](const Http& http) { return http.remove(api::job_path(job_id)); });
+  bool is_again = false;
+  const Reply reply = ask([&](const Http& http) {
+    // The answer to the first call may be lost, and the same call would remove a job that has
+    // ended.
+    if (std::exchange(is_again, true)) {
+      Reply now = http.get(api::job_path(job_id));
+      if (!now.ok() || api::is_final(job_of(json_of(now.body)).state)) return now;
+    }
+    return http.remove(api::job_path(job_id));
+  });
   if (!reply.ok()) refuse(reply);
 }
 

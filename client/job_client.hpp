@@ -90,8 +90,8 @@ class JobClient {
   /// Makes it once. Throws a Failure{unreachable} that may pass for a proxy that finds no server,
   /// and for a server error that is not unwrapd's, too.
   Reply ask_once(const Call& call);
-  /// Counts a lost connection, and goes to the next address; throws the failure if there were too
-  /// many.
+  /// Counts a lost connection, and goes to the next address. Throws the failure if there were too
+  /// many, and Failure{job_failed} if other calls are answered meanwhile.
   void lose(const Failure& failure, Losses& losses);
   void wait(const std::string& why, std::chrono::milliseconds duration);
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 namespace unwrapd::client {
 namespace {
@@ -31,6 +32,8 @@ struct Servers::Known {
   std::size_t turn = 0;
   std::optional<Clock::time_point> last_answer;
 };
+
+Servers::Servers(ServerUrl only) : Servers(std::vector<ServerUrl>{std::move(only)}) {}
 
 Servers::Servers(std::vector<ServerUrl> all) : known_(std::make_shared<Known>()) {
   for (ServerUrl& url : all) known_->addresses.push_back({std::move(url)});

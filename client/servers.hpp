@@ -14,8 +14,7 @@ namespace unwrapd::client {
 /// the addresses.
 class Servers {
  public:
-  /// NOLINTNEXTLINE(google-explicit-constructor): one address is a list of one.
-  Servers(ServerUrl only) : Servers(std::vector<ServerUrl>{std::move(only)}) {}
+  Servers(ServerUrl only);  // NOLINT(google-explicit-constructor): one address is a list of one
   /// Requires at least one.
   explicit Servers(std::vector<ServerUrl> all);
 

@@ -77,7 +77,7 @@ try {
           (times[`${what}, ${name}`] ??= []).push(milliseconds);
   for (const [what, all] of Object.entries(times)) {
     all.sort((a, b) => a - b);
-    const at = (share) => all[Math.min(all.length - 1, Math.floor(share * all.length))].toFixed(1).padStart(7);
+    const at = (share) => all[Math.ceil(share * all.length) - 1].toFixed(1).padStart(7); // the nearest rank
     console.log(`${what.padEnd(20)} median ${at(0.5)}  99 % ${at(0.99)} ms`);
   }
   console.log(`load ${loadavg().map((load) => load.toFixed(1)).join(" ")}`);

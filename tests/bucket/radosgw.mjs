@@ -3,26 +3,17 @@
 import { execFileSync, spawn } from "node:child_process";
 import { randomUUID } from "node:crypto";
 import { existsSync, mkdirSync, mkdtempSync, openSync, rmSync, writeFileSync } from "node:fs";
-import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { setTimeout as sleep } from "node:timers/promises";
+
+import { freePort, ObjectStore, SECONDS_TO_START } from "./object_store.mjs";
 
 const PROGRAMS = ["ceph-mon", "ceph-osd", "ceph", "radosgw", "radosgw-admin"];
-const SECONDS_TO_START = 60;
 export const NOT_INSTALLED = "radosgw is not installed (Debian packages radosgw, ceph-mon, ceph-osd)";
 export const isInstalled = () => PROGRAMS.every((name) => existsSync(join("/usr/bin", name)));
 
-export function freePort() {
-  return new Promise((resolve) => {
-    const server = createServer().listen(0, "127.0.0.1", () => {
-      const { port } = server.address();
-      server.close(() => resolve(port));
-    });
-  });
-}
-
-export class Radosgw {
+export class Radosgw extends ObjectStore {
+  name = "radosgw";
   key = { id: "TESTKEY", secret: "test-secret" };
 
   /** address: where its gateway listens. */
@@ -108,33 +99,6 @@ export class Radosgw {
   startGateway() {
     const log = openSync(join(this.folder, "gateway.log"), "a");
     this.gateway = spawn("radosgw", ["-d", "-n", "client.rgw", "-c", this.config], { stdio: ["ignore", log, log] });
-  }
-
-  /** Waits until it answers. */
-  async answers() {
-    for (const giveUp = Date.now() + SECONDS_TO_START * 1000; Date.now() < giveUp; await sleep(100)) {
-      const answer = await fetch(this.endpoint).catch(() => undefined);
-      if (answer?.ok) return;
-    }
-    throw new Error("radosgw does not answer");
-  }
-
-  /** As if its machine lost power; the objects stay. */
-  async killGateway() {
-    const ended = new Promise((resolve) => this.gateway.once("exit", resolve));
-    this.gateway.kill("SIGKILL");
-    await ended;
-  }
-
-  /** Calls the store as the operator does. */
-  s3(method, path, ...args) {
-    const user = ["--user", `${this.key.id}:${this.key.secret}`, "--aws-sigv4", "aws:amz:us-east-1:s3"];
-    const empty = ["-H", "x-amz-content-sha256: UNSIGNED-PAYLOAD"];
-    return execFileSync("curl", ["-sS", "-X", method, ...user, ...empty, ...args, this.endpoint + path]);
-  }
-
-  environment() {
-    return { AWS_ACCESS_KEY_ID: this.key.id, AWS_SECRET_ACCESS_KEY: this.key.secret };
   }
 
   remove() {

@@ -1,17 +1,14 @@
 // A second real object store for tests: OpenStack Swift with its S3 API, one server of each kind and
-// one copy of each object, all of them on loopback and in a folder of their own. It offers what
-// Radosgw does.
+// one copy of each object, all of them on loopback and in a folder of their own.
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, openSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir, userInfo } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { setTimeout as sleep } from "node:timers/promises";
 
-import { freePort } from "./radosgw.mjs";
+import { freePort, ObjectStore } from "./object_store.mjs";
 
 const KINDS = ["account", "container", "object"];
-const SECONDS_TO_START = 60;
 export const NOT_INSTALLED = "swift is not installed (Debian packages swift-proxy, swift-account, swift-container, swift-object)";
 export const isInstalled = () => ["proxy", ...KINDS].every((kind) => existsSync(`/usr/bin/swift-${kind}-server`));
 
@@ -44,7 +41,8 @@ pipeline = ${kind}-server
 use = egg:swift#${kind}
 `;
 
-export class Swift {
+export class Swift extends ObjectStore {
+  name = "swift";
   key = { id: "test:tester", secret: "testing" };
   #servers = [];
 
@@ -98,33 +96,13 @@ export class Swift {
     return spawn(`swift-${kind}-server`, [file, "--verbose"], { stdio: ["ignore", log, log], env });
   }
 
+  /** It wants a key. */
+  isReady() {
+    return true;
+  }
+
   startGateway() {
     this.gateway = this.#spawn("proxy", this.port, proxy(this.more));
-  }
-
-  /** Waits until it answers. */
-  async answers() {
-    for (const giveUp = Date.now() + SECONDS_TO_START * 1000; Date.now() < giveUp; await sleep(100))
-      if (await fetch(this.endpoint).catch(() => undefined)) return;
-    throw new Error("swift does not answer");
-  }
-
-  /** As if its machine lost power; the objects stay. */
-  async killGateway() {
-    const ended = new Promise((resolve) => this.gateway.once("exit", resolve));
-    this.gateway.kill("SIGKILL");
-    await ended;
-  }
-
-  /** Calls the store as the operator does. */
-  s3(method, path, ...args) {
-    const url = this.endpoint.replace("//", `//${encodeURIComponent(this.key.id)}:${this.key.secret}@`);
-    const more = ["--aws-sigv4", "aws:amz:us-east-1:s3", "-H", "x-amz-content-sha256: UNSIGNED-PAYLOAD"];
-    return execFileSync("curl", ["-sS", "-X", method, ...more, ...args, url + path]);
-  }
-
-  environment() {
-    return { AWS_ACCESS_KEY_ID: this.key.id, AWS_SECRET_ACCESS_KEY: this.key.secret };
   }
 
   remove() {

@@ -46,6 +46,16 @@ inline api::Job job_in(api::JobState state) {
           .problem = {}};
 }
 
+/// Answers with the bytes, but closes the connection after so many of them.
+inline void answer_cut_off(httplib::Response& response, std::string bytes, std::size_t after) {
+  const std::size_t size = bytes.size();
+  response.set_content_provider(
+      size, "model/gltf-binary",
+      [bytes = std::move(bytes), after](std::size_t from, std::size_t, httplib::DataSink& sink) {
+        return from < after && sink.write(bytes.data() + from, after - from);
+      });
+}
+
 inline void answer(httplib::Response& response, int status, const api::Json& json) {
   response.status = status;
   response.set_content(json.dump(), "application/json");

@@ -70,20 +70,54 @@ TEST(JobClientPatience, TakesAnErrorOfTheServerAtItsWord) {
 TEST(JobClientPatience, NoFileIsMadeOfTwo) {
   FakeServer server;
   std::atomic<int> asked = 0;
-  server.routes().Get(
-      "/v1/jobs/j_1/result", [&](const httplib::Request&, httplib::Response& reply) {
-        if (++asked > 1) return reply.set_content("BB", "model/gltf-binary");
-        reply.set_content_provider(8, "model/gltf-binary",
-                                   [](std::size_t from, std::size_t, httplib::DataSink& sink) {
-                                     return from == 0 && sink.write("AAAA", 4);
-                                   });
-      });
+  server.routes().Get("/v1/jobs/j_1/result",
+                      [&](const httplib::Request&, httplib::Response& reply) {
+                        if (++asked > 1) return reply.set_content("BB", "model/gltf-binary");
+                        answer_cut_off(reply, "AAAAAAAA", 4);
+                      });
   server.start();
   JobClient client = answered_client(server);
   expect_failure(ExitCode::unreachable,
                  [&] { client.fetch("j_1", "/result", [](std::string_view) {}); });
   asked = 0;
   EXPECT_EQ(client.fetch("j_1", "/result"), "BB") << "text begins anew";
+}
+
+/// It cuts each upload off, and other calls are answered meanwhile.
+TEST(JobClientPatience, ACallThatAloneGetsNoAnswerFailsAlone) {
+  FakeServer server;
+  std::atomic<int> asked = 0;
+  server.routes().Get("/v1/jobs/j_1/result",
+                      [&](const httplib::Request&, httplib::Response& reply) {
+                        ++asked;
+                        answer_cut_off(reply, "AAAA", 2);
+                      });
+  server.start();
+  const ServerUrl url = parse_server_url(server.address());
+  Servers servers(url);
+  servers.note_answer(url);
+  Patience endless = kImpatient;
+  endless.lost_connections = 1'000'000;
+  JobClient client(servers, {}, endless,
+                   {.on_begun = {}, .on_wait = [&](const auto&) { servers.note_answer(url); }});
+  expect_failure(ExitCode::job_failed, [&] { client.fetch("j_1", "/result"); });
+  EXPECT_EQ(asked, 20);
+}
+
+/// The answer to the first call is lost; the second would remove what has ended.
+TEST(JobClientPatience, NoJobIsRemovedByCancellingItTwice) {
+  FakeServer server;
+  std::atomic<int> removals = 0;
+  server.routes().Delete("/v1/jobs/j_1", [&](const httplib::Request&, httplib::Response& reply) {
+    ++removals;
+    reply.status = 502;
+  });
+  server.routes().Get("/v1/jobs/j_1", [&](const httplib::Request&, httplib::Response& reply) {
+    answer(reply, 200, to_json(job_in(api::JobState::cancelled)));
+  });
+  server.start();
+  answered_client(server).cancel("j_1");
+  EXPECT_EQ(removals, 1);
 }
 
 }  // namespace

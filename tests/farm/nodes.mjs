@@ -6,6 +6,7 @@ import { connect, createServer } from "node:net";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 
+export { freePort } from "../bucket/object_store.mjs";
 import { COUNT_ENDS, isInstalled as hasPostgres, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
 import { dataDirectory, grid, Server } from "../fault/server.mjs";
 
@@ -94,15 +95,6 @@ export function isInstalled(program, flag = "--version") {
   } catch {
     return false;
   }
-}
-
-/** A port that nobody has now. */
-export async function freePort() {
-  const server = createServer();
-  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  const { port } = server.address();
-  await new Promise((resolve) => server.close(resolve));
-  return port;
 }
 
 export async function send(node, path, { size = 3, headers = {}, method = "POST", body = grid(size) } = {}) {

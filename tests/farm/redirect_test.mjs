@@ -95,6 +95,8 @@ test("results that the bucket hands out", options, async (t) => {
     assert.deepEqual([size.status, size.headers["content-length"]], [200, String(expected.body.length)]);
     const known = await resultOf(id, { headers: as(key, { "If-None-Match": expected.headers.etag }) });
     assert.equal(known.status, 304);
+    const conditional = await resultOf(id, { headers: as(key, { "If-Match": expected.headers.etag }) });
+    assert.equal(conditional.status, 200, "the bucket does not know the tags of nodes");
     const page = await request(node.url, { path: "/" });
     assert.match(page.headers["content-security-policy"], new RegExp(`connect-src [^;]*${bucket.url}`), "the page may go there");
   });

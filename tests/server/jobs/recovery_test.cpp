@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "server/base/clock.hpp"
 #include "server/jobs/job_queue.hpp"
 #include "tests/server/temp_dir.hpp"
 #include "tests/server/test_database.hpp"
@@ -38,6 +39,22 @@ class Recovery : public testing::Test {
   EventFeed events_;
   const Log log_{LogLevel::off};
 };
+
+TEST_F(Recovery, TheLongestWaitIsThatOfTheFirstJobThatWaits) {
+  JobQueue queue(*store_, blobs_, events_, log_, {});
+  EXPECT_EQ(queue.waiting_seconds(), 0);
+  for (const int waits_s : {90, 30}) {
+    store::JobRecord job = some_job("j_" + std::to_string(waits_s));
+    job.created_ms = now_ms() - 1000 * waits_s;
+    store_->insert(job);
+  }
+  EXPECT_GE(queue.waiting_seconds(), 90);
+  queue.take();
+  EXPECT_GE(queue.waiting_seconds(), 30);
+  EXPECT_LT(queue.waiting_seconds(), 90);
+  queue.take();
+  EXPECT_EQ(queue.waiting_seconds(), 0);
+}
 
 TEST_F(Recovery, AJobThatDoesNotStopIsLeftToTheNextStartAndSuspected) {
   store_->insert(some_job("j_1"));
