@@ -10,21 +10,25 @@
 namespace unwrapd::server::store {
 namespace {
 
+/// Plans are kept: one that is made while the tables are small must not read them whole ever after.
+/// So each row is looked for by itself (kAfter, kEnded), and by an index.
 constexpr const char* kEventSession =
-    "SET default_transaction_read_only = off; SET synchronous_commit = off";
+    "SET default_transaction_read_only = off; SET synchronous_commit = off;"
+    " SET enable_seqscan = off";
 constexpr const char* kAppend =
     "INSERT INTO events (job, seq, last, frame, progress)"
     " SELECT job, seq, last, frame, progress FROM json_to_recordset(CAST(? AS json))"
     " AS new (job text, seq bigint, last bigint, frame text, progress text)"
     " ON CONFLICT (job, seq) DO NOTHING";
 constexpr const char* kAfter =
-    "SELECT events.job, events.seq, last, frame, progress"
+    "SELECT job, new.seq, last, frame, progress"
     " FROM json_to_recordset(CAST(? AS json)) AS seen (job text, seq bigint)"
-    " JOIN events ON events.job = seen.job AND events.seq > seen.seq ORDER BY 1, 2";
+    " CROSS JOIN LATERAL (SELECT seq, last, frame, progress FROM events"
+    " WHERE events.job = seen.job AND events.seq > seen.seq ORDER BY seq LIMIT 1000000) AS new"
+    " ORDER BY 1, 2";
 constexpr const char* kEnded =
-    "SELECT seen.job FROM json_to_recordset(CAST(? AS json)) AS seen (job text, seq bigint)"
-    " LEFT JOIN jobs ON jobs.id = seen.job"
-    " WHERE jobs.id IS NULL OR jobs.state NOT IN ('queued', 'running')";
+    "SELECT job FROM json_to_recordset(CAST(? AS json)) AS seen (job text, seq bigint)"
+    " WHERE COALESCE((SELECT state NOT IN ('queued', 'running') FROM jobs WHERE id = job), true)";
 constexpr const char* kForget =
     "DELETE FROM events WHERE job NOT IN (SELECT id FROM jobs"
     " WHERE state IN ('queued', 'running') OR finished_ms >= ?)";
