@@ -54,6 +54,7 @@ export abstract class Stage {
   #materials: (Material & {map: Texture | null})[] = [];
   #uv: Float32Array = new Float32Array();
   #asked = false;
+  #size = '';
 
   constructor(readonly canvas: HTMLCanvasElement, protected readonly material: Material & {map: Texture | null}) {
     this.#renderer = rendererOf(canvas);
@@ -190,10 +191,18 @@ export abstract class Stage {
       const {clientWidth: width, clientHeight: height} = this.canvas;
       if (width === 0 || height === 0) return;
       this.shape(width / height);
-      this.#renderer?.setPixelRatio(Math.min(devicePixelRatio, 2));
-      this.#renderer?.setSize(width, height, false);
+      this.#resize(width, height, Math.min(devicePixelRatio, 2));
       this.#renderer?.render(this.scene, this.camera);
     });
+  }
+
+  /** Only where the size is another: a canvas that is given its own size gets a new buffer all the same. */
+  #resize(width: number, height: number, ratio: number): void {
+    const size = `${width} ${height} ${ratio}`;
+    if (size === this.#size) return;
+    this.#size = size;
+    this.#renderer?.setPixelRatio(ratio);
+    this.#renderer?.setSize(width, height, false);
   }
 
   /** Fits the camera to the shape of the canvas. */
