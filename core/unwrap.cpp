@@ -9,11 +9,12 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/base/shared_work.hpp"
 #include "core/charts/constraints.hpp"
 #include "core/charts/repair_surfaces.hpp"
 #include "core/pipeline/chart_progress.hpp"
 #include "core/pipeline/layout.hpp"
-#include "core/pipeline/map_chart.hpp"
+#include "core/pipeline/map_all.hpp"
 #include "core/pipeline/note_faults.hpp"
 #include "core/pipeline/order_layouts.hpp"
 #include "core/pipeline/prepare_charts.hpp"
@@ -49,14 +50,19 @@ std::vector<Layout> map_charts(const PreparedCharts& prepared, std::span<const S
   pipeline::ChartProgress watch(progress, all.surfaces, prepared.solve_begin, executor);
   std::vector<Layout> layouts =
       pipeline::empty_layouts(prepared.all, pipeline::lambdas_of(options).size());
+  std::vector<pipeline::ChartJob> jobs;
+  std::vector<std::size_t> surface_of;
   for (std::size_t s = 0; s < all.surfaces.size(); ++s)
     for (std::size_t c = 0; c < all.surfaces[s].charts.size(); ++c) {
       const std::shared_ptr<const charts::Chart> chart(prepared.all, &all.surfaces[s].charts[c]);
-      auto maps =
-          pipeline::map_chart({chart, all.disks[s][c], page[s][c]}, options, watch, executor);
-      for (std::size_t k = 0; k < maps.size(); ++k)
-        for (MappedChart& mapped : maps[k]) add_chart(layouts[k], s, std::move(mapped));
+      jobs.push_back({chart, all.disks[s][c], page[s][c]});
+      surface_of.push_back(s);
     }
+  auto maps = pipeline::map_all(jobs, options, watch, executor);
+  for (std::size_t c = 0; c < maps.size(); ++c)
+    for (std::size_t k = 0; k < maps[c].size(); ++k)
+      for (MappedChart& mapped : maps[c][k])
+        add_chart(layouts[k], surface_of[c], std::move(mapped));
   for (Layout& layout : layouts) note_new_maps(layout, options);
   return layouts;
 }
@@ -122,6 +128,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> given, const Unwrap
   std::vector<Layout> layouts = map_charts(prepared, surfaces, options, progress, job);
   if (has_bound(options)) try_tighter_bounds(surfaces, options, progress.stop, job, layouts);
 
+  if (SharedWork* helpers = job.shared_work()) helpers->finish();
   announce(progress, Stage::pack, layouts.front().report.charts.size(), kPackBegin);
   for (Layout& layout : layouts) {
     straighten_charts(layout, options, job);

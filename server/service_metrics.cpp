@@ -13,6 +13,14 @@ void tell_jobs(Metrics& metrics, jobs::JobQueue& queue) {
   };
   tell_affinity("hit", [&queue] { return queue.affinity().hits; });
   tell_affinity("miss", [&queue] { return queue.affinity().misses; });
+  const auto tell_bundles = [&](std::string_view outcome, const auto& count) {
+    metrics.tell(Metric::shared_bundles, {{"outcome", outcome}}, [&count] { return count.load(); });
+  };
+  const jobs::SharingCounts& shared = queue.sharing().counts();
+  tell_bundles("offered", shared.offered);
+  tell_bundles("helped", shared.helped);
+  tell_bundles("found", shared.found);
+  tell_bundles("lost", shared.lost);
 }
 
 void tell_store(Metrics& metrics, store::BlobStore& blobs, const std::filesystem::path& root,

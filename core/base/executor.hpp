@@ -13,6 +13,7 @@
 namespace unwrapd {
 
 class SharedCache;
+class SharedWork;
 
 class Executor {
  public:
@@ -28,6 +29,9 @@ class Executor {
 
   /// What jobs share (shared_cache.hpp); null where this one is alone. Outlives the job.
   [[nodiscard]] virtual SharedCache* shared_cache() const { return nullptr; }
+
+  /// What other processes help with (shared_work.hpp); null: they do not. Outlives the job.
+  [[nodiscard]] virtual SharedWork* shared_work() const { return nullptr; }
 
   /// Of the job whose blocks these are: long work looks at it (cancel.hpp).
   [[nodiscard]] virtual std::stop_token stop() const { return {}; }
@@ -63,6 +67,7 @@ class JobExecutor final : public Executor {
     throw_if_cancelled(stop_);
   }
   [[nodiscard]] SharedCache* shared_cache() const override { return inner_.shared_cache(); }
+  [[nodiscard]] SharedWork* shared_work() const override { return inner_.shared_work(); }
   [[nodiscard]] std::stop_token stop() const override { return stop_; }
 
  private:

@@ -52,6 +52,12 @@ void ChartProgress::begin_chart(std::size_t faces, std::size_t lambda_count) {
 void ChartProgress::begin_run(std::optional<double> lambda) {
   throw_if_cancelled();
   lambda_ = lambda;
+  record({.kind = ChartEvent::Kind::begin_run, .lambda = lambda});
+}
+
+void ChartProgress::end_run() {
+  ++runs_done_;
+  record({.kind = ChartEvent::Kind::end_run});
 }
 
 void ChartProgress::end_chart() {
@@ -66,7 +72,21 @@ double ChartProgress::fraction(double of_run) const {
   return begin_ + (kSolveEnd - begin_) * done;
 }
 
+void ChartProgress::record(const ChartEvent& event) const {
+  if (record_ != nullptr) record_->push_back(event);
+}
+
+void ChartProgress::tell_again(const std::vector<ChartEvent>& events, const Stop& stop) {
+  for (const ChartEvent& event : events) {
+    if (event.kind == ChartEvent::Kind::begin_run) begin_run(event.lambda);
+    if (event.kind == ChartEvent::Kind::stage) tell(event.stage);
+    if (event.kind == ChartEvent::Kind::iteration && is_followed()) tell(event.iteration, stop);
+    if (event.kind == ChartEvent::Kind::end_run) end_run();
+  }
+}
+
 void ChartProgress::tell(Stage stage) const {
+  record({.kind = ChartEvent::Kind::stage, .stage = stage});
   if (!progress_.on_stage) return;
   const double of_run = stage == Stage::untangle ? 1 : 0;
   progress_.on_stage({stage, chart_, chart_count_, fraction(of_run), lambda_});
@@ -80,6 +100,11 @@ IterationEvent ChartProgress::placed(IterationEvent event, const Stop& stop) con
   return event;
 }
 
+void ChartProgress::tell(const IterationEvent& event, const Stop& stop) const {
+  record({.kind = ChartEvent::Kind::iteration, .iteration = event});
+  progress_.on_iteration(placed(event, stop));
+}
+
 solve::SolveWatch ChartProgress::solve_watch(const solve::Disk& disk, const Stop& stop,
                                              std::vector<IterationEvent>& events) const {
   solve::SolveWatch watch;
@@ -88,14 +113,14 @@ solve::SolveWatch ChartProgress::solve_watch(const solve::Disk& disk, const Stop
   if (is_followed())
     watch.loop.on_iteration = [this, &disk, &stop, &events](const solve::Solution& s) {
       events.push_back(describe(disk, s, executor_));
-      progress_.on_iteration(placed(events.back(), stop));
+      tell(events.back(), stop);
     };
   return watch;
 }
 
 void ChartProgress::replay(const std::vector<IterationEvent>& events, const Stop& stop) const {
   tell(Stage::solve);
-  for (const IterationEvent& event : events) progress_.on_iteration(placed(event, stop));
+  for (const IterationEvent& event : events) tell(event, stop);
 }
 
 void ChartProgress::throw_if_cancelled() const { unwrapd::throw_if_cancelled(progress_.stop); }

@@ -1,6 +1,7 @@
 #pragma once
 // Turns the progress of a solver on one chart into the progress of the job.
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +17,15 @@ namespace unwrapd::pipeline {
 /// segmented, and when solving ends.
 inline constexpr double kChartsBegin = 0.05, kSolveBegin = 0.10, kSolveEnd = 0.90;
 
+/// What is told of a chart, without its place in the job.
+struct ChartEvent {
+  enum class Kind : std::uint8_t { begin_run, stage, iteration, end_run };
+  Kind kind = Kind::stage;
+  std::optional<double> lambda = {};  ///< of a run that begins
+  Stage stage = Stage::setup;
+  IterationEvent iteration = {};
+};
+
 /// The progress of solving: which chart, which lambda, how far. Charts count by their faces, the
 /// lambdas of a chart count alike.
 class ChartProgress {
@@ -28,8 +38,12 @@ class ChartProgress {
   void begin_chart(std::size_t faces, std::size_t lambda_count);
   /// lambda: reported with every event of the run; empty when there is one map only.
   void begin_run(std::optional<double> lambda);
-  void end_run() { ++runs_done_; }
+  void end_run();
   void end_chart();
+  /// What is told of the next charts is added to events, too; null: no longer.
+  void record_to(std::vector<ChartEvent>* events) { record_ = events; }
+  /// Tells what was recorded of the chart that has begun.
+  void tell_again(const std::vector<ChartEvent>& events, const Stop& stop);
 
   void tell(Stage stage) const;
   /// The watch for a Solver, which reports every iteration and appends it to events. disk, stop and
@@ -46,6 +60,8 @@ class ChartProgress {
  private:
   [[nodiscard]] double fraction(double of_run) const;
   [[nodiscard]] IterationEvent placed(IterationEvent event, const Stop& stop) const;
+  void tell(const IterationEvent& event, const Stop& stop) const;
+  void record(const ChartEvent& event) const;
 
   const Progress& progress_;
   Executor& executor_;
@@ -54,6 +70,7 @@ class ChartProgress {
   double begin_;
   double runs_ = 1, runs_done_ = 0;
   std::optional<double> lambda_;
+  std::vector<ChartEvent>* record_ = nullptr;
 };
 
 }  // namespace unwrapd::pipeline

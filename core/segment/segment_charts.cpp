@@ -17,6 +17,7 @@
 #include "core/measure/rest_triangle.hpp"
 #include "core/segment/component_charts.hpp"
 #include "core/segment/region_charts.hpp"
+#include "core/segment/shared_segments.hpp"
 
 namespace unwrapd::segment {
 namespace {
@@ -53,6 +54,9 @@ class Account {
   }
   [[nodiscard]] const std::stop_token& stop() const { return watch_.stop; }
   void finish(std::size_t faces) { done_ += static_cast<double>(faces); }
+  void tell() const {
+    if (watch_.on_progress) watch_.on_progress(Stage::merge, done_ / total_);
+  }
 
  private:
   static double faces_of(const charts::Chart& component) {
@@ -75,37 +79,45 @@ class Cutter {
          Executor& executor)
       : options_(options), merges_to_one_(merges_to_one), account_(account), executor_(executor) {}
 
+  [[nodiscard]] bool is_segmented(const charts::Chart& component, Index most) const {
+    const bool is_cut = most == 1 && !merges_to_one_;
+    if (options_.one_chart_each || is_cut) return false;
+    return !charts::is_disk(component) || options_.max_distortion ||
+           openness(component) < kLeastOpenness;
+  }
+
+  [[nodiscard]] ComponentRules rules_of(const charts::Chart& component, Index most) const {
+    SegmentRules rules =
+        account_.rules(options_.max_distortion.value_or(kDefaultDistortion), component);
+    rules.most_regions = most;
+    rules.effort = options_.effort;
+    const bool may_stay = charts::is_disk(component) && openness(component) >= kLeastOpenness;
+    return {rules, options_.symmetry, may_stay};
+  }
+
   /// most: charts that it shall become at most.
   void add(charts::Chart component, Index most) {
     throw_if_cancelled(account_.stop());
-    const bool whole = charts::is_disk(component), is_cut = most == 1 && !merges_to_one_;
-    const bool one_chart = options_.one_chart_each || is_cut;
-    const bool is_left = !options_.max_distortion && openness(component) >= kLeastOpenness;
-    if (!one_chart && !(whole && is_left)) return segment_component(component, whole, most);
-    if (!whole) {
+    if (is_segmented(component, most))
+      return take(component, charts_within_bound(component, rules_of(component, most), executor_));
+    if (!charts::is_disk(component)) {
       charts::cut(component);
       ++cuts;
     }
     charts.push_back(std::move(component));
   }
 
+  /// A component and its charts.
+  void take(const charts::Chart& component, ComponentCharts parts) {
+    rough += parts.is_rough ? 1 : 0;
+    segmented += !charts::is_disk(component) || parts.charts.size() > 1 ? 1 : 0;
+    for (charts::Chart& part : parts.charts) charts.push_back(std::move(part));
+  }
+
   std::vector<charts::Chart> charts;
   Index cuts = 0, segmented = 0, rough = 0;
 
  private:
-  void segment_component(const charts::Chart& component, bool whole, Index most) {
-    SegmentRules rules =
-        account_.rules(options_.max_distortion.value_or(kDefaultDistortion), component);
-    rules.most_regions = most;
-    rules.effort = options_.effort;
-    const bool may_stay = whole && openness(component) >= kLeastOpenness;
-    ComponentCharts parts =
-        charts_within_bound(component, {rules, options_.symmetry, may_stay}, executor_);
-    rough += parts.is_rough ? 1 : 0;
-    segmented += !whole || parts.charts.size() > 1 ? 1 : 0;
-    for (charts::Chart& part : parts.charts) charts.push_back(std::move(part));
-  }
-
   const SegmentOptions& options_;
   bool merges_to_one_;
   const Account& account_;
@@ -128,17 +140,52 @@ struct Cuts {
   }
 };
 
+/// The charts of the components that are segmented, where other processes help with them: one a
+/// component, in the order of surfaces, empty for those that are not. Else nothing.
+std::vector<std::optional<ComponentCharts>> segment_together(
+    const std::vector<charts::Charts>& surfaces, const Quotas& quotas, const Cutter& cutter,
+    Account& account, Executor& executor) {
+  if (executor.shared_work() == nullptr) return {};
+  std::vector<ComponentJob> jobs;
+  std::vector<std::size_t> places;
+  std::size_t place = 0;
+  for (const charts::Charts& surface : surfaces)
+    for (const charts::Chart& component : surface.charts) {
+      const Index most = quotas.most[place++];
+      if (!cutter.is_segmented(component, most)) continue;
+      jobs.push_back({&component, cutter.rules_of(component, most)});
+      places.push_back(place - 1);
+    }
+  const auto on_done = [&](std::size_t job) {
+    account.finish(jobs[job].component->mesh.faces.size());
+    account.tell();
+  };
+  std::vector<ComponentCharts> made = charts_made_together(jobs, on_done, executor);
+  if (made.empty()) return {};
+  std::vector<std::optional<ComponentCharts>> all(place);
+  for (std::size_t k = 0; k < made.size(); ++k) all[places[k]] = std::move(made[k]);
+  return all;
+}
+
 Cuts cut_all(std::vector<charts::Charts>& surfaces, const Quotas& quotas,
              const SegmentOptions& options, const SegmentWatch& watch, Executor& executor) {
   Account account(surfaces, watch);
+  const auto make_cutter = [&] { return Cutter(options, quotas.merges_to_one, account, executor); };
+  auto made = segment_together(surfaces, quotas, make_cutter(), account, executor);
+  made.resize(quotas.most.size());
   Cuts cuts;
   for (charts::Charts& surface : surfaces) {
-    Cutter cutter(options, quotas.merges_to_one, account, executor);
+    Cutter cutter = make_cutter();
     for (charts::Chart& component : std::exchange(surface.charts, {})) {
-      const std::size_t faces = component.mesh.faces.size(), before = cutter.charts.size();
-      cutter.add(std::move(component), quotas.most[cuts.became.size()]);
+      const std::size_t place = cuts.became.size(), before = cutter.charts.size();
+      const std::size_t faces = component.mesh.faces.size();
+      if (made[place]) {
+        cutter.take(component, std::move(*made[place]));
+      } else {
+        cutter.add(std::move(component), quotas.most[place]);
+        account.finish(faces);
+      }
       cuts.became.push_back(static_cast<Index>(cutter.charts.size() - before));
-      account.finish(faces);
     }
     surface.charts = std::move(cutter.charts);
     cuts.rough += cutter.rough;

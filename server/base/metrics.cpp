@@ -56,6 +56,10 @@ constexpr std::array kFamilies = {
               "Threads that still work on jobs that were given up."},
     FamilyRow{Metric::job_cpu_seconds, "unwrapd_job_cpu_seconds_total", Type::Counter,
               "User and system CPU time of processes of jobs that have ended, in seconds."},
+    FamilyRow{Metric::shared_bundles, "unwrapd_shared_bundles_total", Type::Counter,
+              "Bundles of jobs whose work several workers share, by outcome: offered (by a job of "
+              "this node), helped (made here for another job), found (made by a helper) or lost "
+              "(waited for in vain, and made again)."},
     FamilyRow{Metric::isolation, "unwrapd_isolation", Type::Gauge,
               "1 when each job runs in its own process, else 0."},
     FamilyRow{Metric::stage_seconds, "unwrapd_job_stage_seconds", Type::Histogram,

@@ -39,6 +39,7 @@ enum class Metric {
   jobs_forced,
   lost_threads,
   job_cpu_seconds,
+  shared_bundles,
   isolation,
   stage_seconds,
   iterations,

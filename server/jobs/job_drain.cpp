@@ -7,6 +7,7 @@ namespace unwrapd::server::jobs {
 void JobQueue::close() {
   const std::lock_guard lock(mutex_);
   closed_ = true;
+  sharing_.close();
   changed_.notify_all();
 }
 

@@ -40,7 +40,11 @@ JobQueue::JobQueue(store::JobStore& store, store::BlobStore& blobs, EventFeed& e
       config_(config),
       door_(config.max_queue),
       all_workers_(config.workers),
-      leases_(config.lease) {
+      leases_(config.lease),
+      sharing_(store, log, [this] {
+        look_for_jobs();
+        tell_jobs_wait_();
+      }) {
   load_lengths();
 }
 
@@ -171,7 +175,7 @@ bool JobQueue::enqueue(Submission& submission, const std::optional<Answer>& answ
 
 /// Waits for the job whose turn it is; nullptr when the queue is closed. A job whose row cannot be
 /// read never runs.
-std::shared_ptr<RunningJob> JobQueue::take() {
+Turn JobQueue::take_turn(bool may_help) {
   std::unique_lock lock(mutex_);
   while (!closed_) {
     if (pause_.seconds_left() > 0) {
@@ -180,6 +184,8 @@ std::shared_ptr<RunningJob> JobQueue::take() {
     }
     const std::optional<std::string> owner = store_.next_owner(mean_ms());
     if (!owner) {
+      if (may_help)
+        if (std::shared_ptr<HelpedJob> helped = sharing_.find()) return {.helped = helped};
       await_news(lock);
       continue;
     }
@@ -187,12 +193,12 @@ std::shared_ptr<RunningJob> JobQueue::take() {
     if (!record) {
       changed_.wait_for(lock, store_.node().keeps_work ? kPauseWhileLeft : kPauseWhileTaken);
     } else if (record->unreadable.empty()) {
-      return begin(std::move(*record));
+      return {.job = begin(std::move(*record))};
     } else {
       set_aside(*record);
     }
   }
-  return nullptr;
+  return {};
 }
 
 std::optional<store::JobRecord> JobQueue::take_of(const std::string& owner) {

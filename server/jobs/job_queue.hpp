@@ -35,6 +35,7 @@
 #include "server/jobs/disk_full_backoff.hpp"
 #include "server/jobs/event_feed.hpp"
 #include "server/jobs/lease_watch.hpp"
+#include "server/jobs/work_sharing.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/store/job_store.hpp"
 
@@ -90,6 +91,12 @@ struct Submission {
   std::optional<store::SpentTicket> ticket = {};  ///< that it came with
 };
 
+/// What a worker does next: a job, or help with one that runs; neither when the queue is closed.
+struct Turn {
+  std::shared_ptr<RunningJob> job = {};
+  std::shared_ptr<HelpedJob> helped = {};
+};
+
 /// Thread-safe.
 class JobQueue {
  public:
@@ -113,7 +120,9 @@ class JobQueue {
   /// ticket was spent by a job that is gone.
   store::JobRecord submit(Submission submission);
   /// Waits for the job whose turn it is; nullptr when the queue is closed.
-  std::shared_ptr<RunningJob> take();
+  std::shared_ptr<RunningJob> take() { return take_turn(false).job; }
+  /// The same, or where no job waits a running one that the worker may help with.
+  Turn take_turn(bool may_help);
   /// Ends what take() returned. Its files are complete when it has succeeded. stored: called when
   /// the store has its end, and before anybody is told of it.
   void finish(const RunningJob& job, store::JobOutcome outcome,
@@ -148,6 +157,13 @@ class JobQueue {
   /// How long the job has waited that waits longest, on any node; 0 where none does. It grows while
   /// the store is away.
   [[nodiscard]] double waiting_seconds();
+  /// Of jobs whose work several processes share.
+  [[nodiscard]] WorkSharing& sharing() { return sharing_; }
+  /// Whether there are other workers, here or elsewhere, that could help.
+  [[nodiscard]] bool has_helpers() const {
+    const std::lock_guard lock(mutex_);
+    return all_workers_ > 1;
+  }
   /// Of nodes that keep their work.
   [[nodiscard]] AffinityCounts affinity() const { return affinity_.counts(); }
 
@@ -246,6 +262,7 @@ class JobQueue {
   std::int64_t all_workers_;  // of all nodes
   LeaseWatch leases_;
   Affinity affinity_;
+  WorkSharing sharing_;
   store::QueueCounts counted_;
   std::optional<std::int64_t> first_waiting_ms_;  // as of counted_
   DiskFullBackoff pause_;

@@ -129,6 +129,7 @@ void JobQueue::renew_leases() {
   take_up_lapsed();
   give_up_excess();
   store_.level_shares();
+  store_.drop_ended_shared_work();
   if (store_.node().keeps_work) store_.forget_old_work();
 }
 

@@ -134,8 +134,12 @@ void WorkerPool::work() {
   work::ThreadExecutor executor(config_.threads, config_.core);
   while (true) {
     try {
-      const std::shared_ptr<RunningJob> job = queue_.take();
-      if (!job || work_on(*job, executor) == Then::leave) return;
+      const Turn turn = queue_.take_turn(config_.isolation.on);
+      if (turn.helped) {
+        help_with(*turn.helped);
+      } else if (!turn.job || work_on(*turn.job, executor) == Then::leave) {
+        return;
+      }
     } catch (const std::exception& error) {  // the store: the job is run again at the next start
       log_.error("a worker failed", {{"reason", reason_of(error)}});
       std::this_thread::sleep_for(kPauseAfterFailure);
@@ -232,10 +236,10 @@ std::string WorkerPool::run(const RunningJob& job, const Means& means) {
   const store::LoadedInput loaded = load(job);
   FeedOutput output(job, blobs_, {means.reservation, config_.most_bytes});
   const auto queue_ms = static_cast<double>(job.started_ms - job.record.created_ms);
-  const work::JobTask task{.record = loaded.record(),
-                           .queue_ms = std::max(0.0, queue_ms),
-                           .began = job.began,
-                           .stop = job.stop.get_token()};
+  work::JobTask task{.record = loaded.record(),
+                     .queue_ms = std::max(0.0, queue_ms),
+                     .began = job.began,
+                     .stop = job.stop.get_token()};
   if (!is_apart(job.record))
     return config_.functions.run(task, loaded.input(), output, limits_, means.executor);
   work::Isolation isolation = config_.isolation;
@@ -244,6 +248,9 @@ std::string WorkerPool::run(const RunningJob& job, const Means& means) {
                {{"job", job.record.id}, {"seconds", job.seconds()}});
     config_.on_force("killed");
   };
+  std::unique_ptr<work::WorkDesk> desk;
+  if (queue_.has_helpers()) desk = queue_.sharing().desk_of_job(job.record, job.stop.get_token());
+  task.desk = desk.get();
   try {
     return work::run_job_isolated(task, loaded.input(), output, limits_, isolation);
   } catch (const Error& error) {

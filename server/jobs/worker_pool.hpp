@@ -24,6 +24,7 @@
 #include "server/jobs/job_queue.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/store/quota_reservations.hpp"
+#include "server/store/stored_input.hpp"
 #include "server/work/job_process.hpp"
 #include "server/work/job_worker.hpp"
 
@@ -64,6 +65,7 @@ class WorkerPool {
   void begin_thread();
   void work();
   Then work_on(RunningJob& job, Executor& executor);
+  void help_with(HelpedJob& helped);
   [[nodiscard]] bool is_apart(const store::JobRecord& job) const;
   void give_up(RunningJob& job, store::QuotaReservation& reservation);
   void lose_thread(const RunningJob& job);

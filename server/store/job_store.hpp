@@ -28,6 +28,7 @@
 #include "server/store/blob_store.hpp"
 #include "server/store/database_address.hpp"
 #include "server/store/job_record.hpp"
+#include "server/store/stage_of_job.hpp"
 
 namespace unwrapd::server::store {
 
@@ -185,6 +186,24 @@ class JobStore {
   /// Forgets what this node has worked on, as it has, or what any has that is long ago.
   void forget_own_work();
   void forget_old_work();
+  /// Notes a stage that has so many bundles; true for the first process of this attempt to do so.
+  bool open_stage(const StageOfJob& of, int bundles);
+  /// The next bundle that no process has begun: for the job's own from the front, for a helper from
+  /// the back. None where all were begun.
+  std::optional<int> claim_bundle(const StageOfJob& of, bool is_helper);
+  /// Keeps a bundle for the other processes, as long as its stage is known.
+  void keep_bundle(const StageOfJob& of, int bundle, std::string_view bytes);
+  std::optional<std::string> bundle(const StageOfJob& of, int bundle);
+  /// Whether this attempt of a job still runs.
+  bool is_running(std::int64_t job, int attempt);
+  /// A running job with bundles that nobody has begun, of the owner who was served least.
+  /// passed_over: jobs (their seq) that are not asked for.
+  std::optional<JobRecord> job_to_help(const std::vector<std::int64_t>& passed_over);
+  /// Notes that a process has helped with a job of this owner for so long.
+  void charge(std::string_view owner, std::int64_t ms);
+  /// Drops what processes have exchanged for this job, or for all that have ended.
+  void drop_shared_work(std::int64_t job);
+  void drop_ended_shared_work();
   /// Raises the beat of an attempt of this node. False when it is no longer that: another node has
   /// taken it up.
   bool beat(const JobRecord& job);

@@ -154,6 +154,13 @@ CREATE TABLE secrets (
 );
 )sql";
 
+std::string unlogged(std::string step) {
+  constexpr std::string_view kTable = "CREATE TABLE";
+  for (std::size_t at = 0; (at = step.find(kTable, at)) != std::string::npos; at += kTable.size())
+    step.replace(at, kTable.size(), "CREATE UNLOGGED TABLE");
+  return step;
+}
+
 }  // namespace
 
 std::string postgres_step(std::int64_t version) {
@@ -162,7 +169,8 @@ std::string postgres_step(std::int64_t version) {
   if (version == kFirstVersion + 1) return kNamesStep;
   if (version == kFirstVersion + 2) return kTicketsStep;
   if (version == kTurnsVersion) return std::string(kTurnsStep) + kPostgresTurns;
-  return kNodesTogetherStep;
+  if (version == kTurnsVersion + 1) return kNodesTogetherStep;
+  return unlogged(kSharedWorkStep);
 }
 
 }  // namespace unwrapd::server::store

@@ -6,7 +6,7 @@
 
 namespace unwrapd::server::store {
 
-inline constexpr std::int64_t kSchemaVersion = 14;  ///< of this program
+inline constexpr std::int64_t kSchemaVersion = 15;  ///< of this program
 
 // From version 10 to 11, to 12, and to 13 (its triggers follow), in the words of both engines.
 inline constexpr const char* kNamesStep = R"sql(
@@ -49,6 +49,29 @@ CREATE UNLOGGED TABLE worked_on (
   node TEXT NOT NULL,
   noted TIMESTAMPTZ NOT NULL DEFAULT clock_timestamp(),
   PRIMARY KEY (document, node)
+);
+)sql";
+
+/// To version 15: work of a job that several processes do together. Of PostgreSQL the tables are
+/// unlogged: what they lose is made again.
+inline constexpr std::int64_t kSharedWorkVersion = 15;
+inline constexpr const char* kSharedWorkStep = R"sql(
+CREATE TABLE shared_stages (
+  job BIGINT NOT NULL,
+  stage TEXT NOT NULL,
+  program TEXT NOT NULL,
+  attempt BIGINT NOT NULL,
+  bundles BIGINT NOT NULL,
+  from_front BIGINT NOT NULL DEFAULT 0,
+  from_back BIGINT NOT NULL DEFAULT 0,
+  PRIMARY KEY (job, stage)
+);
+CREATE TABLE shared_bundles (
+  job BIGINT NOT NULL,
+  stage TEXT NOT NULL,
+  bundle BIGINT NOT NULL,
+  bytes TEXT NOT NULL,
+  PRIMARY KEY (job, stage, bundle)
 );
 )sql";
 

@@ -132,7 +132,7 @@ CREATE TRIGGER jobs_removed AFTER DELETE ON jobs BEGIN
   UPDATE stored SET bytes = bytes - OLD.stored_bytes, jobs = jobs - 1 WHERE owner = OLD.owner;
 END;
 )sql",
-    kNamesStep, kTicketsStep, kTurnsStep, ""};
+    kNamesStep, kTicketsStep, kTurnsStep, "", kSharedWorkStep};
 
 /// Strict tables know BIGINT by one name alone.
 std::string in_words_of_sqlite(std::string step) {
@@ -168,7 +168,8 @@ END;
 
 std::string sqlite_step(std::int64_t version) {
   const std::string step = kSteps.at(static_cast<std::size_t>(version - 1));
-  return version == kTurnsVersion ? in_words_of_sqlite(step) + kSqliteTurns : step;
+  if (version < kTurnsVersion) return step;
+  return in_words_of_sqlite(step) + (version == kTurnsVersion ? kSqliteTurns : "");
 }
 
 }  // namespace unwrapd::server::store

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "api/report.hpp"
-#include "server/base/byte_pack.hpp"
+#include "core/base/byte_pack.hpp"
 #include "server/base/utf8.hpp"
 
 namespace unwrapd::server::work {

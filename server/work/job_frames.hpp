@@ -20,12 +20,16 @@ enum class FrameKind : std::uint8_t {
   uvs,        ///< to the worker: of a map to be rendered
   report,     ///< to the worker: of that map
   begin,      ///< to the worker: that was all
+  bundle,     ///< to the worker: the answer to what it asked the desk
   ready,      ///< from here on from the worker: it has locked itself in
   stage,      ///< bytes of pack()
   iteration,  ///< bytes of pack()
   note,       ///< the name is its code, the bytes are its text
   result,     ///< the answer's asset, by its format
   file,       ///< a further file, by its name
+  claim,      ///< asks for a bundle to make; the name is its stage, as of the next two
+  publish,    ///< a bundle for the others
+  obtain,     ///< asks for a bundle of another
   done,       ///< the end; the name is the result's format
   rendered,   ///< the end; bytes of the file that was asked for
   failed,     ///< the end; the name is the error's code

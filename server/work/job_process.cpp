@@ -8,12 +8,12 @@
 
 #include "server/base/threads.hpp"
 #include "server/store/blob_store.hpp"
+#include "server/work/conversation.hpp"
 #include "server/work/job_frames.hpp"
 #include "server/work/job_worker.hpp"
 #include "server/work/lambda_selection.hpp"
 #include "server/work/sandbox.hpp"
 #include "server/work/warm_heap.hpp"
-#include "server/work/worker_answer.hpp"
 #include "server/work/worker_process.hpp"
 
 namespace unwrapd::server::work {
@@ -22,7 +22,6 @@ namespace {
 constexpr std::int64_t kProgramReserve = std::int64_t{256} << 20;
 constexpr std::int64_t kThreadReserve = std::int64_t{80} << 20;  // its stack and its arena
 constexpr int kSpareSeconds = 60;  // of processor time: the deadline comes first
-constexpr std::size_t kMaxTotals = 16384;
 constexpr std::chrono::seconds kProbePatience{20};
 
 SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolation) {
@@ -34,121 +33,6 @@ SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolati
           static_cast<int>(std::min<std::int64_t>(seconds, std::numeric_limits<int>::max())),
       .threads = isolation.threads};
 }
-
-[[noreturn]] void misbehaved() { throw WorkerCrashed("its answer is invalid"); }
-
-/// Parses a message of a worker. A message that cannot be parsed is no error of the job.
-template <class Read>
-auto believed(Read read) {
-  try {
-    return read();
-  } catch (const Error&) {
-    misbehaved();
-  }
-}
-
-/// Throws what the worker caught: an exception that nobody foresaw as such, as it would be thrown
-/// in this process.
-[[noreturn]] void throw_told(const Frame& frame) {
-  const ToldFailure failure = believed([&] { return failure_told(frame); });
-  if (failure.reason.empty()) throw failure.error;
-  throw std::runtime_error(failure.reason);
-}
-
-/// Whether the totals can become a header field of an answer.
-bool is_totals(std::string_view bytes) {
-  return bytes.size() <= kMaxTotals && api::Json::accept(bytes) &&
-         bytes.find_first_of("\r\n") == std::string_view::npos;
-}
-
-/// Keeps the event of a frame, for an output that may fail for reasons of its own.
-class EventCopy final : public JobOutput {
- public:
-  void stage(const StageEvent& event) override { stage_ = event; }
-  void iteration(const IterationEvent& event, double elapsed_ms) override {
-    iteration_ = event;
-    elapsed_ms_ = elapsed_ms;
-  }
-  void note(const Note& note) override { note_ = note; }
-  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
-  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
-
-  void hand_to(JobOutput& output) const {
-    if (stage_) output.stage(*stage_);
-    if (iteration_) output.iteration(*iteration_, elapsed_ms_);
-    if (note_) output.note(*note_);
-  }
-
- private:
-  std::optional<StageEvent> stage_;
-  std::optional<IterationEvent> iteration_;
-  double elapsed_ms_ = 0;
-  std::optional<Note> note_;
-};
-
-/// One conversation with a worker.
-class Conversation {
- public:
-  /// maps: the number of maps of the job.
-  Conversation(WorkerProcess& worker, JobOutput& output, std::int64_t max_bytes,
-               std::size_t maps = 0)
-      : worker_(worker), output_(output), left_(max_bytes), files_(maps) {}
-
-  void send(FrameKind kind, std::string_view name, std::string_view bytes) {
-    send_frame([&](std::string_view piece) { worker_.send(piece); }, kind, name, bytes);
-  }
-
-  void await_ready() {
-    if (next().kind != FrameKind::ready) misbehaved();
-  }
-
-  /// Hands over all frames until the end. Returns the format of the result.
-  std::string listen() {
-    while (true) {
-      const Frame frame = next();
-      if (frame.kind == FrameKind::done && is_result_format(frame.name)) return frame.name;
-      hand_over(frame);
-    }
-  }
-
-  /// The only file of an answer, if there is one.
-  std::string listen_for_file() {
-    Frame frame = next();
-    if (frame.kind != FrameKind::rendered) misbehaved();
-    return frame.bytes;
-  }
-
- private:
-  /// The next frame. Throws the error that the worker ends with.
-  Frame next() {
-    Frame frame;
-    const auto receive = [&](char* data, std::size_t size) { return worker_.receive(data, size); };
-    if (!believed([&] { return receive_frame(receive, left_, frame); })) worker_.reap();
-    left_ -= static_cast<std::int64_t>(frame.bytes.size());
-    if (frame.kind == FrameKind::failed) throw_told(frame);
-    return frame;
-  }
-
-  void hand_over(const Frame& frame) {
-    if (is_event(frame.kind)) return hand_over_event(frame);
-    if (frame.kind == FrameKind::result && files_.take_result(frame.name))
-      return output_.result(frame.name, frame.bytes);
-    const bool is_file = frame.kind == FrameKind::file && files_.take(frame.name);
-    if (!is_file || (frame.name == store::kTotalsFile && !is_totals(frame.bytes))) misbehaved();
-    output_.file(frame.name, frame.bytes);
-  }
-
-  void hand_over_event(const Frame& frame) {
-    EventCopy event;
-    believed([&] { unpack_event(frame, event); });
-    event.hand_to(output_);
-  }
-
-  WorkerProcess& worker_;
-  JobOutput& output_;
-  std::int64_t left_;  // bytes that may still come
-  AnswerFiles files_;
-};
 
 void send_asset(Conversation& worker, const asset::Input& input) {
   worker.send(FrameKind::document, {}, input.document);
@@ -249,21 +133,40 @@ std::shared_ptr<SpareWorkers> spare_workers(int count, const api::Limits& limits
   return std::make_shared<SpareWorkers>(count, start);
 }
 
-std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
-                             const api::Limits& limits, const Isolation& isolation) {
+std::unique_ptr<WorkerProcess> worker_for(const JobTask& task, bool is_helper,
+                                          const asset::Input& input, const api::Limits& limits,
+                                          const Isolation& isolation) {
   const auto tell = [&](Conversation& conversation) {
     const std::chrono::duration<double, std::milli> elapsed =
         std::chrono::steady_clock::now() - task.began;
     const WorkerTask shape{.limits = limits,
                            .memory_bytes = isolation.memory_bytes,
                            .queue_ms = task.queue_ms,
-                           .elapsed_ms = elapsed.count()};
+                           .elapsed_ms = elapsed.count(),
+                           .is_shared = task.desk != nullptr,
+                           .is_helper = is_helper};
     conversation.send(FrameKind::task, {}, pack_task(shape, task.record));
     send_asset(conversation, input);
   };
-  const auto worker =
-      worker_on(isolation, limits, {task.stop, isolation.grace, isolation.on_kill}, tell);
-  return Conversation(*worker, output, isolation.memory_bytes, map_count(task.record)).listen();
+  return worker_on(isolation, limits, {task.stop, isolation.grace, isolation.on_kill}, tell);
+}
+
+std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
+                             const api::Limits& limits, const Isolation& isolation) {
+  const auto worker = worker_for(task, false, input, limits, isolation);
+  const std::size_t maps = map_count(task.record);
+  return Conversation(*worker, output, isolation.memory_bytes, maps, task.desk).listen();
+}
+
+void help_isolated(const JobTask& task, const asset::Input& input, const api::Limits& limits,
+                   const Isolation& isolation) {
+  const auto worker = worker_for(task, true, input, limits, isolation);
+  NoOutput none;
+  try {
+    Conversation(*worker, none, isolation.memory_bytes, 0, task.desk).listen();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::cancelled) throw;
+  }
 }
 
 std::string render_isolated(const Rendering& rendering, const RenderingInput& input,

@@ -53,6 +53,11 @@ std::shared_ptr<SpareWorkers> spare_workers(int count, const api::Limits& limits
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
                              const api::Limits& limits, const Isolation& isolation);
 
+/// The same for a process that helps with a job that another one answers for, at the task's desk.
+/// Returns when nothing is left to help with, or the desk says so. Throws as above.
+void help_isolated(const JobTask& task, const asset::Input& input, const api::Limits& limits,
+                   const Isolation& isolation);
+
 /// render() in a process of its own. Throws what that throws, and WorkerCrashed; Error{cancelled}
 /// once it was stopped.
 std::string render_isolated(const Rendering& rendering, const RenderingInput& input,

@@ -13,9 +13,10 @@
 
 #include "api/error_table.hpp"
 #include "api/report.hpp"
-#include "server/base/byte_pack.hpp"
+#include "core/base/byte_pack.hpp"
 #include "server/work/job_frames.hpp"
 #include "server/work/sandbox.hpp"
+#include "server/work/socket_work.hpp"
 #include "server/work/solver_cache.hpp"
 #include "server/work/thread_executor.hpp"
 #include "server/work/warm_heap.hpp"
@@ -160,19 +161,32 @@ struct Crew {
   ThreadExecutor threads;
 };
 
-/// The threads of a crew, with what the charts of one job share.
+/// Of a process that helps with a job.
+class SilentOutput final : public JobOutput {
+ public:
+  void stage(const StageEvent& /*event*/) override {}
+  void iteration(const IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
+  void note(const Note& /*note*/) override {}
+  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
+  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
+};
+
+/// The threads of a crew, with what the charts of one job share, and with whom.
 class SharingExecutor final : public Executor {
  public:
-  SharingExecutor(ThreadExecutor& threads, SharedCache& core) : threads_(threads), core_(core) {}
+  SharingExecutor(ThreadExecutor& threads, SharedCache& core, SharedWork* work)
+      : threads_(threads), core_(core), work_(work) {}
 
   void for_each_block(int block_count, const std::function<void(int)>& body) override {
     threads_.for_each_block(block_count, body);
   }
   [[nodiscard]] SharedCache* shared_cache() const override { return &core_; }
+  [[nodiscard]] SharedWork* shared_work() const override { return work_; }
 
  private:
   ThreadExecutor& threads_;
   SharedCache& core_;
+  SharedWork* work_;
 };
 
 void draw(const ReceivedJob& job, const Crew& crew, const WorkerFunctions& functions) {
@@ -187,8 +201,11 @@ void draw(const ReceivedJob& job, const Crew& crew, const WorkerFunctions& funct
 void run(const ReceivedJob& job, Crew& crew, const WorkerFunctions& functions) {
   const std::int64_t memory = job.task.memory_bytes;
   SolverCache core({.cache_bytes = memory / kCacheShare, .job_bytes = memory}, 1);
-  SharingExecutor executor(crew.threads, core);
-  SocketOutput output;
+  SocketWork shared(send_all, receive_all, job.task.is_helper);
+  SharingExecutor executor(crew.threads, core, job.task.is_shared ? &shared : nullptr);
+  SocketOutput told;
+  SilentOutput silent;
+  JobOutput& output = job.task.is_helper ? static_cast<JobOutput&>(silent) : told;
   const auto elapsed = std::chrono::duration<double, std::milli>(job.task.elapsed_ms);
   const JobTask task{
       .record = job.record,

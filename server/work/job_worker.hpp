@@ -35,6 +35,8 @@ struct WorkerTask {
   double queue_ms = 0;
   double elapsed_ms = 0;                    ///< since the job began
   std::optional<Rendering> rendering = {};  ///< the file to make; none: run the job
+  bool is_shared = false;                   ///< others work on the job, too
+  bool is_helper = false;                   ///< this process is one of them, and answers nothing
 };
 
 std::string pack_task(const WorkerTask& task, const store::JobRecord& job);

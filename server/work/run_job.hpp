@@ -12,6 +12,7 @@
 #include "core/types/progress.hpp"
 #include "server/store/job_record.hpp"
 #include "server/work/stage_timer.hpp"
+#include "server/work/work_desk.hpp"
 
 namespace unwrapd::server::work {
 
@@ -42,6 +43,7 @@ struct JobTask {
   double queue_ms = 0;  ///< spent in the queue
   StageTimer::TimePoint began;
   std::stop_token stop;
+  WorkDesk* desk = nullptr;  ///< of a job that runs in a process of its own; null: it is alone
 };
 
 /// Reads, unwraps, and writes to the output. Returns the format of the result (glb, gltf or obj)

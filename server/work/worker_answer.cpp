@@ -2,7 +2,7 @@
 
 #include "api/error_table.hpp"
 #include "api/json.hpp"
-#include "server/base/byte_pack.hpp"
+#include "core/base/byte_pack.hpp"
 #include "server/store/blob_store.hpp"
 #include "server/work/lambda_selection.hpp"
 

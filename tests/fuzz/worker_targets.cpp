@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/byte_pack.hpp"
 #include "core/base/error.hpp"
-#include "server/base/byte_pack.hpp"
 #include "server/work/job_frames.hpp"
 #include "server/work/uv_file.hpp"
 #include "tests/fuzz/targets.hpp"
