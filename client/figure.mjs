@@ -1,7 +1,11 @@
 // A page like Figures 5 and 6 of the paper: one mesh, flattened by every method that the server
 // knows and by Hybrid with several lambdas, each map with [D_angle, D_area] in brackets.
 //
-//   node figure.mjs SERVER UNWRAP MESH OUT.html
+//   node figure.mjs SERVER UNWRAP MESH OUT.html [UP]
+//
+// Maps of one chart are drawn at one scale and turned to each other; what is up on the mesh is up on
+// ARAP's map. Several charts lie as they were packed. +Y is up, as in glTF; an OBJ says nothing of it
+// and may have another axis for UP: x, -x, -y, z or -z.
 //
 // The page is one file without scripts: pictures are part of it, nothing is fetched.
 import { execFile } from "node:child_process";
@@ -10,6 +14,8 @@ import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
+
+import { alignedPlaces, cornersOf, raised } from "./align.mjs";
 
 /** Weights of Eq. (5) from almost conformal to almost rigid, for a mesh of area 1. In other units
  * they grow with the area, as the first term of Eq. (5) does: see inUnitsOf(). */
@@ -78,7 +84,7 @@ function card(map) {
       `<figcaption><b>${title}</b></figcaption></figure>`;
   }
   return `<figure>${picture("preview", map.preview, `${map.title} on the mesh`)}` +
-    picture("layout", map.layout, `${map.title}, the page`) +
+    (map.drawing ?? inlined(map.layout, "layout", `${map.title}, the page`, [0, 0, PAGE, PAGE])) +
     `<figcaption><b>${title}</b><br>${caption(map.report.distortion)}</figcaption></figure>`;
 }
 
@@ -88,20 +94,45 @@ const STYLE = `
   h1 { font-size: 1.6rem; margin: 0; } p { max-width: 62rem; color: #4a4658; }
   section { display: grid; grid-template-columns: repeat(auto-fill, minmax(13.5rem, 1fr)); gap: 1.5rem;
             margin: 1.5rem 0 2rem; }
-  figure { margin: 0; } img { display: block; width: 100%; object-fit: cover; }
-  .preview { aspect-ratio: 1; } .layout { aspect-ratio: 1; object-position: top; }
-  .bar { aspect-ratio: 4096 / 320; object-position: bottom; max-width: 60rem; }
+  figure { margin: 0; } img, svg { display: block; width: 100%; object-fit: cover; }
+  .preview, .layout { aspect-ratio: 1; } .bar { aspect-ratio: 4096 / 320; max-width: 60rem; }
   figcaption { text-align: center; padding-top: .4rem; font-variant-numeric: tabular-nums; }
   .problem { aspect-ratio: 1 / 2; display: grid; place-content: center; padding: 1rem;
              text-align: center; background: #e9e8ed; box-sizing: border-box; }
   @media print { body { margin: 0; } section { break-inside: avoid; } }`;
+
+const LAYOUT_UNITS = 40_960; // coordinates of the layout's paths along a page
+const PAGE = 4096; // the page's side in the layout; its legend is below
+
+/** The layout (SVG) as a part of the page, as much of it as the box {x, y, width, height} shows. */
+function inlined(layout, kind, label, box, content = layout.replace(/^.*?<svg [^>]*>|<\/svg>\s*$/gs, "")) {
+  return `<svg class="${kind}" role="img" aria-label="${escapeText(label)}" viewBox="${box.join(" ")}">${content}</svg>`;
+}
+
+/** The paths of a layout, V pointing up, at their place among the other maps. */
+export function drawing({ title, layout }, { turn, scale, middle }, side) {
+  const paths = layout.match(/<defs>.*?<\/defs>|<path [^>]*?(?:\/>|>.*?<\/path>)/gs) ?? [];
+  const degrees = (-turn * 180) / Math.PI; // V points down in an SVG
+  const place = `rotate(${degrees}) scale(${scale} ${-scale}) translate(${-middle[0]} ${-middle[1]}) scale(${1 / LAYOUT_UNITS})`;
+  const box = [-side / 2, -side / 2, side, side].map((x) => 1.04 * x);
+  return inlined(layout, "layout", `${title}, flat`, box, `<g transform="${place}">${paths.join("")}</g>`);
+}
+
+/** Draws maps of one chart beside each other, turned to ARAP's or to the first. */
+export function align(maps) {
+  const single = maps.filter((map) => map.corners && map.report.charts.length === 1);
+  if (single.length === 0) return;
+  const first = Math.max(0, single.findIndex((map) => map.title.startsWith("ARAP")));
+  const { places, side } = alignedPlaces(single.map((map) => map.corners), first);
+  single.forEach((map, k) => (map.drawing = drawing(map, places[k], side)));
+}
 
 /** The page, whole. rows: maps as plan() gives them, each with report, layout and preview or with
  * problem. */
 export function page(name, rows) {
   const done = rows.flat().find((map) => map.layout);
   const faces = done ? `, ${done.report.input.faces} triangles` : "";
-  const bar = done ? `<img class="bar" alt="the colours" src="data:image/png;base64,${done.layout}">` : "";
+  const bar = done ? inlined(done.layout, "bar", "the colours", [0, PAGE, PAGE, 320]) : "";
   const sections = rows.filter((row) => row.length > 0)
     .map((row) => `<section>\n${row.map(card).join("\n")}\n</section>`).join("\n");
   return `<!DOCTYPE html>
@@ -111,7 +142,8 @@ export function page(name, rows) {
 <h1>${escapeText(name)}${faces}</h1>
 <p>Effect of λ in the hybrid energy (5), the mesh scaled to area 1, compared with other methods. Numbers in brackets: angular
 and area distortion, [D<sub>angle</sub>, D<sub>area</sub>]; both are at best 2. Each map is shown as
-a checkerboard on the mesh and as the page it comes from, coloured by stretch.</p>
+a checkerboard on the mesh and flat, coloured by stretch. Maps of one chart have one scale and are
+turned to each other.</p>
 ${sections}
 ${bar}
 </body></html>
@@ -126,14 +158,14 @@ async function solve({ title, options }, { unwrap, server, mesh, folder, area })
   try {
     const given = Object.entries(inUnitsOf(area, options));
     const flags = given.flatMap(([name, value]) => [`--${name}`, value]);
-    await run(unwrap, [mesh, "--server", server, "--quiet", "-o", at("result"), "--report",
-      at("report.json"), "--layout", at("layout.png"), "--preview", at("preview.png"), ...flags]);
+    await run(unwrap, [mesh, "--server", server, "--quiet", "-o", at("result.obj"), "--output", "obj", "--report",
+      at("report.json"), "--layout", at("layout.svg"), "--preview", at("preview.png"), ...flags]);
   } catch (error) {
     return { title, problem: (error.stderr || error.message).trim() };
   }
-  const base64 = (file) => readFileSync(at(file)).toString("base64");
-  return { title, report: JSON.parse(readFileSync(at("report.json"), "utf8")),
-           layout: base64("layout.png"), preview: base64("preview.png") };
+  const text = (file) => readFileSync(at(file), "utf8");
+  return { title, report: JSON.parse(text("report.json")), corners: cornersOf(text("result.obj")),
+           layout: text("layout.svg"), preview: readFileSync(at("preview.png")).toString("base64") };
 }
 
 async function knownTo(server) {
@@ -144,10 +176,20 @@ async function knownTo(server) {
   return { methods: names(methods), options: names(options) };
 }
 
-async function main([server, unwrap, mesh, out]) {
+/** The mesh's file, turned upright. */
+function upright(mesh, up, folder) {
+  if (up === undefined || up === "y") return mesh;
+  if (!/\.obj$/i.test(mesh)) throw new Error("UP is for an OBJ; a glTF has +Y up, and other formats are turned by their programs");
+  const path = join(folder, basename(mesh));
+  writeFileSync(path, raised(readFileSync(mesh, "utf8"), up));
+  return path;
+}
+
+async function main([server, unwrap, given, out, up]) {
   const known = await knownTo(server);
   const folder = mkdtempSync(join(tmpdir(), "figure-"));
   try {
+    const mesh = upright(given, up, folder);
     const rows = [];
     let area;
     for (const row of plan(known.methods, known.options)) {
@@ -159,6 +201,7 @@ async function main([server, unwrap, mesh, out]) {
         console.log(`   ${map.title}: ${solved.problem ?? caption(solved.report.distortion)}`);
       }
     }
+    align(rows.flat());
     writeFileSync(out, page(basename(mesh), rows));
     if (!rows.flat().some((map) => map.layout)) throw new Error("no map could be made");
   } finally {
@@ -168,8 +211,8 @@ async function main([server, unwrap, mesh, out]) {
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const words = process.argv.slice(2);
-  if (words.length !== 4) {
-    console.error("usage: node figure.mjs SERVER UNWRAP MESH OUT.html");
+  if (words.length !== 4 && words.length !== 5) {
+    console.error("usage: node figure.mjs SERVER UNWRAP MESH OUT.html [UP]");
     process.exit(2);
   }
   await main(words);

@@ -48,6 +48,8 @@ async function makePage() {
 const all = (text, pattern) => [...text.matchAll(pattern)].map((match) => match[1]);
 const captionsOf = (html) => all(html, /<figcaption>(.*?)<\/figcaption>/g);
 
+const DRAWINGS = /<svg class="layout" [^>]*>(<g transform="[^"]+">.*?<\/g>)<\/svg>/gs;
+
 /** [D_angle, D_area] of a title. */
 function figuresOf(html, title) {
   const caption = captionsOf(html).find((text) => text.startsWith(`<b>${title}</b>`));
@@ -72,8 +74,8 @@ test("the page has every map, with its figures and both of its pictures", () => 
     for (const value of figuresOf(page.html, title)) assert.ok(value >= 2 && value < 4, captions[k]);
     assert.ok(page.said.includes(`${title}: [`), `${title} is not told`);
   });
-  for (const kind of ["preview", "layout"]) {
-    const pictures = all(page.html, new RegExp(`<img class="${kind}" alt="[^"]+" src="([^"]+)"`, "g"));
+  for (const [kind, pattern] of [["preview", /<img class="preview" alt="[^"]+" src="([^"]+)"/g], ["layout", DRAWINGS]]) {
+    const pictures = all(page.html, pattern);
     assert.equal(pictures.length, TITLES.length, kind);
     assert.ok(new Set(pictures).size > TITLES.length / 2, `one ${kind} for all`);
   }
@@ -82,13 +84,38 @@ test("the page has every map, with its figures and both of its pictures", () => 
 
 test("the page needs nothing but itself: pictures are whole, and nothing is linked or run", () => {
   const sources = all(page.html, /src="([^"]*)"/g);
-  assert.equal(sources.length, 2 * TITLES.length + 1);
+  assert.equal(sources.length, TITLES.length);
   for (const source of sources) {
     const bytes = Buffer.from(source.replace("data:image/png;base64,", ""), "base64");
     assert.equal(bytes.toString("latin1", 1, 4), "PNG");
     assert.equal(bytes.toString("latin1", bytes.length - 8, bytes.length - 4), "IEND");
   }
   assert.doesNotMatch(page.html, /<script|<link|<a |url\(|https?:/);
+});
+
+/** The corners of the triangles of a drawing, as its transform puts them; y points down. */
+function pointsOf(drawing) {
+  const [, degrees, scale, x, y, unit] = drawing.match(
+    /rotate\((\S+)\) scale\((\S+) -\S+\) translate\((\S+) (\S+)\) scale\((\S+)\)/).map(Number);
+  const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+  return all(drawing, /M(-?\d+[ -]\d*)l/g).map((pair) => {
+    const [a, b] = pair.match(/-?\d+/g).map(Number);
+    const [p, q] = [scale * (a * unit + x), -scale * (b * unit + y)];
+    return [c * p - s * q, s * p + c * q];
+  });
+}
+
+test("maps lie on each other: each is about as wide and as high as ARAP's, around one middle", () => {
+  const boxes = all(page.html, DRAWINGS).map((drawing) => {
+    const points = pointsOf(drawing);
+    assert.ok(points.length > 200);
+    return [0, 1].flatMap((k) => [Math.min, Math.max].map((of) => of(...points.map((p) => p[k]))));
+  });
+  const arap = boxes[TITLES.findIndex((title) => title.startsWith("ARAP"))];
+  const size = arap[1] - arap[0];
+  boxes.forEach((own, k) => own.forEach((side, i) =>
+    assert.ok(Math.abs(side - arap[i]) < 0.25 * size, `${TITLES[k]}: ${own} beside ${arap}`)));
+  assert.equal(new Set(all(page.html, /<svg class="layout" [^>]*viewBox="([^"]+)"/g)).size, 1, "one scale");
 });
 
 test("lambda walks from the conformal map to the rigid one, whatever the mesh's units", () => {
@@ -124,7 +151,7 @@ test("a browser shows every picture and complains of nothing", { skip: noChromiu
   writeFileSync(at("probe.html"), page.html.replace("</body>", probe));
   const { dom, console } = await browse(pathToFileURL(at("probe.html")), "--dump-dom");
   const widths = dom.match(/<title>widths ([\d,]+)<\/title>/)[1].split(",").map(Number);
-  assert.equal(widths.length, 2 * TITLES.length + 1);
+  assert.equal(widths.length, TITLES.length);
   assert.ok(widths.every((width) => width >= 256), `${widths}`);
   assert.deepEqual(console, []);
   await browse(pathToFileURL(at("dome.html")), "--window-size=1500,1400", `--screenshot=${at("page.png")}`);
