@@ -142,6 +142,15 @@ constexpr std::array kRows = {
         .methods = kEveryMethod,
         .get = get_seam_edges,
         .set = set_seam_edges},
+    OptionRow{.name = "keep_edges",
+              .type = OptionType::objects,
+              .limit = &Limits::max_constraints,
+              .description =
+                  "Paths of vertices along which no seam runs: charts grow across these edges "
+                  "first, at any distortion, and are cut elsewhere.",
+              .methods = kEveryMethod,
+              .get = get_keep_edges,
+              .set = set_keep_edges},
     plain<&A::seam_avoid>(
         "seam_avoid", OptionType::text, kEveryMethod,
         "A painted attribute of vertices, from 0 to 1, such as COLOR_0.r or _AVOID: where it is "
@@ -219,6 +228,15 @@ constexpr std::array kRows = {
     plain<&O::repack_only>(
         "repack_only", OptionType::flag, kEveryMethod,
         "true: packs the islands of the existing UVs again, without unwrapping; false: unwraps."),
+    OptionRow{.name = "locked_islands",
+              .type = OptionType::objects,
+              .limit = &Limits::max_constraints,
+              .description =
+                  "With repack_only: islands, each named by one of its faces, that keep their UVs. "
+                  "The others are packed around them, at the sizes that they have.",
+              .methods = kEveryMethod,
+              .get = get_locked_islands,
+              .set = set_locked_islands},
     plain<&O::measure_only>("measure_only", OptionType::flag, kEveryMethod,
                             "true: measures the existing UVs where they are: charts, seams, "
                             "distortion, flips, overlaps and fill; false: unwraps."),

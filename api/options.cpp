@@ -128,7 +128,7 @@ constexpr std::array kExcluders = {
              {"padding", "rotation", "texels_per_unit", "group", "max_pages", "stack_identical"}},
     Excluder{"with repack_only and measure_only, which keep seams and the sizes of islands",
              [](J job) { return job.unwrap.keeps_uvs(); },
-             {"seam_avoid", "texel_density"}},
+             {"seam_avoid", "keep_edges", "texel_density"}},
     Excluder{"with guarantee=none",
              [](J job) { return job.unwrap.guarantee == Guarantee::none; },
              {"repair"}},

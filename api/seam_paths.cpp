@@ -14,10 +14,16 @@ constexpr double kMaxIndex = std::numeric_limits<Index>::max();
   throw Error(ErrorCode::invalid_option, message, pointer);
 }
 
+/// The option that the pointer is in.
+std::string option_of(const std::string& pointer) {
+  return pointer.substr(1, pointer.find('/', 1) - 1);
+}
+
 Index index_of(const Json& value, const std::string& pointer) {
   const double index = value.is_number() ? value.get<double>() : -1;
   if (!(index >= 0 && index <= kMaxIndex && std::trunc(index) == index))
-    refuse(pointer, "Meshes and vertices of seam_edges must be integers of at least 0.");
+    refuse(pointer,
+           "Meshes and vertices of " + option_of(pointer) + " must be integers of at least 0.");
   return static_cast<Index>(index);
 }
 
@@ -33,7 +39,7 @@ std::vector<Index> vertices_of(const Json& list, const std::string& pointer) {
 
 SeamPath path_of(const Json& object, const std::string& pointer) {
   if (!object.is_object() || !object.contains("vertices"))
-    refuse(pointer, "A path of seam_edges must be an object with vertices.");
+    refuse(pointer, "A path of " + option_of(pointer) + " must be an object with vertices.");
   SeamPath path;
   for (const auto& [name, value] : object.items()) {
     const std::string at = pointer + "/" + pointer_token(name);
@@ -42,15 +48,17 @@ SeamPath path_of(const Json& object, const std::string& pointer) {
     else if (name == "mesh")
       path.surface = index_of(value, at);
     else
-      refuse(at, "A path of seam_edges has no such member; its members are vertices and mesh.");
+      refuse(at, "A path of " + option_of(pointer) +
+                     " has no such member; its members are vertices and mesh.");
   }
   return path;
 }
 
 }  // namespace
 
-std::vector<SeamPath> seam_paths_from_json(const Json& json, const std::string& pointer) {
-  if (!json.is_array()) refuse(pointer, "seam_edges must be a list of objects.");
+std::vector<SeamPath> seam_paths_from_json(const Json& json, const std::string& option) {
+  const std::string pointer = "/" + option;
+  if (!json.is_array()) refuse(pointer, option + " must be a list of objects.");
   std::vector<SeamPath> paths;
   paths.reserve(json.size());
   for (std::size_t k = 0; k < json.size(); ++k)

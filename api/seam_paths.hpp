@@ -1,5 +1,6 @@
 #pragma once
-// Edges to cut, to and from JSON: {"vertices": [3, 4, 9], "mesh": 0} cuts the edges 3-4 and 4-9.
+// Edges to cut or to keep, to and from JSON: {"vertices": [3, 4, 9], "mesh": 0} are the edges 3-4
+// and 4-9.
 // vertices are indices within their mesh; mesh is an index among the asset's meshes, 0 by default.
 
 #include <string>
@@ -10,8 +11,8 @@
 
 namespace unwrapd::api {
 
-/// Throws Error{invalid_option} with the pointer of the first fault, below `pointer`.
-std::vector<SeamPath> seam_paths_from_json(const Json& json, const std::string& pointer);
+/// Throws Error{invalid_option} with the pointer of the first fault, below "/<option>".
+std::vector<SeamPath> seam_paths_from_json(const Json& json, const std::string& option);
 
 Json to_json(const std::vector<SeamPath>& paths);
 

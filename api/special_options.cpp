@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "api/constraints.hpp"
+#include "api/locked_islands.hpp"
 #include "api/seam_paths.hpp"
 
 namespace unwrapd::api {
@@ -75,7 +76,21 @@ void set_constraints(JobOptions& options, const Json& value) {
 Json get_seam_edges(const JobOptions& options) { return to_json(options.unwrap.seam_edges); }
 
 void set_seam_edges(JobOptions& options, const Json& value) {
-  options.unwrap.seam_edges = seam_paths_from_json(value, "/seam_edges");
+  options.unwrap.seam_edges = seam_paths_from_json(value, "seam_edges");
+}
+
+Json get_keep_edges(const JobOptions& options) { return to_json(options.unwrap.keep_edges); }
+
+void set_keep_edges(JobOptions& options, const Json& value) {
+  options.unwrap.keep_edges = seam_paths_from_json(value, "keep_edges");
+}
+
+Json get_locked_islands(const JobOptions& options) {
+  return to_json(options.unwrap.locked_islands);
+}
+
+void set_locked_islands(JobOptions& options, const Json& value) {
+  options.unwrap.locked_islands = locked_islands_from_json(value, "/locked_islands");
 }
 
 }  // namespace unwrapd::api

@@ -31,4 +31,10 @@ void set_constraints(JobOptions& options, const Json& value);
 Json get_seam_edges(const JobOptions& options);
 void set_seam_edges(JobOptions& options, const Json& value);
 
+Json get_keep_edges(const JobOptions& options);
+void set_keep_edges(JobOptions& options, const Json& value);
+
+Json get_locked_islands(const JobOptions& options);
+void set_locked_islands(JobOptions& options, const Json& value);
+
 }  // namespace unwrapd::api

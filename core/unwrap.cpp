@@ -141,7 +141,7 @@ std::vector<Unwrapped> unwrap_curve(std::span<const Surface> given, const Unwrap
   for (Layout& layout : layouts) note_faults(layout, surfaces, options);
   std::vector<Unwrapped> maps;
   for (Layout& layout : layouts)
-    maps.push_back(assemble_surfaces(surfaces, std::move(layout), progress.stop));
+    maps.push_back(assemble_surfaces(surfaces, std::move(layout), options, progress.stop));
   for (Unwrapped& map : maps) restore_input(repaired, map);
   if (pipeline::is_curve(options)) pipeline::report_curve(maps, lambdas);
   return maps;

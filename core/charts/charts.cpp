@@ -10,6 +10,7 @@
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
 #include "core/charts/cut.hpp"
+#include "core/charts/path_edges.hpp"
 #include "core/charts/pieces.hpp"
 #include "core/charts/seam_weight.hpp"
 #include "core/mesh/counting_sort.hpp"
@@ -212,6 +213,7 @@ ConnectedSurface connect_surface(const solve::CacheContext&, const SurfaceNumber
 }
 
 Charts placed(const ConnectedSurface& connected, const Surface& surface,
+              std::span<const Triangle> welded, std::span<const EdgeEnds> kept,
               const std::stop_token& stop) {
   const TriMesh& mesh = surface.mesh;
   Charts charts = connected.charts;
@@ -223,6 +225,7 @@ Charts placed(const ConnectedSurface& connected, const Surface& surface,
       chart.mesh.positions.push_back(mesh.positions[v]);
     sort_by_length(chart.mesh, chart.loops);
     chart.avoid = avoid_of(chart, surface);
+    if (!kept.empty()) mark_kept(welded, kept, chart);
   }
   return charts;
 }
@@ -259,10 +262,11 @@ Charts make_charts(const Surface& surface, SeamMode seams) {
   return charts;
 }
 
-/// Only the paths on this surface count, and not its number among others.
+/// Only the paths on this surface count, and not its number among others. Edges are kept in what
+/// is made of connected surfaces.
 void describe(CacheKey& key, const SeamRules& seams) {
-  const auto& [mode, paths, surface, stop, core] = seams;
-  static_cast<void>(stop), static_cast<void>(core);
+  const auto& [mode, paths, surface, stop, core, kept] = seams;
+  static_cast<void>(kept), static_cast<void>(stop), static_cast<void>(core);
   key.add(mode);
   for (const SeamPath& path : paths)
     if (path.surface == surface) key.add(path.vertices);
@@ -273,12 +277,13 @@ Charts components_of(const Surface& surface, const SeamRules& seams) {
   const std::vector<Index> first_at = weld(surface.mesh.positions, seams.stop);
   throw_if_cancelled(seams.stop);
   const std::vector<Triangle> welded = renumber(surface.mesh.faces, first_at);
+  const std::vector<EdgeEnds> kept = kept_edges(seams, first_at, welded);
   const FaceStates states = inspect_areas(surface.mesh, welded, seams.stop);
   throw_if_cancelled(seams.stop);
   const auto pieces =
       solve::cached<connect_surface>(solve::CacheContext{seams.core, seams.stop},
                                      SurfaceNumbers(surface), first_at, states.of, seams);
-  return placed(*pieces, surface, seams.stop);
+  return placed(*pieces, surface, welded, kept, seams.stop);
 }
 
 std::size_t bytes_of(const Chart& chart) {

@@ -28,7 +28,8 @@ struct Chart {
   std::vector<char> crease = {};  ///< of a component, one a half-edge: 1 where materials meet, or
                                   ///< where the input has separate vertices on both sides
   std::vector<double> avoid = {};  ///< one a half-edge, the same on both sides of an edge: the mean
-                                   ///< of Surface::seam_avoid at its corners; empty: not painted
+                                   ///< of Surface::seam_avoid at its corners; of a kept edge,
+                                   ///< kKept; empty: not painted and none kept
 };
 
 /// The result of preparing a surface. Faces in set_aside are in no chart.
@@ -47,15 +48,16 @@ struct SeamRules {
   std::span<const SeamPath> paths = {};  ///< of all surfaces
   Index surface = 0;                     ///< the number of this surface
   std::stop_token stop = {};
-  SharedCache* core = nullptr;  ///< shares what does not depend on positions; null: none
+  SharedCache* core = nullptr;          ///< shares what does not depend on positions; null: none
+  std::span<const SeamPath> kept = {};  ///< edges of all surfaces that no cut may follow
 };
 
 void describe(CacheKey& key, const SeamRules& seams);
 
 /// The components of a surface, with by_position. A component need not be a disk, and may have no
 /// loop; the caller cuts or splits it. Throws Error{not_orientable, cancelled}, and
-/// Error{invalid_option} with where = "/seam_edges/<i>" if a path leaves the surface's vertices or
-/// edges.
+/// Error{invalid_option} with where = "/seam_edges/<i>" or "/keep_edges/<i>" if a path leaves the
+/// surface's vertices or edges, or a kept edge is in seam_edges, too.
 Charts components_of(const Surface& surface, const SeamRules& seams);
 
 /// The bytes of memory that a chart takes.

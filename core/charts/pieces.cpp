@@ -5,10 +5,9 @@
 #include "core/charts/pieces.hpp"
 
 #include <algorithm>
-#include <string>
 
 #include "core/base/cancel.hpp"
-#include "core/base/error.hpp"
+#include "core/charts/path_edges.hpp"
 #include "core/mesh/seams.hpp"
 
 namespace unwrapd::charts {
@@ -56,40 +55,12 @@ bool is_a_few_disks(const Pieces& kept, const Pieces& welded) {
          std::all_of(components.begin(), components.end(), is_disk);
 }
 
-[[noreturn]] void refuse_path(std::size_t path, const std::string& why) {
-  throw Error(ErrorCode::invalid_option, "seam_edges: " + why,
-              "/seam_edges/" + std::to_string(path));
-}
-
-std::string text(const EdgeEnds& edge) {
-  return std::to_string(edge[0]) + " and " + std::to_string(edge[1]);
-}
-
-/// The edges of one path, in ascending order, over welded vertices.
-std::vector<EdgeEnds> edges_of(const InspectedSurface& in, const SeamPath& path,
-                               std::size_t number) {
-  const auto count = static_cast<Index>(in.first_at.size());
-  std::vector<EdgeEnds> edges;
-  for (std::size_t k = 0; k < path.vertices.size(); ++k) {
-    const Index v = path.vertices[k];
-    if (v < 0 || v >= count)
-      refuse_path(number, "there is no vertex " + std::to_string(v) + " in a mesh of " +
-                              std::to_string(count) + "; give vertices of this mesh");
-    if (k == 0) continue;
-    const auto ends = std::minmax(in.first_at[path.vertices[k - 1]], in.first_at[v]);
-    edges.push_back({ends.first, ends.second});
-  }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
 void cut_paths(const InspectedSurface& in, const SeamRules& seams, Halfedges& halfedges) {
   for (std::size_t k = 0; k < seams.paths.size(); ++k) {
     if (seams.paths[k].surface != seams.surface) continue;
-    const std::vector<EdgeEnds> edges = edges_of(in, seams.paths[k], k);
-    if (const auto missing = cut_edges(in.welded, edges, halfedges))
-      refuse_path(k, "no edge joins vertices " + text(*missing) +
-                         "; give vertices that are joined by edges");
+    const PathName name{"seam_edges", k};
+    const std::vector<EdgeEnds> edges = path_edges(in.first_at, seams.paths[k], name);
+    if (const auto missing = cut_edges(in.welded, edges, halfedges)) refuse_missing(name, *missing);
   }
 }
 

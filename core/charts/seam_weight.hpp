@@ -1,5 +1,6 @@
 #pragma once
-// What a seam costs where the caller has painted that it should rather not run (ADR 0067).
+// What a seam costs where the caller has painted that it should rather not run (ADR 0067), and
+// where the caller has said that none may run (ADR 0074).
 
 #include <span>
 #include <vector>
@@ -10,6 +11,14 @@ namespace unwrapd::charts {
 
 /// A seam of painted value 1 counts as so many times its length more.
 inline constexpr double kAvoidance = 8;
+
+/// Chart::avoid of an edge that is kept: a seam there costs more than any detour. Painted values
+/// end at 1, and means of both stay above that.
+inline constexpr double kKept = 1000;
+
+inline bool is_kept(std::span<const double> avoid, Index h) {
+  return !avoid.empty() && avoid[static_cast<std::size_t>(h)] > 1;
+}
 
 /// How many times its length a seam along half-edge h counts. avoid: see Chart::avoid.
 inline double seam_weight(std::span<const double> avoid, Index h) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/charts/seam_weight.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd::charts {
@@ -40,7 +41,8 @@ std::vector<int> nearer_seeds(const Chart& chart, const std::array<std::vector<I
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
       if (chart.halfedges.twin[h] == kNoTwin) continue;
       const Index next = face_of(chart.halfedges.twin[h]);
-      const double there = d + (middle(chart.mesh, next) - middle(chart.mesh, t)).norm();
+      const double way = (middle(chart.mesh, next) - middle(chart.mesh, t)).norm();
+      const double there = is_kept(chart.avoid, h) ? d : d + way;  // on one side together
       if (there >= distance[next]) continue;
       distance[next] = there;
       side[next] = side[t];

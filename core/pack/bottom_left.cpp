@@ -123,7 +123,14 @@ PlacedIslands BottomLeftPlacer::lay(const Arrangement& arrangement, const PageCe
   double longest = 1;
   for (const Box& box : boxes_) longest = std::max(longest, box.size.norm() * scale_);
   const int run = static_cast<int>(std::min<double>(longest + 2, sheet.width)) + 2 * margin;
-  std::vector<Page> pages(1, {Occupancy(sheet.width, sheet.height, margin, run)});
+  std::vector<Page> pages;
+  const auto add_page = [&] {
+    const auto number = static_cast<int>(pages.size());
+    pages.push_back({Occupancy(sheet.width, sheet.height, margin, run)});
+    for (const TakenCells& own : sheet.taken)
+      if (own.page == number) pages.back().cells.stamp(own.mask, own.x, own.y);
+  };
+  add_page();
   PlacedIslands laid{.spots = std::vector<CellPlace>(size())};
   double cells = 0;
   for (const Index k : arrangement.order) {
@@ -133,7 +140,7 @@ PlacedIslands BottomLeftPlacer::lay(const Arrangement& arrangement, const PageCe
     CellPlace& spot = laid.spots[island];
     bool found = lay_one(island, arrangement.turn[island], pages, spot);
     if (!found && static_cast<int>(pages.size()) < sheet.pages) {
-      pages.push_back({Occupancy(sheet.width, sheet.height, margin, run)});
+      add_page();
       found = lay_one(island, arrangement.turn[island], pages, spot);
     }
     budget.words -= std::max<std::int64_t>(0, pages.back().cells.work() - before);

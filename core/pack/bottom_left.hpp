@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -26,11 +27,19 @@ struct CellPlace {
   int page = 0;
 };
 
+/// Cells that are taken before any island is placed: the touched ones of a mask at (x, y).
+struct TakenCells {
+  Mask mask;
+  int x = 0, y = 0;
+  int page = 0;
+};
+
 /// The pages in cells. height: an island that would reach beyond it has no place.
 struct PageCells {
   int width = 0;
   int height = 0;
   int pages = 1;
+  std::span<const TakenCells> taken = {};  ///< within the margin around the pages
 };
 
 struct PlacedIslands {

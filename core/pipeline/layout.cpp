@@ -12,6 +12,7 @@
 #include "core/measure/seam_length.hpp"
 #include "core/pipeline/analyse.hpp"
 #include "core/pipeline/assemble.hpp"
+#include "core/pipeline/note_kept_edges.hpp"
 #include "core/pipeline/painted_density.hpp"
 #include "core/pipeline/place_islands.hpp"
 #include "core/segment/region_charts.hpp"
@@ -244,7 +245,7 @@ void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<c
 }
 
 Unwrapped assemble_surfaces(std::span<const Surface> surfaces, Layout layout,
-                            const std::stop_token& stop) {
+                            const UnwrapOptions& options, const std::stop_token& stop) {
   const Prepared& all = *layout.all;
   Unwrapped unwrapped;
   auto report = layout.report.charts.begin();
@@ -257,6 +258,8 @@ Unwrapped assemble_surfaces(std::span<const Surface> surfaces, Layout layout,
       ++report;
     }
   }
+  if (auto note = note_kept_edges(surfaces, all, unwrapped.surfaces, options.keep_edges, stop))
+    layout.report.notes.push_back(std::move(*note));
   add_totals(layout.report);
   unwrapped.report = std::move(layout.report);
   return unwrapped;

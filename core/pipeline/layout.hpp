@@ -58,7 +58,7 @@ void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<c
 
 /// The surfaces with their UVs, and the complete report. Throws Error{cancelled}.
 Unwrapped assemble_surfaces(std::span<const Surface> surfaces, Layout layout,
-                            const std::stop_token& stop);
+                            const UnwrapOptions& options, const std::stop_token& stop);
 
 /// Gives every map's report the figures of all maps.
 void report_curve(std::vector<Unwrapped>& maps, const std::vector<double>& lambdas);

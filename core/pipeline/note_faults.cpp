@@ -48,6 +48,8 @@ std::string advice_on_distortion(const UnwrapOptions& options) {
   if (!options.max_distortion) return " Send max_distortion=2.02 to split such charts.";
   if (options.method != Method::arap)
     return " The bound holds for maps of method=arap; other methods trade areas for angles.";
+  if (!options.keep_edges.empty())
+    return " Charts are held together at edges of keep_edges, whatever the bound: keep fewer.";
   if (options.welding.mode == WeldMode::distance)
     return " Charts keep the bound where corners are welded, not on those of the file: send a "
            "smaller weld_distance.";

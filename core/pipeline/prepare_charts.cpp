@@ -41,12 +41,12 @@ std::vector<solve::Disk> disks_of(const charts::Charts& surface, Executor& execu
 struct TakingApart {
   segment::SegmentOptions segment;
   SeamMode seams;
-  std::span<const SeamPath> paths;
+  std::span<const SeamPath> paths, kept;
 };
 
 void describe(CacheKey& key, const TakingApart& rules) {
-  const auto& [segment, seams, paths] = rules;
-  key.add(segment).add(seams).add(paths);
+  const auto& [segment, seams, paths, kept] = rules;
+  key.add(segment).add(seams).add(paths).add(kept);
 }
 
 /// How surfaces are taken apart: watched.
@@ -57,7 +57,8 @@ struct Preparing : solve::CacheContext {
 std::shared_ptr<const Prepared> prepare(const Preparing& by, std::span<const Surface> surfaces,
                                         const TakingApart& rules) {
   auto prepared = std::make_shared<Prepared>();
-  prepared->surfaces = components(surfaces, {rules.seams, rules.paths, 0, by.stop, by.core});
+  prepared->surfaces =
+      components(surfaces, {rules.seams, rules.paths, 0, by.stop, by.core, rules.kept});
   require_area(prepared->surfaces);
   prepared->note =
       segment::segment_charts(prepared->surfaces, rules.segment, by.watch, *by.executor);
@@ -105,7 +106,8 @@ PreparedCharts prepare_charts(std::span<const Surface> surfaces, const UnwrapOpt
   const segment::SegmentWatch watch{on_progress, progress.stop};
   SharedCache* core = executor.shared_cache();
   if (core != nullptr) check_memory(job_bytes(surfaces), core->memory_limit());
-  const TakingApart rules{segment_options(options), options.seams, options.seam_edges};
+  const TakingApart rules{segment_options(options), options.seams, options.seam_edges,
+                          options.keep_edges};
   taken.all =
       solve::cached<prepare>(Preparing{{core, progress.stop, &executor}, watch}, surfaces, rules);
   return taken;

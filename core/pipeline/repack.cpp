@@ -15,6 +15,7 @@
 #include "core/measure/page_area.hpp"
 #include "core/measure/seam_length.hpp"
 #include "core/pack/pack.hpp"
+#include "core/pack/pack_around.hpp"
 #include "core/pipeline/assemble.hpp"
 #include "core/pipeline/place_islands.hpp"
 
@@ -55,11 +56,62 @@ void even_out(charts::UvIslands& islands) {
   }
 }
 
-void widen_to_page(charts::UvIslands& islands, const PageSize& page) {
-  for (UvMap& map : islands.maps) to_page_widths(map, page);
+void widen_outlines(charts::UvIslands& islands, const PageSize& page) {
   for (charts::Outline& outline : islands.outlines)
     for (auto& side : outline)
       for (Vec2& end : side) end.y() *= page.aspect();
+}
+
+void widen_to_page(charts::UvIslands& islands, const PageSize& page) {
+  for (UvMap& map : islands.maps) to_page_widths(map, page);
+  widen_outlines(islands, page);
+}
+
+[[noreturn]] void refuse_lock(std::size_t number, const std::string& why) {
+  throw Error(ErrorCode::invalid_option, why, "/locked_islands/" + std::to_string(number));
+}
+
+/// The island that a face lies in. number: of its entry of locked_islands.
+std::size_t island_at(std::span<const Surface> surfaces, const std::vector<charts::UvIslands>& all,
+                      const IslandAtFace& at, std::size_t number) {
+  const auto surface = static_cast<std::size_t>(at.surface);
+  if (at.surface < 0 || surface >= surfaces.size())
+    refuse_lock(number, "there is no mesh " + std::to_string(at.surface) +
+                            "; name one of the asset's " + std::to_string(surfaces.size()) +
+                            ", counted from 0");
+  const Index faces = surfaces[surface].mesh.face_count();
+  if (at.face < 0 || at.face >= faces)
+    refuse_lock(number, "there is no face " + std::to_string(at.face) +
+                            "; name one of the mesh's " + std::to_string(faces) +
+                            ", counted from 0");
+  const std::vector<charts::Chart>& charts = all[surface].charts.charts;
+  const auto found = std::ranges::find_if(charts, [&](const charts::Chart& chart) {
+    return std::ranges::binary_search(chart.face_source, at.face);
+  });
+  if (found == charts.end())
+    refuse_lock(number, "face " + std::to_string(at.face) +
+                            " has no texture coordinates; name a face of an island");
+  return static_cast<std::size_t>(found - charts.begin());
+}
+
+/// Of each surface, one an island, 1: it stays. The outlines are in page units.
+std::vector<std::vector<char>> locked_islands(std::span<const Surface> surfaces,
+                                              const std::vector<charts::UvIslands>& all,
+                                              const UnwrapOptions& options) {
+  std::vector<std::vector<char>> is_locked;
+  for (const charts::UvIslands& own : all) is_locked.emplace_back(own.maps.size(), 0);
+  for (std::size_t i = 0; i < options.locked_islands.size(); ++i) {
+    const IslandAtFace& at = options.locked_islands[i];
+    const std::size_t k = island_at(surfaces, all, at, i);
+    const auto s = static_cast<std::size_t>(at.surface);
+    const int pages = options.packing.max_pages;
+    if (pack::page_holding(all[s].outlines[k], options.page_size().aspect(), pages) < 0)
+      refuse_lock(i, "the island of face " + std::to_string(at.face) +
+                         " does not lie on one of the " + std::to_string(pages) +
+                         " pages; raise max_pages, or do not lock it, so that it is packed");
+    is_locked[s][k] = 1;
+  }
+  return is_locked;
 }
 
 void place(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& all,
@@ -79,6 +131,36 @@ void place(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& al
   for (UvMap* map : islands.maps) {
     to_uvs(*map, report.page);
     guarantee::round_to_step(*map);
+  }
+}
+
+/// Places the islands that are not locked beside those that are, which keep their UVs.
+void place_around(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& all,
+                  const UnwrapOptions& options, Executor& executor, Report& report) {
+  report.page = options.page_size();
+  for (charts::UvIslands& own : all) widen_outlines(own, report.page);
+  const std::vector<std::vector<char>> is_locked = locked_islands(surfaces, all, options);
+  std::vector<charts::Outline> locked, free;
+  std::vector<UvMap*> maps;
+  double covered = 0;
+  for (std::size_t s = 0; s < all.size(); ++s)
+    for (std::size_t k = 0; k < all[s].maps.size(); ++k) {
+      const charts::Outline& outline = all[s].outlines[k];
+      covered += std::abs(charts::area_of(outline));
+      (is_locked[s][k] != 0 ? locked : free).push_back(outline);
+      if (is_locked[s][k] == 0) maps.push_back(&all[s].maps[k]);
+    }
+  const pack::PackResult packed = pack::pack_around(
+      free, locked,
+      {report.page.width, options.padding, options.packing, options.effort, report.page.height},
+      executor);
+  report.pages = packed.pages;
+  report.fill = std::min(covered / packed.pages / report.page.aspect(), 1.0);
+  for (std::size_t k = 0; k < maps.size(); ++k) {
+    to_page_widths(*maps[k], report.page);
+    for (Vec2& uv : *maps[k]) uv = packed.placements[k](uv);
+    to_uvs(*maps[k], report.page);
+    guarantee::round_to_step(*maps[k]);
   }
 }
 
@@ -195,6 +277,8 @@ Unwrapped repack(std::span<const Surface> surfaces, const UnwrapOptions& options
   announce(Stage::pack, 0.2);
   if (options.measure_only)
     leave_in_place(all, options, progress.stop, out.report);
+  else if (!options.locked_islands.empty())
+    place_around(surfaces, all, options, executor, out.report);
   else
     place(surfaces, all, options, executor, out.report);
   announce(Stage::measure, 0.9);

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "core/base/cancel.hpp"
+#include "core/charts/seam_weight.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/segment/labels.hpp"
@@ -25,9 +26,11 @@ constexpr Index kDead = -1;
 
 class Contraction {
  public:
-  Contraction(const TriMesh& mesh, const Halfedges& halfedges, const std::stop_token& stop)
+  Contraction(const TriMesh& mesh, const Halfedges& halfedges, std::span<const double> avoid,
+              const std::stop_token& stop)
       : faces_(mesh.faces),
         twin_(halfedges.twin),
+        kept_(halfedges.twin.size(), 0),
         face_count_(mesh.face_count()),
         out_(mesh.positions.size(), kDead),
         into_(out_.size()),
@@ -35,7 +38,10 @@ class Contraction {
         middle_(mesh.positions),
         stamp_(out_.size(), -1) {
     for (Index v = 0; v < mesh.vertex_count(); ++v) into_[v] = v;
-    for (Index h = 0; h < 3 * face_count_; ++h) out_[start(h)] = h;
+    for (Index h = 0; h < 3 * face_count_; ++h) {
+      out_[start(h)] = h;
+      kept_[h] = charts::is_kept(avoid, h) ? 1 : 0;
+    }
     for (std::size_t t = 0; t < faces_.size(); ++t) {
       check_cancelled_every(t, stop);
       const Triangle& face = faces_[t];
@@ -132,6 +138,7 @@ class Contraction {
     Index best = kDead;
     double least = std::numeric_limits<double>::infinity();
     for_each_out(v, [&](Index h) {
+      if (kept_[h] != 0) return;
       const double own = cost(v, end(h));
       if (own > most || own > least || (own == least && end(h) > end(best))) return;
       least = own;
@@ -197,6 +204,7 @@ class Contraction {
     const Index w = end(h), apex = start(previous_halfedge(h));
     if (n != kNoTwin) twin_[n] = p;
     if (p != kNoTwin) twin_[p] = n;
+    if (n != kNoTwin && p != kNoTwin && kept_[n] != kept_[p]) kept_[n] = kept_[p] = 1;
     out_[w] = p != kNoTwin ? p : next_halfedge(n);
     out_[apex] = n != kNoTwin ? n : next_halfedge(p);
     faces_[face_of(h)] = {kDead, kDead, kDead};
@@ -205,6 +213,7 @@ class Contraction {
 
   std::vector<Triangle> faces_;  ///< over clusters; those that are gone are kDead
   std::vector<Index> twin_;
+  std::vector<char> kept_;  ///< one a half-edge, 1: its clusters stay apart
   Index face_count_;
   std::vector<Index> out_;   ///< a half-edge that starts in each vertex; kDead: joined to another
   std::vector<Index> into_;  ///< the vertex that a vertex was joined to; itself while it lives
@@ -218,25 +227,38 @@ class Contraction {
 
 }  // namespace
 
-std::vector<double> coarse_avoid(const Coarse& coarse, const TriMesh& mesh) {
+std::vector<char> core_faces(const Coarse& coarse, std::size_t faces) {
+  std::vector<char> is_core(faces, 0);
+  for (const Index t : coarse.face) is_core[t] = 1;
+  return is_core;
+}
+
+std::vector<double> coarse_avoid(const Coarse& coarse, const TriMesh& mesh,
+                                 const Halfedges& halfedges) {
   if (coarse.avoid.empty()) return {};
   std::vector<double> mean(coarse.mesh.positions.size(), 0), count(mean.size(), 0);
   for (Index h = 0; h < static_cast<Index>(coarse.avoid.size()); ++h) {
     const Index c = coarse.cluster[start_of(mesh.faces, h)];
-    mean[c] += coarse.avoid[h];
+    mean[c] += charts::is_kept(coarse.avoid, h) ? 0 : coarse.avoid[h];
     ++count[c];
   }
   for (std::size_t c = 0; c < mean.size(); ++c) mean[c] /= count[c];
+  const std::vector<char> is_core = core_faces(coarse, mesh.faces.size());
   std::vector<double> avoid;
-  for (Index h = 0; h < 3 * coarse.mesh.face_count(); ++h)
+  for (Index h = 0; h < 3 * coarse.mesh.face_count(); ++h) {
     avoid.push_back((mean[start_of(coarse.mesh.faces, h)] + mean[end_of(coarse.mesh.faces, h)]) /
                     2);
+    if (coarse.halfedges.twin[h] == kNoTwin) continue;
+    for_each_of_strip(coarse, mesh, halfedges, is_core, h, [&](Index g) {
+      if (charts::is_kept(coarse.avoid, g)) avoid[h] = charts::kKept;
+    });
+  }
   return avoid;
 }
 
 Coarse coarsen(const TriMesh& mesh, const Halfedges& halfedges, Index faces,
-               const std::stop_token& stop) {
-  Contraction contraction(mesh, halfedges, stop);
+               const std::stop_token& stop, std::span<const double> avoid) {
+  Contraction contraction(mesh, halfedges, avoid, stop);
   contraction.run(faces, stop);
   throw_if_cancelled(stop);
   return contraction.result();

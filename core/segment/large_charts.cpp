@@ -22,10 +22,21 @@ namespace {
 
 constexpr double kCaution = 1.15;    // for each unit of excess that was measured
 constexpr double kMostHidden = 0.7;  // of the excess allowed; where noise takes more, it is let be
+constexpr double kMostKept = 0.25;   // edges that are kept, for each face of the small surface
 constexpr double kRoughShare = 0.1, kFirstShare = 0.9;  // of the work, when they have ended
 
+double kept_edges_of(const charts::Chart& component) {
+  return static_cast<double>(
+             std::ranges::count_if(component.avoid, [](double v) { return v > 1; })) /
+         2;
+}
+
+/// Where many edges are kept, too few could be contracted: seams then follow them at a high cost.
 Coarse coarse_of(const charts::Chart& component, Index faces, const std::stop_token& stop) {
-  Coarse coarse = coarsen(component.mesh, component.halfedges, faces, stop);
+  const std::span<const double> avoid = component.avoid;
+  const bool are_few = kept_edges_of(component) <= kMostKept * faces;
+  Coarse coarse = coarsen(component.mesh, component.halfedges, faces, stop,
+                          are_few ? avoid : std::span<const double>());
   coarse.avoid = component.avoid;
   return coarse;
 }
@@ -38,8 +49,9 @@ class Search {
         rules_(rules),
         executor_(executor),
         coarse_(coarse_of(component, faces, rules.stop)),
-        surface_(make_segmentation_mesh(coarse_.mesh, coarse_.halfedges, {},
-                                        coarse_avoid(coarse_, component.mesh))),
+        surface_(
+            make_segmentation_mesh(coarse_.mesh, coarse_.halfedges, {},
+                                   coarse_avoid(coarse_, component.mesh, component.halfedges))),
         steps_(excess_steps(rules.max_distortion)) {}
 
   LargeCharts run() {
@@ -135,11 +147,12 @@ class Search {
 
   [[nodiscard]] bool misses(const Found& found, double excess) const {
     const bool is_limited = std::ssize(found.charts) >= rules_.most_regions;
-    return !is_rough_ && !is_limited && found.large.worst() > excess;
+    return !is_rough_ && !is_limited &&
+           found.large.worst() > excess + segmentation_->forced_excess();
   }
 
   void hide_more(const Found& found, double excess) {
-    const double missed = found.large.worst() - excess;
+    const double missed = found.large.worst() - excess - segmentation_->forced_excess();
     hidden_ = std::min(hidden_ + kCaution * missed, kMostHidden * excess);
   }
 

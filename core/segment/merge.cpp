@@ -103,6 +103,7 @@ class Merging {
       const Index twin = surface_.halfedges.twin[h], own = owner[face_of(h)];
       const Index other = twin == kNoTwin ? -1 : owner[face_of(twin)];
       if (own < 0 || own == other) continue;
+      if (settings_.only_kept && surface_.kept[h] == 0) continue;
       perimeter_[own] += surface_.seam_cost[h];
       if (other >= 0 && open_[h] == 0) borders_[own][other] += surface_.seam_cost[h];
     }

@@ -22,6 +22,7 @@ struct MergeSettings {
   int seed = 0;            ///< of the noise; equal seeds give equal noise
   Index whole = 0;         ///< regions at the front that merge with no other one of these
   Index enough = 1;        ///< merging ends at this number of regions
+  bool only_kept = false;  ///< regions merge only across edges that are kept
 };
 
 /// What a step of the search works on, reports to and stops at.

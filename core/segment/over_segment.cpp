@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/mesh/disjoint_sets.hpp"
 #include "core/segment/labels.hpp"
 
 namespace unwrapd::segment {
@@ -143,6 +144,18 @@ std::vector<Index> cluster_faces(const SegmentationMesh& surface, double flatnes
   return label;
 }
 
+/// Faces at kept edges leave their labels and are joined across these edges alone: unions that must
+/// be are then no larger than need be, and a tube of them can still be cut beside the edges.
+void separate_kept(const SegmentationMesh& surface, std::vector<Index>& label) {
+  const Index faces = surface.face_count();
+  DisjointSets joined(label.size());
+  for (Index h = 0; h < static_cast<Index>(surface.kept.size()); ++h)
+    if (surface.kept[h] != 0) joined.join(face_of(h), face_of(surface.halfedges.twin[h]));
+  for (Index h = 0; h < static_cast<Index>(surface.kept.size()); ++h)
+    if (surface.kept[h] != 0) label[face_of(h)] = faces + joined.root(face_of(h));
+  separate_labels(surface.halfedges, label);
+}
+
 /// The patch of each label with a map, which starts from its projection.
 std::vector<MappedRegion> map_patches(const MergeContext& context, std::vector<Index>& label,
                                       Executor& executor) {
@@ -216,6 +229,7 @@ std::vector<MappedRegion> over_segment(const MergeContext& context, double exces
   for (int round = 1;; ++round, flatness /= 2) {
     std::vector<Index> label = cluster_faces(surface, flatness, context.stop);
     smooth_labels(surface, kSmoothingPasses, kSmoothCosine, label);
+    if (!surface.kept.empty()) separate_kept(surface, label);
     std::vector<MappedRegion> patches = sound_patches(context, flatness, label, executor);
     if (round == kFlatnessRounds || total_excess(patches).worst() <= allowed) return patches;
   }

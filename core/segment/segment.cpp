@@ -28,14 +28,15 @@ constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of exces
 constexpr int kDecades = 4;
 constexpr double kSameBound = 1e-9;
 
+const MergeSettings kWhateverDistortion{
+    .budget = kAnyExcess, .cap = kAnyExcess, .distortion_weight = kFarWeight * kAnyExcess};
+
 /// Merges further, whatever the distortion, to the allowed number of regions if maps allow it.
 Partition merge_to_limit(const MergeContext& context, Partition partition, Index most_regions,
                          Executor& executor) {
   if (partition.patches.size() <= static_cast<std::size_t>(most_regions)) return partition;
-  const MergeSettings settings{.budget = kAnyExcess,
-                               .cap = kAnyExcess,
-                               .distortion_weight = kFarWeight * kAnyExcess,
-                               .enough = most_regions};
+  MergeSettings settings = kWhateverDistortion;
+  settings.enough = most_regions;
   return merge_patches({context.surface, nullptr, nullptr, context.stop}, Joiner(context.surface),
                        std::move(partition), settings, executor);
 }
@@ -56,6 +57,7 @@ SurfaceSegmentation::SurfaceSegmentation(const SegmentationMesh& surface, Segmen
 Segments SurfaceSegmentation::first(double excess) {
   patches_ = {over_segment(context_, excess, executor_),
               std::vector<char>(surface_.length.size(), 0)};
+  merge_across_kept_edges();
   stage_ = Stage::merge;
   const MergeSettings settings = settings_for(excess);
   if (rules_.is_quick) return merge_quickly(settings);
@@ -66,6 +68,18 @@ Segments SurfaceSegmentation::first(double excess) {
   best_ = search.bisect_regions(finish(competing_));
   shorten_in_parts(context_, settings, best_.partition);
   return segments_of(best_.partition);
+}
+
+/// What this glues, no step of the search parts: steps begin from these patches, and the length of
+/// a kept edge is such that no cut along it is the cheaper one.
+void SurfaceSegmentation::merge_across_kept_edges() {
+  if (surface_.kept.empty()) return;
+  const ExcessDistortion before = total_excess(patches_.patches);
+  MergeSettings settings = kWhateverDistortion;
+  settings.only_kept = true;
+  patches_ = merge_patches({surface_, nullptr, nullptr, context_.stop}, Joiner(surface_),
+                           std::move(patches_), settings, executor_);
+  forced_ = std::max(0.0, (total_excess(patches_.patches) - before).worst());
 }
 
 /// The cheapest result of all candidates.
@@ -81,7 +95,7 @@ std::optional<Segments> SurfaceSegmentation::loosen(double excess) {
   if (!std::exchange(is_priced_, true)) best_ = search.price(std::move(best_));
   const double seam = best_.cost.length;
   if (seam <= 0) return std::nullopt;  // it needs no cut
-  search.widen(kMarginOfExcess * excess, competing_);
+  search.widen(settings_for(excess).budget, competing_);
   std::vector<Candidate> all = competing_;
   all.push_back(best_);
   search.forbid_seams_from(seam);
@@ -99,7 +113,7 @@ std::optional<Segments> SurfaceSegmentation::loosen(double excess) {
 
 MergeSettings SurfaceSegmentation::settings_for(double excess) const {
   const double budget = kMarginOfExcess * excess;
-  MergeSettings settings{.budget = budget, .cap = kCapOfOnePatch * budget};
+  MergeSettings settings{.budget = budget + forced_, .cap = kCapOfOnePatch * budget};
   settings.page_area = rules_.page_area;
   return settings;
 }

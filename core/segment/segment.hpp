@@ -72,7 +72,11 @@ class SurfaceSegmentation {
   /// then merged further.
   std::optional<Segments> loosen(double excess);
 
+  /// The excess that keeping edges (SegmentationMesh::kept) adds to any bound.
+  [[nodiscard]] double forced_excess() const { return forced_; }
+
  private:
+  void merge_across_kept_edges();
   [[nodiscard]] MergeSettings settings_for(double excess) const;
   [[nodiscard]] Segments merge_quickly(const MergeSettings& settings);
   [[nodiscard]] Candidate finish(std::vector<Candidate> all);
@@ -90,6 +94,7 @@ class SurfaceSegmentation {
   std::vector<Candidate> competing_;  ///< after large-neighbourhood search
   Candidate best_;
   bool is_priced_ = false;  ///< best_ is
+  double forced_ = 0;       ///< see forced_excess()
 };
 
 /// The excess over 2 of each bound on the way to max_distortion, ascending (ADR 0039). The search

@@ -81,6 +81,19 @@ class FrontSearch {
   double excess_ = 0;
 };
 
+/// Images of seams lie where edges are kept, if the mesh is not quite symmetric.
+bool keeps_edges(const SegmentationMesh& surface, const Segments& segments) {
+  if (surface.kept.empty()) return true;
+  std::vector<Index> owner(surface.rest.size());
+  for (std::size_t k = 0; k < segments.regions.size(); ++k)
+    for (const Index t : segments.regions[k].faces) owner[t] = static_cast<Index>(k);
+  for (Index h = 0; h < static_cast<Index>(surface.kept.size()); ++h)
+    if (surface.kept[h] != 0 &&
+        (segments.open[h] != 0 || owner[face_of(h)] != owner[face_of(surface.halfedges.twin[h])]))
+      return false;
+  return true;
+}
+
 /// The rules for one of some parts: half of the regions, and its share of the progress.
 SegmentRules rules_for(const SegmentRules& rules, std::size_t part, std::size_t count) {
   SegmentRules own = rules;
@@ -113,6 +126,7 @@ std::optional<Segments> segment_symmetrically(const charts::Chart& component,
         best = std::move(next);
     }
   if (best->regions.size() > static_cast<std::size_t>(rules.most_regions)) return std::nullopt;
+  if (!keeps_edges(surface, *best)) return std::nullopt;
   return best;
 }
 

@@ -66,16 +66,22 @@ std::vector<Index> elimination_ranks(const TriMesh& mesh) {
 SegmentationMesh make_segmentation_mesh(const TriMesh& mesh, const Halfedges& halfedges,
                                         std::span<const char> crease,
                                         std::span<const double> avoid) {
-  SegmentationMesh surface{normalised(mesh), halfedges, {}, {}, {}, {}, {}};
+  SegmentationMesh surface{normalised(mesh), halfedges, {}, {}, {}, {}, {}, {}};
   surface.rest = measure::flatten(surface.mesh);
   surface.normal.reserve(mesh.faces.size());
   for (const Triangle& face : mesh.faces) surface.normal.push_back(normal_of(surface.mesh, face));
   surface.length.reserve(halfedges.twin.size());
-  for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h)
-    surface.length.push_back(charts::seam_weight(avoid, h) *
-                             (surface.mesh.positions[end_of(mesh.faces, h)] -
-                              surface.mesh.positions[start_of(mesh.faces, h)])
-                                 .norm());
+  for (Index h = 0; h < static_cast<Index>(halfedges.twin.size()); ++h) {
+    const bool is_border = halfedges.twin[h] == kNoTwin;
+    surface.length.push_back(
+        (is_border && charts::is_kept(avoid, h) ? 1 : charts::seam_weight(avoid, h)) *
+        (surface.mesh.positions[end_of(mesh.faces, h)] -
+         surface.mesh.positions[start_of(mesh.faces, h)])
+            .norm());
+    if (is_border || !charts::is_kept(avoid, h)) continue;
+    surface.kept.resize(halfedges.twin.size(), 0);
+    surface.kept[h] = 1;
+  }
   surface.seam_cost = seam_costs(surface, crease);
   surface.rank = elimination_ranks(surface.mesh);
   return surface;

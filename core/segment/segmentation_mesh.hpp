@@ -19,7 +19,8 @@ struct SegmentationMesh {
   std::vector<Vec3> normal;                 ///< one a face, of unit length
   std::vector<double> length;               ///< one a half-edge, by charts::seam_weight()
   std::vector<double> seam_cost;  ///< one a half-edge: its length, but less along a crease
-  std::vector<Index> rank;        ///< of each vertex, in an order of elimination that fills little
+  std::vector<char> kept;   ///< one a half-edge, 1: no seam may run there; empty: may anywhere
+  std::vector<Index> rank;  ///< of each vertex, in an order of elimination that fills little
 
   [[nodiscard]] Index face_count() const { return mesh.face_count(); }
   [[nodiscard]] double area(Index t) const { return rest[static_cast<std::size_t>(t)].area; }

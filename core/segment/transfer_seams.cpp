@@ -85,6 +85,7 @@ class Tracing {
   Tracing(const TriMesh& mesh, const Halfedges& halfedges, const Coarse& coarse,
           const std::stop_token& stop)
       : mesh_(mesh),
+        halfedges_(halfedges),
         twin_(halfedges.twin),
         coarse_(coarse),
         corners_(linear::vertex_corners(mesh.faces, mesh.vertex_count(), stop)),
@@ -92,9 +93,8 @@ class Tracing {
         rank_(members_.size()),
         strip_(twin_.size(), kNoTwin),
         on_seam_(members_.size(), 0),
-        is_core_(mesh.faces.size(), 0),
+        is_core_(core_faces(coarse, mesh.faces.size())),
         cut_(twin_.size(), 0) {
-    for (const Index t : coarse.face) is_core_[t] = 1;
     for (Index v = 0; v < mesh.vertex_count(); ++v) members_[v] = v;
     counting_sort(
         members_, coarse.mesh.vertex_count(), [&](Index v) { return coarse.cluster[v]; }, stop);
@@ -141,16 +141,9 @@ class Tracing {
 
   /// From the face of each seam across its strip to the face on the other side.
   void mark_strips(const SeamRow& row) {
-    for (const Index seam : row) {
-      Index h = 3 * coarse_.face[face_of(seam)] + seam % 3;
-      while (true) {
-        strip_[h] = strip_[twin_[h]] = seam;
-        h = twin_[h];
-        if (is_core_[face_of(h)] != 0) break;
-        h = next_halfedge(h);
-        if (cluster(start(h)) == cluster(end(h))) h = next_halfedge(h);
-      }
-    }
+    for (const Index seam : row)
+      for_each_of_strip(coarse_, mesh_, halfedges_, is_core_, seam,
+                        [&](Index h) { strip_[h] = strip_[twin_[h]] = seam; });
   }
 
   /// Marks the shortest path through the clusters, from a seam in the first to one in the last
@@ -213,6 +206,7 @@ class Tracing {
   }
 
   const TriMesh& mesh_;
+  const Halfedges& halfedges_;
   const std::vector<Index>& twin_;
   const Coarse& coarse_;
   linear::VertexCorners corners_;

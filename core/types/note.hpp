@@ -32,6 +32,7 @@ enum class NoteCode {
   positions_rounded,     ///< positions are rounded: by Draco, or to floats that cannot hold a face
   origin_moved,          ///< positions are relative to the translation of the node
   lambda_repeated,       ///< charts have maps that come from those of another lambda of the list
+  kept_edges_cut,        ///< seams run along edges of keep_edges nevertheless
 };
 
 struct Note {

@@ -1,8 +1,11 @@
 #include "core/types/options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "core/types/chart_rules.hpp"
@@ -23,6 +26,21 @@ void require_side(int texels, const std::string& name) {
 
 std::string name_of_keeping(const UnwrapOptions& options) {
   return options.measure_only ? "measure_only" : "repack_only";
+}
+
+/// Islands that stay give the others their density, and the page its islands.
+void require_locked_islands(const UnwrapOptions& options) {
+  if (options.locked_islands.empty()) return;
+  const Packing& packing = options.packing;
+  require(options.repack_only,
+          "locked_islands stay where they are when others are packed again; send repack_only, too",
+          "/locked_islands");
+  const std::string given = "locked islands determine the size of all; leave out ";
+  require(!packing.texels_per_unit, given + "texels_per_unit", "/texels_per_unit");
+  require(packing.group == PageGroup::scene, "locked islands determine the pages; leave out group",
+          "/group");
+  require(!packing.stack_identical, "locked islands share no place; leave out stack_identical",
+          "/stack_identical");
 }
 
 /// Islands that are kept have their shapes and overlaps already.
@@ -89,6 +107,39 @@ void require_charts(const UnwrapOptions& options) {
             "/seam_edges/" + std::to_string(k) + "/vertices");
 }
 
+/// An edge with the number of its path.
+using PathEdge = std::pair<std::array<Index, 3>, std::size_t>;
+
+std::vector<PathEdge> edges_of(const std::vector<SeamPath>& paths) {
+  std::vector<PathEdge> edges;
+  for (std::size_t p = 0; p < paths.size(); ++p)
+    for (std::size_t k = 1; k < paths[p].vertices.size(); ++k) {
+      const auto ends = std::minmax(paths[p].vertices[k - 1], paths[p].vertices[k]);
+      edges.push_back({{paths[p].surface, ends.first, ends.second}, p});
+    }
+  return edges;
+}
+
+/// Copies of a vertex are known once the mesh is: charts::kept_edges() refuses these.
+void require_kept_edges(const UnwrapOptions& options) {
+  for (std::size_t k = 0; k < options.keep_edges.size(); ++k)
+    require(options.keep_edges[k].vertices.size() >= 2,
+            "a path of keep_edges needs at least two vertices",
+            "/keep_edges/" + std::to_string(k) + "/vertices");
+  if (options.keep_edges.empty() || options.seam_edges.empty()) return;
+  std::vector<PathEdge> cut = edges_of(options.seam_edges);
+  std::ranges::sort(cut);
+  for (const auto& [edge, path] : edges_of(options.keep_edges)) {
+    const auto at = std::ranges::lower_bound(cut, edge, {}, &PathEdge::first);
+    if (at == cut.end() || at->first != edge) continue;
+    require(false,
+            "the edge between vertices " + std::to_string(edge[1]) + " and " +
+                std::to_string(edge[2]) + " is in seam_edges/" + std::to_string(at->second) +
+                ", too; leave it out of one of them",
+            "/keep_edges/" + std::to_string(path));
+  }
+}
+
 void require_welding(const Welding& welding) {
   const bool is_given = welding.distance.has_value();
   require(welding.mode != WeldMode::distance || is_given,
@@ -121,6 +172,7 @@ void validate(const UnwrapOptions& options, int max_iterations) {
           "constraints and a boundary shape exclude each other; leave one of them out",
           "/boundary");
   require_kept_islands(options);
+  require_locked_islands(options);
   const bool is_straightened = options.straighten != Straighten::off;
   require(!is_straightened || options.constraints.empty(),
           "constraints determine the maps; leave out straighten", "/straighten");
@@ -129,6 +181,7 @@ void validate(const UnwrapOptions& options, int max_iterations) {
   require_packing(options);
   require_welding(options.welding);
   require_charts(options);
+  require_kept_edges(options);
   require_page(options);
 }
 

@@ -37,10 +37,17 @@ struct PositionConstraint {
       std::numeric_limits<double>::infinity();  ///< finite: in least squares, page_constraints()
 };
 
-/// Edges at which the surface shall be cut open: those between consecutive vertices of a path.
+/// Edges at which the surface shall be cut open, or shall not: those between consecutive vertices
+/// of a path.
 struct SeamPath {
   Index surface = 0;            ///< which of the asset's surfaces
   std::vector<Index> vertices;  ///< of that surface, two or more; copies at a position are one
+};
+
+/// An island of the input's texture coordinates: the one that a face lies in.
+struct IslandAtFace {
+  Index surface = 0;  ///< which of the asset's surfaces
+  Index face = 0;     ///< of that surface
 };
 
 /// How packing may turn an island: as fits best; along the page by its straight sides or its
@@ -99,6 +106,7 @@ struct UnwrapOptions {
   Pins pins = Pins::diameter;                  ///< ASAP only: how the conformal map is pinned
   SeamMode seams = SeamMode::automatic;        ///< which vertex copies are welded for topology
   std::vector<SeamPath> seam_edges = {};       ///< cuts beside those of seams
+  std::vector<SeamPath> keep_edges = {};       ///< no cut that is chosen follows these (ADR 0074)
   std::optional<double> max_distortion = {};   ///< D_angle and D_area of all charts, ADR 0018
   std::optional<int> max_charts = {};          ///< of the asset, where its topology allows
   int resolution = 1024;                       ///< side of the square page, texels, [16, 16384]
@@ -112,6 +120,7 @@ struct UnwrapOptions {
   std::vector<PositionConstraint> constraints =
       {};  ///< ASAP, ARAP, Hybrid; the page is then theirs
   Packing packing = {};
+  std::vector<IslandAtFace> locked_islands = {};  ///< stay where they are when UVs are packed anew
   bool repack_only = false;          ///< the surfaces' own UVs are packed anew, nothing is solved
   bool measure_only = false;         ///< the surfaces' own UVs are measured where they are
   Effort effort = Effort::balanced;  ///< counted work of the searches, never time (ADR 0045)

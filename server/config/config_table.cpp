@@ -146,30 +146,31 @@ ConfigRow limit(const ConfigHeading& heading, Range range, Number api::Limits::*
 
 ConfigGroup limits() {
   using api::Limits;
-  return {
-      .title = "Limits",
-      .rows = {
-          limit({"max-body-bytes", "N", "Most bytes of one request body"}, {1024, kMaxBodyBytes},
-                &Limits::max_body_bytes),
-          limit({"max-vertices", "N", "Most vertices of an asset"}, {3, kMaxCount},
-                &Limits::max_vertices),
-          limit({"max-faces", "N", "Most triangles of an asset"}, {1, kMaxCount},
-                &Limits::max_faces),
-          limit({"max-sync-faces", "N", "Most triangles of an asset sent to /v1/unwrap"},
-                {1, kMaxCount}, &Limits::max_sync_faces),
-          limit({"max-iterations", "N",
-                 "Largest value of the options stop.iterations and stop.max_iterations"},
-                {1, 1'000'000}, &Limits::max_iterations),
-          limit({"max-constraints", "N", "Most entries of the options constraints and seam_edges"},
-                {0, 10'000'000}, &Limits::max_constraints),
-          limit({"max-job-seconds", "N", "Most seconds of work on one job"}, {1, kMaxCount},
-                &Limits::max_job_seconds),
-          limit({"max-wait-seconds", "N", "Most seconds that a request may wait by Prefer: wait"},
-                {0, 3600}, &Limits::max_wait_seconds),
-          limit({"max-queue", "N", "Most jobs that wait for a worker"}, {1, 1'000'000},
-                &Limits::max_queue),
-          limit({"max-streams", "N", "Most event streams open at once"}, {1, kMaxStreams},
-                &Limits::max_streams)}};
+  return {.title = "Limits",
+          .rows = {limit({"max-body-bytes", "N", "Most bytes of one request body"},
+                         {1024, kMaxBodyBytes}, &Limits::max_body_bytes),
+                   limit({"max-vertices", "N", "Most vertices of an asset"}, {3, kMaxCount},
+                         &Limits::max_vertices),
+                   limit({"max-faces", "N", "Most triangles of an asset"}, {1, kMaxCount},
+                         &Limits::max_faces),
+                   limit({"max-sync-faces", "N", "Most triangles of an asset sent to /v1/unwrap"},
+                         {1, kMaxCount}, &Limits::max_sync_faces),
+                   limit({"max-iterations", "N",
+                          "Largest value of the options stop.iterations and stop.max_iterations"},
+                         {1, 1'000'000}, &Limits::max_iterations),
+                   limit({"max-constraints", "N",
+                          "Most entries of the options constraints, seam_edges, keep_edges and "
+                          "locked_islands"},
+                         {0, 10'000'000}, &Limits::max_constraints),
+                   limit({"max-job-seconds", "N", "Most seconds of work on one job"},
+                         {1, kMaxCount}, &Limits::max_job_seconds),
+                   limit({"max-wait-seconds", "N",
+                          "Most seconds that a request may wait by Prefer: wait"},
+                         {0, 3600}, &Limits::max_wait_seconds),
+                   limit({"max-queue", "N", "Most jobs that wait for a worker"}, {1, 1'000'000},
+                         &Limits::max_queue),
+                   limit({"max-streams", "N", "Most event streams open at once"}, {1, kMaxStreams},
+                         &Limits::max_streams)}};
 }
 
 }  // namespace

@@ -47,6 +47,8 @@ TEST(OptionNotes, NameWhatOtherOptionsTakeTheEffectFrom) {
   EXPECT_EQ(unused({{"constraints", pin}, {"max_charts", "3"}}), the("max_charts"));
   EXPECT_EQ(unused({{"constraints", pin}, {"texel_density", "_D"}}), the("texel_density"));
   EXPECT_EQ(unused({{"repack_only", "true"}, {"seam_avoid", "_A"}}), the("seam_avoid"));
+  EXPECT_EQ(unused({{"repack_only", "true"}, {"keep_edges", R"([{"vertices":[0,1]}])"}}),
+            the("keep_edges"));
   EXPECT_EQ(unused({{"measure_only", "true"}, {"texel_density", "_D"}}), the("texel_density"));
   EXPECT_EQ(unused({{"constraints", pin}, {"effort", "best"}}), the("effort"));
   for (const Query& with_effect : std::vector<Query>{{{"weld_distance", "0.1"}},

@@ -9,7 +9,7 @@ namespace {
 
 TEST(SeamPaths, AreReadAndWrittenUnchanged) {
   const Json json = Json::parse(R"([{"vertices":[3,4,9],"mesh":2},{"vertices":[0,1],"mesh":0}])");
-  const std::vector<SeamPath> paths = seam_paths_from_json(json, "/seam_edges");
+  const std::vector<SeamPath> paths = seam_paths_from_json(json, "seam_edges");
   ASSERT_EQ(paths.size(), 2U);
   EXPECT_EQ(paths[0].surface, 2);
   EXPECT_EQ(paths[0].vertices, (std::vector<Index>{3, 4, 9}));
@@ -18,7 +18,7 @@ TEST(SeamPaths, AreReadAndWrittenUnchanged) {
 
 TEST(SeamPaths, BelongToTheFirstMeshWhenNoneIsNamed) {
   const Json json = Json::parse(R"([{"vertices":[0,1]}])");
-  EXPECT_EQ(seam_paths_from_json(json, "/seam_edges").at(0).surface, 0);
+  EXPECT_EQ(seam_paths_from_json(json, "seam_edges").at(0).surface, 0);
 }
 
 TEST(SeamPaths, AreRefusedAtThePlaceThatIsWrong) {
@@ -33,7 +33,7 @@ TEST(SeamPaths, AreRefusedAtThePlaceThatIsWrong) {
       {R"([{"vertices":[0,1],"length":2}])", "/seam_edges/0/length"}};
   for (const auto& [text, pointer] : wrong) {
     const Error error =
-        error_of([&, json = Json::parse(text)] { seam_paths_from_json(json, "/seam_edges"); });
+        error_of([&, json = Json::parse(text)] { seam_paths_from_json(json, "seam_edges"); });
     EXPECT_EQ(error.code(), ErrorCode::invalid_option) << text;
     EXPECT_EQ(error.where(), pointer) << text;
   }

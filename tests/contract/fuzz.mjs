@@ -44,7 +44,8 @@ const kConstraint = fc.tuple(
              mesh: fc.integer({min: 0, max: 1})}, {requiredKeys: ['uv']}))
   .map(([which, what]) => ({...which, ...what}));
 
-const kLists = {materials: ['a'], primitives: ['/meshes/0/primitives/0'], seam_edges: [{vertices: [0, 1]}]};
+const kLists = {materials: ['a'], primitives: ['/meshes/0/primitives/0'], seam_edges: [{vertices: [0, 1]}],
+                keep_edges: [{vertices: [1, 0]}], locked_islands: [{face: 0}]};
 
 const has = (schema, type) => [schema.type].flat().includes(type);
 
@@ -94,7 +95,8 @@ function goTogether(options) {
          texels_per_unit = null, max_pages = 1,
          stack_identical = false, max_distortion = null, guarantee = null,
          rotation = 'any', group = 'scene', width = null, height = null,
-         straighten = 'off', preset = 'texture', textures = 'keep'} = options;
+         straighten = 'off', preset = 'texture', textures = 'keep',
+         seam_edges = [], keep_edges = [], locked_islands = []} = options;
   const free = boundary === 'free';
   const kept = repack_only || measure_only;
   const unpacked = !kept && texels_per_unit === null && max_pages === 1 &&
@@ -107,7 +109,9 @@ function goTogether(options) {
   const isSized = [options.resolution, width, height].some((side) => (side ?? null) !== null);
   const found = texels_per_unit !== null && textures === 'keep' && !isSized;
   const shorter = found ? 16_384 : Math.min(width ?? resolution, height ?? resolution);
-  return 4 * padding <= shorter && (max_pages === 1 || group === 'scene') &&
+  const around = repack_only && texels_per_unit === null && !stack_identical && group === 'scene';
+  return (seam_edges.length === 0 || keep_edges.length === 0) && (locked_islands.length === 0 || around) &&
+      4 * padding <= shorter && (max_pages === 1 || group === 'scene') &&
       (straighten === 'off' || (loose && (free || !placed) && !kept)) &&
       (loose || held) && (free || !kept) && !(repack_only && measure_only) &&
       (guarantee !== 'bijective' || !kept) &&
@@ -188,7 +192,7 @@ function meantBy(pairs, options, {Stop, Lambda}) {
       meant.lambda = numbers.length > 1 ? numbers : numbers[0];
     } else if (['materials', 'primitives'].includes(name)) {
       meant[name] = namesOf(text);
-    } else if (['constraints', 'seam_edges'].includes(name)) {
+    } else if (['constraints', 'seam_edges', 'keep_edges', 'locked_islands'].includes(name)) {
       meant[name] = jsonOf(text);
     } else {
       meant[name] = queryValue(options[name] ?? {}, text);

@@ -194,6 +194,24 @@ export function cap(n = 12) {
   return `${lines.join("\n")}\n`;
 }
 
+/** A box of n quads along each edge: it has sharp edges alone at the edges of the box. */
+export function box(n) {
+  const [index, points, faces] = [new Map(), [], []];
+  const at = (...p) => {
+    if (!index.has(`${p}`)) index.set(`${p}`, points.push(`v ${p.join(" ")}`));
+    return index.get(`${p}`);
+  };
+  for (const axis of [0, 1, 2])
+    for (const side of [0, n])
+      for (let a = 0; a < n; a += 1)
+        for (let b = 0; b < n; b += 1) {
+          const corner = (i, j) => at(...[0, 1, 2].map((k) => (k === axis ? side : k === (axis + 1) % 3 ? a + i : b + j)));
+          const quad = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+          faces.push(`f ${(side ? quad : quad.reverse()).join(" ")}`);
+        }
+  return [...points, ...faces, ""].join("\n");
+}
+
 /** A door before the server that can be shut upon all who have come through it, now or after so many bytes for them. */
 export async function doorTo(base) {
   const inside = new Set();

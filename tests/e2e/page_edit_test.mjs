@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 
-import { Bench, cap, difference, figure, jobOf, missing, openMesh, real, shot, submitted, unwrap } from "./page.mjs";
+import { Bench, box, cap, difference, figure, jobOf, missing, openMesh, real, shot, submitted, unwrap } from "./page.mjs";
 
 const bench = new Bench();
 
@@ -55,24 +55,6 @@ describe("by hand", { skip: missing }, () => {
     await page.click("#send");
     await page.waitForFunction(() => document.querySelector("#figures dd")?.firstChild.textContent === "2");
   });
-
-  /** A box of n quads along each edge: it has sharp edges alone at the edges of the box. */
-  function box(n) {
-    const [index, points, faces] = [new Map(), [], []];
-    const at = (...p) => {
-      if (!index.has(`${p}`)) index.set(`${p}`, points.push(`v ${p.join(" ")}`));
-      return index.get(`${p}`);
-    };
-    for (const axis of [0, 1, 2])
-      for (const side of [0, n])
-        for (let a = 0; a < n; a += 1)
-          for (let b = 0; b < n; b += 1) {
-            const corner = (i, j) => at(...[0, 1, 2].map((k) => (k === axis ? side : k === (axis + 1) % 3 ? a + i : b + j)));
-            const quad = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-            faces.push(`f ${(side ? quad : quad.reverse()).join(" ")}`);
-          }
-    return [...points, ...faces, ""].join("\n");
-  }
 
   const marked = async (page) => Number((await page.locator("#seam-count").innerText()).match(/^\d+/)?.[0] ?? 0);
 

@@ -4,11 +4,13 @@ import {Balancing} from './app/balancing.js';
 import {Editing} from './app/editing.js';
 import {connectOpening, showMesh} from './app/opening.js';
 import {showProblem} from './app/problem.js';
+import {Packing} from './app/packing.js';
 import {Session} from './app/session.js';
 import {Viewing} from './app/viewing.js';
 import {$} from './base/dom.js';
 import {placeOf} from './base/permalink.js';
 import {withoutExtension} from './base/words.js';
+import type {Opened} from './files/read.js';
 import {listJobs} from './job/list.js';
 import {connection, getJson, setKey} from './job/server.js';
 import {connectBalance} from './options/balance.js';
@@ -25,10 +27,11 @@ interface Limits {
 async function start(): Promise<void> {
   const viewing = new Viewing(showProblem);
   const session = new Session(viewing);
-  connectOpening((opened) => {
+  const openMesh = (opened: Opened) => {
     session.open(opened);
     showMesh(opened, viewing).catch(showProblem);
-  }, showProblem);
+  };
+  connectOpening(openMesh, showProblem);
   $('key').addEventListener('input', () => setKey($<HTMLInputElement>('key').value));
   const [methods, limits] = await Promise.all([getJson<Methods>('/v1/methods'), getJson<Limits>('/v1/limits')]);
   const form = new OptionsForm(methods);
@@ -40,7 +43,7 @@ async function start(): Promise<void> {
   const editing = new Editing(viewing, session);
   const again = (label: string, isDraft: boolean) => {
     try {
-      const wanted = {...form.chosen(), ...editing.keepingCharts(), ...editing.options()};
+      const wanted = {...form.chosen(), ...editing.keepingCharts(), ...editing.options(true)};
       if (!isDraft) options = wanted;
       balancing.ask(wanted, label, isDraft);
     } catch (error) {
@@ -48,7 +51,16 @@ async function start(): Promise<void> {
     }
   };
   connectBalance((lambda, isDraft) => again(`λ ${lambda}`, isDraft));
+  const packing = new Packing(viewing, session, showProblem);
+  packing.chosen = () => form.chosen();
+  packing.onOpen = openMesh;
+  packing.onPack = (wanted) => {
+    options = wanted;
+    void session.unwrap(wanted);
+  };
+  editing.onIsland = (island) => packing.toggle(island);
   session.onClose = () => {
+    packing.reset();
     editing.reset();
     balancing.reset();
   };
@@ -67,6 +79,7 @@ async function start(): Promise<void> {
   });
   session.onResult = () => {
     editing.ready();
+    packing.ready();
     $('curl-row').hidden = !session.opened || !options;
     if (session.opened && options) $<HTMLTextAreaElement>('curl').value = commandOf(session, options, limits);
   };

@@ -200,9 +200,9 @@ TEST(PaintedSeams, HaveTheMeanOfEachClusterOnACoarseMesh) {
   const charts::Charts charts = charts::components_of(surface, {});
   const charts::Chart& component = charts.charts.front();
   Coarse coarse = coarsen(component.mesh, component.halfedges, 200, {});
-  EXPECT_TRUE(coarse_avoid(coarse, component.mesh).empty());
+  EXPECT_TRUE(coarse_avoid(coarse, component.mesh, component.halfedges).empty());
   coarse.avoid = component.avoid;
-  const std::vector<double> avoid = coarse_avoid(coarse, component.mesh);
+  const std::vector<double> avoid = coarse_avoid(coarse, component.mesh, component.halfedges);
   ASSERT_EQ(avoid.size(), 3 * coarse.mesh.faces.size());
   for (std::size_t h = 0; h < avoid.size(); ++h) {
     EXPECT_EQ(avoid[h], avoid[std::size_t(coarse.halfedges.twin[h])]);

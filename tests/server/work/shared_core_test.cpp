@@ -98,8 +98,10 @@ TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheySolve) {
 }
 
 TEST(JobsThatShare, AnswerAsTheyWouldAloneHoweverTheyCut) {
-  std::vector<UnwrapOptions> jobs(6);
+  std::vector<UnwrapOptions> jobs(8);
   for (UnwrapOptions& options : jobs) options.stop.iterations = 2;
+  jobs[6].max_distortion = jobs[7].max_distortion = 2.002;
+  jobs[7].keep_edges = {{.surface = 0, .vertices = {14, 15, 16}}};
   jobs[1].seams = SeamMode::keep;
   jobs[2].seams = SeamMode::none;
   jobs[3].seams = SeamMode::uv0;

@@ -3,7 +3,7 @@ import {$, announce, el, show} from '../base/dom.js';
 import {count} from '../base/words.js';
 import {Pins} from '../edit/pins.js';
 import {SeamMarks} from '../edit/seams.js';
-import {seamsOf, vertexOf} from '../edit/vertices.js';
+import {type SeamPath, seamsOf, vertexOf} from '../edit/vertices.js';
 import type {OptionValues} from '../job/run.js';
 import type {Surface} from '../mesh/surface.js';
 import {flat} from '../view/flat.js';
@@ -13,22 +13,31 @@ import type {Viewing} from './viewing.js';
 
 const REACH = 14; // pixels from a pin at which it is taken
 
-type Mode = 'look' | 'seams' | 'pins';
+/** What is marked along edges: seams, or edges that are kept from them. */
+type Marked = 'seams' | 'keep';
+type Mode = 'look' | Marked | 'pins' | 'islands';
+
+const PURPOSES: Record<Marked, string> = {
+  seams: 'Unwrap cuts along these edges.',
+  keep: 'Unwrap finds other charts, and no seam runs along these edges. It may cross them.',
+};
 
 export class Editing {
   readonly #viewing: Viewing;
   readonly #session: Session;
   readonly #pins = new Pins();
+  /** An island was clicked, or nothing. */
+  onIsland?: (island: number | undefined) => void;
   /** Another solve is wanted, since a pin was moved. */
   onPins?: () => void;
-  #marks: SeamMarks | undefined;
+  #marks: Partial<Record<Marked, SeamMarks>> = {};
   #surface: Surface | undefined;
   #dragged = -1;
 
   constructor(viewing: Viewing, session: Session) {
     [this.#viewing, this.#session] = [viewing, session];
     const {viewer} = viewing;
-    for (const mode of ['look', 'seams', 'pins']) $(`edit-${mode}`).addEventListener('change', () => this.#showMode());
+    for (const mode of ['look', 'seams', 'keep', 'pins', 'islands']) $(`edit-${mode}`).addEventListener('change', () => this.#showMode());
     viewer.onClick = (view, event) => this.#click(view, event);
     viewer.flat.onGrab = (event) => this.#grab(event);
     viewer.flat.onDrag = (u, v, ends) => this.#drag([u, v], ends);
@@ -36,13 +45,13 @@ export class Editing {
       action();
       this.#draw();
     });
-    onClick('seam-ring', () => this.#marks?.ring() || announce('Mark an edge first. Click two points.'));
+    onClick('seam-ring', () => this.#shownMarks?.ring() || announce('Mark an edge first. Click two points.'));
     const angle = () => Number($<HTMLInputElement>('crease-angle').value);
-    onClick('seam-crease', () => this.#marks?.followCrease(angle()) || announce('Mark an edge of a crease first. Click its two ends.'));
+    onClick('seam-crease', () => this.#shownMarks?.followCrease(angle()) || announce('Mark an edge of a crease first. Click its two ends.'));
     onClick('seam-creases', () => this.#ownMarks()?.markCreases(angle()) || announce('The mesh has no edge that sharp. Try fewer degrees.'));
-    onClick('seam-lift', () => this.#marks?.lift());
-    onClick('seam-undo', () => this.#marks?.undo());
-    onClick('seam-clear', () => this.#marks?.clear());
+    onClick('seam-lift', () => this.#shownMarks?.lift());
+    onClick('seam-undo', () => this.#shownMarks?.undo());
+    onClick('seam-clear', () => this.#shownMarks?.clear());
     onClick('pins-clear', () => this.#pins.clear());
   }
 
@@ -50,9 +59,20 @@ export class Editing {
     return document.querySelector<HTMLInputElement>('input[name=edit]:checked')!.value as Mode;
   }
 
+  /** What a click on the mesh marks. */
+  get #marked(): Marked | undefined {
+    const mode = this.#mode;
+    return mode === 'seams' || mode === 'keep' ? mode : undefined;
+  }
+
+  get #shownMarks(): SeamMarks | undefined {
+    return this.#marked && this.#marks[this.#marked];
+  }
+
   /** Another mesh: nothing of the last one counts. */
   reset(): void {
-    this.#marks = this.#surface = undefined;
+    this.#marks = {};
+    this.#surface = undefined;
     this.#pins.clear();
     $<HTMLInputElement>('edit-look').checked = true;
     show($('edit'), false);
@@ -63,7 +83,7 @@ export class Editing {
   ready(): void {
     const surface = this.#viewing.viewer.what?.surface;
     show($('edit'), Boolean(this.#session.sent && this.#session.loaded));
-    if (surface !== this.#surface) this.#marks = undefined;
+    if (surface !== this.#surface) this.#marks = {};
     this.#surface = surface;
     this.#draw();
   }
@@ -74,32 +94,52 @@ export class Editing {
     return loaded && kept?.what.map ? {seams: 'none', seam_edges: seamsOf(kept.what.map, kept.what.surface, loaded.model)} : {};
   }
 
-  /** What the edits add to the options of the form. */
-  options(): OptionValues {
+  #optionOf(marked: Marked): SeamPath[] {
     const {loaded} = this.#session;
-    const marked = loaded && this.#marks ? this.#marks.asOption(loaded.model) : [];
-    const pinned = this.#pins.asOption();
-    if (marked.length === 0 && pinned.length === 0) return {};
-    const keeps = pinned.length > 0 || $<HTMLInputElement>('keep-charts').checked ? this.keepingCharts() : {};
+    return (loaded && this.#marks[marked]?.asOption(loaded.model)) ?? [];
+  }
+
+  /** What the edits add to the options of the form. Edges are kept where charts are sought, not where those that are there stay. */
+  options(keepsCharts = false): OptionValues {
+    const [marked, pinned] = [this.#optionOf('seams'), this.#pins.asOption()];
+    const stay = keepsCharts || pinned.length > 0;
+    const kept = stay ? [] : this.#optionOf('keep');
+    if (marked.length + kept.length + pinned.length === 0) return {};
+    const keeps = stay || (kept.length === 0 && $<HTMLInputElement>('keep-charts').checked) ? this.keepingCharts() : {};
     const edges = [...((keeps['seam_edges'] as object[] | undefined) ?? []), ...marked];
-    return {...keeps, ...(edges.length > 0 ? {seam_edges: edges} : {}), ...(pinned.length > 0 ? {constraints: pinned} : {})};
+    return {
+      ...keeps, ...(edges.length > 0 ? {seam_edges: edges} : {}), ...(kept.length > 0 ? {keep_edges: kept} : {}),
+      ...(pinned.length > 0 ? {constraints: pinned} : {}),
+    };
   }
 
   #showMode(): void {
-    show($('seam-tools'), this.#mode === 'seams');
+    show($('seam-tools'), Boolean(this.#marked));
+    show($('keep-charts-row'), this.#marked === 'seams');
+    $('seam-purpose').textContent = this.#marked ? PURPOSES[this.#marked] : '';
     show($('pin-tools'), this.#mode === 'pins');
+    show($('island-tools'), this.#mode === 'islands');
     this.#draw();
   }
 
   #click(view: 'solid' | 'flat', event: MouseEvent | undefined): boolean {
-    if (this.#mode === 'seams' && view === 'solid') this.#markAt(event);
+    if (this.#marked && view === 'solid') this.#markAt(event);
     else if (this.#mode === 'pins' && view === 'flat') this.#pinAt(event);
+    else if (this.#mode === 'islands') this.onIsland?.(this.#islandAt(view, event));
     else return false;
     return true;
   }
 
+  #islandAt(view: 'solid' | 'flat', event: MouseEvent | undefined): number | undefined {
+    const {viewer} = this.#viewing;
+    const face = view === 'solid' ? viewer.solid.hit(event)?.face ?? -1 : viewer.flat.hit(event);
+    return face < 0 ? undefined : viewer.what?.map?.island[face];
+  }
+
   #ownMarks(): SeamMarks | undefined {
-    return (this.#marks ??= this.#surface && new SeamMarks(this.#surface));
+    const marked = this.#marked;
+    if (marked && this.#surface) this.#marks[marked] ??= new SeamMarks(this.#surface);
+    return this.#shownMarks;
   }
 
   #markAt(event: MouseEvent | undefined): void {
@@ -143,14 +183,15 @@ export class Editing {
 
   #draw(): void {
     const {viewer} = this.#viewing;
-    const marks = this.#mode === 'seams' ? this.#marks : undefined;
+    const marks = this.#shownMarks;
     viewer.solid.setEdits(marks?.lines() ?? new Float32Array());
     viewer.solid.setDots(marks?.dots() ?? new Float32Array());
     const pins = this.#mode === 'pins' ? this.#pins.all.flatMap(({uv}) => uv) : [];
     viewer.flat.setDots(flat(pins, viewer.what?.aspect ?? 1, 3));
-    const [edges, paths] = [this.#marks?.edges ?? 0, this.#marks?.paths ?? 0];
-    const begun = this.#marks?.isBegun ? ' The next click goes on from the last.' : '';
-    $('seam-count').textContent = edges > 0 ? `${count(edges, 'edge')} marked in ${count(paths, 'path')}.${begun}` : `No edges marked.${begun}`;
+    const [edges, paths] = [marks?.edges ?? 0, marks?.paths ?? 0];
+    const begun = marks?.isBegun ? ' The next click goes on from the last.' : '';
+    const waits = this.#marked === 'keep' && edges > 0 && this.#pins.all.length > 0 ? ' They count once there is no pin: pins keep the present charts.' : '';
+    $('seam-count').textContent = (edges > 0 ? `${count(edges, 'edge')} marked in ${count(paths, 'path')}.` : 'No edges marked.') + waits + begun;
     this.#listPins();
   }
 

@@ -107,7 +107,7 @@ export class SeamMarks {
     return Float32Array.from(points.flatMap((point) => Array.from(this.#graph.placeOf(point))));
   }
 
-  /** As the option seam_edges wants them. */
+  /** As the options seam_edges and keep_edges want them. */
   asOption(model: Model): SeamPath[] {
     return this.#paths.map((path) => {
       const vertices = path.map((point) => vertexOf(this.#corners[point]!, this.#surface, model));

@@ -8,7 +8,7 @@ import type {Methods, Option} from './types.js';
 type Input = HTMLInputElement | HTMLSelectElement;
 
 /** Options with an editor of their own elsewhere on the page, and lists that only programs need. */
-const ELSEWHERE = ['preset', 'lambda', 'constraints', 'seam_edges', 'materials', 'primitives'];
+const ELSEWHERE = ['preset', 'lambda', 'constraints', 'seam_edges', 'keep_edges', 'locked_islands', 'materials', 'primitives'];
 
 const idOf = (name: string) => `option-${name.replace('.', '-')}`;
 

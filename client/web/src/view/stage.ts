@@ -48,6 +48,7 @@ export abstract class Stage {
   readonly #worst = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   readonly #edits = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false}));
   readonly #picked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.55, depthTest: false}));
+  readonly #locked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.45, depthWrite: false}));
   readonly #dots = new Points(new BufferGeometry(), new PointsMaterial({size: 7, sizeAttenuation: false, depthTest: false}));
   readonly #wire: Mesh<BufferGeometry, MeshBasicMaterial>;
   readonly #mesh: Mesh<BufferGeometry, Material | Material[]>;
@@ -62,7 +63,7 @@ export abstract class Stage {
     const wire = new MeshBasicMaterial({wireframe: true, transparent: true, opacity: 0.35, polygonOffset: true, polygonOffsetFactor: -1});
     this.#wire = new Mesh(this.#mesh.geometry, wire);
     this.#wire.visible = false;
-    [this.#mesh, this.#wire, this.#hatched, this.#seams, this.#worst, this.#marks, this.#edits, this.#picked, this.#dots].forEach((object, order) => {
+    [this.#mesh, this.#wire, this.#hatched, this.#seams, this.#worst, this.#marks, this.#locked, this.#edits, this.#picked, this.#dots].forEach((object, order) => {
       object.frustumCulled = false;
       object.renderOrder = order;
       this.scene.add(object);
@@ -136,6 +137,11 @@ export abstract class Stage {
     this.#replace(this.#edits, lines);
   }
 
+  /** Islands that stay where they are. */
+  setLocked(triangles: Float32Array): void {
+    this.#replace(this.#locked, triangles);
+  }
+
   setPicked(triangles: Float32Array): void {
     this.#replace(this.#picked, triangles);
   }
@@ -171,6 +177,7 @@ export abstract class Stage {
     this.#marks.material.color.set(theme.mark);
     this.#picked.material.color.set(theme.mark);
     this.#edits.material.color.set(theme.pin);
+    this.#locked.material.color.set(theme.pin);
     this.#dots.material.color.set(theme.pin);
     this.draw();
   }

@@ -24,6 +24,8 @@ export class Viewer {
   onPick?: (picked: Picked | undefined) => void;
   /** Takes a click on the mesh for itself. */
   onClick?: (view: 'solid' | 'flat', event: MouseEvent | undefined) => boolean;
+  /** Another map is shown. */
+  onShow?: () => void;
   readonly #checker: Texture = checkerboard();
   readonly #checkerFlat: Texture = checkerboard();
   /** An image of the person's own, for each view: a texture belongs to one. */
@@ -45,6 +47,18 @@ export class Viewer {
     return this.#what;
   }
 
+  get selected(): Picked | undefined {
+    return this.#selected;
+  }
+
+  /** Islands that stay where they are. */
+  showLocked(islands: ReadonlySet<number>): void {
+    const {surface, map, aspect = 1} = this.#what ?? {};
+    const faces = Array.from(map?.island ?? []).flatMap((island, f) => (islands.has(island) ? [f] : []));
+    this.solid.setLocked(surface ? trianglesOf(faces, surface.positions, 3) : new Float32Array());
+    this.flat.setLocked(map ? flat(trianglesOf(faces, map.uv, 2), aspect, 1) : new Float32Array());
+  }
+
   show(what: Shown, keepsView = false): void {
     const isOther = this.#what?.surface !== what.surface || this.#what?.map !== what.map;
     this.#what = what;
@@ -58,6 +72,7 @@ export class Viewer {
       this.select(undefined);
     }
     this.colour(this.#colouring);
+    this.onShow?.();
   }
 
   /** Triangles that overlap, and the worst chart. */

@@ -1,0 +1,188 @@
+// Islands that stay while others are packed around them, through the front door. Gaps are measured
+// here between the triangles themselves.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/base/error.hpp"
+#include "core/unwrap.hpp"
+#include "tests/core/shapes.hpp"
+#include "tests/core/two_threads.hpp"
+
+namespace unwrapd::pipeline {
+namespace {
+
+/// A rectangle in the plane of UVs; two triangles, in space of its size and far from others.
+struct Sheet {
+  Vec2 low, size;
+};
+
+Surface sheets(const std::vector<Sheet>& all) {
+  Surface surface{{}, {}, "sheets"};
+  for (const auto& [low, size] : all) {
+    const auto first = static_cast<Index>(surface.mesh.positions.size());
+    const std::array<Vec2, 4> ends = {Vec2(0, 0), Vec2(size.x(), 0), size, Vec2(0, size.y())};
+    for (const Vec2& p : ends) surface.mesh.positions.emplace_back(p.x(), p.y(), double(first));
+    for (const Triangle& face : {Triangle{0, 1, 2}, {0, 2, 3}}) {
+      surface.mesh.faces.push_back({first + face[0], first + face[1], first + face[2]});
+      surface.corner_uv.push_back({low + ends[std::size_t(face[0])],
+                                   low + ends[std::size_t(face[1])],
+                                   low + ends[std::size_t(face[2])]});
+    }
+  }
+  surface.part.assign(surface.mesh.faces.size(), 0);
+  return surface;
+}
+
+struct Around {
+  Surface surface;
+  Unwrapped result;
+
+  [[nodiscard]] Vec2 corner(std::size_t face, std::size_t i) const {
+    const UnwrappedSurface& own = result.surfaces[0];
+    return own.uv[std::size_t(own.faces[face][i])];
+  }
+};
+
+UnwrapOptions locking(const std::vector<Index>& faces) {
+  UnwrapOptions options{.resolution = 256, .padding = 4, .repack_only = true};
+  for (const Index face : faces) options.locked_islands.push_back({0, face});
+  return options;
+}
+
+Around packed_around(Surface surface, const UnwrapOptions& options) {
+  SerialExecutor serial;
+  Unwrapped result = unwrap(std::span(&surface, 1), options, {}, serial);
+  return {std::move(surface), std::move(result)};
+}
+
+double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 way = b - a;
+  const double share = std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0);
+  return (p - a - share * way).norm();
+}
+
+/// The least distance between the sides of two triangles that do not overlap.
+double gap(const Around& at, std::size_t s, std::size_t t) {
+  double least = 1e9;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      least = std::min(
+          {least, distance_to_segment(at.corner(s, i), at.corner(t, j), at.corner(t, (j + 1) % 3)),
+           distance_to_segment(at.corner(t, i), at.corner(s, j), at.corner(s, (j + 1) % 3))});
+  return least;
+}
+
+const std::vector<Sheet> kScattered = {{{.4, .35}, {.25, .3}}, {{.02, .02}, {.3, .2}},
+                                       {{.1, .1}, {.2, .2}},   {{.05, .03}, {.15, .35}},
+                                       {{0, 0}, {.12, .12}},   {{.3, .2}, {.1, .3}}};
+
+TEST(LockedIslands, KeepTheirUvsAndTheOthersTheirSizesAndGaps) {
+  const Around at = packed_around(sheets(kScattered), locking({0, 7}));  // the first and the fourth
+  const std::size_t faces = at.surface.mesh.faces.size();
+  for (std::size_t t = 0; t < faces; ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec2 now = at.corner(t, i), was = at.surface.corner_uv[t][i];
+      EXPECT_NEAR((now - at.corner(t, (i + 1) % 3)).norm(),
+                  (was - at.surface.corner_uv[t][(i + 1) % 3]).norm(), 1e-6);
+      const bool is_locked = t / 2 == 0 || t / 2 == 3;
+      if (is_locked) {
+        EXPECT_EQ(now, was);
+        continue;
+      }
+      EXPECT_GE(std::min(now.minCoeff(), 1 - now.maxCoeff()), 4.0 / 256 - 1e-6);
+    }
+  for (std::size_t s = 0; s < faces; ++s)
+    for (std::size_t t = 0; t < s; ++t)
+      if (s / 2 != t / 2) {
+        EXPECT_GE(gap(at, s, t), 4.0 / 256 - 1e-6) << s << " and " << t;
+      }
+  EXPECT_EQ(at.result.report.pages, 1);
+  double area = 0;
+  for (const Sheet& own : kScattered) area += own.size.prod();
+  EXPECT_NEAR(at.result.report.fill, area, 1e-6);
+}
+
+/// On a page that is not square lengths count in texels, and numbers that no step divides stay.
+TEST(LockedIslands, KeepOddUvsOnAPageThatIsNotSquare) {
+  std::vector<Sheet> odd = kScattered;
+  odd[0] = {{1.0 / 3, 0.1 + 0.2}, {.3 / 1.1, .1 / 3}};
+  UnwrapOptions options = locking({1});
+  options.width = 512, options.height = 256;
+  options.packing.rotation = Rotation::none;
+  const Around at = packed_around(sheets(odd), options);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(at.corner(0, i), at.surface.corner_uv[0][i]);
+  const auto texels = [](const Vec2& uv) { return Vec2(512 * uv.x(), 256 * uv.y()); };
+  for (std::size_t t = 2; t < at.surface.mesh.faces.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(texels(at.corner(t, i) - at.corner(t, 0)).x(),
+                  texels(at.surface.corner_uv[t][i] - at.surface.corner_uv[t][0]).x(), 1e-3);
+}
+
+TEST(LockedIslands, LeaveTheOthersFurtherPagesWhereTheseAreAllowed) {
+  const std::vector<Sheet> large = {{{.05, .05}, {.8, .8}}, {{0, 0}, {.7, .7}}, {{0, 0}, {.1, .1}}};
+  UnwrapOptions options = locking({0});
+  try {
+    packed_around(sheets(large), options);
+    ADD_FAILURE() << "two of .7 and .8 lie on one page";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::does_not_fit);
+    EXPECT_EQ(error.where(), "/locked_islands");
+  }
+  options.packing.max_pages = 3;
+  const Around at = packed_around(sheets(large), options);
+  EXPECT_EQ(at.result.report.pages, 2);
+  EXPECT_GT(at.corner(2, 0).x(), 1);
+  std::vector<Sheet> on_second = large;
+  on_second[0].low.x() += 1;  // the locked one
+  const Around other = packed_around(sheets(on_second), options);
+  EXPECT_EQ(other.result.report.pages, 2);
+  EXPECT_LT(other.corner(2, 0).x(), 1);
+}
+
+TEST(LockedIslands, AreAllOrTheSameForAnyThreads) {
+  const Surface surface = sheets(kScattered);
+  const Around all = packed_around(surface, locking({0, 2, 4, 6, 8, 10}));
+  for (std::size_t t = 0; t < surface.mesh.faces.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(all.corner(t, i), surface.corner_uv[t][i]);
+  TwoThreads two;
+  const Unwrapped again = unwrap(std::span(&surface, 1), locking({0}), {}, two);
+  EXPECT_EQ(again.surfaces[0].uv, packed_around(surface, locking({0})).result.surfaces[0].uv);
+}
+
+TEST(LockedIslands, AreRefusedWhereThereAreNoneOrOptionsMoveThem) {
+  Surface surface = sheets(kScattered);
+  surface.corner_uv[11].fill(Vec2::Constant(std::nan("")));
+  const auto where = [&](const std::vector<Index>& faces,
+                         const std::function<void(UnwrapOptions&)>& change = {}) -> std::string {
+    UnwrapOptions options = locking(faces);
+    if (change) change(options);
+    try {
+      packed_around(surface, options);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::invalid_option);
+      return error.where();
+    }
+    return "none";
+  };
+  EXPECT_EQ(where({0}), "none");
+  EXPECT_EQ(where({0, 12}), "/locked_islands/1");
+  EXPECT_EQ(where({0, 2, -1}), "/locked_islands/2");
+  EXPECT_EQ(where({11}), "/locked_islands/0") << "it has no UVs";
+  EXPECT_EQ(where({0}, [](UnwrapOptions& o) { o.locked_islands[0].surface = 1; }),
+            "/locked_islands/0");
+  EXPECT_EQ(where({0}, [](UnwrapOptions& o) { o.repack_only = false; }), "/locked_islands");
+  EXPECT_EQ(where({0}, [](UnwrapOptions& o) { o.packing.texels_per_unit = 9; }),
+            "/texels_per_unit");
+  EXPECT_EQ(where({0}, [](UnwrapOptions& o) { o.packing.group = PageGroup::mesh; }), "/group");
+  EXPECT_EQ(where({0}, [](UnwrapOptions& o) { o.packing.stack_identical = true; }),
+            "/stack_identical");
+  for (Vec2& uv : surface.corner_uv[0]) uv.x() += 0.8;
+  for (Vec2& uv : surface.corner_uv[1]) uv.x() += 0.8;
+  EXPECT_EQ(where({0}), "/locked_islands/0") << "it lies beyond the page";
+}
+
+}  // namespace
+}  // namespace unwrapd::pipeline

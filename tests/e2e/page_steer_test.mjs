@@ -1,0 +1,153 @@
+// Steering by hand: edges that are kept from seams, and islands that stay where others are packed.
+import assert from "node:assert/strict";
+import { after, before, describe, test } from "node:test";
+
+import { Bench, box, difference, jobOf, missing, shot, submitted, unwrap } from "./page.mjs";
+
+const bench = new Bench();
+
+describe("steered by hand", { skip: missing }, () => {
+  before(() => bench.open());
+  after(() => bench.close());
+
+  const resultOf = async (page) => (await fetch(`${bench.server.base}/v1/jobs/${jobOf(page)}/result.json`)).json();
+  const idle = (page) => page.waitForFunction(() => !document.querySelector("#send").disabled);
+
+  /** The edges of a result whose sides have different UVs, by vertices of the input, lower first. */
+  function seamsOf({ meshes: [{ faces, uv, vertex_map: map }] }) {
+    const sides = new Map();
+    for (let h = 0; h < faces.length; h += 1) {
+      const [a, b] = [faces[h], faces[h % 3 === 2 ? h - 2 : h + 1]];
+      const key = [map[a], map[b]].sort((x, y) => x - y).join();
+      const ends = (map[a] < map[b] ? [a, b] : [b, a]).flatMap((v) => [uv[2 * v], uv[2 * v + 1]]);
+      sides.set(key, [...(sides.get(key) ?? []), ends.join()]);
+    }
+    return new Set([...sides].filter(([, own]) => own.length === 2 && own[0] !== own[1]).map(([key]) => key));
+  }
+
+  test("no seam runs along edges that are kept", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("box.obj", box(4)));
+    const before = seamsOf(await resultOf(page));
+    await page.check("#edit-keep");
+    assert.match(await page.locator("#seam-purpose").innerText(), /no seam runs along these edges/);
+    assert.ok(await page.locator("#keep-charts-row").isHidden());
+    const bare = await shot(page, "#solid");
+    await page.fill("#crease-angle", "80");
+    await page.click("#seam-creases");
+    assert.match(await page.locator("#seam-count").innerText(), /^48 edges marked in 12 paths/);
+    await page.mouse.move(5, 5);
+    assert.ok(await difference(page, await shot(page, "#solid"), bare) > 0.0003, "the marks are seen");
+    await page.click("#seam-undo");
+    await page.click("#seam-creases");
+    const options = await submitted(page, () => page.click("#send"));
+    const kept = new Set(options.keep_edges.flatMap(({ vertices }) =>
+      vertices.slice(1).map((v, k) => [v, vertices[k]].sort((x, y) => x - y).join())));
+    assert.equal(kept.size, 48);
+    assert.equal(options.seam_edges, undefined, "the present charts do not stay");
+    await idle(page);
+    const result = await resultOf(page);
+    const cut = [...seamsOf(result)].filter((edge) => kept.has(edge)).length;
+    assert.ok([...before].some((edge) => kept.has(edge)), "creases are where seams are by themselves");
+    assert.equal(cut, 0, `${cut} of 48`);
+    assert.deepEqual(result.report.notes.filter(({ code }) => code === "kept_edges_cut"), []);
+    assert.ok(seamsOf(result).size > 0);
+  });
+
+  test("pins and drafts keep the present charts, and kept edges wait", async (t) => {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("box.obj", box(2)));
+    await page.check("#edit-keep");
+    await page.fill("#crease-angle", "80");
+    await page.click("#seam-creases");
+    await page.check("#edit-pins");
+    await page.focus("#flat");
+    const uv = await faceAt(page, 0);
+    const { x, y } = await placeOf(page, uv);
+    await page.mouse.click(x, y);
+    await page.check("#edit-keep");
+    assert.match(await page.locator("#seam-count").innerText(), /count once there is no pin/);
+    const options = await submitted(page, () => page.click("#send"));
+    assert.ok(options.constraints.length === 1 && options.seam_edges.length > 0 && !options.keep_edges);
+  });
+
+  /** Where a point of the page lies on the screen, while all of the page is shown. */
+  async function placeOf(page, [u, v]) {
+    const { x, y, width, height } = await page.locator("#flat").boundingBox();
+    return { x: x + width * (0.5 + (u - 0.5) / 1.06), y: y + height * (0.5 - (v - 0.5) / 1.06) };
+  }
+
+  /** The middle of a face in the layout. */
+  async function faceAt(page, face) {
+    const { meshes: [{ faces, uv }] } = await resultOf(page);
+    const corners = faces.slice(3 * face, 3 * face + 3);
+    return [0, 1].map((k) => corners.reduce((sum, v) => sum + uv[2 * v + k] / 3, 0));
+  }
+
+  const cornersOf = ({ meshes: [{ faces, uv }] }, face) => faces.slice(3 * face, 3 * face + 3).map((v) => [uv[2 * v], uv[2 * v + 1]]);
+
+  /** A visitor whose box is cut into its six sides, of 32 triangles each. */
+  async function visitWithSixIslands(t) {
+    const page = await bench.visit(t);
+    await unwrap(page, bench.file("box.obj", box(4)));
+    await page.check("#edit-seams");
+    await page.uncheck("#keep-charts");
+    await page.fill("#crease-angle", "80");
+    await page.click("#seam-creases");
+    await submitted(page, () => page.click("#send"));
+    await page.waitForFunction(() => document.querySelector("#figures dd")?.firstChild.textContent === "6");
+    await idle(page);
+    return page;
+  }
+
+  test("locked islands stay, and the others are packed around them", async (t) => {
+    const page = await visitWithSixIslands(t);
+    const before = await resultOf(page);
+    await page.check("#edit-islands");
+    assert.equal(await page.locator("#lock-count").innerText(), "0 islands of 6 locked.");
+    const bare = await shot(page, "#flat");
+    for (const face of [0, 64]) {
+      const { x, y } = await placeOf(page, await faceAt(page, face));
+      await page.mouse.click(x, y);
+    }
+    assert.equal(await page.locator("#lock-count").innerText(), "2 islands of 6 locked.");
+    await page.mouse.move(5, 5);
+    assert.ok(await difference(page, await shot(page, "#flat"), bare) > 0.02, "locks are seen");
+    if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/locked.png` });
+    await page.fill("#option-padding", "1");
+    const first = jobOf(page);
+    const options = await submitted(page, () => page.click("#pack-again"));
+    assert.equal(options.repack_only, true);
+    assert.equal(options.padding, 1);
+    assert.deepEqual(options.locked_islands, [{ mesh: 0, face: 0 }, { mesh: 0, face: 64 }]);
+    await page.waitForFunction((id) => location.hash.includes("job=") && !location.hash.includes(id) && !document.querySelector("#send").disabled, first);
+    const result = await resultOf(page);
+    const islandOf = (face) => Math.floor(face / 32);
+    for (let face = 0; face < 192; face += 1)
+      if ([0, 2].includes(islandOf(face))) assert.deepEqual(cornersOf(result, face), cornersOf(before, face), `face ${face}`);
+    assert.ok([32, 96].some((face) => `${cornersOf(result, face)}` !== `${cornersOf(before, face)}`), "others moved");
+    assert.equal(await page.locator("#lock-count").innerText(), "2 islands of 6 locked.", "they stay locked");
+    if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/packed.png` });
+    await page.click("#unlock-all");
+    const free = await submitted(page, () => page.click("#pack-again"));
+    assert.equal(free.locked_islands, undefined);
+  });
+
+  test("an island is locked by keyboard, and what does not fit is told", async (t) => {
+    const page = await visitWithSixIslands(t);
+    await page.check("#edit-islands");
+    await page.click("#lock-all");
+    assert.equal(await page.locator("#lock-count").innerText(), "6 islands of 6 locked.");
+    await page.check("#edit-look");
+    const { x, y } = await placeOf(page, await faceAt(page, 5));
+    await page.mouse.click(x, y);
+    await page.focus("#flat");
+    await page.keyboard.press("l");
+    assert.match(await page.locator("#announcement").textContent(), /^Chart 1 is unlocked/);
+    await page.check("#edit-islands");
+    assert.equal(await page.locator("#lock-count").innerText(), "5 islands of 6 locked.");
+    await page.fill("#option-padding", "120");
+    await page.click("#pack-again");
+    await page.locator("#problem", { hasText: /do not fit beside the locked ones/ }).waitFor();
+  });
+});
