@@ -1,6 +1,7 @@
-# compile_together(TARGET [FILE...]): the files of a target together, sixty at a time, but for those
-# named, whose local names clash with others. Templates that several files use are compiled once.
-# Not in the preset dev, where one file changes at a time.
+# compile_together(TARGET [FILE...] [APART FILE...]...): the files of a target together, sixty at a time.
+# FILEs whose local names clash with others' are compiled by themselves, or with those behind the same
+# APART. Templates that several files use are compiled once. Not in the preset dev, where one file
+# changes at a time.
 # (Eigen comes before httplib, whose headers define a macro that breaks it.)
 function(compile_together target)
   if(CMAKE_BUILD_TYPE STREQUAL Debug)
@@ -8,6 +9,14 @@ function(compile_together target)
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP
     UNITY_BUILD_CODE_BEFORE_INCLUDE "#include <Eigen/Core>")
+  set(apart 0)
+  foreach(file ${ARGN})
+    if(file STREQUAL APART)
+      math(EXPR apart "${apart} + 1")
+    elseif(apart)
+      set_source_files_properties(${file} PROPERTIES UNITY_GROUP apart_${apart})
+    endif()
+  endforeach()
   get_target_property(sources ${target} SOURCES)
   set(group 1)
   set(place 0)
@@ -33,5 +42,12 @@ function(precompile target)
     target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <algorithm> <array>
       <cmath> <functional> <map> <memory> <optional> <random> <span> <stop_token> <string> <vector>
       ${ARGN})
+  endif()
+endfunction()
+
+# precompile_as(TARGET OTHER): what OTHER has precompiled, which is compiled with the same flags.
+function(precompile_as target other)
+  if(NOT CMAKE_BUILD_TYPE STREQUAL Debug)
+    target_precompile_headers(${target} REUSE_FROM ${other})
   endif()
 endfunction()
