@@ -71,6 +71,10 @@ test('cost', async () => {
   assert.equal(table.match(/^sheet\.obj +\w+ +1 +\d+ +\d+\.\d\d$/gm)?.length, 3, table);
 });
 
+test('scene', {skip: !isInstalled()}, async () => {
+  assert.match(await script('scene', join(bin, 'unwrapd'), '3', '1'), /^4( +[\d.]+){6}$/m);
+});
+
 test('farm', {skip: !isInstalled()}, async () => {
   const times = await script('farm', join(bin, 'unwrapd'), '3');
   for (const what of ['progress', 'cancel'])

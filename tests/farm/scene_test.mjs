@@ -70,6 +70,17 @@ async function eventsOf(node, id) {
   return [...text.matchAll(/^event: (\w+)\ndata: (.*)$/gm)].map(([, name, data]) => ({ name, ...JSON.parse(data) }));
 }
 
+test("the workers of one node share a scene", async (t) => {
+  const adminPort = await freePort();
+  const flags = ["--workers", "2", "--threads", "1", "--admin-listen", `127.0.0.1:${adminPort}`];
+  const node = Object.assign(await Server.start(dataDirectory(t), ...flags), { adminPort });
+  assert.equal(await resultOf(node, await submit(node)), await expected(t));
+  const counts = await bundles([node]);
+  t.diagnostic(JSON.stringify(counts));
+  assert.ok(counts.found > 0 && counts.lost === 0, JSON.stringify(counts));
+  await node.end("SIGTERM");
+});
+
 test("a scene has the same bytes for one, two and four workers", options, async (t) => {
   const farm = new Farm(t);
   const front = await farm.start("front", 0);

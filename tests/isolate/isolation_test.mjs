@@ -81,7 +81,7 @@ test('what is wrong with a mesh is told as ever', async () => {
 
 // The last lines are lies: what they say is nothing that work on a mesh can come to.
 const kCrashes = ['segv', 'abort', 'leave', 'connect', 'fork', 'exec', 'traverse', 'overwrite',
-                  'threads', 'end_within', 'files', 'twice', 'head', 'chatter',
+                  'threads', 'end_within', 'files', 'twice', 'publish', 'head', 'chatter',
                   'storage_full', 'draining', 'unauthorized', 'time_limit', 'no_such_code'];
 
 for (const what of kCrashes) {

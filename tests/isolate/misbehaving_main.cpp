@@ -138,6 +138,8 @@ const std::map<std::string, Deed> kDeeds = {
        output.file("uv.bin", "x");
        output.file("uv.bin", "x");
      }},
+    {"publish",  // a bundle of work that nobody shares
+     [](auto&) { send(server::work::FrameKind::publish, std::string(64, 'a'), "1234made"); }},
     {"head", [](auto& output) { output.file("totals.json", "{}\r\nX-Injected: 1"); }},
     {"traverse", [](auto& output) { output.file("../../escaped", "x"); }},
     {"overwrite", [](auto& output) { output.file("document", "x"); }},
