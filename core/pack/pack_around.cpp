@@ -1,13 +1,22 @@
 // Bottom-left placement on a grid whose cells locked islands have taken (ADR 0074). A locked island
 // lies anywhere between cells: its outline gets the corner of its lowest cell as one more point, so
 // that its mask begins there.
+//
+// A page that was packed tightly has a packing that this placement does not find again: then more
+// and more of the islands stay where they are, the largest first, as long as they keep the padding
+// there.
 #include "core/pack/pack_around.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
 #include "core/pack/anneal_packing.hpp"
 #include "core/pack/box.hpp"
@@ -100,6 +109,60 @@ bool is_beyond_page(const charts::Outline& outline, double aspect) {
 
 int turns_around(std::size_t islands) { return islands <= 100 ? 16 : 4; }
 
+double distance_to_side(const Vec2& p, const std::array<Vec2, 2>& side) {
+  const Vec2 way = side[1] - side[0], off = p - side[0];
+  const double square = way.squaredNorm();
+  const double share = square > 0 ? std::clamp(off.dot(way) / square, 0.0, 1.0) : 0;
+  return (off - share * way).norm();
+}
+
+bool do_cross(const std::array<Vec2, 2>& s, const std::array<Vec2, 2>& t) {
+  const auto turn = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+    const Vec2 p = b - a, q = c - a;
+    return p.x() * q.y() - p.y() * q.x();
+  };
+  return turn(s[0], s[1], t[0]) * turn(s[0], s[1], t[1]) < 0 &&
+         turn(t[0], t[1], s[0]) * turn(t[0], t[1], s[1]) < 0;
+}
+
+/// By its winding number, counted at the ray to the right.
+bool is_inside(const Vec2& p, const charts::Outline& outline) {
+  int winding = 0;
+  for (const auto& [a, b] : outline) {
+    if ((a.y() <= p.y()) == (b.y() <= p.y())) continue;
+    const double x = a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    if (x > p.x()) winding += b.y() > a.y() ? 1 : -1;
+  }
+  return winding != 0;
+}
+
+/// Whether two islands overlap or come nearer to each other than so much.
+bool is_nearer(const charts::Outline& one, const charts::Outline& other, double distance) {
+  const auto [low, high] = bounds_of_outline(other);
+  const Vec2 reach = Vec2::Constant(distance);
+  const Vec2 least = low - reach, most = high + reach;
+  const auto [own_low, own_high] = bounds_of_outline(one);
+  if ((own_high.array() < least.array()).any() || (own_low.array() > most.array()).any())
+    return false;
+  if (is_inside(one.front()[0], other) || is_inside(other.front()[0], one)) return true;
+  for (const auto& side : one) {
+    const Vec2 a = side[0].cwiseMin(side[1]), b = side[0].cwiseMax(side[1]);
+    if ((b.array() < least.array()).any() || (a.array() > most.array()).any()) continue;
+    for (const auto& across : other)
+      if (do_cross(side, across) || distance_to_side(side[0], across) < distance ||
+          distance_to_side(across[0], side) < distance)
+        return true;
+  }
+  return false;
+}
+
+bool keeps_border(const charts::Outline& own, const PageOptions& page, double padding) {
+  const int number = page_holding(own, page.aspect(), page.packing.max_pages);
+  const auto [low, high] = bounds_of_outline(own);
+  return number >= 0 && low.x() >= number + padding && high.x() <= number + 1 - padding &&
+         low.y() >= padding && high.y() <= page.aspect() - padding;
+}
+
 }  // namespace
 
 int page_holding(const charts::Outline& island, double aspect, int pages) {
@@ -111,9 +174,13 @@ int page_holding(const charts::Outline& island, double aspect, int pages) {
   return is_within ? static_cast<int>(page) : -1;
 }
 
-PackResult pack_around(std::span<const charts::Outline> islands,
-                       std::span<const charts::Outline> locked, const PageOptions& page,
-                       Executor& executor) {
+namespace {
+
+/// The islands that are not locked, placed around those that are; no placements where these do not
+/// suffice.
+std::optional<PackResult> packed_around(std::span<const charts::Outline> islands,
+                                        std::span<const charts::Outline> locked,
+                                        const PageOptions& page, Executor& executor) {
   PackResult result{.placements = {}, .pages = 1, .padding = double(page.padding)};
   std::vector<int> pages;
   for (const charts::Outline& own : locked) {
@@ -121,8 +188,6 @@ PackResult pack_around(std::span<const charts::Outline> islands,
     result.pages = std::max(result.pages, static_cast<Index>(pages.back() + 1));
   }
   if (islands.empty()) return result;
-  for (const charts::Outline& own : islands)
-    if (is_beyond_page(own, page.aspect())) refuse_locked();
   const PageGrid grid{static_cast<double>(page.padding) / page.resolution, page.aspect()};
   const int side = grid.tight_side(grid.columns(fine_cells(islands.size() + locked.size())));
   BottomLeftPlacer placer(islands, turns_around(islands.size()), page.packing.rotation);
@@ -134,10 +199,65 @@ PackResult pack_around(std::span<const charts::Outline> islands,
   Budget budget{static_cast<std::int64_t>(kWordsAround * shares), executor.stop()};
   const CellPacking found = fewest_pages(placer, usual_arrangements(placer),
                                          cells.pages(page.packing.max_pages, taken), budget);
-  if (found.side == 0) refuse_locked();
+  if (found.side == 0) return std::nullopt;
   result.pages = std::max(result.pages, static_cast<Index>(found.pages));
   result.placements = placements_of(found, placer, grid);
   return result;
+}
+
+/// The islands, the largest first, whose present places are as good as any: with the padding from
+/// the border, from what is locked and from each other.
+std::vector<std::size_t> well_placed(std::span<const charts::Outline> islands,
+                                     std::span<const charts::Outline> locked,
+                                     const PageOptions& page, const std::stop_token& stop) {
+  std::vector<std::size_t> order(islands.size()), well;
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(),
+                           [&](std::size_t k) { return std::abs(charts::area_of(islands[k])); });
+  const double padding = static_cast<double>(page.padding) / page.resolution - kRoundingOfUvs;
+  std::vector<const charts::Outline*> there;
+  for (const charts::Outline& own : locked) there.push_back(&own);
+  for (const std::size_t k : order) {
+    throw_if_cancelled(stop);
+    const charts::Outline& own = islands[k];
+    if (!keeps_border(own, page, padding)) continue;
+    if (std::ranges::any_of(
+            there, [&](const charts::Outline* other) { return is_nearer(own, *other, padding); }))
+      continue;
+    well.push_back(k);
+    there.push_back(&own);
+  }
+  return well;
+}
+
+}  // namespace
+
+PackResult pack_around(std::span<const charts::Outline> islands,
+                       std::span<const charts::Outline> locked, const PageOptions& page,
+                       Executor& executor) {
+  for (const charts::Outline& own : islands)
+    if (is_beyond_page(own, page.aspect())) refuse_locked();
+  if (auto all = packed_around(islands, locked, page, executor)) return std::move(*all);
+  const std::vector<std::size_t> well = well_placed(islands, locked, page, executor.stop());
+  for (const double share : {0.5, 0.75, 1.0}) {
+    const auto count = static_cast<std::size_t>(share * static_cast<double>(well.size()));
+    std::vector<char> stays(islands.size(), 0);
+    std::vector<charts::Outline> there(locked.begin(), locked.end()), rest;
+    for (std::size_t k = 0; k < count; ++k) {
+      stays[well[k]] = 1;
+      there.push_back(islands[well[k]]);
+    }
+    for (std::size_t k = 0; k < islands.size(); ++k)
+      if (stays[k] == 0) rest.push_back(islands[k]);
+    const auto some = packed_around(rest, there, page, executor);
+    if (!some) continue;
+    PackResult result{.placements = {}, .pages = some->pages, .padding = some->padding};
+    std::size_t next = 0;
+    for (const char own : stays)
+      result.placements.push_back(own != 0 ? Placement{} : some->placements[next++]);
+    return result;
+  }
+  refuse_locked();
 }
 
 }  // namespace unwrapd::pack

@@ -13,7 +13,8 @@ namespace unwrapd::pack {
 /// The page on which an island lies with all of its outline, in page units; -1: on none of so many.
 int page_holding(const charts::Outline& island, double aspect, int pages);
 
-/// Places for `islands` on the cells that `locked` leave free, at least the padding from these,
+/// Places for `islands` on the cells that `locked` leave free (some stay where they are if all of
+/// them find no other), at least the padding from these,
 /// each other and the border. All outlines are in page units, and every scale is 1, so that sizes
 /// stay. The placements are those of `islands`. locked: each on a page (page_holding()). The same
 /// bytes on every machine and for any number of threads. Throws Error{does_not_fit} at

@@ -142,6 +142,29 @@ TEST(LockedIslands, LeaveTheOthersFurtherPagesWhereTheseAreAllowed) {
   EXPECT_LT(other.corner(2, 0).x(), 1);
 }
 
+/// Nine squares that fill the page to the texel: there is no other way, and none of them moves.
+TEST(LockedIslands, LeaveATightPageAsItIsUnlessThePaddingGrows) {
+  std::vector<Sheet> tight;
+  const double between = 4.0 / 256, side = (1 - 4 * between) / 3, all = side + between;
+  for (int k = 0; k < 9; ++k)
+    tight.push_back({{between + all * (k % 3), between + all * (k / 3)}, {side, side}});
+  const Around at = packed_around(sheets(tight), locking({8}));
+  for (std::size_t t = 0; t < at.surface.mesh.faces.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_LT((at.corner(t, i) - at.surface.corner_uv[t][i]).norm(), 1e-6);
+  UnwrapOptions wider = locking({8});
+  wider.padding = 5;
+  EXPECT_THROW(packed_around(sheets(tight), wider), Error);
+  for (Sheet& own : tight) own.size *= 0.97;
+  tight[4].low += Vec2(between, 0);  // too near to its neighbour: it has to move
+  const Around moved = packed_around(sheets(tight), locking({0}));
+  for (std::size_t s = 0; s < 18; ++s)
+    for (std::size_t t = 0; t < s; ++t)
+      if (s / 2 != t / 2) {
+        EXPECT_GE(gap(moved, s, t), between - 2e-6) << s << " and " << t;
+      }
+}
+
 TEST(LockedIslands, AreAllOrTheSameForAnyThreads) {
   const Surface surface = sheets(kScattered);
   const Around all = packed_around(surface, locking({0, 2, 4, 6, 8, 10}));
