@@ -22,7 +22,7 @@ writeFileSync(sheet, meshes.obj(8));
 /** What a program prints; rejects unless it ends with 0. */
 async function printed(program, ...words) {
   const env = {...process.env, LOAD_SCALE: '0.01'};
-  return (await promisify(execFile)(program, words, {env, timeout: 120_000})).stdout;
+  return (await promisify(execFile)(program, words, {env, timeout: 240_000})).stdout;
 }
 
 const script = (name, ...words) => printed(process.execPath, join(here, `${name}.mjs`), ...words);
